@@ -1,0 +1,74 @@
+//! What a collision rule is told.
+
+/// Two surfaces that touch: how fast they close and slip, and the masses that resist.
+///
+/// With `$\hat n$` from partner 2 to partner 1 and `$\vec v = \vec v_{C2} - \vec v_{C1}$` the relative velocity of
+/// the points in contact, the closing speed is `$v_n = \vec v\cdot\hat n$` and the slip speed
+/// `$v_t = \vec v\cdot\hat t$`. An impulse `$\Delta_n$` changes `$v_n$` by `$-\Delta_n/\mu$`, and `$\Delta_t$` changes
+/// `$v_t$` by `$-\Delta_t/\mu_t$`, where `$1/\mu = \sum 1/m_i$` and
+/// `$1/\mu_t = \sum (1 + 1/\beta_i)/m_i$` (for homogeneous disks `$\mu_t = \mu/3$`).
+///
+/// ```
+/// use granular_edmd::collision::Contact;
+/// let contact = Contact::new(1.5, -0.25, 0.5, 0.5 / 3.0);
+/// assert_eq!(contact.closing_speed(), 1.5);
+/// assert_eq!(contact.time_since_last_collision(), f64::INFINITY);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    closing_speed: f64,
+    slip_speed: f64,
+    normal_mass: f64,
+    tangential_mass: f64,
+    time_since_last_collision: f64,
+}
+
+impl Contact {
+    /// A contact of partners that have never collided before.
+    #[inline]
+    pub const fn new(closing_speed: f64, slip_speed: f64, normal_mass: f64, tangential_mass: f64) -> Self {
+        Self {
+            closing_speed,
+            slip_speed,
+            normal_mass,
+            tangential_mass,
+            time_since_last_collision: f64::INFINITY,
+        }
+    }
+
+    /// The same contact, a time after the latest collision of either partner.
+    #[inline]
+    pub const fn with_time_since_last_collision(self, time: f64) -> Self {
+        Self { time_since_last_collision: time, ..self }
+    }
+
+    /// `$v_n$`: speed at which the surfaces approach, positive in a collision.
+    #[inline]
+    pub const fn closing_speed(&self) -> f64 {
+        self.closing_speed
+    }
+
+    /// `$v_t$`: speed at which the surfaces slide, of either sign.
+    #[inline]
+    pub const fn slip_speed(&self) -> f64 {
+        self.slip_speed
+    }
+
+    /// `$\mu$`: reduced mass of the normal direction.
+    #[inline]
+    pub const fn normal_mass(&self) -> f64 {
+        self.normal_mass
+    }
+
+    /// `$\mu_t$`: effective mass of the tangential direction, rotation included.
+    #[inline]
+    pub const fn tangential_mass(&self) -> f64 {
+        self.tangential_mass
+    }
+
+    /// Time since either partner last collided with anything; infinite if neither ever has.
+    #[inline]
+    pub const fn time_since_last_collision(&self) -> f64 {
+        self.time_since_last_collision
+    }
+}

@@ -1,0 +1,21 @@
+//! The rule that loses nothing.
+
+use super::{CollisionRule, Contact, Impulse};
+
+/// Smooth elastic collisions: the closing speed is reversed, the slip is not touched.
+///
+/// ```
+/// use granular_edmd::collision::{CollisionRule, Contact, Elastic};
+/// let contact = Contact::new(2.0, 7.0, 0.5, 1.0 / 6.0);
+/// assert_eq!(Elastic.impulse(&contact).energy_change(&contact), 0.0);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Elastic;
+
+impl CollisionRule for Elastic {
+    #[inline]
+    fn impulse(&self, contact: &Contact) -> Impulse {
+        Impulse::new(2.0 * contact.normal_mass() * contact.closing_speed(), 0.0)
+    }
+}

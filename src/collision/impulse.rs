@@ -1,0 +1,81 @@
+//! What a collision rule answers.
+
+use super::Contact;
+
+/// How a collision went, for those who count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
+pub enum Regime {
+    /// The rule does not say.
+    #[default]
+    Unspecified,
+    /// The surfaces held: the tangential impulse stayed below the limit of static friction.
+    Sticking,
+    /// The surfaces slid: the tangential impulse is that of dynamic friction.
+    Sliding,
+    /// A contact-duration model replaced the rule.
+    ContactDuration,
+}
+
+/// The momentum that partner 1 receives along the normal and the tangent; partner 2 receives the opposite.
+///
+/// ```
+/// use granular_edmd::collision::{Contact, Impulse};
+/// let contact = Contact::new(1.0, 0.0, 0.5, 0.5 / 3.0);
+/// let stop = Impulse::new(0.5, 0.0);
+/// assert_eq!(stop.energy_change(&contact), -0.25);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Impulse {
+    normal: f64,
+    tangential: f64,
+    regime: Regime,
+}
+
+impl Impulse {
+    /// An impulse `$\Delta_n\hat n + \Delta_t\hat t$`.
+    #[inline]
+    pub const fn new(normal: f64, tangential: f64) -> Self {
+        Self { normal, tangential, regime: Regime::Unspecified }
+    }
+
+    /// The same impulse, labelled.
+    #[inline]
+    pub const fn with_regime(self, regime: Regime) -> Self {
+        Self { regime, ..self }
+    }
+
+    /// `$\Delta_n$`, positive when it pushes the partners apart.
+    #[inline]
+    pub const fn normal(&self) -> f64 {
+        self.normal
+    }
+
+    /// `$\Delta_t$`, with the sign of the slip speed when it slows the slip.
+    #[inline]
+    pub const fn tangential(&self) -> f64 {
+        self.tangential
+    }
+
+    /// How the collision went.
+    #[inline]
+    pub const fn regime(&self) -> Regime {
+        self.regime
+    }
+
+    /// Change of kinetic energy in the collision, as seen from the wall if one partner is a wall:
+    ///
+    /// ```math
+    /// dE = -\Delta_n\left(v_n - \frac{\Delta_n}{2\mu}\right) - \Delta_t\left(v_t - \frac{\Delta_t}{2\mu_t}\right)
+    /// ```
+    ///
+    /// Independent of the frame for two disks. With Eqs. (3)–(5) it is Eq. (7) of the paper for sliding, and for
+    /// sticking Eq. (6) with the factor 1/3 that is missing there in print.
+    #[inline]
+    pub fn energy_change(&self, contact: &Contact) -> f64 {
+        let normal = self.normal * (contact.closing_speed() - 0.5 * self.normal / contact.normal_mass());
+        let tangential =
+            self.tangential * (contact.slip_speed() - 0.5 * self.tangential / contact.tangential_mass());
+        -(normal + tangential)
+    }
+}

@@ -1,0 +1,67 @@
+//! Inelastic disks without any tangential force.
+
+use super::{CollisionRule, Contact, Impulse, from_normal_restitution, normal_inelasticity};
+use crate::ParameterError;
+
+/// Smooth inelastic collisions: `$\Delta_n = 2(1-q_n)\mu v_n$` (paper, Eq. (3)) and no tangential impulse.
+///
+/// ```
+/// use granular_edmd::collision::{CollisionRule, Contact, Smooth};
+/// let rule = Smooth::from_restitution(0.8)?;
+/// let contact = Contact::new(2.0, 7.0, 0.5, 1.0 / 6.0);
+/// // -2 q (1 - q) mu v_n^2 with q = 0.1
+/// assert!((rule.impulse(&contact).energy_change(&contact) + 0.36).abs() < 1e-12);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawSmooth"))]
+pub struct Smooth {
+    normal_inelasticity: f64,
+}
+
+impl Smooth {
+    /// A rule with the normal inelasticity `$q_n \in [0, 1/2]$`.
+    ///
+    /// # Errors
+    /// If it is out of range.
+    pub fn new(inelasticity: f64) -> Result<Self, ParameterError> {
+        Ok(Self { normal_inelasticity: normal_inelasticity(inelasticity)? })
+    }
+
+    /// A rule with the normal restitution `$r_n \in [0, 1]$`.
+    ///
+    /// # Errors
+    /// If it is out of range.
+    pub fn from_restitution(restitution: f64) -> Result<Self, ParameterError> {
+        Self::new(from_normal_restitution(restitution)?)
+    }
+
+    /// `$q_n$`.
+    pub const fn normal_inelasticity(&self) -> f64 {
+        self.normal_inelasticity
+    }
+}
+
+impl CollisionRule for Smooth {
+    #[inline]
+    fn impulse(&self, contact: &Contact) -> Impulse {
+        Impulse::new(2.0 * (1.0 - self.normal_inelasticity) * contact.normal_mass() * contact.closing_speed(), 0.0)
+    }
+}
+
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "Smooth")]
+struct RawSmooth {
+    normal_inelasticity: f64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawSmooth> for Smooth {
+    type Error = ParameterError;
+
+    fn try_from(raw: RawSmooth) -> Result<Self, ParameterError> {
+        Self::new(raw.normal_inelasticity)
+    }
+}

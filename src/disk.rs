@@ -1,0 +1,202 @@
+//! One grain: a disk that moves and rotates.
+
+use glam::DVec2;
+
+use crate::ParameterError;
+use crate::quantity::{accept, finite, positive};
+
+/// Inertia factor of a homogeneous disk, `$\beta = 1/2$` in `$I = \beta m R^2$`.
+pub const HOMOGENEOUS: f64 = 0.5;
+
+/// Largest and smallest magnitude of a radius or mass: products of a few of them stay finite and normal.
+const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
+
+/// A rotating hard disk: position, velocity, angle, angular velocity, radius, mass and inertia factor.
+///
+/// Its moment of inertia is `$I = \beta m R^2$`, with `$\beta = 1/2$` unless said otherwise. Lengths, times and
+/// masses are in any consistent units; the paper takes the diameter and the mass of a disk as units.
+///
+/// ```
+/// use glam::DVec2;
+/// use granular_edmd::Disk;
+///
+/// let disk = Disk::new(DVec2::new(3.0, 4.0), 0.5)?.with_velocity(DVec2::new(1.0, 0.0))?.with_angular_velocity(2.0)?;
+/// assert_eq!(disk.mass(), 1.0);
+/// assert_eq!(disk.moment_of_inertia(), 0.125);
+/// assert_eq!(disk.translational_energy() + disk.rotational_energy(), 0.75);
+/// assert!(Disk::new(DVec2::ZERO, -0.5).is_err());
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawDisk"))]
+pub struct Disk {
+    position: DVec2,
+    velocity: DVec2,
+    angle: f64,
+    angular_velocity: f64,
+    radius: f64,
+    mass: f64,
+    inertia_factor: f64,
+}
+
+impl Disk {
+    /// A homogeneous disk of mass 1 at rest.
+    ///
+    /// # Errors
+    /// If the position is not finite, or the radius is not in `[1e-30, 1e30]`.
+    pub fn new(position: DVec2, radius: f64) -> Result<Self, ParameterError> {
+        Ok(Self {
+            position: finite_vector("position", position)?,
+            velocity: DVec2::ZERO,
+            angle: 0.0,
+            angular_velocity: 0.0,
+            radius: scale("radius", radius)?,
+            mass: 1.0,
+            inertia_factor: HOMOGENEOUS,
+        })
+    }
+
+    /// The same disk elsewhere.
+    ///
+    /// # Errors
+    /// If a component is not finite.
+    pub fn with_position(self, position: DVec2) -> Result<Self, ParameterError> {
+        Ok(Self { position: finite_vector("position", position)?, ..self })
+    }
+
+    /// The same disk with this velocity of its centre.
+    ///
+    /// # Errors
+    /// If a component is not finite.
+    pub fn with_velocity(self, velocity: DVec2) -> Result<Self, ParameterError> {
+        Ok(Self { velocity: finite_vector("velocity", velocity)?, ..self })
+    }
+
+    /// The same disk turned to this angle, in radians, counterclockwise.
+    ///
+    /// # Errors
+    /// If the angle is not finite.
+    pub fn with_angle(self, angle: f64) -> Result<Self, ParameterError> {
+        Ok(Self { angle: finite("angle", angle)?, ..self })
+    }
+
+    /// The same disk with this angular velocity, in radians per time, counterclockwise.
+    ///
+    /// # Errors
+    /// If it is not finite.
+    pub fn with_angular_velocity(self, angular_velocity: f64) -> Result<Self, ParameterError> {
+        Ok(Self { angular_velocity: finite("angular velocity", angular_velocity)?, ..self })
+    }
+
+    /// The same disk with this mass.
+    ///
+    /// # Errors
+    /// If it is not in `[1e-30, 1e30]`.
+    pub fn with_mass(self, mass: f64) -> Result<Self, ParameterError> {
+        Ok(Self { mass: scale("mass", mass)?, ..self })
+    }
+
+    /// The same disk with the moment of inertia `$I = \beta m R^2$` for this `$\beta$`: 1/2 for a homogeneous disk,
+    /// 1 for a ring.
+    ///
+    /// # Errors
+    /// If it is not in `[1e-6, 1]`.
+    pub fn with_inertia_factor(self, inertia_factor: f64) -> Result<Self, ParameterError> {
+        let valid = (1e-6..=1.0).contains(&inertia_factor);
+        let inertia_factor = accept(valid, "inertia factor", "in [1e-6, 1]", inertia_factor)?;
+        Ok(Self { inertia_factor, ..self })
+    }
+
+    /// Position of the centre.
+    pub const fn position(&self) -> DVec2 {
+        self.position
+    }
+
+    /// Velocity of the centre.
+    pub const fn velocity(&self) -> DVec2 {
+        self.velocity
+    }
+
+    /// Angle in radians, counterclockwise.
+    pub const fn angle(&self) -> f64 {
+        self.angle
+    }
+
+    /// Angular velocity in radians per time, counterclockwise.
+    pub const fn angular_velocity(&self) -> f64 {
+        self.angular_velocity
+    }
+
+    /// Radius.
+    pub const fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Mass.
+    pub const fn mass(&self) -> f64 {
+        self.mass
+    }
+
+    /// `$\beta$` in `$I = \beta m R^2$`.
+    pub const fn inertia_factor(&self) -> f64 {
+        self.inertia_factor
+    }
+
+    /// Moment of inertia about the centre, `$I = \beta m R^2$`.
+    pub fn moment_of_inertia(&self) -> f64 {
+        self.inertia_factor * self.mass * self.radius * self.radius
+    }
+
+    /// Kinetic energy of the centre, `$\tfrac12 m v^2$`.
+    pub fn translational_energy(&self) -> f64 {
+        0.5 * self.mass * self.velocity.length_squared()
+    }
+
+    /// Kinetic energy of the rotation, `$\tfrac12 I \omega^2$`.
+    pub fn rotational_energy(&self) -> f64 {
+        0.5 * self.moment_of_inertia() * self.angular_velocity * self.angular_velocity
+    }
+
+    /// The disk with the motion that the engine computed for it: no check, since the engine has its own.
+    pub(crate) fn with_motion(self, position: DVec2, velocity: DVec2, angle: f64, angular_velocity: f64) -> Self {
+        Self { position, velocity, angle, angular_velocity, ..self }
+    }
+}
+
+fn scale(name: &'static str, value: f64) -> Result<f64, ParameterError> {
+    positive(name, value)?;
+    accept(SCALE.contains(&value), name, "in [1e-30, 1e30]", value)
+}
+
+fn finite_vector(name: &'static str, vector: DVec2) -> Result<DVec2, ParameterError> {
+    Ok(DVec2::new(finite(name, vector.x)?, finite(name, vector.y)?))
+}
+
+/// What a file holds, before it has passed the constructors.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "Disk")]
+struct RawDisk {
+    position: DVec2,
+    velocity: DVec2,
+    angle: f64,
+    angular_velocity: f64,
+    radius: f64,
+    mass: f64,
+    inertia_factor: f64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawDisk> for Disk {
+    type Error = ParameterError;
+
+    fn try_from(raw: RawDisk) -> Result<Self, ParameterError> {
+        Self::new(raw.position, raw.radius)?
+            .with_velocity(raw.velocity)?
+            .with_angle(raw.angle)?
+            .with_angular_velocity(raw.angular_velocity)?
+            .with_mass(raw.mass)?
+            .with_inertia_factor(raw.inertia_factor)
+    }
+}

@@ -1,0 +1,44 @@
+//! The error of a parameter that cannot be used.
+
+use thiserror::Error;
+
+/// A parameter lies outside the range in which it has a meaning.
+///
+/// ```
+/// use granular_edmd::collision::Smooth;
+/// let error = Smooth::new(0.7).unwrap_err();
+/// assert_eq!(error.to_string(), "normal inelasticity must be in [0, 0.5], but is 0.7");
+/// assert_eq!(error.value(), 0.7);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error("{name} must be {requirement}, but is {value}")]
+#[non_exhaustive]
+pub struct ParameterError {
+    name: &'static str,
+    requirement: &'static str,
+    value: f64,
+}
+
+impl ParameterError {
+    /// An error for the parameter `name`, which should meet `requirement` but has this `value`.
+    ///
+    /// Meant for rules, walls and observables of your own, so that all parameters fail alike.
+    pub const fn new(name: &'static str, requirement: &'static str, value: f64) -> Self {
+        Self { name, requirement, value }
+    }
+
+    /// The parameter's name.
+    pub const fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// The value that was refused.
+    pub const fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// What the value should have been.
+    pub const fn requirement(&self) -> &'static str {
+        self.requirement
+    }
+}

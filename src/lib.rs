@@ -1,0 +1,12 @@
+//! Event-driven molecular dynamics of frictional, inelastic, rotating hard disks.
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
+pub mod collision;
+mod disk;
+mod error;
+mod quantity;
+
+pub use disk::{Disk, HOMOGENEOUS};
+pub use error::ParameterError;
+pub use glam;
