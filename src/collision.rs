@@ -11,7 +11,7 @@
 //! | [`Smooth`] | normal restitution only | paper, Eq. (8) |
 //! | [`Rough`] | normal and tangential restitution, no Coulomb limit | paper, Eqs. (3), (4) |
 //! | [`Elastic`] | none | |
-//! | [`ContactDuration`] | an adaptor: repeated contacts within a set time lose nothing | Luding & McNamara 1998 |
+//! | [`ContactDuration`] | an adaptor: repeated contacts within a set time lose nothing | Luding and McNamara 1998 |
 //! | [`from_fn`] | yours, as a closure | |
 //!
 //! # A rule of your own

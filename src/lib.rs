@@ -2,11 +2,22 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+pub mod boundary;
 pub mod collision;
 mod disk;
 mod error;
+mod flight;
+pub mod initial;
+pub mod observable;
 mod quantity;
+mod random;
+mod roots;
+pub mod scheduler;
+pub mod simulation;
+pub mod wall;
 
 pub use disk::{Disk, HOMOGENEOUS};
 pub use error::ParameterError;
+pub use flight::Flight;
 pub use glam;
+pub use simulation::Simulation;

@@ -19,7 +19,7 @@ pub enum TangentialResponse {
 }
 
 /// The contact-duration (TC) model over any rule: a collision of a body that collided less than `$t_c$` ago loses
-/// no energy (Luding & McNamara 1998).
+/// no energy (Luding and McNamara 1998).
 ///
 /// Without it, dense inelastic states collide infinitely often in finite time, and a run ends with an error. The
 /// simulation counts the collisions changed this way, so that one sees when the model matters: with a collision rate

@@ -1,0 +1,104 @@
+//! A straight wall that may move along its normal.
+
+use std::fmt;
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use super::Region;
+use super::surface::{Response, Surface, Thermal};
+use crate::Flight;
+use crate::collision::CollisionRule;
+use crate::wall::{Approach, Fixed, WallMotion, first_touch};
+
+/// A half plane that disks stay on one side of.
+#[derive(Clone)]
+pub(super) struct Plane {
+    /// Unit vector to the disks.
+    normal: DVec2,
+    /// Place of the wall at rest along its normal.
+    offset: f64,
+    motion: Arc<dyn WallMotion + Send + Sync>,
+    conduct: Conduct,
+    /// The time origin, reduced by whole periods of the motion.
+    phase: f64,
+}
+
+/// What a touch does; [`Response`] lends it out.
+#[derive(Clone)]
+pub(super) enum Conduct {
+    Shared,
+    Rule(Arc<dyn CollisionRule + Send + Sync>),
+    Thermal(Thermal),
+}
+
+impl fmt::Debug for Plane {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter
+            .debug_struct("Plane")
+            .field("normal", &self.normal)
+            .field("offset", &self.offset)
+            .field("reach", &self.motion.reach())
+            .finish_non_exhaustive()
+    }
+}
+
+impl Plane {
+    pub(super) fn new(normal: DVec2, offset: f64) -> Self {
+        Self { normal, offset, motion: Arc::new(Fixed), conduct: Conduct::Shared, phase: 0.0 }
+    }
+
+    pub(super) fn set_motion(&mut self, motion: Arc<dyn WallMotion + Send + Sync>) {
+        self.motion = motion;
+    }
+
+    pub(super) fn set_conduct(&mut self, conduct: Conduct) {
+        self.conduct = conduct;
+    }
+
+    pub(super) fn set_time_origin(&mut self, origin: f64) {
+        // The remainder of two floats is exact: the phase keeps all its digits however late it is.
+        self.phase = self.motion.period().map_or(origin, |period| origin % period);
+    }
+
+    pub(super) fn reach(&self) -> (f64, f64) {
+        self.motion.reach()
+    }
+
+    /// Whether a disk with its centre in `region` can touch the wall.
+    pub(super) fn may_touch(&self, region: &Region, radius: f64) -> bool {
+        let nearest = DVec2::select(self.normal.cmpgt(DVec2::ZERO), region.min, region.max);
+        // A component of the normal that is zero must not meet an infinite edge.
+        let along = |component: f64, edge: f64| if component == 0.0 { 0.0 } else { component * edge };
+        let height = along(self.normal.x, nearest.x) + along(self.normal.y, nearest.y) - self.offset;
+        height - radius <= self.motion.reach().1
+    }
+
+    pub(super) fn first_touch(&self, flight: &Flight, until: f64) -> Option<f64> {
+        let height = flight.position(flight.time()).dot(self.normal) - self.offset - flight.radius();
+        let approach = Approach::new(
+            flight.time() + self.phase,
+            height,
+            flight.velocity(flight.time()).dot(self.normal),
+            flight.acceleration().dot(self.normal),
+        );
+        let touch = first_touch(&*self.motion, &approach, until + self.phase)?;
+        Some((touch - self.phase).clamp(flight.time(), until))
+    }
+
+    pub(super) fn surface(&self, time: f64) -> Surface<'_> {
+        let response = match &self.conduct {
+            Conduct::Shared => Response::Shared,
+            Conduct::Rule(rule) => Response::Rule(&**rule),
+            Conduct::Thermal(thermal) => Response::Thermal(*thermal),
+        };
+        let velocity = self.normal * self.motion.state(time + self.phase).velocity;
+        Surface { normal: self.normal, velocity, response }
+    }
+
+    /// How far a disk reaches into the wall; negative when it is inside.
+    pub(super) fn depth(&self, position: DVec2, radius: f64, time: f64) -> f64 {
+        let wall = self.offset + self.motion.state(time + self.phase).displacement;
+        wall + radius - position.dot(self.normal)
+    }
+}

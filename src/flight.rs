@@ -1,0 +1,60 @@
+//! Free flight of a disk between two events.
+
+use glam::DVec2;
+
+/// A disk's free flight from `time` on: `$\vec r(t) = \vec r_0 + \vec v_0 (t-t_0) + \tfrac12\vec a (t-t_0)^2$`.
+///
+/// ```
+/// use glam::DVec2;
+/// use granular_edmd::Flight;
+/// let flight = Flight::new(1.0, DVec2::ZERO, DVec2::new(1.0, 2.0), DVec2::new(0.0, -1.0), 0.5);
+/// assert_eq!(flight.position(3.0), DVec2::new(2.0, 2.0));
+/// assert_eq!(flight.velocity(3.0), DVec2::new(1.0, 0.0));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flight {
+    time: f64,
+    position: DVec2,
+    velocity: DVec2,
+    acceleration: DVec2,
+    radius: f64,
+}
+
+impl Flight {
+    /// A flight that starts at `time` with this position and velocity of the centre.
+    #[inline]
+    pub const fn new(time: f64, position: DVec2, velocity: DVec2, acceleration: DVec2, radius: f64) -> Self {
+        Self { time, position, velocity, acceleration, radius }
+    }
+
+    /// When the flight starts.
+    #[inline]
+    pub const fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// The disk's radius.
+    #[inline]
+    pub const fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Acceleration, the same all along.
+    #[inline]
+    pub const fn acceleration(&self) -> DVec2 {
+        self.acceleration
+    }
+
+    /// Position of the centre at `time`.
+    #[inline]
+    pub fn position(&self, time: f64) -> DVec2 {
+        let elapsed = time - self.time;
+        self.position + (self.velocity + 0.5 * elapsed * self.acceleration) * elapsed
+    }
+
+    /// Velocity of the centre at `time`.
+    #[inline]
+    pub fn velocity(&self, time: f64) -> DVec2 {
+        self.velocity + (time - self.time) * self.acceleration
+    }
+}

@@ -1,0 +1,35 @@
+//! The centre of mass.
+
+use glam::DVec2;
+
+use super::{Observable, Snapshot};
+
+/// Position of the centre of mass, `$\sum m_i\vec r_i/\sum m_i$`; its `y` is the `$Y_{cm}$` of the paper's Fig. 2.
+///
+/// ```
+/// use glam::DVec2;
+/// use granular_edmd::Disk;
+/// use granular_edmd::boundary::Domain;
+/// use granular_edmd::observable::{CenterOfMass, Observable, Snapshot};
+///
+/// let disks = [
+///     Disk::new(DVec2::new(1.0, 1.0), 0.5)?,
+///     Disk::new(DVec2::new(3.0, 5.0), 0.5)?.with_mass(3.0)?,
+/// ];
+/// let domain = Domain { left: 0.0, right: 4.0, bottom: 0.0, top: 6.0, periodic: false };
+/// let centre = CenterOfMass.measure(&Snapshot::new(0.0, &disks, domain, 0.0));
+/// assert_eq!(centre, DVec2::new(2.5, 4.0));
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, Default)]
+pub struct CenterOfMass;
+
+impl Observable for CenterOfMass {
+    type Value = DVec2;
+
+    fn measure(&self, snapshot: &Snapshot<'_>) -> DVec2 {
+        let mass: f64 = snapshot.disks().iter().map(crate::Disk::mass).sum();
+        let moment: DVec2 = snapshot.disks().iter().map(|disk| disk.mass() * disk.position()).sum();
+        moment / mass
+    }
+}

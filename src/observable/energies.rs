@@ -1,0 +1,52 @@
+//! Energies per disk.
+
+use super::{Observable, Snapshot};
+use crate::Disk;
+
+/// Energies per disk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct EnergyPerDisk {
+    /// `$\langle\tfrac12 m v^2\rangle$`.
+    pub translational: f64,
+    /// `$\langle\tfrac12 I\omega^2\rangle$`.
+    pub rotational: f64,
+    /// `$\langle m g y\rangle$`, zero at height 0.
+    pub potential: f64,
+}
+
+impl EnergyPerDisk {
+    /// All three together.
+    pub fn total(&self) -> f64 {
+        self.translational + self.rotational + self.potential
+    }
+}
+
+/// Translational, rotational and potential energy, averaged over the disks.
+///
+/// ```
+/// use glam::DVec2;
+/// use granular_edmd::Disk;
+/// use granular_edmd::boundary::Domain;
+/// use granular_edmd::observable::{Energies, Observable, Snapshot};
+///
+/// let disks = [Disk::new(DVec2::new(1.0, 3.0), 0.5)?.with_velocity(DVec2::X)?];
+/// let domain = Domain { left: 0.0, right: 4.0, bottom: 0.0, top: 6.0, periodic: false };
+/// let energies = Energies.measure(&Snapshot::new(0.0, &disks, domain, 2.0));
+/// assert_eq!((energies.translational, energies.potential), (0.5, 6.0));
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Energies;
+
+impl Observable for Energies {
+    type Value = EnergyPerDisk;
+
+    fn measure(&self, snapshot: &Snapshot<'_>) -> EnergyPerDisk {
+        EnergyPerDisk {
+            translational: snapshot.mean(Disk::translational_energy),
+            rotational: snapshot.mean(Disk::rotational_energy),
+            potential: snapshot.mean(|disk| disk.mass() * snapshot.gravity() * disk.position().y),
+        }
+    }
+}

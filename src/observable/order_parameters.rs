@@ -1,0 +1,59 @@
+//! The order parameters of the convection rolls.
+
+use std::f64::consts::TAU;
+
+use super::{Observable, Snapshot};
+
+/// `$\Psi_1$` and `$\Psi_2$`: how strongly the flow is one roll, or two.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ConvectionOrder {
+    /// `$\Psi_1$`: one roll; positive if it turns clockwise.
+    pub one_roll: f64,
+    /// `$\Psi_2$`: two rolls; positive if the flow goes up in the middle.
+    pub two_rolls: f64,
+}
+
+/// The order parameters of one and two convection rolls (paper, Eqs. (10), (11)):
+///
+/// ```math
+/// \Psi_1 = \frac1N\sum_i v_{yi}\sin\frac{2\pi x_i}{L_x},\qquad
+/// \Psi_2 = -\frac1N\sum_i v_{yi}\cos\frac{2\pi x_i}{L_x}.
+/// ```
+///
+/// In a gas at rest each fluctuates with standard deviation `$\sqrt{T_y/2Nm}$`: a roll is told from noise against that.
+/// Positions count from the left end of the domain; without disks both are 0.
+///
+/// ```
+/// use glam::DVec2;
+/// use granular_edmd::Disk;
+/// use granular_edmd::boundary::Domain;
+/// use granular_edmd::observable::{Observable, OrderParameters, Snapshot};
+///
+/// // Up on the left, down on the right: clockwise.
+/// let up = Disk::new(DVec2::new(15.0, 5.0), 0.5)?.with_velocity(DVec2::Y)?;
+/// let down = Disk::new(DVec2::new(45.0, 5.0), 0.5)?.with_velocity(-DVec2::Y)?;
+/// let domain = Domain { left: 0.0, right: 60.0, bottom: 0.0, top: 150.0, periodic: false };
+/// let disks = [up, down];
+/// let order = OrderParameters.measure(&Snapshot::new(0.0, &disks, domain, 0.0));
+/// assert!((order.one_roll - 1.0).abs() < 1e-12 && order.two_rolls.abs() < 1e-12);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, Default)]
+pub struct OrderParameters;
+
+impl Observable for OrderParameters {
+    type Value = ConvectionOrder;
+
+    fn measure(&self, snapshot: &Snapshot<'_>) -> ConvectionOrder {
+        let domain = snapshot.domain();
+        let mut order = ConvectionOrder::default();
+        for disk in snapshot.disks() {
+            let (sine, cosine) = libm::sincos(TAU * (disk.position().x - domain.left) / domain.width());
+            order.one_roll += disk.velocity().y * sine;
+            order.two_rolls -= disk.velocity().y * cosine;
+        }
+        let count = snapshot.disks().len().max(1) as f64;
+        ConvectionOrder { one_roll: order.one_roll / count, two_rolls: order.two_rolls / count }
+    }
+}

@@ -1,0 +1,54 @@
+//! Granular temperatures.
+
+use super::{Observable, Snapshot};
+use crate::Disk;
+
+/// Temperatures per degree of freedom, in units of energy.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Temperature {
+    /// `$T_x = \langle m v_x^2\rangle$`.
+    pub horizontal: f64,
+    /// `$T_y = \langle m v_y^2\rangle$`.
+    pub vertical: f64,
+    /// `$T_{rot} = \langle I\omega^2\rangle$`.
+    pub rotational: f64,
+}
+
+impl Temperature {
+    /// `$T = (T_x + T_y)/2$`.
+    pub fn translational(&self) -> f64 {
+        0.5 * (self.horizontal + self.vertical)
+    }
+}
+
+/// Horizontal, vertical and rotational temperature over all disks, about the frame of the container.
+///
+/// The flow of convection rolls counts as temperature here; it is a small part (`$\Psi^2\ll T$`).
+///
+/// ```
+/// use glam::DVec2;
+/// use granular_edmd::Disk;
+/// use granular_edmd::boundary::Domain;
+/// use granular_edmd::observable::{Observable, Snapshot, Temperatures};
+///
+/// let disks = [Disk::new(DVec2::ONE, 0.5)?.with_velocity(DVec2::new(1.0, 2.0))?.with_angular_velocity(4.0)?];
+/// let domain = Domain { left: 0.0, right: 4.0, bottom: 0.0, top: 6.0, periodic: false };
+/// let temperature = Temperatures.measure(&Snapshot::new(0.0, &disks, domain, 2.0));
+/// assert_eq!((temperature.horizontal, temperature.vertical, temperature.rotational), (1.0, 4.0, 2.0));
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Temperatures;
+
+impl Observable for Temperatures {
+    type Value = Temperature;
+
+    fn measure(&self, snapshot: &Snapshot<'_>) -> Temperature {
+        Temperature {
+            horizontal: snapshot.mean(|disk| disk.mass() * disk.velocity().x.powi(2)),
+            vertical: snapshot.mean(|disk| disk.mass() * disk.velocity().y.powi(2)),
+            rotational: 2.0 * snapshot.mean(Disk::rotational_energy),
+        }
+    }
+}

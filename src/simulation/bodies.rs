@@ -1,0 +1,196 @@
+//! The moving disks, as the hot loop wants them.
+//!
+//! Trajectories are kept in the free-fall frame of a common epoch: the position that a disk would have had at the epoch
+//! (time offset 0) on its present flight, and its velocity there, gravity left out. All disks fall alike, so the
+//! relative motion of a pair is a straight line with no clock of its own: predicting a pair costs a subtraction and a
+//! root, and passing a cell changes nothing. The epoch moves on now and then ([`Bodies::shift`]), so that extrapolation
+//! stays short and times keep their digits.
+
+use glam::DVec2;
+
+use crate::Disk;
+use crate::collision::{Body, Material};
+
+/// A straight trajectory in the free-fall frame; one row is one 32-byte load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(32))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Trajectory {
+    pub(super) position: DVec2,
+    pub(super) velocity: DVec2,
+}
+
+impl Trajectory {
+    /// Position in the free-fall frame at a time offset.
+    #[inline]
+    pub(super) fn at(&self, offset: f64) -> DVec2 {
+        self.position + self.velocity * offset
+    }
+}
+
+/// What only collisions touch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Spin {
+    /// Angle at the epoch, on the present rotation.
+    angle: f64,
+    pub(super) angular_velocity: f64,
+    /// Time offset of the last collision with anything.
+    pub(super) last_collision: f64,
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct Bodies {
+    pub(super) trajectories: Vec<Trajectory>,
+    pub(super) spins: Vec<Spin>,
+    pub(super) gravity: f64,
+    materials: Materials,
+    /// Radius, mass and inertia of each disk; its motion is that of the start.
+    disks: Vec<Disk>,
+}
+
+/// One material for all disks where they are equal, so that it stays in cache.
+#[derive(Debug, Clone)]
+enum Materials {
+    Same(Material),
+    Each(Vec<Material>),
+}
+
+impl Materials {
+    fn of(disks: &[Disk]) -> Self {
+        let each: Vec<_> = disks.iter().map(Material::of).collect();
+        match each.first() {
+            Some(first) if each.iter().all(|material| material == first) => Self::Same(*first),
+            _ => Self::Each(each),
+        }
+    }
+}
+
+impl Bodies {
+    pub(super) fn new(disks: Vec<Disk>, gravity: f64) -> Self {
+        Self {
+            trajectories: disks
+                .iter()
+                .map(|disk| Trajectory { position: disk.position(), velocity: disk.velocity() })
+                .collect(),
+            spins: disks
+                .iter()
+                .map(|disk| Spin {
+                    angle: disk.angle(),
+                    angular_velocity: disk.angular_velocity(),
+                    last_collision: f64::NEG_INFINITY,
+                })
+                .collect(),
+            gravity,
+            materials: Materials::of(&disks),
+            disks,
+        }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.trajectories.len()
+    }
+
+    #[inline]
+    pub(super) fn material(&self, disk: usize) -> &Material {
+        match &self.materials {
+            Materials::Same(material) => material,
+            Materials::Each(each) => &each[disk],
+        }
+    }
+
+    /// The diameter, if all disks have the same.
+    #[inline]
+    pub(super) fn common_diameter(&self) -> Option<f64> {
+        match &self.materials {
+            Materials::Same(material) => Some(2.0 * material.radius),
+            Materials::Each(_) => None,
+        }
+    }
+
+    /// Displacement and velocity that gravity has added by this time offset.
+    #[inline]
+    pub(super) fn fall(&self, offset: f64) -> (DVec2, DVec2) {
+        let velocity = -self.gravity * offset;
+        (DVec2::new(0.0, 0.5 * velocity * offset), DVec2::new(0.0, velocity))
+    }
+
+    /// Position in the frame of the container.
+    #[inline]
+    pub(super) fn position(&self, disk: usize, offset: f64) -> DVec2 {
+        self.trajectories[disk].at(offset) + self.fall(offset).0
+    }
+
+    /// Velocity in the frame of the container.
+    #[inline]
+    pub(super) fn velocity(&self, disk: usize, offset: f64) -> DVec2 {
+        self.trajectories[disk].velocity + self.fall(offset).1
+    }
+
+    /// Motion as a collision of two disks sees it: velocities in the free-fall frame.
+    #[inline]
+    pub(super) fn body(&self, disk: usize) -> Body {
+        Body {
+            velocity: self.trajectories[disk].velocity,
+            angular_velocity: self.spins[disk].angular_velocity,
+        }
+    }
+
+    /// A collision at this time offset changes the motion of `disk`; where it is stays as it was.
+    #[inline]
+    pub(super) fn kick(&mut self, disk: usize, velocity: DVec2, angular_velocity: f64, offset: f64) {
+        let trajectory = &mut self.trajectories[disk];
+        trajectory.velocity += velocity;
+        trajectory.position -= velocity * offset;
+        let spin = &mut self.spins[disk];
+        spin.angular_velocity += angular_velocity;
+        spin.angle -= angular_velocity * offset;
+        spin.last_collision = offset;
+    }
+
+    #[inline]
+    pub(super) fn moment_of_inertia(&self, disk: usize) -> f64 {
+        self.disks[disk].moment_of_inertia()
+    }
+
+    /// The disk as the outside world knows it.
+    pub(super) fn disk(&self, disk: usize, offset: f64) -> Disk {
+        let spin = &self.spins[disk];
+        self.disks[disk].with_motion(
+            self.position(disk, offset),
+            self.velocity(disk, offset),
+            spin.angle + spin.angular_velocity * offset,
+            spin.angular_velocity,
+        )
+    }
+
+    /// Moves the epoch by this much.
+    pub(super) fn shift(&mut self, by: f64) {
+        let (fallen, gained) = self.fall(by);
+        for trajectory in &mut self.trajectories {
+            trajectory.position = trajectory.at(by) + fallen;
+            trajectory.velocity += gained;
+        }
+        for spin in &mut self.spins {
+            spin.angle += spin.angular_velocity * by;
+            spin.last_collision -= by;
+        }
+    }
+
+    /// How far the epoch may be left behind: until a typical disk has gone some tens of diameters.
+    ///
+    /// A power of two, so that epochs add up without rounding.
+    pub(super) fn epoch_length(&self) -> f64 {
+        const DIAMETERS: f64 = 64.0;
+        let Some(first) = self.disks.first() else { return 1.0 };
+        let diameter = 2.0 * first.radius();
+        let squares: f64 = self.trajectories.iter().map(|t| t.velocity.length_squared()).sum();
+        let speed = (squares / self.len() as f64).sqrt() + (self.gravity.abs() * diameter).sqrt();
+        let length = DIAMETERS * diameter / speed;
+        if length.is_finite() && length > 0.0 {
+            length.log2().floor().clamp(-900.0, 900.0).exp2()
+        } else {
+            1.0
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! Checks everything once, and makes a simulation of it.
+
+use glam::DVec2;
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::bodies::Bodies;
+use super::cells::Cells;
+use super::engine::Simulation;
+use super::errors::BuildError;
+use crate::Disk;
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::quantity::finite;
+use crate::scheduler::{EventScheduler, TournamentTree};
+
+/// Most disks that a simulation can hold.
+const MOST_DISKS: usize = 1 << 28;
+
+/// Overlap, relative to the diameter, that counts as touching: rounding of positions.
+const TOUCHING: f64 = 1e-10;
+
+/// What a simulation is made of; see [`Simulation::builder`].
+#[derive(Debug, Clone)]
+#[must_use]
+pub struct SimulationBuilder<R, B, S = TournamentTree> {
+    rule: R,
+    boundary: B,
+    scheduler: S,
+    disks: Vec<Disk>,
+    gravity: f64,
+    seed: u64,
+    start_time: f64,
+}
+
+impl<R: CollisionRule, B: Boundary> Simulation<R, B, TournamentTree> {
+    /// Starts to describe a simulation: the rule between the disks (and of walls without one of their own), and the
+    /// walls around them.
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use granular_edmd::boundary::Container;
+    /// use granular_edmd::collision::Frictional;
+    /// use granular_edmd::{Disk, Simulation};
+    ///
+    /// let disks = vec![Disk::new(DVec2::new(2.0, 1.0), 0.5)?, Disk::new(DVec2::new(2.2, 3.0), 0.5)?];
+    /// let mut simulation = Simulation::builder(Frictional::new(0.1, 0.3)?, Container::open(4.0)?)
+    ///     .disks(disks)
+    ///     .gravity(1.0)
+    ///     .build()?;
+    /// simulation.run_until(2.0, &mut ())?;
+    /// assert!(simulation.counters().collisions > 0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub const fn builder(rule: R, boundary: B) -> SimulationBuilder<R, B> {
+        SimulationBuilder {
+            rule,
+            boundary,
+            scheduler: TournamentTree::new(),
+            disks: Vec::new(),
+            gravity: 0.0,
+            seed: 0,
+            start_time: 0.0,
+        }
+    }
+}
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S> {
+    /// The disks, at the start time.
+    pub fn disks(mut self, disks: impl IntoIterator<Item = Disk>) -> Self {
+        self.disks = disks.into_iter().collect();
+        self
+    }
+
+    /// Gravity, pointing down; 0 unless given, and negative to point up.
+    pub const fn gravity(mut self, gravity: f64) -> Self {
+        self.gravity = gravity;
+        self
+    }
+
+    /// Seed of the stochastic walls; 0 unless given. Without stochastic walls it has no effect.
+    pub const fn seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self
+    }
+
+    /// The time at which the run starts; 0 unless given.
+    pub const fn start_time(mut self, time: f64) -> Self {
+        self.start_time = time;
+        self
+    }
+
+    /// Another scheduler: the trajectory is the same, bit for bit.
+    pub fn scheduler<T: EventScheduler>(self, scheduler: T) -> SimulationBuilder<R, B, T> {
+        let Self { rule, boundary, scheduler: _, disks, gravity, seed, start_time } = self;
+        SimulationBuilder { rule, boundary, scheduler, disks, gravity, seed, start_time }
+    }
+
+    /// The simulation.
+    ///
+    /// # Errors
+    /// If gravity or the start time is not finite, the domain is too small for the disks, or a disk is outside, overlaps
+    /// a wall or overlaps another disk; the error names it.
+    pub fn build(self) -> Result<Simulation<R, B, S>, BuildError> {
+        finite("gravity", self.gravity)?;
+        finite("start time", self.start_time)?;
+        if self.disks.len() > MOST_DISKS {
+            return Err(BuildError::TooManyDisks { count: self.disks.len(), most: MOST_DISKS });
+        }
+        let mut boundary = self.boundary;
+        boundary.set_time_origin(self.start_time);
+        check_inside(&boundary, &self.disks)?;
+        let cells = cells_for(&boundary, &self.disks)?;
+        check_overlaps(&boundary, &self.disks, &cells)?;
+        let generator = Xoshiro256PlusPlus::seed_from_u64(self.seed);
+        let bodies = Bodies::new(self.disks, self.gravity);
+        Ok(Simulation::assemble(
+            self.rule,
+            boundary,
+            self.scheduler,
+            bodies,
+            cells,
+            generator,
+            self.start_time,
+        ))
+    }
+}
+
+/// Neighbour cells that suit these disks.
+pub(super) fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells, BuildError> {
+    let positions: Vec<DVec2> = disks.iter().map(Disk::position).collect();
+    let diameter = 2.0 * disks.iter().map(Disk::radius).fold(0.0, f64::max);
+    let diameter = if diameter > 0.0 { diameter } else { 1.0 };
+    let domain = boundary.domain();
+    let too_small = BuildError::DomainTooSmall { width: domain.width(), height: domain.height(), diameter };
+    Cells::new(boundary, diameter, pitch(disks, diameter), &positions).ok_or(too_small)
+}
+
+/// Size of a cell in diameters: large cells where disks are far apart, so that they are passed rarely; small ones where
+/// they crowd, so that few pairs are tested.
+fn pitch(disks: &[Disk], diameter: f64) -> f64 {
+    let _ = (disks, diameter);
+    1.4
+}
+
+/// That all disks are inside the domain and none overlaps a wall.
+pub(super) fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<(), BuildError> {
+    let domain = boundary.domain();
+    for (disk, state) in disks.iter().enumerate() {
+        let (position, radius) = (state.position(), state.radius());
+        let inside = (domain.left..=domain.right).contains(&position.x)
+            && (domain.bottom..=domain.top).contains(&position.y);
+        if !inside {
+            return Err(BuildError::Outside { disk, x: position.x, y: position.y });
+        }
+        if let Some((wall, depth)) = boundary.overlap(position, radius, 0.0)
+            && depth > TOUCHING * radius
+        {
+            let wall = boundary.walls().get(wall).copied().unwrap_or("unnamed").to_owned();
+            return Err(BuildError::OverlapsWall { disk, x: position.x, y: position.y, wall, depth });
+        }
+    }
+    Ok(())
+}
+
+/// That no two disks overlap.
+fn check_overlaps<B: Boundary + ?Sized>(
+    boundary: &B,
+    disks: &[Disk],
+    cells: &Cells,
+) -> Result<(), BuildError> {
+    let domain = boundary.domain();
+    let mut found = vec![0; disks.len() + 1];
+    for first in 0..disks.len() {
+        let count = cells.around(first, &mut found);
+        for &second in found[..count].iter().filter(|&&second| (second as usize) < first) {
+            let (a, b) = (&disks[second as usize], &disks[first]);
+            let contact = a.radius() + b.radius();
+            let depth = contact - domain.separation(a.position(), b.position()).length();
+            if depth > TOUCHING * contact {
+                return Err(BuildError::Overlap { first: second as usize, second: first, depth });
+            }
+        }
+    }
+    Ok(())
+}

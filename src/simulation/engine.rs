@@ -1,0 +1,300 @@
+//! The event loop.
+
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::bodies::Bodies;
+use super::cells::Cells;
+use super::errors::RunError;
+use super::event::{Counters, Event, Exit, Slot};
+use super::guard::Guard;
+use super::prediction::{Earliest, cell_exit, earliest_collision};
+use super::resolution::{Meeting, NotFinite, by_contact_duration, resolve_pair, resolve_wall};
+use crate::boundary::{Boundary, Container};
+use crate::collision::{CollisionRule, Frictional};
+use crate::scheduler::{EventScheduler, TournamentTree};
+use crate::{Disk, Flight};
+
+/// How far ahead a wall is searched for, in epochs: no search is endless.
+const HORIZON: f64 = 2.0;
+
+/// A system of disks that is taken from event to event.
+///
+/// Times are in the units of the caller; internally they are offsets from an epoch that moves on, so that late times
+/// keep their digits. See [`Simulation::builder`] for how to make one, and [the module](crate::simulation) for what it
+/// promises.
+///
+/// ```
+/// use granular_edmd::boundary::{Container, Wall};
+/// use granular_edmd::collision::Frictional;
+/// use granular_edmd::initial;
+/// use granular_edmd::observable::{OrderParameters, SampleTimes, Series};
+/// use granular_edmd::wall::BiParabolic;
+/// use granular_edmd::Simulation;
+///
+/// let boundary = Container::closed(20.0, 50.0)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?;
+/// let disks = initial::lattice(&boundary, 100, 0.5)?;
+/// let disks = initial::with_maxwellian_velocities(disks, 1.0, 7)?;
+/// let mut simulation =
+///     Simulation::builder(Frictional::new(0.0, 0.05)?, boundary).disks(disks).gravity(0.0156).build()?;
+/// let mut series = Series::new(OrderParameters, SampleTimes::every(1.0)?);
+/// simulation.run_until(10.0, &mut series)?;
+/// assert_eq!(series.values().len(), 10);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Simulation<R = Frictional, B = Container, S = TournamentTree> {
+    pub(super) rule: R,
+    pub(super) boundary: B,
+    pub(super) scheduler: S,
+    pub(super) bodies: Bodies,
+    pub(super) cells: Cells,
+    pub(super) slots: Vec<Slot>,
+    pub(super) generator: Xoshiro256PlusPlus,
+    /// The epoch: absolute time of the time offset 0.
+    pub(super) origin: f64,
+    /// The present, as an offset from the epoch.
+    pub(super) now: f64,
+    pub(super) epoch_length: f64,
+    pub(super) counters: Counters,
+    pub(super) guard: Guard,
+    /// Room for the neighbours of one disk.
+    found: Vec<u32>,
+    /// Room for the disks of one snapshot.
+    pub(super) copies: Vec<Disk>,
+}
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
+    pub(super) fn assemble(
+        rule: R,
+        boundary: B,
+        scheduler: S,
+        bodies: Bodies,
+        cells: Cells,
+        generator: Xoshiro256PlusPlus,
+        origin: f64,
+    ) -> Self {
+        let count = bodies.len();
+        let mut simulation = Self {
+            rule,
+            boundary,
+            scheduler,
+            epoch_length: bodies.epoch_length(),
+            bodies,
+            cells,
+            slots: vec![Slot::NEW; count],
+            generator,
+            origin,
+            now: 0.0,
+            counters: Counters::default(),
+            guard: Guard::default(),
+            found: vec![0; count + 1],
+            copies: Vec::new(),
+        };
+        simulation.predict_all();
+        simulation
+    }
+
+    /// Predicts every disk's next event from the present state alone.
+    pub(super) fn predict_all(&mut self) {
+        let due = vec![f64::INFINITY; self.slots.len()];
+        self.scheduler.reset(&due);
+        for disk in 0..self.slots.len() {
+            self.predict(disk);
+        }
+    }
+
+    /// The present.
+    pub fn time(&self) -> f64 {
+        self.origin + self.now
+    }
+
+    /// The disk whose event is next, if that is not after the offset `end`.
+    #[inline]
+    pub(super) fn next_due(&self, end: f64) -> Option<(usize, f64)> {
+        let (disk, due) = self.scheduler.earliest();
+        (due <= end && disk < self.slots.len()).then_some((disk, due))
+    }
+
+    /// Does the next event of `disk`.
+    #[inline]
+    pub(super) fn advance<O: crate::observable::Observer + ?Sized>(
+        &mut self,
+        disk: usize,
+        due: f64,
+        observer: &mut O,
+    ) -> Result<Event, RunError> {
+        self.now = if due > self.epoch_length { self.move_epoch(due) } else { due };
+        if let Some(events) = self.guard.watch(self.now, self.epoch_length) {
+            return Err(RunError::Stalled { time: self.time(), disk, events });
+        }
+        let slot = self.slots[disk];
+        if slot.collision_due <= slot.exit_due {
+            let partner = slot.partner as usize;
+            if self.slots[partner].collisions != slot.partner_collisions {
+                self.counters.repredictions += 1;
+                self.predict(disk);
+                return Ok(Event::Repredicted { disk });
+            }
+            return self.collide(disk, partner, observer);
+        }
+        match slot.exit {
+            Exit::Wall(wall) => self.collide_with_wall(disk, usize::from(wall), observer),
+            exit => {
+                self.cross(disk, exit);
+                Ok(Event::CellCrossing { disk })
+            }
+        }
+    }
+
+    #[inline]
+    fn collide<O: crate::observable::Observer + ?Sized>(
+        &mut self,
+        disk: usize,
+        partner: usize,
+        observer: &mut O,
+    ) -> Result<Event, RunError> {
+        let meeting = self.meeting(disk);
+        let (collision, overlap) =
+            resolve_pair(&mut self.bodies, &self.rule, self.cells.period(), meeting, partner)
+                .map_err(|NotFinite| RunError::NotFinite { disk, time: meeting.time })?;
+        self.counters.collisions += 1;
+        self.counters.contact_duration_collisions += u64::from(by_contact_duration(&collision));
+        self.counters.max_overlap = self.counters.max_overlap.max(overlap);
+        self.count_collision(disk);
+        self.count_collision(partner);
+        observer.on_collision(&collision);
+        self.predict(disk);
+        self.predict(partner);
+        Ok(Event::Collision { disk, partner })
+    }
+
+    fn collide_with_wall<O: crate::observable::Observer + ?Sized>(
+        &mut self,
+        disk: usize,
+        wall: usize,
+        observer: &mut O,
+    ) -> Result<Event, RunError> {
+        let meeting = self.meeting(disk);
+        let surface = self.boundary.surface(wall, self.bodies.position(disk, self.now), self.now);
+        let collision =
+            resolve_wall(&mut self.bodies, &self.rule, &mut self.generator, &surface, meeting, wall)
+                .map_err(|NotFinite| RunError::NotFinite { disk, time: meeting.time })?;
+        self.counters.wall_collisions += 1;
+        self.counters.contact_duration_collisions += u64::from(by_contact_duration(&collision));
+        self.count_collision(disk);
+        observer.on_collision(&collision);
+        self.predict(disk);
+        Ok(Event::WallCollision { disk, wall })
+    }
+
+    fn meeting(&self, disk: usize) -> Meeting {
+        Meeting { disk, offset: self.now, time: self.time() }
+    }
+
+    #[inline]
+    fn count_collision(&mut self, disk: usize) {
+        let collisions = &mut self.slots[disk].collisions;
+        *collisions = collisions.wrapping_add(1);
+    }
+
+    /// Takes a disk to its next cell. Its trajectory does not change: only the cells ahead can hold an earlier partner.
+    #[inline]
+    fn cross(&mut self, disk: usize, exit: Exit) {
+        self.counters.cell_crossings += 1;
+        self.bodies.trajectories[disk].position.x += self.cells.cross(disk, exit);
+        let slot = self.slots[disk];
+        let known = Earliest { due: slot.collision_due, partner: slot.partner };
+        let count = self.cells.ahead(disk, exit, &mut self.found);
+        let earliest = earliest_collision(
+            &self.bodies,
+            self.cells.period(),
+            disk,
+            &self.found[..count],
+            self.now,
+            known,
+        );
+        self.schedule(disk, earliest, earliest.partner != known.partner);
+    }
+
+    /// Finds the next event of a disk among all its neighbours.
+    #[inline]
+    pub(super) fn predict(&mut self, disk: usize) {
+        let count = self.cells.around(disk, &mut self.found);
+        let earliest = earliest_collision(
+            &self.bodies,
+            self.cells.period(),
+            disk,
+            &self.found[..count],
+            self.now,
+            Earliest::NONE,
+        );
+        self.schedule(disk, earliest, true);
+    }
+
+    #[inline]
+    fn schedule(&mut self, disk: usize, earliest: Earliest, new_partner: bool) {
+        let (exit_due, exit) = self.exit(disk);
+        let partner_collisions = if new_partner {
+            self.slots.get(earliest.partner as usize).map_or(0, |slot| slot.collisions)
+        } else {
+            self.slots[disk].partner_collisions
+        };
+        let slot = &mut self.slots[disk];
+        slot.collision_due = earliest.due;
+        slot.partner = earliest.partner;
+        slot.partner_collisions = partner_collisions;
+        slot.exit_due = exit_due;
+        slot.exit = exit;
+        let due = slot.due();
+        self.scheduler.set(disk, due);
+    }
+
+    /// When the flight of a disk in its cell ends, and how.
+    #[inline]
+    fn exit(&self, disk: usize) -> (f64, Exit) {
+        let (position, velocity) =
+            (self.bodies.position(disk, self.now), self.bodies.velocity(disk, self.now));
+        let region = self.cells.region(self.cells.place(disk));
+        let (due, exit) = cell_exit(&region, position, velocity, self.bodies.gravity, self.now);
+        if self.cells.is_at_wall(disk) {
+            let radius = self.bodies.material(disk).radius;
+            let acceleration = glam::DVec2::new(0.0, -self.bodies.gravity);
+            return self.wall_or(due, exit, &Flight::new(self.now, position, velocity, acceleration, radius));
+        }
+        (due, exit)
+    }
+
+    /// The first touch of a wall, if that comes before the disk leaves its cell.
+    fn wall_or(&self, due: f64, exit: Exit, flight: &Flight) -> (f64, Exit) {
+        let horizon = self.now + HORIZON * self.epoch_length;
+        match self.boundary.first_touch(flight, due.min(horizon)) {
+            Some(touch) => (touch.time, Exit::Wall(touch.wall as u16)),
+            None if due > horizon => (horizon, Exit::Stay),
+            None => (due, exit),
+        }
+    }
+
+    /// Moves the epoch to a little before the offset `due`, and returns the new offset of the same time.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn move_epoch(&mut self, due: f64) -> f64 {
+        let by = (due / self.epoch_length).floor() * self.epoch_length;
+        self.shift_epoch(by);
+        self.epoch_length = self.bodies.epoch_length();
+        due - by
+    }
+
+    pub(super) fn shift_epoch(&mut self, by: f64) {
+        self.bodies.shift(by);
+        for slot in &mut self.slots {
+            slot.collision_due -= by;
+            slot.exit_due -= by;
+        }
+        self.origin += by;
+        self.now -= by;
+        self.guard.shift(by);
+        self.boundary.set_time_origin(self.origin);
+        let due: Vec<f64> = self.slots.iter().map(Slot::due).collect();
+        self.scheduler.reset(&due);
+    }
+}

@@ -1,0 +1,95 @@
+//! What the engine does next with a disk, and what it has done so far.
+
+/// What [`Simulation::step`](super::Simulation::step) did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Event {
+    /// Two disks collided.
+    Collision {
+        /// The disk whose event it was.
+        disk: usize,
+        /// Its partner.
+        partner: usize,
+    },
+    /// A disk collided with a wall.
+    WallCollision {
+        /// The disk.
+        disk: usize,
+        /// The wall, an index into [`Boundary::walls`](crate::boundary::Boundary::walls).
+        wall: usize,
+    },
+    /// A disk passed from one neighbour cell to another: no physics.
+    CellCrossing {
+        /// The disk.
+        disk: usize,
+    },
+    /// A disk's partner had collided with another meanwhile, and the disk's next event was predicted anew: no physics.
+    Repredicted {
+        /// The disk.
+        disk: usize,
+    },
+}
+
+/// What happened since the simulation was built.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Counters {
+    /// Collisions of two disks.
+    pub collisions: u64,
+    /// Collisions of a disk with a wall.
+    pub wall_collisions: u64,
+    /// Collisions, with disks or walls, that a contact-duration model made elastic.
+    pub contact_duration_collisions: u64,
+    /// Passages from one neighbour cell to another.
+    pub cell_crossings: u64,
+    /// Predictions that were out of date when they came up.
+    pub repredictions: u64,
+    /// Largest overlap of two disks at a collision: rounding, unless something is wrong.
+    pub max_overlap: f64,
+}
+
+/// How a disk's flight in its cell ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) enum Exit {
+    Left,
+    Right,
+    Down,
+    Up,
+    /// It does not end yet: the search for a wall looked only so far ahead.
+    Stay,
+    Wall(u16),
+}
+
+/// The next event of a disk: with the earliest partner known, or the end of its flight in its cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Slot {
+    /// When it collides with `partner`, if neither collides before.
+    pub(super) collision_due: f64,
+    /// When its flight in its cell ends.
+    pub(super) exit_due: f64,
+    pub(super) partner: u32,
+    /// The partner's count when this was predicted: if it differs, the prediction is out of date.
+    pub(super) partner_collisions: u32,
+    /// The disk's own count of collisions with anything.
+    pub(super) collisions: u32,
+    pub(super) exit: Exit,
+}
+
+impl Slot {
+    pub(super) const NEW: Self = Self {
+        collision_due: f64::INFINITY,
+        exit_due: f64::INFINITY,
+        partner: u32::MAX,
+        partner_collisions: 0,
+        collisions: 0,
+        exit: Exit::Stay,
+    };
+
+    #[inline]
+    pub(super) fn due(&self) -> f64 {
+        if self.collision_due <= self.exit_due { self.collision_due } else { self.exit_due }
+    }
+}

@@ -1,0 +1,32 @@
+//! The guard against runs that cannot progress.
+
+/// Events allowed while time advances by less than [`RESOLUTION`] epochs.
+const PATIENCE: u64 = 200_000;
+
+/// Time that counts as progress, in epochs: some thousand units in the last place of a time offset.
+const RESOLUTION: f64 = 1.0 / (1u64 << 40) as f64;
+
+/// Counts events since time last progressed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Guard {
+    since: f64,
+    events: u64,
+}
+
+impl Guard {
+    /// Takes note of an event; returns how many there were without progress, if too many.
+    #[inline]
+    pub(super) fn watch(&mut self, time_offset: f64, epoch_length: f64) -> Option<u64> {
+        if time_offset - self.since > RESOLUTION * epoch_length {
+            *self = Self { since: time_offset, events: 0 };
+        }
+        self.events += 1;
+        (self.events > PATIENCE).then_some(self.events)
+    }
+
+    /// The epoch has moved.
+    pub(super) fn shift(&mut self, by: f64) {
+        self.since -= by;
+    }
+}

@@ -1,0 +1,91 @@
+//! The paper's vibrating base.
+
+use super::oscillation::{Oscillation, is_even, piece};
+use super::{AccelerationBounds, WallMotion, WallState};
+use crate::ParameterError;
+
+/// Piecewise constant acceleration that mimics `$A\sin\omega t$` (paper, Sec. III): two parabolic arcs a period.
+///
+/// With the half period `$H=\pi/\omega$` and `$s = t/H$`,
+///
+/// ```math
+/// z(t) = 4A\,s(1-s)\quad (0\le s<1),\qquad z(t+H) = -z(t),
+/// ```
+///
+/// so amplitude and period are those of the sine; the peak speed is `$4A/H = 4A\omega/\pi$` and the acceleration
+/// `$\mp 8A/H^2$`. Every contact is the root of a parabola: exact, no iteration.
+///
+/// ```
+/// use granular_edmd::wall::{BiParabolic, WallMotion};
+/// let base = BiParabolic::new(0.1, 10.0)?;
+/// let quarter = 0.25 * base.period().unwrap();
+/// assert!((base.state(quarter).displacement - 0.1).abs() < 1e-15);
+/// assert!((base.state(0.0).velocity - 4.0 * 0.1 * 10.0 / std::f64::consts::PI).abs() < 1e-14);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(transparent))]
+pub struct BiParabolic {
+    oscillation: Oscillation,
+}
+
+impl BiParabolic {
+    /// A motion of this amplitude `$A$` and angular frequency `$\omega$`.
+    ///
+    /// # Errors
+    /// If one is not finite and positive; use [`Fixed`](super::Fixed) for no motion.
+    pub fn new(amplitude: f64, angular_frequency: f64) -> Result<Self, ParameterError> {
+        Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
+    }
+
+    /// `$A$`.
+    pub const fn amplitude(&self) -> f64 {
+        self.oscillation.amplitude()
+    }
+
+    /// `$\omega$`.
+    pub const fn angular_frequency(&self) -> f64 {
+        self.oscillation.angular_frequency()
+    }
+
+    fn arc(&self, time: f64) -> Arc {
+        let length = 0.5 * self.oscillation.period();
+        let (number, end) = piece(time, length);
+        let height = if is_even(number) { self.amplitude() } else { -self.amplitude() };
+        Arc { start: number * length, end, length, height }
+    }
+}
+
+/// One parabolic arc.
+struct Arc {
+    start: f64,
+    end: f64,
+    length: f64,
+    height: f64,
+}
+
+impl WallMotion for BiParabolic {
+    fn state(&self, time: f64) -> WallState {
+        let arc = self.arc(time);
+        let share = (time - arc.start) / arc.length;
+        WallState {
+            displacement: 4.0 * arc.height * share * (1.0 - share),
+            velocity: 4.0 * arc.height * (1.0 - 2.0 * share) / arc.length,
+        }
+    }
+
+    fn acceleration(&self, time: f64) -> AccelerationBounds {
+        let arc = self.arc(time);
+        let value = -8.0 * arc.height / (arc.length * arc.length);
+        AccelerationBounds { until: arc.end, min: value, max: value }
+    }
+
+    fn reach(&self) -> (f64, f64) {
+        (-self.amplitude(), self.amplitude())
+    }
+
+    fn period(&self) -> Option<f64> {
+        Some(self.oscillation.period())
+    }
+}

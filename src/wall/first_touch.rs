@@ -1,0 +1,124 @@
+//! The one search for the first touch of a disk with a moving wall.
+
+use super::{AccelerationBounds, WallMotion};
+use crate::roots::first_descent;
+
+/// Rounding of a gap, relative to the lengths that it is the difference of.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// A surface that approaches a wall: its height above the wall's place at rest, along the wall's normal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Approach {
+    time: f64,
+    height: f64,
+    velocity: f64,
+    acceleration: f64,
+}
+
+impl Approach {
+    /// A surface that at `time` has this height and velocity, and always this acceleration.
+    #[inline]
+    pub const fn new(time: f64, height: f64, velocity: f64, acceleration: f64) -> Self {
+        Self { time, height, velocity, acceleration }
+    }
+
+    #[inline]
+    fn height(&self, time: f64) -> f64 {
+        let elapsed = time - self.time;
+        self.height + (self.velocity + 0.5 * self.acceleration * elapsed) * elapsed
+    }
+
+    #[inline]
+    fn velocity(&self, time: f64) -> f64 {
+        self.velocity + self.acceleration * (time - self.time)
+    }
+}
+
+/// The first time, not later than `until`, at which the surface touches the wall and closes.
+///
+/// On a piece with acceleration at most `$a_{max}$` the gap is never below the parabola with that acceleration: the
+/// search steps to its root, where the gap is still open, and repeats until the gap is closed. One step is exact
+/// where the acceleration is constant; elsewhere the steps shrink quadratically. No contact is ever stepped over. A
+/// gap that is closed at the start counts only while it closes.
+///
+/// ```
+/// use granular_edmd::wall::{Approach, Fixed, first_touch};
+/// let falling = Approach::new(0.0, 2.0, 0.0, -1.0);
+/// assert_eq!(first_touch(&Fixed, &falling, 10.0), Some(2.0));
+/// assert_eq!(first_touch(&Fixed, &falling, 1.0), None);
+/// ```
+pub fn first_touch<M: WallMotion + ?Sized>(motion: &M, approach: &Approach, until: f64) -> Option<f64> {
+    let search = Search { motion, approach, until };
+    let mut time = search.enters_reach()?;
+    while time <= until {
+        match search.step(time) {
+            Step::Touch(touch) => return (touch <= until).then_some(touch),
+            Step::Open(next) => time = next,
+        }
+    }
+    None
+}
+
+struct Search<'a, M: ?Sized> {
+    motion: &'a M,
+    approach: &'a Approach,
+    until: f64,
+}
+
+/// What is known after one step of the search.
+enum Step {
+    /// The surfaces touch at this time.
+    Touch(f64),
+    /// They do not touch before this time.
+    Open(f64),
+}
+
+impl<M: WallMotion + ?Sized> Search<'_, M> {
+    /// The first time at which the surface is no higher than the wall ever gets.
+    fn enters_reach(&self) -> Option<f64> {
+        let above = self.approach.height - self.motion.reach().1;
+        if above <= 0.0 {
+            return Some(self.approach.time);
+        }
+        let fall = first_descent(above, self.approach.velocity, self.approach.acceleration)?;
+        Some(self.approach.time + fall)
+    }
+
+    fn step(&self, time: f64) -> Step {
+        let wall = self.motion.state(time);
+        let bounds = self.piece(time);
+        let gap = self.approach.height(time) - wall.displacement;
+        let rate = self.approach.velocity(time) - wall.velocity;
+        let pull = self.approach.acceleration - bounds.max;
+        let exact = bounds.min == bounds.max;
+        let tolerance = if exact { 0.0 } else { self.tolerance(time, rate) };
+        if gap <= tolerance && rate < 0.0 {
+            return Step::Touch(time);
+        }
+        match first_descent(gap, rate, pull) {
+            Some(wait) if exact && time + wait <= bounds.until => Step::Touch(time + wait),
+            Some(wait) if !exact => {
+                Step::Open((time + wait.max(shortest(tolerance, pull))).min(bounds.until))
+            }
+            _ => Step::Open(bounds.until),
+        }
+    }
+
+    /// Bounds of the acceleration; a motion that breaks its contract and names no later end costs accuracy, not a hang.
+    fn piece(&self, time: f64) -> AccelerationBounds {
+        let bounds = self.motion.acceleration(time);
+        let until = if bounds.until > time { bounds.until } else { self.until.max(time).next_up() };
+        AccelerationBounds { until, ..bounds }
+    }
+
+    /// Gaps below this are closed: rounding of the lengths, and of the time at this speed.
+    fn tolerance(&self, time: f64, rate: f64) -> f64 {
+        let (low, high) = self.motion.reach();
+        ROUNDING * (low.abs().max(high.abs()) + rate.abs() * time.abs())
+    }
+}
+
+/// The shortest step: one in which a gap cannot close by more than its own rounding.
+fn shortest(tolerance: f64, pull: f64) -> f64 {
+    if pull < 0.0 { (tolerance / -pull).sqrt() } else { 0.0 }
+}

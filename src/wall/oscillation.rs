@@ -1,0 +1,74 @@
+//! Amplitude and period, shared by all periodic motions.
+
+use std::f64::consts::TAU;
+
+use crate::ParameterError;
+use crate::quantity::positive;
+
+/// Amplitude and period of a motion, cut into equal pieces of time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawOscillation"))]
+pub(super) struct Oscillation {
+    amplitude: f64,
+    angular_frequency: f64,
+}
+
+impl Oscillation {
+    pub(super) fn new(amplitude: f64, angular_frequency: f64) -> Result<Self, ParameterError> {
+        let oscillation = Self {
+            amplitude: positive("amplitude", amplitude)?,
+            angular_frequency: positive("angular frequency", angular_frequency)?,
+        };
+        positive("period", oscillation.period())?;
+        positive("peak acceleration", amplitude * angular_frequency * angular_frequency)?;
+        Ok(oscillation)
+    }
+
+    pub(super) const fn amplitude(&self) -> f64 {
+        self.amplitude
+    }
+
+    pub(super) const fn angular_frequency(&self) -> f64 {
+        self.angular_frequency
+    }
+
+    pub(super) fn period(&self) -> f64 {
+        TAU / self.angular_frequency
+    }
+}
+
+/// The piece of length `length` that `time` lies in: its number, and the time where it ends.
+///
+/// The end of a piece belongs to the next one, also where `time / length` rounds down to the piece before.
+#[inline]
+pub(super) fn piece(time: f64, length: f64) -> (f64, f64) {
+    let mut number = (time / length).floor();
+    if time >= (number + 1.0) * length {
+        number += 1.0;
+    }
+    (number, (number + 1.0) * length)
+}
+
+/// Whether a piece number is even.
+#[inline]
+pub(super) fn is_even(number: f64) -> bool {
+    (0.5 * number).floor() * 2.0 == number
+}
+
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "Oscillation")]
+struct RawOscillation {
+    amplitude: f64,
+    angular_frequency: f64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawOscillation> for Oscillation {
+    type Error = ParameterError;
+
+    fn try_from(raw: RawOscillation) -> Result<Self, ParameterError> {
+        Self::new(raw.amplitude, raw.angular_frequency)
+    }
+}

@@ -1,0 +1,72 @@
+//! The harmonic wall.
+
+use super::oscillation::{Oscillation, piece};
+use super::{AccelerationBounds, WallMotion, WallState};
+use crate::ParameterError;
+
+/// Pieces a period on which the acceleration is bounded; a multiple of four, so that it is monotone on each.
+const PIECES: f64 = 16.0;
+
+/// Harmonic motion `$z(t) = A\sin\omega t$`.
+///
+/// ```
+/// use granular_edmd::wall::{Sinusoidal, WallMotion};
+/// let base = Sinusoidal::new(0.1, 10.0)?;
+/// assert_eq!(base.state(0.0).velocity, 1.0);
+/// assert_eq!(base.reach(), (-0.1, 0.1));
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(transparent))]
+pub struct Sinusoidal {
+    oscillation: Oscillation,
+}
+
+impl Sinusoidal {
+    /// A motion of this amplitude `$A$` and angular frequency `$\omega$`.
+    ///
+    /// # Errors
+    /// If one is not finite and positive.
+    pub fn new(amplitude: f64, angular_frequency: f64) -> Result<Self, ParameterError> {
+        Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
+    }
+
+    /// `$A$`.
+    pub const fn amplitude(&self) -> f64 {
+        self.oscillation.amplitude()
+    }
+
+    /// `$\omega$`.
+    pub const fn angular_frequency(&self) -> f64 {
+        self.oscillation.angular_frequency()
+    }
+
+    fn acceleration_at(&self, time: f64) -> f64 {
+        let frequency = self.angular_frequency();
+        -self.amplitude() * frequency * frequency * libm::sin(frequency * time)
+    }
+}
+
+impl WallMotion for Sinusoidal {
+    fn state(&self, time: f64) -> WallState {
+        let frequency = self.angular_frequency();
+        let (sine, cosine) = libm::sincos(frequency * time);
+        WallState { displacement: self.amplitude() * sine, velocity: self.amplitude() * frequency * cosine }
+    }
+
+    fn acceleration(&self, time: f64) -> AccelerationBounds {
+        let length = self.oscillation.period() / PIECES;
+        let (number, until) = piece(time, length);
+        let (start, end) = (self.acceleration_at(number * length), self.acceleration_at(until));
+        AccelerationBounds { until, min: start.min(end), max: start.max(end) }
+    }
+
+    fn reach(&self) -> (f64, f64) {
+        (-self.amplitude(), self.amplitude())
+    }
+
+    fn period(&self) -> Option<f64> {
+        Some(self.oscillation.period())
+    }
+}
