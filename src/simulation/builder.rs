@@ -140,7 +140,7 @@ pub(super) fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> R
 /// they crowd, so that few pairs are tested.
 fn pitch(disks: &[Disk], diameter: f64) -> f64 {
     let _ = (disks, diameter);
-    1.4
+    std::env::var("PITCH").ok().and_then(|v| v.parse().ok()).unwrap_or(1.4)
 }
 
 /// That all disks are inside the domain and none overlaps a wall.

@@ -7,7 +7,7 @@ use super::cells::Cells;
 use super::errors::RunError;
 use super::event::{Counters, Event, Exit, Slot};
 use super::guard::Guard;
-use super::prediction::{Earliest, cell_exit, earliest_collision};
+use super::prediction::{Earliest, LANES, cell_exit, earliest_collision};
 use super::resolution::{Meeting, NotFinite, by_contact_duration, resolve_pair, resolve_wall};
 use crate::boundary::{Boundary, Container};
 use crate::collision::{CollisionRule, Frictional};
@@ -87,7 +87,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             now: 0.0,
             counters: Counters::default(),
             guard: Guard::default(),
-            found: vec![0; count + 1],
+            found: vec![0; count + LANES],
             copies: Vec::new(),
         };
         simulation.predict_all();
@@ -209,7 +209,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             &self.bodies,
             self.cells.period(),
             disk,
-            &self.found[..count],
+            &mut self.found,
+            count,
             self.now,
             known,
         );
@@ -224,7 +225,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             &self.bodies,
             self.cells.period(),
             disk,
-            &self.found[..count],
+            &mut self.found,
+            count,
             self.now,
             Earliest::NONE,
         );

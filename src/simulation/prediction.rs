@@ -2,9 +2,15 @@
 
 use glam::DVec2;
 
-use super::bodies::{Bodies, Trajectory};
+use super::bodies::Bodies;
 use super::event::Exit;
 use crate::boundary::Region;
+
+/// Pairs that are predicted side by side.
+///
+/// Each step of the arithmetic is written for all lanes at once, so that the compiler turns it into vector instructions
+/// and no branch depends on whether a pair approaches: such branches are coin tosses.
+pub(super) const LANES: usize = 4;
 
 /// The earliest collision found so far.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,101 +22,120 @@ pub(super) struct Earliest {
 impl Earliest {
     pub(super) const NONE: Self = Self { due: f64::INFINITY, partner: u32::MAX };
 
-    /// The earlier of the two; of equal times the smaller partner.
+    /// Time and partner as one number, in the order of both: times are not negative, so their bits are in order.
     #[inline]
-    fn or(self, due: f64, partner: u32) -> Self {
-        let better = (due < self.due) | ((due == self.due) & (partner < self.partner));
-        Self {
-            due: if better { due } else { self.due },
-            partner: if better { partner } else { self.partner },
-        }
+    fn rank(self) -> u128 {
+        (u128::from(self.due.to_bits()) << 32) | u128::from(self.partner)
+    }
+
+    #[inline]
+    fn from_rank(rank: u128) -> Self {
+        Self { due: f64::from_bits((rank >> 32) as u64), partner: rank as u32 }
     }
 }
 
-/// When two disks touch that are `distance` apart in position and move with this relative velocity, seen from `now`.
-///
-/// Stable event detection (Bannerman et al. 2014): touching or overlapping by rounding counts at once while they
-/// approach, never while they recede. The root is written so that nothing cancels, and without a branch.
-#[inline]
-fn touch(separation: DVec2, velocity: DVec2, contact_squared: f64, now: f64) -> f64 {
-    let approach = separation.dot(velocity);
-    let gap = separation.length_squared() - contact_squared;
-    let discriminant = approach * approach - velocity.length_squared() * gap;
-    let wait = gap / (discriminant.max(0.0).sqrt() - approach);
-    let meets = (approach < 0.0) & ((discriminant >= 0.0) | (gap <= 0.0));
-    if meets { now + wait.max(0.0) } else { f64::INFINITY }
+/// Relative positions and velocities of some pairs.
+#[derive(Debug, Clone, Copy, Default)]
+struct Pairs {
+    x: [f64; LANES],
+    y: [f64; LANES],
+    velocity_x: [f64; LANES],
+    velocity_y: [f64; LANES],
+    contact_squared: [f64; LANES],
+}
+
+impl Pairs {
+    /// How long until each pair touches; infinite for never.
+    ///
+    /// Stable event detection (Bannerman et al. 2014): touching or overlapping by rounding counts at once while the two
+    /// approach, never while they recede. The root is written so that nothing cancels.
+    #[inline]
+    fn wait(&self) -> [f64; LANES] {
+        let mut wait = [0.0; LANES];
+        for (lane, wait) in wait.iter_mut().enumerate() {
+            let (x, y) = (self.x[lane], self.y[lane]);
+            let (velocity_x, velocity_y) = (self.velocity_x[lane], self.velocity_y[lane]);
+            let approach = x * velocity_x + y * velocity_y;
+            let gap = x * x + y * y - self.contact_squared[lane];
+            let square = velocity_x * velocity_x + velocity_y * velocity_y;
+            let discriminant = approach * approach - square * gap;
+            let root = discriminant.max(0.0).sqrt();
+            let time = (gap / (root - approach)).max(0.0);
+            let meets = (approach < 0.0) & ((discriminant >= 0.0) | (gap <= 0.0));
+            *wait = if meets { time } else { f64::INFINITY };
+        }
+        wait
+    }
 }
 
 /// The shortest way around periodic sides; `period` is 0 if there are none.
 #[inline]
-pub(super) fn nearest_image(mut separation: DVec2, period: f64) -> DVec2 {
+pub(super) fn nearest_image(x: f64, period: f64) -> f64 {
     let half = 0.5 * period;
-    if separation.x > half {
-        separation.x -= period;
-    } else if separation.x < -half {
-        separation.x += period;
-    }
-    separation
+    let back = if x > half { period } else { 0.0 };
+    let forth = if x < -half { period } else { 0.0 };
+    x - back + forth
 }
 
-/// The earliest collision of `disk` with one of `candidates`, itself excepted, or `known` if that is earlier.
+/// The earliest collision of `disk` with one of the first `count` of `candidates`, or `known` if that is earlier.
+///
+/// The candidates may include the disk itself, which never meets itself; the room behind them is filled up with it.
 #[inline]
 pub(super) fn earliest_collision(
     bodies: &Bodies,
     period: f64,
     disk: usize,
-    candidates: &[u32],
+    candidates: &mut [u32],
+    count: usize,
     now: f64,
     known: Earliest,
 ) -> Earliest {
-    if period == 0.0 {
-        search(bodies, disk, candidates, now, known, |separation| separation)
-    } else {
-        search(bodies, disk, candidates, now, known, |separation| nearest_image(separation, period))
-    }
-}
-
-#[inline]
-fn search(
-    bodies: &Bodies,
-    disk: usize,
-    candidates: &[u32],
-    now: f64,
-    known: Earliest,
-    image: impl Fn(DVec2) -> DVec2,
-) -> Earliest {
-    let mine = &bodies.trajectories[disk];
-    if let Some(diameter) = bodies.common_diameter() {
-        let contact_squared = diameter * diameter;
-        scan(bodies, mine, candidates, now, known, image, |_| contact_squared)
-    } else {
-        let radius = bodies.material(disk).radius;
-        scan(bodies, mine, candidates, now, known, image, |other| {
-            let contact = radius + bodies.material(other).radius;
-            contact * contact
-        })
+    let filled = count.next_multiple_of(LANES);
+    candidates[count..filled].fill(disk as u32);
+    let candidates = &candidates[..filled];
+    match (bodies.common_diameter(), period == 0.0) {
+        (Some(diameter), true) => scan(bodies, disk, candidates, now, known, |_| diameter, |x| x),
+        (Some(diameter), false) => {
+            scan(bodies, disk, candidates, now, known, |_| diameter, |x| nearest_image(x, period))
+        }
+        (None, _) => {
+            let radius = bodies.material(disk).radius;
+            let contact = |other: usize| radius + bodies.material(other).radius;
+            scan(bodies, disk, candidates, now, known, contact, |x| nearest_image(x, period))
+        }
     }
 }
 
 #[inline]
 fn scan(
     bodies: &Bodies,
-    mine: &Trajectory,
+    disk: usize,
     candidates: &[u32],
     now: f64,
     known: Earliest,
-    image: impl Fn(DVec2) -> DVec2,
-    contact_squared: impl Fn(usize) -> f64,
+    contact: impl Fn(usize) -> f64,
+    image: impl Fn(f64) -> f64,
 ) -> Earliest {
+    let mine = bodies.trajectories[disk];
     let here = mine.at(now);
-    let mut earliest = known;
-    for &candidate in candidates {
-        let other = &bodies.trajectories[candidate as usize];
-        let separation = image(other.at(now) - here);
-        let due = touch(separation, other.velocity - mine.velocity, contact_squared(candidate as usize), now);
-        earliest = earliest.or(due, candidate);
+    let mut rank = known.rank();
+    for lanes in candidates.chunks_exact(LANES) {
+        let mut pairs = Pairs::default();
+        for (lane, &candidate) in lanes.iter().enumerate() {
+            let other = &bodies.trajectories[candidate as usize];
+            let there = other.at(now);
+            pairs.x[lane] = image(there.x - here.x);
+            pairs.y[lane] = there.y - here.y;
+            pairs.velocity_x[lane] = other.velocity.x - mine.velocity.x;
+            pairs.velocity_y[lane] = other.velocity.y - mine.velocity.y;
+            let contact = contact(candidate as usize);
+            pairs.contact_squared[lane] = contact * contact;
+        }
+        for (wait, &partner) in pairs.wait().into_iter().zip(lanes) {
+            rank = rank.min(Earliest { due: now + wait, partner }.rank());
+        }
     }
-    earliest
+    Earliest::from_rank(rank)
 }
 
 /// When and through which edge a disk leaves its cell, gravity pulling down.

@@ -33,7 +33,8 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
 ) -> Result<(Collision, f64), NotFinite> {
     let Meeting { disk, offset, time } = meeting;
     let here = bodies.trajectories[disk].at(offset);
-    let separation = nearest_image(here - bodies.trajectories[partner].at(offset), period);
+    let mut separation = here - bodies.trajectories[partner].at(offset);
+    separation.x = nearest_image(separation.x, period);
     let distance = separation.length();
     let normal = if distance > 0.0 { separation / distance } else { DVec2::Y };
     let since = offset - bodies.spins[disk].last_collision.max(bodies.spins[partner].last_collision);
