@@ -12,5 +12,6 @@ mod parameters;
 mod separation;
 mod stick_slip;
 mod symmetry;
+mod violations;
 mod wall;
 mod worked;
