@@ -13,7 +13,7 @@ use proptest::test_runner::RngSeed;
 /// The same cases on every run and machine.
 pub(crate) fn config() -> ProptestConfig {
     ProptestConfig {
-        cases: 1000,
+        cases: 500,
         rng_seed: RngSeed::Fixed(72_011_305),
         failure_persistence: None,
         ..ProptestConfig::default()
