@@ -16,6 +16,7 @@ pub(crate) fn config() -> ProptestConfig {
         cases: 500,
         rng_seed: RngSeed::Fixed(72_011_305),
         failure_persistence: None,
+        max_global_rejects: 1_000_000,
         ..ProptestConfig::default()
     }
 }
