@@ -1,0 +1,80 @@
+//! Energy: never gained, and lost by exactly the amount that the formulas say.
+
+use granular_edmd::collision::{Contact, Regime, collide, laws};
+use proptest::prelude::*;
+
+use crate::hostile::{Law, config, contact, law, pair};
+use crate::kinematics::{EPSILON, kinetic_energy};
+
+/// The change of energy from the coefficients alone: Eq. (6) with the factor 1/3, and Eq. (7), for any two bodies.
+fn expected_change(law: &Law, contact: &Contact) -> f64 {
+    let (mu, mu_t) = (contact.normal_mass(), contact.tangential_mass());
+    let (v_n, v_t) = (contact.closing_speed(), contact.slip_speed().abs());
+    let (q_n, q_t, kappa) = (law.normal_inelasticity, law.tangential_inelasticity, law.dynamic_friction);
+    if law.sticks(contact) {
+        -2.0 * mu * q_n * (1.0 - q_n) * v_n * v_n - 2.0 * mu_t * q_t * (1.0 - q_t) * v_t * v_t
+    } else {
+        // Products are ordered so that a huge coefficient never meets a huge mass.
+        let grip = (1.0 - q_n) * kappa * (mu / mu_t) * v_n;
+        -2.0 * mu * (1.0 - q_n) * (q_n * v_n * v_n + kappa * v_n * v_t) + 2.0 * mu_t * grip * grip
+    }
+}
+
+proptest! {
+    #![proptest_config(config())]
+
+    /// Some ten products and differences of terms, none above the energy of the relative motion.
+    #[test]
+    fn the_loss_is_that_of_the_formulas(law in law(), contact in contact()) {
+        let change = law.rule().impulse(&contact).energy_change(&contact);
+        let expected = expected_change(&law, &contact);
+        let available = laws::available_energy(&contact);
+        prop_assert!((change - expected).abs() <= 16.0 * EPSILON * available, "{change} != {expected}, of {available}");
+    }
+
+    #[test]
+    fn energy_is_never_gained(law in law(), contact in contact()) {
+        let impulse = law.rule().impulse(&contact);
+        let (change, available) = (impulse.energy_change(&contact), laws::available_energy(&contact));
+        prop_assert!(change <= 4.0 * EPSILON * available, "{change} of {available}");
+        prop_assert!(change >= -(1.0 + 4.0 * EPSILON) * available, "more than there is: {change} of {available}");
+        prop_assert_eq!(laws::check(&contact, impulse), Ok(()));
+    }
+
+    /// What the impulse says is what the disks lose; rounding of their velocities counts with their whole energy.
+    #[test]
+    fn the_disks_lose_what_the_impulse_says(law in law(), (first, second) in pair()) {
+        let (new_first, new_second, contact, impulse) = collide(&law.rule(), &first, &second);
+        let before = kinetic_energy(&first) + kinetic_energy(&second);
+        let after = kinetic_energy(&new_first) + kinetic_energy(&new_second);
+        let change = impulse.energy_change(&contact);
+        prop_assert!((after - before - change).abs() <= 32.0 * EPSILON * (before + after), "{} != {change}", after - before);
+    }
+
+    /// Without inelasticity, and with no friction or full grip, nothing is lost.
+    #[test]
+    fn an_elastic_rule_loses_nothing(mut law in law(), contact in contact(), rough in any::<bool>()) {
+        (law.normal_inelasticity, law.tangential_inelasticity) = (0.0, 0.0);
+        let friction = if rough { f64::MAX } else { 0.0 };
+        if law.static_friction.is_finite() && law.static_friction > 0.0 {
+            (law.static_friction, law.dynamic_friction) = (friction, friction);
+        }
+        let change = law.rule().impulse(&contact).energy_change(&contact);
+        prop_assert!(change.abs() <= 4.0 * EPSILON * laws::available_energy(&contact), "{change}");
+    }
+
+    /// The cone of friction, and its edge when sliding.
+    #[test]
+    fn the_impulse_stays_in_the_friction_cone(law in law(), contact in contact()) {
+        let impulse = law.rule().impulse(&contact);
+        let (normal, tangential) = (impulse.normal(), impulse.tangential().abs());
+        prop_assert!(normal > 0.0);
+        prop_assert!(tangential <= law.static_friction * normal * (1.0 + 4.0 * EPSILON));
+        prop_assert!(impulse.tangential() * contact.slip_speed() >= 0.0, "friction opposes the slip");
+        match impulse.regime() {
+            Regime::Sticking => prop_assert!(law.sticks(&contact)),
+            Regime::Sliding => prop_assert_eq!(tangential, law.dynamic_friction * normal),
+            _ => (),
+        }
+    }
+}

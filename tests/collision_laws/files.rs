@@ -1,0 +1,95 @@
+//! Rules in files: what is written can be read, and what a constructor refuses a file cannot bring in.
+
+use granular_edmd::collision::{ContactDuration, Elastic, Frictional, Rough, Smooth, TangentialResponse};
+use proptest::prelude::*;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::hostile::{config, decades};
+
+fn returns<T: Serialize + DeserializeOwned + PartialEq>(value: &T) -> bool {
+    let text = serde_json::to_string(value).unwrap();
+    serde_json::from_str::<T>(&text).unwrap() == *value
+}
+
+/// The error of reading `text` as a `T`.
+fn refusal<T: DeserializeOwned>(text: &str) -> String {
+    serde_json::from_str::<T>(text).err().map(|error| error.to_string()).unwrap_or_default()
+}
+
+proptest! {
+    #![proptest_config(config())]
+
+    #[test]
+    fn every_rule_returns(
+        normal in 0.0..=0.5,
+        tangential in 0.0..=1.0,
+        friction in prop_oneof![Just(0.0), decades(-9.0, 9.0), Just(f64::MAX)],
+        ratio in 0.0..=1.0,
+        duration in decades(-300.0, 300.0),
+    ) {
+        let frictional = Frictional::from_inelasticity(normal, tangential)
+            .and_then(|rule| rule.with_friction(friction, ratio * friction))
+            .unwrap();
+        let (smooth, rough) = (Smooth::new(normal).unwrap(), Rough::new(normal, tangential).unwrap());
+        let unchanged = TangentialResponse::Unchanged;
+        prop_assert!(returns(&Elastic) && returns(&smooth) && returns(&rough) && returns(&frictional));
+        prop_assert!(returns(&ContactDuration::new(Elastic, duration).unwrap()));
+        prop_assert!(returns(&ContactDuration::new(frictional, duration).unwrap()));
+        let nested = ContactDuration::new(rough, duration).unwrap().with_tangential_response(unchanged);
+        prop_assert!(returns(&ContactDuration::new(nested, duration).unwrap()));
+    }
+}
+
+#[test]
+fn the_names_in_a_file_are_stable() {
+    let rule = ContactDuration::new(Frictional::new(0.25, 0.5).unwrap(), 0.125).unwrap();
+    let text = concat!(
+        r#"{"rule":{"normal_inelasticity":0.25,"tangential_inelasticity":0.25,"static_friction":0.5,"#,
+        r#""dynamic_friction":0.5},"duration":0.125,"tangential_response":"Frictionless"}"#
+    );
+    assert_eq!(serde_json::to_string(&rule).unwrap(), text);
+    let short = text.replace(r#","tangential_response":"Frictionless""#, "");
+    assert_eq!(serde_json::from_str::<ContactDuration<Frictional>>(&short).unwrap(), rule);
+}
+
+#[test]
+fn a_file_passes_the_constructors() {
+    let smooth = r#"{"normal_inelasticity":0.7}"#;
+    assert!(refusal::<Smooth>(smooth).contains(&Smooth::new(0.7).unwrap_err().to_string()));
+    let rough = r#"{"normal_inelasticity":0.1,"tangential_inelasticity":-0.5}"#;
+    assert!(refusal::<Rough>(rough).contains(&Rough::new(0.1, -0.5).unwrap_err().to_string()));
+    let frictional = r#"{"normal_inelasticity":0,"tangential_inelasticity":0,"static_friction":0.1,"dynamic_friction":0.2}"#;
+    let error = Frictional::new(0.0, 0.0).and_then(|rule| rule.with_friction(0.1, 0.2)).unwrap_err();
+    assert!(refusal::<Frictional>(frictional).contains(&error.to_string()));
+    let model = r#"{"rule":null,"duration":0}"#;
+    let error = ContactDuration::new(Elastic, 0.0).unwrap_err();
+    assert!(refusal::<ContactDuration<Elastic>>(model).contains(&error.to_string()));
+    let inner = format!(r#"{{"rule":{smooth},"duration":1}}"#);
+    assert!(
+        refusal::<ContactDuration<Smooth>>(&inner)
+            .contains("normal inelasticity must be in [0, 0.5], but is 0.7")
+    );
+}
+
+#[test]
+fn unknown_missing_and_unreadable_fields_are_refused() {
+    assert!(
+        refusal::<Smooth>(r#"{"normal_inelasticity":0.1,"colour":1}"#).contains("unknown field `colour`")
+    );
+    assert!(
+        refusal::<Rough>(r#"{"normal_inelasticity":0.1}"#)
+            .contains("missing field `tangential_inelasticity`")
+    );
+    assert!(refusal::<Smooth>(r#"{"normal_inelasticity":null}"#).contains("null"));
+    assert!(refusal::<Smooth>(r#"{"normal_inelasticity":1e999}"#).contains("out of range"));
+    let frictional = concat!(
+        r#"{"normal_inelasticity":0,"tangential_inelasticity":0,"static_friction":0,"dynamic_friction":0,"#,
+        r#""restitution":1}"#
+    );
+    assert!(refusal::<Frictional>(frictional).contains("unknown field `restitution`"));
+    let model = r#"{"rule":null,"duration":1,"response":0}"#;
+    assert!(refusal::<ContactDuration<Elastic>>(model).contains("unknown field `response`"));
+    let response = r#"{"rule":null,"duration":1,"tangential_response":"Sticky"}"#;
+    assert!(refusal::<ContactDuration<Elastic>>(response).contains("unknown variant `Sticky`"));
+}

@@ -1,0 +1,17 @@
+//! The laws of a collision, for every rule of the library: conservation, energy, friction, separation and symmetry
+//! over hostile inputs; worked collisions; the contact-duration model; refused parameters and files.
+
+mod conservation;
+mod contact_duration;
+mod energy;
+#[cfg(feature = "serde")]
+mod files;
+mod hostile;
+mod kinematics;
+mod parameters;
+mod separation;
+mod stick_slip;
+mod symmetry;
+mod violations;
+mod wall;
+mod worked;

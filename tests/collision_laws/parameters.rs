@@ -1,0 +1,86 @@
+//! Parameters outside their range: each constructor refuses them and names the value.
+
+use granular_edmd::ParameterError;
+use granular_edmd::collision::{ContactDuration, Elastic, Frictional, Rough, Smooth};
+
+/// A constructor of one parameter, that parameter's name, and values that it must refuse beside the usual ones.
+type Case = (&'static str, fn(f64) -> Result<(), ParameterError>, &'static [f64]);
+
+const NOT_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+
+fn frictional() -> Frictional {
+    Frictional::from_inelasticity(0.1, 0.2).unwrap()
+}
+
+fn cases() -> Vec<Case> {
+    let normal: &[f64] = &[-1e-300, 0.500_000_1, 1.0, -0.5, 1e300];
+    let tangential: &[f64] = &[-1e-300, 1.000_000_1, 2.0, -1e300];
+    let restitution: &[f64] = &[-1e-300, 1.000_000_1, -1.0];
+    let rough_restitution: &[f64] = &[-1.000_000_1, 1.000_000_1];
+    let friction: &[f64] = &[-1e-300, -1.0];
+    vec![
+        ("normal inelasticity", |value| Smooth::new(value).map(drop), normal),
+        ("normal restitution", |value| Smooth::from_restitution(value).map(drop), restitution),
+        ("normal inelasticity", |value| Rough::new(value, 0.1).map(drop), normal),
+        ("tangential inelasticity", |value| Rough::new(0.1, value).map(drop), tangential),
+        ("normal restitution", |value| Rough::from_restitution(value, 0.1).map(drop), restitution),
+        ("tangential restitution", |value| Rough::from_restitution(0.1, value).map(drop), rough_restitution),
+        ("normal inelasticity", |value| Frictional::new(value, 0.1).map(drop), normal),
+        ("static friction", |value| Frictional::new(0.1, value).map(drop), friction),
+        ("normal inelasticity", |value| Frictional::from_inelasticity(value, 0.1).map(drop), normal),
+        ("tangential inelasticity", |value| Frictional::from_inelasticity(0.1, value).map(drop), tangential),
+        ("normal restitution", |value| Frictional::from_restitution(value, 0.1).map(drop), restitution),
+        (
+            "tangential restitution",
+            |value| Frictional::from_restitution(0.1, value).map(drop),
+            rough_restitution,
+        ),
+        ("static friction", |value| frictional().with_friction(value, 0.0).map(drop), friction),
+        (
+            "dynamic friction",
+            |value| frictional().with_friction(0.5, value).map(drop),
+            &[-1e-300, 0.500_000_1],
+        ),
+        ("contact duration", |value| ContactDuration::new(Elastic, value).map(drop), &[0.0, -0.0, -1e-4]),
+    ]
+}
+
+#[test]
+fn each_constructor_refuses_and_names_the_value() {
+    for (name, construct, refused) in cases() {
+        for value in refused.iter().chain(&NOT_FINITE) {
+            let error = construct(*value).expect_err(&format!("{name} {value} was accepted"));
+            assert_eq!(error.name(), name);
+            assert_eq!(error.value().to_bits(), value.to_bits());
+            let text = error.to_string();
+            assert_eq!(text, format!("{name} must be {}, but is {value}", error.requirement()));
+        }
+    }
+}
+
+#[test]
+fn the_ends_of_the_ranges_are_accepted() {
+    for value in [0.0, 0.5] {
+        assert_eq!(Smooth::new(value).unwrap().normal_inelasticity(), value);
+        assert_eq!(Frictional::new(value, 0.0).unwrap().normal_inelasticity(), value);
+    }
+    for value in [0.0, 1.0] {
+        assert_eq!(Rough::new(0.5, value).unwrap().tangential_inelasticity(), value);
+        assert_eq!(Frictional::from_inelasticity(0.5, value).unwrap().tangential_inelasticity(), value);
+    }
+    assert_eq!(Rough::from_restitution(0.0, -1.0), Rough::new(0.5, 1.0));
+    assert_eq!(Frictional::from_restitution(1.0, 1.0), Frictional::from_inelasticity(0.0, 0.0));
+    let rule = frictional().with_friction(f64::MAX, f64::MAX).unwrap();
+    assert_eq!((rule.static_friction(), rule.dynamic_friction()), (f64::MAX, f64::MAX));
+    assert!(ContactDuration::new(Elastic, f64::MIN_POSITIVE).is_ok());
+}
+
+/// The paper's choice of one inelasticity and one friction coefficient.
+#[test]
+fn the_short_constructor_sets_both() {
+    let rule = Frictional::new(0.1, 0.3).unwrap();
+    assert_eq!(
+        Ok(rule),
+        Frictional::from_inelasticity(0.1, 0.1).and_then(|rule| rule.with_friction(0.3, 0.3))
+    );
+}

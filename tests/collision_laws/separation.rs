@@ -1,0 +1,68 @@
+//! What the surfaces do after the collision, from the velocities of the disks.
+
+use granular_edmd::Disk;
+use granular_edmd::collision::{collide, laws};
+use proptest::prelude::*;
+
+use crate::hostile::{config, law, pair};
+use crate::kinematics::{EPSILON, contact_velocity, normal, speed_magnitude};
+
+/// Speeds of the contact are differences of the disks' speeds: rounding counts with the latter.
+fn tolerance(disks: [&Disk; 4]) -> f64 {
+    16.0 * EPSILON * disks.into_iter().map(speed_magnitude).sum::<f64>()
+}
+
+proptest! {
+    #![proptest_config(config())]
+
+    /// The contact that the rule sees is the relative velocity of the two points that touch.
+    #[test]
+    fn the_contact_is_that_of_the_surfaces(law in law(), (first, second) in pair()) {
+        let (_, _, contact, _) = collide(&law.rule(), &first, &second);
+        let (closing, slip) = contact_velocity(normal(&first, &second), &first, &second);
+        let tolerance = tolerance([&first, &second, &first, &second]);
+        prop_assert!((contact.closing_speed() - closing).abs() <= tolerance);
+        prop_assert!((contact.slip_speed() - slip).abs() <= tolerance);
+        prop_assert_eq!(contact.time_since_last_collision(), f64::INFINITY);
+    }
+
+    /// The effective masses, from the paper's moments of inertia: `$1/\mu_t = \sum 1/m_i + R_i^2/I_i$`.
+    #[test]
+    fn the_masses_are_those_of_the_disks((first, second) in pair()) {
+        let (_, _, contact, _) = collide(&granular_edmd::collision::Elastic, &first, &second);
+        let reduced = first.mass() * second.mass() / (first.mass() + second.mass());
+        let compliance = |disk: &Disk| 1.0 / disk.mass() + disk.radius().powi(2) / disk.moment_of_inertia();
+        let tangential = 1.0 / (compliance(&first) + compliance(&second));
+        prop_assert!((contact.normal_mass() / reduced - 1.0).abs() <= 8.0 * EPSILON);
+        prop_assert!((contact.tangential_mass() / tangential - 1.0).abs() <= 16.0 * EPSILON);
+    }
+
+    /// `$v_n' = -(1-2q_n)v_n$`, and `$v_t' = -(1-2q_t)v_t$` when the surfaces hold.
+    #[test]
+    fn the_surfaces_part_as_the_restitution_says(law in law(), (first, second) in pair()) {
+        let (new_first, new_second, contact, impulse) = collide(&law.rule(), &first, &second);
+        let (closing, slip) = contact_velocity(normal(&first, &second), &new_first, &new_second);
+        let tolerance = tolerance([&first, &second, &new_first, &new_second]);
+        let expected_closing = -(1.0 - 2.0 * law.normal_inelasticity) * contact.closing_speed();
+        let expected_slip = if law.sticks(&contact) {
+            -(1.0 - 2.0 * law.tangential_inelasticity) * contact.slip_speed()
+        } else {
+            contact.slip_speed() - law.expected(&contact).tangential() / contact.tangential_mass()
+        };
+        prop_assert!((closing - expected_closing).abs() <= tolerance, "{closing} != {expected_closing}");
+        prop_assert!((slip - expected_slip).abs() <= tolerance, "{slip} != {expected_slip}");
+        prop_assert!(closing <= tolerance, "still closing");
+        prop_assert!((laws::closing_speed_after(&contact, impulse) - expected_closing).abs() <= 4.0 * EPSILON * contact.closing_speed());
+        prop_assert!((laws::slip_speed_after(&contact, impulse) - expected_slip).abs() <= 8.0 * EPSILON * contact.slip_speed().abs());
+    }
+
+    /// Rolling contact: exactly no slip gives exactly no tangential impulse.
+    #[test]
+    fn no_slip_no_grip(law in law(), contact in crate::hostile::contact()) {
+        let rolling = granular_edmd::collision::Contact::new(
+            contact.closing_speed(), 0.0, contact.normal_mass(), contact.tangential_mass());
+        if law.sticks(&rolling) {
+            prop_assert_eq!(law.rule().impulse(&rolling).tangential(), 0.0);
+        }
+    }
+}
