@@ -4,8 +4,8 @@ use rand::Rng;
 
 /// Uniform in the open interval (0, 1).
 pub(crate) fn uniform<G: Rng + ?Sized>(generator: &mut G) -> f64 {
-    const SCALE: f64 = 1.0 / (1u64 << 53) as f64;
-    ((generator.next_u64() >> 11) as f64 + 0.5) * SCALE
+    const SCALE: f64 = 1.0 / (1u64 << 52) as f64;
+    ((generator.next_u64() >> 12) as f64 + 0.5) * SCALE
 }
 
 /// Normal with mean 0 and variance 1 (Box & Muller 1958, one of the pair).
