@@ -159,7 +159,13 @@ impl Disk {
     }
 
     /// The disk with the motion that the engine computed for it: no check, since the engine has its own.
-    pub(crate) fn with_motion(self, position: DVec2, velocity: DVec2, angle: f64, angular_velocity: f64) -> Self {
+    pub(crate) fn with_motion(
+        self,
+        position: DVec2,
+        velocity: DVec2,
+        angle: f64,
+        angular_velocity: f64,
+    ) -> Self {
         Self { position, velocity, angle, angular_velocity, ..self }
     }
 }

@@ -5,7 +5,9 @@
 pub mod collision;
 mod disk;
 mod error;
+pub mod kinetic;
 mod quantity;
+mod random;
 
 pub use disk::{Disk, HOMOGENEOUS};
 pub use error::ParameterError;

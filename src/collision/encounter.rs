@@ -83,8 +83,7 @@ pub(crate) fn meet<R: CollisionRule + ?Sized>(
     first: (&Body, &Material),
     second: (&Body, &Material),
 ) -> Outcome {
-    let contact =
-        contact(normal, first, second).with_time_since_last_collision(time_since_last_collision);
+    let contact = contact(normal, first, second).with_time_since_last_collision(time_since_last_collision);
     let impulse = rule.impulse(&contact);
     let kick = normal * impulse.normal() + normal.perp() * impulse.tangential();
     Outcome {
@@ -145,13 +144,8 @@ pub fn collide_with_wall<R: CollisionRule + ?Sized>(
     wall_velocity: DVec2,
 ) -> (Disk, Contact, Impulse) {
     let wall = Body { velocity: wall_velocity, angular_velocity: 0.0 };
-    let outcome = meet(
-        rule,
-        normal,
-        f64::INFINITY,
-        (&Body::of(disk), &Material::of(disk)),
-        (&wall, &Material::WALL),
-    );
+    let outcome =
+        meet(rule, normal, f64::INFINITY, (&Body::of(disk), &Material::of(disk)), (&wall, &Material::WALL));
     (moved(disk, outcome.first), outcome.contact, outcome.impulse)
 }
 

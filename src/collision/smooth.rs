@@ -46,7 +46,10 @@ impl Smooth {
 impl CollisionRule for Smooth {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        Impulse::new(2.0 * (1.0 - self.normal_inelasticity) * contact.normal_mass() * contact.closing_speed(), 0.0)
+        Impulse::new(
+            2.0 * (1.0 - self.normal_inelasticity) * contact.normal_mass() * contact.closing_speed(),
+            0.0,
+        )
     }
 }
 
