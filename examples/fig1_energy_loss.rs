@@ -17,7 +17,7 @@ use granular_edmd::kinetic::{
     IsoLine, Maxwellian, MonteCarlo, Piece, friction_of_largest_loss, mean_energy_change,
 };
 use kuva::backend::png::PngBackend;
-use kuva::plot::{LegendPosition, LinePlot};
+use kuva::plot::LinePlot;
 use kuva::render::annotations::TextAnnotation;
 use kuva::render::figure::Figure;
 use kuva::render::layout::{Layout, TickFormat};
@@ -40,6 +40,7 @@ struct Arguments {
 /// A part of the plane and the levels drawn in it.
 struct Panel {
     name: &'static str,
+    logarithmic: bool,
     frictions: Vec<f64>,
     largest_inelasticity: f64,
     levels: Vec<f64>,
@@ -49,6 +50,7 @@ impl Panel {
     fn whole() -> Self {
         Self {
             name: "whole",
+            logarithmic: false,
             frictions: (0..=500).map(|step| f64::from(step) / 500.0).collect(),
             largest_inelasticity: 0.2,
             levels: (1..=10).map(|step| -f64::from(step) / 10.0).collect(),
@@ -58,6 +60,7 @@ impl Panel {
     fn detail() -> Self {
         Self {
             name: "detail",
+            logarithmic: true,
             frictions: (-300..=100).map(|step| 10f64.powf(f64::from(step) / 100.0)).collect(),
             largest_inelasticity: 0.05,
             levels: [0.02]
@@ -71,6 +74,59 @@ impl Panel {
     fn trace(&self, gas: &Maxwellian) -> Result<Vec<(f64, Vec<Piece>)>, ParameterError> {
         let trace = |level| IsoLine::new(level, gas)?.trace(&self.frictions, self.largest_inelasticity);
         self.levels.iter().map(|&level| Ok((level, trace(level)?))).collect()
+    }
+
+    fn layout(&self) -> Layout {
+        let layout = Layout::new((self.frictions[0], 1.0), (0.0, self.largest_inelasticity))
+            .with_x_label("friction κ, static = dynamic")
+            .with_y_label("inelasticity q, normal = tangential")
+            .with_y_axis_min(0.0)
+            .with_y_axis_max(self.largest_inelasticity)
+            .with_y_tick_step(self.largest_inelasticity / 5.0)
+            .with_y_tick_format(TickFormat::Fixed(2))
+            .with_show_grid(false)
+            .with_box_axes();
+        if self.logarithmic {
+            layout.with_log_x().with_x_axis_min(1e-3).with_x_axis_max(10.0)
+        } else {
+            layout
+                .with_title("Mean energy change per collision, ⟨dE⟩/T")
+                .with_x_axis_min(0.0)
+                .with_x_axis_max(1.0)
+        }
+    }
+
+    /// Where a point is in the panel, from 0 to 1 in both directions.
+    fn fraction(&self, (friction, inelasticity): (f64, f64)) -> (f64, f64) {
+        let across = if self.logarithmic { (friction.log10() + 3.0) / 4.0 } else { friction };
+        (across, inelasticity / self.largest_inelasticity)
+    }
+
+    /// The point of a line that carries its label: neighbouring lines have theirs at different heights.
+    fn label_place(&self, index: usize, piece: &Piece) -> (f64, f64) {
+        let lowest = piece.iter().map(|&point| self.fraction(point).1).fold(1.0, f64::min);
+        let height = (0.45 + 0.1 * f64::from(u8::from(index % 2 == 0))).max(lowest + 0.15);
+        let distance = |&point: &(f64, f64)| {
+            let (across, up) = self.fraction(point);
+            let edge = (0.05 - across).max(across - 0.95).max(0.0);
+            if self.logarithmic { (up - height).abs() + 100.0 * edge } else { (across - 0.7).abs() }
+        };
+        let nearest = piece.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let short = !self.logarithmic && piece.iter().all(|&(friction, _)| friction < 0.7);
+        let middle = piece[piece.len() / 2];
+        if short { middle } else { nearest.copied().unwrap_or(middle) }
+    }
+
+    /// Whether a point of a line would run through the label at `place`.
+    fn hides(&self, place: (f64, f64), point: (f64, f64)) -> bool {
+        let ((x, y), (at_x, at_y)) = (self.fraction(point), self.fraction(place));
+        (x - at_x).abs() < 0.024 && (y - at_y).abs() < 0.022
+    }
+
+    /// A label centred on `place`.
+    fn label(&self, (friction, inelasticity): (f64, f64), text: &str, color: &str) -> TextAnnotation {
+        let baseline = inelasticity - 0.024 * self.largest_inelasticity;
+        TextAnnotation::new(text, friction, baseline).with_font_size(11).with_color(color)
     }
 
     /// Points of the curve on which friction loses most.
@@ -153,53 +209,26 @@ fn draw(panels: &[Panel], gas: &Maxwellian, path: &Path) -> Result<(), Box<dyn E
 }
 
 fn draw_panel(panel: &Panel, gas: &Maxwellian) -> Result<(Vec<Plot>, Layout), ParameterError> {
-    let traced = panel.trace(gas)?;
-    let mut plots: Vec<Plot> = Vec::new();
-    for (level, pieces) in &traced {
-        let line = |piece: &Piece| {
-            LinePlot::new().with_data(piece.clone()).with_color(color(*level)).with_stroke_width(1.8)
-        };
-        plots.extend(pieces.iter().map(|piece| Plot::Line(line(piece))));
+    let (mut plots, mut labels) = (Vec::new(), Vec::new());
+    let line = |points, color, width| {
+        Plot::Line(
+            LinePlot::new().with_data::<f64, f64, Piece>(points).with_color(color).with_stroke_width(width),
+        )
+    };
+    for (index, (level, pieces)) in panel.trace(gas)?.into_iter().enumerate() {
+        for piece in pieces.iter().filter(|piece| piece.len() > 1) {
+            let place = panel.label_place(index, piece);
+            labels.push(panel.label(place, &format!("{level}").replace('-', "−"), &color(level)));
+            let parts = piece.split(|&point| panel.hides(place, point));
+            plots.extend(parts.map(|part| line(part.to_vec(), color(level), 1.8)));
+        }
     }
-    let maxima = LinePlot::new().with_data(panel.maxima(gas)?).with_color("black").with_dashed();
-    plots.push(Plot::Line(maxima.with_stroke_width(1.4).with_legend("friction of largest loss")));
-    let labels = traced
-        .iter()
-        .flat_map(|(level, pieces)| pieces.iter().filter_map(|piece| label(panel, *level, piece)));
-    let layout = labels.fold(layout(panel, &plots), Layout::with_annotation);
-    Ok((plots, layout))
-}
-
-fn layout(panel: &Panel, plots: &[Plot]) -> Layout {
-    let layout = Layout::auto_from_plots(plots)
-        .with_x_label("friction κ = κ_s = κ_d")
-        .with_y_label("inelasticity q = q_n = q_t")
-        .with_y_axis_min(0.0)
-        .with_y_axis_max(panel.largest_inelasticity)
-        .with_legend_position(LegendPosition::InsideTopRight)
-        .with_show_grid(false)
-        .with_box_axes();
-    if panel.name == "whole" {
-        layout
-            .with_title("Mean energy change per collision ⟨dE⟩/T")
-            .with_x_axis_max(1.0)
-            .with_y_tick_step(0.05)
-    } else {
-        layout
-            .with_log_x()
-            .with_x_axis_min(1e-3)
-            .with_x_axis_max(10.0)
-            .with_y_tick_step(0.01)
-            .with_y_tick_format(TickFormat::Fixed(2))
+    let maxima = panel.maxima(gas)?;
+    if let Some(&(friction, q)) = maxima.get(90).filter(|_| !panel.logarithmic) {
+        labels.push(panel.label((0.87 * friction, q), "largest loss", "black"));
     }
-}
-
-/// The level beside its line, near the left end of a piece that is long enough.
-fn label(panel: &Panel, level: f64, piece: &Piece) -> Option<TextAnnotation> {
-    let &(friction, inelasticity) = piece.get(piece.len() / 12)?;
-    let above = inelasticity + 0.012 * panel.largest_inelasticity;
-    let text = TextAnnotation::new(format!("{level}"), friction, above);
-    (piece.len() > 40).then(|| text.with_font_size(11).with_color(color(level)))
+    plots.push(line(maxima, "black".into(), 1.2));
+    Ok((plots, labels.into_iter().fold(panel.layout(), Layout::with_annotation)))
 }
 
 /// From blue for little loss to red for much.
