@@ -108,8 +108,9 @@ impl Panel {
         let height = (0.45 + 0.1 * f64::from(u8::from(index % 2 == 0))).max(lowest + 0.15);
         let distance = |&point: &(f64, f64)| {
             let (across, up) = self.fraction(point);
-            let edge = (0.05 - across).max(across - 0.95).max(0.0);
-            if self.logarithmic { (up - height).abs() + 100.0 * edge } else { (across - 0.7).abs() }
+            let edge = (0.05 - across).max(across - 0.95).max(0.03 - up).max(up - 0.97).max(0.0);
+            let wanted = if self.logarithmic { up - height } else { across - 0.7 };
+            wanted.abs() + 100.0 * edge
         };
         let nearest = piece.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let short = !self.logarithmic && piece.iter().all(|&(friction, _)| friction < 0.7);
@@ -225,7 +226,7 @@ fn draw_panel(panel: &Panel, gas: &Maxwellian) -> Result<(Vec<Plot>, Layout), Pa
     }
     let maxima = panel.maxima(gas)?;
     if let Some(&(friction, q)) = maxima.get(90).filter(|_| !panel.logarithmic) {
-        labels.push(panel.label((0.87 * friction, q), "largest loss", "black"));
+        labels.push(panel.label((friction - 0.06, q), "largest loss", "black"));
     }
     plots.push(line(maxima, "black".into(), 1.2));
     Ok((plots, labels.into_iter().fold(panel.layout(), Layout::with_annotation)))

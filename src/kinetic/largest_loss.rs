@@ -17,7 +17,7 @@ use crate::collision::Frictional;
 /// which exists for `$q_t < 1/3$` (notation of [`mean_energy_change`]; `docs/physics-kinetic.md`). Elastic disks lose
 /// most at `$\kappa = 0.2627$`: the paper's `$\kappa\approx0.3$`.
 ///
-/// `None` if no finite friction loses most: without restitution in the tangent (`$q_t\ge1/3$` if `$\rho=1$`) the loss
+/// `None` if no finite friction loses most: where sticking itself loses much (`$q_t\ge1/3$` for `$\rho=1$`) the loss
 /// grows with friction all the way to rough disks, and for `$\rho = 0$` sliding loses nothing.
 ///
 /// ```
