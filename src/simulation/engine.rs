@@ -103,7 +103,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             now: 0.0,
             counters: Counters::default(),
             guard: Guard::default(),
-            found: vec![0; count + LANES],
+            found: Vec::new(),
             copies: Vec::new(),
         }
     }
@@ -218,6 +218,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.bodies.trajectories[disk].position.x += self.cells.cross(disk, exit);
         let slot = self.slots[disk];
         let known = Earliest { due: slot.collision_due, partner: slot.partner };
+        self.make_room();
         let count = self.cells.ahead(disk, exit, &mut self.found);
         let earliest = earliest_collision(
             &self.bodies,
@@ -234,6 +235,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Finds the next event of a disk among all its neighbours.
     #[inline]
     pub(super) fn predict(&mut self, disk: usize) {
+        self.make_room();
         let count = self.cells.around(disk, &mut self.found);
         let earliest = earliest_collision(
             &self.bodies,
@@ -245,6 +247,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             Earliest::NONE,
         );
         self.schedule(disk, earliest, true);
+    }
+
+    /// Keeps the room for neighbours in step with the cells, which may have grown.
+    #[inline]
+    fn make_room(&mut self) {
+        let room = self.cells.room() + LANES;
+        if self.found.len() < room {
+            self.found.resize(room, 0);
+        }
     }
 
     #[inline]

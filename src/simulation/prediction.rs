@@ -68,6 +68,43 @@ impl Pairs {
     }
 }
 
+/// The earliest collision found in each lane.
+#[derive(Debug, Clone, Copy)]
+struct Best {
+    due: [f64; LANES],
+    partner: [u64; LANES],
+}
+
+impl Default for Best {
+    fn default() -> Self {
+        Self { due: [f64::INFINITY; LANES], partner: [u64::MAX; LANES] }
+    }
+}
+
+impl Best {
+    /// Takes what is earlier; of equal times the smaller partner.
+    #[inline]
+    fn improve(&mut self, due: [f64; LANES], partners: &[u32]) {
+        for lane in 0..LANES {
+            let partner = u64::from(partners[lane]);
+            let better = (due[lane] < self.due[lane])
+                | ((due[lane] == self.due[lane]) & (partner < self.partner[lane]));
+            self.due[lane] = if better { due[lane] } else { self.due[lane] };
+            self.partner[lane] = if better { partner } else { self.partner[lane] };
+        }
+    }
+
+    /// The earliest of all lanes and of what was known.
+    #[inline]
+    fn earliest(&self, known: Earliest) -> Earliest {
+        let mut rank = known.rank();
+        for (&due, &partner) in self.due.iter().zip(&self.partner) {
+            rank = rank.min(Earliest { due, partner: partner as u32 }.rank());
+        }
+        Earliest::from_rank(rank)
+    }
+}
+
 /// The shortest way around periodic sides; `period` is 0 if there are none.
 #[inline]
 pub(super) fn nearest_image(x: f64, period: f64) -> f64 {
@@ -116,26 +153,30 @@ fn scan(
     contact: impl Fn(usize) -> f64,
     image: impl Fn(f64) -> f64,
 ) -> Earliest {
-    let mine = bodies.trajectories[disk];
-    let here = mine.at(now);
-    let mut rank = known.rank();
+    let mine = bodies.trajectories[disk].row();
+    let mut best = Best::default();
     for lanes in candidates.chunks_exact(LANES) {
+        let rows: [[f64; 4]; LANES] = std::array::from_fn(|lane| {
+            let other = bodies.trajectories[lanes[lane] as usize].row();
+            std::array::from_fn(|k| other[k] - mine[k])
+        });
         let mut pairs = Pairs::default();
-        for (lane, &candidate) in lanes.iter().enumerate() {
-            let other = &bodies.trajectories[candidate as usize];
-            let there = other.at(now);
-            pairs.x[lane] = image(there.x - here.x);
-            pairs.y[lane] = there.y - here.y;
-            pairs.velocity_x[lane] = other.velocity.x - mine.velocity.x;
-            pairs.velocity_y[lane] = other.velocity.y - mine.velocity.y;
-            let contact = contact(candidate as usize);
+        for lane in 0..LANES {
+            let [x, y, velocity_x, velocity_y] = rows[lane];
+            pairs.x[lane] = x;
+            pairs.y[lane] = y;
+            pairs.velocity_x[lane] = velocity_x;
+            pairs.velocity_y[lane] = velocity_y;
+        }
+        for lane in 0..LANES {
+            pairs.x[lane] = image(pairs.x[lane] + pairs.velocity_x[lane] * now);
+            pairs.y[lane] += pairs.velocity_y[lane] * now;
+            let contact = contact(lanes[lane] as usize);
             pairs.contact_squared[lane] = contact * contact;
         }
-        for (wait, &partner) in pairs.wait().into_iter().zip(lanes) {
-            rank = rank.min(Earliest { due: now + wait, partner }.rank());
-        }
+        best.improve(pairs.wait().map(|wait| now + wait), lanes);
     }
-    Earliest::from_rank(rank)
+    best.earliest(known)
 }
 
 /// When and through which edge a disk leaves its cell, gravity pulling down.
