@@ -68,3 +68,9 @@ fn number(text: &str, requirement: &str, valid: impl Fn(f64) -> bool) -> Result<
     let value: f64 = text.trim().parse().map_err(|_| "must be a number".to_owned())?;
     if value.is_finite() && valid(value) { Ok(value) } else { Err(format!("must be {requirement}")) }
 }
+
+/// A whole number from 1 to `MOST`.
+pub(crate) fn whole<const MOST: u64>(text: &str) -> Result<u64, String> {
+    let value = text.trim().parse().ok().filter(|value| (1..=MOST).contains(value));
+    value.ok_or_else(|| format!("must be a whole number from 1 to {MOST}"))
+}

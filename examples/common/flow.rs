@@ -18,7 +18,7 @@ pub(crate) struct Flow {
 #[derive(Debug, Clone, Copy, Default)]
 struct Cell {
     count: u64,
-    momentum: DVec2,
+    velocities: DVec2,
 }
 
 /// The mean velocity at the centre of a cell.
@@ -47,7 +47,7 @@ impl Flow {
                     self.cells.resize(index + 1, Cell::default());
                 }
                 self.cells[index].count += 1;
-                self.cells[index].momentum += disk.velocity();
+                self.cells[index].velocities += disk.velocity();
             }
         }
     }
@@ -65,7 +65,7 @@ impl Flow {
         let seen = self.cells.iter().enumerate().filter(|(_, cell)| cell.count as f64 >= enough);
         seen.map(|(index, cell)| Arrow {
             position: self.centre(index),
-            velocity: cell.momentum / cell.count as f64,
+            velocity: cell.velocities / cell.count as f64,
         })
         .collect()
     }

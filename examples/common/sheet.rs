@@ -12,9 +12,6 @@ pub(crate) const BLUE: &str = "#2c6fbb";
 pub(crate) const ORANGE: &str = "#d9722e";
 pub(crate) const GREEN: &str = "#3a8f6a";
 
-/// Left, right, top and bottom space between a panel's edge and its axes.
-pub(crate) const MARGINS: [f64; 4] = [58.0, 12.0, 12.0, 44.0];
-
 /// A rectangle on the sheet, in its units; `y` points down.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Place {
@@ -35,15 +32,17 @@ impl Sheet {
         Self { scene: Scene::new(width, height) }
     }
 
-    /// A panel whose axes have exactly these ranges.
-    pub(crate) fn panel(&mut self, place: Place, plots: Vec<Plot>, layout: Layout) {
-        let [left, right, top, bottom] = MARGINS;
+    /// A panel with the space that `margins` says between its edge and its axes: left, right, top, bottom.
+    pub(crate) fn panel(&mut self, place: Place, margins: [f64; 4], plots: Vec<Plot>, layout: Layout) {
+        let [left, right, top, bottom] = margins;
+        let grid = layout.show_grid;
         let layout = layout
             .with_width(place.width)
             .with_height(place.height)
             .with_force_margins(left, right)
             .with_force_margins_y(top, bottom)
             .with_theme(theme())
+            .with_show_grid(grid)
             .with_label_size(13)
             .with_tick_size(11);
         let panel = render_multiple(plots, layout);
@@ -68,6 +67,15 @@ impl Sheet {
         });
     }
 
+    /// Names in their colours, side by side from here.
+    pub(crate) fn key(&mut self, x: f64, y: f64, names: &[(&str, &str)]) {
+        let mut x = x;
+        for (color, name) in names {
+            self.text(x, y, 12, color, name);
+            x += 7.5 * name.chars().count() as f64 + 16.0;
+        }
+    }
+
     /// The picture as a PNG file, with this many pixels to a unit.
     pub(crate) fn png(&self, scale: f32) -> Result<Vec<u8>, String> {
         PngBackend::new().with_scale(scale).render_scene(&self.scene)
@@ -86,7 +94,6 @@ fn theme() -> Theme {
         tick_color: QUIET.into(),
         text_color: INK.into(),
         grid_color: "#e7eaee".into(),
-        legend_border: "none".into(),
         ..Theme::light()
     }
 }

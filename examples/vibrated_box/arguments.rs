@@ -8,7 +8,7 @@ use std::str::FromStr;
 use clap::{Parser, ValueEnum};
 use granular_edmd::collision::Frictional;
 
-use crate::common::command_line::{non_negative, positive};
+use crate::common::command_line::{non_negative, positive, whole};
 
 /// Frictional, inelastic disks in a box with a vibrating base: convection rolls, or none.
 ///
@@ -18,7 +18,7 @@ use crate::common::command_line::{non_negative, positive};
 #[command(name = "vibrated_box", allow_negative_numbers = true)]
 pub(crate) struct Arguments {
     /// Number of disks.
-    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    #[arg(long, default_value_t = 1000, value_parser = whole::<1_000_000>)]
     pub(crate) disks: u64,
     /// Width of the box, in diameters.
     #[arg(long, default_value_t = 60.0, value_parser = positive)]
@@ -42,10 +42,10 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 10.0, value_parser = positive)]
     pub(crate) omega: f64,
     /// Length of the run, in oscillations.
-    #[arg(long, default_value_t = 3000, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    #[arg(long, default_value_t = 3000, value_parser = whole::<1_000_000_000>)]
     pub(crate) oscillations: u64,
     /// Oscillations from sample to sample.
-    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, default_value_t = 10, value_parser = whole::<1_000_000_000>)]
     pub(crate) every: u64,
     /// Seed of the first velocities and of a thermal base.
     #[arg(long, default_value_t = 1)]
@@ -128,7 +128,7 @@ impl FromStr for Height {
 impl fmt::Display for Height {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
-            Some(height) => height.fmt(formatter),
+            Some(height) => write!(formatter, "{height:?}"),
             None => formatter.write_str("none"),
         }
     }

@@ -1,8 +1,9 @@
 //! The run: it builds the box, follows it oscillation by oscillation, and keeps what the report needs.
 
+use std::error::Error;
 use std::time::Instant;
 
-use granular_edmd::boundary::{Boundary, Container, Thermal, Wall};
+use granular_edmd::boundary::{Boundary, Container, Domain, Thermal, Wall};
 use granular_edmd::collision::{CollisionRule, ContactDuration, Frictional};
 use granular_edmd::initial::{self, PlacementError};
 use granular_edmd::observable::{
@@ -52,42 +53,66 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 
 fn simulate<R: CollisionRule>(rule: R, arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut simulation = build(rule, arguments)?;
-    let mut samples = Vec::new();
-    let mut energy_change = EnergyChange::default();
-    let mut flow = Flow::new(simulation.boundary().domain(), columns(arguments.width));
+    let mut record = Record::new(&simulation.boundary().domain(), arguments);
     let progress = progress_bar(arguments.oscillations);
     let start = Instant::now();
     for oscillation in 1..=arguments.oscillations {
-        let end = oscillation as f64 * arguments.period();
-        if oscillation > arguments.settled() * arguments.every {
-            simulation.run_until(end, &mut energy_change).map_err(stopped)?;
-            flow.add(&simulation.snapshot());
-        } else {
-            simulation.run_until(end, &mut ()).map_err(stopped)?;
-        }
-        if oscillation.is_multiple_of(arguments.every) {
-            samples.push(sample(&mut simulation, oscillation));
-        }
+        record.follow(&mut simulation, oscillation, arguments).map_err(|error| stopped(&error))?;
         progress.inc(1);
     }
     let run_seconds = start.elapsed().as_secs_f64();
     progress.finish_and_clear();
+    let disks = simulation.disks();
     Ok(Outcome {
-        samples,
-        energy_change: *energy_change.disks(),
-        flow,
-        disks: simulation.disks(),
+        samples: record.samples,
+        energy_change: *record.energy_change.disks(),
+        flow: record.flow,
         counters: *simulation.counters(),
         run_seconds,
-        final_state_hash: hash(simulation.time(), &simulation.disks()),
+        final_state_hash: hash(simulation.time(), &disks),
+        disks,
     })
 }
 
+/// What is kept while the run goes on.
+struct Record {
+    samples: Vec<Sample>,
+    energy_change: EnergyChange,
+    flow: Flow,
+}
+
+impl Record {
+    fn new(domain: &Domain, arguments: &Arguments) -> Self {
+        let flow = Flow::new(*domain, columns(arguments.width));
+        Self { samples: Vec::new(), energy_change: EnergyChange::default(), flow }
+    }
+
+    /// Runs to the end of this oscillation and keeps what is to be kept.
+    fn follow<R: CollisionRule>(
+        &mut self,
+        simulation: &mut Simulation<R, Container>,
+        oscillation: u64,
+        arguments: &Arguments,
+    ) -> Result<(), RunError> {
+        let end = oscillation as f64 * arguments.period();
+        if oscillation > arguments.settled() * arguments.every {
+            simulation.run_until(end, &mut self.energy_change)?;
+            self.flow.add(&simulation.snapshot());
+        } else {
+            simulation.run_until(end, &mut ())?;
+        }
+        if oscillation.is_multiple_of(arguments.every) {
+            self.samples.push(sample(simulation, oscillation));
+        }
+        Ok(())
+    }
+}
+
 fn build<R: CollisionRule>(rule: R, arguments: &Arguments) -> Result<Simulation<R, Container>, Failure> {
-    let container = container(arguments)?;
+    let container = container(arguments).map_err(|error| unusable_base(error.as_ref(), arguments))?;
     let disks = initial::lattice(&container, arguments.disks as usize, RADIUS);
     let disks = disks.map_err(|error| no_room(&error, arguments))?;
-    let temperature = arguments.base_speed() * arguments.base_speed();
+    let temperature = 0.5 * arguments.base_speed() * arguments.base_speed();
     let disks = initial::with_maxwellian_velocities(disks, temperature, arguments.seed);
     Simulation::builder(rule, container)
         .disks(disks.map_err(Failure::usage)?)
@@ -97,45 +122,41 @@ fn build<R: CollisionRule>(rule: R, arguments: &Arguments) -> Result<Simulation<
         .map_err(Failure::usage)
 }
 
-fn container(arguments: &Arguments) -> Result<Container, Failure> {
-    let container = match arguments.height.0 {
-        Some(height) => Container::closed(arguments.width, height),
-        None => Container::open(arguments.width),
+fn container(arguments: &Arguments) -> Result<Container, Box<dyn Error>> {
+    let Arguments { width, amplitude, omega, .. } = *arguments;
+    let mut container = match arguments.height.0 {
+        Some(height) => Container::closed(width, height)?,
+        None => Container::open(width)?,
     };
-    let mut container = container.map_err(Failure::usage)?;
     if arguments.sides == Sides::Periodic {
         container = container.with_periodic_sides();
     }
-    let (amplitude, omega) = (arguments.amplitude, arguments.omega);
-    let driven = match arguments.base {
-        Base::BiParabolic => {
-            container.with_motion(Wall::Floor, BiParabolic::new(amplitude, omega).map_err(Failure::usage)?)
-        }
-        Base::Sinusoidal => {
-            container.with_motion(Wall::Floor, Sinusoidal::new(amplitude, omega).map_err(Failure::usage)?)
-        }
-        Base::Triangular => {
-            container.with_motion(Wall::Floor, Triangular::new(amplitude, omega).map_err(Failure::usage)?)
-        }
-        Base::Thermal(temperature) => {
-            container.with_temperature(Wall::Floor, Thermal::new(temperature).map_err(Failure::usage)?)
-        }
+    let container = match arguments.base {
+        Base::BiParabolic => container.with_motion(Wall::Floor, BiParabolic::new(amplitude, omega)?),
+        Base::Sinusoidal => container.with_motion(Wall::Floor, Sinusoidal::new(amplitude, omega)?),
+        Base::Triangular => container.with_motion(Wall::Floor, Triangular::new(amplitude, omega)?),
+        Base::Thermal(temperature) => container.with_temperature(Wall::Floor, Thermal::new(temperature)?),
     };
-    driven.map_err(Failure::usage)
+    Ok(container?)
 }
 
 fn no_room(error: &PlacementError, arguments: &Arguments) -> Failure {
     let Arguments { disks, width, height, .. } = arguments;
     match error {
         PlacementError::NoRoom { placed, .. } => Failure::usage(format_args!(
-            "--disks {disks}: the start needs a square lattice, and a box of --width {width} --height {height} has \
+            "--disks {disks}: the start needs a square lattice, and a box of --width {width:?} --height {height} has \
              room for {placed}"
         )),
         _ => Failure::usage(error),
     }
 }
 
-fn stopped(error: RunError) -> Failure {
+fn unusable_base(error: &dyn Error, arguments: &Arguments) -> Failure {
+    let Arguments { base, amplitude, omega, .. } = arguments;
+    Failure::usage(format_args!("--base {base} --amplitude {amplitude:?} --omega {omega:?}: {error}"))
+}
+
+fn stopped(error: &RunError) -> Failure {
     match error {
         RunError::Stalled { .. } => Failure::run(format_args!("{error}; see --contact-duration")),
         _ => Failure::run(error),
@@ -147,9 +168,9 @@ fn sample<R: CollisionRule>(simulation: &mut Simulation<R, Container>, oscillati
     Sample { oscillation, time: simulation.time(), order, center_of_mass_height: center.y, energies }
 }
 
-/// Columns of the flow's grid: cells of about five diameters, fewer if the box is narrow, larger if it is wide.
+/// Columns of the flow's grid: cells of about seven diameters, fewer if the box is narrow, larger if it is wide.
 fn columns(width: f64) -> usize {
-    (width / 5.0).clamp(4.0, 24.0) as usize
+    (width / 7.0).round().clamp(4.0, 24.0) as usize
 }
 
 /// Shows how far the run is, if standard error is a terminal.

@@ -44,6 +44,12 @@ fn check(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.gravity == 0.0 && arguments.height.0.is_none() {
         return Err(Failure::usage("--gravity 0: without gravity the box needs a --height"));
     }
+    if let Some(folder) = arguments.json.as_ref().and_then(|json| json.parent())
+        && !folder.as_os_str().is_empty()
+        && !folder.is_dir()
+    {
+        return Err(Failure::run(format_args!("--json: there is no folder {}", folder.display())));
+    }
     fs::create_dir_all(out).map_err(|error| Failure::run(format_args!("--out {}: {error}", out.display())))
 }
 

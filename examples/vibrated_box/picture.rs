@@ -2,20 +2,23 @@
 
 use granular_edmd::Disk;
 use kuva::plot::quiver::QuiverPivot;
-use kuva::prelude::{Layout, LegendPosition, LinePlot, Plot, QuiverPlot, ScatterPlot};
+use kuva::prelude::{Layout, LinePlot, Plot, QuiverPlot, ScatterPlot};
 
-use crate::arguments::Arguments;
-use crate::common::sheet::{self, BLUE, GREEN, INK, MARGINS, ORANGE, Place, QUIET, Sheet};
+use crate::arguments::{Arguments, Base, Sides};
+use crate::common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
 use crate::experiment::{Outcome, Sample};
 use crate::report::Means;
 
-const HEADER: f64 = 62.0;
-const FOOTER: f64 = 14.0;
-const HEIGHT: f64 = 700.0;
-const SERIES_WIDTH: f64 = 620.0;
+const HEADER: f64 = 76.0;
+const FOOTER: f64 = 8.0;
+const HEIGHT: f64 = 720.0;
+const SERIES_WIDTH: f64 = 540.0;
+
+/// Space between a panel's edge and its axes: left, right, top, bottom.
+const MARGINS: [f64; 4] = [58.0, 12.0, 20.0, 44.0];
 
 /// Cells that hold less than this share of what the fullest cell holds show no arrow.
-const ENOUGH: f64 = 0.02;
+const ENOUGH: f64 = 0.1;
 
 /// The picture as a PNG file.
 pub(crate) fn draw(arguments: &Arguments, outcome: &Outcome) -> Result<Vec<u8>, String> {
@@ -23,9 +26,9 @@ pub(crate) fn draw(arguments: &Arguments, outcome: &Outcome) -> Result<Vec<u8>, 
     let width = view.place.width + SERIES_WIDTH;
     let mut sheet = Sheet::new(width + 10.0, HEADER + HEIGHT + FOOTER);
     write_header(&mut sheet, arguments, outcome);
-    sheet.panel(view.place, disks_and_flow(&view, outcome), view.layout());
+    sheet.panel(view.place, MARGINS, disks_and_flow(&view, outcome), view.layout());
     draw_series(&mut sheet, view.place.width, arguments, outcome);
-    sheet.png(2.0)
+    sheet.png(1.7)
 }
 
 /// The part of the box that is shown, and how large.
@@ -62,7 +65,7 @@ fn disks_and_flow(view: &View, outcome: &Outcome) -> Vec<Plot> {
     let faces = ScatterPlot::new().with_data(centers()).with_colors(colors(&outcome.disks));
     let faces =
         faces.with_sizes(outcome.disks.iter().map(|disk| (0.86 * radius(disk)).max(radius(disk) - 0.5)));
-    vec![rims.into(), faces.into(), arrows(outcome, "white", 4.2).into(), arrows(outcome, INK, 1.9).into()]
+    vec![rims.into(), faces.into(), arrows(outcome).into()]
 }
 
 /// Blue for disks that rotate clockwise, red for the others; full colour at twice the root mean square.
@@ -72,16 +75,16 @@ fn colors(disks: &[Disk]) -> Vec<String> {
     disks.iter().map(|disk| sheet::diverging(disk.angular_velocity() / full)).collect()
 }
 
-/// The mean flow; the fastest arrow is a little longer than a cell.
-fn arrows(outcome: &Outcome, color: &str, thickness: f64) -> QuiverPlot {
+/// The mean flow; the longest arrow is a little longer than a cell.
+fn arrows(outcome: &Outcome) -> QuiverPlot {
     let arrows = outcome.flow.arrows(ENOUGH);
-    let scale = 1.3 * outcome.flow.pitch() / fastest(outcome).max(f64::MIN_POSITIVE);
+    let scale = 1.1 * outcome.flow.pitch() / fastest(outcome).max(f64::MIN_POSITIVE);
     let arrows = arrows.iter().map(|arrow| {
         (arrow.position.x, arrow.position.y, scale * arrow.velocity.x, scale * arrow.velocity.y)
     });
     let plot = QuiverPlot::new().with_arrows(arrows).with_scale(1.0).with_pivot(QuiverPivot::Middle);
-    let head = 7.0 + thickness;
-    plot.with_color(color).with_shaft_width(thickness).with_head(head, 0.45 * head).with_clip_to_plot_area()
+    let plot = plot.with_color(INK).with_shaft_width(2.2).with_clip_to_plot_area();
+    plot.with_head_ratio(0.36).with_head_min_px(3.0).with_head_max_px(13.0)
 }
 
 fn fastest(outcome: &Outcome) -> f64 {
@@ -92,50 +95,73 @@ fn write_header(sheet: &mut Sheet, arguments: &Arguments, outcome: &Outcome) {
     let Arguments { disks, width, height, gravity, inelasticity, friction, .. } = arguments;
     let verdict = Means::of(outcome).verdict(arguments.disks);
     let title = format!("{disks} disks after {} oscillations: {verdict}", arguments.oscillations);
-    sheet.text(MARGINS[0], 26.0, 19, INK, &title);
-    let details = format!(
-        "box {width} × {height}, base {} A = {} ω = {}, g = {gravity}, q = {inelasticity}, κ = {friction}    \
-         disks: spin (blue clockwise, red counterclockwise)    arrows: mean velocity, longest {:.2}",
-        arguments.base,
-        arguments.amplitude,
-        arguments.omega,
+    let base = match arguments.base {
+        Base::Thermal(temperature) => format!("thermal base T₀ = {temperature}"),
+        base => format!("{base} base A = {}, ω = {}", arguments.amplitude, arguments.omega),
+    };
+    let sides = if arguments.sides == Sides::Periodic { ", periodic sides" } else { "" };
+    let box_and_base = format!(
+        "box {width} × {height}{sides}    {base}    gravity g = {gravity}    inelasticity q = {inelasticity}    \
+         friction κ = {friction}"
+    );
+    let legend = format!(
+        "disks: coloured by their spin, blue clockwise, red counterclockwise    \
+         arrows: mean velocity in the second half, the longest {:.2}",
         fastest(outcome)
     );
-    sheet.text(MARGINS[0], 48.0, 12, QUIET, &details);
+    sheet.text(MARGINS[0], 28.0, 20, INK, &title);
+    sheet.text(MARGINS[0], 48.0, 12, QUIET, &box_and_base);
+    sheet.text(MARGINS[0], 66.0, 12, QUIET, &legend);
 }
 
-/// The three series, one above the other.
-fn draw_series(sheet: &mut Sheet, left: f64, arguments: &Arguments, outcome: &Outcome) {
-    let samples = &outcome.samples;
-    let noise = 2.0 * Means::of(outcome).noise(arguments.disks);
+/// One panel of series: what it shows, under which names, and how high it is.
+struct Panel {
+    label: &'static str,
+    share: f64,
+    series: Vec<Series>,
+}
+
+/// One line: its colour, its name, its values.
+struct Series(&'static str, &'static str, fn(&Sample) -> f64);
+
+fn panels() -> [Panel; 3] {
     let order = vec![
-        noise_band(arguments, noise),
-        series(samples, BLUE, "Ψ₁ one roll", |sample| sample.order.one_roll),
-        series(samples, ORANGE, "Ψ₂ two rolls", |sample| sample.order.two_rolls),
+        Series(BLUE, "Ψ₁ one roll", |sample| sample.order.one_roll),
+        Series(ORANGE, "Ψ₂ two rolls", |sample| sample.order.two_rolls),
     ];
-    let center = vec![series(samples, INK, "", |sample| sample.center_of_mass_height)];
+    let height = vec![Series(INK, "center of mass", |sample| sample.center_of_mass_height)];
     let energies = vec![
-        series(samples, BLUE, "translational", |sample| sample.energies.translational),
-        series(samples, GREEN, "rotational", |sample| sample.energies.rotational),
+        Series(BLUE, "translation", |sample| sample.energies.translational),
+        Series(GREEN, "rotation", |sample| sample.energies.rotational),
     ];
-    let panels = [
-        (order, "Ψ₁, Ψ₂", 0.46),
-        (center, "center of mass height", 0.27),
-        (energies, "energy per disk", 0.27),
-    ];
+    [
+        Panel { label: "order parameters", share: 0.46, series: order },
+        Panel { label: "height", share: 0.26, series: height },
+        Panel { label: "energy per disk", share: 0.28, series: energies },
+    ]
+}
+
+/// The series, one panel above the other.
+fn draw_series(sheet: &mut Sheet, left: f64, arguments: &Arguments, outcome: &Outcome) {
+    let noise = 2.0 * Means::of(outcome).noise(arguments.disks);
     let mut top = HEADER;
-    for (plots, label, share) in panels {
-        let place = Place { x: left, y: top, width: SERIES_WIDTH, height: share * HEIGHT };
-        let layout = series_layout(&plots, arguments, label);
-        sheet.panel(place, plots, layout);
-        top += share * HEIGHT;
+    for (index, panel) in panels().iter().enumerate() {
+        let place = Place { x: left, y: top, width: SERIES_WIDTH, height: panel.share * HEIGHT };
+        let mut plots: Vec<Plot> = panel.series.iter().map(|series| line(&outcome.samples, series)).collect();
+        if index == 0 {
+            plots.insert(0, noise_band(arguments, noise));
+        }
+        let layout = series_layout(&plots, arguments, panel.label);
+        sheet.panel(place, MARGINS, plots, layout);
+        let names: Vec<_> = panel.series.iter().map(|series| (series.0, series.1)).collect();
+        sheet.key(left + MARGINS[0] + 4.0, top + 14.0, &names);
+        top += place.height;
     }
 }
 
-fn series(samples: &[Sample], color: &str, name: &str, quantity: impl Fn(&Sample) -> f64) -> Plot {
+fn line(samples: &[Sample], Series(color, _, quantity): &Series) -> Plot {
     let points = samples.iter().map(|sample| (sample.oscillation as f64, quantity(sample)));
-    let line = LinePlot::new().with_data(points).with_color(color).with_stroke_width(1.6);
-    if name.is_empty() { line.into() } else { line.with_legend(name).into() }
+    LinePlot::new().with_data(points).with_color(*color).with_stroke_width(1.6).into()
 }
 
 /// Where the order parameters of a gas without flow would be.
@@ -146,9 +172,8 @@ fn noise_band(arguments: &Arguments, noise: f64) -> Plot {
 }
 
 fn series_layout(plots: &[Plot], arguments: &Arguments, label: &str) -> Layout {
-    let (low, high) = range(plots);
-    let axes = sheet::axes((0.0, arguments.oscillations as f64), (low, high));
-    axes.with_x_label("oscillations").with_y_label(label).with_legend_position(LegendPosition::InsideTopRight)
+    let axes = sheet::axes((0.0, arguments.oscillations as f64), range(plots));
+    axes.with_x_label("oscillations").with_y_label(label)
 }
 
 /// The range of all values with a little air.
