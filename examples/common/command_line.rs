@@ -74,3 +74,8 @@ pub(crate) fn whole<const MOST: u64>(text: &str) -> Result<u64, String> {
     let value = text.trim().parse().ok().filter(|value| (1..=MOST).contains(value));
     value.ok_or_else(|| format!("must be a whole number from 1 to {MOST}"))
 }
+
+/// A number as people write it: very large and very small ones with an exponent.
+pub(crate) fn plain(value: f64) -> String {
+    if value == 0.0 || (1e-4..1e7).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
+}

@@ -8,7 +8,7 @@ use std::str::FromStr;
 use clap::{Parser, ValueEnum};
 use granular_edmd::collision::Frictional;
 
-use crate::common::command_line::{non_negative, positive, whole};
+use crate::common::command_line::{non_negative, plain, positive, whole};
 
 /// Frictional, inelastic disks in a box with a vibrating base: convection rolls, or none.
 ///
@@ -128,7 +128,7 @@ impl FromStr for Height {
 impl fmt::Display for Height {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
-            Some(height) => write!(formatter, "{height:?}"),
+            Some(height) => formatter.write_str(&plain(height)),
             None => formatter.write_str("none"),
         }
     }

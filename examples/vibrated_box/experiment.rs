@@ -15,7 +15,7 @@ use granular_edmd::{Disk, Simulation};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::arguments::{Arguments, Base, Sides};
-use crate::common::command_line::Failure;
+use crate::common::command_line::{Failure, plain};
 use crate::common::flow::Flow;
 
 const RADIUS: f64 = 0.5;
@@ -141,10 +141,11 @@ fn container(arguments: &Arguments) -> Result<Container, Box<dyn Error>> {
 }
 
 fn no_room(error: &PlacementError, arguments: &Arguments) -> Failure {
-    let Arguments { disks, width, height, .. } = arguments;
+    let Arguments { disks, height, .. } = arguments;
+    let width = plain(arguments.width);
     match error {
         PlacementError::NoRoom { placed, .. } => Failure::usage(format_args!(
-            "--disks {disks}: the start needs a square lattice, and a box of --width {width:?} --height {height} has \
+            "--disks {disks}: the start needs a square lattice, and a box of --width {width} --height {height} has \
              room for {placed}"
         )),
         _ => Failure::usage(error),
@@ -152,8 +153,8 @@ fn no_room(error: &PlacementError, arguments: &Arguments) -> Failure {
 }
 
 fn unusable_base(error: &dyn Error, arguments: &Arguments) -> Failure {
-    let Arguments { base, amplitude, omega, .. } = arguments;
-    Failure::usage(format_args!("--base {base} --amplitude {amplitude:?} --omega {omega:?}: {error}"))
+    let (amplitude, omega) = (plain(arguments.amplitude), plain(arguments.omega));
+    Failure::usage(format_args!("--base {} --amplitude {amplitude} --omega {omega}: {error}", arguments.base))
 }
 
 fn stopped(error: &RunError) -> Failure {

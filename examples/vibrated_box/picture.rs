@@ -28,7 +28,7 @@ pub(crate) fn draw(arguments: &Arguments, outcome: &Outcome) -> Result<Vec<u8>, 
     write_header(&mut sheet, arguments, outcome);
     sheet.panel(view.place, MARGINS, disks_and_flow(&view, outcome), view.layout());
     draw_series(&mut sheet, view.place.width, arguments, outcome);
-    sheet.png(1.7)
+    sheet.png(1.6)
 }
 
 /// The part of the box that is shown, and how large.
@@ -93,7 +93,7 @@ fn fastest(outcome: &Outcome) -> f64 {
 
 fn write_header(sheet: &mut Sheet, arguments: &Arguments, outcome: &Outcome) {
     let Arguments { disks, width, height, gravity, inelasticity, friction, .. } = arguments;
-    let verdict = Means::of(outcome).verdict(arguments.disks);
+    let verdict = Means::of(outcome).verdict(arguments);
     let title = format!("{disks} disks after {} oscillations: {verdict}", arguments.oscillations);
     let base = match arguments.base {
         Base::Thermal(temperature) => format!("thermal base T₀ = {temperature}"),
@@ -151,8 +151,13 @@ fn draw_series(sheet: &mut Sheet, left: f64, arguments: &Arguments, outcome: &Ou
         if index == 0 {
             plots.insert(0, noise_band(arguments, noise));
         }
-        let layout = series_layout(&plots, arguments, panel.label);
-        sheet.panel(place, MARGINS, plots, layout);
+        let (mut layout, mut margins) = (series_layout(&plots, arguments, panel.label), MARGINS);
+        if index < 2 {
+            margins[3] = 28.0;
+        } else {
+            layout = layout.with_x_label("oscillations");
+        }
+        sheet.panel(place, margins, plots, layout);
         let names: Vec<_> = panel.series.iter().map(|series| (series.0, series.1)).collect();
         sheet.key(left + MARGINS[0] + 4.0, top + 14.0, &names);
         top += place.height;
@@ -173,7 +178,7 @@ fn noise_band(arguments: &Arguments, noise: f64) -> Plot {
 
 fn series_layout(plots: &[Plot], arguments: &Arguments, label: &str) -> Layout {
     let axes = sheet::axes((0.0, arguments.oscillations as f64), range(plots));
-    axes.with_x_label("oscillations").with_y_label(label)
+    axes.with_y_label(label)
 }
 
 /// The range of all values with a little air.

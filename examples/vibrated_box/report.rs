@@ -6,7 +6,7 @@ use std::path::Path;
 use granular_edmd::observable::RunningMean;
 use serde_json::{Value, json};
 
-use crate::arguments::Arguments;
+use crate::arguments::{Arguments, Sides};
 use crate::experiment::{Outcome, Sample};
 
 /// Means over the second half of the samples.
@@ -14,6 +14,7 @@ pub(crate) struct Means {
     pub(crate) psi1: RunningMean,
     pub(crate) abs_psi1: RunningMean,
     pub(crate) psi2: RunningMean,
+    pub(crate) amplitude: RunningMean,
     pub(crate) center_of_mass_height: RunningMean,
     pub(crate) translational_energy: RunningMean,
     pub(crate) rotational_energy: RunningMean,
@@ -28,6 +29,7 @@ impl Means {
             psi1: mean(|sample| sample.order.one_roll),
             abs_psi1: mean(|sample| sample.order.one_roll.abs()),
             psi2: mean(|sample| sample.order.two_rolls),
+            amplitude: mean(|sample| sample.order.one_roll.hypot(sample.order.two_rolls)),
             center_of_mass_height: mean(|sample| sample.center_of_mass_height),
             translational_energy: mean(|sample| sample.energies.translational),
             rotational_energy: mean(|sample| sample.energies.rotational),
@@ -40,16 +42,16 @@ impl Means {
     }
 
     /// What the flow looks like.
-    pub(crate) fn verdict(&self, disks: u64) -> &'static str {
+    pub(crate) fn verdict(&self, arguments: &Arguments) -> &'static str {
         let (one, two) = (self.abs_psi1.mean(), self.psi2.mean());
-        if one.max(two) < 2.0 * self.noise(disks) {
-            "no roll beyond noise"
-        } else if two > one {
-            "two rolls"
-        } else if self.psi1.mean() > 0.0 {
-            "one roll, clockwise"
-        } else {
-            "one roll, counterclockwise"
+        let seen = 2.0 * self.noise(arguments.disks);
+        match arguments.sides {
+            // Without walls a pair of rolls drifts, from one order parameter to the other.
+            Sides::Periodic if self.amplitude.mean() > seen => "a pair of rolls",
+            Sides::Walls if two > seen.max(one) => "two rolls",
+            Sides::Walls if one > seen && self.psi1.mean() > 0.0 => "one roll, clockwise",
+            Sides::Walls if one > seen => "one roll, counterclockwise",
+            _ => "no roll beyond noise",
         }
     }
 }
@@ -62,7 +64,7 @@ pub(crate) fn summary(arguments: &Arguments, outcome: &Outcome) -> String {
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "{name:<24} {value}");
     };
-    line("flow", means.verdict(arguments.disks).to_owned());
+    line("flow", means.verdict(arguments).to_owned());
     line("psi1", format!("{}   mean of |psi1| {:.4}", figure(&means.psi1), means.abs_psi1.mean()));
     line(
         "psi2",
