@@ -55,12 +55,10 @@ fn simulate<R: CollisionRule>(rule: R, arguments: &Arguments) -> Result<Outcome,
     let mut simulation = build(rule, arguments)?;
     let mut record = Record::new(&simulation.boundary().domain(), arguments);
     let progress = progress_bar(arguments.oscillations);
-    let start = Instant::now();
     for oscillation in 1..=arguments.oscillations {
         record.follow(&mut simulation, oscillation, arguments).map_err(|error| stopped(&error))?;
         progress.inc(1);
     }
-    let run_seconds = start.elapsed().as_secs_f64();
     progress.finish_and_clear();
     let disks = simulation.disks();
     Ok(Outcome {
@@ -68,7 +66,7 @@ fn simulate<R: CollisionRule>(rule: R, arguments: &Arguments) -> Result<Outcome,
         energy_change: *record.energy_change.disks(),
         flow: record.flow,
         counters: *simulation.counters(),
-        run_seconds,
+        run_seconds: record.run_seconds,
         final_state_hash: hash(simulation.time(), &disks),
         disks,
     })
@@ -79,12 +77,13 @@ struct Record {
     samples: Vec<Sample>,
     energy_change: EnergyChange,
     flow: Flow,
+    run_seconds: f64,
 }
 
 impl Record {
     fn new(domain: &Domain, arguments: &Arguments) -> Self {
         let flow = Flow::new(*domain, columns(arguments.width));
-        Self { samples: Vec::new(), energy_change: EnergyChange::default(), flow }
+        Self { samples: Vec::new(), energy_change: EnergyChange::default(), flow, run_seconds: 0.0 }
     }
 
     /// Runs to the end of this oscillation and keeps what is to be kept.
@@ -94,12 +93,13 @@ impl Record {
         oscillation: u64,
         arguments: &Arguments,
     ) -> Result<(), RunError> {
+        let settled = oscillation > arguments.settled() * arguments.every;
         let end = oscillation as f64 * arguments.period();
-        if oscillation > arguments.settled() * arguments.every {
-            simulation.run_until(end, &mut self.energy_change)?;
+        let start = Instant::now();
+        simulation.run_until(end, &mut settled.then_some(&mut self.energy_change))?;
+        self.run_seconds += start.elapsed().as_secs_f64();
+        if settled {
             self.flow.add(&simulation.snapshot());
-        } else {
-            simulation.run_until(end, &mut ())?;
         }
         if oscillation.is_multiple_of(arguments.every) {
             self.samples.push(sample(simulation, oscillation));

@@ -92,16 +92,17 @@ fn fastest(outcome: &Outcome) -> f64 {
 }
 
 fn write_header(sheet: &mut Sheet, arguments: &Arguments, outcome: &Outcome) {
-    let Arguments { disks, width, height, gravity, inelasticity, friction, .. } = arguments;
+    let Arguments { disks, width, gravity, inelasticity, friction, .. } = arguments;
     let verdict = Means::of(outcome).verdict(arguments);
     let title = format!("{disks} disks after {} oscillations: {verdict}", arguments.oscillations);
     let base = match arguments.base {
         Base::Thermal(temperature) => format!("thermal base T₀ = {temperature}"),
         base => format!("{base} base A = {}, ω = {}", arguments.amplitude, arguments.omega),
     };
+    let top = arguments.height.0.map_or("open above".to_owned(), |height| format!("{height} high"));
     let sides = if arguments.sides == Sides::Periodic { ", periodic sides" } else { "" };
     let box_and_base = format!(
-        "box {width} × {height}{sides}    {base}    gravity g = {gravity}    inelasticity q = {inelasticity}    \
+        "box {width} wide, {top}{sides}    {base}    gravity g = {gravity}    inelasticity q = {inelasticity}    \
          friction κ = {friction}"
     );
     let legend = format!(

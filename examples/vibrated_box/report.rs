@@ -47,11 +47,11 @@ impl Means {
         let seen = 2.0 * self.noise(arguments.disks);
         match arguments.sides {
             // Without walls a pair of rolls drifts, from one order parameter to the other.
-            Sides::Periodic if self.amplitude.mean() > seen => "a pair of rolls",
+            Sides::Periodic if self.amplitude.mean() > seen => "two rolls",
             Sides::Walls if two > seen.max(one) => "two rolls",
             Sides::Walls if one > seen && self.psi1.mean() > 0.0 => "one roll, clockwise",
             Sides::Walls if one > seen => "one roll, counterclockwise",
-            _ => "no roll beyond noise",
+            _ => "neither one roll nor two",
         }
     }
 }
