@@ -12,8 +12,9 @@ use crate::common::command_line::{non_negative, plain, positive, whole};
 
 /// Frictional, inelastic disks in a box with a vibrating base: convection rolls, or none.
 ///
-/// Lengths are in disk diameters, masses in disk masses, times in any unit that gravity and ω share. Prints a summary and writes a picture (disks, mean flow,
-/// series) and the series as a table. An oscillation lasts 2π/ω, also over a thermal base.
+/// Lengths are in disk diameters, masses in disk masses, times in any unit that gravity and ω share. Prints a summary
+/// and writes a picture (disks, mean flow, series) and the series as a table. An oscillation lasts 2π/ω, also over a
+/// thermal base.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "vibrated_box", allow_negative_numbers = true)]
 pub(crate) struct Arguments {
