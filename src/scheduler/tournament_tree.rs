@@ -63,9 +63,6 @@ impl EventScheduler for TournamentTree {
         while node > 1 {
             winner = winner.min(self.nodes[node ^ 1]);
             node >>= 1;
-            if self.nodes[node] == winner {
-                return;
-            }
             self.nodes[node] = winner;
         }
     }

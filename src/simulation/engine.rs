@@ -7,7 +7,7 @@ use super::cells::Cells;
 use super::errors::RunError;
 use super::event::{Counters, Event, Exit, Slot};
 use super::guard::Guard;
-use super::prediction::{Earliest, LANES, cell_exit, earliest_collision};
+use super::prediction::{Earliest, LANES, cell_exit, earliest_collision, stays_inside};
 use super::resolution::{Meeting, NotFinite, by_contact_duration, resolve_pair, resolve_wall};
 use crate::boundary::{Boundary, Container};
 use crate::collision::{CollisionRule, Frictional};
@@ -260,7 +260,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     #[inline]
     fn schedule(&mut self, disk: usize, earliest: Earliest, new_partner: bool) {
-        let (exit_due, exit) = self.exit(disk);
+        let (exit_due, exit) = self.exit(disk, earliest.due);
         let partner_collisions = if new_partner {
             self.slots.get(earliest.partner as usize).map_or(0, |slot| slot.collisions)
         } else {
@@ -276,19 +276,26 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.scheduler.set(disk, due);
     }
 
-    /// When the flight of a disk in its cell ends, and how.
+    /// When the flight of a disk in its cell ends, and how; never, if its next collision surely comes first.
     #[inline]
-    fn exit(&self, disk: usize) -> (f64, Exit) {
+    fn exit(&self, disk: usize, collision_due: f64) -> (f64, Exit) {
+        let flight = self.flight(disk);
+        let region = self.cells.region(self.cells.place(disk));
+        let at_wall = self.cells.is_at_wall(disk);
+        // Where disks crowd this spares two divisions and a root for nearly every prediction (5 % of a dense run).
+        if !at_wall && stays_inside(&region, &flight, collision_due) {
+            return (f64::INFINITY, Exit::Stay);
+        }
+        let (due, exit) = cell_exit(&region, &flight, self.bodies.gravity);
+        if at_wall { self.wall_or(due, exit, &flight) } else { (due, exit) }
+    }
+
+    #[inline]
+    fn flight(&self, disk: usize) -> Flight {
+        let acceleration = glam::DVec2::new(0.0, -self.bodies.gravity);
         let (position, velocity) =
             (self.bodies.position(disk, self.now), self.bodies.velocity(disk, self.now));
-        let region = self.cells.region(self.cells.place(disk));
-        let (due, exit) = cell_exit(&region, position, velocity, self.bodies.gravity, self.now);
-        if self.cells.is_at_wall(disk) {
-            let radius = self.bodies.material(disk).radius;
-            let acceleration = glam::DVec2::new(0.0, -self.bodies.gravity);
-            return self.wall_or(due, exit, &Flight::new(self.now, position, velocity, acceleration, radius));
-        }
-        (due, exit)
+        Flight::new(self.now, position, velocity, acceleration, self.bodies.material(disk).radius)
     }
 
     /// The first touch of a wall, if that comes before the disk leaves its cell.

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::bodies::Bodies;
 use super::event::Exit;
+use crate::Flight;
 use crate::boundary::Region;
 
 /// Pairs that are predicted side by side.
@@ -161,17 +162,16 @@ fn scan(
             std::array::from_fn(|k| other[k] - mine[k])
         });
         let mut pairs = Pairs::default();
-        for lane in 0..LANES {
-            let [x, y, velocity_x, velocity_y] = rows[lane];
+        for (lane, [x, y, velocity_x, velocity_y]) in rows.into_iter().enumerate() {
             pairs.x[lane] = x;
             pairs.y[lane] = y;
             pairs.velocity_x[lane] = velocity_x;
             pairs.velocity_y[lane] = velocity_y;
         }
-        for lane in 0..LANES {
+        for (lane, &candidate) in lanes.iter().enumerate() {
             pairs.x[lane] = image(pairs.x[lane] + pairs.velocity_x[lane] * now);
             pairs.y[lane] += pairs.velocity_y[lane] * now;
-            let contact = contact(lanes[lane] as usize);
+            let contact = contact(candidate as usize);
             pairs.contact_squared[lane] = contact * contact;
         }
         best.improve(pairs.wait().map(|wait| now + wait), lanes);
@@ -179,15 +179,23 @@ fn scan(
     best.earliest(known)
 }
 
+/// Whether a disk surely stays in its cell until `due`.
+///
+/// A parabola lies between its chord and its tangent: where the end of both is inside, all of it is.
+#[inline]
+pub(super) fn stays_inside(region: &Region, flight: &Flight, due: f64) -> bool {
+    let start = flight.position(flight.time());
+    let tangent = start + flight.velocity(flight.time()) * (due - flight.time());
+    let end = flight.position(due);
+    let inside = |point: DVec2| point.cmpge(region.min) & point.cmple(region.max);
+    (inside(tangent) & inside(end)).all()
+}
+
 /// When and through which edge a disk leaves its cell, gravity pulling down.
 #[inline]
-pub(super) fn cell_exit(
-    region: &Region,
-    position: DVec2,
-    velocity: DVec2,
-    gravity: f64,
-    now: f64,
-) -> (f64, Exit) {
+pub(super) fn cell_exit(region: &Region, flight: &Flight, gravity: f64) -> (f64, Exit) {
+    let now = flight.time();
+    let (position, velocity) = (flight.position(now), flight.velocity(now));
     let rightward = velocity.x > 0.0;
     let distance = if rightward { region.max.x - position.x } else { position.x - region.min.x };
     let (sideways, side) = (distance / velocity.x.abs(), if rightward { Exit::Right } else { Exit::Left });
