@@ -24,9 +24,9 @@ const BLOCK: usize = 4;
 /// last that is taken, without a branch on how many those are.
 #[derive(Debug, Clone)]
 pub(super) struct Cells {
-    slots: Vec<u32>,
-    /// Slots of a cell.
-    capacity: usize,
+    slots: Vec<[u32; BLOCK]>,
+    /// Blocks of slots of a cell.
+    blocks: usize,
     /// Slots taken in each cell.
     counts: Vec<u32>,
     /// Column and row of each disk.
@@ -162,8 +162,8 @@ impl Cells {
         let stride = layout.columns + 2;
         let count = stride as usize * (layout.rows as usize + 2);
         let mut cells = Self {
-            slots: vec![0; count * BLOCK],
-            capacity: BLOCK,
+            slots: vec![[0; BLOCK]; count],
+            blocks: 1,
             counts: vec![0; count],
             places: Vec::new(),
             stride,
@@ -249,7 +249,7 @@ impl Cells {
     fn enter(&mut self, disk: usize) {
         let place = self.places[disk];
         let cell = self.index(place);
-        if self.counts[cell] as usize == self.capacity {
+        if self.counts[cell] as usize == self.blocks * BLOCK {
             self.grow();
         }
         self.push(cell, disk);
@@ -259,10 +259,18 @@ impl Cells {
         }
     }
 
+    /// The slots of a cell.
+    #[inline]
+    fn cell(&mut self, cell: usize) -> &mut [u32] {
+        let start = cell * self.blocks;
+        self.slots[start..start + self.blocks].as_flattened_mut()
+    }
+
     #[inline]
     fn push(&mut self, cell: usize, disk: usize) {
-        self.slots[cell * self.capacity + self.counts[cell] as usize] = disk as u32;
-        self.counts[cell] += 1;
+        let count = self.counts[cell];
+        self.cell(cell)[count as usize] = disk as u32;
+        self.counts[cell] = count + 1;
     }
 
     /// Takes a disk out of its cell and the ghost of that.
@@ -281,9 +289,10 @@ impl Cells {
     #[inline]
     fn remove(&mut self, cell: usize, disk: usize) {
         self.counts[cell] -= 1;
-        let start = cell * self.capacity;
-        let last = self.slots[start + self.counts[cell] as usize];
-        for slot in &mut self.slots[start..start + self.capacity] {
+        let count = self.counts[cell] as usize;
+        let slots = self.cell(cell);
+        let last = slots[count];
+        for slot in slots {
             *slot = if *slot == disk as u32 { last } else { *slot };
         }
     }
@@ -291,14 +300,12 @@ impl Cells {
     /// Twice as many slots in every cell.
     #[cold]
     fn grow(&mut self) {
-        let mut slots = vec![0; 2 * self.slots.len()];
-        for (old, new) in
-            self.slots.chunks_exact(self.capacity).zip(slots.chunks_exact_mut(2 * self.capacity))
-        {
-            new[..self.capacity].copy_from_slice(old);
+        let mut slots = vec![[0; BLOCK]; 2 * self.slots.len()];
+        for (old, new) in self.slots.chunks_exact(self.blocks).zip(slots.chunks_exact_mut(2 * self.blocks)) {
+            new[..self.blocks].copy_from_slice(old);
         }
         self.slots = slots;
-        self.capacity *= 2;
+        self.blocks *= 2;
     }
 
     /// Takes a disk to the cell that it leaves for; returns what that adds to its `x`.
@@ -306,16 +313,15 @@ impl Cells {
     pub(super) fn cross(&mut self, disk: usize, exit: Exit) -> f64 {
         self.leave(disk);
         let columns = self.layout.columns;
+        let (right, up) = exit.direction();
         let place = &mut self.places[disk];
+        place.column = place.column.wrapping_add_signed(right);
+        place.row = place.row.wrapping_add_signed(up);
         let mut shift = 0.0;
-        match exit {
-            Exit::Left if place.column == 1 => (place.column, shift) = (columns, self.period),
-            Exit::Left => place.column -= 1,
-            Exit::Right if place.column == columns => (place.column, shift) = (1, -self.period),
-            Exit::Right => place.column += 1,
-            Exit::Down => place.row -= 1,
-            Exit::Up => place.row += 1,
-            Exit::Stay | Exit::Wall(_) => {}
+        if place.column == 0 {
+            (place.column, shift) = (columns, self.period);
+        } else if place.column > columns {
+            (place.column, shift) = (1, -self.period);
         }
         self.enter(disk);
         shift
@@ -324,7 +330,7 @@ impl Cells {
     /// Room that [`Self::around`] and [`Self::ahead`] need.
     #[inline]
     pub(super) fn room(&self) -> usize {
-        self.places.len() + self.capacity
+        self.places.len() + self.blocks * BLOCK
     }
 
     /// Writes the disks in the nine cells around `disk` (itself included) to `found`; returns how many.
@@ -342,29 +348,25 @@ impl Cells {
     /// The same for the three cells that come within reach after `disk` has left its cell by `exit`.
     #[inline]
     pub(super) fn ahead(&self, disk: usize, exit: Exit, found: &mut [u32]) -> usize {
-        let centre = self.index(self.places[disk]);
+        let (right, up) = exit.direction();
         let stride = self.stride as usize;
-        let (first, step) = match exit {
-            Exit::Left => (centre - stride - 1, stride),
-            Exit::Right => (centre - stride + 1, stride),
-            Exit::Down => (centre - stride - 1, 1),
-            Exit::Up => (centre + stride - 1, 1),
-            Exit::Stay | Exit::Wall(_) => return 0,
-        };
-        self.gather(first, step, found, 0)
+        let middle = self
+            .index(self.places[disk])
+            .wrapping_add_signed(right as isize + up as isize * stride.cast_signed());
+        let step = if up == 0 { stride } else { 1 };
+        self.gather(middle - step, step, found, 0)
     }
 
     /// Appends the disks of three cells.
     #[inline]
     fn gather(&self, first: usize, step: usize, found: &mut [u32], mut count: usize) -> usize {
         for cell in [first, first + step, first + 2 * step] {
-            let start = cell * self.capacity;
-            if self.capacity == BLOCK {
+            if self.blocks == 1 {
                 // A copy of known length is one load and one store.
-                found[count..count + BLOCK].copy_from_slice(&self.slots[start..start + BLOCK]);
+                found[count..count + BLOCK].copy_from_slice(&self.slots[cell]);
             } else {
-                found[count..count + self.capacity]
-                    .copy_from_slice(&self.slots[start..start + self.capacity]);
+                let slots = self.slots[cell * self.blocks..(cell + 1) * self.blocks].as_flattened();
+                found[count..count + slots.len()].copy_from_slice(slots);
             }
             count += self.counts[cell] as usize;
         }

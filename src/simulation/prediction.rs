@@ -76,13 +76,12 @@ struct Best {
     partner: [u64; LANES],
 }
 
-impl Default for Best {
-    fn default() -> Self {
-        Self { due: [f64::INFINITY; LANES], partner: [u64::MAX; LANES] }
-    }
-}
-
 impl Best {
+    #[inline]
+    fn new(known: Earliest) -> Self {
+        Self { due: [known.due; LANES], partner: [u64::from(known.partner); LANES] }
+    }
+
     /// Takes what is earlier; of equal times the smaller partner.
     #[inline]
     fn improve(&mut self, due: [f64; LANES], partners: &[u32]) {
@@ -95,14 +94,11 @@ impl Best {
         }
     }
 
-    /// The earliest of all lanes and of what was known.
+    /// The earliest of all lanes.
     #[inline]
-    fn earliest(&self, known: Earliest) -> Earliest {
-        let mut rank = known.rank();
-        for (&due, &partner) in self.due.iter().zip(&self.partner) {
-            rank = rank.min(Earliest { due, partner: partner as u32 }.rank());
-        }
-        Earliest::from_rank(rank)
+    fn earliest(&self) -> Earliest {
+        let rank = |lane: usize| Earliest { due: self.due[lane], partner: self.partner[lane] as u32 }.rank();
+        Earliest::from_rank((1..LANES).fold(rank(0), |first, lane| first.min(rank(lane))))
     }
 }
 
@@ -128,9 +124,8 @@ pub(super) fn earliest_collision(
     now: f64,
     known: Earliest,
 ) -> Earliest {
-    let filled = count.next_multiple_of(LANES);
-    candidates[count..filled].fill(disk as u32);
-    let candidates = &candidates[..filled];
+    candidates[count..count + LANES].copy_from_slice(&[disk as u32; LANES]);
+    let candidates = &candidates[..count.next_multiple_of(LANES)];
     match (bodies.common_diameter(), period == 0.0) {
         (Some(diameter), true) => scan(bodies, disk, candidates, now, known, |_| diameter, |x| x),
         (Some(diameter), false) => {
@@ -155,7 +150,7 @@ fn scan(
     image: impl Fn(f64) -> f64,
 ) -> Earliest {
     let mine = bodies.trajectories[disk].row();
-    let mut best = Best::default();
+    let mut best = Best::new(known);
     for lanes in candidates.chunks_exact(LANES) {
         let rows: [[f64; 4]; LANES] = std::array::from_fn(|lane| {
             let other = bodies.trajectories[lanes[lane] as usize].row();
@@ -176,7 +171,7 @@ fn scan(
         }
         best.improve(pairs.wait().map(|wait| now + wait), lanes);
     }
-    best.earliest(known)
+    best.earliest()
 }
 
 /// Whether a disk surely stays in its cell until `due`.
@@ -220,12 +215,12 @@ fn vertical_exit(above: f64, below: f64, velocity: f64, gravity: f64, far: Exit,
     let reserve = square - 2.0 * gravity * above;
     let rises = (velocity > 0.0) & (reserve > 0.0);
     let root = if rises { reserve } else { square + 2.0 * gravity * below }.sqrt();
-    let wait = if rises {
-        2.0 * above / (velocity + root)
-    } else if velocity > 0.0 {
-        (velocity + root) / gravity
-    } else {
-        2.0 * below / (root - velocity)
-    };
+    // Up to the far edge, up and down again through the near one, or straight down: one division, no branch.
+    let upward = velocity > 0.0;
+    let numerator = if rises { 2.0 * above } else { 2.0 * below };
+    let numerator = if upward & !rises { velocity + root } else { numerator };
+    let denominator = if rises { velocity + root } else { root - velocity };
+    let denominator = if upward & !rises { gravity } else { denominator };
+    let wait = numerator / denominator;
     (wait, if rises { far } else { near })
 }
