@@ -358,7 +358,7 @@ impl Cells {
     }
 
     /// Appends the disks of three cells.
-    #[inline]
+    #[inline(always)]
     fn gather(&self, first: usize, step: usize, found: &mut [u32], mut count: usize) -> usize {
         for cell in [first, first + step, first + 2 * step] {
             if self.blocks == 1 {

@@ -59,6 +59,8 @@ pub struct Simulation<R = Frictional, B = Container, S = TournamentTree> {
     pub(super) guard: Guard,
     /// Room for the neighbours of one disk.
     found: Vec<u32>,
+    /// Room for the times of all disks.
+    due: Vec<f64>,
     /// Room for the disks of one snapshot.
     pub(super) copies: Vec<Disk>,
 }
@@ -104,14 +106,16 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             counters: Counters::default(),
             guard: Guard::default(),
             found: Vec::new(),
+            due: Vec::new(),
             copies: Vec::new(),
         }
     }
 
     /// Predicts every disk's next event from the present state alone.
     pub(super) fn predict_all(&mut self) {
-        let due = vec![f64::INFINITY; self.slots.len()];
-        self.scheduler.reset(&due);
+        self.due.clear();
+        self.due.resize(self.slots.len(), f64::INFINITY);
+        self.scheduler.reset(&self.due);
         for disk in 0..self.slots.len() {
             self.predict(disk);
         }
@@ -328,7 +332,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.now -= by;
         self.guard.shift(by);
         self.boundary.set_time_origin(self.origin);
-        let due: Vec<f64> = self.slots.iter().map(Slot::due).collect();
-        self.scheduler.reset(&due);
+        self.due.clear();
+        self.due.extend(self.slots.iter().map(Slot::due));
+        self.scheduler.reset(&self.due);
     }
 }

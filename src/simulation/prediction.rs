@@ -187,7 +187,7 @@ pub(super) fn stays_inside(region: &Region, flight: &Flight, due: f64) -> bool {
 }
 
 /// When and through which edge a disk leaves its cell, gravity pulling down.
-#[inline]
+#[inline(always)]
 pub(super) fn cell_exit(region: &Region, flight: &Flight, gravity: f64) -> (f64, Exit) {
     let now = flight.time();
     let (position, velocity) = (flight.position(now), flight.velocity(now));
@@ -208,7 +208,7 @@ pub(super) fn cell_exit(region: &Region, flight: &Flight, gravity: f64) -> (f64,
 }
 
 /// The same in one dimension, for a disk at these distances from the edges and gravity pulling it back from `far`.
-#[inline]
+#[inline(always)]
 fn vertical_exit(above: f64, below: f64, velocity: f64, gravity: f64, far: Exit, near: Exit) -> (f64, Exit) {
     let (above, below) = (above.max(0.0), below.max(0.0));
     let square = velocity * velocity;
