@@ -50,8 +50,8 @@ impl BlockAverage {
 ///
 /// grows with the block size `$B$` until blocks are independent. The smallest block is taken with
 /// `$B^3 > 2n(\epsilon_B/\epsilon_1)^4$`, where the bias left and the scatter of `$\epsilon_B$` itself are about equal
-/// (Lee et al. 2011, Phys. Rev. E 83, 066706). A series for which there is none is too short to tell, below some 50
-/// correlation times: the largest error found is then returned as not converged.
+/// (Lee et al. 2011, Phys. Rev. E 83, 066706). A series for which there is none is too short to tell, as one below some
+/// ten of [`BlockAverage::correlated_samples`] is: the largest error found is then returned as not converged.
 ///
 /// # Errors
 /// If there are fewer than two samples, or one is not finite or above 1e100 in size.
