@@ -16,6 +16,8 @@ mod random;
 mod roots;
 pub mod scheduler;
 pub mod simulation;
+#[cfg(feature = "serde")]
+pub mod study;
 pub mod wall;
 
 pub use disk::{Disk, HOMOGENEOUS};

@@ -20,6 +20,27 @@ pub struct DenseLayer {
     pub least_below: f64,
 }
 
+impl DenseLayer {
+    /// The densest layer of a profile, given as heights and packing fractions from the bottom up; the lowest of equals.
+    ///
+    /// ```
+    /// use granular_edmd::observable::DenseLayer;
+    /// let layer = DenseLayer::among([(0.5, 0.2), (1.5, 0.1), (2.5, 0.7)]);
+    /// assert_eq!(layer, Some(DenseLayer { height: 2.5, packing_fraction: 0.7, least_below: 0.1 }));
+    /// ```
+    pub fn among(profile: impl IntoIterator<Item = (f64, f64)>) -> Option<Self> {
+        let mut least = f64::INFINITY;
+        let mut densest: Option<Self> = None;
+        for (height, packing_fraction) in profile {
+            if densest.is_none_or(|layer| packing_fraction > layer.packing_fraction) {
+                densest = Some(Self { height, packing_fraction, least_below: least.min(packing_fraction) });
+            }
+            least = least.min(packing_fraction);
+        }
+        densest
+    }
+}
+
 /// An observer that averages the packing fraction `$\phi(y)$` by height over samples: the area of the disks between two
 /// heights, over the area there,
 ///
@@ -82,16 +103,7 @@ impl HeightProfile {
 
     /// The bin with the largest packing fraction, the lowest of equals; `None` before the first sample.
     pub fn densest_layer(&self) -> Option<DenseLayer> {
-        let mut least = f64::INFINITY;
-        let mut densest: Option<DenseLayer> = None;
-        for (height, packing_fraction) in self.iter().take_while(|_| self.samples > 0) {
-            if densest.is_none_or(|layer| packing_fraction > layer.packing_fraction) {
-                densest =
-                    Some(DenseLayer { height, packing_fraction, least_below: least.min(packing_fraction) });
-            }
-            least = least.min(packing_fraction);
-        }
-        densest
+        DenseLayer::among(self.iter().take_while(|_| self.samples > 0))
     }
 
     /// Forgets all samples so far.
