@@ -105,7 +105,7 @@ impl Panel {
     /// The point of a line that carries its label: neighbouring lines have theirs at different heights.
     fn label_place(&self, index: usize, piece: &Piece) -> (f64, f64) {
         let lowest = piece.iter().map(|&point| self.fraction(point).1).fold(1.0, f64::min);
-        let height = (0.45 + 0.1 * f64::from(u8::from(index % 2 == 0))).max(lowest + 0.15);
+        let height = (0.45 + 0.1 * f64::from(u8::from(index.is_multiple_of(2)))).max(lowest + 0.15);
         let distance = |&point: &(f64, f64)| {
             let (across, up) = self.fraction(point);
             let edge = (0.05 - across).max(across - 0.95).max(0.03 - up).max(up - 0.97).max(0.0);

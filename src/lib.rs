@@ -53,6 +53,7 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+pub mod analysis;
 pub mod boundary;
 pub mod collision;
 mod disk;
@@ -67,6 +68,8 @@ mod random;
 mod roots;
 pub mod scheduler;
 pub mod simulation;
+#[cfg(feature = "serde")]
+pub mod study;
 pub mod wall;
 
 pub use disk::{Disk, HOMOGENEOUS};

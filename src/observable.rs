@@ -16,6 +16,8 @@
 //! | [`Series`] | the values of an observable at set times |
 //! | [`EnergyChange`] | mean energy change per collision, by partner |
 //! | [`CollisionCounts`] | counts by partner and regime, and rates |
+//! | [`HeightProfile`] | packing fraction by height |
+//! | [`Fields`] | density, flow and temperatures on a grid |
 //! | [`on_collision`], [`on_sample`] | whatever your closure keeps |
 
 mod center_of_mass;
@@ -24,7 +26,9 @@ mod collision_event;
 mod compose;
 mod energies;
 mod energy_change;
+mod fields;
 mod from_fn;
+mod height_profile;
 mod order_parameters;
 mod series;
 mod snapshot;
@@ -36,7 +40,9 @@ pub use collision_counts::CollisionCounts;
 pub use collision_event::{Collision, Partner};
 pub use energies::{Energies, EnergyPerDisk};
 pub use energy_change::EnergyChange;
+pub use fields::{FieldCell, Fields};
 pub use from_fn::{OnCollision, OnSample, on_collision, on_sample};
+pub use height_profile::{DenseLayer, HeightProfile};
 pub use order_parameters::{ConvectionOrder, OrderParameters};
 pub use series::{SampleTimes, Series};
 pub use snapshot::Snapshot;

@@ -48,6 +48,11 @@ impl RunningMean {
         if self.count < 2 { 0.0 } else { self.squares / (self.count - 1) as f64 }
     }
 
+    /// Their standard deviation, `$\sqrt{\mathrm{variance}}$`.
+    pub fn standard_deviation(&self) -> f64 {
+        self.variance().sqrt()
+    }
+
     /// Standard error of the mean of independent numbers, `$\sqrt{\mathrm{variance}/n}$`; 0 of fewer than two.
     pub fn standard_error(&self) -> f64 {
         if self.count < 2 { 0.0 } else { (self.variance() / self.count as f64).sqrt() }

@@ -1,0 +1,43 @@
+//! Analysis: from measured series to states, transitions and Table I.
+//!
+//! | question | answer | source |
+//! |---|---|---|
+//! | mean of a correlated series, with an honest error | [`block_average`] | Flyvbjerg & Petersen 1989 |
+//! | clusters of points in a plane | [`KMeans`], [`distinct_clusters`] | paper, Fig. 4 |
+//! | which convective states a run shows | [`StateCriteria::classify`] | paper, section III |
+//! | where a ramp changes state, and its hysteresis | [`transitions`] | paper, Fig. 5 |
+//! | energy loss along a line of transitions | [`line_average`] | paper, Table I |
+//!
+//! Everything is deterministic: the same numbers and seeds give the same bits.
+//!
+//! ```
+//! use granular_edmd::analysis::{ConvectiveState, StateCriteria, thermal_noise};
+//! use granular_edmd::observable::ConvectionOrder;
+//!
+//! // A roll that turns clockwise for most of the time, and the other way for a while.
+//! let order = |one_roll| ConvectionOrder { one_roll, two_rolls: 0.04 };
+//! let samples = [[0.12; 3].as_slice(), &[-0.12; 2], &[0.12; 3]].concat().into_iter().map(order);
+//! let noise = thermal_noise(0.3, 1.0, 1000)?;
+//! let found = StateCriteria::default().classify(&samples.collect::<Vec<_>>(), noise, None)?;
+//! assert_eq!(found.state(), ConvectiveState::ClockwiseRoll);
+//! assert_eq!(found.weight(ConvectiveState::CounterclockwiseRoll), 0.25);
+//! # Ok::<(), granular_edmd::ParameterError>(())
+//! ```
+
+mod blocking;
+mod classification;
+mod clusters;
+mod distinct;
+mod k_means;
+mod line;
+mod state;
+mod transitions;
+
+pub use blocking::{BlockAverage, block_average};
+pub use classification::{Classification, StateCriteria, thermal_noise};
+pub use clusters::{Cluster, Clusters};
+pub use distinct::distinct_clusters;
+pub use k_means::KMeans;
+pub use line::{LineAverage, line_average};
+pub use state::{ConvectiveRegime, ConvectiveState};
+pub use transitions::{Transition, TransitionLine, transitions};

@@ -1,0 +1,217 @@
+//! From order parameters to states.
+
+use glam::DVec2;
+
+use super::clusters::{Cluster, Clusters};
+use super::distinct::distinct_clusters;
+use super::state::{ConvectiveRegime, ConvectiveState};
+use crate::ParameterError;
+use crate::observable::{ConvectionOrder, DenseLayer};
+use crate::quantity::{accept, non_negative, positive};
+
+/// Standard deviation of `$\Psi_1$` and of `$\Psi_2$` in a gas at rest,
+///
+/// ```math
+/// \sigma = \sqrt{\frac{T_y}{2Nm}},
+/// ```
+///
+/// for `$N$` disks of mass `$m$` at the vertical temperature `$T_y = m\langle v_y^2\rangle$`, a velocity. It holds for
+/// independent velocities and disks spread evenly over the width: `$\langle\sin^2\rangle = 1/2$`. Below the onset of
+/// convection the slow mode `$\Psi_1$` fluctuates more, by 1.3 to 1.6 times in the paper's system.
+///
+/// # Errors
+/// If the temperature is negative, the mass is not positive, one is not finite, or there are no disks.
+///
+/// ```
+/// use granular_edmd::analysis::thermal_noise;
+/// assert!((thermal_noise(0.3, 1.0, 1000)? - 0.01225).abs() < 1e-5);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Result<f64, ParameterError> {
+    non_negative("vertical temperature", vertical_temperature)?;
+    positive("mass", mass)?;
+    accept(disks > 0, "number of disks", "at least 1", 0.0)?;
+    Ok((vertical_temperature / (2.0 * disks as f64 * mass)).sqrt())
+}
+
+/// The criteria by which a state gets its name.
+///
+/// The samples of `$(\Psi_1, \Psi_2)$` are divided into [distinct clusters](distinct_clusters). With `$\sigma$` the
+/// [`thermal_noise`]:
+///
+/// 1. **Collapsed** is a whole run whose height profile has a compact layer, of packing fraction above 0.60, on a gas of
+///    less than half of that, and whose two-roll flow has died, `$|\langle\Psi_2\rangle| < 0.03$`.
+/// 2. **Conductive** is a cluster with its centre at most `$3\sigma$` from the origin.
+/// 3. **Two rolls** is one with `$|\Psi_2| > |\Psi_1|$`, up or down in the middle as the sign of `$\Psi_2$` says.
+/// 4. **One roll** is any other, clockwise if `$\Psi_1 > 0$`.
+///
+/// The `$3\sigma$` compare the centre of a cluster with *single* samples of a gas at rest, of which
+/// `$e^{-9/2} = 1.1\,\%$` are as far out. That the samples of a run are correlated does not enter, as it would with the
+/// error of the mean. Off the onset nothing depends on the number: in the paper's system rolls are 5 to 12 of these
+/// units strong. One roll is no pure `$\Psi_1$`: with `$\Psi_2 \approx 0.4\,|\Psi_1|$` it stays well off the diagonal.
+///
+/// ```
+/// use granular_edmd::analysis::{ConvectiveRegime, StateCriteria};
+/// use granular_edmd::observable::ConvectionOrder;
+/// let at = |one_roll, two_rolls| ConvectionOrder { one_roll, two_rolls };
+/// let samples = [at(0.118, 0.045), at(-0.118, 0.045), at(0.0, 0.122), at(0.001, 0.122)];
+/// let found = StateCriteria::default().classify(&samples, 0.012, None)?;
+/// assert_eq!(found.regime(), ConvectiveRegime::Coexistence);
+/// assert_eq!(found.weight_of_rolls(2), 0.5);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StateCriteria {
+    noise_multiple: f64,
+    packing_fraction: f64,
+    collapsed_order: f64,
+    least_weight: f64,
+    seed: u64,
+}
+
+impl Default for StateCriteria {
+    fn default() -> Self {
+        Self {
+            noise_multiple: 3.0,
+            packing_fraction: 0.60,
+            collapsed_order: 0.03,
+            least_weight: 0.05,
+            seed: 0,
+        }
+    }
+}
+
+impl StateCriteria {
+    /// Flow counts from this multiple of the thermal noise on; 3 unless given.
+    ///
+    /// # Errors
+    /// If it is negative or not finite.
+    pub fn with_noise_multiple(self, multiple: f64) -> Result<Self, ParameterError> {
+        Ok(Self { noise_multiple: non_negative("multiple of the noise", multiple)?, ..self })
+    }
+
+    /// A layer is compact above this packing fraction, 0.60 unless given, and rolls have died below this
+    /// `$|\langle\Psi_2\rangle|$`, 0.03 unless given: a velocity, with `$A\omega = 1$` as in the paper.
+    ///
+    /// # Errors
+    /// If one is negative or not finite.
+    pub fn with_collapse(self, packing_fraction: f64, order: f64) -> Result<Self, ParameterError> {
+        let packing_fraction = non_negative("packing fraction", packing_fraction)?;
+        Ok(Self {
+            packing_fraction,
+            collapsed_order: non_negative("order of a collapsed state", order)?,
+            ..self
+        })
+    }
+
+    /// One roll and two coexist if each has at least this weight; 0.05 unless given.
+    ///
+    /// # Errors
+    /// If it is not in `[0, 0.5]`.
+    pub fn with_least_weight(self, weight: f64) -> Result<Self, ParameterError> {
+        let valid = (0.0..=0.5).contains(&weight);
+        Ok(Self { least_weight: accept(valid, "least weight", "in [0, 0.5]", weight)?, ..self })
+    }
+
+    /// Seed of the clustering; 0 unless given. With clusters that are distinct it changes nothing.
+    pub const fn with_seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
+    }
+
+    /// The states of these samples, with thermal noise `noise`; never collapsed without a `layer`, the
+    /// [densest layer](crate::observable::HeightProfile::densest_layer) of the height profile.
+    ///
+    /// # Errors
+    /// If there is no sample, a sample is not finite or above 1e100 in size, or the noise is negative or not finite.
+    pub fn classify(
+        &self,
+        samples: &[ConvectionOrder],
+        noise: f64,
+        layer: Option<DenseLayer>,
+    ) -> Result<Classification, ParameterError> {
+        let points: Vec<DVec2> =
+            samples.iter().map(|order| DVec2::new(order.one_roll, order.two_rolls)).collect();
+        let clusters = distinct_clusters(&points, noise, self.seed)?;
+        let collapsed = layer.is_some_and(|layer| self.is_collapsed(&clusters, layer));
+        let name = |cluster| if collapsed { ConvectiveState::Collapsed } else { self.name(cluster, noise) };
+        let states = clusters.iter().map(name).collect();
+        Ok(Classification { clusters, states, least_weight: self.least_weight })
+    }
+
+    fn is_collapsed(&self, clusters: &Clusters, layer: DenseLayer) -> bool {
+        let mean: f64 = clusters.iter().map(|cluster| cluster.weight() * cluster.center().y).sum();
+        let on_gas = layer.least_below < 0.5 * layer.packing_fraction;
+        layer.packing_fraction > self.packing_fraction && on_gas && mean.abs() < self.collapsed_order
+    }
+
+    fn name(&self, cluster: &Cluster, noise: f64) -> ConvectiveState {
+        let DVec2 { x: one_roll, y: two_rolls } = cluster.center();
+        if cluster.center().length() <= self.noise_multiple * noise {
+            ConvectiveState::Conductive
+        } else if two_rolls.abs() > one_roll.abs() {
+            if two_rolls > 0.0 { ConvectiveState::TwoRollsUp } else { ConvectiveState::TwoRollsDown }
+        } else if one_roll > 0.0 {
+            ConvectiveState::ClockwiseRoll
+        } else {
+            ConvectiveState::CounterclockwiseRoll
+        }
+    }
+}
+
+/// The clusters of a run and their names; made by [`StateCriteria::classify`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Classification {
+    clusters: Clusters,
+    states: Vec<ConvectiveState>,
+    least_weight: f64,
+}
+
+impl Classification {
+    /// The clusters in the plane of `$\Psi_1$` (x) and `$\Psi_2$` (y).
+    pub const fn clusters(&self) -> &Clusters {
+        &self.clusters
+    }
+
+    /// Each cluster with its name. A name may come twice.
+    pub fn iter(&self) -> impl Iterator<Item = (ConvectiveState, &Cluster)> {
+        self.states.iter().copied().zip(self.clusters.iter())
+    }
+
+    /// The state with the largest weight; the first cluster's if several have it.
+    pub fn state(&self) -> ConvectiveState {
+        let weights = self.states.iter().map(|&state| (state, self.weight(state)));
+        let start = (ConvectiveState::Conductive, 0.0);
+        weights.fold(start, |best, next| if next.1 > best.1 { next } else { best }).0
+    }
+
+    /// Fraction of the samples in this state.
+    pub fn weight(&self, state: ConvectiveState) -> f64 {
+        self.sum_weights(|of| of == state)
+    }
+
+    /// Fraction of the samples with this number of rolls.
+    pub fn weight_of_rolls(&self, rolls: usize) -> f64 {
+        self.sum_weights(|of| of.rolls() == Some(rolls))
+    }
+
+    fn sum_weights(&self, counts: impl Fn(ConvectiveState) -> bool) -> f64 {
+        self.iter().filter(|&(state, _)| counts(state)).map(|(_, cluster)| cluster.weight()).sum()
+    }
+
+    /// The region of Fig. 5: coexistence if one roll and two both have the least weight, else that of
+    /// the number of rolls with the largest weight.
+    pub fn regime(&self) -> ConvectiveRegime {
+        let [none, one, two] = [0, 1, 2].map(|rolls| self.weight_of_rolls(rolls));
+        if self.state() == ConvectiveState::Collapsed {
+            ConvectiveRegime::Collapsed
+        } else if none >= one.max(two) {
+            ConvectiveRegime::Conductive
+        } else if one.min(two) > 0.0 && one.min(two) >= self.least_weight {
+            ConvectiveRegime::Coexistence
+        } else if one > two {
+            ConvectiveRegime::OneRoll
+        } else {
+            ConvectiveRegime::TwoRolls
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! What a clustering finds.
+
+use glam::DVec2;
+
+/// One cluster: its centre, its size and its spread.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Cluster {
+    center: DVec2,
+    count: usize,
+    weight: f64,
+    /// Variances along x and y, and the covariance.
+    covariance: (f64, f64, f64),
+}
+
+impl Cluster {
+    fn new(points: &[DVec2], of: usize) -> Self {
+        let count = points.len() as f64;
+        let center = points.iter().sum::<DVec2>() / count;
+        let moment = |product: fn(DVec2) -> f64| {
+            points.iter().map(|&point| product(point - center)).sum::<f64>() / count
+        };
+        let covariance = (moment(|d| d.x * d.x), moment(|d| d.y * d.y), moment(|d| d.x * d.y));
+        Self { center, count: points.len(), weight: count / of as f64, covariance }
+    }
+
+    /// Mean of its points.
+    pub const fn center(&self) -> DVec2 {
+        self.center
+    }
+
+    /// How many points it has.
+    pub const fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Fraction of all points that it has.
+    pub const fn weight(&self) -> f64 {
+        self.weight
+    }
+
+    /// Standard deviation of its points along this direction, a unit vector.
+    pub fn spread(&self, direction: DVec2) -> f64 {
+        self.variance(direction).sqrt()
+    }
+
+    fn variance(&self, direction: DVec2) -> f64 {
+        let (xx, yy, xy) = self.covariance;
+        let DVec2 { x, y } = direction;
+        // Rounding can leave a line of points with less than nothing across it.
+        (xx * x * x + 2.0 * xy * x * y + yy * y * y).max(0.0)
+    }
+
+    /// Distance of two centres in units of the spread along it.
+    fn separation(&self, other: &Self, noise: f64) -> f64 {
+        let between = other.center - self.center;
+        let direction = between.normalize_or_zero();
+        let weighted = self.weight * self.variance(direction) + other.weight * other.variance(direction);
+        between.length() / (weighted / (self.weight + other.weight)).sqrt().max(noise)
+    }
+}
+
+/// Clusters of points in a plane, in ascending order of their centres (by x, then y); made by
+/// [`KMeans::fit`](super::KMeans::fit) and [`distinct_clusters`](super::distinct_clusters).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Clusters {
+    clusters: Vec<Cluster>,
+    labels: Vec<usize>,
+}
+
+impl Clusters {
+    /// From labels of the sorted points, and the place of each among the points as given.
+    pub(super) fn new(sorted: &[DVec2], labels: &[usize], order: &[usize]) -> Self {
+        let most = labels.iter().max().map_or(0, |&label| label + 1);
+        let members = |label: usize| -> Vec<DVec2> {
+            sorted.iter().zip(labels).filter(|&(_, &of)| of == label).map(|(&point, _)| point).collect()
+        };
+        let mut found: Vec<(usize, Cluster)> = (0..most)
+            .map(|label| (label, members(label)))
+            .filter(|(_, members)| !members.is_empty())
+            .map(|(label, members)| (label, Cluster::new(&members, sorted.len())))
+            .collect();
+        found.sort_by(|(_, a), (_, b)| {
+            a.center.x.total_cmp(&b.center.x).then(a.center.y.total_cmp(&b.center.y))
+        });
+        let mut renamed = vec![0; most];
+        found.iter().enumerate().for_each(|(new, &(old, _))| renamed[old] = new);
+        let mut places = vec![0; sorted.len()];
+        order.iter().zip(labels).for_each(|(&place, &label)| places[place] = renamed[label]);
+        Self { clusters: found.into_iter().map(|(_, cluster)| cluster).collect(), labels: places }
+    }
+
+    /// How many clusters there are; at least one.
+    #[expect(clippy::len_without_is_empty, reason = "there is always a cluster")]
+    pub const fn len(&self) -> usize {
+        self.clusters.len()
+    }
+
+    /// The cluster of this number.
+    pub fn get(&self, cluster: usize) -> Option<&Cluster> {
+        self.clusters.get(cluster)
+    }
+
+    /// The clusters in their order.
+    pub fn iter(&self) -> impl Iterator<Item = &Cluster> {
+        self.clusters.iter()
+    }
+
+    /// The number of the cluster of each point, in the order in which the points were given.
+    pub fn labels(&self) -> &[usize] {
+        &self.labels
+    }
+
+    /// Least separation of two clusters `$a$`, `$b$`, infinite for a single one:
+    ///
+    /// ```math
+    /// D = \min_{a\ne b}\frac{|c_a - c_b|}{\max(s_{ab}, \sigma)},\qquad
+    /// s_{ab}^2 = \frac{n_a s_a^2 + n_b s_b^2}{n_a + n_b},
+    /// ```
+    ///
+    /// with `$s_a$`, `$s_b$` their standard deviations along the line of the centres, and `$\sigma$` the least spread
+    /// that counts, `noise`.
+    pub fn separation(&self, noise: f64) -> f64 {
+        let pairs = self.clusters.iter().enumerate();
+        pairs
+            .flat_map(|(first, a)| self.clusters[first + 1..].iter().map(move |b| a.separation(b, noise)))
+            .fold(f64::INFINITY, f64::min)
+    }
+}

@@ -1,0 +1,153 @@
+//! Clusters of a given number.
+
+use glam::DVec2;
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::clusters::Clusters;
+use crate::ParameterError;
+use crate::quantity::accept;
+use crate::random::uniform;
+
+/// Restarts unless said otherwise: with four clusters or fewer, the best is found again and again.
+const RESTARTS: usize = 16;
+
+/// Most rounds of one descent; a few tens are usual.
+const ROUNDS: usize = 1000;
+
+/// Largest coordinate: its square, summed over all points, stays finite.
+const LARGEST: f64 = 1e100;
+
+/// k-means clustering in a plane (MacQueen 1967, the paper's reference 14), seeded by k-means++ (Arthur &
+/// Vassilvitskii 2007), the best of several restarts.
+///
+/// It looks for the centres `$c_j$` that minimise the scatter `$\sum_i \min_j |r_i - c_j|^2$`. The result depends on the
+/// points and the seed, not on the order of the points: they are sorted first.
+///
+/// ```
+/// use granular_edmd::analysis::KMeans;
+/// use granular_edmd::glam::DVec2;
+/// let points = [(0.0, 0.1), (5.0, 0.1), (0.0, -0.1), (5.0, -0.1), (5.0, 0.0)].map(|(x, y)| DVec2::new(x, y));
+/// let clusters = KMeans::new(2, 1)?.fit(&points)?;
+/// assert_eq!(clusters.labels(), [0, 1, 0, 1, 1]);
+/// assert_eq!(clusters.get(1).map(|cluster| cluster.center()), Some(DVec2::new(5.0, 0.0)));
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct KMeans {
+    clusters: usize,
+    restarts: usize,
+    seed: u64,
+}
+
+impl KMeans {
+    /// A search for this many clusters.
+    ///
+    /// # Errors
+    /// If the number of clusters is zero.
+    pub fn new(clusters: usize, seed: u64) -> Result<Self, ParameterError> {
+        accept(clusters > 0, "number of clusters", "at least 1", 0.0)?;
+        Ok(Self { clusters, restarts: RESTARTS, seed })
+    }
+
+    /// The same with this many restarts; 16 unless given.
+    ///
+    /// # Errors
+    /// If it is zero.
+    pub fn with_restarts(self, restarts: usize) -> Result<Self, ParameterError> {
+        accept(restarts > 0, "number of restarts", "at least 1", 0.0)?;
+        Ok(Self { restarts, ..self })
+    }
+
+    /// The clusters of these points; fewer than asked for if fewer points are distinct.
+    ///
+    /// # Errors
+    /// If there are fewer points than clusters, or a coordinate is not finite or above 1e100 in size.
+    pub fn fit(&self, points: &[DVec2]) -> Result<Clusters, ParameterError> {
+        check(points, self.clusters)?;
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        order.sort_by(|&a, &b| points[a].x.total_cmp(&points[b].x).then(points[a].y.total_cmp(&points[b].y)));
+        let sorted: Vec<DVec2> = order.iter().map(|&point| points[point]).collect();
+        let mut generator = Xoshiro256PlusPlus::seed_from_u64(self.seed);
+        let mut best = descend(&sorted, plus_plus(&sorted, self.clusters, &mut generator));
+        for _ in 1..self.restarts {
+            let next = descend(&sorted, plus_plus(&sorted, self.clusters, &mut generator));
+            if next.scatter < best.scatter {
+                best = next;
+            }
+        }
+        Ok(Clusters::new(&sorted, &best.labels, &order))
+    }
+}
+
+fn check(points: &[DVec2], clusters: usize) -> Result<(), ParameterError> {
+    let enough = points.len() >= clusters;
+    accept(enough, "number of points", "at least the number of clusters", points.len() as f64)?;
+    points.iter().flat_map(DVec2::to_array).try_for_each(|coordinate| {
+        let valid = coordinate.abs() <= LARGEST;
+        accept(valid, "coordinate of a point", "finite and at most 1e100 in size", coordinate).map(|_| ())
+    })
+}
+
+/// First centres: each new one a point, with a probability that grows as its squared distance to the nearest.
+fn plus_plus(points: &[DVec2], clusters: usize, generator: &mut Xoshiro256PlusPlus) -> Vec<DVec2> {
+    let first = (uniform(generator) * points.len() as f64) as usize;
+    let mut centers = vec![points[first.min(points.len() - 1)]];
+    while centers.len() < clusters {
+        let distances: Vec<f64> = points.iter().map(|&point| nearest(point, &centers).1).collect();
+        let mut left = uniform(generator) * distances.iter().sum::<f64>();
+        let passed = |&(_, &distance): &(usize, &f64)| {
+            left -= distance;
+            distance > 0.0 && left <= 0.0
+        };
+        let last = distances.iter().rposition(|&distance| distance > 0.0);
+        let Some(next) = distances.iter().enumerate().find(passed).map(|(point, _)| point).or(last) else {
+            break;
+        };
+        centers.push(points[next]);
+    }
+    centers
+}
+
+/// The centre nearest to a point, the first of equals, and its squared distance.
+fn nearest(point: DVec2, centers: &[DVec2]) -> (usize, f64) {
+    let distances = centers.iter().map(|&center| point.distance_squared(center)).enumerate();
+    distances.fold((0, f64::INFINITY), |best, next| if next.1 < best.1 { next } else { best })
+}
+
+struct Fit {
+    labels: Vec<usize>,
+    scatter: f64,
+}
+
+/// Points to their nearest centres, centres to the means of their points, until nothing changes.
+fn descend(points: &[DVec2], mut centers: Vec<DVec2>) -> Fit {
+    let mut fit = assign(points, &centers);
+    for _ in 0..ROUNDS {
+        move_to_means(points, &fit.labels, &mut centers);
+        let next = assign(points, &centers);
+        let settled = next.labels == fit.labels;
+        fit = next;
+        if settled {
+            break;
+        }
+    }
+    fit
+}
+
+fn assign(points: &[DVec2], centers: &[DVec2]) -> Fit {
+    let (labels, distances): (Vec<usize>, Vec<f64>) =
+        points.iter().map(|&point| nearest(point, centers)).unzip();
+    Fit { labels, scatter: distances.iter().sum() }
+}
+
+/// A centre that has lost all its points stays where it is.
+fn move_to_means(points: &[DVec2], labels: &[usize], centers: &mut [DVec2]) {
+    for (label, center) in centers.iter_mut().enumerate() {
+        let own = || points.iter().zip(labels).filter(|&(_, &of)| of == label).map(|(&point, _)| point);
+        let count = own().count();
+        if count > 0 {
+            *center = own().sum::<DVec2>() / count as f64;
+        }
+    }
+}

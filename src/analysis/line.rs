@@ -1,0 +1,59 @@
+//! One number for a line of transitions.
+
+use crate::ParameterError;
+use crate::collision::Frictional;
+use crate::kinetic::{Maxwellian, effective_inelasticity, mean_energy_change};
+use crate::observable::RunningMean;
+use crate::quantity::accept;
+
+/// A row of the paper's Table I; made by [`line_average`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct LineAverage {
+    energy_change: RunningMean,
+    effective_inelasticity: RunningMean,
+}
+
+impl LineAverage {
+    /// `$\langle dE\rangle$` over the points of the line: mean, and standard deviation as the table's error.
+    pub const fn energy_change(&self) -> &RunningMean {
+        &self.energy_change
+    }
+
+    /// `$q_\text{eff}$` over the points of the line.
+    pub const fn effective_inelasticity(&self) -> &RunningMean {
+        &self.effective_inelasticity
+    }
+}
+
+/// Mean energy change per collision and effective inelasticity along a line of transitions (paper, Table I).
+///
+/// Each point is the rule at which a transition was seen. Its `$\langle dE\rangle$` is the
+/// [closed form](mean_energy_change) in a Maxwellian `gas`, its `$q_\text{eff}$` follows by Eq. (9). Both are averaged over
+/// the points, and the table's "±" is their [standard deviation](RunningMean::standard_deviation): the scatter along the
+/// line, which is the test of the paper's hypothesis, and not the error of the mean.
+///
+/// # Errors
+/// If there is no point, or one loses more than smooth disks can (see [`effective_inelasticity`]).
+///
+/// ```
+/// use granular_edmd::analysis::line_average;
+/// use granular_edmd::collision::Frictional;
+/// use granular_edmd::kinetic::Maxwellian;
+/// // Both ends of the first line at the larger gravity, from the paper's value: on the axes they lie here.
+/// let line = [Frictional::new(0.0119, 0.0)?, Frictional::new(0.0, 0.0143)?, Frictional::new(0.0, 1.792)?];
+/// let average = line_average(&line, &Maxwellian::new(1.0)?)?;
+/// assert!((average.energy_change().mean() + 0.047).abs() < 5e-4);
+/// assert!((average.effective_inelasticity().mean() - 0.012).abs() < 5e-4);
+/// assert!(average.energy_change().standard_deviation() < 5e-4);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+pub fn line_average(line: &[Frictional], gas: &Maxwellian) -> Result<LineAverage, ParameterError> {
+    accept(!line.is_empty(), "number of points of a line", "at least 1", 0.0)?;
+    let changes: Vec<f64> = line.iter().map(|rule| mean_energy_change(rule, gas)).collect();
+    let effective = |&change: &f64| effective_inelasticity(change, gas.translational_temperature());
+    Ok(LineAverage {
+        energy_change: changes.iter().copied().collect(),
+        effective_inelasticity: changes.iter().map(effective).collect::<Result<RunningMean, _>>()?,
+    })
+}

@@ -1,0 +1,87 @@
+//! The names of the states.
+
+use std::fmt;
+
+/// What the disks do in one cluster of the plane of `$\Psi_1$` and `$\Psi_2$` (paper, section III).
+///
+/// ```
+/// use granular_edmd::analysis::ConvectiveState;
+/// assert_eq!(ConvectiveState::ClockwiseRoll.rolls(), Some(1));
+/// assert_eq!(ConvectiveState::Collapsed.to_string(), "collapsed");
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum ConvectiveState {
+    /// No flow: heat is conducted.
+    Conductive,
+    /// One roll, up on the left: `$\Psi_1 > 0$`.
+    ClockwiseRoll,
+    /// One roll, up on the right: `$\Psi_1 < 0$`.
+    CounterclockwiseRoll,
+    /// Two rolls, up in the middle: `$\Psi_2 > 0$`.
+    TwoRollsUp,
+    /// Two rolls, down in the middle: `$\Psi_2 < 0$`.
+    TwoRollsDown,
+    /// A compact layer on a gas.
+    Collapsed,
+}
+
+impl ConvectiveState {
+    /// How many rolls it has; `None` if it is collapsed.
+    pub const fn rolls(self) -> Option<usize> {
+        match self {
+            Self::Conductive => Some(0),
+            Self::ClockwiseRoll | Self::CounterclockwiseRoll => Some(1),
+            Self::TwoRollsUp | Self::TwoRollsDown => Some(2),
+            Self::Collapsed => None,
+        }
+    }
+}
+
+impl fmt::Display for ConvectiveState {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(match self {
+            Self::Conductive => "conductive",
+            Self::ClockwiseRoll => "one roll, clockwise",
+            Self::CounterclockwiseRoll => "one roll, counterclockwise",
+            Self::TwoRollsUp => "two rolls, up in the middle",
+            Self::TwoRollsDown => "two rolls, down in the middle",
+            Self::Collapsed => "collapsed",
+        })
+    }
+}
+
+/// The regions of the paper's Fig. 5, in the order in which they come with growing energy loss.
+///
+/// ```
+/// use granular_edmd::analysis::ConvectiveRegime;
+/// assert!(ConvectiveRegime::OneRoll < ConvectiveRegime::Coexistence);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum ConvectiveRegime {
+    /// Region "0": no rolls.
+    Conductive,
+    /// Region "1": one roll of either sense.
+    OneRoll,
+    /// Between the lines 1–2 (a) and (b): one roll and two in turn.
+    Coexistence,
+    /// Region "2": two rolls.
+    TwoRolls,
+    /// Region "Collapse".
+    Collapsed,
+}
+
+impl fmt::Display for ConvectiveRegime {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(match self {
+            Self::Conductive => "conductive",
+            Self::OneRoll => "one roll",
+            Self::Coexistence => "coexistence of one roll and two",
+            Self::TwoRolls => "two rolls",
+            Self::Collapsed => "collapsed",
+        })
+    }
+}

@@ -1,0 +1,152 @@
+//! Where the state changes.
+
+use super::state::ConvectiveRegime;
+use crate::ParameterError;
+use crate::quantity::finite;
+
+/// The lines of the paper's Fig. 5 and the rows of its Table I.
+///
+/// ```
+/// use granular_edmd::analysis::TransitionLine;
+/// assert_eq!(TransitionLine::ALL.map(|line| line.to_string()), ["0-1", "1-2(a)", "1-2(b)", "2-collapse"]);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum TransitionLine {
+    /// "0-1": the first roll.
+    ZeroOne,
+    /// "1-2(a)": the beginning of the coexistence of one roll and two.
+    OneTwoBeginning,
+    /// "1-2(b)": its end.
+    OneTwoEnd,
+    /// "2-collapse".
+    TwoCollapse,
+}
+
+impl TransitionLine {
+    /// All lines, in the order of growing energy loss.
+    pub const ALL: [Self; 4] = [Self::ZeroOne, Self::OneTwoBeginning, Self::OneTwoEnd, Self::TwoCollapse];
+
+    /// The first regime beyond the line.
+    const fn beyond(self) -> ConvectiveRegime {
+        match self {
+            Self::ZeroOne => ConvectiveRegime::OneRoll,
+            Self::OneTwoBeginning => ConvectiveRegime::Coexistence,
+            Self::OneTwoEnd => ConvectiveRegime::TwoRolls,
+            Self::TwoCollapse => ConvectiveRegime::Collapsed,
+        }
+    }
+
+    /// On which side of the line a control value lies where all these regimes were seen; `None` if that is open.
+    fn side(self, seen: Seen) -> Option<bool> {
+        let (least, most) = (seen.least >= self.beyond(), seen.most >= self.beyond());
+        match self {
+            Self::OneTwoBeginning => Some(most),
+            Self::OneTwoEnd => Some(least),
+            Self::ZeroOne | Self::TwoCollapse => (least == most).then_some(least),
+        }
+    }
+}
+
+impl std::fmt::Display for TransitionLine {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.pad(match self {
+            Self::ZeroOne => "0-1",
+            Self::OneTwoBeginning => "1-2(a)",
+            Self::OneTwoEnd => "1-2(b)",
+            Self::TwoCollapse => "2-collapse",
+        })
+    }
+}
+
+/// A point of a transition line; made by [`transitions`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Transition {
+    /// Which line is crossed.
+    pub line: TransitionLine,
+    /// Where: the middle between the neighbouring control values on either side.
+    pub value: f64,
+    /// Half the distance of those: the transition lies between `value - error` and `value + error`.
+    pub error: f64,
+    /// Whether the regime moves up with a growing control value; not so where the paper finds re-entrance.
+    pub rising: bool,
+}
+
+/// The regimes seen at one control value.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    value: f64,
+    least: ConvectiveRegime,
+    most: ConvectiveRegime,
+}
+
+/// The transitions along one control parameter, from all regimes seen at all its values, in any order: an up ramp, a
+/// down ramp, other seeds.
+///
+/// Hysteresis is where runs at the same control value end in different regimes. Coexistence begins (a) where the
+/// first of them shows two rolls, or both numbers of rolls in turn, and ends (b) where the last shows nothing else. The
+/// other lines have no hysteresis in the paper: where runs disagree about them, the transition lies anywhere between the
+/// values at which they agree, and its error says so. Each ramp alone gives its own points.
+///
+/// The transitions come in ascending order of their values, of equal ones by line.
+///
+/// # Errors
+/// If a control value is not finite.
+///
+/// ```
+/// use granular_edmd::analysis::ConvectiveRegime::{OneRoll, TwoRolls};
+/// use granular_edmd::analysis::{TransitionLine, transitions};
+/// let up = [(0.050, OneRoll), (0.055, OneRoll), (0.060, OneRoll), (0.065, TwoRolls)];
+/// let down = [(0.065, TwoRolls), (0.060, TwoRolls), (0.055, TwoRolls), (0.050, OneRoll)];
+/// let found = transitions(up.into_iter().chain(down))?;
+/// assert_eq!(found.len(), 2);
+/// assert_eq!(found[0].line, TransitionLine::OneTwoBeginning);
+/// assert!((found[0].value - 0.0525).abs() < 1e-12 && (found[1].value - 0.0625).abs() < 1e-12);
+/// assert!((found[0].error - 0.0025).abs() < 1e-12);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+pub fn transitions(
+    observations: impl IntoIterator<Item = (f64, ConvectiveRegime)>,
+) -> Result<Vec<Transition>, ParameterError> {
+    let seen = merge(observations)?;
+    let mut found: Vec<Transition> =
+        TransitionLine::ALL.into_iter().flat_map(|line| crossings(line, &seen)).collect();
+    found.sort_by(|a, b| a.value.total_cmp(&b.value).then(a.line.cmp(&b.line)));
+    Ok(found)
+}
+
+/// One entry a control value, ascending.
+fn merge(
+    observations: impl IntoIterator<Item = (f64, ConvectiveRegime)>,
+) -> Result<Vec<Seen>, ParameterError> {
+    let check =
+        |(value, regime)| Ok(Seen { value: finite("control value", value)?, least: regime, most: regime });
+    let mut all = observations.into_iter().map(check).collect::<Result<Vec<_>, ParameterError>>()?;
+    all.sort_by(|a, b| a.value.total_cmp(&b.value));
+    all.dedup_by(|next, kept| {
+        let same = next.value == kept.value;
+        if same {
+            kept.least = kept.least.min(next.least);
+            kept.most = kept.most.max(next.most);
+        }
+        same
+    });
+    Ok(all)
+}
+
+/// Where neighbours that are certain lie on different sides of the line.
+fn crossings(line: TransitionLine, seen: &[Seen]) -> Vec<Transition> {
+    let certain: Vec<(f64, bool)> =
+        seen.iter().filter_map(|&seen| Some((seen.value, line.side(seen)?))).collect();
+    let across = certain.windows(2).filter(|pair| pair[0].1 != pair[1].1);
+    across
+        .map(|pair| Transition {
+            line,
+            value: 0.5 * pair[0].0 + 0.5 * pair[1].0,
+            error: 0.5 * pair[1].0 - 0.5 * pair[0].0,
+            rising: pair[1].1,
+        })
+        .collect()
+}

@@ -1,0 +1,150 @@
+//! How densely the disks are packed, by height.
+
+use std::f64::consts::PI;
+
+use super::{Observer, SampleTimes, Snapshot};
+use crate::quantity::{accept, finite};
+use crate::{Disk, ParameterError};
+
+/// Most bins of a profile.
+const MOST_BINS: usize = 1 << 20;
+
+/// The bin with the largest packing fraction, and what lies below it; made by [`HeightProfile::densest_layer`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DenseLayer {
+    /// Height of the middle of the bin.
+    pub height: f64,
+    /// Packing fraction there.
+    pub packing_fraction: f64,
+    /// Least packing fraction of the bins below; that of the layer itself if there are none.
+    pub least_below: f64,
+}
+
+impl DenseLayer {
+    /// The densest layer of a profile, given as heights and packing fractions from the bottom up; the lowest of equals.
+    ///
+    /// ```
+    /// use granular_edmd::observable::DenseLayer;
+    /// let layer = DenseLayer::among([(0.5, 0.2), (1.5, 0.1), (2.5, 0.7)]);
+    /// assert_eq!(layer, Some(DenseLayer { height: 2.5, packing_fraction: 0.7, least_below: 0.1 }));
+    /// ```
+    pub fn among(profile: impl IntoIterator<Item = (f64, f64)>) -> Option<Self> {
+        let mut least = f64::INFINITY;
+        let mut densest: Option<Self> = None;
+        for (height, packing_fraction) in profile {
+            if densest.is_none_or(|layer| packing_fraction > layer.packing_fraction) {
+                densest = Some(Self { height, packing_fraction, least_below: least.min(packing_fraction) });
+            }
+            least = least.min(packing_fraction);
+        }
+        densest
+    }
+}
+
+/// An observer that averages the packing fraction `$\phi(y)$` by height over samples: the area of the disks between two
+/// heights, over the area there,
+///
+/// ```math
+/// \phi_k = \frac{1}{L_x\,\Delta y}\Big\langle\sum_i A_i(y_k, y_k + \Delta y)\Big\rangle.
+/// ```
+///
+/// Disks are cut exactly at the edges of bins, so that a profile is smooth even with bins below a diameter. In the
+/// paper's box take bins of one diameter: they resolve a compact layer and average over its rows.
+///
+/// ```
+/// use granular_edmd::boundary::Domain;
+/// use granular_edmd::glam::DVec2;
+/// use granular_edmd::observable::{HeightProfile, Observer, SampleTimes, Snapshot};
+/// use granular_edmd::Disk;
+///
+/// let mut profile = HeightProfile::new(0.0, 4.0, 4, SampleTimes::every(1.0)?)?;
+/// let disks = [Disk::new(DVec2::new(1.0, 1.5), 0.5)?, Disk::new(DVec2::new(3.0, 2.0), 0.5)?];
+/// let domain = Domain { left: 0.0, right: 4.0, bottom: 0.0, top: 6.0, periodic: false };
+/// profile.on_sample(&Snapshot::new(1.0, &disks, domain, 0.0));
+/// let disk = std::f64::consts::PI / 4.0;
+/// let expected = [0.0, 1.5 * disk / 4.0, 0.5 * disk / 4.0, 0.0];
+/// assert!(profile.iter().zip(expected).all(|((_, packing), expected)| (packing - expected).abs() < 1e-15));
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct HeightProfile {
+    bottom: f64,
+    bin: f64,
+    sample_times: SampleTimes,
+    /// Sum over samples of the packing fraction.
+    sums: Vec<f64>,
+    samples: u64,
+}
+
+impl HeightProfile {
+    /// A profile from the height `bottom` to `top` in this many bins; what is outside is left out.
+    ///
+    /// # Errors
+    /// If a height is not finite, `top` is not above `bottom`, or the number of bins is not in `1..=2^20`.
+    pub fn new(bottom: f64, top: f64, bins: usize, times: SampleTimes) -> Result<Self, ParameterError> {
+        finite("bottom of the profile", bottom)?;
+        accept(top.is_finite() && top > bottom, "top of the profile", "finite and above its bottom", top)?;
+        accept((1..=MOST_BINS).contains(&bins), "number of bins", "in 1..=2^20", bins as f64)?;
+        let bin = (top - bottom) / bins as f64;
+        accept(bin.is_finite() && bin > 0.0, "height of a bin", "finite and positive", bin)?;
+        Ok(Self { bottom, bin, sample_times: times, sums: vec![0.0; bins], samples: 0 })
+    }
+
+    /// How many samples were taken.
+    pub const fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// Heights of the middles of the bins, and mean packing fractions; 0 before the first sample.
+    pub fn iter(&self) -> impl Iterator<Item = (f64, f64)> {
+        let samples = self.samples.max(1) as f64;
+        self.sums.iter().enumerate().map(move |(bin, sum)| (self.edge(bin) + 0.5 * self.bin, sum / samples))
+    }
+
+    /// The bin with the largest packing fraction, the lowest of equals; `None` before the first sample.
+    pub fn densest_layer(&self) -> Option<DenseLayer> {
+        DenseLayer::among(self.iter().take_while(|_| self.samples > 0))
+    }
+
+    /// Forgets all samples so far.
+    pub fn clear(&mut self) {
+        self.sums.fill(0.0);
+        self.samples = 0;
+    }
+
+    fn edge(&self, bin: usize) -> f64 {
+        self.bottom + bin as f64 * self.bin
+    }
+
+    fn add(&mut self, disk: &Disk, width: f64) {
+        let (height, radius) = (disk.position().y, disk.radius());
+        // Casts saturate: what is far outside lands at an end, with no area there.
+        let bin = |height: f64| ((height - self.bottom) / self.bin) as usize;
+        let (first, last) = (bin(height - radius), bin(height + radius).min(self.sums.len() - 1));
+        let mut below = area_below(self.edge(first) - height, radius);
+        for bin in first..=last {
+            let above = area_below(self.edge(bin + 1) - height, radius);
+            self.sums[bin] += (above - below) / (width * self.bin);
+            below = above;
+        }
+    }
+}
+
+/// Area of a disk below a line at this height above its centre.
+fn area_below(height: f64, radius: f64) -> f64 {
+    let sine = (height / radius).clamp(-1.0, 1.0);
+    radius * radius * (0.5 * PI + libm::asin(sine) + sine * (1.0 - sine * sine).sqrt())
+}
+
+impl Observer for HeightProfile {
+    fn next_sample(&self) -> f64 {
+        self.sample_times.next()
+    }
+
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        let width = snapshot.domain().width();
+        snapshot.disks().iter().for_each(|disk| self.add(disk, width));
+        self.samples += 1;
+        self.sample_times.advance_past(snapshot.time());
+    }
+}

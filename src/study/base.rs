@@ -1,0 +1,112 @@
+//! What is below the disks, and at their sides.
+
+use super::Parameter;
+use super::errors::SpecificationError;
+use crate::boundary::{Container, Thermal, Wall};
+use crate::wall::{BiParabolic, Sinusoidal, WallMotion};
+
+/// The base of the box: what gives the disks their energy.
+///
+/// In a study file: `base.bi_parabolic = { amplitude = 0.1, angular_frequency = 10.0 }` or
+/// `base.thermal = { temperature = 1.0 }`.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
+pub enum Base {
+    /// The paper's vibrating base, [`BiParabolic`].
+    BiParabolic {
+        /// `$A$`.
+        amplitude: f64,
+        /// `$\omega$`.
+        angular_frequency: f64,
+    },
+    /// A true sine, [`Sinusoidal`].
+    Sinusoidal {
+        /// `$A$`.
+        amplitude: f64,
+        /// `$\omega$`.
+        angular_frequency: f64,
+    },
+    /// A thermal base, [`Thermal`].
+    Thermal {
+        /// `$T_0$`.
+        temperature: f64,
+        /// Whether tangential and angular velocity are left as they are.
+        #[serde(default)]
+        slip: bool,
+    },
+}
+
+/// The sides of the box.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Sides {
+    /// Walls under the collision rule of the disks.
+    #[default]
+    Hard,
+    /// Smooth elastic walls.
+    Elastic,
+    /// None: what leaves on one side enters on the other.
+    Periodic,
+}
+
+impl Base {
+    pub(super) const fn get(&self, parameter: Parameter) -> Option<f64> {
+        match (self, parameter) {
+            (
+                Self::BiParabolic { amplitude, .. } | Self::Sinusoidal { amplitude, .. },
+                Parameter::Amplitude,
+            ) => Some(*amplitude),
+            (
+                Self::BiParabolic { angular_frequency, .. } | Self::Sinusoidal { angular_frequency, .. },
+                Parameter::AngularFrequency,
+            ) => Some(*angular_frequency),
+            (Self::Thermal { temperature, .. }, Parameter::Temperature) => Some(*temperature),
+            _ => None,
+        }
+    }
+
+    pub(super) fn with(mut self, parameter: Parameter, value: f64) -> Result<Self, SpecificationError> {
+        match (&mut self, parameter) {
+            (
+                Self::BiParabolic { amplitude, .. } | Self::Sinusoidal { amplitude, .. },
+                Parameter::Amplitude,
+            ) => {
+                *amplitude = value;
+            }
+            (
+                Self::BiParabolic { angular_frequency, .. } | Self::Sinusoidal { angular_frequency, .. },
+                Parameter::AngularFrequency,
+            ) => *angular_frequency = value,
+            (Self::Thermal { temperature, .. }, Parameter::Temperature) => *temperature = value,
+            _ => return Err(SpecificationError::NoSuchParameter { parameter }),
+        }
+        Ok(self)
+    }
+
+    pub(super) fn period(&self) -> Option<f64> {
+        let &(Self::BiParabolic { angular_frequency, .. } | Self::Sinusoidal { angular_frequency, .. }) =
+            self
+        else {
+            return None;
+        };
+        BiParabolic::new(1.0, angular_frequency).ok().and_then(|motion| motion.period())
+    }
+
+    /// This base under a container.
+    pub(super) fn under(&self, container: Container) -> Result<Container, SpecificationError> {
+        Ok(match *self {
+            Self::BiParabolic { amplitude, angular_frequency } => {
+                container.with_motion(Wall::Floor, BiParabolic::new(amplitude, angular_frequency)?)?
+            }
+            Self::Sinusoidal { amplitude, angular_frequency } => {
+                container.with_motion(Wall::Floor, Sinusoidal::new(amplitude, angular_frequency)?)?
+            }
+            Self::Thermal { temperature, slip } => {
+                let thermal = Thermal::new(temperature)?;
+                container.with_temperature(Wall::Floor, if slip { thermal.with_slip() } else { thermal })?
+            }
+        })
+    }
+}

@@ -1,0 +1,109 @@
+//! How long each value of a study lasts, and when it is sampled.
+
+use crate::ParameterError;
+use crate::quantity::accept;
+
+/// Longest value and largest number of samples: products stay exact.
+const MOST: u64 = 1 << 40;
+
+/// Settle, then sample at equal intervals, always at the same phase of the base.
+///
+/// All in cycles: periods of the base, or units of time if it does not oscillate.
+///
+/// ```
+/// use granular_edmd::study::Protocol;
+/// // The paper: 100 000 oscillations for each value, sampled every 100, the first 500 samples discarded.
+/// let protocol = Protocol::new(50_000, 500, 100);
+/// assert_eq!(protocol.cycles(), 100_000);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Protocol {
+    settle: u64,
+    samples: u64,
+    every: u64,
+    #[serde(default = "end")]
+    phase: f64,
+}
+
+const fn end() -> f64 {
+    1.0
+}
+
+impl Protocol {
+    /// Settle for `settle` cycles, then take `samples` samples, one at the end of each `every` cycles.
+    pub const fn new(settle: u64, samples: u64, every: u64) -> Self {
+        Self { settle, samples, every, phase: 1.0 }
+    }
+
+    /// The same protocol with samples at this phase of their cycle, in `(0, 1]`; 1, its end, unless given.
+    pub const fn with_phase(self, phase: f64) -> Self {
+        Self { phase, ..self }
+    }
+
+    /// How many samples a value has.
+    pub const fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// How many cycles a value lasts.
+    pub const fn cycles(&self) -> u64 {
+        self.settle + self.samples * self.every
+    }
+
+    /// How many steps a value is done in: some without a sample to settle, then one for each sample.
+    pub(super) const fn steps(&self) -> u64 {
+        self.settling_steps() + self.samples
+    }
+
+    const fn settling_steps(&self) -> u64 {
+        self.settle.div_ceil(self.every)
+    }
+
+    /// The cycles from the start of a value to the end of the step of this number, which counts from 0.
+    pub(super) fn end_of(&self, step: u64) -> u64 {
+        let settling = self.settling_steps();
+        if step < settling {
+            ((step + 1) * self.every).min(self.settle)
+        } else {
+            self.settle + (step - settling + 1) * self.every
+        }
+    }
+
+    /// Whether a step ends with a sample.
+    pub(super) const fn is_sampled(&self, step: u64) -> bool {
+        step >= self.settling_steps()
+    }
+
+    /// How far before the end of its step a sample is taken, in cycles.
+    pub(super) const fn lead(&self) -> f64 {
+        1.0 - self.phase
+    }
+
+    pub(super) fn check(&self) -> Result<(), ParameterError> {
+        let count = |range: std::ops::RangeInclusive<u64>, name, requirement, value: u64| {
+            accept(range.contains(&value), name, requirement, value as f64)
+        };
+        count(0..=MOST, "settling time in cycles", "at most 2^40", self.settle)?;
+        count(1..=MOST, "number of samples", "in 1..=2^40", self.samples)?;
+        count(1..=MOST, "sampling interval in cycles", "in 1..=2^40", self.every)?;
+        let total = u128::from(self.settle) + u128::from(self.samples) * u128::from(self.every);
+        accept(total <= u128::from(MOST), "length of a value in cycles", "at most 2^40", total as f64)?;
+        accept(self.phase > 0.0 && self.phase <= 1.0, "phase of the samples", "in (0, 1]", self.phase)?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_tile_a_value() {
+        let protocol = Protocol::new(25, 3, 10);
+        let ends: Vec<u64> = (0..protocol.steps()).map(|step| protocol.end_of(step)).collect();
+        assert_eq!(ends, [10, 20, 25, 35, 45, 55]);
+        assert_eq!(ends.last(), Some(&protocol.cycles()));
+        assert_eq!((0..6).filter(|&step| protocol.is_sampled(step)).count(), 3);
+    }
+}

@@ -1,0 +1,140 @@
+//! Which values a parameter takes, one after the other or side by side.
+
+use std::fmt;
+
+use super::Parameter;
+use super::errors::SpecificationError;
+
+/// The way through the values of a [`Ramp`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Course {
+    /// From the smallest value to the largest.
+    #[default]
+    Up,
+    /// From the largest to the smallest.
+    Down,
+    /// Up, and down again: the largest value comes once, all others twice.
+    UpAndDown,
+}
+
+/// Whether a value was come to from below or from above.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Leg {
+    /// From below.
+    Up,
+    /// From above.
+    Down,
+}
+
+impl fmt::Display for Leg {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(match self {
+            Self::Up => "up",
+            Self::Down => "down",
+        })
+    }
+}
+
+/// A parameter that changes step by step, each value from the last state of the one before: hysteresis shows.
+///
+/// ```
+/// use granular_edmd::study::{Course, Leg, Parameter, Ramp};
+/// let ramp = Ramp::new(Parameter::Friction, vec![0.1, 0.2, 0.3], Course::UpAndDown);
+/// let path: Vec<(Leg, f64)> = ramp.path().collect();
+/// assert_eq!(path[1..4], [(Leg::Up, 0.2), (Leg::Up, 0.3), (Leg::Down, 0.2)]);
+/// ```
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Ramp {
+    parameter: Parameter,
+    values: Vec<f64>,
+    #[serde(default)]
+    course: Course,
+}
+
+impl Ramp {
+    /// A ramp through these values, which increase.
+    pub const fn new(parameter: Parameter, values: Vec<f64>, course: Course) -> Self {
+        Self { parameter, values, course }
+    }
+
+    /// What is ramped.
+    pub const fn parameter(&self) -> Parameter {
+        self.parameter
+    }
+
+    /// Its values in the order in which they come.
+    pub fn path(&self) -> impl Iterator<Item = (Leg, f64)> {
+        let turn = self.values.len().saturating_sub(1);
+        let up = if self.course == Course::Down { &[] } else { self.values.as_slice() };
+        let down = match self.course {
+            Course::Up => &[],
+            Course::Down => self.values.as_slice(),
+            Course::UpAndDown => &self.values[..turn],
+        };
+        let up = up.iter().map(|&value| (Leg::Up, value));
+        up.chain(down.iter().rev().map(|&value| (Leg::Down, value)))
+    }
+
+    pub(super) fn check(&self) -> Result<(), SpecificationError> {
+        if !self.parameter.can_be_ramped() {
+            return Err(SpecificationError::NotRampable { parameter: self.parameter });
+        }
+        check_values(self.parameter, &self.values)?;
+        match self.values.windows(2).find(|pair| pair[0] >= pair[1]) {
+            Some(pair) => Err(SpecificationError::NotIncreasing {
+                parameter: self.parameter,
+                value: pair[1],
+                before: pair[0],
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A parameter that differs between ramps: each of its values starts afresh, independent of all others.
+///
+/// ```
+/// use granular_edmd::study::{Axis, Parameter};
+/// assert_eq!(Axis::new(Parameter::Inelasticity, vec![0.0, 0.01]).values().len(), 2);
+/// ```
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Axis {
+    parameter: Parameter,
+    values: Vec<f64>,
+}
+
+impl Axis {
+    /// A parameter and its values, in any order.
+    pub const fn new(parameter: Parameter, values: Vec<f64>) -> Self {
+        Self { parameter, values }
+    }
+
+    /// What differs.
+    pub const fn parameter(&self) -> Parameter {
+        self.parameter
+    }
+
+    /// Its values.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    pub(super) fn check(&self) -> Result<(), SpecificationError> {
+        check_values(self.parameter, &self.values)
+    }
+}
+
+fn check_values(parameter: Parameter, values: &[f64]) -> Result<(), SpecificationError> {
+    if values.is_empty() {
+        return Err(SpecificationError::NoValues { parameter });
+    }
+    match values.iter().find(|value| !value.is_finite()) {
+        Some(&value) => Err(SpecificationError::NotFinite { parameter, value }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,182 @@
+//! What is kept of a finished value.
+
+use super::{Leg, Sample, System};
+use crate::analysis::{block_average, thermal_noise};
+use crate::observable::{ConvectionOrder, DenseLayer};
+use crate::simulation::{Checkpoint, Counters};
+
+/// How a value ended.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub enum Outcome {
+    /// All samples were taken.
+    Completed,
+    /// Events piled up in vanishing time, as in an inelastic collapse: there are only the samples until then. The next
+    /// value of the ramp starts from the state in which this one did.
+    Stalled {
+        /// When, since the start of the ramp.
+        time: f64,
+        /// What the engine said.
+        reason: String,
+    },
+    /// The engine gave up for another reason; else as stalled.
+    Failed {
+        /// When, since the start of the ramp.
+        time: f64,
+        /// What the engine said.
+        reason: String,
+    },
+}
+
+impl Outcome {
+    /// A word for it.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Completed => "completed",
+            Self::Stalled { .. } => "stalled",
+            Self::Failed { .. } => "failed",
+        }
+    }
+}
+
+/// Mean and standard error of a sampled quantity; the error knows that samples are correlated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Estimate {
+    /// The mean.
+    pub mean: f64,
+    /// Its standard error; NaN of fewer than two samples.
+    pub error: f64,
+}
+
+/// A finished value: its parameters, samples, counts and last state.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Record {
+    pub(super) origin: Origin,
+    pub(super) leg: Option<Leg>,
+    pub(super) system: System,
+    pub(super) outcome: Outcome,
+    /// Cycles since the start of the ramp.
+    pub(super) cycles: u64,
+    pub(super) samples: Vec<Sample>,
+    /// Packing fraction by height, in bins of one diameter.
+    pub(super) profile: Vec<f64>,
+    pub(super) counters: Counters,
+    pub(super) state: Checkpoint,
+}
+
+/// Which study and place a file is of.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Origin {
+    /// Hash of the specification.
+    pub(super) study: [u8; 32],
+    /// Version of this crate.
+    pub(super) version: String,
+    pub(super) ramp: usize,
+    pub(super) value: usize,
+    pub(super) seed: u64,
+}
+
+impl Record {
+    /// Index of its ramp.
+    pub const fn ramp(&self) -> usize {
+        self.origin.ramp
+    }
+
+    /// Its index in the ramp.
+    pub const fn value(&self) -> usize {
+        self.origin.value
+    }
+
+    /// The seed of its ramp.
+    pub const fn seed(&self) -> u64 {
+        self.origin.seed
+    }
+
+    /// The version of this crate that made it.
+    pub fn version(&self) -> &str {
+        &self.origin.version
+    }
+
+    /// The way on which it was come to; `None` without a ramp.
+    pub const fn leg(&self) -> Option<Leg> {
+        self.leg
+    }
+
+    /// The system, with the parameters of this value.
+    pub const fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// How it ended.
+    pub const fn outcome(&self) -> &Outcome {
+        &self.outcome
+    }
+
+    /// Its samples.
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
+    /// What happened in it, settling included; the largest overlap is that since the start of the ramp.
+    pub const fn counters(&self) -> &Counters {
+        &self.counters
+    }
+
+    /// The state at its end.
+    pub const fn state(&self) -> &Checkpoint {
+        &self.state
+    }
+
+    /// `$(\Psi_1, \Psi_2)$` of each sample.
+    pub fn order(&self) -> Vec<ConvectionOrder> {
+        let order =
+            |sample: &Sample| ConvectionOrder { one_roll: sample.one_roll, two_rolls: sample.two_rolls };
+        self.samples.iter().map(order).collect()
+    }
+
+    /// Packing fraction by height, averaged over the samples: heights of the middles of bins of one diameter, and
+    /// fractions.
+    pub fn profile(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.profile.iter().enumerate().map(|(bin, &fraction)| (bin as f64 + 0.5, fraction))
+    }
+
+    /// The densest layer of the profile; `None` without samples.
+    pub fn densest_layer(&self) -> Option<DenseLayer> {
+        DenseLayer::among(self.profile())
+    }
+
+    /// Mean and error of a quantity over the samples.
+    ///
+    /// NaN where it cannot be told: the mean of no samples, the error of one.
+    pub fn mean(&self, quantity: impl Fn(&Sample) -> f64) -> Estimate {
+        estimate(&self.samples.iter().map(quantity).collect::<Vec<_>>())
+    }
+
+    /// Mean energy change in a collision of two disks, each collision counting alike.
+    pub fn energy_change(&self) -> Estimate {
+        let collisions: u64 = self.samples.iter().map(|sample| sample.collisions).sum();
+        let total: f64 = self.samples.iter().map(|s| s.collisions as f64 * s.energy_change).sum();
+        let mean = total / collisions as f64;
+        let per_sample = collisions as f64 / self.samples.len() as f64;
+        // The error of a ratio is that of the mean residual, over the mean number of collisions.
+        let error = self.mean(|s| s.collisions as f64 * (s.energy_change - mean) / per_sample).error;
+        Estimate { mean, error }
+    }
+
+    /// Standard deviation of `$\Psi_1$` and `$\Psi_2$` in a gas at rest of this temperature, `$\sqrt{T_y/2N}$`.
+    pub fn thermal_noise(&self) -> f64 {
+        let temperature = self.mean(|sample| sample.vertical_temperature).mean;
+        thermal_noise(temperature, 1.0, self.system.disks()).unwrap_or(f64::NAN)
+    }
+}
+
+fn estimate(values: &[f64]) -> Estimate {
+    match block_average(values) {
+        Ok(average) => Estimate { mean: average.mean(), error: average.standard_error() },
+        Err(_) => Estimate { mean: values.iter().sum::<f64>() / values.len() as f64, error: f64::NAN },
+    }
+}

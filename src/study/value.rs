@@ -1,0 +1,248 @@
+//! One value of a ramp, from its start to its record: a pure function of specification, index and the record before.
+
+use super::errors::StudyError;
+use super::record::{Origin, Outcome, Record};
+use super::rule::Rule;
+use super::specification::{Specification, derived_seed};
+use super::{Protocol, Sample, System};
+use crate::boundary::Container;
+use crate::observable::{EnergyChange, HeightProfile, Observer, SampleTimes};
+use crate::quantity::accept;
+use crate::scheduler::TournamentTree;
+use crate::simulation::{BuildError, Checkpoint, CheckpointError, Counters, RunError};
+use crate::{ParameterError, Simulation};
+
+/// Height of the profile of an open box, in diameters.
+const OPEN_PROFILE: f64 = 256.0;
+
+/// Largest height of a profile, in diameters.
+const HIGHEST_PROFILE: f64 = 65_536.0;
+
+type Run = Simulation<Rule, Container, TournamentTree>;
+
+/// Which value is to be done.
+pub(super) struct Value<'a> {
+    pub(super) specification: &'a Specification,
+    pub(super) origin: Origin,
+    pub(super) system: System,
+    /// The record of the value before, if there is one.
+    pub(super) before: Option<&'a Record>,
+}
+
+/// A value half done, as data.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Partial {
+    pub(super) origin: Origin,
+    work: Work,
+    state: Checkpoint,
+}
+
+/// What has been done of a value.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Work {
+    /// Cycles from the start of the ramp to that of the value.
+    start: u64,
+    steps: u64,
+    /// Counters at the start of the value.
+    counters: Counters,
+    samples: Vec<Sample>,
+    /// Sums over the samples of the packing fraction.
+    profile: Vec<f64>,
+}
+
+/// A value that is being done.
+pub(super) struct Active<'a> {
+    value: &'a Value<'a>,
+    work: Work,
+    run: Run,
+}
+
+impl<'a> Value<'a> {
+    /// Starts the value, or goes on with it where `partial` was saved.
+    pub(super) fn begin(&'a self, partial: Option<Partial>) -> Result<Active<'a>, StudyError> {
+        let Some(Partial { work, state, .. }) = partial else {
+            let run = self.first_state()?;
+            let work = Work {
+                start: self.before.map_or(0, |record| record.cycles),
+                steps: 0,
+                counters: *run.counters(),
+                samples: Vec::new(),
+                profile: Vec::new(),
+            };
+            return Ok(Active { value: self, work, run });
+        };
+        let run = self.resume(&state, &self.system)?;
+        Ok(Active { value: self, work, run })
+    }
+
+    /// The system at the start of the value.
+    fn first_state(&self) -> Result<Run, StudyError> {
+        let Some(before) = self.before else {
+            return self.initial_state();
+        };
+        let mut run = self.resume(&before.state, &before.system)?;
+        if !self.system.has_walls_of(&before.system) {
+            let container = self.system.container()?;
+            run.set_boundary(container).map_err(|source| self.cannot_start(source))?;
+        }
+        let gravity = self.parameter(self.system.gravity())?;
+        if gravity != run.gravity() {
+            run.set_gravity(gravity).map_err(|source| self.cannot_start(source))?;
+        }
+        Ok(run)
+    }
+
+    fn initial_state(&self) -> Result<Run, StudyError> {
+        let rule = self.parameter(self.system.rule())?;
+        let seed = self.origin.seed;
+        let builder = Simulation::builder(rule, self.system.container()?)
+            .disks(self.system.initial_disks(derived_seed(seed, 0))?)
+            .gravity(self.parameter(self.system.gravity())?)
+            .seed(derived_seed(seed, 1));
+        builder.build().map_err(|source| self.cannot_start(source))
+    }
+
+    /// A saved state under the rule of this value, in the walls that it was saved in.
+    fn resume(&self, state: &Checkpoint, saved: &System) -> Result<Run, StudyError> {
+        let rule = self.parameter(self.system.rule())?;
+        Simulation::resume(state, rule, saved.container()?, TournamentTree::default())
+            .map_err(|source| self.cannot_go_on(source))
+    }
+
+    fn parameter<T>(&self, value: Result<T, ParameterError>) -> Result<T, StudyError> {
+        value.map_err(|error| self.cannot_start(error.into()))
+    }
+
+    fn cannot_start(&self, source: BuildError) -> StudyError {
+        StudyError::Build { ramp: self.origin.ramp, value: self.origin.value, source }
+    }
+
+    fn cannot_go_on(&self, source: CheckpointError) -> StudyError {
+        StudyError::Checkpoint { ramp: self.origin.ramp, value: self.origin.value, source }
+    }
+
+    fn protocol(&self) -> &Protocol {
+        self.specification.protocol()
+    }
+}
+
+impl Active<'_> {
+    /// How many steps are done.
+    pub(super) const fn steps(&self) -> u64 {
+        self.work.steps
+    }
+
+    pub(super) fn is_done(&self) -> bool {
+        self.work.steps >= self.value.protocol().steps()
+    }
+
+    /// Does the next step: settles on, or takes a sample.
+    pub(super) fn step(&mut self) -> Result<(), RunError> {
+        let protocol = self.value.protocol();
+        let step = self.work.steps;
+        let cycle = self.value.system.cycle();
+        let end = (self.work.start + protocol.end_of(step)) as f64;
+        if protocol.is_sampled(step) {
+            self.sample((end - protocol.lead()) * cycle, end * cycle)?;
+        } else {
+            self.run.run_until(end * cycle, &mut ())?;
+        }
+        self.work.steps += 1;
+        Ok(())
+    }
+
+    fn sample(&mut self, time: f64, end: f64) -> Result<(), RunError> {
+        let mut change = EnergyChange::default();
+        self.run.run_until(time, &mut change)?;
+        let sample = Sample::of(&self.run.snapshot());
+        let profile = self.profile();
+        self.run.run_until(end, &mut change)?;
+        self.work.samples.push(sample.with_collisions(&change));
+        self.work.add_profile(&profile);
+        Ok(())
+    }
+
+    /// The packing fraction by height now.
+    fn profile(&mut self) -> Vec<f64> {
+        let snapshot = self.run.snapshot();
+        let top = snapshot.domain().top.min(HIGHEST_PROFILE);
+        let bins = if snapshot.domain().top.is_finite() { top.ceil() } else { OPEN_PROFILE };
+        let profile = SampleTimes::every(1.0)
+            .and_then(|times| HeightProfile::new(0.0, bins, bins as usize, times))
+            .map(|mut profile| {
+                profile.on_sample(&snapshot);
+                profile.iter().map(|(_, fraction)| fraction).collect()
+            });
+        // A height that is positive makes a profile.
+        profile.unwrap_or_default()
+    }
+
+    /// The value as data, to go on with later.
+    pub(super) fn partial(&self) -> Partial {
+        Partial { origin: self.value.origin.clone(), work: self.work.clone(), state: self.run.checkpoint() }
+    }
+
+    /// The record of a value that is done.
+    pub(super) fn record(self) -> Record {
+        let cycles = self.work.start + self.value.protocol().cycles();
+        let state = self.run.checkpoint();
+        self.into_record(Outcome::Completed, cycles, state)
+    }
+
+    /// The record of a value that the engine could not finish: the next one starts as this one did.
+    pub(super) fn failed(self, error: &RunError) -> Result<Record, StudyError> {
+        let (time, reason) = (self.run.time(), error.to_string());
+        let outcome = match error {
+            RunError::Stalled { .. } => Outcome::Stalled { time, reason },
+            _ => Outcome::Failed { time, reason },
+        };
+        let (start, state) = (self.work.start, self.value.first_state()?.checkpoint());
+        Ok(self.into_record(outcome, start, state))
+    }
+
+    fn into_record(self, outcome: Outcome, cycles: u64, state: Checkpoint) -> Record {
+        let Self { value, work, run } = self;
+        let samples = work.samples.len() as f64;
+        Record {
+            origin: value.origin.clone(),
+            leg: value.specification.leg(value.origin.value),
+            system: value.system.clone(),
+            outcome,
+            cycles,
+            profile: work.profile.iter().map(|sum| sum / samples).collect(),
+            samples: work.samples,
+            counters: since(&work.counters, run.counters()),
+            state,
+        }
+    }
+}
+
+impl Work {
+    fn add_profile(&mut self, profile: &[f64]) {
+        self.profile.resize(profile.len(), 0.0);
+        self.profile.iter_mut().zip(profile).for_each(|(sum, fraction)| *sum += fraction);
+    }
+}
+
+impl Partial {
+    /// That it is not more than a value can be.
+    pub(super) fn check(&self, protocol: &Protocol) -> Result<(), ParameterError> {
+        let steps = self.work.steps;
+        accept(steps <= protocol.steps(), "steps of a saved value", "at most those of a value", steps as f64)
+            .map(|_| ())
+    }
+}
+
+/// What happened between two counts.
+fn since(before: &Counters, now: &Counters) -> Counters {
+    Counters {
+        collisions: now.collisions - before.collisions,
+        wall_collisions: now.wall_collisions - before.wall_collisions,
+        contact_duration_collisions: now.contact_duration_collisions - before.contact_duration_collisions,
+        cell_crossings: now.cell_crossings - before.cell_crossings,
+        repredictions: now.repredictions - before.repredictions,
+        max_overlap: now.max_overlap,
+    }
+}

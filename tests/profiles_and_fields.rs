@@ -1,0 +1,145 @@
+//! Height profiles and fields of known states.
+
+use std::f64::consts::PI;
+
+use granular_edmd::boundary::{Container, Domain, Region};
+use granular_edmd::glam::DVec2;
+use granular_edmd::observable::{Fields, HeightProfile, Observer, SampleTimes, Snapshot};
+use granular_edmd::{Disk, ParameterError, initial};
+
+const DOMAIN: Domain = Domain { left: 0.0, right: 60.0, bottom: 0.0, top: 150.0, periodic: false };
+
+fn times() -> Result<SampleTimes, ParameterError> {
+    SampleTimes::every(1.0)
+}
+
+fn disk(x: f64, y: f64) -> Result<Disk, ParameterError> {
+    Disk::new(DVec2::new(x, y), 0.5)
+}
+
+fn gas() -> Result<Vec<Disk>, Box<dyn std::error::Error>> {
+    let disks = initial::lattice(&Container::closed(60.0, 150.0)?, 1000, 0.5)?;
+    Ok(initial::with_maxwellian_velocities(disks, 1.0, 1)?)
+}
+
+#[test]
+fn a_profile_holds_the_area_of_all_disks() -> Result<(), Box<dyn std::error::Error>> {
+    for bins in [1, 7, 150, 4000] {
+        let mut profile = HeightProfile::new(0.0, 150.0, bins, times()?)?;
+        for time in 1..4 {
+            profile.on_sample(&Snapshot::new(f64::from(time), &gas()?, DOMAIN, 0.0));
+        }
+        let area: f64 = profile.iter().map(|(_, packing)| packing * 60.0 * 150.0 / bins as f64).sum();
+        assert!((area / (1000.0 * PI / 4.0) - 1.0).abs() < 1e-12, "{bins} bins: {area}");
+        assert_eq!((profile.samples(), profile.next_sample()), (3, 4.0));
+    }
+    Ok(())
+}
+
+#[test]
+fn what_is_outside_a_profile_is_left_out() -> Result<(), ParameterError> {
+    let mut profile = HeightProfile::new(10.0, 20.0, 10, times()?)?;
+    let disks = [disk(5.0, 10.0)?, disk(5.0, 20.0)?, disk(5.0, 1e30)?, disk(5.0, -1e30)?, disk(5.0, 9.4)?];
+    profile.on_sample(&Snapshot::new(1.0, &disks, DOMAIN, 0.0));
+    let values: Vec<f64> = profile.iter().map(|(_, packing)| packing).collect();
+    let half = PI / 8.0 / 60.0;
+    assert!((values[0] - half).abs() < 1e-15 && (values[9] - half).abs() < 1e-15);
+    assert!(values[1..9].iter().all(|&packing| packing == 0.0));
+    Ok(())
+}
+
+#[test]
+fn a_layer_on_a_gas_is_found() -> Result<(), ParameterError> {
+    let mut profile = HeightProfile::new(0.0, 30.0, 30, times()?)?;
+    assert_eq!(profile.densest_layer(), None);
+    let rows = (0..3).flat_map(|row| (0..60).map(move |column| (column, row)));
+    let mut disks = rows
+        .map(|(column, row)| disk(f64::from(column) + 0.5, 15.5 + f64::from(row)))
+        .collect::<Result<Vec<_>, _>>()?;
+    disks.push(disk(30.0, 2.5)?);
+    profile.on_sample(&Snapshot::new(1.0, &disks, DOMAIN, 0.0));
+    let layer = profile.densest_layer().unwrap();
+    assert!((15.0..18.0).contains(&layer.height));
+    assert!((layer.packing_fraction - PI / 4.0).abs() < 1e-12 && layer.least_below == 0.0);
+    profile.clear();
+    assert_eq!(profile.densest_layer(), None);
+    Ok(())
+}
+
+#[test]
+fn a_sediment_has_nothing_below() -> Result<(), ParameterError> {
+    let mut profile = HeightProfile::new(0.0, 30.0, 30, times()?)?;
+    let disks = (0..60).map(|column| disk(f64::from(column) + 0.5, 0.5)).collect::<Result<Vec<_>, _>>()?;
+    profile.on_sample(&Snapshot::new(1.0, &disks, DOMAIN, 0.0));
+    let layer = profile.densest_layer().unwrap();
+    assert_eq!(layer.least_below, layer.packing_fraction);
+    Ok(())
+}
+
+#[test]
+fn a_swirl_is_flow_and_not_temperature() -> Result<(), Box<dyn std::error::Error>> {
+    // Uniform in each cell: two disks with u + c and u - c, spins w + d and w - d.
+    let region = Region { min: DVec2::ZERO, max: DVec2::new(60.0, 150.0) };
+    let mut fields = Fields::new(region, 6, 5, times()?)?;
+    let flow = |column: i32, row: i32| DVec2::new(f64::from(row) - 2.0, 2.5 - f64::from(column)) * 1e3;
+    let mut disks = Vec::new();
+    for (column, row) in (0..6).flat_map(|column| (0..5).map(move |row| (column, row))) {
+        let corner = DVec2::new(10.0 * f64::from(column), 30.0 * f64::from(row));
+        for sign in [-1.0, 1.0] {
+            let at = Disk::new(corner + DVec2::new(5.0 + 2.0 * sign, 15.0), 0.5)?;
+            let velocity = flow(column, row) + sign * DVec2::new(0.5, 1.0);
+            disks.push(at.with_velocity(velocity)?.with_angular_velocity(100.0 + 2.0 * sign)?);
+        }
+    }
+    fields.on_sample(&Snapshot::new(1.0, &disks, DOMAIN, 0.0));
+    fields.on_sample(&Snapshot::new(2.0, &disks, DOMAIN, 0.0));
+    for (column, row) in (0..6).flat_map(|column| (0..5).map(move |row| (column, row))) {
+        let cell = fields.cell(column as usize, row as usize).unwrap();
+        assert_eq!((cell.count, cell.number_density), (4, 2.0 / 300.0));
+        assert!((cell.packing_fraction - 2.0 * PI / 4.0 / 300.0).abs() < 1e-15);
+        assert!((cell.velocity - flow(column, row)).length() < 1e-9);
+        assert!((cell.translational_temperature - 0.625).abs() < 1e-9, "{cell:?}");
+        assert!((cell.angular_velocity - 100.0).abs() < 1e-9);
+        assert!((cell.rotational_temperature - 0.125 * 4.0).abs() < 1e-9);
+        assert_eq!(cell.center, DVec2::new(10.0 * f64::from(column) + 5.0, 30.0 * f64::from(row) + 15.0));
+    }
+    assert_eq!((fields.iter().count(), fields.shape(), fields.samples()), (30, (6, 5), 2));
+    Ok(())
+}
+
+#[test]
+fn a_gas_at_rest_has_its_temperature_and_no_flow() -> Result<(), Box<dyn std::error::Error>> {
+    let region = Region { min: DVec2::ZERO, max: DVec2::new(60.0, 150.0) };
+    let mut fields = Fields::new(region, 1, 1, times()?)?;
+    let disks = gas()?;
+    fields.on_sample(&Snapshot::new(1.0, &disks, DOMAIN, 0.0));
+    let cell = fields.cell(0, 0).unwrap();
+    let energy: f64 = disks.iter().map(Disk::translational_energy).sum::<f64>() / 1000.0;
+    assert!(cell.velocity.length() < 1e-12 && (cell.translational_temperature - energy).abs() < 1e-12);
+    fields.clear();
+    assert_eq!((fields.samples(), fields.cell(0, 0).unwrap().count), (0, 0));
+    assert!(fields.cell(1, 0).is_none() && fields.cell(0, 1).is_none());
+    Ok(())
+}
+
+#[test]
+fn grids_without_extent_are_refused() -> Result<(), ParameterError> {
+    let region = |x: f64, y: f64| Region { min: DVec2::ZERO, max: DVec2::new(x, y) };
+    let times = times()?;
+    for (x, y, columns, rows) in [
+        (0.0, 1.0, 1, 1),
+        (-1.0, -1.0, 1, 1),
+        (f64::INFINITY, 1.0, 1, 1),
+        (f64::NAN, 1.0, 1, 1),
+        (1.0, 1.0, 0, 1),
+        (1.0, 1.0, usize::MAX, 2),
+        (1e-300, 1e-300, 1, 1),
+    ] {
+        assert!(Fields::new(region(x, y), columns, rows, times).is_err(), "{x} {y} {columns} {rows}");
+    }
+    assert!(HeightProfile::new(1.0, 1.0, 1, times).is_err());
+    assert!(HeightProfile::new(0.0, f64::INFINITY, 1, times).is_err());
+    assert!(HeightProfile::new(0.0, 1.0, 0, times).is_err());
+    assert!(HeightProfile::new(-f64::MAX, f64::MAX, 1, times).is_err());
+    Ok(())
+}
