@@ -8,6 +8,7 @@ mod disk;
 mod error;
 mod flight;
 pub mod initial;
+pub mod kinetic;
 pub mod observable;
 mod quantity;
 mod random;

@@ -14,6 +14,8 @@
 mod bodies;
 mod builder;
 mod cells;
+#[cfg(feature = "serde")]
+mod checkpoint;
 mod engine;
 mod errors;
 mod event;
@@ -23,6 +25,8 @@ mod resolution;
 mod view;
 
 pub use builder::SimulationBuilder;
+#[cfg(feature = "serde")]
+pub use checkpoint::{Checkpoint, CheckpointError};
 pub use engine::Simulation;
 pub use errors::{BuildError, RunError};
 pub use event::{Counters, Event};

@@ -8,7 +8,7 @@ use glam::DVec2;
 /// use granular_edmd::boundary::Domain;
 /// let domain = Domain { left: 0.0, right: 60.0, bottom: -0.1, top: f64::INFINITY, periodic: true };
 /// assert_eq!(domain.width(), 60.0);
-/// assert_eq!(domain.separation(glam::DVec2::new(59.0, 0.0), glam::DVec2::new(1.0, 0.0)).x, -2.0);
+/// assert_eq!(domain.separation(glam::DVec2::new(59.0, 0.0), glam::DVec2::new(1.0, 0.0)).x, 2.0);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

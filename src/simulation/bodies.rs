@@ -28,6 +28,13 @@ impl Trajectory {
     }
 }
 
+#[cfg(feature = "serde")]
+impl Trajectory {
+    pub(super) fn is_finite(&self) -> bool {
+        self.position.is_finite() && self.velocity.is_finite()
+    }
+}
+
 /// What only collisions touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -37,6 +44,14 @@ pub(super) struct Spin {
     pub(super) angular_velocity: f64,
     /// Time offset of the last collision with anything.
     pub(super) last_collision: f64,
+}
+
+#[cfg(feature = "serde")]
+impl Spin {
+    /// Whether all is finite; the last collision may be infinitely long ago.
+    pub(super) fn is_valid(&self) -> bool {
+        self.angle.is_finite() && self.angular_velocity.is_finite() && self.last_collision < f64::INFINITY
+    }
 }
 
 #[derive(Debug, Clone)]
@@ -85,6 +100,27 @@ impl Bodies {
             materials: Materials::of(&disks),
             disks,
         }
+    }
+
+    /// Bodies that go on where they were saved.
+    #[cfg(feature = "serde")]
+    pub(super) fn restored(
+        disks: Vec<Disk>,
+        gravity: f64,
+        trajectories: Vec<Trajectory>,
+        spins: Vec<Spin>,
+    ) -> Self {
+        Self { trajectories, spins, ..Self::new(disks, gravity) }
+    }
+
+    #[cfg(feature = "serde")]
+    pub(super) fn disks(&self) -> &[Disk] {
+        &self.disks
+    }
+
+    #[cfg(feature = "serde")]
+    pub(super) fn largest_radius(&self) -> f64 {
+        self.disks.iter().map(Disk::radius).fold(0.0, f64::max)
     }
 
     pub(super) fn len(&self) -> usize {

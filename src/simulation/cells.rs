@@ -40,6 +40,31 @@ pub(super) struct Cells {
     at_wall: Vec<bool>,
     /// What to add to `x` on leaving through the periodic sides.
     period: f64,
+    layout: Layout,
+}
+
+/// The grid and where the disks are in it: what a checkpoint keeps.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct GridState {
+    layout: Layout,
+    places: Vec<Place>,
+}
+
+#[cfg(feature = "serde")]
+impl GridState {
+    pub(super) fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Whether the grid has a sensible size, and every disk is in it.
+    pub(super) fn is_valid(&self) -> bool {
+        let Layout { columns, rows, pitch } = self.layout;
+        let most = 2.0 * (CELLS_PER_DISK * self.places.len() as f64 + SPARE_CELLS);
+        let sized = columns > 0 && rows > 0 && f64::from(columns) * f64::from(rows) <= most;
+        let inside = |place: &Place| (1..=columns).contains(&place.column) && (1..=rows).contains(&place.row);
+        sized && pitch.is_finite() && self.places.iter().all(inside)
+    }
 }
 
 /// A cell by its column and row, ring included: the first real ones are 1.
@@ -52,6 +77,7 @@ pub(super) struct Place {
 
 /// The size of the grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Layout {
     columns: u32,
     rows: u32,
@@ -110,6 +136,27 @@ impl Cells {
         Some(cells)
     }
 
+    /// The same grid as one that was saved, with the disks where they were.
+    #[cfg(feature = "serde")]
+    pub(super) fn restored<B: Boundary + ?Sized>(
+        boundary: &B,
+        largest_radius: f64,
+        saved: &GridState,
+    ) -> Self {
+        let mut cells = Self::empty(&boundary.domain(), &saved.layout, saved.places.len());
+        cells.mark_walls(boundary, largest_radius);
+        cells.places.clone_from(&saved.places);
+        for disk in 0..saved.places.len() {
+            cells.link(disk);
+        }
+        cells
+    }
+
+    #[cfg(feature = "serde")]
+    pub(super) fn state(&self) -> GridState {
+        GridState { layout: self.layout, places: self.places.clone() }
+    }
+
     fn empty(domain: &Domain, layout: &Layout, count: usize) -> Self {
         let (stride, height) = (layout.columns + 2, layout.rows + 2);
         let cells = stride as usize * height as usize;
@@ -128,6 +175,7 @@ impl Cells {
             right_of: neighbours(layout.columns, domain.periodic, |column| column + 1),
             at_wall: vec![false; cells],
             period: if domain.periodic { domain.width() } else { 0.0 },
+            layout: *layout,
         }
     }
 

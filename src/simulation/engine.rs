@@ -64,6 +64,7 @@ pub struct Simulation<R = Frictional, B = Container, S = TournamentTree> {
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
+    /// A simulation at its start, with all first events predicted.
     pub(super) fn assemble(
         rule: R,
         boundary: B,
@@ -73,8 +74,23 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         generator: Xoshiro256PlusPlus,
         origin: f64,
     ) -> Self {
+        let mut simulation = Self::idle(rule, boundary, scheduler, bodies, cells, generator, origin);
+        simulation.predict_all();
+        simulation
+    }
+
+    /// A simulation that knows of no event yet.
+    pub(super) fn idle(
+        rule: R,
+        boundary: B,
+        scheduler: S,
+        bodies: Bodies,
+        cells: Cells,
+        generator: Xoshiro256PlusPlus,
+        origin: f64,
+    ) -> Self {
         let count = bodies.len();
-        let mut simulation = Self {
+        Self {
             rule,
             boundary,
             scheduler,
@@ -89,9 +105,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             guard: Guard::default(),
             found: vec![0; count + LANES],
             copies: Vec::new(),
-        };
-        simulation.predict_all();
-        simulation
+        }
     }
 
     /// Predicts every disk's next event from the present state alone.

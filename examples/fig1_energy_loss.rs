@@ -1,0 +1,239 @@
+//! The paper's Fig. 1: lines of equal mean energy loss per collision in the plane of friction and inelasticity.
+//!
+//! Writes `fig1_energy_loss.png` (both panels), `fig1_energy_loss.csv` (the lines) and `fig1_largest_loss.csv` (the
+//! friction of the largest loss for each inelasticity), and compares closed form and Monte Carlo on a few points.
+//!
+//! ```text
+//! cargo run --release --example fig1_energy_loss -- --out out
+//! ```
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use clap::Parser;
+use granular_edmd::ParameterError;
+use granular_edmd::collision::Frictional;
+use granular_edmd::kinetic::{
+    IsoLine, Maxwellian, MonteCarlo, Piece, friction_of_largest_loss, mean_energy_change,
+};
+use kuva::backend::png::PngBackend;
+use kuva::plot::LinePlot;
+use kuva::render::annotations::TextAnnotation;
+use kuva::render::figure::Figure;
+use kuva::render::layout::{Layout, TickFormat};
+use kuva::render::plots::Plot;
+
+/// Lines of equal mean energy loss per collision (paper, Fig. 1).
+#[derive(Parser)]
+struct Arguments {
+    /// Folder for the picture and the tables.
+    #[arg(long, default_value = "out")]
+    out: PathBuf,
+    /// Rotational temperature in units of the translational one; the paper has 1.
+    #[arg(long, default_value_t = 1.0)]
+    rotational_temperature: f64,
+    /// Seed of the Monte Carlo comparison.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+/// A part of the plane and the levels drawn in it.
+struct Panel {
+    name: &'static str,
+    logarithmic: bool,
+    frictions: Vec<f64>,
+    largest_inelasticity: f64,
+    levels: Vec<f64>,
+}
+
+impl Panel {
+    fn whole() -> Self {
+        Self {
+            name: "whole",
+            logarithmic: false,
+            frictions: (0..=500).map(|step| f64::from(step) / 500.0).collect(),
+            largest_inelasticity: 0.2,
+            levels: (1..=10).map(|step| -f64::from(step) / 10.0).collect(),
+        }
+    }
+
+    fn detail() -> Self {
+        Self {
+            name: "detail",
+            logarithmic: true,
+            frictions: (-300..=100).map(|step| 10f64.powf(f64::from(step) / 100.0)).collect(),
+            largest_inelasticity: 0.05,
+            levels: [0.02]
+                .into_iter()
+                .chain((1..=10).map(|step| f64::from(step) / 20.0))
+                .map(|loss| -loss)
+                .collect(),
+        }
+    }
+
+    fn trace(&self, gas: &Maxwellian) -> Result<Vec<(f64, Vec<Piece>)>, ParameterError> {
+        let trace = |level| IsoLine::new(level, gas)?.trace(&self.frictions, self.largest_inelasticity);
+        self.levels.iter().map(|&level| Ok((level, trace(level)?))).collect()
+    }
+
+    fn layout(&self) -> Layout {
+        let layout = Layout::new((self.frictions[0], 1.0), (0.0, self.largest_inelasticity))
+            .with_x_label("friction κ, static = dynamic")
+            .with_y_label("inelasticity q, normal = tangential")
+            .with_y_axis_min(0.0)
+            .with_y_axis_max(self.largest_inelasticity)
+            .with_y_tick_step(self.largest_inelasticity / 5.0)
+            .with_y_tick_format(TickFormat::Fixed(2))
+            .with_show_grid(false)
+            .with_box_axes();
+        if self.logarithmic {
+            layout.with_log_x().with_x_axis_min(1e-3).with_x_axis_max(10.0)
+        } else {
+            layout
+                .with_title("Mean energy change per collision, ⟨dE⟩/T")
+                .with_x_axis_min(0.0)
+                .with_x_axis_max(1.0)
+        }
+    }
+
+    /// Where a point is in the panel, from 0 to 1 in both directions.
+    fn fraction(&self, (friction, inelasticity): (f64, f64)) -> (f64, f64) {
+        let across = if self.logarithmic { (friction.log10() + 3.0) / 4.0 } else { friction };
+        (across, inelasticity / self.largest_inelasticity)
+    }
+
+    /// The point of a line that carries its label: neighbouring lines have theirs at different heights.
+    fn label_place(&self, index: usize, piece: &Piece) -> (f64, f64) {
+        let lowest = piece.iter().map(|&point| self.fraction(point).1).fold(1.0, f64::min);
+        let height = (0.45 + 0.1 * f64::from(u8::from(index % 2 == 0))).max(lowest + 0.15);
+        let distance = |&point: &(f64, f64)| {
+            let (across, up) = self.fraction(point);
+            let edge = (0.05 - across).max(across - 0.95).max(0.03 - up).max(up - 0.97).max(0.0);
+            let wanted = if self.logarithmic { up - height } else { across - 0.7 };
+            wanted.abs() + 100.0 * edge
+        };
+        let nearest = piece.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let short = !self.logarithmic && piece.iter().all(|&(friction, _)| friction < 0.7);
+        let middle = piece[piece.len() / 2];
+        if short { middle } else { nearest.copied().unwrap_or(middle) }
+    }
+
+    /// Whether a point of a line would run through the label at `place`.
+    fn hides(&self, place: (f64, f64), point: (f64, f64)) -> bool {
+        let ((x, y), (at_x, at_y)) = (self.fraction(point), self.fraction(place));
+        (x - at_x).abs() < 0.024 && (y - at_y).abs() < 0.022
+    }
+
+    /// A label centred on `place`.
+    fn label(&self, (friction, inelasticity): (f64, f64), text: &str, color: &str) -> TextAnnotation {
+        let baseline = inelasticity - 0.024 * self.largest_inelasticity;
+        TextAnnotation::new(text, friction, baseline).with_font_size(11).with_color(color)
+    }
+
+    /// Points of the curve on which friction loses most.
+    fn maxima(&self, gas: &Maxwellian) -> Result<Piece, ParameterError> {
+        let inelasticity = |step: i32| self.largest_inelasticity * f64::from(step) / 100.0;
+        let maxima: Result<Vec<_>, _> = (0..=100)
+            .map(inelasticity)
+            .map(|q| {
+                Ok(friction_of_largest_loss(&Frictional::new(q, 0.0)?, gas).map(|friction| (friction, q)))
+            })
+            .collect();
+        Ok(maxima?.into_iter().flatten().collect())
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments = Arguments::parse();
+    let gas = Maxwellian::new(1.0)?.with_rotational_temperature(arguments.rotational_temperature)?;
+    println!(
+        "Maxwellian gas, T = 1, T_rot = {}; q = q_n = q_t, kappa = kappa_s = kappa_d",
+        gas.rotational_temperature()
+    );
+    compare(&gas, arguments.seed)?;
+    std::fs::create_dir_all(&arguments.out)?;
+    let panels = [Panel::whole(), Panel::detail()];
+    tabulate(&panels, &gas, &arguments.out)?;
+    draw(&panels, &gas, &arguments.out.join("fig1_energy_loss.png"))?;
+    println!(
+        "wrote fig1_energy_loss.png, fig1_energy_loss.csv, fig1_largest_loss.csv to {}",
+        arguments.out.display()
+    );
+    Ok(())
+}
+
+/// Closed form beside Monte Carlo at the largest loss of a few inelasticities.
+fn compare(gas: &Maxwellian, seed: u64) -> Result<(), ParameterError> {
+    println!("largest loss:   q   kappa     <dE>      Monte Carlo (standard error)");
+    for q in [0.0, 0.025, 0.05, 0.1, 0.2] {
+        let Some(friction) = friction_of_largest_loss(&Frictional::new(q, 0.0)?, gas) else { continue };
+        let rule = Frictional::new(q, friction)?;
+        let estimate = MonteCarlo::new(seed).mean_energy_change(&rule, gas);
+        let exact = mean_energy_change(&rule, gas);
+        println!(
+            "            {q:5.3}  {friction:.4}  {exact:.6}  {:.6} ({:.6})",
+            estimate.mean(),
+            estimate.standard_error()
+        );
+    }
+    Ok(())
+}
+
+fn tabulate(panels: &[Panel], gas: &Maxwellian, out: &Path) -> Result<(), Box<dyn Error>> {
+    let mut lines = csv::Writer::from_path(out.join("fig1_energy_loss.csv"))?;
+    let mut maxima = csv::Writer::from_path(out.join("fig1_largest_loss.csv"))?;
+    lines.write_record(["panel", "mean_energy_change", "piece", "friction", "inelasticity"])?;
+    maxima.write_record(["panel", "friction", "inelasticity"])?;
+    for panel in panels {
+        for (level, pieces) in panel.trace(gas)? {
+            for (index, piece) in pieces.iter().enumerate() {
+                for point in piece {
+                    lines.serialize((panel.name, level, index, point.0, point.1))?;
+                }
+            }
+        }
+        panel.maxima(gas)?.iter().try_for_each(|point| maxima.serialize((panel.name, point.0, point.1)))?;
+    }
+    lines.flush()?;
+    Ok(maxima.flush()?)
+}
+
+fn draw(panels: &[Panel], gas: &Maxwellian, path: &Path) -> Result<(), Box<dyn Error>> {
+    let drawn: Result<Vec<_>, ParameterError> = panels.iter().map(|panel| draw_panel(panel, gas)).collect();
+    let (plots, layouts): (Vec<_>, Vec<_>) = drawn?.into_iter().unzip();
+    let figure = Figure::new(2, 1)
+        .with_plots(plots)
+        .with_layouts(layouts)
+        .with_cell_size(820.0, 520.0)
+        .with_labels_lowercase();
+    Ok(std::fs::write(path, PngBackend::new().render_scene(&figure.render())?)?)
+}
+
+fn draw_panel(panel: &Panel, gas: &Maxwellian) -> Result<(Vec<Plot>, Layout), ParameterError> {
+    let (mut plots, mut labels) = (Vec::new(), Vec::new());
+    let line = |points, color, width| {
+        Plot::Line(
+            LinePlot::new().with_data::<f64, f64, Piece>(points).with_color(color).with_stroke_width(width),
+        )
+    };
+    for (index, (level, pieces)) in panel.trace(gas)?.into_iter().enumerate() {
+        for piece in pieces.iter().filter(|piece| piece.len() > 1) {
+            let place = panel.label_place(index, piece);
+            labels.push(panel.label(place, &format!("{level}").replace('-', "−"), &color(level)));
+            let parts = piece.split(|&point| panel.hides(place, point));
+            plots.extend(parts.map(|part| line(part.to_vec(), color(level), 1.8)));
+        }
+    }
+    let maxima = panel.maxima(gas)?;
+    if let Some(&(friction, q)) = maxima.get(90).filter(|_| !panel.logarithmic) {
+        labels.push(panel.label((friction - 0.06, q), "largest loss", "black"));
+    }
+    plots.push(line(maxima, "black".into(), 1.2));
+    Ok((plots, labels.into_iter().fold(panel.layout(), Layout::with_annotation)))
+}
+
+/// From blue for little loss to red for much.
+fn color(level: f64) -> String {
+    let share = -level;
+    format!("rgb({:.0},{:.0},{:.0})", 30.0 + 190.0 * share, 90.0 - 50.0 * share, 200.0 - 150.0 * share)
+}

@@ -1,0 +1,49 @@
+//! Mean energy loss per collision `$\langle dE\rangle$`: the quantity that the states of the driven system follow.
+//!
+//! A gas of disks with Maxwellian velocities and spins ([`Maxwellian`]) collides under a rule; `$\langle dE\rangle$`
+//! is the mean change of kinetic energy per collision, negative when energy is lost. Two roads lead to it, each
+//! testing the other: [`mean_energy_change`] in closed form for the paper's rule, and [`MonteCarlo`] for any
+//! [`CollisionRule`](crate::collision::CollisionRule). No simulation is needed.
+//!
+//! | question | answer | source |
+//! |---|---|---|
+//! | `$\langle dE\rangle$` of the paper's rule | [`mean_energy_change`], [`sticking_fraction`] | paper, Fig. 1 |
+//! | `$\langle dE\rangle$` of any rule | [`MonteCarlo`] | paper, section II |
+//! | friction with the largest loss | [`friction_of_largest_loss`] | paper, `$\kappa\approx0.3$` |
+//! | one coefficient for inelasticity and friction | [`effective_inelasticity`] | paper, Eq. (9) |
+//! | its inverse: loss without friction | [`frictionless_energy_change`] | paper, Eq. (8) |
+//! | lines of equal loss in the plane of `$\kappa$` and `$q$` | [`IsoLine`] | paper, Fig. 1 |
+//!
+//! ```
+//! use granular_edmd::collision::Frictional;
+//! use granular_edmd::kinetic::{Maxwellian, MonteCarlo, effective_inelasticity, mean_energy_change};
+//!
+//! let (rule, gas) = (Frictional::new(0.1, 0.3)?, Maxwellian::new(1.0)?);
+//! let exact = mean_energy_change(&rule, &gas);
+//! assert!((exact + 0.71851).abs() < 1e-5);
+//!
+//! let estimate = MonteCarlo::new(7).with_samples(100_000).mean_energy_change(&rule, &gas);
+//! assert!((estimate.mean() - exact).abs() < 5.0 * estimate.standard_error());
+//!
+//! // All of it as if it came from the normal restitution alone:
+//! assert!((effective_inelasticity(exact, 1.0)? - 0.23472).abs() < 1e-5);
+//! # Ok::<(), granular_edmd::ParameterError>(())
+//! ```
+
+mod bisection;
+mod closed_form;
+mod effective_inelasticity;
+mod estimate;
+mod iso_line;
+mod largest_loss;
+mod maxwellian;
+mod monte_carlo;
+mod stick_slip;
+
+pub use closed_form::{mean_energy_change, sticking_fraction};
+pub use effective_inelasticity::{effective_inelasticity, frictionless_energy_change};
+pub use estimate::Estimate;
+pub use iso_line::{IsoLine, Piece};
+pub use largest_loss::friction_of_largest_loss;
+pub use maxwellian::Maxwellian;
+pub use monte_carlo::MonteCarlo;

@@ -1,0 +1,62 @@
+//! The mean energy change of the paper's rule, as a formula.
+
+use super::Maxwellian;
+use super::stick_slip::StickSlip;
+use crate::collision::Frictional;
+
+/// Mean energy change per collision `$\langle dE\rangle$` of the paper's rule in a Maxwellian gas, exact:
+///
+/// ```math
+/// \frac{\langle dE\rangle}{T} = -4q_n p - \frac2\lambda\,q_t(1-q_t)\,w^2 s^3 - 2\kappa_d p\,w\,k^3
+/// + 2\kappa_d^2p^2\lambda\,(1-s)^2(2+s)
+/// ```
+///
+/// with `$p = 1-q_n$`, `$\lambda = \mu/\mu_t$`, `$w^2 = 1+(\lambda-1)T_r/T$`, and the sticking probability
+/// `$s = \sin\alpha$`, `$k = \cos\alpha$`, `$\tan\alpha = \lambda p\kappa_s/\big((1-q_t)w\big)$`. An energy, in units of
+/// the temperature's. The paper has this average by Monte Carlo only (Fig. 1); at zero friction it is its Eq. (8).
+/// The derivation is in `docs/physics-kinetic.md`.
+///
+/// Masses enter through `$\lambda$` alone, which is 3 for homogeneous disks of any masses: at equal temperatures
+/// Fig. 1 of the paper holds for any mixture.
+///
+/// ```
+/// use granular_edmd::collision::Frictional;
+/// use granular_edmd::kinetic::{Maxwellian, mean_energy_change};
+/// let gas = Maxwellian::new(1.0)?;
+/// assert!((mean_energy_change(&Frictional::new(0.0, 0.3)?, &gas) + 0.34014).abs() < 1e-5);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[inline]
+pub fn mean_energy_change(rule: &Frictional, gas: &Maxwellian) -> f64 {
+    let (mass_ratio, slip_ratio_squared) = (gas.mass_ratio(), gas.slip_ratio_squared());
+    let (normal, tangential) = (rule.normal_inelasticity(), rule.tangential_inelasticity());
+    let sector = sector(rule, gas);
+    // Grouped with one cosine, the friction stays bounded however large it is.
+    let friction = rule.dynamic_friction() * sector.cosine * (1.0 - normal);
+    let sticking = tangential * (1.0 - tangential) * slip_ratio_squared / mass_ratio * sector.sticking_slip();
+    let sliding = friction
+        * (slip_ratio_squared.sqrt() * sector.cosine * sector.cosine
+            - friction * mass_ratio * sector.sliding_closing());
+    -gas.translational_temperature() * (4.0 * normal * (1.0 - normal) + 2.0 * (sticking + sliding))
+}
+
+/// Fraction `$s$` of collisions that stick, under the paper's rule in a Maxwellian gas:
+/// `$s = \sin\alpha$`, `$\tan\alpha = \lambda(1-q_n)\kappa_s/\big((1-q_t)w\big)$` (see [`mean_energy_change`]).
+///
+/// ```
+/// use granular_edmd::collision::Frictional;
+/// use granular_edmd::kinetic::{Maxwellian, sticking_fraction};
+/// let fraction = sticking_fraction(&Frictional::new(0.05, 0.3)?, &Maxwellian::new(1.0)?);
+/// assert!((fraction - 0.4611).abs() < 1e-4);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+pub fn sticking_fraction(rule: &Frictional, gas: &Maxwellian) -> f64 {
+    sector(rule, gas).sine
+}
+
+#[inline]
+fn sector(rule: &Frictional, gas: &Maxwellian) -> StickSlip {
+    let opposite = gas.mass_ratio() * (1.0 - rule.normal_inelasticity());
+    let adjacent = (1.0 - rule.tangential_inelasticity()) * gas.slip_ratio_squared().sqrt();
+    StickSlip::new(rule.static_friction(), opposite, adjacent)
+}

@@ -1,0 +1,169 @@
+//! The gas over whose collisions is averaged.
+
+use crate::collision::Contact;
+use crate::quantity::accept;
+use crate::{Disk, ParameterError};
+
+/// Largest and smallest temperature: its products with masses of the same range stay finite and normal.
+const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
+
+/// A gas of Maxwellian velocities and spins, seen through the collisions of two of its disks.
+///
+/// Velocities have the translational temperature, `$T = m\langle v_x^2\rangle$`, spins the rotational one,
+/// `$T_r = I\langle\omega^2\rangle$` (Boltzmann's constant is 1: temperatures are energies). Over collisions, the
+/// closing speed then has the flux-weighted density `$(v_n/S)\,e^{-v_n^2/2S}$` and the slip speed is an independent
+/// normal variable of variance `$V$`, with
+///
+/// ```math
+/// S = \frac{T}{\mu},\qquad V = \frac{T}{\mu} + T_r\left(\frac1{\mu_t}-\frac1\mu\right),
+/// ```
+///
+/// since `$1/\mu_t - 1/\mu = R_1^2/I_1 + R_2^2/I_2$`: the radii drop out. `docs/physics-kinetic.md` derives it.
+///
+/// ```
+/// use glam::DVec2;
+/// use granular_edmd::Disk;
+/// use granular_edmd::kinetic::Maxwellian;
+///
+/// // The paper's gas: identical homogeneous disks of mass 1, all temperatures 1.
+/// let gas = Maxwellian::new(1.0)?;
+/// assert_eq!((gas.closing_variance(), gas.slip_variance()), (2.0, 6.0));
+///
+/// // Spins at a tenth of the temperature, and a disk that meets a ring four times as heavy.
+/// let disk = Disk::new(DVec2::ZERO, 0.5)?;
+/// let ring = disk.with_mass(4.0)?.with_inertia_factor(1.0)?;
+/// let gas = Maxwellian::new(1.0)?.with_rotational_temperature(0.1)?.with_partners(&disk, &ring);
+/// assert!((gas.slip_variance() - (1.25 + 0.1 * (2.0 + 0.25))).abs() < 1e-15);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawMaxwellian"))]
+pub struct Maxwellian {
+    translational_temperature: f64,
+    rotational_temperature: f64,
+    masses: [f64; 2],
+    inertia_factors: [f64; 2],
+}
+
+impl Maxwellian {
+    /// Identical homogeneous disks of mass 1, velocities and spins at this temperature.
+    ///
+    /// # Errors
+    /// If the temperature is not in `[1e-30, 1e30]`.
+    pub fn new(temperature: f64) -> Result<Self, ParameterError> {
+        let valid = SCALE.contains(&temperature);
+        accept(valid, "translational temperature", "in [1e-30, 1e30]", temperature)?;
+        Ok(Self {
+            translational_temperature: temperature,
+            rotational_temperature: temperature,
+            masses: [1.0; 2],
+            inertia_factors: [crate::HOMOGENEOUS; 2],
+        })
+    }
+
+    /// The same gas with its spins at another temperature, zero for disks that do not rotate before they collide.
+    ///
+    /// # Errors
+    /// If the temperature is not in `[0, 1e30]`.
+    pub fn with_rotational_temperature(self, temperature: f64) -> Result<Self, ParameterError> {
+        let valid = (0.0..=*SCALE.end()).contains(&temperature);
+        accept(valid, "rotational temperature", "in [0, 1e30]", temperature)?;
+        Ok(Self { rotational_temperature: temperature, ..self })
+    }
+
+    /// The same gas, seen through the collisions of these two kinds of disks.
+    ///
+    /// Only their masses and inertia factors matter; position and motion are ignored.
+    pub fn with_partners(self, first: &Disk, second: &Disk) -> Self {
+        Self {
+            masses: [first.mass(), second.mass()],
+            inertia_factors: [first.inertia_factor(), second.inertia_factor()],
+            ..self
+        }
+    }
+
+    /// `$T = m\langle v_x^2\rangle$`.
+    pub const fn translational_temperature(&self) -> f64 {
+        self.translational_temperature
+    }
+
+    /// `$T_r = I\langle\omega^2\rangle$`.
+    pub const fn rotational_temperature(&self) -> f64 {
+        self.rotational_temperature
+    }
+
+    /// `$\mu$`, `$1/\mu = \sum 1/m_i$`.
+    pub fn normal_mass(&self) -> f64 {
+        1.0 / (1.0 / self.masses[0] + 1.0 / self.masses[1])
+    }
+
+    /// `$\mu_t$`, `$1/\mu_t = \sum (1 + 1/\beta_i)/m_i$`.
+    pub fn tangential_mass(&self) -> f64 {
+        1.0 / (self.compliance(0) + self.compliance(1))
+    }
+
+    /// `$S$`: half the mean square of the closing speed over collisions.
+    pub fn closing_variance(&self) -> f64 {
+        self.translational_temperature / self.normal_mass()
+    }
+
+    /// `$V$`: mean square of the slip speed over collisions.
+    pub fn slip_variance(&self) -> f64 {
+        self.closing_variance() * self.slip_ratio_squared()
+    }
+
+    fn compliance(&self, partner: usize) -> f64 {
+        (1.0 + 1.0 / self.inertia_factors[partner]) / self.masses[partner]
+    }
+
+    /// `$\lambda = \mu/\mu_t$`: 3 for homogeneous disks, whatever their masses.
+    #[inline]
+    pub(super) fn mass_ratio(&self) -> f64 {
+        self.normal_mass() / self.tangential_mass()
+    }
+
+    /// `$w^2 = V/S = 1 + (\lambda - 1)T_r/T$`.
+    #[inline]
+    pub(super) fn slip_ratio_squared(&self) -> f64 {
+        1.0 + (self.mass_ratio() - 1.0) * (self.rotational_temperature / self.translational_temperature)
+    }
+
+    /// The contact with these speeds in units of `$\sqrt S$` and `$\sqrt V$`.
+    #[inline]
+    pub(super) fn contact(&self, closing: f64, slip: f64) -> Contact {
+        Contact::new(
+            closing * self.closing_variance().sqrt(),
+            slip * self.slip_variance().sqrt(),
+            self.normal_mass(),
+            self.tangential_mass(),
+        )
+    }
+}
+
+/// What a file holds, before it has passed the constructors.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "Maxwellian")]
+struct RawMaxwellian {
+    translational_temperature: f64,
+    rotational_temperature: f64,
+    masses: [f64; 2],
+    inertia_factors: [f64; 2],
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawMaxwellian> for Maxwellian {
+    type Error = ParameterError;
+
+    fn try_from(raw: RawMaxwellian) -> Result<Self, ParameterError> {
+        let partner = |index: usize| {
+            Disk::new(glam::DVec2::ZERO, 1.0)?
+                .with_mass(raw.masses[index])?
+                .with_inertia_factor(raw.inertia_factors[index])
+        };
+        Ok(Self::new(raw.translational_temperature)?
+            .with_rotational_temperature(raw.rotational_temperature)?
+            .with_partners(&partner(0)?, &partner(1)?))
+    }
+}

@@ -1,0 +1,40 @@
+//! Where in velocity space collisions turn from sticking to sliding.
+
+/// Sine and cosine of the half angle `$\alpha$` of the sticking sector.
+///
+/// In the scaled speeds `$x = v_n/\sqrt S$`, `$z = v_t/\sqrt V$` a collision sticks for `$|z| < x\tan\alpha$`. The
+/// vector (x cos φ, x sin φ, z) is isotropic, so `$\sin\alpha$` is the probability to stick. Everything is written in
+/// `$s = \sin\alpha$` and `$k = \cos\alpha$`, which stay accurate for any friction: `$1 - s = k^2/(1 + s)$`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct StickSlip {
+    pub(super) sine: f64,
+    pub(super) cosine: f64,
+}
+
+impl StickSlip {
+    /// The sector with `$\tan\alpha = \kappa\,(\text{opposite}/\text{adjacent})$`; an adjacent of zero always sticks.
+    #[inline]
+    pub(super) fn new(friction: f64, opposite: f64, adjacent: f64) -> Self {
+        if friction == 0.0 {
+            return Self { sine: 0.0, cosine: 1.0 };
+        }
+        // Neither factor may overflow, whatever finite friction there is.
+        let (opposite, adjacent) =
+            if friction > 1.0 { (opposite, adjacent / friction) } else { (opposite * friction, adjacent) };
+        let hypotenuse = libm::hypot(opposite, adjacent);
+        Self { sine: opposite / hypotenuse, cosine: adjacent / hypotenuse }
+    }
+
+    /// `$\langle v_t^2;\text{stick}\rangle/V = s^3$`.
+    #[inline]
+    pub(super) fn sticking_slip(self) -> f64 {
+        self.sine * self.sine * self.sine
+    }
+
+    /// `$\langle v_n^2;\text{slide}\rangle/(S k^2) = (1-s)^2(2+s)/k^2 = k^2(2+s)/(1+s)^2$`.
+    #[inline]
+    pub(super) fn sliding_closing(self) -> f64 {
+        let above = 1.0 + self.sine;
+        self.cosine * self.cosine * (2.0 + self.sine) / (above * above)
+    }
+}

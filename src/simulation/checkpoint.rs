@@ -1,0 +1,267 @@
+//! Checkpoints: a run as data, to go on with later, bit for bit.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use rand_xoshiro::Xoshiro256PlusPlus;
+use thiserror::Error;
+
+use super::bodies::{Bodies, Spin, Trajectory};
+use super::cells::{Cells, GridState};
+use super::engine::Simulation;
+use super::event::{Counters, Exit, Slot};
+use super::guard::Guard;
+use crate::Disk;
+use crate::boundary::{Boundary, Domain};
+use crate::collision::CollisionRule;
+use crate::scheduler::EventScheduler;
+
+/// First bytes of a checkpoint file.
+const MAGIC: [u8; 8] = *b"GRANEDMD";
+
+/// Version of the format that this crate writes and reads.
+const VERSION: u32 = 1;
+
+/// Magic, version, checksum.
+const HEADER: usize = 8 + 4 + 32;
+
+/// Everything that the future of a run depends on, except its rule and its walls.
+///
+/// A resumed run continues bit for bit, also under another scheduler. Written with a version and a checksum: a file that
+/// was cut, changed or made by another version is refused, never read as data.
+///
+/// ```
+/// use granular_edmd::boundary::Container;
+/// use granular_edmd::collision::Elastic;
+/// use granular_edmd::scheduler::LinearScan;
+/// use granular_edmd::simulation::{Checkpoint, Simulation};
+/// use granular_edmd::initial;
+///
+/// let container = Container::closed(20.0, 20.0)?;
+/// let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 50, 0.5)?, 1.0, 1)?;
+/// let mut first = Simulation::builder(Elastic, container.clone()).disks(disks).build()?;
+/// first.run_until(5.0, &mut ())?;
+///
+/// let bytes = first.checkpoint().to_bytes()?;
+/// let checkpoint = Checkpoint::from_bytes(&bytes)?;
+/// let mut second = Simulation::resume(&checkpoint, Elastic, container, LinearScan::default())?;
+///
+/// first.run_until(10.0, &mut ())?;
+/// second.run_until(10.0, &mut ())?;
+/// assert_eq!(first.disks(), second.disks());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Checkpoint {
+    disks: Vec<Disk>,
+    gravity: f64,
+    trajectories: Vec<Trajectory>,
+    spins: Vec<Spin>,
+    slots: Vec<Slot>,
+    grid: GridState,
+    domain: Domain,
+    generator: Xoshiro256PlusPlus,
+    origin: f64,
+    now: f64,
+    epoch_length: f64,
+    counters: Counters,
+    guard: Guard,
+}
+
+/// A checkpoint cannot be written, read or resumed.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum CheckpointError {
+    /// The file cannot be read or written.
+    #[error("the checkpoint file: {0}")]
+    Io(#[from] io::Error),
+    /// The file is something else.
+    #[error("this is not a checkpoint: it does not begin as one")]
+    NotACheckpoint,
+    /// Another version of the format.
+    #[error("the checkpoint has format version {found}; this crate reads version {known}")]
+    Version {
+        /// The version of the file.
+        found: u32,
+        /// The version that this crate reads.
+        known: u32,
+    },
+    /// The file was cut or changed.
+    #[error("the checkpoint is damaged: its checksum does not match")]
+    Damaged,
+    /// The contents cannot be decoded or encoded.
+    #[error("the checkpoint's contents: {0}")]
+    Contents(#[from] postcard::Error),
+    /// The contents do not make a state.
+    #[error("the checkpoint is inconsistent: {0}")]
+    Inconsistent(&'static str),
+    /// The walls are not those of the run that was saved.
+    #[error("the checkpoint is of a run in the domain {saved:?}; the boundary's is {given:?}")]
+    Domain {
+        /// The domain of the run that was saved.
+        saved: Domain,
+        /// The domain of the boundary given.
+        given: Domain,
+    },
+}
+
+impl Checkpoint {
+    /// The time at which it was taken.
+    pub fn time(&self) -> f64 {
+        self.origin + self.now
+    }
+
+    /// The checkpoint as bytes: magic, version, checksum, contents.
+    ///
+    /// # Errors
+    /// If it cannot be encoded.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, CheckpointError> {
+        let contents = postcard::to_stdvec(self)?;
+        let mut bytes = Vec::with_capacity(HEADER + contents.len());
+        bytes.extend_from_slice(&MAGIC);
+        bytes.extend_from_slice(&VERSION.to_le_bytes());
+        bytes.extend_from_slice(blake3::hash(&contents).as_bytes());
+        bytes.extend_from_slice(&contents);
+        Ok(bytes)
+    }
+
+    /// A checkpoint from bytes.
+    ///
+    /// # Errors
+    /// If they are not a checkpoint, of another version, cut, or changed.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
+        let rest = bytes.strip_prefix(&MAGIC).ok_or(CheckpointError::NotACheckpoint)?;
+        let (version, rest) = rest.split_first_chunk::<4>().ok_or(CheckpointError::Damaged)?;
+        let found = u32::from_le_bytes(*version);
+        if found != VERSION {
+            return Err(CheckpointError::Version { found, known: VERSION });
+        }
+        let (checksum, contents) = rest.split_first_chunk::<32>().ok_or(CheckpointError::Damaged)?;
+        if blake3::hash(contents) != blake3::Hash::from_bytes(*checksum) {
+            return Err(CheckpointError::Damaged);
+        }
+        Ok(postcard::from_bytes(contents)?)
+    }
+
+    /// Writes the checkpoint to a file, whole or not at all: a reader never sees half of it.
+    ///
+    /// # Errors
+    /// If the file cannot be written; a file of that name is then as it was.
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), CheckpointError> {
+        let path = path.as_ref();
+        let mut name = path.file_name().unwrap_or_default().to_owned();
+        name.push(format!(".{}.tmp", std::process::id()));
+        let temporary = path.with_file_name(name);
+        let written =
+            write_synced(&temporary, &self.to_bytes()?).and_then(|()| std::fs::rename(&temporary, path));
+        if written.is_err() {
+            // What is left of the attempt helps nobody; the first error is the one to tell.
+            let _ = std::fs::remove_file(&temporary);
+        }
+        Ok(written?)
+    }
+
+    /// Reads a checkpoint from a file.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or as [`Self::from_bytes`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, CheckpointError> {
+        Self::from_bytes(&std::fs::read(path)?)
+    }
+
+    /// That the numbers make a state which the engine can go on with.
+    fn check(&self, walls: usize) -> Result<(), CheckpointError> {
+        let count = self.disks.len();
+        let lengths = [self.trajectories.len(), self.spins.len(), self.slots.len(), self.grid.len()];
+        let check = |valid: bool, what| if valid { Ok(()) } else { Err(CheckpointError::Inconsistent(what)) };
+        check(lengths.iter().all(|&length| length == count), "its parts differ in length")?;
+        check(self.times().iter().all(|time| time.is_finite()), "a time is not finite")?;
+        check(self.epoch_length > 0.0 && self.now >= 0.0, "its epoch is out of order")?;
+        check(self.trajectories.iter().all(Trajectory::is_finite), "a trajectory is not finite")?;
+        check(self.spins.iter().all(Spin::is_valid), "a rotation is not finite")?;
+        check(self.slots.iter().all(|slot| is_valid(slot, count, walls)), "an event is of nobody, or never")?;
+        check(self.grid.is_valid(), "a disk is outside the neighbour cells")
+    }
+
+    fn times(&self) -> [f64; 4] {
+        [self.origin, self.now, self.epoch_length, self.gravity]
+    }
+}
+
+/// Whether an event has a time and partners.
+fn is_valid(slot: &Slot, disks: usize, walls: usize) -> bool {
+    let partner = slot.collision_due == f64::INFINITY || (slot.partner as usize) < disks;
+    let wall = if let Exit::Wall(wall) = slot.exit { usize::from(wall) < walls } else { true };
+    partner && wall && slot.collision_due >= 0.0 && slot.exit_due >= 0.0
+}
+
+fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = std::fs::OpenOptions::new().write(true).create_new(true).open(path)?;
+    file.write_all(bytes)?;
+    file.sync_all()
+}
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
+    /// The run as data.
+    pub fn checkpoint(&self) -> Checkpoint {
+        Checkpoint {
+            disks: self.bodies.disks().to_vec(),
+            gravity: self.bodies.gravity,
+            trajectories: self.bodies.trajectories.clone(),
+            spins: self.bodies.spins.clone(),
+            slots: self.slots.clone(),
+            grid: self.cells.state(),
+            domain: self.boundary.domain(),
+            generator: self.generator.clone(),
+            origin: self.origin,
+            now: self.now,
+            epoch_length: self.epoch_length,
+            counters: self.counters,
+            guard: self.guard,
+        }
+    }
+
+    /// A run that goes on where the checkpoint was taken, with its gravity, generator and counters.
+    ///
+    /// The rule and the boundary are not in it: give the same ones for the same future, or a new rule for a ramp. A boundary
+    /// with other walls that move otherwise is not noticed; use [`Self::set_boundary`] after resuming to change walls.
+    ///
+    /// # Errors
+    /// If the checkpoint is inconsistent, or its domain is not the boundary's.
+    pub fn resume(
+        checkpoint: &Checkpoint,
+        rule: R,
+        boundary: B,
+        scheduler: S,
+    ) -> Result<Self, CheckpointError> {
+        checkpoint.check(boundary.walls().len())?;
+        let (saved, given) = (checkpoint.domain, boundary.domain());
+        if saved != given {
+            return Err(CheckpointError::Domain { saved, given });
+        }
+        let Checkpoint { disks, gravity, trajectories, spins, grid, .. } = checkpoint.clone();
+        let bodies = Bodies::restored(disks, gravity, trajectories, spins);
+        let cells = Cells::restored(&boundary, bodies.largest_radius(), &grid);
+        Ok(Self::restored(rule, boundary, scheduler, bodies, cells, checkpoint))
+    }
+
+    fn restored(
+        rule: R,
+        boundary: B,
+        scheduler: S,
+        bodies: Bodies,
+        cells: Cells,
+        saved: &Checkpoint,
+    ) -> Self {
+        let mut run =
+            Self::idle(rule, boundary, scheduler, bodies, cells, saved.generator.clone(), saved.origin);
+        run.slots.clone_from(&saved.slots);
+        run.now = saved.now;
+        run.epoch_length = saved.epoch_length;
+        run.counters = saved.counters;
+        run.guard = saved.guard;
+        run.shift_epoch(0.0);
+        run
+    }
+}

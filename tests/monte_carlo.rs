@@ -1,0 +1,102 @@
+//! Promises of the Monte Carlo average that are not about physics: its bits, its stopping, its input.
+
+use granular_edmd::ParameterError;
+use granular_edmd::collision::{Contact, Frictional, Impulse, from_fn};
+use granular_edmd::kinetic::{IsoLine, Maxwellian, MonteCarlo, effective_inelasticity};
+
+type Outcome = Result<(), ParameterError>;
+
+/// The same with and without the feature `rayon`, which both runs of this test check.
+/// A change of these bits must be announced.
+#[test]
+fn average_keeps_its_bits() -> Outcome {
+    let (rule, gas) = (Frictional::new(0.1, 0.3)?, Maxwellian::new(1.0)?);
+    let estimate = MonteCarlo::new(2005).with_samples(100_000).mean_energy_change(&rule, &gas);
+    let bits = [estimate.mean(), estimate.standard_error(), estimate.sticking_fraction()].map(f64::to_bits);
+    assert_eq!(
+        bits,
+        [13_828_018_933_834_779_538, 4_543_448_201_738_013_212, 4_602_040_966_531_302_335],
+        "{estimate:?}"
+    );
+    assert_eq!(estimate.samples(), 102_400);
+    Ok(())
+}
+
+#[cfg(feature = "rayon")]
+#[test]
+fn average_does_not_depend_on_the_number_of_threads() -> Outcome {
+    let (rule, gas) = (Frictional::new(0.02, 0.5)?, Maxwellian::new(1.0)?);
+    let average = MonteCarlo::new(1).with_samples(300_000).with_standard_error(1e-9)?;
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| average.mean_energy_change(&rule, &gas))
+    };
+    assert_eq!(on(1), on(2));
+    assert_eq!(on(1), on(5));
+    Ok(())
+}
+
+#[test]
+fn average_stops_at_the_wanted_error_or_the_last_sample() -> Outcome {
+    let (rule, gas) = (Frictional::new(0.1, 0.3)?, Maxwellian::new(1.0)?);
+    let average = MonteCarlo::new(1);
+    let loose = average.with_standard_error(1e-2)?.mean_energy_change(&rule, &gas);
+    assert_eq!(loose.samples(), 1 << 16);
+    let tight = average.with_standard_error(3e-5)?.mean_energy_change(&rule, &gas);
+    assert!(tight.standard_error() <= 3e-5 && tight.samples() > loose.samples());
+    let short = average.with_standard_error(1e-12)?.with_samples(1 << 17).mean_energy_change(&rule, &gas);
+    assert!(short.standard_error() > 1e-12 && short.samples() == 1 << 17);
+    assert_eq!(average.with_samples(0).mean_energy_change(&rule, &gas).samples(), 4096);
+    Ok(())
+}
+
+#[test]
+fn seeds_differ() -> Outcome {
+    let (rule, gas) = (Frictional::new(0.1, 0.3)?, Maxwellian::new(1.0)?);
+    let [one, other] =
+        [1, 2].map(|seed| MonteCarlo::new(seed).with_samples(1).mean_energy_change(&rule, &gas));
+    assert_ne!(one.mean(), other.mean());
+    Ok(())
+}
+
+/// A rule that fails shows in the mean, and does not keep the average from ending.
+#[test]
+fn not_a_number_is_not_hidden() -> Outcome {
+    let broken = from_fn(|_: &Contact| Impulse::new(f64::NAN, 0.0));
+    let average = MonteCarlo::new(1).with_samples(1).with_standard_error(1e-3)?;
+    assert!(average.mean_energy_change(&broken, &Maxwellian::new(1.0)?).mean().is_nan());
+    Ok(())
+}
+
+#[test]
+fn parameters_without_a_meaning_are_refused() -> Outcome {
+    let gas = Maxwellian::new(1.0)?;
+    for bad in [0.0, -1.0, 1e31, f64::NAN, f64::INFINITY] {
+        assert!(Maxwellian::new(bad).is_err(), "{bad}");
+    }
+    for bad in [-1.0, 1e31, f64::NAN] {
+        assert!(gas.with_rotational_temperature(bad).is_err(), "{bad}");
+        assert!(MonteCarlo::new(1).with_standard_error(bad.min(0.0)).is_err(), "{bad}");
+    }
+    for bad in [0.1, f64::NAN, f64::NEG_INFINITY] {
+        assert!(IsoLine::new(bad, &gas).is_err() && effective_inelasticity(bad, 1.0).is_err(), "{bad}");
+    }
+    let line = IsoLine::new(-0.1, &gas)?;
+    assert!(line.inelasticities(-0.1).is_err() && line.inelasticities(f64::INFINITY).is_err());
+    assert!(line.trace(&[0.1, f64::NAN], 0.2).is_err() && line.trace(&[0.1], 0.6).is_err());
+    assert_eq!(line.trace(&[0.2, 0.1], 0.2).unwrap_err().name(), "friction");
+    assert_eq!(line.trace(&[], 0.2)?, Vec::<Vec<(f64, f64)>>::new());
+    Ok(())
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn a_gas_is_read_through_the_same_gate() -> Outcome {
+    let gas = Maxwellian::new(2.0)?.with_rotational_temperature(0.5)?;
+    let text = serde_json::to_string(&gas).unwrap();
+    assert_eq!(serde_json::from_str::<Maxwellian>(&text).unwrap(), gas);
+    for (good, bad) in [("2.0", "-2.0"), ("0.5,", "-0.5,"), ("masses", "mass"), ("[1.0,1.0]", "[1.0,0.0]")] {
+        assert!(serde_json::from_str::<Maxwellian>(&text.replacen(good, bad, 1)).is_err(), "{bad} in {text}");
+    }
+    Ok(())
+}
