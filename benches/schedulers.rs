@@ -3,6 +3,8 @@
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use granular_edmd::scheduler::{EventScheduler, LinearScan, TournamentTree};
 
+type New = fn() -> Box<dyn EventScheduler>;
+
 const EVENTS: usize = 1024;
 
 /// Times without order between 0 and 1.
@@ -22,7 +24,7 @@ fn events(criterion: &mut Criterion) {
     group.throughput(Throughput::Elements(EVENTS as u64));
     for count in [1_000, 100_000] {
         let due: Vec<f64> = (0..count).map(scattered).collect();
-        let schedulers: [(&str, fn() -> Box<dyn EventScheduler>); 2] = [
+        let schedulers: [(&str, New); 2] = [
             ("tournament_tree", || Box::new(TournamentTree::new())),
             ("linear_scan", || Box::new(LinearScan::default())),
         ];

@@ -42,9 +42,9 @@ fn a_lossy_ball_bounces_as_the_closed_form_says() {
     assert!((last - 12.727_922_061_358).abs() < 1e-11);
     let touches = touches(Smooth::from_restitution(r).unwrap(), ball(1.0), 0.0, last - 1e-4);
     assert!(touches.len() > 40, "{}", touches.len());
-    for (n, (time, speed)) in touches.into_iter().enumerate() {
-        let left = 2.0 * 2.0_f64.sqrt() * r.powi(n as i32 + 1) / (1.0 - r);
-        let closing = 2.0_f64.sqrt() * r.powi(n as i32);
+    for (n, (time, speed)) in (0..).zip(touches) {
+        let left = 2.0 * 2.0_f64.sqrt() * r.powi(n + 1) / (1.0 - r);
+        let closing = 2.0_f64.sqrt() * r.powi(n);
         // Heights are rounded by some 1e-14: the slower the ball, the more that is in time and speed.
         let tolerance = 1e-11 + 1e-13 / closing;
         assert!((last - time - left).abs() < tolerance, "{n}: {} {left}", last - time);
