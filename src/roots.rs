@@ -3,8 +3,8 @@
 /// The first time `$t\ge 0$` at which `$f(t) = f_0 + f_1 t + \tfrac12 f_2 t^2$` is not positive and falls.
 ///
 /// Stable event detection (Bannerman et al. 2014): a gap that is closed by rounding counts at once while it closes,
-/// never while it opens; a gap that cannot open again counts when it turns. Both roots are written so that nothing
-/// cancels.
+/// never while it opens; a gap that does not open again counts when it closes as fast as it opened, as if it had been
+/// closed exactly: a disk that bounces lower than rounding still bounces. Both roots are written so that nothing cancels.
 #[inline]
 pub(crate) fn first_descent(value: f64, rate: f64, acceleration: f64) -> Option<f64> {
     if value <= 0.0 && rate < 0.0 {
@@ -22,7 +22,7 @@ pub(crate) fn first_descent(value: f64, rate: f64, acceleration: f64) -> Option<
 fn descent_under_pull(value: f64, rate: f64, acceleration: f64) -> f64 {
     let discriminant = rate * rate - 2.0 * acceleration * value;
     if discriminant <= 0.0 {
-        return (-rate / acceleration).max(0.0);
+        return (-2.0 * rate / acceleration).max(0.0);
     }
     let root = discriminant.sqrt();
     if rate > 0.0 { (rate + root) / -acceleration } else { (2.0 * value / (root - rate)).max(0.0) }
@@ -40,7 +40,7 @@ mod tests {
         assert_eq!(first_descent(0.0, 0.0, 1.0), None);
         assert_eq!(first_descent(0.0, 0.0, -1.0), Some(0.0));
         assert_eq!(first_descent(0.0, 1.0, -1.0), Some(2.0));
-        assert_eq!(first_descent(-1.0, 1.0, -1.0), Some(1.0), "it never opens: it counts when it turns");
+        assert_eq!(first_descent(-1.0, 1.0, -1.0), Some(2.0), "it never opens: it counts when it is back");
     }
 
     proptest! {

@@ -55,7 +55,9 @@ fn perform(operation: &Operation, count: &mut usize, pair: [&mut dyn EventSchedu
     let (disk, due) = match operation {
         Operation::Reset(due) => {
             *count = due.len();
-            pair.into_iter().for_each(|scheduler| scheduler.reset(due));
+            for scheduler in pair {
+                scheduler.reset(due);
+            }
             return;
         }
         Operation::Set(disk, due) => (disk % (*count).max(1), *due),
@@ -65,7 +67,9 @@ fn perform(operation: &Operation, count: &mut usize, pair: [&mut dyn EventSchedu
         }
     };
     if disk < *count {
-        pair.into_iter().for_each(|scheduler| scheduler.set(disk, due));
+        for scheduler in pair {
+            scheduler.set(disk, due);
+        }
     }
 }
 

@@ -52,9 +52,12 @@ impl SampleTimes {
 
     /// On to the first time after `time`.
     pub(super) fn advance_past(&mut self, time: f64) {
+        // Twice as many at each further try: soon past, also where single intervals are lost in rounding.
+        let mut more = 1_u64;
         while self.next() <= time {
             let skipped = ((time - self.next()) / self.interval).floor().max(0.0);
-            self.intervals = self.intervals.saturating_add(1).saturating_add(skipped as u64);
+            self.intervals = self.intervals.saturating_add(more).saturating_add(skipped as u64);
+            more = more.saturating_mul(2);
         }
     }
 }

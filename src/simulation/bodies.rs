@@ -219,7 +219,7 @@ impl Bodies {
         }
     }
 
-    /// How far the epoch may be left behind: until a typical disk has gone some tens of diameters.
+    /// How far the epoch may be left behind: until a typical disk has gone, or fallen, some tens of diameters.
     ///
     /// A power of two, so that epochs add up without rounding.
     pub(super) fn epoch_length(&self) -> f64 {
@@ -227,7 +227,7 @@ impl Bodies {
         let Some(first) = self.disks.first() else { return 1.0 };
         let diameter = 2.0 * first.radius();
         let squares: f64 = self.trajectories.iter().map(|t| t.velocity.length_squared()).sum();
-        let speed = (squares / self.len() as f64).sqrt() + (self.gravity.abs() * diameter).sqrt();
+        let speed = (squares / self.len() as f64).sqrt() + (DIAMETERS * self.gravity.abs() * diameter).sqrt();
         let length = DIAMETERS * diameter / speed;
         if length.is_finite() && length > 0.0 {
             length.log2().floor().clamp(-900.0, 900.0).exp2()

@@ -130,8 +130,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
 pub(super) fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells, BuildError> {
     let positions: Vec<DVec2> = disks.iter().map(Disk::position).collect();
     let diameter = 2.0 * disks.iter().map(Disk::radius).fold(0.0, f64::max);
-    let diameter = if diameter > 0.0 { diameter } else { 1.0 };
     let domain = boundary.domain();
+    // Without disks any cells will do.
+    let diameter = if diameter > 0.0 { diameter } else { 0.125 * domain.width() };
     let too_small = BuildError::DomainTooSmall { width: domain.width(), height: domain.height(), diameter };
     Cells::new(boundary, diameter, PITCH, &positions).ok_or(too_small)
 }
@@ -160,7 +161,7 @@ pub(super) fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -
 }
 
 /// That no two disks overlap.
-fn check_overlaps<B: Boundary + ?Sized>(
+pub(super) fn check_overlaps<B: Boundary + ?Sized>(
     boundary: &B,
     disks: &[Disk],
     cells: &Cells,

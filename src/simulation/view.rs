@@ -1,6 +1,6 @@
 //! Running, watching and changing a simulation: its public face.
 
-use super::builder::{cells_for, check_inside};
+use super::builder::{cells_for, check_inside, check_overlaps};
 use super::engine::Simulation;
 use super::errors::{BuildError, RunError};
 use super::event::{Counters, Event};
@@ -139,6 +139,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let disks = self.disks();
         check_inside(&boundary, &disks)?;
         let cells = cells_for(&boundary, &disks)?;
+        check_overlaps(&boundary, &disks, &cells)?;
         self.shift_epoch(self.now);
         self.boundary = boundary;
         self.boundary.set_time_origin(self.origin);

@@ -24,4 +24,9 @@ impl WallMotion for Fixed {
     fn reach(&self) -> (f64, f64) {
         (0.0, 0.0)
     }
+
+    fn period(&self) -> Option<f64> {
+        // It repeats after any time: after the least, nothing is left of a late one, and no digit is lost to it.
+        Some(f64::MIN_POSITIVE)
+    }
 }

@@ -40,12 +40,15 @@ fn a_lossy_ball_bounces_as_the_closed_form_says() {
     let r: f64 = 0.8;
     let last = 2.0_f64.sqrt() * (1.0 + r) / (1.0 - r);
     assert!((last - 12.727_922_061_358).abs() < 1e-11);
-    let touches = touches(Smooth::from_restitution(r).unwrap(), ball(1.0), 0.0, last - 1e-6);
-    assert!(touches.len() > 70, "{}", touches.len());
-    for (n, (time, speed)) in touches.into_iter().enumerate() {
-        let left = 2.0 * 2.0_f64.sqrt() * r.powi(n as i32) / (1.0 - r);
-        assert!((last - time - left).abs() < 1e-12 * last * 10.0, "{n}: {} {left}", last - time);
-        assert!((speed / (2.0_f64.sqrt() * r.powi(n as i32)) - 1.0).abs() < 1e-6, "{n}: {speed}");
+    let touches = touches(Smooth::from_restitution(r).unwrap(), ball(1.0), 0.0, last - 1e-4);
+    assert!(touches.len() > 40, "{}", touches.len());
+    for (n, (time, speed)) in (0..).zip(touches) {
+        let left = 2.0 * 2.0_f64.sqrt() * r.powi(n + 1) / (1.0 - r);
+        let closing = 2.0_f64.sqrt() * r.powi(n);
+        // Heights are rounded by some 1e-14: the slower the ball, the more that is in time and speed.
+        let tolerance = 1e-11 + 1e-13 / closing;
+        assert!((last - time - left).abs() < tolerance, "{n}: {} {left}", last - time);
+        assert!((speed - closing).abs() < tolerance, "{n}: {speed} {closing}");
     }
 }
 
@@ -66,7 +69,7 @@ fn an_elastic_ball_bounces_for_ever_at_any_time() {
         for (n, collision) in log.0.iter().enumerate() {
             let expected = start + fall * (2.0 * n as f64 + 1.0);
             // Times are given in doubles: to their last digits, and no worse.
-            let tolerance = 1e-10 * (1.0 + n as f64).sqrt() + 2.0 * f64::EPSILON * expected.abs();
+            let tolerance = 1e-12 * (1.0 + expected - start) + 2.0 * f64::EPSILON * expected.abs();
             assert!(
                 (collision.time - expected).abs() < tolerance,
                 "{start} {n}: {} {expected}",
@@ -112,6 +115,11 @@ fn zeno_ends_the_run_and_contact_duration_saves_it() {
         Simulation::builder(rule(1e-300), open()).disks([ball(1.0)]).gravity(1.0).build().unwrap();
     assert!(stalled(simulation.run_until(10.0, &mut ()).unwrap_err()));
     assert!((simulation.disk(0).position().y - 0.5).abs() < 1e-9);
+
+    // Bounces lower than the rounding of a position are bounces still.
+    let mut low = Simulation::builder(rule(1e-6), open()).disks([ball(1.0)]).gravity(1.0).build().unwrap();
+    low.run_until(4.28, &mut ()).unwrap();
+    assert!(low.counters().contact_duration_collisions > 20_000);
 
     let mut saved = Simulation::builder(rule(1e-3), open()).disks([ball(1.0)]).gravity(1.0).build().unwrap();
     saved.run_until(20.0, &mut ()).unwrap();
