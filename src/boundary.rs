@@ -48,6 +48,8 @@ pub trait Boundary {
     fn set_time_origin(&mut self, origin: f64);
 
     /// Whether a disk with its centre in `region` can touch a wall; the engine asks [`Self::first_touch`] only there.
+    ///
+    /// Regions at the edge of the domain reach to infinity beyond it.
     fn may_touch(&self, region: &Region, radius: f64) -> bool;
 
     /// The first touch of this flight, not later than `until`.

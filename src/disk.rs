@@ -3,13 +3,16 @@
 use glam::DVec2;
 
 use crate::ParameterError;
-use crate::quantity::{accept, finite, positive};
+use crate::quantity::{accept, positive};
 
 /// Inertia factor of a homogeneous disk, `$\beta = 1/2$` in `$I = \beta m R^2$`.
 pub const HOMOGENEOUS: f64 = 0.5;
 
 /// Largest and smallest magnitude of a radius or mass: products of a few of them stay finite and normal.
 const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
+
+/// Largest magnitude of a component of a position or velocity, and of an angle or angular velocity.
+const LARGEST: f64 = 1e60;
 
 /// A rotating hard disk: position, velocity, angle, angular velocity, radius, mass and inertia factor.
 ///
@@ -44,10 +47,10 @@ impl Disk {
     /// A homogeneous disk of mass 1 at rest.
     ///
     /// # Errors
-    /// If the position is not finite, or the radius is not in `[1e-30, 1e30]`.
+    /// If the position is not finite or above 1e60 in magnitude, or the radius is not in `[1e-30, 1e30]`.
     pub fn new(position: DVec2, radius: f64) -> Result<Self, ParameterError> {
         Ok(Self {
-            position: finite_vector("position", position)?,
+            position: bounded_vector("position", position)?,
             velocity: DVec2::ZERO,
             angle: 0.0,
             angular_velocity: 0.0,
@@ -60,33 +63,33 @@ impl Disk {
     /// The same disk elsewhere.
     ///
     /// # Errors
-    /// If a component is not finite.
+    /// If a component is not finite, or above 1e60 in magnitude.
     pub fn with_position(self, position: DVec2) -> Result<Self, ParameterError> {
-        Ok(Self { position: finite_vector("position", position)?, ..self })
+        Ok(Self { position: bounded_vector("position", position)?, ..self })
     }
 
     /// The same disk with this velocity of its centre.
     ///
     /// # Errors
-    /// If a component is not finite.
+    /// If a component is not finite, or above 1e60 in magnitude.
     pub fn with_velocity(self, velocity: DVec2) -> Result<Self, ParameterError> {
-        Ok(Self { velocity: finite_vector("velocity", velocity)?, ..self })
+        Ok(Self { velocity: bounded_vector("velocity", velocity)?, ..self })
     }
 
     /// The same disk turned to this angle, in radians, counterclockwise.
     ///
     /// # Errors
-    /// If the angle is not finite.
+    /// If the angle is not finite, or above 1e60 in magnitude.
     pub fn with_angle(self, angle: f64) -> Result<Self, ParameterError> {
-        Ok(Self { angle: finite("angle", angle)?, ..self })
+        Ok(Self { angle: bounded("angle", angle)?, ..self })
     }
 
     /// The same disk with this angular velocity, in radians per time, counterclockwise.
     ///
     /// # Errors
-    /// If it is not finite.
+    /// If it is not finite, or above 1e60 in magnitude.
     pub fn with_angular_velocity(self, angular_velocity: f64) -> Result<Self, ParameterError> {
-        Ok(Self { angular_velocity: finite("angular velocity", angular_velocity)?, ..self })
+        Ok(Self { angular_velocity: bounded("angular velocity", angular_velocity)?, ..self })
     }
 
     /// The same disk with this mass.
@@ -175,8 +178,12 @@ fn scale(name: &'static str, value: f64) -> Result<f64, ParameterError> {
     accept(SCALE.contains(&value), name, "in [1e-30, 1e30]", value)
 }
 
-fn finite_vector(name: &'static str, vector: DVec2) -> Result<DVec2, ParameterError> {
-    Ok(DVec2::new(finite(name, vector.x)?, finite(name, vector.y)?))
+fn bounded(name: &'static str, value: f64) -> Result<f64, ParameterError> {
+    accept(value.abs() <= LARGEST, name, "finite and at most 1e60 in magnitude", value)
+}
+
+fn bounded_vector(name: &'static str, vector: DVec2) -> Result<DVec2, ParameterError> {
+    Ok(DVec2::new(bounded(name, vector.x)?, bounded(name, vector.y)?))
 }
 
 /// What a file holds, before it has passed the constructors.

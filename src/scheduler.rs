@@ -40,7 +40,7 @@ pub trait EventScheduler {
     /// The event of `disk` is now due at this time.
     fn set(&mut self, disk: usize, due: f64);
 
-    /// The disk whose event is due first, and when.
+    /// The disk whose event is due first, and when. It does not change the scheduler: what is lazy tidies up in `set`.
     fn earliest(&self) -> (usize, f64);
 }
 

@@ -17,6 +17,9 @@ use crate::scheduler::{EventScheduler, TournamentTree};
 /// Most disks that a simulation can hold.
 const MOST_DISKS: usize = 1 << 28;
 
+/// Most walls that a boundary can have.
+const MOST_WALLS: usize = 1 << 16;
+
 /// Overlap, relative to the diameter, that counts as touching: rounding of positions.
 const TOUCHING: f64 = 1e-10;
 
@@ -140,8 +143,11 @@ pub(super) fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> R
 /// Size of a cell in diameters of the largest disk: as small as can be costs the least, in dense and dilute states.
 const PITCH: f64 = 1.08;
 
-/// That all disks are inside the domain and none overlaps a wall.
+/// That the walls can be numbered, all disks are inside the domain and none overlaps a wall.
 pub(super) fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<(), BuildError> {
+    if boundary.walls().len() > MOST_WALLS {
+        return Err(BuildError::TooManyWalls { count: boundary.walls().len(), most: MOST_WALLS });
+    }
     let domain = boundary.domain();
     for (disk, state) in disks.iter().enumerate() {
         let (position, radius) = (state.position(), state.radius());

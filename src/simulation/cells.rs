@@ -44,8 +44,8 @@ pub(super) struct Cells {
 }
 
 /// The grid and where the disks are in it: what a checkpoint keeps.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg(feature = "serde")]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct GridState {
     layout: Layout,
     places: Vec<Place>,

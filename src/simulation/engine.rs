@@ -142,7 +142,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         observer: &mut O,
     ) -> Result<Event, RunError> {
         self.now = if due > self.epoch_length { self.move_epoch(due) } else { due };
-        if let Some(events) = self.guard.watch(self.now, self.epoch_length) {
+        if let Some(events) = self.guard.watch(self.now, self.epoch_length, self.slots.len()) {
             return Err(RunError::Stalled { time: self.time(), disk, events });
         }
         let slot = self.slots[disk];

@@ -19,6 +19,14 @@ pub enum BuildError {
         /// How many there may be.
         most: usize,
     },
+    /// The boundary has more walls than the engine can number.
+    #[error("{count} walls are too many: at most {most} are possible")]
+    TooManyWalls {
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        most: usize,
+    },
     /// A disk is outside the boundary's domain.
     #[error("disk {disk} at ({x}, {y}) is outside the domain")]
     Outside {
@@ -79,8 +87,8 @@ pub enum RunError {
     },
     /// Events pile up in vanishing time: inelastic collapse, or a disk that rests on a wall.
     #[error(
-        "{events} events without progress at time {time}, the last of disk {disk}: inelastic collapse, or a disk at \
-         rest on a wall; consider the rule ContactDuration"
+        "{events} events without progress at time {time}, the last of disk {disk}: inelastic collapse, which the rule \
+         ContactDuration prevents, or a disk at rest on a wall"
     )]
     Stalled {
         /// The present.

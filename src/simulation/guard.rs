@@ -1,7 +1,9 @@
 //! The guard against runs that cannot progress.
 
-/// Events allowed while time advances by less than [`RESOLUTION`] epochs.
+/// Events allowed while time advances by less than [`RESOLUTION`] epochs: so many, and as many more for each disk, since
+/// disks on a lattice may all have something to do at the same time.
 const PATIENCE: u64 = 200_000;
+const PATIENCE_PER_DISK: u64 = 20;
 
 /// Time that counts as progress, in epochs: some thousand units in the last place of a time offset.
 const RESOLUTION: f64 = 1.0 / (1u64 << 40) as f64;
@@ -15,14 +17,18 @@ pub(super) struct Guard {
 }
 
 impl Guard {
-    /// Takes note of an event; returns how many there were without progress, if too many.
+    /// Takes note of an event; returns how many there were without progress, if too many, and starts afresh: whoever
+    /// mends the cause may go on.
     #[inline]
-    pub(super) fn watch(&mut self, time_offset: f64, epoch_length: f64) -> Option<u64> {
+    pub(super) fn watch(&mut self, time_offset: f64, epoch_length: f64, disks: usize) -> Option<u64> {
         if time_offset - self.since > RESOLUTION * epoch_length {
             *self = Self { since: time_offset, events: 0 };
         }
         self.events += 1;
-        (self.events > PATIENCE).then_some(self.events)
+        if self.events > PATIENCE + PATIENCE_PER_DISK * disks as u64 {
+            return Some(std::mem::take(&mut self.events));
+        }
+        None
     }
 
     /// The epoch has moved.

@@ -29,7 +29,7 @@ fn boxed() -> Boxed {
     let rule: Box<dyn CollisionRule> = Box::new(Viscoelastic::new(0.05, 0.2).unwrap());
     let boundary: Box<dyn Boundary> = Box::new(drum());
     let scheduler: Box<dyn EventScheduler> = Box::new(LazyHeap::default());
-    Simulation::builder(rule, boundary).disks(disks()).gravity(0.2).scheduler(scheduler).build().unwrap()
+    Simulation::builder(rule, boundary).disks(disks()).gravity(0.02).scheduler(scheduler).build().unwrap()
 }
 
 fn every(interval: f64) -> SampleTimes {
@@ -40,7 +40,7 @@ fn every(interval: f64) -> SampleTimes {
 fn boxes_change_nothing() {
     let mut plain = Simulation::builder(Viscoelastic::new(0.05, 0.2).unwrap(), drum())
         .disks(disks())
-        .gravity(0.2)
+        .gravity(0.02)
         .build()
         .unwrap();
     plain.run_until(20.0, &mut ()).unwrap();
