@@ -13,14 +13,16 @@
 mod studies;
 
 use std::error::Error;
+use std::sync::Arc;
 
 use clap::Parser;
 use granular_edmd::study::{
     Axis, Base, Parameter, Protocol, Specification, SpecificationError, Study, System,
 };
+use kuva::plot::legend::LegendPosition;
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::figure::Figure;
-use kuva::render::layout::Layout;
+use kuva::render::layout::{Layout, TickFormat};
 use kuva::render::plots::Plot;
 
 /// Height of the centre of mass against friction (paper, Fig. 2).
@@ -33,7 +35,7 @@ struct Arguments {
     slip: bool,
 }
 
-/// Smallest friction of the picture, which is logarithmic: 0 is drawn as a line.
+/// The frictions of a full run.
 const FRICTIONS: [f64; 15] = [0.0, 0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 1.0, 2.0, 3.0, 6.0, 10.0];
 
 /// The frictions of a short run.
@@ -47,7 +49,7 @@ impl Arguments {
             .with_inelasticity(0.025)
             .with_contact_duration(1e-5);
         let (protocol, frictions) = if self.common.quick {
-            (Protocol::new(4_000, 60, 50), FEW_FRICTIONS.to_vec())
+            (Protocol::new(10_000, 200, 50), FEW_FRICTIONS.to_vec())
         } else {
             (Protocol::new(20_000, 1_000, 100), FRICTIONS.to_vec())
         };
@@ -93,6 +95,7 @@ fn print(points: &[Point]) {
 }
 
 fn figure(points: &[Point], slip: bool) -> Figure {
+    // The axis is logarithmic: no friction is a line.
     let drawn: Vec<&Point> = points.iter().filter(|point| point.friction > 0.0).collect();
     let places: Vec<(f64, f64)> = drawn.iter().map(|point| (point.friction, point.height)).collect();
     let line =
@@ -105,8 +108,13 @@ fn figure(points: &[Point], slip: bool) -> Figure {
         .with_legend("κ > 0");
     let mut plots = vec![Plot::Line(line), Plot::Scatter(dots)];
     if let Some(smooth) = points.iter().find(|point| point.friction == 0.0) {
-        let level = [(0.01, smooth.height), (10.0, smooth.height)];
-        let level = LinePlot::new().with_data(level).with_color("gray").with_dashed().with_legend("κ = 0");
+        let level = [(0.007, smooth.height), (14.0, smooth.height)];
+        let level = LinePlot::new()
+            .with_data(level)
+            .with_color("gray")
+            .with_stroke_width(1.2)
+            .with_dashed()
+            .with_legend("κ = 0");
         plots.push(Plot::Line(level));
     }
     let base = if slip { "base with slip" } else { "thermal base" };
@@ -115,8 +123,10 @@ fn figure(points: &[Point], slip: bool) -> Figure {
         .with_x_label("friction κ")
         .with_y_label("height of the centre of mass, in diameters")
         .with_log_x()
-        .with_x_axis_min(0.01)
-        .with_x_axis_max(10.0)
+        .with_x_tick_format(TickFormat::Custom(Arc::new(|value| value.to_string())))
+        .with_x_axis_min(0.007)
+        .with_x_axis_max(14.0)
+        .with_legend_position(LegendPosition::InsideBottomLeft)
         .with_y_axis_min(0.0)
         .with_show_grid(false)
         .with_box_axes();

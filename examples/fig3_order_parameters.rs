@@ -44,7 +44,8 @@ impl Arguments {
             .with_gravity(0.015_625)
             .with_contact_duration(1e-4);
         // The paper keeps each value for 100 000 oscillations, and draws all samples, those of the transient included.
-        let protocol = if self.common.quick { Protocol::new(0, 60, 20) } else { Protocol::new(0, 1000, 100) };
+        let protocol =
+            if self.common.quick { Protocol::new(0, 200, 50) } else { Protocol::new(0, 1000, 100) };
         let frictions = (1..=15).map(|step| f64::from(step) * STEP).collect();
         let course = if self.down { Course::UpAndDown } else { Course::Up };
         let ramp = Ramp::new(Parameter::Friction, frictions, course);
@@ -85,7 +86,7 @@ fn friction(record: &Record) -> f64 {
     record.system().get(Parameter::Friction).unwrap_or(f64::NAN)
 }
 
-/// Both order parameters, one above the other, in bins of equal friction.
+/// Both order parameters, one above the other, in bins of equal friction; bin `k` is centred at `k + 1`.
 fn figure(records: &[Record], study: &Study) -> Figure {
     let cycles = study.specification().protocol().cycles();
     let title = format!("g = 0.015625, q = 0, N = 1000; {cycles} oscillations for each value of κ");
@@ -100,18 +101,20 @@ fn figure(records: &[Record], study: &Study) -> Figure {
 fn panel(records: &[Record], quantity: fn(&Sample) -> f64, name: &str) -> (Vec<Plot>, Layout) {
     let samples = |(bin, record): (usize, &Record)| -> Vec<(f64, f64)> {
         let count = record.samples().len() as f64;
-        let place = |index: usize| bin as f64 + (index as f64 + 0.5) / count;
+        let place = |index: usize| bin as f64 + 0.5 + (index as f64 + 0.5) / count;
         record.samples().iter().enumerate().map(|(index, sample)| (place(index), quantity(sample))).collect()
     };
     let points: Vec<(f64, f64)> = records.iter().enumerate().flat_map(samples).collect();
     let dots = ScatterPlot::new().with_data(points).with_color("rgb(30,80,180)").with_size(1.1);
-    let edges = (1..records.len()).map(|edge| [(edge as f64, -0.25), (edge as f64, 0.25)]);
+    let edges = (1..records.len()).map(|edge| edge as f64 + 0.5).map(|edge| [(edge, -0.25), (edge, 0.25)]);
     let edge = |ends: [(f64, f64); 2]| {
         Plot::Line(LinePlot::new().with_data(ends).with_color("rgb(215,215,215)").with_stroke_width(0.8))
     };
     let mut plots: Vec<Plot> = edges.map(edge).collect();
     plots.push(Plot::Scatter(dots));
-    let layout = Layout::new((0.0, records.len() as f64), (-0.2, 0.2))
+    let layout = Layout::new((0.5, records.len() as f64 + 0.5), (-0.2, 0.2))
+        .with_x_axis_min(0.5)
+        .with_x_axis_max(records.len() as f64 + 0.5)
         .with_x_categories(records.iter().map(|record| format!("{:.3}", friction(record))).collect())
         .with_x_label("friction κ")
         .with_y_label(name)
