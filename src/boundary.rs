@@ -36,6 +36,11 @@ pub trait Boundary {
     /// The rectangle that holds the centres of all disks at all times.
     fn domain(&self) -> Domain;
 
+    /// A rectangle in the domain in which initial states are placed: without the reach of walls that move.
+    fn interior(&self) -> Domain {
+        self.domain()
+    }
+
     /// The names of the walls, in the order of their indices.
     fn walls(&self) -> &[&'static str];
 
@@ -60,6 +65,9 @@ pub trait Boundary {
 impl<T: Boundary + ?Sized> Boundary for Box<T> {
     fn domain(&self) -> Domain {
         (**self).domain()
+    }
+    fn interior(&self) -> Domain {
+        (**self).interior()
     }
     fn walls(&self) -> &[&'static str] {
         (**self).walls()

@@ -62,7 +62,7 @@ pub fn lattice<B: Boundary + ?Sized>(
     radius: f64,
 ) -> Result<Vec<Disk>, PlacementError> {
     positive("radius", radius)?;
-    let room = room(&boundary.domain(), radius);
+    let room = room(&boundary.interior(), radius);
     let spacings = (0..=40).map(|k| LOOSE + (CLOSE - LOOSE) * f64::from(k) / 40.0);
     let mut most = 0;
     for spacing in spacings {
@@ -76,16 +76,15 @@ pub fn lattice<B: Boundary + ?Sized>(
     Err(PlacementError::NoRoom { count, placed: most, radius })
 }
 
-/// The part of the domain where a centre may be; an open top stays open.
-fn room(domain: &Domain, radius: f64) -> Domain {
-    let side = if domain.periodic { 0.0 } else { radius };
+/// Where a centre may be; an open top stays open.
+fn room(interior: &Domain, radius: f64) -> Domain {
+    let side = if interior.periodic { 0.0 } else { radius };
     Domain {
-        left: domain.left + side,
-        right: domain.right - side,
-        // A wall that moves may be anywhere in its reach, which the domain counts on one side only.
-        bottom: domain.bottom + radius + 2.0 * (-domain.bottom).max(0.0),
-        top: domain.top - radius,
-        periodic: domain.periodic,
+        left: interior.left + side,
+        right: interior.right - side,
+        bottom: interior.bottom + radius,
+        top: interior.top - radius,
+        periodic: interior.periodic,
     }
 }
 
@@ -170,7 +169,7 @@ pub fn placed_at_random<B: Boundary + ?Sized>(
     let (count, mut placed) = (disks.len(), Vec::with_capacity(disks.len()));
     for disk in disks {
         let trial = (0..TRIALS).find_map(|_| {
-            let site = random_site(&boundary.domain(), disk.radius(), below, &mut generator);
+            let site = random_site(&boundary.interior(), disk.radius(), below, &mut generator);
             let inside = boundary.overlap(site, disk.radius(), 0.0).is_none();
             (inside && bins.is_free(site, disk.radius(), &placed)).then_some(site)
         });
@@ -183,9 +182,9 @@ pub fn placed_at_random<B: Boundary + ?Sized>(
     Ok(placed)
 }
 
-/// A place inside the domain.
-fn random_site(domain: &Domain, radius: f64, below: f64, generator: &mut Xoshiro256PlusPlus) -> DVec2 {
-    let room = room(domain, radius);
+/// A place inside.
+fn random_site(interior: &Domain, radius: f64, below: f64, generator: &mut Xoshiro256PlusPlus) -> DVec2 {
+    let room = room(interior, radius);
     let top = room.top.min(below - radius);
     DVec2::new(
         room.left + room.width() * uniform(generator),

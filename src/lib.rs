@@ -1,4 +1,55 @@
-//! Event-driven molecular dynamics of frictional, inelastic, rotating hard disks.
+//! Event-driven molecular dynamics of shaken granular matter: exact collisions, no time step, no soft springs.
+//!
+//! Inelastic hard disks that rotate and rub (normal and tangential restitution, static and dynamic friction) move under
+//! gravity in a box whose base vibrates or is a thermal wall, and are taken from collision to collision. The system is that
+//! of D. Risso, R. Soto, S. Godoy and P. Cordero, *Friction and convection in a vertically vibrated granular system*,
+//! Phys. Rev. E **72**, 011305 (2005), “the paper” throughout; rules, walls, boundaries, schedulers and observables
+//! are traits, for studies beyond it.
+//!
+//! ```
+//! use granular_edmd::prelude::*;
+//!
+//! // The paper's box, smaller: width 20, height 50, a base that vibrates with amplitude 0.1 and frequency 10.
+//! let base = BiParabolic::new(0.1, 10.0)?;
+//! let oscillation = std::f64::consts::TAU / base.angular_frequency();
+//! let container = Container::closed(20.0, 50.0)?.with_motion(Wall::Floor, base)?;
+//!
+//! // 100 disks of diameter 1, at first on a lattice, with inelasticity 0.01 and friction 0.1.
+//! let disks = initial::lattice(&container, 100, 0.5)?;
+//! let disks = initial::with_maxwellian_velocities(disks, 0.5, 42)?;
+//! let rule = ContactDuration::new(Frictional::new(0.01, 0.1)?, 1e-4)?;
+//! let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
+//!
+//! // Watch the convection rolls, the height and the energy loss for 100 oscillations.
+//! let mut series = Series::new((OrderParameters, CenterOfMass), SampleTimes::every(10.0 * oscillation)?);
+//! let mut energy = EnergyChange::default();
+//! simulation.run_until(100.0 * oscillation, &mut (&mut series, &mut energy))?;
+//!
+//! assert_eq!(series.values().len(), 10);
+//! assert!(energy.disks().mean() < 0.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Map
+//! | floor | what is there |
+//! |---|---|
+//! | [`study`] (feature `serde`) | studies as data: ramps, sweeps, records, resume |
+//! | [`analysis`] | convective states, clusters, transitions, errors of correlated samples |
+//! | [`kinetic`] | ⟨dE⟩ by closed form and Monte Carlo, effective inelasticity; needs no simulation |
+//! | [`simulation`] | the engine: builder, event loop, checkpoints |
+//! | [`observable`] | what is measured, and when |
+//! | [`scheduler`] | which event is next |
+//! | [`boundary`], [`wall`] | the walls around the disks, and how they move |
+//! | [`collision`] | what a collision does |
+//! | [`initial`], [`Disk`] | where everything starts |
+//!
+//! Imports run downward in this order only.
+//!
+//! # Features
+//! | feature | what it adds |
+//! |---|---|
+//! | `serde` | parameters that serialise through their validating constructors, checkpoints, studies |
+//! | `rayon` | Monte Carlo and sweeps on all cores, with the same bits |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -11,6 +62,7 @@ mod flight;
 pub mod initial;
 pub mod kinetic;
 pub mod observable;
+pub mod prelude;
 mod quantity;
 mod random;
 mod roots;

@@ -276,6 +276,7 @@ fn short_constant_and_bad_series() -> Outcome {
 
 #[test]
 fn re_entrance_is_found_both_ways() -> Outcome {
+    use TransitionLine::{OneTwoBeginning, OneTwoEnd, TwoCollapse, ZeroOne};
     // The states at q = 0, g = 1/64.
     let ramp = [
         (0.01, Conductive),
@@ -293,7 +294,6 @@ fn re_entrance_is_found_both_ways() -> Outcome {
     ];
     let found = transitions(ramp)?;
     let lines: Vec<_> = found.iter().map(|point| (point.line, point.rising)).collect();
-    use TransitionLine::{OneTwoBeginning, OneTwoEnd, TwoCollapse, ZeroOne};
     let expected = [
         (ZeroOne, true),
         (OneTwoBeginning, true),

@@ -58,8 +58,9 @@ impl BlockAverage {
 ///
 /// ```
 /// use granular_edmd::analysis::block_average;
-/// // 512 states that last for 16 samples each: 16 samples are worth one.
-/// let series: Vec<f64> = (0..8192_u64).map(|k| ((k / 16).wrapping_mul(2_654_435_761) % 1009) as f64).collect();
+/// // An uncorrelated sequence (the logistic map), each value held for 16 samples: 16 are worth one.
+/// let chaos = std::iter::successors(Some(0.3), |x| Some(4.0 * x * (1.0 - x)));
+/// let series: Vec<f64> = chaos.take(512).flat_map(|x| [x; 16]).collect();
 /// let average = block_average(&series)?;
 /// assert!(average.is_converged());
 /// assert!((average.correlated_samples() - 16.0).abs() < 6.0);

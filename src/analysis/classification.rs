@@ -47,8 +47,10 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 ///
 /// The `$3\sigma$` compare the centre of a cluster with *single* samples of a gas at rest, of which
 /// `$e^{-9/2} = 1.1\,\%$` are as far out. That the samples of a run are correlated does not enter, as it would with the
-/// error of the mean. Off the onset nothing depends on the number: in the paper's system rolls are 5 to 12 of these
-/// units strong. One roll is no pure `$\Psi_1$`: with `$\Psi_2 \approx 0.4\,|\Psi_1|$` it stays well off the diagonal.
+/// error of the mean. In the paper's system rolls are 5 to 12 `$\sigma$` strong, so that the number matters at the onset
+/// only. One roll is no pure `$\Psi_1$`: with `$\Psi_2 \approx 0.35\,|\Psi_1|$` it stays well off the diagonal.
+///
+/// A collapsed run keeps a weak, slow `$\Psi_2$` of 2 to 5 `$\sigma$`: its mean needs thousands of oscillations.
 ///
 /// ```
 /// use granular_edmd::analysis::{ConvectiveRegime, StateCriteria};

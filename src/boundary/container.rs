@@ -176,6 +176,11 @@ impl Container {
     fn retreat(&self, wall: Wall) -> f64 {
         self.index(wall).map_or(0.0, |index| -self.planes[index].reach().0.min(0.0))
     }
+
+    /// How far a wall can move inward.
+    fn advance(&self, wall: Wall) -> f64 {
+        self.index(wall).map_or(0.0, |index| self.planes[index].reach().1.max(0.0))
+    }
 }
 
 impl Boundary for Container {
@@ -185,6 +190,16 @@ impl Boundary for Container {
             right: self.width + self.retreat(Wall::Right),
             bottom: -self.retreat(Wall::Floor),
             top: self.height + self.retreat(Wall::Lid),
+            periodic: self.index(Wall::Left).is_none(),
+        }
+    }
+
+    fn interior(&self) -> Domain {
+        Domain {
+            left: self.advance(Wall::Left),
+            right: self.width - self.advance(Wall::Right),
+            bottom: self.advance(Wall::Floor),
+            top: self.height - self.advance(Wall::Lid),
             periodic: self.index(Wall::Left).is_none(),
         }
     }

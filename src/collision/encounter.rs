@@ -75,7 +75,7 @@ pub(crate) struct Outcome {
 }
 
 /// Two bodies meet, `normal` pointing from the second to the first.
-#[inline]
+#[inline(always)]
 pub(crate) fn meet<R: CollisionRule + ?Sized>(
     rule: &R,
     normal: DVec2,

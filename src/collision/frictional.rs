@@ -114,12 +114,11 @@ impl CollisionRule for Frictional {
         let normal = 2.0 * (1.0 - self.normal_inelasticity) * contact.normal_mass() * contact.closing_speed();
         let sticking =
             2.0 * (1.0 - self.tangential_inelasticity) * contact.tangential_mass() * contact.slip_speed();
-        if sticking.abs() < self.static_friction * normal {
-            Impulse::new(normal, sticking).with_regime(Regime::Sticking)
-        } else {
-            let sliding = (self.dynamic_friction * normal).copysign(sticking);
-            Impulse::new(normal, sliding).with_regime(Regime::Sliding)
-        }
+        let sliding = (self.dynamic_friction * normal).copysign(sticking);
+        // Selections, not a branch: which of the two it is, is a coin toss.
+        let sticks = sticking.abs() < self.static_friction * normal;
+        let tangential = if sticks { sticking } else { sliding };
+        Impulse::new(normal, tangential).with_regime(if sticks { Regime::Sticking } else { Regime::Sliding })
     }
 }
 

@@ -7,7 +7,8 @@ use crate::quantity::{finite, positive};
 /// Equally spaced times: a start, and a sample after each interval.
 ///
 /// The times are multiples, not sums, of the interval: the thousandth is as exact as the first. To sample at a fixed
-/// phase of a vibrating base take a number of its periods as interval and the phase as start.
+/// phase of a vibrating base take a number of its periods as interval and the phase as start. Compute the end of a run
+/// the same way (`count as f64 * interval`), or its last sample may lie one rounding behind the end.
 ///
 /// ```
 /// use granular_edmd::observable::SampleTimes;
@@ -19,7 +20,8 @@ use crate::quantity::{finite, positive};
 pub struct SampleTimes {
     start: f64,
     interval: f64,
-    taken: u64,
+    /// Intervals from the start to the next sample.
+    intervals: u64,
 }
 
 impl SampleTimes {
@@ -29,7 +31,7 @@ impl SampleTimes {
     /// If the interval is not finite and positive.
     pub fn every(interval: f64) -> Result<Self, ParameterError> {
         let interval = positive("sampling interval", interval)?;
-        Ok(Self { start: interval, interval, taken: 0 })
+        Ok(Self { start: 0.0, interval, intervals: 1 })
     }
 
     /// The same interval with the first sample at `start`.
@@ -37,19 +39,22 @@ impl SampleTimes {
     /// # Errors
     /// If the start is not finite.
     pub fn starting_at(self, start: f64) -> Result<Self, ParameterError> {
-        Ok(Self { start: finite("first sampling time", start)?, taken: 0, ..self })
+        Ok(Self { start: finite("first sampling time", start)?, intervals: 0, ..self })
     }
 
     /// The time of the next sample; infinite once the interval is lost in rounding.
     pub fn next(&self) -> f64 {
-        if self.taken == u64::MAX { f64::INFINITY } else { self.start + self.taken as f64 * self.interval }
+        if self.intervals == u64::MAX {
+            return f64::INFINITY;
+        }
+        self.start + self.intervals as f64 * self.interval
     }
 
     /// On to the first time after `time`.
     pub(super) fn advance_past(&mut self, time: f64) {
         while self.next() <= time {
             let skipped = ((time - self.next()) / self.interval).floor().max(0.0);
-            self.taken = self.taken.saturating_add(1 + skipped as u64);
+            self.intervals = self.intervals.saturating_add(1).saturating_add(skipped as u64);
         }
     }
 }

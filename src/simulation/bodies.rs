@@ -26,6 +26,12 @@ impl Trajectory {
     pub(super) fn at(&self, offset: f64) -> DVec2 {
         self.position + self.velocity * offset
     }
+
+    /// Position and velocity, for arithmetic on all four at once.
+    #[inline]
+    pub(super) fn row(&self) -> [f64; 4] {
+        [self.position.x, self.position.y, self.velocity.x, self.velocity.y]
+    }
 }
 
 #[cfg(feature = "serde")]

@@ -166,7 +166,7 @@ fn check_overlaps<B: Boundary + ?Sized>(
     cells: &Cells,
 ) -> Result<(), BuildError> {
     let domain = boundary.domain();
-    let mut found = vec![0; disks.len() + 1];
+    let mut found = vec![0; cells.room()];
     for first in 0..disks.len() {
         let count = cells.around(first, &mut found);
         for &second in found[..count].iter().filter(|&&second| (second as usize) < first) {

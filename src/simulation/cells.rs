@@ -14,31 +14,31 @@ const SPARE_CELLS: f64 = 4096.0;
 /// Least size of a cell in diameters: above 1 by more than rounding.
 const LEAST_PITCH: f64 = 1.000_001;
 
-/// A regular grid with, around it, a ring of cells that stay empty, so that every cell has eight neighbours.
+/// Disks that a cell has room for at first: no more equal disks have their centres in one cell of the usual size.
+const BLOCK: usize = 4;
+
+/// A grid of cells and, around it, a ring of ghost cells, so that every cell has eight neighbours in memory order.
 ///
-/// The disks of a cell form a linked list through `next` and `previous`. One array serves for the links of disks
-/// (index = disk), the end of all lists (index = number of disks) and the heads of the cells (after it), so that linking
-/// and unlinking need no branch.
+/// Ghosts are empty beyond walls; at periodic sides they mirror the cells of the opposite side. Every cell has the same
+/// number of slots, filled from the first on: cells are collected by copying all of their slots and going on behind the
+/// last that is taken, without a branch on how many those are.
 #[derive(Debug, Clone)]
 pub(super) struct Cells {
-    next: Vec<u32>,
-    previous: Vec<u32>,
+    slots: Vec<[u32; BLOCK]>,
+    /// Blocks of slots of a cell.
+    blocks: usize,
+    /// Slots taken in each cell.
+    counts: Vec<u32>,
     /// Column and row of each disk.
     places: Vec<Place>,
-    end: u32,
     /// Cells in a row of the grid, ring included.
     stride: u32,
-    rows: u32,
-    columns: u32,
-    /// `column_edges[c]` and `column_edges[c + 1]` bound column `c`, counted without the ring; infinite at walls.
+    /// `column_edges[c - 1]` and `column_edges[c]` bound column `c`; infinite at walls.
     column_edges: Vec<f64>,
     row_edges: Vec<f64>,
-    /// Columns to the left and right of each, with the ring; around the corner if the sides are periodic.
-    left_of: Vec<u32>,
-    right_of: Vec<u32>,
     /// Whether disks in a cell can touch a wall.
     at_wall: Vec<bool>,
-    /// What to add to `x` on leaving through the periodic sides.
+    /// Width of the domain if its sides are periodic, else 0.
     period: f64,
     layout: Layout,
 }
@@ -81,6 +81,7 @@ pub(super) struct Place {
 struct Layout {
     columns: u32,
     rows: u32,
+    /// Size of a cell; in an open container the rows grow from some height on.
     pitch: DVec2,
 }
 
@@ -88,8 +89,11 @@ impl Layout {
     /// The grid for `count` disks of at most this diameter; `None` if the domain is too small.
     fn new(domain: &Domain, diameter: f64, pitch: f64, count: usize, highest: f64) -> Option<Self> {
         let width = domain.width();
-        let height =
-            if domain.top.is_finite() { domain.height() } else { open_height(domain, highest, diameter) };
+        let height = if domain.top.is_finite() {
+            domain.height()
+        } else {
+            2.0 * open_height(domain, highest, diameter)
+        };
         let most = CELLS_PER_DISK * count as f64 + SPARE_CELLS;
         let pitch = (pitch * diameter).max((width * height / most).sqrt());
         let along = |length: f64, pitch: f64| (length / pitch).floor().max(1.0);
@@ -108,9 +112,9 @@ impl Layout {
     }
 }
 
-/// How high the grid of an open container reaches: its last row holds all that is above.
+/// How high the even part of the grid of an open container reaches.
 fn open_height(domain: &Domain, highest: f64, diameter: f64) -> f64 {
-    4.0 * (highest - domain.bottom).max(0.0) + 64.0 * diameter
+    2.0 * (highest - domain.bottom).max(0.0) + 64.0 * diameter
 }
 
 impl Cells {
@@ -124,14 +128,12 @@ impl Cells {
         positions: &[DVec2],
     ) -> Option<Self> {
         let domain = boundary.domain();
-        let count = positions.len();
         let highest = positions.iter().map(|p| p.y).fold(domain.bottom, f64::max);
-        let layout = Layout::new(&domain, diameter, pitch.max(LEAST_PITCH), count, highest)?;
-        let mut cells = Self::empty(&domain, &layout, count);
-        cells.mark_walls(boundary, 0.5 * diameter);
-        for (disk, position) in positions.iter().enumerate() {
-            cells.places[disk] = cells.place_of(*position, &domain, &layout);
-            cells.link(disk);
+        let layout = Layout::new(&domain, diameter, pitch.max(LEAST_PITCH), positions.len(), highest)?;
+        let mut cells = Self::empty(boundary, 0.5 * diameter, layout);
+        for &position in positions {
+            let place = cells.place_of(position);
+            cells.add(place);
         }
         Some(cells)
     }
@@ -143,11 +145,9 @@ impl Cells {
         largest_radius: f64,
         saved: &GridState,
     ) -> Self {
-        let mut cells = Self::empty(&boundary.domain(), &saved.layout, saved.places.len());
-        cells.mark_walls(boundary, largest_radius);
-        cells.places.clone_from(&saved.places);
-        for disk in 0..saved.places.len() {
-            cells.link(disk);
+        let mut cells = Self::empty(boundary, largest_radius, saved.layout);
+        for &place in &saved.places {
+            cells.add(place);
         }
         cells
     }
@@ -157,31 +157,29 @@ impl Cells {
         GridState { layout: self.layout, places: self.places.clone() }
     }
 
-    fn empty(domain: &Domain, layout: &Layout, count: usize) -> Self {
-        let (stride, height) = (layout.columns + 2, layout.rows + 2);
-        let cells = stride as usize * height as usize;
-        let end = count as u32;
-        Self {
-            next: vec![end; count + 1 + cells],
-            previous: vec![end; count + 1],
-            places: vec![Place { column: 1, row: 1 }; count],
-            end,
+    fn empty<B: Boundary + ?Sized>(boundary: &B, largest_radius: f64, layout: Layout) -> Self {
+        let domain = boundary.domain();
+        let stride = layout.columns + 2;
+        let count = stride as usize * (layout.rows as usize + 2);
+        let mut cells = Self {
+            slots: vec![[0; BLOCK]; count],
+            blocks: 1,
+            counts: vec![0; count],
+            places: Vec::new(),
             stride,
-            rows: layout.rows,
-            columns: layout.columns,
-            column_edges: edges(domain.left, layout.pitch.x, layout.columns, domain.periodic),
-            row_edges: edges(domain.bottom, layout.pitch.y, layout.rows, false),
-            left_of: neighbours(layout.columns, domain.periodic, |column| column.wrapping_sub(1)),
-            right_of: neighbours(layout.columns, domain.periodic, |column| column + 1),
-            at_wall: vec![false; cells],
+            column_edges: edges(domain.left, layout.pitch.x, layout.columns, !domain.periodic),
+            row_edges: row_edges(&domain, &layout),
+            at_wall: vec![false; count],
             period: if domain.periodic { domain.width() } else { 0.0 },
-            layout: *layout,
-        }
+            layout,
+        };
+        cells.mark_walls(boundary, largest_radius);
+        cells
     }
 
     fn mark_walls<B: Boundary + ?Sized>(&mut self, boundary: &B, largest_radius: f64) {
-        for row in 1..=self.rows {
-            for column in 1..=self.columns {
+        for row in 1..=self.layout.rows {
+            for column in 1..=self.layout.columns {
                 let place = Place { column, row };
                 let cell = self.index(place);
                 self.at_wall[cell] = boundary.may_touch(&self.region(place), largest_radius);
@@ -189,14 +187,12 @@ impl Cells {
         }
     }
 
-    fn place_of(&self, position: DVec2, domain: &Domain, layout: &Layout) -> Place {
-        let along = |offset: f64, pitch: f64, count: u32| {
-            1 + ((offset / pitch).floor().max(0.0) as u32).min(count - 1)
+    fn place_of(&self, position: DVec2) -> Place {
+        let along = |edges: &[f64], x: f64| {
+            let inner = &edges[1..edges.len() - 1];
+            1 + inner.partition_point(|&edge| edge <= x) as u32
         };
-        Place {
-            column: along(position.x - domain.left, layout.pitch.x, self.columns),
-            row: along(position.y - domain.bottom, layout.pitch.y, self.rows),
-        }
+        Place { column: along(&self.column_edges, position.x), row: along(&self.row_edges, position.y) }
     }
 
     #[inline]
@@ -231,132 +227,173 @@ impl Cells {
         self.period
     }
 
-    fn link(&mut self, disk: usize) {
-        let head = self.end as usize + 1 + self.index(self.places[disk]);
-        let first = self.next[head];
-        self.next[disk] = first;
-        self.previous[disk] = head as u32;
-        self.previous[first as usize] = disk as u32;
-        self.next[head] = disk as u32;
+    /// The next disk is in this cell.
+    fn add(&mut self, place: Place) {
+        self.places.push(place);
+        self.enter(self.places.len() - 1);
     }
 
-    fn unlink(&mut self, disk: usize) {
-        let (next, previous) = (self.next[disk], self.previous[disk]);
-        self.next[previous as usize] = next;
-        self.previous[next as usize] = previous;
+    /// The ghost that mirrors a cell at a periodic side, or the cell itself where there is none.
+    #[inline]
+    fn mirror(&self, place: Place) -> Place {
+        let Layout { columns, .. } = self.layout;
+        match place.column {
+            1 if self.period > 0.0 => Place { column: columns + 1, ..place },
+            column if column == columns && self.period > 0.0 => Place { column: 0, ..place },
+            _ => place,
+        }
+    }
+
+    /// Writes a disk into its cell and the ghost of that.
+    #[inline]
+    fn enter(&mut self, disk: usize) {
+        let place = self.places[disk];
+        let cell = self.index(place);
+        if self.counts[cell] as usize == self.blocks * BLOCK {
+            self.grow();
+        }
+        self.push(cell, disk);
+        let mirror = self.index(self.mirror(place));
+        if mirror != cell {
+            self.push(mirror, disk);
+        }
+    }
+
+    /// The slots of a cell.
+    #[inline]
+    fn cell(&mut self, cell: usize) -> &mut [u32] {
+        let start = cell * self.blocks;
+        self.slots[start..start + self.blocks].as_flattened_mut()
+    }
+
+    #[inline]
+    fn push(&mut self, cell: usize, disk: usize) {
+        let count = self.counts[cell];
+        self.cell(cell)[count as usize] = disk as u32;
+        self.counts[cell] = count + 1;
+    }
+
+    /// Takes a disk out of its cell and the ghost of that.
+    #[inline]
+    fn leave(&mut self, disk: usize) {
+        let place = self.places[disk];
+        let cell = self.index(place);
+        self.remove(cell, disk);
+        let mirror = self.index(self.mirror(place));
+        if mirror != cell {
+            self.remove(mirror, disk);
+        }
+    }
+
+    /// The last disk of the cell takes the place of the one that leaves.
+    #[inline]
+    fn remove(&mut self, cell: usize, disk: usize) {
+        self.counts[cell] -= 1;
+        let count = self.counts[cell] as usize;
+        let slots = self.cell(cell);
+        let last = slots[count];
+        for slot in slots {
+            *slot = if *slot == disk as u32 { last } else { *slot };
+        }
+    }
+
+    /// Twice as many slots in every cell.
+    #[cold]
+    fn grow(&mut self) {
+        let mut slots = vec![[0; BLOCK]; 2 * self.slots.len()];
+        for (old, new) in self.slots.chunks_exact(self.blocks).zip(slots.chunks_exact_mut(2 * self.blocks)) {
+            new[..self.blocks].copy_from_slice(old);
+        }
+        self.slots = slots;
+        self.blocks *= 2;
     }
 
     /// Takes a disk to the cell that it leaves for; returns what that adds to its `x`.
     #[inline]
     pub(super) fn cross(&mut self, disk: usize, exit: Exit) -> f64 {
-        self.unlink(disk);
+        self.leave(disk);
+        let columns = self.layout.columns;
+        let (right, up) = exit.direction();
         let place = &mut self.places[disk];
+        place.column = place.column.wrapping_add_signed(right);
+        place.row = place.row.wrapping_add_signed(up);
         let mut shift = 0.0;
-        match exit {
-            Exit::Left => {
-                shift = if place.column == 1 { self.period } else { 0.0 };
-                place.column = self.left_of[place.column as usize];
-            }
-            Exit::Right => {
-                shift = if place.column == self.columns { -self.period } else { 0.0 };
-                place.column = self.right_of[place.column as usize];
-            }
-            Exit::Down => place.row -= 1,
-            Exit::Up => place.row += 1,
-            Exit::Stay | Exit::Wall(_) => {}
+        if place.column == 0 {
+            (place.column, shift) = (columns, self.period);
+        } else if place.column > columns {
+            (place.column, shift) = (1, -self.period);
         }
-        self.link(disk);
+        self.enter(disk);
         shift
+    }
+
+    /// Room that [`Self::around`] and [`Self::ahead`] need.
+    #[inline]
+    pub(super) fn room(&self) -> usize {
+        self.places.len() + self.blocks * BLOCK
     }
 
     /// Writes the disks in the nine cells around `disk` (itself included) to `found`; returns how many.
     #[inline]
     pub(super) fn around(&self, disk: usize, found: &mut [u32]) -> usize {
-        let place = self.places[disk];
-        let columns = self.columns_around(place);
+        let centre = self.index(self.places[disk]);
+        let stride = self.stride as usize;
         let mut count = 0;
-        for row in [place.row - 1, place.row, place.row + 1] {
-            count = self.gather_heads(row, columns, found, count);
+        for first in [centre - stride - 1, centre - 1, centre + stride - 1] {
+            count = self.gather(first, 1, found, count);
         }
-        self.follow_links(found, count)
+        count
     }
 
     /// The same for the three cells that come within reach after `disk` has left its cell by `exit`.
     #[inline]
     pub(super) fn ahead(&self, disk: usize, exit: Exit, found: &mut [u32]) -> usize {
-        let Place { column, row } = self.places[disk];
-        let rows = [row - 1, row, row + 1];
-        let count = match exit {
-            Exit::Left => self.gather_column(rows, self.left_of[column as usize], found),
-            Exit::Right => self.gather_column(rows, self.right_of[column as usize], found),
-            Exit::Down => self.gather_heads(row - 1, self.columns_around(self.places[disk]), found, 0),
-            Exit::Up => self.gather_heads(row + 1, self.columns_around(self.places[disk]), found, 0),
-            Exit::Stay | Exit::Wall(_) => 0,
-        };
-        self.follow_links(found, count)
+        let (right, up) = exit.direction();
+        let stride = self.stride as usize;
+        let middle = self
+            .index(self.places[disk])
+            .wrapping_add_signed(right as isize + up as isize * stride.cast_signed());
+        let step = if up == 0 { stride } else { 1 };
+        self.gather(middle - step, step, found, 0)
     }
 
-    #[inline]
-    fn columns_around(&self, place: Place) -> [u32; 3] {
-        let column = place.column as usize;
-        [self.left_of[column], place.column, self.right_of[column]]
-    }
-
-    #[inline]
-    fn head(&self, column: u32, row: u32) -> u32 {
-        self.next[self.end as usize + 1 + self.index(Place { column, row })]
-    }
-
-    #[inline]
-    fn gather_heads(&self, row: u32, columns: [u32; 3], found: &mut [u32], mut count: usize) -> usize {
-        for column in columns {
-            let head = self.head(column, row);
-            found[count] = head;
-            count += usize::from(head != self.end);
-        }
-        count
-    }
-
-    #[inline]
-    fn gather_column(&self, rows: [u32; 3], column: u32, found: &mut [u32]) -> usize {
-        let mut count = 0;
-        for row in rows {
-            let head = self.head(column, row);
-            found[count] = head;
-            count += usize::from(head != self.end);
-        }
-        count
-    }
-
-    /// Appends what follows in each list: breadth first, without a branch on where a list ends.
-    #[inline]
-    fn follow_links(&self, found: &mut [u32], mut count: usize) -> usize {
-        let mut visited = 0;
-        while visited < count {
-            let next = self.next[found[visited] as usize];
-            found[count] = next;
-            count += usize::from(next != self.end);
-            visited += 1;
+    /// Appends the disks of three cells.
+    #[inline(always)]
+    fn gather(&self, first: usize, step: usize, found: &mut [u32], mut count: usize) -> usize {
+        for cell in [first, first + step, first + 2 * step] {
+            if self.blocks == 1 {
+                // A copy of known length is one load and one store.
+                found[count..count + BLOCK].copy_from_slice(&self.slots[cell]);
+            } else {
+                let slots = self.slots[cell * self.blocks..(cell + 1) * self.blocks].as_flattened();
+                found[count..count + slots.len()].copy_from_slice(slots);
+            }
+            count += self.counts[cell] as usize;
         }
         count
     }
 }
 
-fn edges(start: f64, pitch: f64, count: u32, open: bool) -> Vec<f64> {
+fn edges(start: f64, pitch: f64, count: u32, walls: bool) -> Vec<f64> {
     let mut edges: Vec<f64> = (0..=count).map(|k| start + f64::from(k) * pitch).collect();
-    if !open {
+    if walls {
         edges[0] = f64::NEG_INFINITY;
         edges[count as usize] = f64::INFINITY;
     }
     edges
 }
 
-/// The neighbour of each column in a direction; the ring, or around the corner, at the ends.
-fn neighbours(columns: u32, periodic: bool, step: impl Fn(u32) -> u32) -> Vec<u32> {
-    let wrap = |column: u32| match column {
-        0 if periodic => columns,
-        c if c == columns + 1 && periodic => 1,
-        c => c,
-    };
-    (0..columns + 2).map(|column| wrap(step(column)).min(columns + 1)).collect()
+/// Edges of the rows. In an open container the upper half of them grows in proportion to the height: however high a disk
+/// flies, it does not share its cell with all others that are high.
+fn row_edges(domain: &Domain, layout: &Layout) -> Vec<f64> {
+    const GROWTH: f64 = 1.1;
+    let mut edges = edges(domain.bottom, layout.pitch.y, layout.rows, true);
+    if domain.top.is_infinite() {
+        let even = (layout.rows as usize / 2).max(1);
+        for row in even + 1..edges.len() - 1 {
+            let height = edges[row - 1] - domain.bottom.min(edges[row - 1]);
+            edges[row] = edges[row - 1] + (height * (GROWTH - 1.0)).max(layout.pitch.y);
+        }
+    }
+    edges
 }

@@ -7,7 +7,7 @@ use super::cells::Cells;
 use super::errors::RunError;
 use super::event::{Counters, Event, Exit, Slot};
 use super::guard::Guard;
-use super::prediction::{Earliest, LANES, cell_exit, earliest_collision};
+use super::prediction::{Earliest, LANES, cell_exit, earliest_collision, stays_inside};
 use super::resolution::{Meeting, NotFinite, by_contact_duration, resolve_pair, resolve_wall};
 use crate::boundary::{Boundary, Container};
 use crate::collision::{CollisionRule, Frictional};
@@ -59,6 +59,8 @@ pub struct Simulation<R = Frictional, B = Container, S = TournamentTree> {
     pub(super) guard: Guard,
     /// Room for the neighbours of one disk.
     found: Vec<u32>,
+    /// Room for the times of all disks.
+    due: Vec<f64>,
     /// Room for the disks of one snapshot.
     pub(super) copies: Vec<Disk>,
 }
@@ -103,15 +105,17 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             now: 0.0,
             counters: Counters::default(),
             guard: Guard::default(),
-            found: vec![0; count + LANES],
+            found: Vec::new(),
+            due: Vec::new(),
             copies: Vec::new(),
         }
     }
 
     /// Predicts every disk's next event from the present state alone.
     pub(super) fn predict_all(&mut self) {
-        let due = vec![f64::INFINITY; self.slots.len()];
-        self.scheduler.reset(&due);
+        self.due.clear();
+        self.due.resize(self.slots.len(), f64::INFINITY);
+        self.scheduler.reset(&self.due);
         for disk in 0..self.slots.len() {
             self.predict(disk);
         }
@@ -218,6 +222,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.bodies.trajectories[disk].position.x += self.cells.cross(disk, exit);
         let slot = self.slots[disk];
         let known = Earliest { due: slot.collision_due, partner: slot.partner };
+        self.make_room();
         let count = self.cells.ahead(disk, exit, &mut self.found);
         let earliest = earliest_collision(
             &self.bodies,
@@ -234,6 +239,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Finds the next event of a disk among all its neighbours.
     #[inline]
     pub(super) fn predict(&mut self, disk: usize) {
+        self.make_room();
         let count = self.cells.around(disk, &mut self.found);
         let earliest = earliest_collision(
             &self.bodies,
@@ -247,9 +253,18 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.schedule(disk, earliest, true);
     }
 
+    /// Keeps the room for neighbours in step with the cells, which may have grown.
+    #[inline]
+    fn make_room(&mut self) {
+        let room = self.cells.room() + LANES;
+        if self.found.len() < room {
+            self.found.resize(room, 0);
+        }
+    }
+
     #[inline]
     fn schedule(&mut self, disk: usize, earliest: Earliest, new_partner: bool) {
-        let (exit_due, exit) = self.exit(disk);
+        let (exit_due, exit) = self.exit(disk, earliest.due);
         let partner_collisions = if new_partner {
             self.slots.get(earliest.partner as usize).map_or(0, |slot| slot.collisions)
         } else {
@@ -265,19 +280,26 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.scheduler.set(disk, due);
     }
 
-    /// When the flight of a disk in its cell ends, and how.
+    /// When the flight of a disk in its cell ends, and how; never, if its next collision surely comes first.
     #[inline]
-    fn exit(&self, disk: usize) -> (f64, Exit) {
+    fn exit(&self, disk: usize, collision_due: f64) -> (f64, Exit) {
+        let flight = self.flight(disk);
+        let region = self.cells.region(self.cells.place(disk));
+        let at_wall = self.cells.is_at_wall(disk);
+        // Where disks crowd this spares two divisions and a root for nearly every prediction (5 % of a dense run).
+        if !at_wall && stays_inside(&region, &flight, collision_due) {
+            return (f64::INFINITY, Exit::Stay);
+        }
+        let (due, exit) = cell_exit(&region, &flight, self.bodies.gravity);
+        if at_wall { self.wall_or(due, exit, &flight) } else { (due, exit) }
+    }
+
+    #[inline]
+    fn flight(&self, disk: usize) -> Flight {
+        let acceleration = glam::DVec2::new(0.0, -self.bodies.gravity);
         let (position, velocity) =
             (self.bodies.position(disk, self.now), self.bodies.velocity(disk, self.now));
-        let region = self.cells.region(self.cells.place(disk));
-        let (due, exit) = cell_exit(&region, position, velocity, self.bodies.gravity, self.now);
-        if self.cells.is_at_wall(disk) {
-            let radius = self.bodies.material(disk).radius;
-            let acceleration = glam::DVec2::new(0.0, -self.bodies.gravity);
-            return self.wall_or(due, exit, &Flight::new(self.now, position, velocity, acceleration, radius));
-        }
-        (due, exit)
+        Flight::new(self.now, position, velocity, acceleration, self.bodies.material(disk).radius)
     }
 
     /// The first touch of a wall, if that comes before the disk leaves its cell.
@@ -310,7 +332,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.now -= by;
         self.guard.shift(by);
         self.boundary.set_time_origin(self.origin);
-        let due: Vec<f64> = self.slots.iter().map(Slot::due).collect();
-        self.scheduler.reset(&due);
+        self.due.clear();
+        self.due.extend(self.slots.iter().map(Slot::due));
+        self.scheduler.reset(&self.due);
     }
 }

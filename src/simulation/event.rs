@@ -62,6 +62,16 @@ pub(super) enum Exit {
     Wall(u16),
 }
 
+impl Exit {
+    /// Columns to the right and rows up; computed, since a branch on it would be a toss of a coin with four sides.
+    #[inline]
+    pub(super) fn direction(self) -> (i32, i32) {
+        let right = i32::from(self == Self::Right) - i32::from(self == Self::Left);
+        let up = i32::from(self == Self::Up) - i32::from(self == Self::Down);
+        (right, up)
+    }
+}
+
 /// The next event of a disk: with the earliest partner known, or the end of its flight in its cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::bodies::Bodies;
 use super::event::Exit;
+use crate::Flight;
 use crate::boundary::Region;
 
 /// Pairs that are predicted side by side.
@@ -68,6 +69,39 @@ impl Pairs {
     }
 }
 
+/// The earliest collision found in each lane.
+#[derive(Debug, Clone, Copy)]
+struct Best {
+    due: [f64; LANES],
+    partner: [u64; LANES],
+}
+
+impl Best {
+    #[inline]
+    fn new(known: Earliest) -> Self {
+        Self { due: [known.due; LANES], partner: [u64::from(known.partner); LANES] }
+    }
+
+    /// Takes what is earlier; of equal times the smaller partner.
+    #[inline]
+    fn improve(&mut self, due: [f64; LANES], partners: &[u32]) {
+        for lane in 0..LANES {
+            let partner = u64::from(partners[lane]);
+            let better = (due[lane] < self.due[lane])
+                | ((due[lane] == self.due[lane]) & (partner < self.partner[lane]));
+            self.due[lane] = if better { due[lane] } else { self.due[lane] };
+            self.partner[lane] = if better { partner } else { self.partner[lane] };
+        }
+    }
+
+    /// The earliest of all lanes.
+    #[inline]
+    fn earliest(&self) -> Earliest {
+        let rank = |lane: usize| Earliest { due: self.due[lane], partner: self.partner[lane] as u32 }.rank();
+        Earliest::from_rank((1..LANES).fold(rank(0), |first, lane| first.min(rank(lane))))
+    }
+}
+
 /// The shortest way around periodic sides; `period` is 0 if there are none.
 #[inline]
 pub(super) fn nearest_image(x: f64, period: f64) -> f64 {
@@ -90,9 +124,8 @@ pub(super) fn earliest_collision(
     now: f64,
     known: Earliest,
 ) -> Earliest {
-    let filled = count.next_multiple_of(LANES);
-    candidates[count..filled].fill(disk as u32);
-    let candidates = &candidates[..filled];
+    candidates[count..count + LANES].copy_from_slice(&[disk as u32; LANES]);
+    let candidates = &candidates[..count.next_multiple_of(LANES)];
     match (bodies.common_diameter(), period == 0.0) {
         (Some(diameter), true) => scan(bodies, disk, candidates, now, known, |_| diameter, |x| x),
         (Some(diameter), false) => {
@@ -116,37 +149,48 @@ fn scan(
     contact: impl Fn(usize) -> f64,
     image: impl Fn(f64) -> f64,
 ) -> Earliest {
-    let mine = bodies.trajectories[disk];
-    let here = mine.at(now);
-    let mut rank = known.rank();
+    let mine = bodies.trajectories[disk].row();
+    let mut best = Best::new(known);
     for lanes in candidates.chunks_exact(LANES) {
+        let rows: [[f64; 4]; LANES] = std::array::from_fn(|lane| {
+            let other = bodies.trajectories[lanes[lane] as usize].row();
+            std::array::from_fn(|k| other[k] - mine[k])
+        });
         let mut pairs = Pairs::default();
+        for (lane, [x, y, velocity_x, velocity_y]) in rows.into_iter().enumerate() {
+            pairs.x[lane] = x;
+            pairs.y[lane] = y;
+            pairs.velocity_x[lane] = velocity_x;
+            pairs.velocity_y[lane] = velocity_y;
+        }
         for (lane, &candidate) in lanes.iter().enumerate() {
-            let other = &bodies.trajectories[candidate as usize];
-            let there = other.at(now);
-            pairs.x[lane] = image(there.x - here.x);
-            pairs.y[lane] = there.y - here.y;
-            pairs.velocity_x[lane] = other.velocity.x - mine.velocity.x;
-            pairs.velocity_y[lane] = other.velocity.y - mine.velocity.y;
+            pairs.x[lane] = image(pairs.x[lane] + pairs.velocity_x[lane] * now);
+            pairs.y[lane] += pairs.velocity_y[lane] * now;
             let contact = contact(candidate as usize);
             pairs.contact_squared[lane] = contact * contact;
         }
-        for (wait, &partner) in pairs.wait().into_iter().zip(lanes) {
-            rank = rank.min(Earliest { due: now + wait, partner }.rank());
-        }
+        best.improve(pairs.wait().map(|wait| now + wait), lanes);
     }
-    Earliest::from_rank(rank)
+    best.earliest()
+}
+
+/// Whether a disk surely stays in its cell until `due`.
+///
+/// A parabola lies between its chord and its tangent: where the end of both is inside, all of it is.
+#[inline]
+pub(super) fn stays_inside(region: &Region, flight: &Flight, due: f64) -> bool {
+    let start = flight.position(flight.time());
+    let tangent = start + flight.velocity(flight.time()) * (due - flight.time());
+    let end = flight.position(due);
+    let inside = |point: DVec2| point.cmpge(region.min) & point.cmple(region.max);
+    (inside(tangent) & inside(end)).all()
 }
 
 /// When and through which edge a disk leaves its cell, gravity pulling down.
-#[inline]
-pub(super) fn cell_exit(
-    region: &Region,
-    position: DVec2,
-    velocity: DVec2,
-    gravity: f64,
-    now: f64,
-) -> (f64, Exit) {
+#[inline(always)]
+pub(super) fn cell_exit(region: &Region, flight: &Flight, gravity: f64) -> (f64, Exit) {
+    let now = flight.time();
+    let (position, velocity) = (flight.position(now), flight.velocity(now));
     let rightward = velocity.x > 0.0;
     let distance = if rightward { region.max.x - position.x } else { position.x - region.min.x };
     let (sideways, side) = (distance / velocity.x.abs(), if rightward { Exit::Right } else { Exit::Left });
@@ -164,19 +208,19 @@ pub(super) fn cell_exit(
 }
 
 /// The same in one dimension, for a disk at these distances from the edges and gravity pulling it back from `far`.
-#[inline]
+#[inline(always)]
 fn vertical_exit(above: f64, below: f64, velocity: f64, gravity: f64, far: Exit, near: Exit) -> (f64, Exit) {
     let (above, below) = (above.max(0.0), below.max(0.0));
     let square = velocity * velocity;
     let reserve = square - 2.0 * gravity * above;
     let rises = (velocity > 0.0) & (reserve > 0.0);
     let root = if rises { reserve } else { square + 2.0 * gravity * below }.sqrt();
-    let wait = if rises {
-        2.0 * above / (velocity + root)
-    } else if velocity > 0.0 {
-        (velocity + root) / gravity
-    } else {
-        2.0 * below / (root - velocity)
-    };
+    // Up to the far edge, up and down again through the near one, or straight down: one division, no branch.
+    let upward = velocity > 0.0;
+    let numerator = if rises { 2.0 * above } else { 2.0 * below };
+    let numerator = if upward & !rises { velocity + root } else { numerator };
+    let denominator = if rises { velocity + root } else { root - velocity };
+    let denominator = if upward & !rises { gravity } else { denominator };
+    let wait = numerator / denominator;
     (wait, if rises { far } else { near })
 }

@@ -38,7 +38,7 @@ impl Approach {
 ///
 /// On a piece with acceleration at most `$a_{max}$` the gap is never below the parabola with that acceleration: the
 /// search steps to its root, where the gap is still open, and repeats until the gap is closed. One step is exact
-/// where the acceleration is constant; elsewhere the steps shrink quadratically. No contact is ever stepped over. A
+/// where the acceleration is constant; elsewhere the steps shrink quadratically, down to the rounding of the gap. No contact is ever stepped over. A
 /// gap that is closed at the start counts only while it closes.
 ///
 /// ```
@@ -95,13 +95,23 @@ impl<M: WallMotion + ?Sized> Search<'_, M> {
         if gap <= tolerance && rate < 0.0 {
             return Step::Touch(time);
         }
+        if !exact {
+            return Step::Open(Self::still_open(time, gap.abs() + tolerance, rate, pull).min(bounds.until));
+        }
         match first_descent(gap, rate, pull) {
-            Some(wait) if exact && time + wait <= bounds.until => Step::Touch(time + wait),
-            Some(wait) if !exact => {
-                Step::Open((time + wait.max(shortest(tolerance, pull))).min(bounds.until))
-            }
+            Some(wait) if time + wait <= bounds.until => Step::Touch(time + wait),
             _ => Step::Open(bounds.until),
         }
+    }
+
+    /// A time, later than this one, until which the gap cannot have closed by more than `room`.
+    ///
+    /// The room is the gap and its rounding: each step makes way, and the last ends in a gap closed by rounding.
+    fn still_open(time: f64, room: f64, rate: f64, pull: f64) -> f64 {
+        if room.is_nan() {
+            return f64::INFINITY;
+        }
+        first_descent(room, rate, pull).map_or(f64::INFINITY, |wait| (time + wait).max(time.next_up()))
     }
 
     /// Bounds of the acceleration; a motion that breaks its contract and names no later end costs accuracy, not a hang.
@@ -114,11 +124,7 @@ impl<M: WallMotion + ?Sized> Search<'_, M> {
     /// Gaps below this are closed: rounding of the lengths, and of the time at this speed.
     fn tolerance(&self, time: f64, rate: f64) -> f64 {
         let (low, high) = self.motion.reach();
-        ROUNDING * (low.abs().max(high.abs()) + rate.abs() * time.abs())
+        let lengths = low.abs().max(high.abs()) + self.approach.height.abs();
+        ROUNDING * (lengths + rate.abs() * time.abs())
     }
-}
-
-/// The shortest step: one in which a gap cannot close by more than its own rounding.
-fn shortest(tolerance: f64, pull: f64) -> f64 {
-    if pull < 0.0 { (tolerance / -pull).sqrt() } else { 0.0 }
 }

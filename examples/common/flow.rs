@@ -1,0 +1,78 @@
+//! The mean flow on a grid.
+
+use granular_edmd::boundary::Domain;
+use granular_edmd::glam::DVec2;
+use granular_edmd::observable::Snapshot;
+
+/// Rows beyond which nothing is kept: without a lid a disk may fly high.
+const MOST_ROWS: usize = 2000;
+
+/// Mean velocity of the disks on a grid of square cells, each disk counting once a snapshot.
+#[derive(Debug, Clone)]
+pub(crate) struct Flow {
+    domain: Domain,
+    columns: usize,
+    cells: Vec<Cell>,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Cell {
+    count: u64,
+    velocities: DVec2,
+}
+
+/// The mean velocity at the centre of a cell.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Arrow {
+    pub(crate) position: DVec2,
+    pub(crate) velocity: DVec2,
+}
+
+impl Flow {
+    /// No flow yet, on a grid of this many columns.
+    pub(crate) fn new(domain: Domain, columns: usize) -> Self {
+        Self { domain, columns: columns.max(1), cells: Vec::new() }
+    }
+
+    /// Length of the side of a cell.
+    pub(crate) fn pitch(&self) -> f64 {
+        self.domain.width() / self.columns as f64
+    }
+
+    /// Counts the disks of a snapshot.
+    pub(crate) fn add(&mut self, snapshot: &Snapshot<'_>) {
+        for disk in snapshot.disks() {
+            if let Some(index) = self.index(disk.position()) {
+                if index >= self.cells.len() {
+                    self.cells.resize(index + 1, Cell::default());
+                }
+                self.cells[index].count += 1;
+                self.cells[index].velocities += disk.velocity();
+            }
+        }
+    }
+
+    fn index(&self, position: DVec2) -> Option<usize> {
+        let offset = (position - DVec2::new(self.domain.left, self.domain.bottom)) / self.pitch();
+        let (column, row) = (offset.x.max(0.0) as usize, offset.y.max(0.0) as usize);
+        (row < MOST_ROWS).then(|| row * self.columns + column.min(self.columns - 1))
+    }
+
+    /// The arrows of the cells that hold at least this share of what the fullest cell holds.
+    pub(crate) fn arrows(&self, share: f64) -> Vec<Arrow> {
+        let most = self.cells.iter().map(|cell| cell.count).max().unwrap_or(0);
+        let enough = (share * most as f64).max(1.0);
+        let seen = self.cells.iter().enumerate().filter(|(_, cell)| cell.count as f64 >= enough);
+        seen.map(|(index, cell)| Arrow {
+            position: self.centre(index),
+            velocity: cell.velocities / cell.count as f64,
+        })
+        .collect()
+    }
+
+    fn centre(&self, index: usize) -> DVec2 {
+        let (row, column) = (index / self.columns, index % self.columns);
+        let corner = DVec2::new(self.domain.left, self.domain.bottom);
+        corner + self.pitch() * DVec2::new(column as f64 + 0.5, row as f64 + 0.5)
+    }
+}

@@ -1,0 +1,192 @@
+//! The picture: the disks with the mean flow over them, and the series beside them.
+
+use granular_edmd::Disk;
+use kuva::plot::quiver::QuiverPivot;
+use kuva::prelude::{Layout, LinePlot, Plot, QuiverPlot, ScatterPlot};
+
+use crate::arguments::{Arguments, Base, Sides};
+use crate::common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
+use crate::experiment::{Outcome, Sample};
+use crate::report::Means;
+
+const HEADER: f64 = 76.0;
+const FOOTER: f64 = 8.0;
+const HEIGHT: f64 = 720.0;
+const SERIES_WIDTH: f64 = 540.0;
+
+/// Space between a panel's edge and its axes: left, right, top, bottom.
+const MARGINS: [f64; 4] = [58.0, 12.0, 20.0, 44.0];
+
+/// Cells that hold less than this share of what the fullest cell holds show no arrow.
+const ENOUGH: f64 = 0.1;
+
+/// The picture as a PNG file.
+pub(crate) fn draw(arguments: &Arguments, outcome: &Outcome) -> Result<Vec<u8>, String> {
+    let view = View::of(arguments, &outcome.disks);
+    let width = view.place.width + SERIES_WIDTH;
+    let mut sheet = Sheet::new(width + 10.0, HEADER + HEIGHT + FOOTER);
+    write_header(&mut sheet, arguments, outcome);
+    sheet.panel(view.place, MARGINS, disks_and_flow(&view, outcome), view.layout());
+    draw_series(&mut sheet, view.place.width, arguments, outcome);
+    sheet.png(1.6)
+}
+
+/// The part of the box that is shown, and how large.
+struct View {
+    width: f64,
+    height: f64,
+    /// Length of a diameter on the sheet.
+    unit: f64,
+    place: Place,
+}
+
+impl View {
+    fn of(arguments: &Arguments, disks: &[Disk]) -> Self {
+        let highest = disks.iter().map(|disk| disk.position().y + disk.radius()).fold(0.0, f64::max);
+        let height = arguments.height.0.unwrap_or(f64::INFINITY).min(1.04 * highest);
+        let [left, right, top, bottom] = MARGINS;
+        let unit = ((HEIGHT - top - bottom) / height).min(620.0 / arguments.width);
+        let size = (unit * arguments.width + left + right, unit * height + top + bottom);
+        let place = Place { x: 0.0, y: HEADER + HEIGHT - size.1, width: size.0, height: size.1 };
+        Self { width: arguments.width, height, unit, place }
+    }
+
+    fn layout(&self) -> Layout {
+        let axes = sheet::axes((0.0, self.width), (0.0, self.height)).with_show_grid(false).with_box_axes();
+        axes.with_x_label("x").with_y_label("height")
+    }
+}
+
+fn disks_and_flow(view: &View, outcome: &Outcome) -> Vec<Plot> {
+    let centers = || outcome.disks.iter().map(|disk| (disk.position().x, disk.position().y));
+    let radius = |disk: &Disk| disk.radius() * view.unit;
+    let rims = ScatterPlot::new().with_data(centers()).with_color("#8d96a0");
+    let rims = rims.with_sizes(outcome.disks.iter().map(radius));
+    let faces = ScatterPlot::new().with_data(centers()).with_colors(colors(&outcome.disks));
+    let faces =
+        faces.with_sizes(outcome.disks.iter().map(|disk| (0.86 * radius(disk)).max(radius(disk) - 0.5)));
+    vec![rims.into(), faces.into(), arrows(outcome).into()]
+}
+
+/// Blue for disks that rotate clockwise, red for the others; full colour at twice the root mean square.
+fn colors(disks: &[Disk]) -> Vec<String> {
+    let square = disks.iter().map(|disk| disk.angular_velocity().powi(2)).sum::<f64>() / disks.len() as f64;
+    let full = 2.0 * square.sqrt().max(f64::MIN_POSITIVE);
+    disks.iter().map(|disk| sheet::diverging(disk.angular_velocity() / full)).collect()
+}
+
+/// The mean flow; the longest arrow is a little longer than a cell.
+fn arrows(outcome: &Outcome) -> QuiverPlot {
+    let arrows = outcome.flow.arrows(ENOUGH);
+    let scale = 1.1 * outcome.flow.pitch() / fastest(outcome).max(f64::MIN_POSITIVE);
+    let arrows = arrows.iter().map(|arrow| {
+        (arrow.position.x, arrow.position.y, scale * arrow.velocity.x, scale * arrow.velocity.y)
+    });
+    let plot = QuiverPlot::new().with_arrows(arrows).with_scale(1.0).with_pivot(QuiverPivot::Middle);
+    let plot = plot.with_color(INK).with_shaft_width(2.2).with_clip_to_plot_area();
+    plot.with_head_ratio(0.36).with_head_min_px(3.0).with_head_max_px(13.0)
+}
+
+fn fastest(outcome: &Outcome) -> f64 {
+    outcome.flow.arrows(ENOUGH).iter().map(|arrow| arrow.velocity.length()).fold(0.0, f64::max)
+}
+
+fn write_header(sheet: &mut Sheet, arguments: &Arguments, outcome: &Outcome) {
+    let Arguments { disks, width, gravity, inelasticity, friction, .. } = arguments;
+    let verdict = Means::of(outcome).verdict(arguments);
+    let title = format!("{disks} disks after {} oscillations: {verdict}", arguments.oscillations);
+    let base = match arguments.base {
+        Base::Thermal(temperature) => format!("thermal base T₀ = {temperature}"),
+        base => format!("{base} base A = {}, ω = {}", arguments.amplitude, arguments.omega),
+    };
+    let top = arguments.height.0.map_or("open above".to_owned(), |height| format!("{height} high"));
+    let sides = if arguments.sides == Sides::Periodic { ", periodic sides" } else { "" };
+    let box_and_base = format!(
+        "box {width} wide, {top}{sides}    {base}    gravity g = {gravity}    inelasticity q = {inelasticity}    \
+         friction κ = {friction}"
+    );
+    let legend = format!(
+        "disks: coloured by their spin, blue clockwise, red counterclockwise    \
+         arrows: mean velocity in the second half, the longest {:.2}",
+        fastest(outcome)
+    );
+    sheet.text(MARGINS[0], 28.0, 20, INK, &title);
+    sheet.text(MARGINS[0], 48.0, 12, QUIET, &box_and_base);
+    sheet.text(MARGINS[0], 66.0, 12, QUIET, &legend);
+}
+
+/// One panel of series: what it shows, under which names, and how high it is.
+struct Panel {
+    label: &'static str,
+    share: f64,
+    series: Vec<Series>,
+}
+
+/// One line: its colour, its name, its values.
+struct Series(&'static str, &'static str, fn(&Sample) -> f64);
+
+fn panels() -> [Panel; 3] {
+    let order = vec![
+        Series(BLUE, "Ψ₁ one roll", |sample| sample.order.one_roll),
+        Series(ORANGE, "Ψ₂ two rolls", |sample| sample.order.two_rolls),
+    ];
+    let height = vec![Series(INK, "center of mass", |sample| sample.center_of_mass_height)];
+    let energies = vec![
+        Series(BLUE, "translation", |sample| sample.energies.translational),
+        Series(GREEN, "rotation", |sample| sample.energies.rotational),
+    ];
+    [
+        Panel { label: "order parameters", share: 0.46, series: order },
+        Panel { label: "height", share: 0.26, series: height },
+        Panel { label: "energy per disk", share: 0.28, series: energies },
+    ]
+}
+
+/// The series, one panel above the other.
+fn draw_series(sheet: &mut Sheet, left: f64, arguments: &Arguments, outcome: &Outcome) {
+    let noise = 2.0 * Means::of(outcome).noise(arguments.disks);
+    let mut top = HEADER;
+    for (index, panel) in panels().iter().enumerate() {
+        let place = Place { x: left, y: top, width: SERIES_WIDTH, height: panel.share * HEIGHT };
+        let mut plots: Vec<Plot> = panel.series.iter().map(|series| line(&outcome.samples, series)).collect();
+        if index == 0 {
+            plots.insert(0, noise_band(arguments, noise));
+        }
+        let (mut layout, mut margins) = (series_layout(&plots, arguments, panel.label), MARGINS);
+        if index < 2 {
+            margins[3] = 28.0;
+        } else {
+            layout = layout.with_x_label("oscillations");
+        }
+        sheet.panel(place, margins, plots, layout);
+        let names: Vec<_> = panel.series.iter().map(|series| (series.0, series.1)).collect();
+        sheet.key(left + MARGINS[0] + 4.0, top + 14.0, &names);
+        top += place.height;
+    }
+}
+
+fn line(samples: &[Sample], Series(color, _, quantity): &Series) -> Plot {
+    let points = samples.iter().map(|sample| (sample.oscillation as f64, quantity(sample)));
+    LinePlot::new().with_data(points).with_color(*color).with_stroke_width(1.6).into()
+}
+
+/// Where the order parameters of a gas without flow would be.
+fn noise_band(arguments: &Arguments, noise: f64) -> Plot {
+    let ends = [0.0, arguments.oscillations as f64];
+    let line = LinePlot::new().with_data(ends.map(|x| (x, 0.0))).with_color("#b9c0c8").with_stroke_width(1.0);
+    line.with_band([-noise, -noise], [noise, noise]).into()
+}
+
+fn series_layout(plots: &[Plot], arguments: &Arguments, label: &str) -> Layout {
+    let axes = sheet::axes((0.0, arguments.oscillations as f64), range(plots));
+    axes.with_y_label(label)
+}
+
+/// The range of all values with a little air.
+fn range(plots: &[Plot]) -> (f64, f64) {
+    let ranges = plots.iter().filter_map(Plot::bounds).map(|(_, y)| y);
+    let (low, high) =
+        ranges.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(y.0), high.max(y.1)));
+    let air = 0.08 * (high - low).max(1e-9);
+    (low - air, high + air)
+}

@@ -1,0 +1,76 @@
+//! A boundary.
+
+use granular_edmd::Flight;
+use granular_edmd::boundary::{Boundary, Domain, Region, Response, Surface, Touch};
+use granular_edmd::glam::DVec2;
+
+use crate::polynomial::first_descent;
+use crate::viscoelastic::Viscoelastic;
+
+/// A circular drum about the origin that turns about its axis.
+#[derive(Debug, Clone, Copy)]
+pub struct Drum {
+    radius: f64,
+    angular_velocity: f64,
+    rule: Option<Viscoelastic>,
+}
+
+impl Drum {
+    pub fn new(radius: f64) -> Self {
+        Self { radius, angular_velocity: 0.0, rule: None }
+    }
+
+    pub fn turning(self, angular_velocity: f64) -> Self {
+        Self { angular_velocity, ..self }
+    }
+
+    pub fn with_rule(self, rule: Viscoelastic) -> Self {
+        Self { rule: Some(rule), ..self }
+    }
+}
+
+impl Boundary for Drum {
+    fn domain(&self) -> Domain {
+        let radius = self.radius;
+        Domain { left: -radius, right: radius, bottom: -radius, top: radius, periodic: false }
+    }
+
+    fn walls(&self) -> &[&'static str] {
+        &["drum"]
+    }
+
+    fn set_time_origin(&mut self, _: f64) {}
+
+    fn may_touch(&self, region: &Region, radius: f64) -> bool {
+        let farthest = region.min.abs().max(region.max.abs());
+        farthest.length() + radius >= self.radius
+    }
+
+    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+        let start = flight.time();
+        let (r, v, a) = (flight.position(start), flight.velocity(start), flight.acceleration());
+        let free = self.radius - flight.radius();
+        // What is left of the square of the radius, as a polynomial of the time.
+        let gap = [
+            (free - r.length()) * (free + r.length()),
+            -2.0 * r.dot(v),
+            -(v.length_squared() + r.dot(a)),
+            -v.dot(a),
+            -0.25 * a.length_squared(),
+        ];
+        let wait = first_descent(&gap, until - start)?;
+        Some(Touch { time: start + wait, wall: 0 })
+    }
+
+    fn surface(&self, _wall: usize, position: DVec2, _time: f64) -> Surface<'_> {
+        let outward = position.normalize_or(DVec2::Y);
+        let velocity = self.angular_velocity * self.radius * outward.perp();
+        let response = self.rule.as_ref().map_or(Response::Shared, |rule| Response::Rule(rule));
+        Surface { normal: -outward, velocity, response }
+    }
+
+    fn overlap(&self, position: DVec2, radius: f64, _time: f64) -> Option<(usize, f64)> {
+        let depth = position.length() + radius - self.radius;
+        (depth > 0.0).then_some((0, depth))
+    }
+}

@@ -1,0 +1,10 @@
+//! What a user of the library brings along: a rule, a wall motion, a scheduler, an observable, observers and a boundary
+//! of one's own, written against the public API alone.
+
+pub mod angular_momentum;
+pub mod drum;
+pub mod hardest_impacts;
+pub mod lazy_heap;
+pub mod polynomial;
+pub mod two_sines;
+pub mod viscoelastic;

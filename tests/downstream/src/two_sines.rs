@@ -1,0 +1,36 @@
+//! A wall motion.
+
+use granular_edmd::wall::{AccelerationBounds, WallMotion, WallState};
+
+/// The sum of two sines whose frequencies need not fit together: it has no period, and all that it says of its
+/// acceleration is a bound for all times.
+#[derive(Debug, Clone, Copy)]
+pub struct TwoSines {
+    pub amplitudes: [f64; 2],
+    pub frequencies: [f64; 2],
+}
+
+impl TwoSines {
+    fn sum(&self, term: impl Fn(f64, f64) -> f64) -> f64 {
+        self.amplitudes.iter().zip(&self.frequencies).map(|(&a, &w)| term(a, w)).sum()
+    }
+}
+
+impl WallMotion for TwoSines {
+    fn state(&self, time: f64) -> WallState {
+        WallState {
+            displacement: self.sum(|a, w| a * (w * time).sin()),
+            velocity: self.sum(|a, w| a * w * (w * time).cos()),
+        }
+    }
+
+    fn acceleration(&self, _time: f64) -> AccelerationBounds {
+        let most = self.sum(|a, w| a.abs() * w * w);
+        AccelerationBounds { until: f64::INFINITY, min: -most, max: most }
+    }
+
+    fn reach(&self) -> (f64, f64) {
+        let most = self.sum(|a, _| a.abs());
+        (-most, most)
+    }
+}

@@ -1,0 +1,59 @@
+//! The same inputs give the same bits: under every scheduler, whoever watches, and however a run is cut.
+
+use granular_edmd::observable::{CollisionCounts, EnergyChange, OrderParameters, SampleTimes, Series};
+use granular_edmd::scheduler::{EventScheduler, LinearScan, TournamentTree};
+use proptest::prelude::*;
+
+use crate::setups::{config, history, setup};
+
+const DURATION: f64 = 4.0;
+
+proptest! {
+    #![proptest_config(config(60))]
+
+    #[test]
+    fn schedulers_agree(setup in setup()) {
+        let end = setup.start + DURATION;
+        let ours = history(setup.builder().scheduler(TournamentTree::new()).build().unwrap(), end);
+        let slow = history(setup.builder().scheduler(LinearScan::default()).build().unwrap(), end);
+        prop_assert_eq!(&ours, &slow);
+        let boxed: Box<dyn EventScheduler> = Box::new(LinearScan::default());
+        prop_assert_eq!(&ours, &history(setup.builder().scheduler(boxed).build().unwrap(), end));
+    }
+
+    #[test]
+    fn watching_changes_nothing(setup in setup(), interval in 0.01..0.5f64) {
+        let end = setup.start + DURATION;
+        let mut alone = setup.simulation();
+        alone.run_until(end, &mut ()).unwrap();
+        let times = SampleTimes::every(interval).unwrap().starting_at(setup.start).unwrap();
+        let mut series = Series::new(OrderParameters, times);
+        let mut watched = setup.simulation();
+        let mut others = (EnergyChange::default(), CollisionCounts::since(setup.start));
+        watched.run_until(end, &mut (&mut series, &mut others.0, &mut others.1)).unwrap();
+        prop_assert_eq!(alone.disks(), watched.disks());
+        prop_assert_eq!(alone.counters(), watched.counters());
+        let samples = (0..).map_while(|k| Some(setup.start + f64::from(k) * interval).filter(|&t| t <= end));
+        prop_assert_eq!(series.times(), samples.collect::<Vec<_>>());
+        prop_assert_eq!(others.1.disks(), watched.counters().collisions);
+        prop_assert_eq!(others.1.walls(), watched.counters().wall_collisions);
+    }
+
+    #[test]
+    fn a_run_in_pieces_is_the_run(setup in setup(), cuts in prop::collection::vec(0.0..DURATION, 0..20)) {
+        let end = setup.start + DURATION;
+        let mut whole = setup.simulation();
+        whole.run_until(end, &mut ()).unwrap();
+        let mut pieces = setup.simulation();
+        let mut cuts = cuts;
+        cuts.sort_by(f64::total_cmp);
+        for cut in cuts {
+            let stop = setup.start + cut;
+            pieces.run_until(stop, &mut ()).unwrap();
+            pieces.run_until(stop, &mut ()).unwrap();
+        }
+        pieces.run_until(end, &mut ()).unwrap();
+        prop_assert_eq!(whole.disks(), pieces.disks());
+        prop_assert_eq!(whole.counters(), pieces.counters());
+    }
+}

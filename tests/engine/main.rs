@@ -1,0 +1,12 @@
+//! The engine: the same bits whoever watches and schedules, exact balances, closed forms, an independent simulation by
+//! brute force, and clear errors for what cannot be run.
+
+mod agreement;
+mod balances;
+mod bouncing;
+mod changes;
+mod inputs;
+mod oracle;
+mod setups;
+mod steps;
+mod thermal;

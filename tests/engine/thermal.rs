@@ -1,0 +1,91 @@
+//! Thermal walls: what leaves them has the moments of the flux from a gas behind them.
+
+use granular_edmd::Simulation;
+use granular_edmd::boundary::{Container, Thermal, Wall};
+use granular_edmd::collision::Elastic;
+use granular_edmd::glam::DVec2;
+use granular_edmd::observable::{Collision, RunningMean, on_collision};
+use granular_edmd::{Disk, initial};
+
+/// What leaves the floor of a box with a thermal floor of temperature 2: normal speed, tangential velocity, and the
+/// change of energy of each touch, of a disk of mass 3 alone in the box.
+fn emitted(thermal: Thermal) -> (Vec<f64>, Vec<f64>) {
+    let boundary = Container::closed(4.0, 4.0).unwrap().with_temperature(Wall::Floor, thermal).unwrap();
+    let disk = Disk::new(DVec2::new(2.0, 2.0), 0.5).unwrap().with_mass(3.0).unwrap();
+    let disk = disk.with_velocity(DVec2::new(0.1, 1.0)).unwrap();
+    let mut simulation = Simulation::builder(Elastic, boundary).disks([disk]).seed(8).build().unwrap();
+    let (mut normal, mut tangential) = (Vec::new(), Vec::new());
+    let mut watch = on_collision(|c: &Collision| {
+        if c.normal == DVec2::Y {
+            normal.push(c.impulse.normal() / 3.0 - c.contact.closing_speed());
+            tangential.push(c.impulse.tangential() / 3.0);
+        }
+    });
+    while simulation.counters().wall_collisions < 60_000 {
+        let end = simulation.time() + 100.0;
+        simulation.run_until(end, &mut watch).unwrap();
+    }
+    (normal, tangential)
+}
+
+fn mean(values: &[f64], power: i32) -> RunningMean {
+    values.iter().map(|value| value.powi(power)).collect()
+}
+
+/// Within five standard errors.
+fn is(mean: RunningMean, expected: f64) -> bool {
+    (mean.mean() - expected).abs() < 5.0 * mean.standard_error()
+}
+
+#[test]
+fn emitted_speeds_have_the_moments_of_the_flux() {
+    let speed = 2.0 / 3.0;
+    let (normal, tangential) = emitted(Thermal::new(2.0).unwrap());
+    assert!(normal.len() > 10_000 && normal.iter().all(|&v| v > 0.0));
+    assert!(is(mean(&normal, 1), (std::f64::consts::FRAC_PI_2 * speed).sqrt()));
+    assert!(is(mean(&normal, 2), 2.0 * speed));
+    assert!(is(mean(&normal, 4), 8.0 * speed * speed));
+    assert!(tangential.iter().any(|&v| v != 0.0));
+    let (normal, tangential) = emitted(Thermal::new(2.0).unwrap().with_slip());
+    assert!(is(mean(&normal, 2), 2.0 * speed));
+    assert!(tangential.iter().all(|v| v.abs() < 1e-12));
+}
+
+#[test]
+fn a_gas_takes_the_temperature_of_its_wall() {
+    let boundary = Container::closed(12.0, 12.0)
+        .unwrap()
+        .with_periodic_sides()
+        .with_temperature(Wall::Floor, Thermal::new(2.0).unwrap())
+        .unwrap();
+    let disks = initial::lattice(&boundary, 40, 0.5).unwrap();
+    let disks = initial::with_maxwellian_velocities(disks, 0.5, 3).unwrap();
+    let mut simulation = Simulation::builder(Elastic, boundary).disks(disks).seed(5).build().unwrap();
+    let mut energies = RunningMean::default();
+    let mut spins = RunningMean::default();
+    for sample in 0..200 {
+        simulation.run_until(100.0 + 10.0 * f64::from(sample), &mut ()).unwrap();
+        let disks = simulation.disks();
+        energies.push(disks.iter().map(Disk::translational_energy).sum::<f64>() / 40.0);
+        spins.push(disks.iter().map(|disk| 2.0 * disk.rotational_energy()).sum::<f64>() / 40.0);
+    }
+    // Fluctuations of a canonical gas, T/sqrt(40) for energy, sqrt(2/40) T for rotation, over 200 samples that are not
+    // quite independent.
+    assert!((energies.mean() - 2.0).abs() < 0.12, "{}", energies.mean());
+    assert!((spins.mean() - 2.0).abs() < 0.17, "{}", spins.mean());
+}
+
+#[test]
+fn the_seed_decides() {
+    let run = |seed| {
+        let boundary =
+            Container::open(6.0).unwrap().with_temperature(Wall::Floor, Thermal::new(1.0).unwrap()).unwrap();
+        let disks = initial::lattice(&boundary, 5, 0.5).unwrap();
+        let mut simulation =
+            Simulation::builder(Elastic, boundary).disks(disks).gravity(0.1).seed(seed).build().unwrap();
+        simulation.run_until(20.0, &mut ()).unwrap();
+        simulation.disks()
+    };
+    assert_eq!(run(1), run(1));
+    assert_ne!(run(1), run(2));
+}

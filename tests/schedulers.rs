@@ -1,0 +1,138 @@
+//! Every scheduler against the obvious one, over scripts of operations.
+
+use granular_edmd::scheduler::{EventScheduler, LinearScan, TournamentTree};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+/// The same scripts on every run and machine.
+fn config() -> ProptestConfig {
+    ProptestConfig {
+        cases: 200,
+        rng_seed: RngSeed::Fixed(72_011_305),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
+}
+
+#[derive(Debug, Clone)]
+enum Operation {
+    Reset(Vec<f64>),
+    /// A disk (reduced to how many there are) and its time.
+    Set(usize, f64),
+    /// What the engine does most: the earliest disk gets a later time.
+    Postpone(f64),
+}
+
+/// Times with many ties, both zeros, both infinities, negative, tiny and huge ones.
+fn time() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        6 => -100.0..100.0f64,
+        4 => (-3..4i32).prop_map(f64::from),
+        1 => Just(-0.0),
+        2 => Just(f64::INFINITY),
+        1 => Just(f64::NEG_INFINITY),
+        1 => prop_oneof![Just(f64::MAX), Just(f64::MIN), Just(f64::MIN_POSITIVE), Just(-5e-324), Just(5e-324)],
+    ]
+}
+
+/// None, few, powers of two and their neighbours, many.
+fn times() -> impl Strategy<Value = Vec<f64>> {
+    let count =
+        prop_oneof![Just(0usize), Just(1), Just(2), 3..10usize, 15..18usize, 31..34usize, 60..200usize];
+    count.prop_flat_map(|count| prop::collection::vec(time(), count))
+}
+
+fn operation() -> impl Strategy<Value = Operation> {
+    prop_oneof![
+        1 => times().prop_map(Operation::Reset),
+        10 => (any::<usize>(), time()).prop_map(|(disk, due)| Operation::Set(disk, due)),
+        10 => (0.0..5.0f64).prop_map(Operation::Postpone),
+    ]
+}
+
+/// Performs an operation on both; `count` is how many disks there are.
+fn perform(operation: &Operation, count: &mut usize, pair: [&mut dyn EventScheduler; 2]) {
+    let (disk, due) = match operation {
+        Operation::Reset(due) => {
+            *count = due.len();
+            pair.into_iter().for_each(|scheduler| scheduler.reset(due));
+            return;
+        }
+        Operation::Set(disk, due) => (disk % (*count).max(1), *due),
+        Operation::Postpone(by) => {
+            let (disk, due) = pair[0].earliest();
+            (disk, due + by)
+        }
+    };
+    if disk < *count {
+        pair.into_iter().for_each(|scheduler| scheduler.set(disk, due));
+    }
+}
+
+fn agrees_with_the_oracle(
+    mut scheduler: impl EventScheduler,
+    script: &[Operation],
+) -> Result<(), TestCaseError> {
+    let (mut oracle, mut count) = (LinearScan::default(), 0);
+    prop_assert_eq!(scheduler.earliest(), (usize::MAX, f64::INFINITY), "before any reset");
+    for operation in script {
+        perform(operation, &mut count, [&mut oracle, &mut scheduler]);
+        prop_assert_eq!(scheduler.earliest(), oracle.earliest());
+    }
+    Ok(())
+}
+
+/// All disks in the order in which they come up, each postponed for ever when it did.
+fn order(scheduler: &mut dyn EventScheduler, due: &[f64]) -> Vec<usize> {
+    scheduler.reset(due);
+    let next = |_| {
+        let (disk, _) = scheduler.earliest();
+        scheduler.set(disk, f64::INFINITY);
+        disk
+    };
+    due.iter().map(next).collect()
+}
+
+proptest! {
+    #![proptest_config(config())]
+
+    #[test]
+    fn the_tournament_is_the_linear_scan(script in prop::collection::vec(operation(), 0..300)) {
+        agrees_with_the_oracle(TournamentTree::new(), &script)?;
+    }
+
+    #[test]
+    fn a_boxed_scheduler_is_the_same(script in prop::collection::vec(operation(), 0..50)) {
+        agrees_with_the_oracle(Box::new(TournamentTree::new()) as Box<dyn EventScheduler>, &script)?;
+    }
+
+    #[test]
+    fn disks_come_up_in_the_order_of_time_then_index(due in prop::collection::vec(-3..4i32, 0..100)) {
+        let due: Vec<f64> = due.into_iter().map(f64::from).collect();
+        let mut sorted: Vec<usize> = (0..due.len()).collect();
+        sorted.sort_by(|&a, &b| due[a].total_cmp(&due[b]));
+        prop_assert_eq!(&order(&mut LinearScan::default(), &due), &sorted);
+        prop_assert_eq!(&order(&mut TournamentTree::new(), &due), &sorted);
+    }
+}
+
+#[test]
+fn no_disks_no_event() {
+    for scheduler in [&mut TournamentTree::new() as &mut dyn EventScheduler, &mut LinearScan::default()] {
+        assert_eq!(scheduler.earliest(), (usize::MAX, f64::INFINITY));
+        scheduler.reset(&[1.0]);
+        assert_eq!(scheduler.earliest(), (0, 1.0));
+        scheduler.reset(&[]);
+        assert_eq!(scheduler.earliest(), (usize::MAX, f64::INFINITY));
+    }
+}
+
+#[test]
+fn infinite_times_still_name_a_disk_and_ties_the_first() {
+    for scheduler in [&mut TournamentTree::new() as &mut dyn EventScheduler, &mut LinearScan::default()] {
+        scheduler.reset(&[f64::INFINITY; 3]);
+        assert_eq!(scheduler.earliest(), (0, f64::INFINITY));
+        scheduler.reset(&[0.0, -0.0]);
+        assert_eq!(scheduler.earliest().0, 0, "one zero is as early as the other");
+    }
+}
