@@ -13,6 +13,7 @@
 mod studies;
 
 use std::error::Error;
+use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::Parser;
@@ -65,8 +66,11 @@ struct Point {
     error: f64,
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let arguments = Arguments::parse();
+fn main() -> ExitCode {
+    studies::end(run(&Arguments::parse()))
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let name = if arguments.slip { "fig2_center_of_mass-slip" } else { "fig2_center_of_mass" };
     let folder = arguments.common.folder(name);
     let Some(study) = studies::complete(&folder, &arguments.specification()?)? else { return Ok(()) };

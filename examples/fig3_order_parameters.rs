@@ -13,6 +13,7 @@
 mod studies;
 
 use std::error::Error;
+use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::study::{
@@ -53,8 +54,11 @@ impl Arguments {
     }
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let arguments = Arguments::parse();
+fn main() -> ExitCode {
+    studies::end(run(&Arguments::parse()))
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let name = if arguments.down { "fig3_order_parameters-down" } else { "fig3_order_parameters" };
     let folder = arguments.common.folder(name);
     let Some(study) = studies::complete(&folder, &arguments.specification()?)? else { return Ok(()) };
@@ -112,7 +116,7 @@ fn panel(records: &[Record], quantity: fn(&Sample) -> f64, name: &str) -> (Vec<P
     };
     let mut plots: Vec<Plot> = edges.map(edge).collect();
     plots.push(Plot::Scatter(dots));
-    let layout = Layout::new((0.5, records.len() as f64 + 0.5), (-0.2, 0.2))
+    let layout = Layout::new((0.5, records.len() as f64 + 0.5), (-0.25, 0.25))
         .with_x_axis_min(0.5)
         .with_x_axis_max(records.len() as f64 + 0.5)
         .with_x_categories(records.iter().map(|record| format!("{:.3}", friction(record))).collect())

@@ -2,6 +2,7 @@
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
@@ -31,6 +32,17 @@ impl Common {
     /// Where the study `name` is kept.
     pub(crate) fn folder(&self, name: &str) -> PathBuf {
         self.out.join(if self.quick { format!("{name}-quick") } else { name.to_owned() })
+    }
+}
+
+/// Says in one line what went wrong, if something did.
+pub(crate) fn end(result: Result<(), Box<dyn Error>>) -> ExitCode {
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
     }
 }
 
