@@ -1,6 +1,6 @@
 //! Records as tables.
 
-use std::fmt::Write;
+use std::fmt::{Debug, Display, Write};
 
 use super::record::{Estimate, Record};
 use super::{Parameter, Sample};
@@ -32,12 +32,12 @@ impl Tables {
     pub(super) fn new(varied: Vec<Parameter>) -> Self {
         let mut place = String::from("ramp,value,leg");
         for parameter in &varied {
-            append(&mut place, parameter);
+            append_name(&mut place, parameter);
         }
         let mut values = format!("{place},seed,outcome,samples");
         for (name, _) in QUANTITIES {
-            append(&mut values, name);
-            append(&mut values, &format_args!("{name}_error"));
+            append_name(&mut values, name);
+            append_name(&mut values, &format_args!("{name}_error"));
         }
         values.push_str(",energy_change,energy_change_error,thermal_noise,densest_packing,densest_height");
         values.push_str(",collisions,wall_collisions,contact_duration_collisions,max_overlap\n");
@@ -111,7 +111,7 @@ fn add_sample(table: &mut String, sample: &Sample, place: &str) {
     );
 }
 
-fn row(table: &mut String, place: &str, cells: &[&dyn std::fmt::Display]) {
+fn row(table: &mut String, place: &str, cells: &[&dyn Debug]) {
     table.push_str(place);
     for cell in cells {
         append(table, cell);
@@ -124,7 +124,11 @@ fn append_estimate(line: &mut String, estimate: Estimate) {
     append(line, &estimate.error);
 }
 
-fn append(line: &mut String, cell: &(impl std::fmt::Display + ?Sized)) {
-    // Writing to a string does not fail.
-    let _ = write!(line, ",{cell}");
+fn append(line: &mut String, cell: &(impl Debug + ?Sized)) {
+    // Numbers as they read back, with an exponent where one is due; writing to a string does not fail.
+    let _ = write!(line, ",{cell:?}");
+}
+
+fn append_name(line: &mut String, name: &(impl Display + ?Sized)) {
+    let _ = write!(line, ",{name}");
 }

@@ -1,0 +1,99 @@
+//! What the examples that run studies share: progress, Ctrl-C, and pictures.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::Args;
+use granular_edmd::study::{Control, Progress, Specification, Study};
+use indicatif::{ProgressBar, ProgressStyle};
+use kuva::backend::png::PngBackend;
+use kuva::render::figure::Figure;
+
+/// Set by Ctrl-C.
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Flags of all studies.
+#[derive(Args)]
+pub(crate) struct Common {
+    /// Folder for the study, the picture and the tables.
+    #[arg(long, default_value = "out")]
+    out: PathBuf,
+    /// A short run that shows the same features with larger errors.
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// Seed of all random numbers.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+impl Common {
+    /// Where the study `name` is kept.
+    pub(crate) fn folder(&self, name: &str) -> PathBuf {
+        self.out.join(if self.quick { format!("{name}-quick") } else { name.to_owned() })
+    }
+}
+
+/// Says in one line what went wrong, if something did.
+pub(crate) fn end(result: Result<(), Box<dyn Error>>) -> ExitCode {
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Does what is not done yet of a study, and returns it once it is complete; `None` if Ctrl-C came first.
+///
+/// The same command starts a study and goes on with it. A second Ctrl-C ends the program at once: what was saved by then
+/// is kept.
+pub(crate) fn complete(
+    folder: &Path,
+    specification: &Specification,
+) -> Result<Option<Study>, Box<dyn Error>> {
+    println!("study in {}:\n\n{specification}", folder.display());
+    let study = Study::open_or_create(folder, specification)?;
+    ctrlc::set_handler(|| {
+        if STOP.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    })?;
+    let bar = progress_bar()?;
+    let show = |progress: &Progress| {
+        let before = bar.position();
+        bar.set_length(progress.total);
+        bar.set_position(progress.done);
+        // A value that was done before says nothing about the rate.
+        if progress.done > before + 1 {
+            bar.reset_eta();
+        }
+    };
+    let summary = study.run(&Control::default().with_progress(&show).with_interrupt(&STOP))?;
+    bar.finish_and_clear();
+    for file in &summary.redone {
+        println!("{} was damaged and has been done again", file.display());
+    }
+    if summary.is_complete() {
+        return Ok(Some(study));
+    }
+    println!("{} of {} values are finished; the same command goes on", summary.finished, summary.total);
+    Ok(None)
+}
+
+/// Drawn on a terminal only.
+fn progress_bar() -> Result<ProgressBar, Box<dyn Error>> {
+    let style =
+        ProgressStyle::with_template("{elapsed_precise} {wide_bar} {percent}% {per_sec}, {eta} left")?;
+    Ok(ProgressBar::new(0).with_style(style))
+}
+
+/// Writes a figure into the folder of a study.
+pub(crate) fn write_png(figure: Figure, study: &Study, name: &str) -> Result<(), Box<dyn Error>> {
+    let path = study.folder().join(name);
+    std::fs::write(&path, PngBackend::new().render_scene(&figure.render())?)?;
+    println!("wrote {}; the tables beside it are values.csv, samples.csv and profiles.csv", path.display());
+    Ok(())
+}
