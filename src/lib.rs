@@ -67,6 +67,8 @@ mod quantity;
 mod random;
 mod roots;
 pub mod scheduler;
+#[cfg(feature = "serde")]
+mod sealed;
 pub mod simulation;
 #[cfg(feature = "serde")]
 pub mod study;

@@ -1,6 +1,6 @@
 //! Checkpoints: a run as data, to go on with later, bit for bit.
 
-use std::io::{self, Write};
+use std::io;
 use std::path::Path;
 
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -15,15 +15,10 @@ use crate::Disk;
 use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
 use crate::scheduler::EventScheduler;
+use crate::sealed::{Broken, Seal, write_whole};
 
-/// First bytes of a checkpoint file.
-const MAGIC: [u8; 8] = *b"GRANEDMD";
-
-/// Version of the format that this crate writes and reads.
-const VERSION: u32 = 1;
-
-/// Magic, version, checksum.
-const HEADER: usize = 8 + 4 + 32;
+/// What marks a checkpoint, and the version of the format that this crate writes and reads.
+const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 1 };
 
 /// Everything that the future of a run depends on, except its rule and its walls.
 ///
@@ -117,13 +112,7 @@ impl Checkpoint {
     /// # Errors
     /// If it cannot be encoded.
     pub fn to_bytes(&self) -> Result<Vec<u8>, CheckpointError> {
-        let contents = postcard::to_stdvec(self)?;
-        let mut bytes = Vec::with_capacity(HEADER + contents.len());
-        bytes.extend_from_slice(&MAGIC);
-        bytes.extend_from_slice(&VERSION.to_le_bytes());
-        bytes.extend_from_slice(blake3::hash(&contents).as_bytes());
-        bytes.extend_from_slice(&contents);
-        Ok(bytes)
+        Ok(SEAL.seal(&postcard::to_stdvec(self)?))
     }
 
     /// A checkpoint from bytes.
@@ -131,16 +120,11 @@ impl Checkpoint {
     /// # Errors
     /// If they are not a checkpoint, of another version, cut, or changed.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
-        let rest = bytes.strip_prefix(&MAGIC).ok_or(CheckpointError::NotACheckpoint)?;
-        let (version, rest) = rest.split_first_chunk::<4>().ok_or(CheckpointError::Damaged)?;
-        let found = u32::from_le_bytes(*version);
-        if found != VERSION {
-            return Err(CheckpointError::Version { found, known: VERSION });
-        }
-        let (checksum, contents) = rest.split_first_chunk::<32>().ok_or(CheckpointError::Damaged)?;
-        if blake3::hash(contents) != blake3::Hash::from_bytes(*checksum) {
-            return Err(CheckpointError::Damaged);
-        }
+        let contents = SEAL.open(bytes).map_err(|broken| match broken {
+            Broken::Foreign => CheckpointError::NotACheckpoint,
+            Broken::Version(found) => CheckpointError::Version { found, known: SEAL.version },
+            Broken::Cut | Broken::Changed => CheckpointError::Damaged,
+        })?;
         Ok(postcard::from_bytes(contents)?)
     }
 
@@ -149,17 +133,7 @@ impl Checkpoint {
     /// # Errors
     /// If the file cannot be written; a file of that name is then as it was.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), CheckpointError> {
-        let path = path.as_ref();
-        let mut name = path.file_name().unwrap_or_default().to_owned();
-        name.push(format!(".{}.tmp", std::process::id()));
-        let temporary = path.with_file_name(name);
-        let written =
-            write_synced(&temporary, &self.to_bytes()?).and_then(|()| std::fs::rename(&temporary, path));
-        if written.is_err() {
-            // What is left of the attempt helps nobody; the first error is the one to tell.
-            let _ = std::fs::remove_file(&temporary);
-        }
-        Ok(written?)
+        Ok(write_whole(path.as_ref(), &self.to_bytes()?)?)
     }
 
     /// Reads a checkpoint from a file.
@@ -194,12 +168,6 @@ fn is_valid(slot: &Slot, disks: usize, walls: usize) -> bool {
     let partner = slot.collision_due == f64::INFINITY || (slot.partner as usize) < disks;
     let wall = if let Exit::Wall(wall) = slot.exit { usize::from(wall) < walls } else { true };
     partner && wall && slot.collision_due >= 0.0 && slot.exit_due >= 0.0
-}
-
-fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = std::fs::OpenOptions::new().write(true).create_new(true).open(path)?;
-    file.write_all(bytes)?;
-    file.sync_all()
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {

@@ -1,49 +1,26 @@
-//! Files that are whole or not there: written atomically, with a version and a checksum.
+//! The files of a study: whole or not there, and sealed where they hold records.
 
-use std::fs::{self, File};
-use std::io::{self, Write};
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::errors::StudyError;
+use crate::sealed::{Broken, Seal, TEMPORARY, write_whole};
 
-/// First bytes of a record.
-const MAGIC: [u8; 8] = *b"GRANSTUD";
+/// What marks a record, and the version of the format that this crate writes and reads.
+const SEAL: Seal = Seal { magic: *b"GRANSTUD", version: 1 };
 
-/// Version of the format that this crate writes and reads.
-const VERSION: u32 = 1;
-
-/// Ending of files that are being written.
-const TEMPORARY: &str = "tmp";
-
-/// Writes a file, whole or not at all. Whoever writes holds the lock of the study: nobody else takes the same name.
+/// Writes a file, whole or not at all.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".");
-    name.push(TEMPORARY);
-    let temporary = path.with_file_name(name);
-    write_synced(&temporary, bytes)
-        .and_then(|()| fs::rename(&temporary, path))
-        .map_err(StudyError::io("write", path))
-}
-
-fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = File::create(path)?;
-    file.write_all(bytes)?;
-    file.sync_all()
+    write_whole(path, bytes).map_err(StudyError::io("write", path))
 }
 
 /// Writes data with magic, version and checksum.
 pub(super) fn write_sealed(path: &Path, data: &impl Serialize) -> Result<(), StudyError> {
-    let contents = postcard::to_stdvec(data)?;
-    let mut bytes = Vec::with_capacity(MAGIC.len() + 4 + 32 + contents.len());
-    bytes.extend_from_slice(&MAGIC);
-    bytes.extend_from_slice(&VERSION.to_le_bytes());
-    bytes.extend_from_slice(blake3::hash(&contents).as_bytes());
-    bytes.extend_from_slice(&contents);
-    write(path, &bytes)
+    write(path, &SEAL.seal(&postcard::to_stdvec(data)?))
 }
 
 /// Reads data that [`write_sealed`] has written; `None` if there is no such file.
@@ -61,15 +38,12 @@ pub(super) fn damaged(path: &Path, reason: &'static str) -> StudyError {
 }
 
 fn unseal<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, &'static str> {
-    let rest = bytes.strip_prefix(&MAGIC).ok_or("it does not begin as a record")?;
-    let (version, rest) = rest.split_first_chunk::<4>().ok_or("it was cut")?;
-    if u32::from_le_bytes(*version) != VERSION {
-        return Err("it has another version of the format");
-    }
-    let (checksum, contents) = rest.split_first_chunk::<32>().ok_or("it was cut")?;
-    if blake3::hash(contents) != blake3::Hash::from_bytes(*checksum) {
-        return Err("its checksum does not match");
-    }
+    let contents = SEAL.open(bytes).map_err(|broken| match broken {
+        Broken::Foreign => "it does not begin as a record",
+        Broken::Version(_) => "it has another version of the format",
+        Broken::Cut => "it was cut",
+        Broken::Changed => "its checksum does not match",
+    })?;
     postcard::from_bytes(contents).map_err(|_| "its contents make no sense")
 }
 
