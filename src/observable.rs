@@ -15,6 +15,7 @@
 //! |---|---|
 //! | [`Series`] | the values of an observable at set times |
 //! | [`EnergyChange`] | mean energy change per collision, by partner |
+//! | [`EnergyChangeProfile`] | the same between disks, by height, with the temperatures there |
 //! | [`CollisionCounts`] | counts by partner and regime, and rates |
 //! | [`HeightProfile`] | packing fraction by height |
 //! | [`Fields`] | density, flow and temperatures on a grid |
@@ -26,8 +27,10 @@ mod collision_event;
 mod compose;
 mod energies;
 mod energy_change;
+mod energy_change_profile;
 mod fields;
 mod from_fn;
+mod height_bins;
 mod height_profile;
 mod order_parameters;
 mod series;
@@ -40,6 +43,7 @@ pub use collision_counts::CollisionCounts;
 pub use collision_event::{Collision, Partner};
 pub use energies::{Energies, EnergyPerDisk};
 pub use energy_change::EnergyChange;
+pub use energy_change_profile::{EnergyChangeLayer, EnergyChangeProfile};
 pub use fields::{FieldCell, Fields};
 pub use from_fn::{OnCollision, OnSample, on_collision, on_sample};
 pub use height_profile::{DenseLayer, HeightProfile};

@@ -143,3 +143,36 @@ fn grids_without_extent_are_refused() -> Result<(), ParameterError> {
     assert!(HeightProfile::new(-f64::MAX, f64::MAX, 1, times).is_err());
     Ok(())
 }
+
+/// Two roads to the mean energy change: over all collisions, and layer by layer; and at rest in the mean the layers have
+/// the temperature that the disks started with.
+#[test]
+fn energy_change_by_height_sums_up_to_that_of_all_collisions() -> Result<(), Box<dyn std::error::Error>> {
+    use granular_edmd::kinetic::{Maxwellian, mean_energy_change};
+    use granular_edmd::observable::{EnergyChange, EnergyChangeProfile};
+    use granular_edmd::prelude::*;
+
+    let rule = Frictional::new(0.001, 0.02)?;
+    let container =
+        Container::closed(100.0, 100.0)?.with_rule(Wall::Floor, Elastic)?.with_rule(Wall::Lid, Elastic)?;
+    let container = container.with_rule(Wall::Left, Elastic)?.with_rule(Wall::Right, Elastic)?;
+    let disks = initial::random(&container, 1000, 0.5, 100.0, 5)?;
+    let disks = initial::with_maxwellian_velocities(disks, 2.0, 6)?;
+    let mut simulation = Simulation::builder(rule, container).disks(disks).build()?;
+    let mut all = EnergyChange::default();
+    let mut profile = EnergyChangeProfile::new(0.0, 100.0, 4, SampleTimes::every(0.5)?)?;
+    simulation.run_until(20.0, &mut (&mut all, &mut profile))?;
+
+    let layers = profile.layers().iter().map(|layer| layer.energy_change);
+    assert_eq!(layers.clone().map(|change| change.count()).sum::<u64>(), all.disks().count());
+    let sum: f64 = layers.map(|change| change.sum()).sum();
+    assert!((sum - all.disks().sum()).abs() < 1e-10 * sum.abs());
+
+    // Some ten collisions a disk, each pair losing 4 % of T: the gas cools by a fifth underway. The standard error of 5000
+    // collisions is 1.5 %; five of them.
+    let ratio = profile.rotational_ratio().unwrap();
+    let expected = mean_energy_change(&rule, &Maxwellian::new(1.0)?.with_rotational_temperature(ratio)?);
+    let measured = profile.relative_energy_change().unwrap();
+    assert!((measured / expected - 1.0).abs() < 0.08, "{measured} {expected}");
+    Ok(())
+}

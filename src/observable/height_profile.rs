@@ -2,12 +2,9 @@
 
 use std::f64::consts::PI;
 
+use super::height_bins::HeightBins;
 use super::{Observer, SampleTimes, Snapshot};
-use crate::quantity::{accept, finite};
 use crate::{Disk, ParameterError};
-
-/// Most bins of a profile.
-const MOST_BINS: usize = 1 << 20;
 
 /// The bin with the largest packing fraction, and what lies below it; made by [`HeightProfile::densest_layer`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,8 +65,7 @@ impl DenseLayer {
 /// ```
 #[derive(Debug, Clone)]
 pub struct HeightProfile {
-    bottom: f64,
-    bin: f64,
+    bins: HeightBins,
     sample_times: SampleTimes,
     /// Sum over samples of the packing fraction.
     sums: Vec<f64>,
@@ -82,12 +78,8 @@ impl HeightProfile {
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of bins is not in `1..=2^20`.
     pub fn new(bottom: f64, top: f64, bins: usize, times: SampleTimes) -> Result<Self, ParameterError> {
-        finite("bottom of the profile", bottom)?;
-        accept(top.is_finite() && top > bottom, "top of the profile", "finite and above its bottom", top)?;
-        accept((1..=MOST_BINS).contains(&bins), "number of bins", "in 1..=2^20", bins as f64)?;
-        let bin = (top - bottom) / bins as f64;
-        accept(bin.is_finite() && bin > 0.0, "height of a bin", "finite and positive", bin)?;
-        Ok(Self { bottom, bin, sample_times: times, sums: vec![0.0; bins], samples: 0 })
+        let bins = HeightBins::new(bottom, top, bins)?;
+        Ok(Self { bins, sample_times: times, sums: vec![0.0; bins.count()], samples: 0 })
     }
 
     /// How many samples were taken.
@@ -98,7 +90,7 @@ impl HeightProfile {
     /// Heights of the middles of the bins, and mean packing fractions; 0 before the first sample.
     pub fn iter(&self) -> impl Iterator<Item = (f64, f64)> {
         let samples = self.samples.max(1) as f64;
-        self.sums.iter().enumerate().map(move |(bin, sum)| (self.edge(bin) + 0.5 * self.bin, sum / samples))
+        self.sums.iter().enumerate().map(move |(bin, sum)| (self.bins.middle(bin), sum / samples))
     }
 
     /// The bin with the largest packing fraction, the lowest of equals; `None` before the first sample.
@@ -112,19 +104,15 @@ impl HeightProfile {
         self.samples = 0;
     }
 
-    fn edge(&self, bin: usize) -> f64 {
-        self.bottom + bin as f64 * self.bin
-    }
-
     fn add(&mut self, disk: &Disk, width: f64) {
         let (height, radius) = (disk.position().y, disk.radius());
-        // Casts saturate: what is far outside lands at an end, with no area there.
-        let bin = |height: f64| ((height - self.bottom) / self.bin) as usize;
-        let (first, last) = (bin(height - radius), bin(height + radius).min(self.sums.len() - 1));
-        let mut below = area_below(self.edge(first) - height, radius);
+        // What is far outside lands at an end, with no area there.
+        let first = self.bins.at_or_above(height - radius);
+        let last = self.bins.at_or_above(height + radius).min(self.bins.count() - 1);
+        let mut below = area_below(self.bins.edge(first) - height, radius);
         for bin in first..=last {
-            let above = area_below(self.edge(bin + 1) - height, radius);
-            self.sums[bin] += (above - below) / (width * self.bin);
+            let above = area_below(self.bins.edge(bin + 1) - height, radius);
+            self.sums[bin] += (above - below) / (width * self.bins.height());
             below = above;
         }
     }

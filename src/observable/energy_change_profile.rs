@@ -1,0 +1,106 @@
+//! Energy change per collision beside the temperature where it happens.
+
+use super::height_bins::HeightBins;
+use super::{Collision, Observer, Partner, RunningMean, SampleTimes, Snapshot};
+use crate::ParameterError;
+
+/// What an [`EnergyChangeProfile`] knows of one layer.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct EnergyChangeLayer {
+    /// Height of its middle.
+    pub height: f64,
+    /// Energy changes of the disk–disk collisions in it.
+    pub energy_change: RunningMean,
+    /// `$T = \tfrac12 m v^2$` of the disks seen in it, in the frame of the container: its mean is the translational
+    /// temperature.
+    pub translational_temperature: RunningMean,
+    /// `$T_{rot} = I\omega^2$` of the disks seen in it: its mean is the rotational temperature.
+    pub rotational_temperature: RunningMean,
+}
+
+impl EnergyChangeLayer {
+    /// `$\langle dE\rangle/T$` in this layer; `None` before there are collisions and a temperature.
+    pub fn relative_energy_change(&self) -> Option<f64> {
+        let temperature = self.translational_temperature.mean();
+        (self.energy_change.count() > 0 && temperature > 0.0).then(|| self.energy_change.mean() / temperature)
+    }
+}
+
+/// An observer of the energy change per disk–disk collision by height, with the temperatures there: what the kinetic
+/// theory says of a gas of one temperature can be held against it, layer by layer and on average.
+///
+/// ```
+/// use granular_edmd::observable::{EnergyChangeProfile, SampleTimes};
+/// let profile = EnergyChangeProfile::new(0.0, 150.0, 30, SampleTimes::every(1.0)?)?;
+/// assert_eq!(profile.layers().len(), 30);
+/// assert_eq!(profile.relative_energy_change(), None);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct EnergyChangeProfile {
+    bins: HeightBins,
+    sample_times: SampleTimes,
+    layers: Vec<EnergyChangeLayer>,
+}
+
+impl EnergyChangeProfile {
+    /// A profile from the height `bottom` to `top` in this many layers, with temperatures sampled at these times; what
+    /// is outside is left out.
+    ///
+    /// # Errors
+    /// If a height is not finite, `top` is not above `bottom`, or the number of layers is not in `1..=2^20`.
+    pub fn new(bottom: f64, top: f64, layers: usize, times: SampleTimes) -> Result<Self, ParameterError> {
+        let bins = HeightBins::new(bottom, top, layers)?;
+        let layer = |bin| EnergyChangeLayer { height: bins.middle(bin), ..EnergyChangeLayer::default() };
+        Ok(Self { bins, sample_times: times, layers: (0..layers).map(layer).collect() })
+    }
+
+    /// The layers, from the bottom up.
+    pub fn layers(&self) -> &[EnergyChangeLayer] {
+        &self.layers
+    }
+
+    /// `$\langle dE/T(y)\rangle$`: the energy change over the local temperature, averaged over collisions.
+    pub fn relative_energy_change(&self) -> Option<f64> {
+        self.over_collisions(EnergyChangeLayer::relative_energy_change)
+    }
+
+    /// `$\langle T_{rot}(y)/T(y)\rangle$`: the ratio of the local temperatures, averaged over collisions.
+    pub fn rotational_ratio(&self) -> Option<f64> {
+        self.over_collisions(|layer| {
+            let temperature = layer.translational_temperature.mean();
+            (temperature > 0.0).then(|| layer.rotational_temperature.mean() / temperature)
+        })
+    }
+
+    fn over_collisions(&self, quantity: impl Fn(&EnergyChangeLayer) -> Option<f64>) -> Option<f64> {
+        let known =
+            || self.layers.iter().filter_map(|layer| Some((layer.energy_change.count(), quantity(layer)?)));
+        let collisions: u64 = known().map(|(count, _)| count).sum();
+        let sum: f64 = known().map(|(count, value)| count as f64 * value).sum();
+        (collisions > 0).then(|| sum / collisions as f64)
+    }
+}
+
+impl Observer for EnergyChangeProfile {
+    fn on_collision(&mut self, collision: &Collision) {
+        if let (Partner::Disk(_), Some(bin)) = (collision.partner, self.bins.find(collision.position.y)) {
+            self.layers[bin].energy_change.push(collision.energy_change);
+        }
+    }
+
+    fn next_sample(&self) -> f64 {
+        self.sample_times.next()
+    }
+
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        for disk in snapshot.disks() {
+            if let Some(bin) = self.bins.find(disk.position().y) {
+                self.layers[bin].translational_temperature.push(disk.translational_energy());
+                self.layers[bin].rotational_temperature.push(2.0 * disk.rotational_energy());
+            }
+        }
+        self.sample_times.advance_past(snapshot.time());
+    }
+}
