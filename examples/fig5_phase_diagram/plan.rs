@@ -10,10 +10,20 @@ use granular_edmd::study::{
 pub(crate) enum Size {
     /// A few values of each parameter, for a minute or two: the picture in its roughest outlines.
     Quick,
-    /// All frictions and inelasticities, 3500 oscillations each: most of an hour.
+    /// All frictions and inelasticities, 6000 oscillations each: half an hour on two cores.
     Coarse,
     /// As in the paper, 100 000 oscillations each: days.
     Full,
+}
+
+impl Size {
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Quick => "quick",
+            Self::Coarse => "coarse",
+            Self::Full => "full",
+        }
+    }
 }
 
 /// The two gravities of the paper.
@@ -38,15 +48,17 @@ impl Gravity {
     /// The largest inelasticity of the picture: the smaller gravity needs more loss for everything.
     pub(crate) const fn largest_inelasticity(self) -> f64 {
         match self {
-            Self::Small => 0.2,
+            Self::Small => 0.24,
             Self::Large => 0.08,
         }
     }
 }
 
-/// Friction from 0.005 to 3: equal steps of its logarithm, some more where one roll gives way to two.
-const FRICTIONS: [f64; 17] =
-    [0.005, 0.01, 0.015, 0.025, 0.04, 0.05, 0.055, 0.06, 0.07, 0.1, 0.15, 0.25, 0.5, 0.8, 1.2, 2.0, 3.0];
+/// Friction from 0.005 to 3: about equal steps of its logarithm, smaller ones where one roll gives way to two.
+const FRICTIONS: [f64; 26] = [
+    0.005, 0.007_5, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.055, 0.06, 0.065, 0.07, 0.085, 0.1, 0.15, 0.2,
+    0.3, 0.4, 0.5, 0.65, 0.8, 1.0, 1.3, 1.7, 2.2, 3.0,
+];
 
 const FEW_FRICTIONS: [f64; 8] = [0.005, 0.015, 0.04, 0.07, 0.15, 0.3, 1.0, 3.0];
 
@@ -62,7 +74,7 @@ pub(crate) fn parts(size: Size, gravity: Gravity, seed: u64) -> Result<Vec<Part>
     // Going down is for hysteresis; a short run cannot tell it from a late start.
     let down = match size {
         Size::Quick => Vec::new(),
-        Size::Coarse => vec![up[0], up[2]],
+        Size::Coarse => up.iter().copied().step_by(2).take(4).collect(),
         Size::Full => up.clone(),
     };
     let parts = [("up", Course::Up, up), ("down", Course::Down, down)];
@@ -97,7 +109,7 @@ fn specification(
 const fn protocol(size: Size) -> Protocol {
     match size {
         Size::Quick => Protocol::new(500, 100, 5),
-        Size::Coarse => Protocol::new(1_500, 200, 10),
+        Size::Coarse => Protocol::new(3_000, 300, 10),
         Size::Full => Protocol::new(50_000, 500, 100),
     }
 }
@@ -105,9 +117,9 @@ const fn protocol(size: Size) -> Protocol {
 /// Equal steps, those of the smaller gravity being larger.
 fn inelasticities(size: Size, gravity: Gravity) -> Vec<f64> {
     let (step, most) = match gravity {
-        Gravity::Small => (0.025, 8),
-        Gravity::Large => (0.01, 7),
+        Gravity::Small => (0.02, 12),
+        Gravity::Large => (0.005, 12),
     };
-    let every = if size == Size::Quick { 3 } else { 1 };
+    let every = if size == Size::Quick { 4 } else { 1 };
     (0..most).step_by(every).map(|number| f64::from(number) * step).collect()
 }
