@@ -25,7 +25,6 @@ use granular_edmd::study::{
 };
 use kuva::plot::scatter::MarkerShape;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
-use kuva::render::annotations::TextAnnotation;
 
 use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
 
@@ -130,14 +129,16 @@ fn write_clusters(runs: &[Run], folder: &Path) -> Result<(), Box<dyn Error>> {
 
 const MARGINS: [f64; 4] = [70.0, 20.0, 12.0, 52.0];
 const HEADER: f64 = 76.0;
-const SIZE: (f64, f64) = (860.0, 560.0);
+/// Of the panel: a unit is equally long in both directions.
+const SIZE: (f64, f64) = (860.0, 526.0);
 
 /// The ranges of both axes.
 const RANGES: [(f64, f64); 2] = [(-0.25, 0.25), (-0.08, 0.22)];
 
 fn draw(arguments: &Arguments, study: &Study, run: &Run) -> Result<Vec<u8>, String> {
     let mut sheet = Sheet::new(SIZE.0, HEADER + SIZE.1);
-    let title = format!("{} clusters at κ = {}", run.clusters(), arguments.friction);
+    let plural = if run.clusters() == 1 { "" } else { "s" };
+    let title = format!("{} cluster{plural} at κ = {}", run.clusters(), arguments.friction);
     let protocol = study.specification().protocol();
     let samples = protocol.samples();
     let system = "N = 1000, box 60 × 150, g = 0.015625, q = 0, bi-parabolic base A = 0.1, ω = 10, contact duration 1e-4";
@@ -152,21 +153,31 @@ fn draw(arguments: &Arguments, study: &Study, run: &Run) -> Result<Vec<u8>, Stri
     sheet.text(MARGINS[0], 28.0, 20, INK, &title);
     sheet.text(MARGINS[0], 48.0, 12, QUIET, system);
     sheet.text(MARGINS[0], 66.0, 12, QUIET, &protocol);
-    let mut layout = sheet::axes(RANGES[0], RANGES[1])
+    let layout = sheet::axes(RANGES[0], RANGES[1])
         .with_x_label("Ψ₁, one roll")
         .with_y_label("Ψ₂, two rolls")
         .with_show_grid(false)
         .with_box_axes();
-    for (state, cluster) in run.found.iter() {
-        let text = format!("{state}, {:.0} %", 100.0 * cluster.weight());
-        let above = cluster.center() + DVec2::Y * (3.4 * cluster.spread(DVec2::Y) + 0.012);
-        layout = layout.with_annotation(
-            TextAnnotation::new(text, above.x, above.y).with_font_size(12).with_color(color(state)),
-        );
-    }
     let place = Place { x: 0.0, y: HEADER, width: SIZE.0, height: SIZE.1 };
     sheet.panel(place, MARGINS, plots(run), layout);
+    for (state, cluster) in run.found.iter() {
+        // Two rolls have their name above them, one roll below.
+        let away = 3.0 * cluster.spread(DVec2::Y) + 0.01;
+        let away = if state.rolls() == Some(2) { away } else { -away - 0.012 };
+        let text = format!("{state}, {:.0} %", 100.0 * cluster.weight());
+        let (x, y) = on_sheet(cluster.center() + DVec2::Y * away);
+        sheet.text(x - 3.2 * text.chars().count() as f64, y, 13, color(state), &text);
+    }
     sheet.png(1.6)
+}
+
+/// Where a point of the plane is on the sheet.
+fn on_sheet(point: DVec2) -> (f64, f64) {
+    let [left, right, top, bottom] = MARGINS;
+    let share = |value: f64, (low, high): (f64, f64)| (value - low) / (high - low);
+    let across = share(point.x, RANGES[0]) * (SIZE.0 - left - right);
+    let up = share(point.y, RANGES[1]) * (SIZE.1 - top - bottom);
+    (left + across, HEADER + SIZE.1 - bottom - up)
 }
 
 fn plots(run: &Run) -> Vec<Plot> {

@@ -93,7 +93,7 @@ fn caption(arguments: &Arguments, parts: &[Part], finished: usize) -> String {
     let unfinished =
         if finished < total { format!("; {finished} of {total} points so far") } else { String::new() };
     format!(
-        "N = 1000, box 60 × 150, bi-parabolic base A = 0.1, ω = 10, contact duration 1e-4; {cycles} oscillations for \
+        "N = 1000, box 60 × 150, bi-parabolic base A = 0.1, ω = 10, contact duration 1e-4\n{cycles} oscillations for \
          each point, the first half discarded; seed {}, {}{unfinished}",
         arguments.seed,
         arguments.size.name()

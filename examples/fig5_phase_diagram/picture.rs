@@ -35,7 +35,7 @@ const FRICTIONS: (f64, f64) = (0.004, 4.0);
 
 const MARGINS: [f64; 4] = [70.0, 20.0, 12.0, 52.0];
 const WIDTH: f64 = 980.0;
-const HEADER: f64 = 112.0;
+const HEADER: f64 = 122.0;
 const HEIGHT: f64 = 600.0;
 
 /// The picture as a PNG file.
@@ -58,19 +58,17 @@ pub(crate) fn draw(
 fn write_header(sheet: &mut Sheet, gravity: Gravity, caption: &str) {
     let title = format!("Convective states at g = {}", gravity.value());
     sheet.text(MARGINS[0], 28.0, 20, INK, &title);
-    sheet.text(MARGINS[0], 48.0, 12, QUIET, caption);
-    sheet.text(MARGINS[0], 70.0, 12, QUIET, "states (ring: coming from above):");
-    sheet.key(MARGINS[0] + 205.0, 70.0, &REGIMES.map(|(_, color, name)| (color, name)));
-    sheet.text(MARGINS[0], 90.0, 12, QUIET, "transitions (bars: neighbours):");
+    for (line, text) in caption.lines().enumerate() {
+        sheet.text(MARGINS[0], 48.0 + 18.0 * line as f64, 12, QUIET, text);
+    }
+    let key = MARGINS[0] + 215.0;
+    sheet.text(MARGINS[0], 88.0, 12, QUIET, "states (ring: coming from above)");
+    sheet.key(key, 88.0, &REGIMES.map(|(_, color, name)| (color, name)));
+    sheet.text(MARGINS[0], 106.0, 12, QUIET, "transitions, with error bars");
     let names = LINES.map(|(line, color, _)| (color, line.to_string()));
-    sheet.key(MARGINS[0] + 205.0, 90.0, &names.each_ref().map(|(color, name)| (*color, name.as_str())));
-    sheet.text(
-        MARGINS[0] + 205.0 + 300.0,
-        90.0,
-        12,
-        QUIET,
-        "dashed: ⟨dE⟩ constant, at the paper's value for each (Table I)",
-    );
+    sheet.key(key, 106.0, &names.each_ref().map(|(color, name)| (*color, name.as_str())));
+    let note = "thin: ⟨dE⟩ constant, at the paper's value for each (Table I)";
+    sheet.text(key + 290.0, 106.0, 12, QUIET, note);
 }
 
 fn layout(gravity: Gravity) -> Layout {
@@ -97,13 +95,9 @@ fn iso_lines(gravity: Gravity) -> Result<Vec<Plot>, ParameterError> {
     for (_, color, changes) in LINES {
         let line = IsoLine::new(changes[usize::from(gravity == Gravity::Large)], &gas)?;
         let pieces = line.trace(&frictions, gravity.largest_inelasticity())?;
-        plots.extend(pieces.into_iter().map(|piece| dashed(piece, color)));
+        plots.extend(pieces.into_iter().map(|piece| path(piece, color, 0.8)));
     }
     Ok(plots)
-}
-
-fn dashed(piece: Piece, color: &str) -> Plot {
-    LinePlot::new().with_data(piece).with_color(color).with_stroke_width(0.9).with_dashed().into()
 }
 
 /// A disk for what was seen on the way up, a ring round it for what was seen on the way down.
@@ -125,15 +119,15 @@ fn dots(points: &[Point]) -> Vec<Plot> {
 
 /// Each line through its points, low and high frictions apart if it leaves the plane between them.
 fn transitions(found: &[PlaneTransition]) -> Vec<Plot> {
-    LINES
-        .into_iter()
-        .flat_map(|(line, color, _)| {
-            let of: Vec<&PlaneTransition> = found.iter().filter(|at| at.line == line).collect();
-            let mut plots: Vec<Plot> = branches(&of).into_iter().map(|branch| path(branch, color)).collect();
-            plots.push(diamonds(&of, color));
-            plots
-        })
-        .collect()
+    let of = |line| found.iter().filter(move |at| at.line == line).collect::<Vec<_>>();
+    let mut plots = Vec::new();
+    for (line, color, _) in LINES {
+        // The beginning of coexistence lies under its end where both are at the same place.
+        let width = if line == TransitionLine::OneTwoBeginning { 4.4 } else { 2.0 };
+        plots.extend(branches(&of(line)).into_iter().map(|branch| path(branch, color, width)));
+        plots.extend(diamonds(&of(line), color, 2.4 + width));
+    }
+    plots
 }
 
 /// The points of a line by friction; two branches if it meets `q = 0` on both sides of the largest loss.
@@ -155,17 +149,27 @@ fn sorted(mut points: Piece, falling: bool) -> Piece {
     points
 }
 
-fn path(points: Piece, color: &str) -> Plot {
-    LinePlot::new().with_data(points).with_color(color).with_stroke_width(2.0).into()
+fn path(points: Piece, color: &str, width: f64) -> Plot {
+    LinePlot::new().with_data(points).with_color(color).with_stroke_width(width).into()
 }
 
 /// The points of a line, with bars to the neighbours between which they lie.
-fn diamonds(of: &[&PlaneTransition], color: &str) -> Plot {
-    let places = of.iter().map(|at| (at.friction, at.inelasticity));
-    let [below, above] = [0, 1].map(|side| move |at: &&PlaneTransition| at.between[side]);
-    let across = of.iter().map(|at| (at.friction - below(at).0, above(at).0 - at.friction));
-    let up = of.iter().map(|at| (at.inelasticity - below(at).1, above(at).1 - at.inelasticity));
-    let plot = ScatterPlot::new().with_data(places).with_color(color).with_size(4.0);
-    let plot = plot.with_marker(MarkerShape::Diamond);
-    plot.with_x_err_asymmetric(across).with_y_err_asymmetric(up).into()
+fn diamonds(of: &[&PlaneTransition], color: &str, size: f64) -> [Plot; 2] {
+    let (across, up): (Vec<_>, Vec<_>) = of.iter().partition(|at| at.between[0].1 == at.between[1].1);
+    let plot = |of: &[&PlaneTransition]| {
+        let plot = ScatterPlot::new().with_data(of.iter().map(|at| (at.friction, at.inelasticity)));
+        plot.with_color(color).with_size(size).with_marker(MarkerShape::Diamond)
+    };
+    let bars = |of: &[&PlaneTransition], coordinate: fn((f64, f64)) -> f64| -> Vec<(f64, f64)> {
+        let bar = |at: &&PlaneTransition| {
+            let middle = coordinate((at.friction, at.inelasticity));
+            let [first, second] = at.between.map(coordinate);
+            (middle - first, second - middle)
+        };
+        of.iter().map(bar).collect()
+    };
+    [
+        plot(&across).with_x_err_asymmetric(bars(&across, |at| at.0)).into(),
+        plot(&up).with_y_err_asymmetric(bars(&up, |at| at.1)).into(),
+    ]
 }

@@ -90,6 +90,7 @@ pub(crate) fn write_points(points: &[Point], gravity: f64, folder: &Path) -> Res
         let place = (gravity, friction, inelasticity, leg, regime.to_string());
         let measured = [*one_roll, *two_rolls, *noise, point.packing.0, point.packing.1, point.height];
         let measured = measured.map(|value| format!("{value:.4}"));
+        let weights = weights.map(|weight| format!("{:.3}", weight.abs()));
         table.serialize((place, weights, measured, point.samples, point.outcome))?;
     }
     Ok(table.flush()?)
@@ -115,7 +116,9 @@ pub(crate) fn write_lines(
     ])?;
     for at in lines {
         let name = at.line.to_string();
-        table.serialize((gravity, name, at.friction, at.inelasticity, at.rising, at.between))?;
+        let round = |value: f64| format!("{value:.6}");
+        let between = at.between.map(|(friction, inelasticity)| [friction, inelasticity].map(round));
+        table.serialize((gravity, name, round(at.friction), round(at.inelasticity), at.rising, between))?;
     }
     Ok(table.flush()?)
 }
