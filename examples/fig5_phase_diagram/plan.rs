@@ -8,7 +8,7 @@ use granular_edmd::study::{
 /// How much is done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Size {
-    /// A few values of each parameter, for a minute or two: the picture in its roughest outlines.
+    /// A few values of each parameter, for a minute or two: the picture in rough outlines.
     Quick,
     /// All frictions and inelasticities, 6000 oscillations each: half an hour on two cores.
     Coarse,
@@ -108,7 +108,7 @@ fn specification(
 /// The first half is discarded.
 const fn protocol(size: Size) -> Protocol {
     match size {
-        Size::Quick => Protocol::new(500, 100, 5),
+        Size::Quick => Protocol::new(750, 150, 5),
         Size::Coarse => Protocol::new(3_000, 300, 10),
         Size::Full => Protocol::new(50_000, 500, 100),
     }
@@ -120,6 +120,6 @@ fn inelasticities(size: Size, gravity: Gravity) -> Vec<f64> {
         Gravity::Small => (0.02, 12),
         Gravity::Large => (0.005, 12),
     };
-    let every = if size == Size::Quick { 4 } else { 1 };
+    let every = if size == Size::Quick { 2 } else { 1 };
     (0..most).step_by(every).map(|number| f64::from(number) * step).collect()
 }
