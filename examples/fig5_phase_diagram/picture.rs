@@ -136,17 +136,17 @@ fn branches(of: &[&PlaneTransition]) -> Vec<Piece> {
     let last = on_axis(true).map(|at| at.friction).reduce(f64::max);
     let first = on_axis(false).map(|at| at.friction).reduce(f64::min);
     let cut = last.zip(first).map_or(f64::INFINITY, |(last, first)| (last * first).sqrt());
-    let (low, high) = of.iter().map(|at| (at.friction, at.inelasticity)).partition(|at| at.0 < cut);
-    [sorted(low, true), sorted(high, false)].into_iter().filter(|piece| !piece.is_empty()).collect()
+    let (low, high): (Piece, Piece) =
+        of.iter().map(|at| (at.friction, at.inelasticity)).partition(|at| at.0 < cut);
+    [low, high].into_iter().map(means).filter(|piece| !piece.is_empty()).collect()
 }
 
-/// By friction; of equal ones as the line goes, down to the largest loss and up beyond.
-fn sorted(mut points: Piece, falling: bool) -> Piece {
-    points.sort_by(|a, b| {
-        let inelasticity = a.1.total_cmp(&b.1);
-        a.0.total_cmp(&b.0).then(if falling { inelasticity.reverse() } else { inelasticity })
-    });
-    points
+/// The points in the order of their frictions; those of equal friction as their mean.
+fn means(mut points: Piece) -> Piece {
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Middles of the same neighbours may differ in their last digits.
+    let equal = points.chunk_by(|a, b| b.0 < a.0 * (1.0 + 1e-9));
+    equal.map(|at| (at[0].0, at.iter().map(|point| point.1).sum::<f64>() / at.len() as f64)).collect()
 }
 
 fn path(points: Piece, color: &str, width: f64) -> Plot {
