@@ -117,6 +117,8 @@ fn panel(records: &[Record], quantity: fn(&Sample) -> f64, name: &str) -> (Vec<P
     let mut plots: Vec<Plot> = edges.map(edge).collect();
     plots.push(Plot::Scatter(dots));
     let layout = Layout::new((0.5, records.len() as f64 + 0.5), (-0.25, 0.25))
+        .with_y_axis_min(-0.25)
+        .with_y_axis_max(0.25)
         .with_x_axis_min(0.5)
         .with_x_axis_max(records.len() as f64 + 0.5)
         .with_x_categories(records.iter().map(|record| format!("{:.3}", friction(record))).collect())
