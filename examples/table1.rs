@@ -2,14 +2,22 @@
 //!
 //! ```text
 //! cargo run --release --example table1 -- --out out
+//! cargo run --release --example table1 -- --study out/fig5_phase_diagram-0.015625-coarse
 //! ```
+//!
+//! With `--study`, the lines that the example `fig5_phase_diagram` has found are averaged as in the paper, beside the
+//! printed ones: the energy change of each point by the closed form at its friction and inelasticity, mean and standard
+//! deviation over the points of a line.
 
 use std::error::Error;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use granular_edmd::ParameterError;
-use granular_edmd::kinetic::effective_inelasticity;
+use granular_edmd::analysis::{LineAverage, line_average};
+use granular_edmd::collision::Frictional;
+use granular_edmd::kinetic::{Maxwellian, effective_inelasticity};
+use granular_edmd::observable::RunningMean;
 
 /// Effective inelasticity of every transition (paper, Table I, by Eq. (9)).
 #[derive(Parser)]
@@ -17,6 +25,9 @@ struct Arguments {
     /// Folder for the table.
     #[arg(long, default_value = "out")]
     out: PathBuf,
+    /// Folder of a phase diagram with its `transitions.csv`; may be given once for each gravity.
+    #[arg(long)]
+    study: Vec<PathBuf>,
 }
 
 /// A row as printed: gravity, transition, mean energy change and effective inelasticity with their errors.
@@ -69,45 +80,112 @@ impl Row {
     }
 }
 
+/// A point of a line that was found: gravity, transition, and the rule there.
+struct Point {
+    gravity: f64,
+    transition: String,
+    rule: Frictional,
+}
+
+/// The columns of `transitions.csv`: gravity, line, friction and inelasticity; what follows is not needed.
+type Columns = (f64, String, f64, f64);
+
+fn read(folder: &Path) -> Result<Vec<Point>, Box<dyn Error>> {
+    let path = folder.join("transitions.csv");
+    let mut table = csv::Reader::from_path(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let mut points = Vec::new();
+    for line in table.records() {
+        let mut line = line?;
+        line.truncate(4);
+        let (gravity, transition, friction, inelasticity): Columns = line.deserialize(None)?;
+        let rule =
+            Frictional::from_inelasticity(inelasticity, inelasticity)?.with_friction(friction, friction)?;
+        points.push(Point { gravity, transition, rule });
+    }
+    Ok(points)
+}
+
+/// The average over the points of a line; `None` if it has none.
+fn measured(row: &Row, points: &[Point]) -> Result<Option<LineAverage>, ParameterError> {
+    let of = points.iter().filter(|point| point.gravity == row.gravity && point.transition == row.transition);
+    let line: Vec<Frictional> = of.map(|point| point.rule).collect();
+    if line.is_empty() { Ok(None) } else { line_average(&line, &Maxwellian::new(1.0)?).map(Some) }
+}
+
+const COLUMNS: [&str; 14] = [
+    "gravity",
+    "transition",
+    "mean_energy_change",
+    "its_error",
+    "effective_inelasticity",
+    "error",
+    "printed",
+    "printed_error",
+    "verdict",
+    "measured_points",
+    "measured_energy_change",
+    "its_standard_deviation",
+    "measured_effective_inelasticity",
+    "standard_deviation",
+];
+
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = Arguments::parse();
+    let mut points = Vec::new();
+    for folder in &arguments.study {
+        points.extend(read(folder)?);
+    }
     std::fs::create_dir_all(&arguments.out)?;
     let path = arguments.out.join("table1.csv");
     let mut table = csv::Writer::from_path(&path)?;
-    table.write_record([
-        "gravity",
-        "transition",
-        "mean_energy_change",
-        "its_error",
-        "effective_inelasticity",
-        "error",
-        "printed",
-        "printed_error",
-        "verdict",
-    ])?;
+    table.write_record(COLUMNS)?;
     println!(
         "g         transition   <dE>              q_eff             printed         verdict   (T_0 = 1)"
     );
     for row in &TABLE {
+        print(row)?;
+        let measured = measured(row, &points)?;
+        measured.iter().for_each(print_measured);
         let (effective, error, verdict) = (row.effective()?, row.error()?, row.verdict()?);
-        let (Row { gravity, transition, .. }, (change, spread), (printed, printed_error)) =
-            (row, row.change, row.printed);
-        println!(
-            "{gravity:<8}  {transition:<10}  {change:.3} ± {spread:.3}   {effective:.4} ± {error:.4}   {printed:.3} ± {printed_error:.3}   {verdict}"
-        );
+        let place = (row.gravity, row.transition);
         table.serialize((
-            gravity,
-            transition,
-            change,
-            spread,
+            place,
+            row.change,
             effective,
             error,
-            printed,
-            printed_error,
+            row.printed,
             verdict,
+            cells(measured.as_ref()),
         ))?;
     }
     table.flush()?;
     println!("wrote {}", path.display());
     Ok(())
+}
+
+fn print(row: &Row) -> Result<(), ParameterError> {
+    let (effective, error, verdict) = (row.effective()?, row.error()?, row.verdict()?);
+    let (Row { gravity, transition, .. }, (change, spread), (printed, printed_error)) =
+        (row, row.change, row.printed);
+    println!(
+        "{gravity:<8}  {transition:<10}  {change:.3} ± {spread:.3}   {effective:.4} ± {error:.4}   {printed:.3} ± {printed_error:.3}   {verdict}"
+    );
+    Ok(())
+}
+
+fn print_measured(average: &LineAverage) {
+    let text = |mean: &RunningMean, digits| {
+        format!("{:.digits$} ± {:.digits$}", mean.mean(), mean.standard_deviation())
+    };
+    let (change, effective) = (average.energy_change(), average.effective_inelasticity());
+    let points = format!("{} points", change.count());
+    println!("{:>20}  {}   {}", points, text(change, 3), text(effective, 4));
+}
+
+/// The last columns: number of points, and mean and standard deviation of both quantities.
+fn cells(average: Option<&LineAverage>) -> (Option<u64>, [Option<f64>; 4]) {
+    let Some(average) = average else { return (None, [None; 4]) };
+    let (change, effective) = (average.energy_change(), average.effective_inelasticity());
+    let both = [change, effective].map(|mean| [mean.mean(), mean.standard_deviation()]);
+    (Some(change.count()), [both[0][0], both[0][1], both[1][0], both[1][1]].map(Some))
 }

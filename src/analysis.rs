@@ -6,6 +6,7 @@
 //! | clusters of points in a plane | [`KMeans`], [`distinct_clusters`] | paper, Fig. 4 |
 //! | which convective states a run shows | [`StateCriteria::classify`] | paper, section III |
 //! | where a ramp changes state, and its hysteresis | [`transitions`] | paper, Fig. 5 |
+//! | the lines of transitions in the plane of friction and inelasticity | [`plane_transitions`] | paper, Fig. 5 |
 //! | energy loss along a line of transitions | [`line_average`] | paper, Table I |
 //!
 //! Everything is deterministic: the same numbers and seeds give the same bits.
@@ -30,6 +31,7 @@ mod clusters;
 mod distinct;
 mod k_means;
 mod line;
+mod plane;
 mod state;
 mod transitions;
 
@@ -39,5 +41,6 @@ pub use clusters::{Cluster, Clusters};
 pub use distinct::distinct_clusters;
 pub use k_means::KMeans;
 pub use line::{LineAverage, line_average};
+pub use plane::{PlaneTransition, plane_transitions};
 pub use state::{ConvectiveRegime, ConvectiveState};
 pub use transitions::{Transition, TransitionLine, transitions};

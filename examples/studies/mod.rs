@@ -1,4 +1,5 @@
 //! What the examples that run studies share: progress, Ctrl-C, and pictures.
+#![allow(dead_code, reason = "each example takes what it needs")]
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -56,11 +57,7 @@ pub(crate) fn complete(
 ) -> Result<Option<Study>, Box<dyn Error>> {
     println!("study in {}:\n\n{specification}", folder.display());
     let study = Study::open_or_create(folder, specification)?;
-    ctrlc::set_handler(|| {
-        if STOP.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-    })?;
+    stop_on_ctrl_c()?;
     let bar = progress_bar()?;
     let show = |progress: &Progress| {
         let before = bar.position();
@@ -81,6 +78,19 @@ pub(crate) fn complete(
     }
     println!("{} of {} values are finished; the same command goes on", summary.finished, summary.total);
     Ok(None)
+}
+
+/// May be called more than once.
+fn stop_on_ctrl_c() -> Result<(), ctrlc::Error> {
+    let handler = || {
+        if STOP.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    };
+    match ctrlc::set_handler(handler) {
+        Err(ctrlc::Error::MultipleHandlers) => Ok(()),
+        other => other,
+    }
 }
 
 /// Drawn on a terminal only.

@@ -1,0 +1,214 @@
+//! The paper's Fig. 4: samples in the plane of the order parameters where one roll and two coexist.
+//!
+//! 1000 disks in the vibrated box, `g = 0.015625`, `q = 0`, friction 0.0605. The samples of a run form up to three clouds:
+//! one roll of either sense, and two rolls. A finite number of disks makes the state jump between them; not every run
+//! visits all. Some independent runs are done, and one that shows most clusters is drawn.
+//!
+//! ```text
+//! cargo run --release --features serde,rayon --example fig4_clusters -- --quick
+//! ```
+//!
+//! Writes `fig4_clusters.png`, `clusters.csv` and the tables of the study. Interrupted, the same command goes on.
+
+mod common;
+mod studies;
+
+use std::error::Error;
+use std::path::Path;
+use std::process::ExitCode;
+
+use clap::Parser;
+use granular_edmd::analysis::{Classification, ConvectiveState, StateCriteria};
+use granular_edmd::glam::DVec2;
+use granular_edmd::study::{
+    Axis, Base, Parameter, Protocol, Record, Specification, SpecificationError, Study, System,
+};
+use kuva::plot::scatter::MarkerShape;
+use kuva::prelude::{LinePlot, Plot, ScatterPlot};
+
+use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
+
+/// Clusters of the order parameters where one roll and two coexist (paper, Fig. 4).
+#[derive(Parser)]
+struct Arguments {
+    #[command(flatten)]
+    common: studies::Common,
+    /// Friction.
+    #[arg(long, default_value_t = 0.0605)]
+    friction: f64,
+    /// Independent runs.
+    #[arg(long, default_value_t = 6)]
+    runs: usize,
+}
+
+impl Arguments {
+    fn specification(&self) -> Result<Specification, SpecificationError> {
+        let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
+        let system = System::new(1000, 60.0, base)
+            .with_height(150.0)
+            .with_gravity(0.015_625)
+            .with_contact_duration(1e-4);
+        // The paper: 100 000 oscillations, sampled every 100, the first half discarded.
+        let protocol =
+            if self.common.quick { Protocol::new(4_000, 400, 20) } else { Protocol::new(50_000, 500, 100) };
+        Specification::new(system, protocol, self.common.seed)?
+            .with_axis(Axis::new(Parameter::Friction, vec![self.friction; self.runs]))
+    }
+}
+
+/// A run and its clusters.
+struct Run {
+    record: Record,
+    found: Classification,
+}
+
+impl Run {
+    fn of(record: Record) -> Result<Self, Box<dyn Error>> {
+        let found = StateCriteria::default().classify(
+            &record.order(),
+            record.thermal_noise(),
+            record.densest_layer(),
+        )?;
+        Ok(Self { record, found })
+    }
+
+    fn clusters(&self) -> usize {
+        self.found.clusters().len()
+    }
+}
+
+fn main() -> ExitCode {
+    studies::end(run(&Arguments::parse()))
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let folder = arguments.common.folder("fig4_clusters");
+    let Some(study) = studies::complete(&folder, &arguments.specification()?)? else { return Ok(()) };
+    let runs: Vec<Run> = study.records().map(|record| Run::of(record?)).collect::<Result<_, _>>()?;
+    runs.iter().for_each(print);
+    let three = runs.iter().filter(|run| run.clusters() == 3).count();
+    println!("{three} of {} runs show three clusters", runs.len());
+    write_clusters(&runs, study.folder())?;
+    // The first one of those with most clusters.
+    let Some(shown) = runs.iter().rev().max_by_key(|run| run.clusters()) else { return Ok(()) };
+    let path = study.folder().join("fig4_clusters.png");
+    std::fs::write(&path, draw(arguments, &study, shown)?)?;
+    println!("wrote {}; the tables beside it are clusters.csv, values.csv and samples.csv", path.display());
+    Ok(())
+}
+
+fn print(run: &Run) {
+    println!("run {}, seed {}:", run.record.ramp() + 1, run.record.seed());
+    for (state, cluster) in run.found.iter() {
+        let DVec2 { x, y } = cluster.center();
+        println!("    {:3.0} %  Psi1 = {x:6.3}  Psi2 = {y:6.3}  {state}", 100.0 * cluster.weight());
+    }
+}
+
+fn write_clusters(runs: &[Run], folder: &Path) -> Result<(), Box<dyn Error>> {
+    let mut table = csv::Writer::from_path(folder.join("clusters.csv"))?;
+    table.write_record([
+        "run",
+        "state",
+        "samples",
+        "weight",
+        "one_roll",
+        "two_rolls",
+        "spread_one_roll",
+        "spread_two_rolls",
+    ])?;
+    for run in runs {
+        for (state, cluster) in run.found.iter() {
+            let (center, spread) = (cluster.center(), [DVec2::X, DVec2::Y].map(|axis| cluster.spread(axis)));
+            let place = (run.record.ramp() + 1, state.to_string(), cluster.count(), cluster.weight());
+            table.serialize((place, center.x, center.y, spread))?;
+        }
+    }
+    Ok(table.flush()?)
+}
+
+const MARGINS: [f64; 4] = [70.0, 20.0, 12.0, 52.0];
+const HEADER: f64 = 76.0;
+/// Of the panel: a unit is equally long in both directions.
+const SIZE: (f64, f64) = (860.0, 526.0);
+
+/// The ranges of both axes.
+const RANGES: [(f64, f64); 2] = [(-0.25, 0.25), (-0.08, 0.22)];
+
+fn draw(arguments: &Arguments, study: &Study, run: &Run) -> Result<Vec<u8>, String> {
+    let mut sheet = Sheet::new(SIZE.0, HEADER + SIZE.1);
+    let plural = if run.clusters() == 1 { "" } else { "s" };
+    let title = format!("{} cluster{plural} at κ = {}", run.clusters(), arguments.friction);
+    let protocol = study.specification().protocol();
+    let samples = protocol.samples();
+    let system = "N = 1000, box 60 × 150, g = 0.015625, q = 0, bi-parabolic base A = 0.1, ω = 10, contact duration 1e-4";
+    let protocol = format!(
+        "{samples} samples in the second half of {} oscillations; run {} of {}, seed {}; dotted: three times the noise at \
+         rest",
+        protocol.cycles(),
+        run.record.ramp() + 1,
+        arguments.runs,
+        arguments.common.seed
+    );
+    sheet.text(MARGINS[0], 28.0, 20, INK, &title);
+    sheet.text(MARGINS[0], 48.0, 12, QUIET, system);
+    sheet.text(MARGINS[0], 66.0, 12, QUIET, &protocol);
+    let layout = sheet::axes(RANGES[0], RANGES[1])
+        .with_x_label("Ψ₁, one roll")
+        .with_y_label("Ψ₂, two rolls")
+        .with_show_grid(false)
+        .with_box_axes();
+    let place = Place { x: 0.0, y: HEADER, width: SIZE.0, height: SIZE.1 };
+    sheet.panel(place, MARGINS, plots(run), layout);
+    for (state, cluster) in run.found.iter() {
+        // Two rolls have their name above them, one roll below.
+        let away = 3.0 * cluster.spread(DVec2::Y) + 0.01;
+        let away = if state.rolls() == Some(2) { away } else { -away - 0.012 };
+        let text = format!("{state}, {:.0} %", 100.0 * cluster.weight());
+        let (x, y) = on_sheet(cluster.center() + DVec2::Y * away);
+        sheet.text(x - 3.2 * text.chars().count() as f64, y, 13, color(state), &text);
+    }
+    sheet.png(1.6)
+}
+
+/// Where a point of the plane is on the sheet.
+fn on_sheet(point: DVec2) -> (f64, f64) {
+    let [left, right, top, bottom] = MARGINS;
+    let share = |value: f64, (low, high): (f64, f64)| (value - low) / (high - low);
+    let across = share(point.x, RANGES[0]) * (SIZE.0 - left - right);
+    let up = share(point.y, RANGES[1]) * (SIZE.1 - top - bottom);
+    (left + across, HEADER + SIZE.1 - bottom - up)
+}
+
+fn plots(run: &Run) -> Vec<Plot> {
+    let radius = 3.0 * run.record.thermal_noise();
+    let circle =
+        (0..=90).map(|step| DVec2::from_angle(f64::from(step) * std::f64::consts::TAU / 90.0) * radius);
+    let circle = LinePlot::new().with_data(circle.map(|at| (at.x, at.y))).with_color(QUIET).with_dotted();
+    let mut plots = vec![circle.into()];
+    let (order, labels) = (run.record.order(), run.found.clusters().labels());
+    for (number, (state, cluster)) in run.found.iter().enumerate() {
+        let of = order.iter().zip(labels).filter(|&(_, &label)| label == number);
+        let dots = ScatterPlot::new()
+            .with_data(of.map(|(order, _)| (order.one_roll, order.two_rolls)))
+            .with_color(color(state))
+            .with_marker_opacity(0.55)
+            .with_size(2.6);
+        let center = [(cluster.center().x, cluster.center().y)];
+        let center = |color: &str, size| {
+            let dot = ScatterPlot::new().with_data(center).with_color(color).with_size(size);
+            dot.with_marker(MarkerShape::Diamond).into()
+        };
+        plots.extend([dots.into(), center("white", 9.0), center(INK, 6.5)]);
+    }
+    plots
+}
+
+const fn color(state: ConvectiveState) -> &'static str {
+    match state {
+        ConvectiveState::ClockwiseRoll => BLUE,
+        ConvectiveState::CounterclockwiseRoll => GREEN,
+        ConvectiveState::TwoRollsUp | ConvectiveState::TwoRollsDown => ORANGE,
+        _ => QUIET,
+    }
+}

@@ -1,0 +1,101 @@
+//! The paper's Fig. 5: convective states in the plane of friction and inelasticity.
+//!
+//! 1000 disks in the vibrated box. For each inelasticity, friction goes up step by step, each value from the last state
+//! of the one before, and for some comes down again from the other end. Each point gets the name of its state; the
+//! transitions lie between neighbours of different states.
+//!
+//! ```text
+//! cargo run --release --features serde,rayon --example fig5_phase_diagram -- --size quick
+//! cargo run --release --features serde,rayon --example fig5_phase_diagram -- --gravity 0.002025 --size coarse
+//! ```
+//!
+//! Writes `fig5_phase_diagram.png`, `points.csv` and `transitions.csv`, which the example `table1` reads, beside the
+//! studies `up` and `down`. Ctrl-C stops with all that was done saved, and draws that; the same command goes on.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod picture;
+mod plan;
+mod states;
+#[path = "../studies/mod.rs"]
+mod studies;
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+use granular_edmd::study::Study;
+
+use plan::{Gravity, Part, Size};
+
+/// Convective states in the plane of friction and inelasticity (paper, Fig. 5).
+#[derive(Parser)]
+struct Arguments {
+    /// Folder for all results; each gravity and size has one of its own in it.
+    #[arg(long, default_value = "out")]
+    out: PathBuf,
+    /// Gravity, one of the paper's two.
+    #[arg(long, value_enum, default_value = "0.015625")]
+    gravity: Gravity,
+    /// How much is done.
+    #[arg(long, value_enum, default_value = "full")]
+    size: Size,
+    /// Draw what is there, and do no more: also while another process does.
+    #[arg(long)]
+    draw: bool,
+    /// Seed of all random numbers.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+impl Arguments {
+    fn folder(&self) -> PathBuf {
+        let name = format!("fig5_phase_diagram-{}-{}", self.gravity.value(), self.size.name());
+        self.out.join(name)
+    }
+}
+
+fn main() -> ExitCode {
+    studies::end(run(&Arguments::parse()))
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let folder = arguments.folder();
+    let parts = plan::parts(arguments.size, arguments.gravity, arguments.seed)?;
+    if !arguments.draw {
+        for part in &parts {
+            if studies::complete(&folder.join(part.folder), &part.specification)?.is_none() {
+                break;
+            }
+        }
+    }
+    let started = parts.iter().filter(|part| folder.join(part.folder).is_dir());
+    let studies: Vec<Study> =
+        started.map(|part| Study::open(folder.join(part.folder))).collect::<Result<_, _>>()?;
+    let points = states::points(&studies)?;
+    let lines = states::lines(&points)?;
+    let gravity = arguments.gravity.value();
+    states::write_points(&points, gravity, &folder)?;
+    states::write_lines(&lines, gravity, &folder)?;
+    let caption = caption(arguments, &parts, points.len());
+    let picture = picture::draw(arguments.gravity, &caption, &points, &lines)?;
+    std::fs::write(folder.join("fig5_phase_diagram.png"), picture)?;
+    println!("{caption}");
+    println!("wrote fig5_phase_diagram.png, points.csv and transitions.csv to {}", folder.display());
+    Ok(())
+}
+
+fn caption(arguments: &Arguments, parts: &[Part], finished: usize) -> String {
+    let total: usize =
+        parts.iter().map(|part| part.specification.ramps() * part.specification.values()).sum();
+    let cycles = parts[0].specification.protocol().cycles();
+    let unfinished =
+        if finished < total { format!("; {finished} of {total} points so far") } else { String::new() };
+    format!(
+        "N = 1000, box 60 × 150, bi-parabolic base A = 0.1, ω = 10, contact duration 1e-4\n{cycles} oscillations for \
+         each point, the first half discarded; seed {}, {}{unfinished}",
+        arguments.seed,
+        arguments.size.name()
+    )
+}

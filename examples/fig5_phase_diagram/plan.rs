@@ -1,0 +1,125 @@
+//! What is simulated: ramps of friction, up and down, side by side for each inelasticity.
+
+use clap::ValueEnum;
+use granular_edmd::study::{
+    Axis, Base, Course, Parameter, Protocol, Ramp, Specification, SpecificationError, System,
+};
+
+/// How much is done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Size {
+    /// A few values of each parameter, for a minute or two: the picture in rough outlines.
+    Quick,
+    /// All frictions and inelasticities, 6000 oscillations each: half an hour on two cores.
+    Coarse,
+    /// As in the paper, 100 000 oscillations each, all ramps up and down: about ten hours.
+    Full,
+}
+
+impl Size {
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Quick => "quick",
+            Self::Coarse => "coarse",
+            Self::Full => "full",
+        }
+    }
+}
+
+/// The two gravities of the paper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Gravity {
+    /// 0.002025.
+    #[value(name = "0.002025")]
+    Small,
+    /// 0.015625.
+    #[value(name = "0.015625")]
+    Large,
+}
+
+impl Gravity {
+    pub(crate) const fn value(self) -> f64 {
+        match self {
+            Self::Small => 0.002_025,
+            Self::Large => 0.015_625,
+        }
+    }
+
+    /// The largest inelasticity of the picture: the smaller gravity needs more loss for everything.
+    pub(crate) const fn largest_inelasticity(self) -> f64 {
+        match self {
+            Self::Small => 0.24,
+            Self::Large => 0.08,
+        }
+    }
+}
+
+/// Friction from 0.005 to 3: about equal steps of its logarithm, smaller ones where one roll gives way to two.
+const FRICTIONS: [f64; 26] = [
+    0.005, 0.007_5, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.055, 0.06, 0.065, 0.07, 0.085, 0.1, 0.15, 0.2,
+    0.3, 0.4, 0.5, 0.65, 0.8, 1.0, 1.3, 1.7, 2.2, 3.0,
+];
+
+const FEW_FRICTIONS: [f64; 8] = [0.005, 0.015, 0.04, 0.07, 0.15, 0.3, 1.0, 3.0];
+
+/// A study in a folder of its own.
+pub(crate) struct Part {
+    pub(crate) folder: &'static str,
+    pub(crate) specification: Specification,
+}
+
+/// The studies of a phase diagram: the ramps up, and the ramps down.
+pub(crate) fn parts(size: Size, gravity: Gravity, seed: u64) -> Result<Vec<Part>, SpecificationError> {
+    let up = inelasticities(size, gravity);
+    // Going down is for hysteresis; a short run cannot tell it from a late start.
+    let down = match size {
+        Size::Quick => Vec::new(),
+        Size::Coarse => up.iter().copied().step_by(2).take(4).collect(),
+        Size::Full => up.clone(),
+    };
+    let parts = [("up", Course::Up, up), ("down", Course::Down, down)];
+    let wanted = parts.into_iter().filter(|(_, _, inelasticities)| !inelasticities.is_empty());
+    wanted
+        .map(|(folder, course, inelasticities)| {
+            let specification = specification(size, gravity, seed, course, inelasticities)?;
+            Ok(Part { folder, specification })
+        })
+        .collect()
+}
+
+fn specification(
+    size: Size,
+    gravity: Gravity,
+    seed: u64,
+    course: Course,
+    inelasticities: Vec<f64>,
+) -> Result<Specification, SpecificationError> {
+    let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
+    let system = System::new(1000, 60.0, base)
+        .with_height(150.0)
+        .with_gravity(gravity.value())
+        .with_contact_duration(1e-4);
+    let frictions = if size == Size::Quick { FEW_FRICTIONS.to_vec() } else { FRICTIONS.to_vec() };
+    Specification::new(system, protocol(size), seed)?
+        .with_ramp(Ramp::new(Parameter::Friction, frictions, course))?
+        .with_axis(Axis::new(Parameter::Inelasticity, inelasticities))
+}
+
+/// The first half is discarded.
+const fn protocol(size: Size) -> Protocol {
+    match size {
+        Size::Quick => Protocol::new(750, 150, 5),
+        Size::Coarse => Protocol::new(3_000, 300, 10),
+        Size::Full => Protocol::new(50_000, 500, 100),
+    }
+}
+
+/// Equal steps, those of the smaller gravity being larger.
+fn inelasticities(size: Size, gravity: Gravity) -> Vec<f64> {
+    let (step, most) = match gravity {
+        Gravity::Small => (0.02, 12),
+        Gravity::Large => (0.005, 12),
+    };
+    let every = if size == Size::Quick { 2 } else { 1 };
+    (0..most).step_by(every).map(|number| f64::from(number) * step).collect()
+}

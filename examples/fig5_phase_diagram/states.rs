@@ -1,0 +1,124 @@
+//! From records to the states of the points, and to the transitions between them.
+
+use std::error::Error;
+use std::path::Path;
+
+use granular_edmd::ParameterError;
+use granular_edmd::analysis::{ConvectiveRegime, PlaneTransition, StateCriteria, plane_transitions};
+use granular_edmd::study::{Leg, Parameter, Record, Study};
+
+/// What was seen at a point of the plane, on the way up or down.
+pub(crate) struct Point {
+    pub(crate) friction: f64,
+    pub(crate) inelasticity: f64,
+    pub(crate) leg: Option<Leg>,
+    pub(crate) regime: ConvectiveRegime,
+    /// Fractions of the samples with no, one and two rolls.
+    weights: [f64; 3],
+    one_roll: f64,
+    two_rolls: f64,
+    noise: f64,
+    /// Largest packing fraction of the height profile, and the least one below it.
+    packing: (f64, f64),
+    height: f64,
+    samples: usize,
+    outcome: &'static str,
+}
+
+impl Point {
+    /// The point of a record; `None` if it has no samples.
+    fn of(record: &Record) -> Result<Option<Self>, ParameterError> {
+        let Some(layer) = record.densest_layer() else { return Ok(None) };
+        let noise = record.thermal_noise();
+        let found = StateCriteria::default().classify(&record.order(), noise, Some(layer))?;
+        let parameter = |parameter| record.system().get(parameter).unwrap_or(f64::NAN);
+        Ok(Some(Self {
+            friction: parameter(Parameter::Friction),
+            inelasticity: parameter(Parameter::Inelasticity),
+            leg: record.leg(),
+            regime: found.regime(),
+            weights: [0, 1, 2].map(|rolls| found.weight_of_rolls(rolls)),
+            one_roll: record.mean(|sample| sample.one_roll.abs()).mean,
+            two_rolls: record.mean(|sample| sample.two_rolls).mean,
+            noise,
+            packing: (layer.packing_fraction, layer.least_below),
+            height: record.mean(|sample| sample.height).mean,
+            samples: record.samples().len(),
+            outcome: record.outcome().name(),
+        }))
+    }
+}
+
+/// The points of all finished values.
+pub(crate) fn points(studies: &[Study]) -> Result<Vec<Point>, Box<dyn Error>> {
+    let mut points = Vec::new();
+    for record in studies.iter().flat_map(Study::records) {
+        points.extend(Point::of(&record?)?);
+    }
+    Ok(points)
+}
+
+/// The points of the transition lines.
+pub(crate) fn lines(points: &[Point]) -> Result<Vec<PlaneTransition>, ParameterError> {
+    plane_transitions(points.iter().map(|point| (point.friction, point.inelasticity, point.regime)))
+}
+
+/// Writes `points.csv`.
+pub(crate) fn write_points(points: &[Point], gravity: f64, folder: &Path) -> Result<(), Box<dyn Error>> {
+    let mut table = csv::Writer::from_path(folder.join("points.csv"))?;
+    table.write_record([
+        "gravity",
+        "friction",
+        "inelasticity",
+        "leg",
+        "regime",
+        "weight_no_roll",
+        "weight_one_roll",
+        "weight_two_rolls",
+        "one_roll_magnitude",
+        "two_rolls",
+        "thermal_noise",
+        "densest_packing",
+        "least_packing_below",
+        "height",
+        "samples",
+        "outcome",
+    ])?;
+    for point in points {
+        let Point { friction, inelasticity, regime, weights, one_roll, two_rolls, noise, .. } = point;
+        let leg = point.leg.map(|leg| leg.to_string());
+        let place = (gravity, friction, inelasticity, leg, regime.to_string());
+        let measured = [*one_roll, *two_rolls, *noise, point.packing.0, point.packing.1, point.height];
+        let measured = measured.map(|value| format!("{value:.4}"));
+        let weights = weights.map(|weight| format!("{:.3}", weight.abs()));
+        table.serialize((place, weights, measured, point.samples, point.outcome))?;
+    }
+    Ok(table.flush()?)
+}
+
+/// Writes `transitions.csv`, which the example `table1` reads.
+pub(crate) fn write_lines(
+    lines: &[PlaneTransition],
+    gravity: f64,
+    folder: &Path,
+) -> Result<(), Box<dyn Error>> {
+    let mut table = csv::Writer::from_path(folder.join("transitions.csv"))?;
+    table.write_record([
+        "gravity",
+        "line",
+        "friction",
+        "inelasticity",
+        "rising",
+        "first_friction",
+        "first_inelasticity",
+        "second_friction",
+        "second_inelasticity",
+    ])?;
+    for at in lines {
+        let name = at.line.to_string();
+        let round = |value: f64| format!("{value:.6}");
+        let between = at.between.map(|(friction, inelasticity)| [friction, inelasticity].map(round));
+        table.serialize((gravity, name, round(at.friction), round(at.inelasticity), at.rising, between))?;
+    }
+    Ok(table.flush()?)
+}
