@@ -156,7 +156,7 @@ fn cumulant(restitution: f64, count: usize, gases: u64) -> Result<(f64, f64), Bo
     let [mut fourth, mut slope] = [RunningMean::default(); 2];
     let rule = Smooth::from_restitution(restitution)?;
     for seed in 0..gases {
-        let mut simulation = Gas::of(count, 0.05, 2.0, seed).simulation(rule, 0.0)?;
+        let mut simulation = Gas::of(count, 0.005, 2.0, seed).simulation(rule, 0.0)?;
         run_for(&mut simulation, 10.0, &mut ())?;
         let start = simulation.measure(&Temperatures).translational();
         let mut end = start;
@@ -176,14 +176,14 @@ fn cumulant(restitution: f64, count: usize, gases: u64) -> Result<(f64, f64), Bo
 }
 
 #[test]
-#[ignore = "ten seconds in release"]
+#[ignore = "half a minute"]
 fn cooling_disks_have_the_fourth_cumulant_of_direct_simulation() -> Outcome {
-    // Direct simulation of the Boltzmann equation, 3e6 particles. Of 8e5 samples here half are independent: 0.0035 of
-    // <v^4>, and 0.1 % of the slope; a packing fraction of 0.05 may correlate velocities as much again.
+    // Direct simulation of the Boltzmann equation, 3e6 particles. Of 4e5 samples here half are independent: 0.005 of
+    // a_2, and 0.2 % of the slope. Very dilute: nearer to the size where vortices grow, a_2 is larger by up to 0.03.
     for (restitution, count, expected, slope) in
-        [(0.8, 200, -0.026, -0.178_72), (0.6, 140, 0.0329, -0.322_61)]
+        [(0.8, 150, -0.026, -0.178_72), (0.6, 150, 0.0329, -0.322_61)]
     {
-        let (measured, measured_slope) = cumulant(restitution, count, 200_000 / count as u64)?;
+        let (measured, measured_slope) = cumulant(restitution, count, 100_000 / count as u64)?;
         println!("a_2: measured {measured:.4}, expected {expected}");
         assert!((measured - expected).abs() < 0.015);
         assert!(agrees("d ln T/d tau", measured_slope, slope, 0.015));

@@ -125,7 +125,7 @@ fn a_shaken_gas_has_the_temperature_of_kumaran() -> Outcome {
 }
 
 #[test]
-#[ignore = "half a minute in release"]
+#[ignore = "half a minute"]
 fn a_hot_shaken_gas_has_the_temperature_of_kumaran() -> Outcome {
     // <U^2>/T is 0.045 and 0.022; an independent study found T within 2 %.
     steady_state(0.98, 1e5, 0.06)?;
@@ -152,7 +152,7 @@ fn only_the_velocity_of_a_small_plate_matters() -> Outcome {
 }
 
 #[test]
-#[ignore = "ten seconds in release"]
+#[ignore = "half a minute"]
 fn only_the_velocity_of_a_small_plate_matters_for_long() -> Outcome {
     // Standard errors 0.5 % each.
     only_the_velocity_matters(2e5, 0.03)
