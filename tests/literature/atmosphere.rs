@@ -5,8 +5,9 @@ use std::f64::consts::{FRAC_PI_4, PI};
 use granular_edmd::analysis::block_average;
 use granular_edmd::boundary::{Container, Thermal, Wall};
 use granular_edmd::collision::Elastic;
+use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    CenterOfMass, Collision, Partner, SampleTimes, Series, Temperatures, on_collision,
+    CenterOfMass, Collision, Partner, SampleTimes, Series, Temperature, Temperatures, on_collision,
 };
 use granular_edmd::{Simulation, initial};
 
@@ -69,13 +70,13 @@ fn an_isothermal_atmosphere_has_its_height_temperature_and_virial() -> Outcome {
     };
     let mut series = Series::new((Temperatures, CenterOfMass), SampleTimes::every(0.5)?.starting_at(start)?);
     simulation.run_until(end, &mut (&mut series, on_collision(watch)))?;
-    let average = |value: &dyn Fn(&(_, _)) -> f64| {
+    let average = |value: fn(&(Temperature, DVec2)) -> f64| {
         block_average(&series.values().iter().map(value).collect::<Vec<_>>())
     };
-    let centre = average(&|(_, centre): &(_, granular_edmd::glam::DVec2)| centre.y)?;
-    let vertical = average(&|(t, _): &(granular_edmd::observable::Temperature, _)| t.vertical)?;
-    let translational = average(&|(t, _)| t.translational())?;
-    let rotational = average(&|(t, _)| t.rotational)?;
+    let centre = average(|(_, centre)| centre.y)?;
+    let vertical = average(|(temperature, _)| temperature.vertical)?;
+    let translational = average(|(temperature, _)| temperature.translational())?;
+    let rotational = average(|(temperature, _)| temperature.rotational)?;
     println!("standard errors: Y {:.4}, T {:.4}", centre.standard_error(), translational.standard_error());
     // Standard errors 0.25 % of Y and 0.3 % of T; layers at the base are known to first order in density, the next is
     // some 0.1 of 2 %.

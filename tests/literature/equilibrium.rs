@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use granular_edmd::Disk;
 use granular_edmd::collision::{Elastic, Frictional, Rough};
 use granular_edmd::kinetic::{Maxwellian, sticking_fraction};
 use granular_edmd::observable::{
@@ -12,11 +13,11 @@ use granular_edmd::observable::{
 use crate::gas::{Gas, run_for};
 use crate::{Outcome, agrees};
 
-/// Z and the contact value χ of hard disks: the Padé approximant [4/5] of the virial series, known to some 1e-4 below
-/// a packing fraction of 0.5 (Clisby & McCoy 2006; Kolafa & Rottner 2006).
+/// Packing fraction and Z of hard disks: the Padé approximant [4/5] of the virial series, good to 1e-3 (Clisby & McCoy
+/// 2006; Kolafa & Rottner 2006).
 const STATE: [(f64, f64); 3] = [(0.1, 1.236_14), (0.3, 2.063_26), (0.5, 4.106_3)];
 
-/// Pressure of the gas from the walls and from the virial of pair collisions, over NT/(area): two roads.
+/// Pressure of a gas, from the impulses on its walls and from the momentum that flies and collides across the box.
 struct Pressures {
     walls: f64,
     virial: f64,
@@ -123,7 +124,7 @@ fn velocities_are_maxwellian() -> Outcome {
         let [mut second, mut fourth, mut square] = [RunningMean::default(); 3];
         for _ in 0..300 {
             run_for(&mut simulation, 2.0, &mut ())?;
-            for velocity in simulation.disks().iter().map(granular_edmd::Disk::velocity) {
+            for velocity in simulation.disks().iter().map(Disk::velocity) {
                 second.extend([velocity.x.powi(2), velocity.y.powi(2)]);
                 fourth.extend([velocity.x.powi(4), velocity.y.powi(4)]);
                 square.push(velocity.length_squared().powi(2));

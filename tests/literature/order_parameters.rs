@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use granular_edmd::boundary::Domain;
+use granular_edmd::boundary::{Boundary, Domain};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{ConvectionOrder, Observable, OrderParameters, RunningMean, Snapshot};
 use granular_edmd::{Disk, ParameterError, initial};
@@ -37,7 +37,7 @@ fn one_roll_and_two_have_the_order_of_their_integrals() -> Outcome {
 fn a_gas_at_rest_has_the_noise_of_its_temperature() -> Outcome {
     let gas = Gas::of(50, 0.02, 1.0, 1);
     let container = gas.container()?;
-    let domain = granular_edmd::boundary::Boundary::domain(&container);
+    let domain = container.domain();
     let [mut one, mut two] = [RunningMean::default(); 2];
     for seed in 0..400 {
         let disks = initial::random(&container, 50, 0.5, gas.height, seed)?;
