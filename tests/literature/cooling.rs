@@ -15,7 +15,7 @@ use crate::{Outcome, agrees};
 /// Translational and rotational temperature.
 type Pair = [f64; 2];
 
-/// Means over gases of 400 disks of both temperatures after each of these numbers of collisions per disk, and of the
+/// Means over gases of 200 disks of both temperatures after each of these numbers of collisions per disk, and of the
 /// time that it took.
 fn cool<R: CollisionRule + Copy>(
     rule: R,
@@ -25,7 +25,7 @@ fn cool<R: CollisionRule + Copy>(
 ) -> Result<Vec<(f64, Pair)>, Box<dyn std::error::Error>> {
     let mut means = vec![[RunningMean::default(); 3]; collisions.len()];
     for seed in 0..gases {
-        let mut simulation = Gas::of(400, 0.05, 2.0, seed).simulation(rule, rotational_temperature)?;
+        let mut simulation = Gas::of(200, 0.05, 2.0, seed).simulation(rule, rotational_temperature)?;
         let start = simulation.measure(&Temperatures).translational();
         let mut before = 0.0;
         for (mean, &after) in means.iter_mut().zip(collisions) {
@@ -81,11 +81,11 @@ fn frictional_rates(q: f64, friction: f64) -> impl Fn(Pair) -> Pair {
 
 #[test]
 fn smooth_disks_cool_as_haff_says() -> Outcome {
-    let (restitution, gases) = (0.9_f64, 50);
+    let (restitution, gases) = (0.9_f64, 100);
     let loss = 1.0 - restitution * restitution;
     let after = [5.0, 10.0, 20.0];
     let cooled = cool(Smooth::from_restitution(restitution)?, 0.0, &after, gases)?;
-    let gas = Gas::of(400, 0.05, 2.0, 0);
+    let gas = Gas::of(200, 0.05, 2.0, 0);
     let contact_value = (1.0 - 7.0 * 0.05 / 16.0) / (1.0 - 0.05_f64).powi(2);
     let rate = 2.0 * PI.sqrt() * gas.density() * contact_value;
     // The fourth cumulant, a_2 = -0.03 by direct simulation of the Boltzmann equation, slows the decay.
@@ -108,7 +108,7 @@ fn rough_disks_cool_to_a_fixed_ratio() -> Outcome {
     let [t, r] = integrate(&rates, [1.0, 0.0], 30.0);
     assert!((r / t - 0.7904).abs() < 1e-3, "{}", r / t);
     let after = [2.0, 5.0, 10.0, 12.0, 14.0, 16.0];
-    let cooled = cool(Rough::from_restitution(normal, tangential)?, 1.0, &after, 40)?;
+    let cooled = cool(Rough::from_restitution(normal, tangential)?, 1.0, &after, 80)?;
     for (tau, (_, [temperature, _])) in after.into_iter().zip(&cooled).take(3) {
         let [expected, _] = integrate(&rates, [1.0, 1.0], tau);
         // 16 000 collisions at least, as above: 0.8 %; and 1 % of the theory.
@@ -124,7 +124,7 @@ fn frictional_cooling(friction: f64, tolerance: f64) -> Outcome {
     let q = 0.05;
     let rates = frictional_rates(q, friction);
     let after = [4.0, 8.0, 12.0];
-    let cooled = cool(Frictional::new(q, friction)?, 1.0, &after, 40)?;
+    let cooled = cool(Frictional::new(q, friction)?, 1.0, &after, 80)?;
     for (tau, (_, [temperature, _])) in after.into_iter().zip(cooled) {
         let [expected, _] = integrate(&rates, [1.0, 1.0], tau);
         assert!(agrees("ln T", temperature.ln(), expected.ln(), tolerance));
@@ -134,9 +134,9 @@ fn frictional_cooling(friction: f64, tolerance: f64) -> Outcome {
 
 #[test]
 fn frictional_disks_cool_as_the_averages_say() -> Outcome {
-    // 32 000 collisions at tau = 4: 0.6 % of ln T; the theory, of velocities that stay Maxwellian, is good to 3 %.
-    frictional_cooling(1.0, 0.04)?;
-    frictional_cooling(0.3, 0.04)
+    // 32 000 collisions at tau = 4: 0.6 % of ln T, and as much from exchange with spins; the theory, of velocities that stay Maxwellian, is good to 3 %.
+    frictional_cooling(1.0, 0.05)?;
+    frictional_cooling(0.3, 0.05)
 }
 
 #[test]
