@@ -134,7 +134,8 @@ fn frictional_cooling(friction: f64, tolerance: f64) -> Outcome {
 
 #[test]
 fn frictional_disks_cool_as_the_averages_say() -> Outcome {
-    // 32 000 collisions at tau = 4: 0.6 % of ln T, and as much from exchange with spins; the theory, of velocities that stay Maxwellian, is good to 3 %.
+    // 32 000 collisions at tau = 4: 0.6 % of ln T, and as much from exchange with spins; the theory, of velocities that
+    // stay Maxwellian, is good to 3 %.
     frictional_cooling(1.0, 0.05)?;
     frictional_cooling(0.3, 0.05)
 }
