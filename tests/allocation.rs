@@ -1,0 +1,49 @@
+//! The event loop allocates nothing: asserted with an allocator that counts.
+
+// An allocator cannot be written without it; it hands every call through to the system's.
+#![allow(unsafe_code)]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use granular_edmd::prelude::*;
+
+struct Counting;
+
+static ALLOCATIONS: AtomicU64 = AtomicU64::new(0);
+
+// SAFETY: every call goes to the system's allocator with the arguments that came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn a_settled_run_allocates_nothing() -> Result<(), Box<dyn std::error::Error>> {
+    let container = Container::closed(30.0, 60.0)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?;
+    let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 300, 0.5)?, 0.5, 1)?;
+    let rule = ContactDuration::new(Frictional::new(0.01, 0.1)?, 1e-4)?;
+    let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
+    let mut energy = EnergyChange::default();
+    simulation.run_until(100.0, &mut energy)?;
+
+    let (before, collisions) = (ALLOCATIONS.load(Ordering::Relaxed), simulation.counters().collisions);
+    simulation.run_until(300.0, &mut energy)?;
+    assert_eq!(ALLOCATIONS.load(Ordering::Relaxed), before);
+    assert!(simulation.counters().collisions > collisions + 1000, "there was something to do");
+    Ok(())
+}
