@@ -18,7 +18,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// If the end is not finite or before the present, the run cannot progress, a rule answers with numbers that are not
     /// finite, or an observer's sampling time does not advance. The state is that of the moment.
     pub fn run_until<O: Observer + ?Sized>(&mut self, end: f64, observer: &mut O) -> Result<(), RunError> {
-        if !(end.is_finite() && end >= self.time()) {
+        if !(end.is_finite() && end >= self.time() - self.rounding()) {
             return Err(RunError::End { end, time: self.time() });
         }
         loop {
@@ -28,12 +28,17 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             if sample > stop {
                 return Ok(());
             }
-            observer.on_sample(&self.snapshot());
+            observer.on_sample(&self.snapshot_as_of(stop));
             let next = observer.next_sample();
             if next <= sample {
                 return Err(RunError::SampleTime { next, time: self.time() });
             }
         }
+    }
+
+    /// What the present may differ by from a time that was run to: it is kept as an offset from an epoch.
+    fn rounding(&self) -> f64 {
+        4.0 * f64::EPSILON * (self.origin.abs() + self.now.abs())
     }
 
     /// Does all events until the absolute time `stop`, and goes there.
@@ -81,10 +86,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// The present state, for observables.
     pub fn snapshot(&mut self) -> Snapshot<'_> {
+        self.snapshot_as_of(self.time())
+    }
+
+    /// The present state under the name by which it was asked for, which [`Self::time`] may miss by rounding.
+    fn snapshot_as_of(&mut self, time: f64) -> Snapshot<'_> {
         let Self { bodies, copies, now, .. } = self;
         copies.clear();
         copies.extend((0..bodies.len()).map(|disk| bodies.disk(disk, *now)));
-        Snapshot::new(self.time(), &self.copies, self.boundary.domain(), self.bodies.gravity)
+        Snapshot::new(time, &self.copies, self.boundary.domain(), self.bodies.gravity)
     }
 
     /// The value of an observable now.

@@ -195,3 +195,24 @@ fn sampling_intervals_below_rounding_do_not_hang() {
     let _ = simulation.run_until(1.0 + 4.0 * f64::EPSILON, &mut series);
     assert!(series.times().len() <= 5, "{:?}", series.times());
 }
+
+/// The present is an offset from an epoch: whatever both are, a run is at the time that it was sent to.
+#[test]
+fn odd_start_times_and_intervals_lose_no_sample() {
+    for start in [0.1, -3.7, 1.0 / 3.0, 1e5 + 0.1, 12_345.678] {
+        for interval in [0.3, 0.07, 1.0 / 7.0] {
+            let disks = [at(2.0, 2.0).with_velocity(DVec2::new(1.0, 0.7)).unwrap(), at(5.0, 3.0)];
+            let builder = Simulation::builder(Elastic, closed()).disks(disks).gravity(0.1).start_time(start);
+            let mut simulation = builder.build().unwrap();
+            let times = SampleTimes::every(interval).unwrap().starting_at(start + interval).unwrap();
+            let mut series = Series::new(Energies, times);
+            for piece in 1..=50 {
+                simulation.run_until(start + 4.0 * f64::from(piece) * interval, &mut series).unwrap();
+            }
+            simulation.set_gravity(0.2).unwrap();
+            simulation.run_until(start + 300.0 * interval, &mut series).unwrap();
+            assert!((299..=300).contains(&series.values().len()), "{start} {interval}");
+            assert!(series.times().windows(2).all(|pair| pair[0] < pair[1]));
+        }
+    }
+}
