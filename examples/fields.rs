@@ -28,7 +28,7 @@ use kuva::plot::heatmap::ColorMap;
 use kuva::plot::quiver::QuiverPivot;
 use kuva::prelude::{Heatmap, Layout, Plot, QuiverPlot, TickFormat};
 
-use common::command_line::{self, Failure, non_negative, whole};
+use common::command_line::{self, Failure, non_negative};
 use common::sheet::{self, INK, Place, QUIET, Sheet};
 
 /// Density, flow and temperatures of the paper's vibrated box on a grid, averaged over time.
@@ -38,7 +38,7 @@ struct Arguments {
     #[arg(long, default_value_t = 0.07, value_parser = non_negative)]
     friction: f64,
     /// Oscillations of the base; the first half is discarded.
-    #[arg(long, default_value_t = 4000, value_parser = whole::<10_000_000>)]
+    #[arg(long, default_value_t = 4000, value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
     oscillations: u64,
     /// Seed of the initial velocities.
     #[arg(long, default_value_t = 1)]
@@ -127,42 +127,67 @@ fn write_table(path: &Path, fields: &Fields) -> Result<(), csv::Error> {
 /// Space between a panel's edge and its axes: left, right, top, bottom.
 const MARGINS: [f64; 4] = [52.0, 14.0, 6.0, 44.0];
 const BAR_MARGINS: [f64; 4] = [52.0, 14.0, 26.0, 24.0];
-const HEADER: f64 = 62.0;
+const HEADER: f64 = 80.0;
 const BAR: f64 = 64.0;
 /// Length of a diameter on the sheet.
-const UNIT: f64 = 3.9;
+const UNIT: f64 = 4.4;
 
-/// Cells where fewer disks were seen stay white: their averages are noise.
-const ENOUGH: u64 = 100;
+/// Cells with less than this share of the disks of the fullest one stay white: their averages are noise.
+const ENOUGH: f64 = 0.05;
+
+/// Where the range of the colours begins.
+#[derive(Clone, Copy)]
+enum Lowest {
+    /// At zero.
+    Zero,
+    /// As far below zero as the largest value is above.
+    Opposite,
+    /// At the smallest value.
+    Smallest,
+}
 
 /// One field: its name, its value in a cell, the colour of a share of its range.
 struct Map {
     name: &'static str,
     value: fn(&FieldCell) -> f64,
     color: fn(f64) -> String,
-    /// Whether the range is as long below zero as above.
-    symmetric: bool,
+    lowest: Lowest,
 }
 
 fn maps() -> [Map; 4] {
     let viridis = |share| ColorMap::Viridis.map(share);
     let inferno = |share| ColorMap::Inferno.map(share);
-    let map = |name, value, color| Map { name, value, color, symmetric: false };
     [
-        map("packing fraction", |cell| cell.packing_fraction, viridis),
+        Map {
+            name: "packing fraction",
+            value: |cell| cell.packing_fraction,
+            color: viridis,
+            lowest: Lowest::Zero,
+        },
         Map {
             name: "velocity; colour: upward",
             value: |cell| cell.velocity.y,
             color: |share| sheet::diverging(2.0 * share - 1.0),
-            symmetric: true,
+            lowest: Lowest::Opposite,
         },
-        map("translational temperature", |cell| cell.translational_temperature, inferno),
-        map("rotational temperature", |cell| cell.rotational_temperature, inferno),
+        Map {
+            name: "log₁₀ translational temperature",
+            value: |cell| cell.translational_temperature.log10(),
+            color: inferno,
+            lowest: Lowest::Smallest,
+        },
+        Map {
+            name: "log₁₀ rotational temperature",
+            value: |cell| cell.rotational_temperature.log10(),
+            color: inferno,
+            lowest: Lowest::Smallest,
+        },
     ]
 }
 
 fn draw(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Result<Vec<u8>, String> {
-    let size = (UNIT * BOX.x + MARGINS[0] + MARGINS[1], UNIT * BOX.y + MARGINS[2] + MARGINS[3]);
+    let top = top(fine);
+    let size = (UNIT * BOX.x + MARGINS[0] + MARGINS[1], UNIT * top + MARGINS[2] + MARGINS[3]);
     let mut sheet = Sheet::new(4.0 * size.0 + 10.0, HEADER + BAR + size.1);
     write_header(&mut sheet, arguments, fine, coarse);
     for (column, map) in maps().iter().enumerate() {
@@ -171,11 +196,11 @@ fn draw(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Result<Vec<u8>
         let place = Place { x, y: HEADER, width: size.0, height: BAR };
         draw_bar(&mut sheet, place, map, range);
         let mut plots = vec![heat_map(map, fine, range)];
-        if map.symmetric {
+        if matches!(map.lowest, Lowest::Opposite) {
             plots.push(arrows(coarse));
         }
         let place = Place { x, y: HEADER + BAR, width: size.0, height: size.1 };
-        let axes = sheet::axes((0.0, BOX.x), (0.0, BOX.y)).with_show_grid(false).with_box_axes();
+        let axes = sheet::axes((0.0, BOX.x), (0.0, top)).with_show_grid(false).with_box_axes();
         sheet.panel(place, MARGINS, plots, axes.with_x_label("x").with_y_label("height"));
     }
     sheet.png(1.3)
@@ -183,28 +208,53 @@ fn draw(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Result<Vec<u8>
 
 fn write_header(sheet: &mut Sheet, arguments: &Arguments, fine: &Fields, coarse: &Fields) {
     let title = format!("Density, flow and temperatures at κ = {}", arguments.friction);
-    let system = format!(
-        "N = 1000, box 60 × 150, g = 0.015625, q = 0, bi-parabolic base A = 0.1, ω = 10, contact duration 1e-4; {} \
-         samples in the second half of {} oscillations, seed {}; the longest arrow is {:.2}; white: fewer than {ENOUGH} \
-         disks seen",
+    let system = "N = 1000, box 60 × 150, g = 0.015625, q = 0, bi-parabolic base A = 0.1, ω = 10, contact duration 1e-4";
+    let protocol = format!(
+        "{} samples in the second half of {} oscillations, seed {}; the longest arrow is {:.2}; white: fewer than {} disks \
+         seen",
         fine.samples(),
         arguments.oscillations,
         arguments.seed,
-        fastest(coarse)
+        fastest(coarse),
+        enough(fine)
     );
     sheet.text(MARGINS[0], 28.0, 20, INK, &title);
-    sheet.text(MARGINS[0], 48.0, 12, QUIET, &system);
+    sheet.text(MARGINS[0], 48.0, 12, QUIET, system);
+    sheet.text(MARGINS[0], 66.0, 12, QUIET, &protocol);
+}
+
+/// The height that is shown: of the highest cell with enough disks, and a little more.
+fn top(fields: &Fields) -> f64 {
+    let highest = seen(fields).map(|cell| cell.center.y).fold(0.0, f64::max);
+    (10.0 * (0.1 * highest + 0.5).ceil()).min(BOX.y)
+}
+
+/// How many disks a cell needs.
+fn enough(fields: &Fields) -> u64 {
+    let fullest = fields.iter().map(|cell| cell.count).max().unwrap_or(0);
+    (ENOUGH * fullest as f64).ceil().max(1.0) as u64
 }
 
 /// The cells with enough disks.
 fn seen(fields: &Fields) -> impl Iterator<Item = FieldCell> {
-    fields.iter().filter(|cell| cell.count >= ENOUGH)
+    let enough = enough(fields);
+    fields.iter().filter(move |cell| cell.count >= enough)
 }
 
-/// From zero, or as far below it, to the largest value.
 fn range(map: &Map, fields: &Fields) -> (f64, f64) {
-    let largest = seen(fields).map(|cell| (map.value)(&cell).abs()).fold(f64::MIN_POSITIVE, f64::max);
-    (if map.symmetric { -largest } else { 0.0 }, largest)
+    let (low, high) = ends(seen(fields).map(|cell| (map.value)(&cell)));
+    match map.lowest {
+        Lowest::Zero => (0.0, high),
+        Lowest::Opposite => (-high.max(-low), high.max(-low)),
+        Lowest::Smallest => (low, high),
+    }
+}
+
+/// The smallest and the largest value.
+fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values
+        .filter(|value| value.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
 /// The colours of a range above the panel.
@@ -226,34 +276,33 @@ fn draw_bar(sheet: &mut Sheet, place: Place, map: &Map, range: (f64, f64)) {
 
 fn heat_map(map: &Map, fields: &Fields, range: (f64, f64)) -> Plot {
     let share = |cell: &FieldCell| ((map.value)(cell) - range.0) / (range.1 - range.0);
-    let cells: Vec<f64> =
-        fields.iter().map(|cell| if cell.count >= ENOUGH { share(&cell) } else { f64::NAN }).collect();
+    let enough = enough(fields);
+    let cells = fields.iter().map(|cell| if cell.count >= enough { share(&cell) } else { f64::NAN });
+    let cells: Vec<f64> = cells.map(|share| if share.is_finite() { share } else { f64::NAN }).collect();
     // The heat map stretches its data over all its colours, and the bar does not.
-    let (low, high) = cells
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &share| (low.min(share), high.max(share)));
+    let (low, high) = ends(cells.iter().copied());
     let color = map.color;
     let colors = move |stretched: f64| {
         if stretched.is_nan() { "#ffffff".to_owned() } else { color(low + stretched * (high - low)) }
     };
+    let rows = (top(fields) * FINE.1 as f64 / BOX.y).round();
     Heatmap::new()
-        .with_data(cells.chunks(fields.shape().0).map(<[f64]>::to_vec))
+        .with_data(cells.chunks(FINE.0).take(rows as usize).map(<[f64]>::to_vec))
         .with_color_map(ColorMap::Custom(Arc::new(colors)))
         .with_x_range(0.0, BOX.x)
-        .with_y_range(0.0, BOX.y)
+        .with_y_range(0.0, top(fields))
         .with_cell_size(1.0)
         .into()
 }
 
-fn fastest(fields: &Fields) -> f64 {
-    seen(fields).map(|cell| cell.velocity.length()).fold(0.0, f64::max)
+fn fastest(coarse: &Fields) -> f64 {
+    seen(coarse).map(|cell| cell.velocity.length()).fold(0.0, f64::max)
 }
 
 /// The mean flow; the longest arrow is as long as 1.6 cells.
-fn arrows(fields: &Fields) -> Plot {
-    let pitch = BOX.x / fields.shape().0 as f64;
-    let scale = 1.6 * pitch / fastest(fields).max(f64::MIN_POSITIVE);
-    let arrows = seen(fields)
+fn arrows(coarse: &Fields) -> Plot {
+    let scale = 1.6 * BOX.x / COARSE.0 as f64 / fastest(coarse).max(f64::MIN_POSITIVE);
+    let arrows = seen(coarse)
         .map(|cell| (cell.center.x, cell.center.y, scale * cell.velocity.x, scale * cell.velocity.y));
     let plot = QuiverPlot::new().with_arrows(arrows).with_scale(1.0).with_pivot(QuiverPivot::Middle);
     let plot = plot.with_color(INK).with_shaft_width(1.6).with_clip_to_plot_area();
