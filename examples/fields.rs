@@ -1,0 +1,310 @@
+//! Density, flow and temperatures of the paper's system on a grid, averaged over time: the rolls.
+//!
+//! 1000 disks in the vibrated box, `g = 0.015625`, `q = 0`. The first half of the run is discarded.
+//!
+//! ```text
+//! cargo run --release --example fields
+//! cargo run --release --example fields -- --friction 0.04 --out one_roll
+//! ```
+//!
+//! Writes `fields.png` and `fields.csv`.
+
+mod common;
+
+use std::error::Error;
+use std::f64::consts::TAU;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::Instant;
+
+use clap::Parser;
+use granular_edmd::boundary::Region;
+use granular_edmd::glam::DVec2;
+use granular_edmd::observable::{FieldCell, Fields};
+use granular_edmd::prelude::*;
+use kuva::plot::heatmap::ColorMap;
+use kuva::plot::quiver::QuiverPivot;
+use kuva::prelude::{Heatmap, Layout, Plot, QuiverPlot, TickFormat};
+
+use common::command_line::{self, Failure, non_negative};
+use common::sheet::{self, INK, Place, QUIET, Sheet};
+
+/// Density, flow and temperatures of the paper's vibrated box on a grid, averaged over time.
+#[derive(Parser)]
+struct Arguments {
+    /// Friction.
+    #[arg(long, default_value_t = 0.07, value_parser = non_negative)]
+    friction: f64,
+    /// Oscillations of the base; the first half is discarded.
+    #[arg(long, default_value_t = 4000, value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
+    oscillations: u64,
+    /// Seed of the initial velocities.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Folder for the results.
+    #[arg(long, default_value = "out")]
+    out: PathBuf,
+}
+
+/// Width and height of the box.
+const BOX: DVec2 = DVec2::new(60.0, 150.0);
+
+/// Time between two samples, in oscillations: not a whole number, so that all phases of the base are seen.
+const INTERVAL: f64 = 0.99;
+
+/// Columns and rows: fine for the maps, coarse for the arrows.
+const FINE: (usize, usize) = (24, 60);
+const COARSE: (usize, usize) = (10, 25);
+
+fn main() -> ExitCode {
+    match run(&command_line::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let out = &arguments.out;
+    fs::create_dir_all(out)
+        .map_err(|error| Failure::run(format_args!("--out {}: {error}", out.display())))?;
+    let start = Instant::now();
+    let (fine, coarse) = measured(arguments).map_err(Failure::run)?;
+    println!("{} samples in {:.1} s", fine.samples(), start.elapsed().as_secs_f64());
+    let (picture, table) = (out.join("fields.png"), out.join("fields.csv"));
+    write_table(&table, &fine).map_err(|error| cannot_write(&table, error))?;
+    let png = draw(arguments, &fine, &coarse).map_err(Failure::run)?;
+    fs::write(&picture, png).map_err(|error| cannot_write(&picture, error))?;
+    println!("wrote {} and {}", picture.display(), table.display());
+    Ok(())
+}
+
+fn cannot_write(path: &Path, error: impl std::fmt::Display) -> Failure {
+    Failure::run(format_args!("cannot write {}: {error}", path.display()))
+}
+
+/// The fields in the second half of a run, on both grids.
+fn measured(arguments: &Arguments) -> Result<(Fields, Fields), Box<dyn Error>> {
+    let base = BiParabolic::new(0.1, 10.0)?;
+    let oscillation = TAU / base.angular_frequency();
+    let container = Container::closed(BOX.x, BOX.y)?.with_motion(Wall::Floor, base)?;
+    let disks = initial::lattice(&container, 1000, 0.5)?;
+    let disks = initial::with_maxwellian_velocities(disks, 0.5, arguments.seed)?;
+    let rule = ContactDuration::new(Frictional::new(0.0, arguments.friction)?, 1e-4)?;
+    let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
+    let end = arguments.oscillations as f64 * oscillation;
+    simulation.run_until(0.5 * end, &mut ())?;
+    let times = SampleTimes::every(INTERVAL * oscillation)?.starting_at(0.5 * end)?;
+    let region = Region { min: DVec2::ZERO, max: BOX };
+    let mut fields =
+        (Fields::new(region, FINE.0, FINE.1, times)?, Fields::new(region, COARSE.0, COARSE.1, times)?);
+    simulation.run_until(end, &mut fields)?;
+    Ok(fields)
+}
+
+fn write_table(path: &Path, fields: &Fields) -> Result<(), csv::Error> {
+    let mut table = csv::Writer::from_path(path)?;
+    table.write_record([
+        "x",
+        "height",
+        "count",
+        "packing_fraction",
+        "velocity_x",
+        "velocity_y",
+        "translational_temperature",
+        "rotational_temperature",
+    ])?;
+    for cell in fields.iter() {
+        let flow = [cell.velocity.x, cell.velocity.y];
+        let temperatures = [cell.translational_temperature, cell.rotational_temperature];
+        let place = [cell.center.x, cell.center.y];
+        table.serialize((place, cell.count, cell.packing_fraction, flow, temperatures))?;
+    }
+    Ok(table.flush()?)
+}
+
+/// Space between a panel's edge and its axes: left, right, top, bottom.
+const MARGINS: [f64; 4] = [52.0, 14.0, 6.0, 44.0];
+const BAR_MARGINS: [f64; 4] = [52.0, 14.0, 26.0, 24.0];
+const HEADER: f64 = 80.0;
+const BAR: f64 = 64.0;
+/// Length of a diameter on the sheet.
+const UNIT: f64 = 4.4;
+
+/// Cells with less than this share of the disks of the fullest one stay white: their averages are noise.
+const ENOUGH: f64 = 0.05;
+
+/// Where the range of the colours begins.
+#[derive(Clone, Copy)]
+enum Lowest {
+    /// At zero.
+    Zero,
+    /// As far below zero as the largest value is above.
+    Opposite,
+    /// At the smallest value.
+    Smallest,
+}
+
+/// One field: its name, its value in a cell, the colour of a share of its range.
+struct Map {
+    name: &'static str,
+    value: fn(&FieldCell) -> f64,
+    color: fn(f64) -> String,
+    lowest: Lowest,
+}
+
+fn maps() -> [Map; 4] {
+    let viridis = |share| ColorMap::Viridis.map(share);
+    let inferno = |share| ColorMap::Inferno.map(share);
+    [
+        Map {
+            name: "packing fraction",
+            value: |cell| cell.packing_fraction,
+            color: viridis,
+            lowest: Lowest::Zero,
+        },
+        Map {
+            name: "velocity; colour: upward",
+            value: |cell| cell.velocity.y,
+            color: |share| sheet::diverging(2.0 * share - 1.0),
+            lowest: Lowest::Opposite,
+        },
+        Map {
+            name: "log₁₀ translational temperature",
+            value: |cell| cell.translational_temperature.log10(),
+            color: inferno,
+            lowest: Lowest::Smallest,
+        },
+        Map {
+            name: "log₁₀ rotational temperature",
+            value: |cell| cell.rotational_temperature.log10(),
+            color: inferno,
+            lowest: Lowest::Smallest,
+        },
+    ]
+}
+
+fn draw(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Result<Vec<u8>, String> {
+    let top = top(fine);
+    let size = (UNIT * BOX.x + MARGINS[0] + MARGINS[1], UNIT * top + MARGINS[2] + MARGINS[3]);
+    let mut sheet = Sheet::new(4.0 * size.0 + 10.0, HEADER + BAR + size.1);
+    write_header(&mut sheet, arguments, fine, coarse);
+    for (column, map) in maps().iter().enumerate() {
+        let x = column as f64 * size.0;
+        let range = range(map, fine);
+        let place = Place { x, y: HEADER, width: size.0, height: BAR };
+        draw_bar(&mut sheet, place, map, range);
+        let mut plots = vec![heat_map(map, fine, range)];
+        if matches!(map.lowest, Lowest::Opposite) {
+            plots.push(arrows(coarse));
+        }
+        let place = Place { x, y: HEADER + BAR, width: size.0, height: size.1 };
+        let axes = sheet::axes((0.0, BOX.x), (0.0, top)).with_show_grid(false).with_box_axes();
+        sheet.panel(place, MARGINS, plots, axes.with_x_label("x").with_y_label("height"));
+    }
+    sheet.png(1.3)
+}
+
+fn write_header(sheet: &mut Sheet, arguments: &Arguments, fine: &Fields, coarse: &Fields) {
+    let title = format!("Density, flow and temperatures at κ = {}", arguments.friction);
+    let system = "N = 1000, box 60 × 150, g = 0.015625, q = 0, bi-parabolic base A = 0.1, ω = 10, contact duration 1e-4";
+    let protocol = format!(
+        "{} samples in the second half of {} oscillations, seed {}; the longest arrow is {:.2}; white: fewer than {} disks \
+         seen",
+        fine.samples(),
+        arguments.oscillations,
+        arguments.seed,
+        fastest(coarse),
+        enough(fine)
+    );
+    sheet.text(MARGINS[0], 28.0, 20, INK, &title);
+    sheet.text(MARGINS[0], 48.0, 12, QUIET, system);
+    sheet.text(MARGINS[0], 66.0, 12, QUIET, &protocol);
+}
+
+/// The height that is shown: of the highest cell with enough disks, and a little more.
+fn top(fields: &Fields) -> f64 {
+    let highest = seen(fields).map(|cell| cell.center.y).fold(0.0, f64::max);
+    (10.0 * (0.1 * highest + 0.5).ceil()).min(BOX.y)
+}
+
+/// How many disks a cell needs.
+fn enough(fields: &Fields) -> u64 {
+    let fullest = fields.iter().map(|cell| cell.count).max().unwrap_or(0);
+    (ENOUGH * fullest as f64).ceil().max(1.0) as u64
+}
+
+/// The cells with enough disks.
+fn seen(fields: &Fields) -> impl Iterator<Item = FieldCell> {
+    let enough = enough(fields);
+    fields.iter().filter(move |cell| cell.count >= enough)
+}
+
+fn range(map: &Map, fields: &Fields) -> (f64, f64) {
+    let (low, high) = ends(seen(fields).map(|cell| (map.value)(&cell)));
+    match map.lowest {
+        Lowest::Zero => (0.0, high),
+        Lowest::Opposite => (-high.max(-low), high.max(-low)),
+        Lowest::Smallest => (low, high),
+    }
+}
+
+/// The smallest and the largest value.
+fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values
+        .filter(|value| value.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+}
+
+/// The colours of a range above the panel.
+fn draw_bar(sheet: &mut Sheet, place: Place, map: &Map, range: (f64, f64)) {
+    let shares = (0..64).map(|step| f64::from(step) / 63.0);
+    let color = map.color;
+    let bar = Heatmap::new()
+        .with_data([shares])
+        .with_color_map(ColorMap::Custom(Arc::new(color)))
+        .with_x_range(range.0, range.1)
+        .with_y_range(0.0, 1.0)
+        .with_cell_size(1.0);
+    let axes: Layout = sheet::axes(range, (0.0, 1.0)).with_show_grid(false).with_box_axes();
+    let axes = axes.with_ticks(4).with_y_tick_step(2.0);
+    let axes = axes.with_y_tick_format(TickFormat::Custom(Arc::new(|_| String::new())));
+    sheet.panel(place, BAR_MARGINS, vec![bar.into()], axes);
+    sheet.text(place.x + MARGINS[0], place.y + 18.0, 13, INK, map.name);
+}
+
+fn heat_map(map: &Map, fields: &Fields, range: (f64, f64)) -> Plot {
+    let share = |cell: &FieldCell| ((map.value)(cell) - range.0) / (range.1 - range.0);
+    let enough = enough(fields);
+    let cells = fields.iter().map(|cell| if cell.count >= enough { share(&cell) } else { f64::NAN });
+    let cells: Vec<f64> = cells.map(|share| if share.is_finite() { share } else { f64::NAN }).collect();
+    // The heat map stretches its data over all its colours, and the bar does not.
+    let (low, high) = ends(cells.iter().copied());
+    let color = map.color;
+    let colors = move |stretched: f64| {
+        if stretched.is_nan() { "#ffffff".to_owned() } else { color(low + stretched * (high - low)) }
+    };
+    let rows = (top(fields) * FINE.1 as f64 / BOX.y).round();
+    Heatmap::new()
+        .with_data(cells.chunks(FINE.0).take(rows as usize).map(<[f64]>::to_vec))
+        .with_color_map(ColorMap::Custom(Arc::new(colors)))
+        .with_x_range(0.0, BOX.x)
+        .with_y_range(0.0, top(fields))
+        .with_cell_size(1.0)
+        .into()
+}
+
+fn fastest(coarse: &Fields) -> f64 {
+    seen(coarse).map(|cell| cell.velocity.length()).fold(0.0, f64::max)
+}
+
+/// The mean flow; the longest arrow is as long as 1.6 cells.
+fn arrows(coarse: &Fields) -> Plot {
+    let scale = 1.6 * BOX.x / COARSE.0 as f64 / fastest(coarse).max(f64::MIN_POSITIVE);
+    let arrows = seen(coarse)
+        .map(|cell| (cell.center.x, cell.center.y, scale * cell.velocity.x, scale * cell.velocity.y));
+    let plot = QuiverPlot::new().with_arrows(arrows).with_scale(1.0).with_pivot(QuiverPivot::Middle);
+    let plot = plot.with_color(INK).with_shaft_width(1.6).with_clip_to_plot_area();
+    plot.with_head_ratio(0.36).with_head_min_px(2.5).with_head_max_px(9.0).into()
+}
