@@ -41,8 +41,10 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // Whether or not the file can be emptied, the system takes the lock back.
+        // Whether or not the file can be emptied, the system takes the lock back. Closing it would not do that while a
+        // process that was forked meanwhile, to start another program, has it open, too.
         let _ = self.say("");
+        let _ = self.file.unlock();
     }
 }
 
