@@ -8,9 +8,11 @@
 //! | [`TournamentTree`] | `$O(\log N)$`, no branches | default |
 //! | [`LinearScan`] | `$O(N)$` | the oracle that tests the others |
 
+mod bucket_queue;
 mod linear_scan;
 mod tournament_tree;
 
+pub use bucket_queue::BucketQueue;
 pub use linear_scan::LinearScan;
 pub use tournament_tree::TournamentTree;
 

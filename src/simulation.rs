@@ -19,6 +19,7 @@ mod checkpoint;
 mod engine;
 mod errors;
 mod event;
+mod grid;
 mod guard;
 mod prediction;
 mod resolution;

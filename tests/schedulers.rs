@@ -1,6 +1,6 @@
 //! Every scheduler against the obvious one, over scripts of operations.
 
-use granular_edmd::scheduler::{EventScheduler, LinearScan, TournamentTree};
+use granular_edmd::scheduler::{BucketQueue, EventScheduler, LinearScan, TournamentTree};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -106,6 +106,11 @@ proptest! {
     }
 
     #[test]
+    fn the_bucket_queue_is_the_linear_scan(script in prop::collection::vec(operation(), 0..300)) {
+        agrees_with_the_oracle(BucketQueue::new(), &script)?;
+    }
+
+    #[test]
     fn a_boxed_scheduler_is_the_same(script in prop::collection::vec(operation(), 0..50)) {
         agrees_with_the_oracle(Box::new(TournamentTree::new()) as Box<dyn EventScheduler>, &script)?;
     }
@@ -117,12 +122,17 @@ proptest! {
         sorted.sort_by(|&a, &b| due[a].total_cmp(&due[b]));
         prop_assert_eq!(&order(&mut LinearScan::default(), &due), &sorted);
         prop_assert_eq!(&order(&mut TournamentTree::new(), &due), &sorted);
+        prop_assert_eq!(&order(&mut BucketQueue::new(), &due), &sorted);
     }
+}
+
+fn every_scheduler() -> [Box<dyn EventScheduler>; 3] {
+    [Box::new(TournamentTree::new()), Box::new(BucketQueue::new()), Box::new(LinearScan::default())]
 }
 
 #[test]
 fn no_disks_no_event() {
-    for scheduler in [&mut TournamentTree::new() as &mut dyn EventScheduler, &mut LinearScan::default()] {
+    for mut scheduler in every_scheduler() {
         assert_eq!(scheduler.earliest(), (usize::MAX, f64::INFINITY));
         scheduler.reset(&[1.0]);
         assert_eq!(scheduler.earliest(), (0, 1.0));
@@ -133,7 +143,7 @@ fn no_disks_no_event() {
 
 #[test]
 fn infinite_times_still_name_a_disk_and_ties_the_first() {
-    for scheduler in [&mut TournamentTree::new() as &mut dyn EventScheduler, &mut LinearScan::default()] {
+    for mut scheduler in every_scheduler() {
         scheduler.reset(&[f64::INFINITY; 3]);
         assert_eq!(scheduler.earliest(), (0, f64::INFINITY));
         scheduler.reset(&[0.0, -0.0]);

@@ -18,7 +18,7 @@ use crate::scheduler::EventScheduler;
 use crate::sealed::{Broken, Seal, write_whole};
 
 /// What marks a checkpoint, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 1 };
+const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 2 };
 
 /// Everything that the future of a run depends on, except its rule and its walls.
 ///
@@ -166,7 +166,7 @@ impl Checkpoint {
 /// Whether an event has a time and partners.
 fn is_valid(slot: &Slot, disks: usize, walls: usize) -> bool {
     let partner = slot.collision_due == f64::INFINITY || (slot.partner as usize) < disks;
-    let wall = if let Exit::Wall(wall) = slot.exit { usize::from(wall) < walls } else { true };
+    let wall = slot.exit != Exit::Wall || usize::from(slot.wall) < walls;
     partner && wall && slot.collision_due >= 0.0 && slot.exit_due >= 0.0
 }
 

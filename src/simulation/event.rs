@@ -59,10 +59,13 @@ pub(super) enum Exit {
     Up,
     /// It does not end yet: the search for a wall looked only so far ahead.
     Stay,
-    Wall(u16),
+    Wall,
 }
 
 impl Exit {
+    /// The edges by whether they are crossed vertically, and whether to the right or upward.
+    pub(super) const EDGES: [[Self; 2]; 2] = [[Self::Left, Self::Right], [Self::Down, Self::Up]];
+
     /// Columns to the right and rows up; computed, since a branch on it would be a toss of a coin with four sides.
     #[inline]
     pub(super) fn direction(self) -> (i32, i32) {
@@ -86,6 +89,8 @@ pub(super) struct Slot {
     /// The disk's own count of collisions with anything.
     pub(super) collisions: u32,
     pub(super) exit: Exit,
+    /// The wall, if the flight ends there.
+    pub(super) wall: u16,
 }
 
 impl Slot {
@@ -96,6 +101,7 @@ impl Slot {
         partner_collisions: 0,
         collisions: 0,
         exit: Exit::Stay,
+        wall: 0,
     };
 
     #[inline]

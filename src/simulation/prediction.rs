@@ -1,10 +1,7 @@
 //! When a disk meets another, and when it leaves its cell.
 
-use glam::DVec2;
-
 use super::bodies::Bodies;
 use super::event::Exit;
-use crate::Flight;
 use crate::boundary::Region;
 
 /// Pairs that are predicted side by side.
@@ -174,53 +171,45 @@ fn scan(
     best.earliest()
 }
 
-/// Whether a disk surely stays in its cell until `due`.
+/// When a disk leaves its cell, and through which edge.
 ///
-/// A parabola lies between its chord and its tangent: where the end of both is inside, all of it is.
-#[inline]
-pub(super) fn stays_inside(region: &Region, flight: &Flight, due: f64) -> bool {
-    let start = flight.position(flight.time());
-    let tangent = start + flight.velocity(flight.time()) * (due - flight.time());
-    let end = flight.position(due);
-    let inside = |point: DVec2| point.cmpge(region.min) & point.cmple(region.max);
-    (inside(tangent) & inside(end)).all()
-}
-
-/// When and through which edge a disk leaves its cell, gravity pulling down.
 #[inline(always)]
-pub(super) fn cell_exit(region: &Region, flight: &Flight, gravity: f64) -> (f64, Exit) {
-    let now = flight.time();
-    let (position, velocity) = (flight.position(now), flight.velocity(now));
+pub(super) fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64) -> (f64, Exit) {
+    let (position, velocity) = (bodies.position(disk, now), bodies.velocity(disk, now));
     let rightward = velocity.x > 0.0;
     let distance = if rightward { region.max.x - position.x } else { position.x - region.min.x };
-    let (sideways, side) = (distance / velocity.x.abs(), if rightward { Exit::Right } else { Exit::Left });
+    let sideways = distance / velocity.x.abs();
     let (above, below) = (region.max.y - position.y, position.y - region.min.y);
-    let (vertical, level) = if gravity >= 0.0 {
-        vertical_exit(above, below, velocity.y, gravity, Exit::Up, Exit::Down)
+    let (vertical, up) = if bodies.gravity >= 0.0 {
+        vertical_exit(above, below, velocity.y, bodies.gravity)
     } else {
-        vertical_exit(below, above, -velocity.y, -gravity, Exit::Down, Exit::Up)
+        let (wait, down) = vertical_exit(below, above, -velocity.y, -bodies.gravity);
+        (wait, !down)
     };
-    let (wait, exit) =
-        if vertical < sideways || sideways.is_nan() { (vertical, level) } else { (sideways, side) };
-    // NaN stands for never: at rest in a cell without an edge there.
-    let wait = if wait.is_nan() { f64::INFINITY } else { wait.max(0.0) };
+    // NaN stands for never: at rest where there is no edge.
+    let sideways = if sideways.is_nan() { f64::INFINITY } else { sideways };
+    let level = vertical < sideways;
+    let wait = if level { vertical } else { sideways }.max(0.0);
+    let exit = Exit::EDGES[usize::from(level)][usize::from((level & up) | (!level & rightward))];
     (now + wait, exit)
 }
 
-/// The same in one dimension, for a disk at these distances from the edges and gravity pulling it back from `far`.
+/// When a disk leaves its row, and whether through the edge above, for gravity that pulls down.
+///
+/// Up to the edge above, up and down again through the one below, or straight down.
 #[inline(always)]
-fn vertical_exit(above: f64, below: f64, velocity: f64, gravity: f64, far: Exit, near: Exit) -> (f64, Exit) {
+fn vertical_exit(above: f64, below: f64, velocity: f64, gravity: f64) -> (f64, bool) {
     let (above, below) = (above.max(0.0), below.max(0.0));
     let square = velocity * velocity;
     let reserve = square - 2.0 * gravity * above;
-    let rises = (velocity > 0.0) & (reserve > 0.0);
-    let root = if rises { reserve } else { square + 2.0 * gravity * below }.sqrt();
-    // Up to the far edge, up and down again through the near one, or straight down: one division, no branch.
-    let upward = velocity > 0.0;
-    let numerator = if rises { 2.0 * above } else { 2.0 * below };
-    let numerator = if upward & !rises { velocity + root } else { numerator };
-    let denominator = if rises { velocity + root } else { root - velocity };
-    let denominator = if upward & !rises { gravity } else { denominator };
+    let reserve = if velocity > 0.0 { reserve } else { -1.0 };
+    let radicand = if reserve > 0.0 { reserve } else { square + 2.0 * gravity * below };
+    let sum = radicand.sqrt() + velocity.abs();
+    let distance = 2.0 * if reserve > 0.0 { above } else { below };
+    let turning = if velocity > 0.0 { sum } else { distance };
+    let numerator = if reserve > 0.0 { distance } else { turning };
+    let turning = if velocity > 0.0 { gravity } else { sum };
+    let denominator = if reserve > 0.0 { sum } else { turning };
     let wait = numerator / denominator;
-    (wait, if rises { far } else { near })
+    (if wait.is_nan() { f64::INFINITY } else { wait }, reserve > 0.0)
 }

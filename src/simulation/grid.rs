@@ -1,0 +1,232 @@
+//! The grid of neighbour cells: where a cell is, and which of them a wall comes near to.
+
+use glam::DVec2;
+
+use crate::boundary::{Boundary, Domain, Region};
+
+/// Cells per disk at most; more would cost memory and save nothing.
+const CELLS_PER_DISK: f64 = 8.0;
+
+/// Cells that are always allowed.
+const SPARE_CELLS: f64 = 4096.0;
+
+/// Least size of a cell in diameters: above 1 by more than rounding.
+const LEAST_PITCH: f64 = 1.000_001;
+
+/// Columns and rows of cells, and around them a ring of ghosts, so that every cell has eight neighbours.
+///
+/// Cells of one column are next to each other in memory: a wide, low box is the usual large system, and what is near in it
+/// is then near in memory, too.
+#[derive(Debug, Clone)]
+pub(super) struct Grid {
+    layout: Layout,
+    /// Cells in a column, ring included.
+    stride: u32,
+    /// `column_edges[c - 1]` and `column_edges[c]` bound column `c`; infinite at walls.
+    column_edges: Vec<f64>,
+    row_edges: Vec<f64>,
+    /// Whether disks in a cell can touch a wall.
+    at_wall: Vec<bool>,
+    /// Width of the domain if its sides are periodic, else 0.
+    period: f64,
+}
+
+/// A cell by its column and row, ring included: the first real ones are 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Place {
+    pub(super) column: u32,
+    pub(super) row: u32,
+}
+
+/// The size of the grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Layout {
+    columns: u32,
+    rows: u32,
+    /// Size of a cell; in an open container the rows grow from some height on.
+    pitch: DVec2,
+}
+
+impl Layout {
+    /// Whether this is a grid of a sensible size for so many disks.
+    #[cfg(feature = "serde")]
+    pub(super) fn is_valid(&self, disks: usize) -> bool {
+        let Self { columns, rows, pitch } = *self;
+        let most = 2.0 * (CELLS_PER_DISK * disks as f64 + SPARE_CELLS);
+        columns > 0 && rows > 0 && f64::from(columns) * f64::from(rows) <= most && pitch.is_finite()
+    }
+
+    /// Whether a place is one of its cells, not of the ring.
+    #[cfg(feature = "serde")]
+    pub(super) fn contains(&self, place: Place) -> bool {
+        (1..=self.columns).contains(&place.column) && (1..=self.rows).contains(&place.row)
+    }
+
+    /// The grid for `count` disks of at most this diameter; `None` if the domain is too small.
+    pub(super) fn new(
+        domain: &Domain,
+        diameter: f64,
+        pitch: f64,
+        count: usize,
+        highest: f64,
+    ) -> Option<Self> {
+        let width = domain.width();
+        let height = if domain.top.is_finite() {
+            domain.height()
+        } else {
+            2.0 * open_height(domain, highest, diameter)
+        };
+        let most = CELLS_PER_DISK * count as f64 + SPARE_CELLS;
+        let pitch = (pitch.max(LEAST_PITCH) * diameter).max((width * height / most).sqrt());
+        let along = |length: f64, pitch: f64| (length / pitch).floor().max(1.0);
+        let mut columns = along(width, pitch).min(most.floor());
+        if domain.periodic && columns < 4.0 {
+            // With fewer columns a disk could meet a neighbour on both sides.
+            columns = 4.0;
+            if width < columns * LEAST_PITCH * diameter {
+                return None;
+            }
+        }
+        let rows = along(height, pitch).min((most / columns).max(1.0).floor());
+        let valid = width > 0.0 && height > 0.0 && width.is_finite() && height.is_finite();
+        let pitch = DVec2::new(width / columns, height / rows);
+        valid.then_some(Self { columns: columns as u32, rows: rows as u32, pitch })
+    }
+}
+
+/// How high the even part of the grid of an open container reaches.
+fn open_height(domain: &Domain, highest: f64, diameter: f64) -> f64 {
+    2.0 * (highest - domain.bottom).max(0.0) + 64.0 * diameter
+}
+
+impl Grid {
+    /// The grid of this layout, for disks of at most this radius.
+    pub(super) fn new<B: Boundary + ?Sized>(boundary: &B, largest_radius: f64, layout: Layout) -> Self {
+        let domain = boundary.domain();
+        let stride = layout.rows + 2;
+        let mut grid = Self {
+            stride,
+            column_edges: edges(domain.left, layout.pitch.x, layout.columns, !domain.periodic),
+            row_edges: row_edges(&domain, &layout),
+            at_wall: vec![false; stride as usize * (layout.columns as usize + 2)],
+            period: if domain.periodic { domain.width() } else { 0.0 },
+            layout,
+        };
+        grid.mark_walls(boundary, largest_radius);
+        grid
+    }
+
+    fn mark_walls<B: Boundary + ?Sized>(&mut self, boundary: &B, largest_radius: f64) {
+        for column in 1..=self.layout.columns {
+            for row in 1..=self.layout.rows {
+                let place = Place { column, row };
+                let cell = self.index(place);
+                self.at_wall[cell] = boundary.may_touch(&self.region(place), largest_radius);
+            }
+        }
+    }
+
+    /// How many cells there are, ring included.
+    pub(super) fn len(&self) -> usize {
+        self.at_wall.len()
+    }
+
+    pub(super) fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Cells in a column, ring included: how far apart in memory neighbours in a row are.
+    #[inline]
+    pub(super) fn stride(&self) -> usize {
+        self.stride as usize
+    }
+
+    pub(super) fn place_of(&self, position: DVec2) -> Place {
+        let along = |edges: &[f64], x: f64| {
+            let inner = &edges[1..edges.len() - 1];
+            1 + inner.partition_point(|&edge| edge <= x) as u32
+        };
+        Place { column: along(&self.column_edges, position.x), row: along(&self.row_edges, position.y) }
+    }
+
+    #[inline]
+    pub(super) fn index(&self, place: Place) -> usize {
+        place.column as usize * self.stride as usize + place.row as usize
+    }
+
+    /// Whether disks in this cell can touch a wall.
+    #[inline]
+    pub(super) fn is_at_wall(&self, place: Place) -> bool {
+        self.at_wall[self.index(place)]
+    }
+
+    /// The rectangle of a cell; infinite beyond the walls.
+    #[inline]
+    pub(super) fn region(&self, place: Place) -> Region {
+        let (column, row) = (place.column as usize, place.row as usize);
+        Region {
+            min: DVec2::new(self.column_edges[column - 1], self.row_edges[row - 1]),
+            max: DVec2::new(self.column_edges[column], self.row_edges[row]),
+        }
+    }
+
+    /// The width of the domain if its sides are periodic, else 0.
+    #[inline]
+    pub(super) fn period(&self) -> f64 {
+        self.period
+    }
+
+    /// The ghost that mirrors a cell at a periodic side, if it has one.
+    #[inline]
+    pub(super) fn mirror(&self, place: Place) -> Option<Place> {
+        let columns = self.layout.columns;
+        match place.column {
+            _ if self.period == 0.0 => None,
+            1 => Some(Place { column: columns + 1, ..place }),
+            column if column == columns => Some(Place { column: 0, ..place }),
+            _ => None,
+        }
+    }
+
+    /// The neighbour so many columns to the right and rows up, and what going there adds to `x`.
+    #[inline]
+    pub(super) fn neighbour(&self, place: Place, (right, up): (i32, i32)) -> (Place, f64) {
+        let mut to =
+            Place { column: place.column.wrapping_add_signed(right), row: place.row.wrapping_add_signed(up) };
+        let mut shift = 0.0;
+        if self.period > 0.0 {
+            if to.column == 0 {
+                (to.column, shift) = (self.layout.columns, self.period);
+            } else if to.column > self.layout.columns {
+                (to.column, shift) = (1, -self.period);
+            }
+        }
+        (to, shift)
+    }
+}
+
+fn edges(start: f64, pitch: f64, count: u32, walls: bool) -> Vec<f64> {
+    let mut edges: Vec<f64> = (0..=count).map(|k| start + f64::from(k) * pitch).collect();
+    if walls {
+        edges[0] = f64::NEG_INFINITY;
+        edges[count as usize] = f64::INFINITY;
+    }
+    edges
+}
+
+/// Edges of the rows. In an open container the upper half of them grows in proportion to the height: however high a disk
+/// flies, it does not share its cell with all others that are high.
+fn row_edges(domain: &Domain, layout: &Layout) -> Vec<f64> {
+    const GROWTH: f64 = 1.1;
+    let mut edges = edges(domain.bottom, layout.pitch.y, layout.rows, true);
+    if domain.top.is_infinite() {
+        let even = (layout.rows as usize / 2).max(1);
+        for row in even + 1..edges.len() - 1 {
+            let height = edges[row - 1] - domain.bottom.min(edges[row - 1]);
+            edges[row] = edges[row - 1] + (height * (GROWTH - 1.0)).max(layout.pitch.y);
+        }
+    }
+    edges
+}
