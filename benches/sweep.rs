@@ -6,7 +6,8 @@
 //!
 //! A study of eight runs is done on one thread and on more, in turn, `ROUNDS` times. So is a loop of plain arithmetic
 //! that touches no memory: what it gains is all that the machine has to give at the time, and the quotient of the two
-//! gains is what the study makes of it.
+//! gains is what the study makes of it. On a machine with other work on it even that says little; then look at the time
+//! on processors, which is the same on more threads as on one as long as the runs do not get into each other's way.
 
 mod common;
 
@@ -20,6 +21,7 @@ use common::Outcome;
 use common::ask;
 use common::quartiles::Quartiles;
 use common::state::{AMPLITUDE, ANGULAR_FREQUENCY, CONTACT_DURATION, DILUTE, DISKS, HEIGHT, WIDTH};
+use common::stopwatch::Stopwatch;
 use granular_edmd::study::{
     Axis, Base, Control, Parameter, Protocol, Specification, SpecificationError, Study, System,
 };
@@ -29,11 +31,12 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 /// Runs of a study: enough for four times as many threads as they are usually measured with.
 const RUNS: u32 = 8;
 
-/// Seconds of the study and of the arithmetic on so many threads.
+/// Seconds of the study and of the arithmetic on so many threads, by the wall clock and on all processors together.
 struct Times {
     threads: usize,
     pool: ThreadPool,
     study: Vec<f64>,
+    processors: Vec<f64>,
     arithmetic: Vec<f64>,
 }
 
@@ -49,7 +52,9 @@ fn run() -> Outcome<()> {
     let mut times = threads().into_iter().map(Times::on).collect::<Outcome<Vec<_>>>()?;
     for _ in 0..rounds {
         for times in &mut times {
+            let watch = Stopwatch::of_process();
             times.study.push(times.pool.install(|| study(&specification))?);
+            times.processors.push(watch.seconds());
             times.arithmetic.push(times.pool.install(|| arithmetic(cycles)));
         }
     }
@@ -69,7 +74,7 @@ fn threads() -> Vec<usize> {
 impl Times {
     fn on(threads: usize) -> Outcome<Self> {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
-        Ok(Self { threads, pool, study: Vec::new(), arithmetic: Vec::new() })
+        Ok(Self { threads, pool, study: Vec::new(), processors: Vec::new(), arithmetic: Vec::new() })
     }
 }
 
@@ -115,19 +120,23 @@ fn print(times: &[Times], rounds: u64) {
         common::load()
     );
     println!();
-    println!("| threads | study: seconds | times as fast | arithmetic: times as fast | quotient |");
-    println!("|---|---|---|---|---|");
+    println!(
+        "| threads | study: seconds | times as fast | arithmetic: times as fast | quotient | processor time |"
+    );
+    println!("|---|---|---|---|---|---|");
     let one = &times[0];
     for many in times {
         let seconds = Quartiles::of(many.study.iter().copied());
-        let (study, arithmetic) = (gains(&one.study, &many.study), gains(&one.arithmetic, &many.arithmetic));
+        let (study, arithmetic) =
+            (ratios(&one.study, &many.study), ratios(&one.arithmetic, &many.arithmetic));
         let quotient = Quartiles::of(study.iter().zip(&arithmetic).map(|(study, plain)| study / plain));
         let (study, arithmetic) = (Quartiles::of(study), Quartiles::of(arithmetic));
-        println!("| {} | {seconds} | {study} | {arithmetic} | {quotient} |", many.threads);
+        let more = Quartiles::of(ratios(&many.processors, &one.processors));
+        println!("| {} | {seconds} | {study} | {arithmetic} | {quotient} | × {more} |", many.threads);
     }
 }
 
-/// How many times faster it was, round by round.
-fn gains(one: &[f64], many: &[f64]) -> Vec<f64> {
-    one.iter().zip(many).map(|(one, many)| one / many).collect()
+/// One number over the other, round by round.
+fn ratios(above: &[f64], below: &[f64]) -> Vec<f64> {
+    above.iter().zip(below).map(|(above, below)| above / below).collect()
 }

@@ -4,6 +4,7 @@
 pub(crate) mod ask;
 pub(crate) mod quartiles;
 pub(crate) mod state;
+pub(crate) mod stopwatch;
 
 use std::process::ExitCode;
 

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! The same physical state in boxes of the same height that are wider and wider, `LARGEST` (10⁶) disks at most. It is
-//! done `ROUNDS` times, and medians count. The picture goes to `PICTURE`, `out/scaling.png` if that is not set.
+//! done `ROUNDS` times, and medians count, of the time on a processor. Once disks are numbered by their place, which is
+//! the best for the caches, and once at random. The picture goes to `PICTURE`, `out/scaling.png` if that is not set.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -24,7 +25,7 @@ use common::ask;
 use common::quartiles::Quartiles;
 use common::state::{DILUTE, DISKS};
 use granular_edmd::scheduler::TournamentTree;
-use measurement::{Measurement, measure};
+use measurement::{Measurement, asked_for, measure};
 use tiles::{Numbering, Tiles};
 
 type Measure = fn(&Tiles, usize, Numbering, u32) -> Outcome<Measurement>;
@@ -65,18 +66,27 @@ fn main() -> ExitCode {
 
 fn run() -> Outcome<()> {
     let plan = Plan::asked_for()?;
+    let mut rows = rows(plan.largest);
+    if let Some(number) = asked_for() {
+        return measure_one(&plan, &rows[number]);
+    }
     common::print_circumstances();
     println!("{DILUTE}; medians of {} rounds.", plan.rounds);
-    let tiles = Tiles::settled(&DILUTE, plan.settle, plan.largest / DISKS)?;
-    let mut rows = rows(plan.largest);
     for _ in 0..plan.rounds {
-        for row in &mut rows {
-            let oscillations = (plan.work / row.disks).max(1) as u32;
-            row.rounds.push((row.measure)(&tiles, row.disks / DISKS, row.numbering, oscillations)?);
+        for (number, row) in rows.iter_mut().enumerate() {
+            row.rounds.push(Measurement::in_new_process(number)?);
         }
     }
     print(&rows);
     if ask::is_test() { Ok(()) } else { draw(&rows) }
+}
+
+/// What the process that measures this system says.
+fn measure_one(plan: &Plan, row: &Row) -> Outcome<()> {
+    let (boxes, oscillations) = (row.disks / DISKS, (plan.work / row.disks).max(1) as u32);
+    let tiles = Tiles::settled(&DILUTE, plan.settle, boxes)?;
+    println!("{}", (row.measure)(&tiles, boxes, row.numbering, oscillations)?);
+    Ok(())
 }
 
 impl Plan {
@@ -135,7 +145,7 @@ fn print(rows: &[Row]) {
 /// Memory of a small system drowns in that of the process.
 fn bytes(row: &Row) -> String {
     let bytes = row.quartiles(|round| round.bytes_per_disk).median;
-    if row.disks < 100_000 || bytes.is_nan() { "–".to_owned() } else { format!("{bytes:.0}") }
+    if row.disks < 10_000 || bytes.is_nan() { "–".to_owned() } else { format!("{bytes:.0}") }
 }
 
 fn draw(rows: &[Row]) -> Outcome<()> {

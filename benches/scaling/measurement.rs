@@ -1,5 +1,7 @@
 //! What is measured of one system.
 
+use std::fmt;
+use std::process::Command;
 use std::time::Instant;
 
 use granular_edmd::Disk;
@@ -7,7 +9,8 @@ use granular_edmd::scheduler::EventScheduler;
 use granular_edmd::simulation::Counters;
 
 use crate::common::Outcome;
-use crate::common::state::{State, oscillate};
+use crate::common::state::{DISKS, State, oscillate};
+use crate::common::stopwatch::Stopwatch;
 
 /// One system, once.
 #[derive(Debug, Clone, Copy)]
@@ -18,6 +21,38 @@ pub(crate) struct Measurement {
     pub(crate) set_up_seconds: f64,
 }
 
+/// What a new process is asked for.
+const ASK: &str = "--one";
+
+/// The system that this process is asked to measure.
+pub(crate) fn asked_for() -> Option<usize> {
+    std::env::args().skip_while(|argument| argument != ASK).nth(1)?.parse().ok()
+}
+
+impl Measurement {
+    /// Of a system by its number, in a process of its own: freed memory would be used again and not seen.
+    pub(crate) fn in_new_process(number: usize) -> Outcome<Self> {
+        let mut process = Command::new(std::env::current_exe()?);
+        process.args(std::env::args().skip(1)).args([ASK, &number.to_string()]);
+        let output = process.output()?;
+        let numbers = String::from_utf8_lossy(&output.stdout);
+        let numbers: Vec<f64> = numbers.split_whitespace().filter_map(|text| text.parse().ok()).collect();
+        let &[nanoseconds_per_collision, events_per_second, bytes_per_disk, set_up_seconds] =
+            numbers.as_slice()
+        else {
+            return Err(String::from_utf8_lossy(&output.stderr).trim().into());
+        };
+        Ok(Self { nanoseconds_per_collision, events_per_second, bytes_per_disk, set_up_seconds })
+    }
+}
+
+impl fmt::Display for Measurement {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { nanoseconds_per_collision, events_per_second, bytes_per_disk, set_up_seconds } = self;
+        write!(formatter, "{nanoseconds_per_collision} {events_per_second} {bytes_per_disk} {set_up_seconds}")
+    }
+}
+
 /// Builds the system and runs it for so many oscillations, after two that do not count.
 pub(crate) fn measure<S: EventScheduler + Default>(
     state: &State,
@@ -26,15 +61,15 @@ pub(crate) fn measure<S: EventScheduler + Default>(
 ) -> Outcome<Measurement> {
     let memory = resident_bytes();
     let disks = disks()?;
-    let (count, boxes) = (disks.len(), disks.len() / crate::common::state::DISKS);
+    let (count, boxes) = (disks.len(), disks.len() / DISKS);
     let start = Instant::now();
     let mut run = state.run(disks, boxes, S::default())?;
     let set_up_seconds = start.elapsed().as_secs_f64();
     oscillate(&mut run, 2)?;
     let bytes_per_disk = (resident_bytes() - memory) / count as f64;
-    let (start, before) = (Instant::now(), *run.counters());
+    let (watch, before) = (Stopwatch::of_thread(), *run.counters());
     oscillate(&mut run, oscillations)?;
-    let (seconds, after) = (start.elapsed().as_secs_f64(), run.counters());
+    let (seconds, after) = (watch.seconds(), run.counters());
     Ok(Measurement {
         nanoseconds_per_collision: 1e9 * seconds / (after.collisions - before.collisions) as f64,
         events_per_second: (events(after) - events(&before)) as f64 / seconds,

@@ -3,7 +3,7 @@
 use kuva::prelude::{Layout, LinePlot, Plot, ScatterPlot};
 
 use crate::Row;
-use crate::sheet::{BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
+use crate::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
 
 const WIDTH: f64 = 620.0;
 const HEIGHT: f64 = 420.0;
@@ -51,6 +51,6 @@ fn layout(rows: &[Row]) -> Layout {
     let most = rows.iter().map(|row| row.nanoseconds().median).fold(0.0, f64::max);
     let few = rows.iter().map(|row| row.disks).min().unwrap_or(1) as f64;
     let many = rows.iter().map(|row| row.disks).max().unwrap_or(10) as f64;
-    let layout = Layout::new((0.7 * few, 1.4 * many), (0.0, 1.1 * most)).with_log_x();
+    let layout = sheet::axes((few / 1.6, 1.6 * many), (0.0, 1.1 * most)).with_log_x();
     layout.with_x_label("disks").with_y_label("nanoseconds")
 }

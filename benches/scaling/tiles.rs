@@ -3,6 +3,8 @@
 //! To settle a million disks from a lattice takes an hour. A thousand settle at once, and snapshots of them at different
 //! times, one beside the other, are a settled state of a wide box; every second is mirrored, so that the flow goes on.
 
+use std::cmp::Ordering;
+
 use granular_edmd::Disk;
 use granular_edmd::glam::DVec2;
 use rand::SeedableRng;
@@ -15,7 +17,7 @@ use crate::common::state::{Run, State, WIDTH, oscillate};
 /// How disks are numbered, which decides how far apart neighbours are in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Numbering {
-    /// Box by box: neighbours in space are within a thousand numbers of each other.
+    /// By narrow columns from left to right: neighbours in space have near numbers.
     ByPlace,
     /// At random, as after a long time in which the disks have mixed.
     Mixed,
@@ -53,11 +55,18 @@ impl Tiles {
                 disks.push(placed(disk, place)?);
             }
         }
-        if numbering == Numbering::Mixed {
-            disks.shuffle(&mut Xoshiro256PlusPlus::seed_from_u64(1));
+        match numbering {
+            Numbering::ByPlace => disks.sort_by(by_place),
+            Numbering::Mixed => disks.shuffle(&mut Xoshiro256PlusPlus::seed_from_u64(1)),
         }
         Ok(disks)
     }
+}
+
+/// Columns are a diameter wide.
+fn by_place(one: &Disk, other: &Disk) -> Ordering {
+    let place = |disk: &Disk| (disk.position().x.floor(), disk.position().y);
+    place(one).partial_cmp(&place(other)).unwrap_or(Ordering::Equal)
 }
 
 fn next(run: &mut Run) -> Outcome<Vec<Disk>> {
