@@ -8,7 +8,8 @@
 //!
 //! Machines are noisy and no two are alike, so the two run in turn, and the median of the ratios of collisions of two
 //! disks per second counts. Each starts from a lattice of its own, settles for so many oscillations of the base, and is
-//! measured for as many by the wall clock. `ROUNDS` and `OSCILLATIONS` change how often and how long.
+//! measured for as many by the wall clock. `ROUNDS` and `OSCILLATIONS` change how often and how long; at a smaller
+//! gravity it is longer, as flights are.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -63,13 +64,18 @@ impl Plan {
         let grid = ask::flag("GRID");
         let (rounds, oscillations) = match (ask::is_test(), grid) {
             (true, _) => (1, 20),
-            (false, true) => (3, 500),
+            (false, true) => (3, 400),
             (false, false) => (9, 2000),
         };
         let states = if grid { plane() } else { vec![DILUTE, DENSE] };
         let (rounds, oscillations) =
             (ask::number("ROUNDS", rounds)?, ask::number("OSCILLATIONS", oscillations)?);
         Ok(Self { rounds, oscillations, states })
+    }
+
+    /// As many flights at any gravity.
+    fn oscillations_at(&self, gravity: f64) -> u32 {
+        (f64::from(self.oscillations) * DILUTE.gravity / gravity).round() as u32
     }
 }
 
@@ -92,14 +98,14 @@ fn measure(
     reference: Option<&Reference>,
     round: u32,
 ) -> Outcome<(Speed, Option<Speed>)> {
-    let seed = u64::from(round) + 1;
-    let theirs = || reference.map(|it| it.measure(state, seed, plan.oscillations)).transpose();
+    let (seed, oscillations) = (u64::from(round) + 1, plan.oscillations_at(state.gravity));
+    let theirs = || reference.map(|it| it.measure(state, seed, oscillations)).transpose();
     if round.is_multiple_of(2) {
-        let ours = ours(state, seed, plan.oscillations)?;
+        let ours = ours(state, seed, oscillations)?;
         return Ok((ours, theirs()?));
     }
     let theirs = theirs()?;
-    Ok((ours(state, seed, plan.oscillations)?, theirs))
+    Ok((ours(state, seed, oscillations)?, theirs))
 }
 
 /// So many oscillations to settle from the lattice, and as many to measure.
