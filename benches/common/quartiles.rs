@@ -1,0 +1,35 @@
+//! Medians: of a few measurements on a busy machine, means say little.
+
+use std::fmt;
+
+/// Median and quartiles of a few measurements.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Quartiles {
+    pub(crate) low: f64,
+    pub(crate) median: f64,
+    pub(crate) high: f64,
+}
+
+impl Quartiles {
+    /// Of these values; NaN of none.
+    pub(crate) fn of(values: impl IntoIterator<Item = f64>) -> Self {
+        let mut values: Vec<f64> = values.into_iter().collect();
+        values.sort_by(f64::total_cmp);
+        let [low, median, high] = [0.25, 0.5, 0.75].map(|share| quantile(&values, share));
+        Self { low, median, high }
+    }
+}
+
+/// Linear between neighbours.
+fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
+    let place = share * last as f64;
+    let (before, part) = (place.floor() as usize, place.fract());
+    sorted[before] + part * (sorted[(before + 1).min(last)] - sorted[before])
+}
+
+impl fmt::Display for Quartiles {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{:.2} ({:.2}–{:.2})", self.median, self.low, self.high)
+    }
+}

@@ -1,0 +1,83 @@
+//! The paper's box with a thousand disks, or a wider one with as many more.
+
+use std::error::Error;
+use std::fmt;
+
+use granular_edmd::boundary::{Container, Wall};
+use granular_edmd::collision::{ContactDuration, Frictional};
+use granular_edmd::scheduler::{EventScheduler, TournamentTree};
+use granular_edmd::wall::BiParabolic;
+use granular_edmd::{Disk, Simulation, initial};
+
+/// Of whatever can go wrong before and while something is measured.
+pub(crate) type Outcome<T> = Result<T, Box<dyn Error + Send + Sync>>;
+
+/// Disks in a box of the paper's width.
+pub(crate) const DISKS: usize = 1000;
+pub(crate) const WIDTH: f64 = 60.0;
+pub(crate) const HEIGHT: f64 = 150.0;
+pub(crate) const AMPLITUDE: f64 = 0.1;
+pub(crate) const ANGULAR_FREQUENCY: f64 = 10.0;
+
+/// Short enough to change nothing but the collapse.
+pub(crate) const CONTACT_DURATION: f64 = 1e-5;
+
+/// The time of one oscillation of the base.
+pub(crate) const OSCILLATION: f64 = std::f64::consts::TAU / ANGULAR_FREQUENCY;
+
+pub(crate) type Run<S = TournamentTree> = Simulation<ContactDuration<Frictional>, Container, S>;
+
+/// What decides how dense the gas becomes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct State {
+    pub(crate) gravity: f64,
+    pub(crate) friction: f64,
+    pub(crate) inelasticity: f64,
+}
+
+/// A gas that fills the box: most events are passages between cells.
+pub(crate) const DILUTE: State = State { gravity: 0.015_625, friction: 0.03, inelasticity: 0.0 };
+
+/// A fluid a dozen diameters high: most events are collisions.
+pub(crate) const DENSE: State = State { gravity: 0.015_625, friction: 0.1, inelasticity: 0.05 };
+
+impl State {
+    /// These disks in a box as many times wider than the paper's.
+    pub(crate) fn run<S: EventScheduler>(
+        &self,
+        disks: Vec<Disk>,
+        boxes: usize,
+        scheduler: S,
+    ) -> Outcome<Run<S>> {
+        let rule = Frictional::new(self.inelasticity, self.friction)?;
+        let rule = ContactDuration::new(rule, CONTACT_DURATION)?;
+        let run = Simulation::builder(rule, container(boxes)?).disks(disks).gravity(self.gravity);
+        Ok(run.scheduler(scheduler).build()?)
+    }
+
+    /// A thousand disks in the paper's box that have forgotten their lattice after so many oscillations.
+    pub(crate) fn settled(&self, seed: u64, oscillations: u32) -> Outcome<Run> {
+        let disks = initial::lattice(&container(1)?, DISKS, 0.5)?;
+        let disks = initial::with_maxwellian_velocities(disks, 1.0, seed)?;
+        let mut run = self.run(disks, 1, TournamentTree::new())?;
+        oscillate(&mut run, oscillations)?;
+        Ok(run)
+    }
+}
+
+fn container(boxes: usize) -> Outcome<Container> {
+    let base = BiParabolic::new(AMPLITUDE, ANGULAR_FREQUENCY)?;
+    Ok(Container::closed(WIDTH * boxes as f64, HEIGHT)?.with_motion(Wall::Floor, base)?)
+}
+
+/// Goes on for so many oscillations of the base.
+pub(crate) fn oscillate<S: EventScheduler>(run: &mut Run<S>, oscillations: u32) -> Outcome<()> {
+    run.run_until(run.time() + f64::from(oscillations) * OSCILLATION, &mut ())?;
+    Ok(())
+}
+
+impl fmt::Display for State {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "g = {}, κ = {}, q = {}", self.gravity, self.friction, self.inelasticity)
+    }
+}

@@ -1,0 +1,45 @@
+//! Time spent on a processor: other work on the machine does not count.
+
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+type Clock = fn() -> Option<f64>;
+
+/// Started when it was made.
+pub(crate) struct Stopwatch {
+    wall: Instant,
+    clock: Clock,
+    start: Option<f64>,
+}
+
+impl Stopwatch {
+    /// Of this thread.
+    pub(crate) fn of_thread() -> Self {
+        Self::with(|| seconds_of(Path::new("/proc/thread-self")))
+    }
+
+    /// Of all threads that this process has at both ends.
+    pub(crate) fn of_process() -> Self {
+        Self::with(|| {
+            let tasks = fs::read_dir("/proc/self/task").ok()?;
+            tasks.map(|task| seconds_of(&task.ok()?.path())).sum()
+        })
+    }
+
+    fn with(clock: Clock) -> Self {
+        Self { wall: Instant::now(), clock, start: clock() }
+    }
+
+    /// Seconds on processors, good to some milliseconds; by the wall clock where Linux does not say.
+    pub(crate) fn seconds(&self) -> f64 {
+        let passed = (self.clock)().zip(self.start).map(|(now, start)| now - start);
+        passed.unwrap_or_else(|| self.wall.elapsed().as_secs_f64())
+    }
+}
+
+fn seconds_of(task: &Path) -> Option<f64> {
+    let text = fs::read_to_string(task.join("schedstat")).ok()?;
+    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
+    Some(1e-9 * nanoseconds)
+}

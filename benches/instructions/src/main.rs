@@ -1,0 +1,41 @@
+//! A settled state, dilute or dense, that goes on for a few oscillations: what `.ci/instructions` counts.
+
+#[path = "../../common/state.rs"]
+#[allow(dead_code, reason = "not all of it is needed here")]
+mod state;
+
+use std::process::ExitCode;
+
+use state::{DENSE, DILUTE, Outcome, Run, oscillate};
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(collisions) => {
+            println!("{collisions}");
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Collisions of two disks in the part that is counted.
+fn run() -> Outcome<u64> {
+    let (state, settle, oscillations) = match std::env::args().nth(1).as_deref() {
+        Some("dilute") => (DILUTE, 200, 200),
+        Some("dense") => (DENSE, 200, 100),
+        _ => return Err("which state: dilute or dense?".into()),
+    };
+    let mut run = state.settled(1, settle)?;
+    let before = run.counters().collisions;
+    counted_part(&mut run, oscillations)?;
+    Ok(run.counters().collisions - before)
+}
+
+/// The name by which callgrind finds it.
+#[inline(never)]
+fn counted_part(run: &mut Run, oscillations: u32) -> Outcome<()> {
+    oscillate(run, oscillations)
+}

@@ -1,0 +1,159 @@
+//! How speed, memory and set-up grow with the number of disks, for each scheduler.
+//!
+//! ```sh
+//! RUSTFLAGS="-C target-cpu=native" cargo bench --bench scaling
+//! ```
+//!
+//! The same physical state in boxes of the same height that are wider and wider, `LARGEST` (10⁶) disks at most. It is
+//! done `ROUNDS` times, and medians count, of the time on a processor. Once disks are numbered by their place, which is
+//! the best for the caches, and once at random. The picture goes to `PICTURE`, `out/scaling.png` if that is not set.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod measurement;
+mod picture;
+#[path = "../../examples/common/sheet.rs"]
+#[allow(dead_code, reason = "not all colours are needed here")]
+mod sheet;
+mod tiles;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use common::Outcome;
+use common::ask;
+use common::quartiles::Quartiles;
+use common::state::{DILUTE, DISKS};
+use granular_edmd::scheduler::TournamentTree;
+use measurement::{Measurement, asked_for, measure};
+use tiles::{Numbering, Tiles};
+
+type Measure = fn(&Tiles, usize, Numbering, u32) -> Outcome<Measurement>;
+
+/// The schedulers that are compared.
+const SCHEDULERS: [(&str, Measure); 1] = [("tournament tree", measure_with::<TournamentTree>)];
+
+fn measure_with<S: granular_edmd::scheduler::EventScheduler + Default>(
+    tiles: &Tiles,
+    boxes: usize,
+    numbering: Numbering,
+    oscillations: u32,
+) -> Outcome<Measurement> {
+    measure::<S>(&DILUTE, || tiles.disks(boxes, numbering), oscillations)
+}
+
+/// A line of the table: one system, measured a few times.
+pub(crate) struct Row {
+    disks: usize,
+    scheduler: &'static str,
+    numbering: Numbering,
+    measure: Measure,
+    rounds: Vec<Measurement>,
+}
+
+/// How large, how often, and how long.
+struct Plan {
+    largest: usize,
+    rounds: u32,
+    settle: u32,
+    /// Disks times oscillations of each run: the more disks, the fewer oscillations.
+    work: usize,
+}
+
+fn main() -> ExitCode {
+    common::report(run())
+}
+
+fn run() -> Outcome<()> {
+    let plan = Plan::asked_for()?;
+    let mut rows = rows(plan.largest);
+    if let Some(number) = asked_for() {
+        return measure_one(&plan, &rows[number]);
+    }
+    common::print_circumstances();
+    println!("{DILUTE}; medians of {} rounds.", plan.rounds);
+    for _ in 0..plan.rounds {
+        for (number, row) in rows.iter_mut().enumerate() {
+            row.rounds.push(Measurement::in_new_process(number)?);
+        }
+    }
+    print(&rows);
+    if ask::is_test() { Ok(()) } else { draw(&rows) }
+}
+
+/// What the process that measures this system says.
+fn measure_one(plan: &Plan, row: &Row) -> Outcome<()> {
+    let (boxes, oscillations) = (row.disks / DISKS, (plan.work / row.disks).max(1) as u32);
+    let tiles = Tiles::settled(&DILUTE, plan.settle, boxes)?;
+    println!("{}", (row.measure)(&tiles, boxes, row.numbering, oscillations)?);
+    Ok(())
+}
+
+impl Plan {
+    fn asked_for() -> Outcome<Self> {
+        if ask::is_test() {
+            return Ok(Self { largest: 10_000, rounds: 1, settle: 20, work: 50_000 });
+        }
+        let largest = ask::number("LARGEST", 1_000_000)?.max(1000) as usize;
+        Ok(Self { largest, rounds: ask::number("ROUNDS", 3)?, settle: 2000, work: 8_000_000 })
+    }
+}
+
+/// All sizes, from a thousand in steps of ten, with all schedulers and numberings.
+fn rows(largest: usize) -> Vec<Row> {
+    let sizes = std::iter::successors(Some(DISKS), |disks| Some(10 * disks));
+    let mut rows = Vec::new();
+    for disks in sizes.take_while(|&disks| disks <= largest) {
+        for (scheduler, measure) in SCHEDULERS {
+            let row = |numbering| Row { disks, scheduler, numbering, measure, rounds: Vec::new() };
+            rows.extend(Numbering::ALL.map(row));
+        }
+    }
+    rows
+}
+
+impl Row {
+    fn quartiles(&self, number: fn(&Measurement) -> f64) -> Quartiles {
+        Quartiles::of(self.rounds.iter().map(number))
+    }
+
+    fn nanoseconds(&self) -> Quartiles {
+        self.quartiles(|round| round.nanoseconds_per_collision)
+    }
+}
+
+fn print(rows: &[Row]) {
+    println!();
+    println!(
+        "| disks | scheduler | numbered | ns per collision | million events per second | bytes per disk | set-up |"
+    );
+    println!("|---|---|---|---|---|---|---|");
+    for row in rows {
+        let Quartiles { low, median, high } = row.nanoseconds();
+        let events = row.quartiles(|round| round.events_per_second).median / 1e6;
+        let set_up = 1e3 * row.quartiles(|round| round.set_up_seconds).median;
+        println!(
+            "| {} | {} | {} | {median:.0} ({low:.0}–{high:.0}) | {events:.2} | {} | {set_up:.1} ms |",
+            row.disks,
+            row.scheduler,
+            row.numbering.name(),
+            bytes(row),
+        );
+    }
+}
+
+/// Memory of a small system drowns in that of the process.
+fn bytes(row: &Row) -> String {
+    let bytes = row.quartiles(|round| round.bytes_per_disk).median;
+    if row.disks < 10_000 || bytes.is_nan() { "–".to_owned() } else { format!("{bytes:.0}") }
+}
+
+fn draw(rows: &[Row]) -> Outcome<()> {
+    let path = ask::path("PICTURE").unwrap_or_else(|| PathBuf::from("out/scaling.png"));
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder)?;
+    }
+    std::fs::write(&path, picture::draw(&DILUTE.to_string(), rows)?)?;
+    println!("\nPicture: {}", path.display());
+    Ok(())
+}

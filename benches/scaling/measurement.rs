@@ -1,0 +1,92 @@
+//! What is measured of one system.
+
+use std::fmt;
+use std::process::Command;
+use std::time::Instant;
+
+use granular_edmd::Disk;
+use granular_edmd::scheduler::EventScheduler;
+use granular_edmd::simulation::Counters;
+
+use crate::common::Outcome;
+use crate::common::state::{DISKS, State, oscillate};
+use crate::common::stopwatch::Stopwatch;
+
+/// One system, once.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Measurement {
+    pub(crate) nanoseconds_per_collision: f64,
+    pub(crate) events_per_second: f64,
+    pub(crate) bytes_per_disk: f64,
+    pub(crate) set_up_seconds: f64,
+}
+
+/// What a new process is asked for.
+const ASK: &str = "--one";
+
+/// The system that this process is asked to measure.
+pub(crate) fn asked_for() -> Option<usize> {
+    std::env::args().skip_while(|argument| argument != ASK).nth(1)?.parse().ok()
+}
+
+impl Measurement {
+    /// Of a system by its number, in a process of its own: freed memory would be used again and not seen.
+    pub(crate) fn in_new_process(number: usize) -> Outcome<Self> {
+        let mut process = Command::new(std::env::current_exe()?);
+        process.args(std::env::args().skip(1)).args([ASK, &number.to_string()]);
+        let output = process.output()?;
+        let numbers = String::from_utf8_lossy(&output.stdout);
+        let numbers: Vec<f64> = numbers.split_whitespace().filter_map(|text| text.parse().ok()).collect();
+        let &[nanoseconds_per_collision, events_per_second, bytes_per_disk, set_up_seconds] =
+            numbers.as_slice()
+        else {
+            return Err(String::from_utf8_lossy(&output.stderr).trim().into());
+        };
+        Ok(Self { nanoseconds_per_collision, events_per_second, bytes_per_disk, set_up_seconds })
+    }
+}
+
+impl fmt::Display for Measurement {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { nanoseconds_per_collision, events_per_second, bytes_per_disk, set_up_seconds } = self;
+        write!(formatter, "{nanoseconds_per_collision} {events_per_second} {bytes_per_disk} {set_up_seconds}")
+    }
+}
+
+/// Builds the system and runs it for so many oscillations, after two that do not count.
+pub(crate) fn measure<S: EventScheduler + Default>(
+    state: &State,
+    disks: impl FnOnce() -> Outcome<Vec<Disk>>,
+    oscillations: u32,
+) -> Outcome<Measurement> {
+    let memory = resident_bytes();
+    let disks = disks()?;
+    let (count, boxes) = (disks.len(), disks.len() / DISKS);
+    let start = Instant::now();
+    let mut run = state.run(disks, boxes, S::default())?;
+    let set_up_seconds = start.elapsed().as_secs_f64();
+    oscillate(&mut run, 2)?;
+    let bytes_per_disk = (resident_bytes() - memory) / count as f64;
+    let (watch, before) = (Stopwatch::of_thread(), *run.counters());
+    oscillate(&mut run, oscillations)?;
+    let (seconds, after) = (watch.seconds(), run.counters());
+    Ok(Measurement {
+        nanoseconds_per_collision: 1e9 * seconds / (after.collisions - before.collisions) as f64,
+        events_per_second: (events(after) - events(&before)) as f64 / seconds,
+        bytes_per_disk,
+        set_up_seconds,
+    })
+}
+
+fn events(counters: &Counters) -> u64 {
+    let Counters { collisions, wall_collisions, cell_crossings, repredictions, .. } = counters;
+    collisions + wall_collisions + cell_crossings + repredictions
+}
+
+/// Memory of this process that is in use; NaN where Linux does not say.
+fn resident_bytes() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    let kilobytes = line.and_then(|text| text.trim().trim_end_matches("kB").trim().parse::<f64>().ok());
+    kilobytes.map_or(f64::NAN, |kilobytes| 1024.0 * kilobytes)
+}
