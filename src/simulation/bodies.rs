@@ -124,7 +124,6 @@ impl Bodies {
         &self.disks
     }
 
-    #[cfg(feature = "serde")]
     pub(super) fn largest_radius(&self) -> f64 {
         self.disks.iter().map(Disk::radius).fold(0.0, f64::max)
     }

@@ -8,6 +8,7 @@ use super::bodies::Bodies;
 use super::cells::Cells;
 use super::engine::Simulation;
 use super::errors::BuildError;
+use super::grid::Mesh;
 use crate::Disk;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
@@ -137,11 +138,8 @@ pub(super) fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> R
     // Without disks any cells will do.
     let diameter = if diameter > 0.0 { diameter } else { 0.125 * domain.width() };
     let too_small = BuildError::DomainTooSmall { width: domain.width(), height: domain.height(), diameter };
-    Cells::new(boundary, diameter, PITCH, &positions).ok_or(too_small)
+    Cells::new(boundary, diameter, Mesh::Coarse, &positions).ok_or(too_small)
 }
-
-/// Size of a cell in diameters of the largest disk: as small as can be costs the least, in dense and dilute states.
-const PITCH: f64 = 1.08;
 
 /// That the walls can be numbered, all disks are inside the domain and none overlaps a wall.
 pub(super) fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<(), BuildError> {

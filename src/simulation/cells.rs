@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::event::Exit;
-use super::grid::{Grid, Layout, Place};
+use super::grid::{Grid, Layout, Mesh, Place};
 use crate::boundary::Boundary;
 
 /// Disks that a cell has room for at first: no more equal disks have their centres in one cell of the usual size.
@@ -48,18 +48,16 @@ impl GridState {
 }
 
 impl Cells {
-    /// Cells for disks at these positions; `None` if the domain is too small for them.
-    ///
-    /// `pitch` is the size of a cell in diameters of the largest disk.
+    /// Cells for disks of at most this diameter at these positions; `None` if the domain is too small for them.
     pub(super) fn new<B: Boundary + ?Sized>(
         boundary: &B,
         diameter: f64,
-        pitch: f64,
+        mesh: Mesh,
         positions: &[DVec2],
     ) -> Option<Self> {
         let domain = boundary.domain();
         let highest = positions.iter().map(|p| p.y).fold(domain.bottom, f64::max);
-        let layout = Layout::new(&domain, diameter, pitch, positions.len(), highest)?;
+        let layout = Layout::new(&domain, diameter, mesh, positions.len(), highest)?;
         let grid = Grid::new(boundary, 0.5 * diameter, layout);
         let places = positions.iter().map(|&position| grid.place_of(position)).collect();
         Some(Self::filled(grid, places))
@@ -77,7 +75,7 @@ impl Cells {
 
     #[cfg(feature = "serde")]
     pub(super) fn state(&self) -> GridState {
-        GridState { layout: *self.grid.layout(), places: self.places.clone() }
+        GridState { layout: self.grid.layout(), places: self.places.clone() }
     }
 
     fn filled(grid: Grid, places: Vec<Place>) -> Self {

@@ -62,6 +62,7 @@ pub struct Checkpoint {
     epoch_length: f64,
     counters: Counters,
     guard: Guard,
+    tally: (u64, u64),
 }
 
 /// A checkpoint cannot be written, read or resumed.
@@ -155,6 +156,8 @@ impl Checkpoint {
         check(self.trajectories.iter().all(Trajectory::is_finite), "a trajectory is not finite")?;
         check(self.spins.iter().all(Spin::is_valid), "a rotation is not finite")?;
         check(self.slots.iter().all(|slot| is_valid(slot, count, walls)), "an event is of nobody, or never")?;
+        let Counters { cell_crossings, collisions, .. } = self.counters;
+        check(self.tally.0 <= cell_crossings && self.tally.1 <= collisions, "its counters run backwards")?;
         check(self.grid.is_valid(), "a disk is outside the neighbour cells")
     }
 
@@ -187,6 +190,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             epoch_length: self.epoch_length,
             counters: self.counters,
             guard: self.guard,
+            tally: self.tally,
         }
     }
 
@@ -229,6 +233,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         run.epoch_length = saved.epoch_length;
         run.counters = saved.counters;
         run.guard = saved.guard;
+        run.tally = saved.tally;
         run.shift_epoch(0.0);
         run
     }

@@ -57,6 +57,8 @@ pub struct Simulation<R = Frictional, B = Container, S = TournamentTree> {
     pub(super) epoch_length: f64,
     pub(super) counters: Counters,
     pub(super) guard: Guard,
+    /// Cell crossings and collisions until the epoch last moved.
+    pub(super) tally: (u64, u64),
     /// Room for the neighbours of one disk.
     found: Vec<u32>,
     /// Room for the times of all disks.
@@ -105,6 +107,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             now: 0.0,
             counters: Counters::default(),
             guard: Guard::default(),
+            tally: (0, 0),
             found: Vec::new(),
             due: Vec::new(),
             copies: Vec::new(),
@@ -141,7 +144,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         due: f64,
         observer: &mut O,
     ) -> Result<Event, RunError> {
-        self.now = if due > self.epoch_length { self.move_epoch(due) } else { due };
+        if due > self.epoch_length {
+            self.now = self.move_epoch(due);
+            if self.adapt_cells() {
+                return Ok(Event::Repredicted { disk });
+            }
+        } else {
+            self.now = due;
+        }
         if let Some(events) = self.guard.watch(self.now, self.epoch_length, self.slots.len()) {
             return Err(RunError::Stalled { time: self.time(), disk, events });
         }
@@ -294,12 +304,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let horizon = self.now + HORIZON * self.epoch_length;
         let flight = self.flight(disk);
         let slot = &mut self.slots[disk];
-        match self.boundary.first_touch(&flight, slot.exit_due.min(horizon)) {
-            Some(touch) => {
-                (slot.exit_due, slot.exit, slot.wall) = (touch.time, Exit::Wall, touch.wall as u16)
-            }
-            None if slot.exit_due > horizon => (slot.exit_due, slot.exit) = (horizon, Exit::Stay),
-            None => (),
+        if let Some(touch) = self.boundary.first_touch(&flight, slot.exit_due.min(horizon)) {
+            (slot.exit_due, slot.exit, slot.wall) = (touch.time, Exit::Wall, touch.wall as u16);
+        } else if slot.exit_due > horizon {
+            (slot.exit_due, slot.exit) = (horizon, Exit::Stay);
         }
     }
 
@@ -311,6 +319,30 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.shift_epoch(by);
         self.epoch_length = self.bodies.epoch_length();
         due - by
+    }
+
+    /// Changes to larger or smaller cells, if those suit what happened since the last epoch; returns whether it did.
+    ///
+    /// All events are predicted anew from the present, also the one that was due.
+    #[cold]
+    fn adapt_cells(&mut self) -> bool {
+        let Counters { cell_crossings, collisions, .. } = self.counters;
+        let (last_crossings, last_collisions) =
+            std::mem::replace(&mut self.tally, (cell_crossings, collisions));
+        let mesh = self.cells.grid().mesh();
+        let suitable = mesh.suitable(cell_crossings - last_crossings, collisions - last_collisions);
+        if suitable == mesh {
+            return false;
+        }
+        let positions: Vec<_> =
+            (0..self.bodies.len()).map(|disk| self.bodies.position(disk, self.now)).collect();
+        let diameter = 2.0 * self.bodies.largest_radius();
+        if let Some(cells) = Cells::new(&self.boundary, diameter, suitable, &positions) {
+            self.cells = cells;
+            self.predict_all();
+            return true;
+        }
+        false
     }
 
     pub(super) fn shift_epoch(&mut self, by: f64) {

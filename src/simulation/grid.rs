@@ -13,6 +13,36 @@ const SPARE_CELLS: f64 = 4096.0;
 /// Least size of a cell in diameters: above 1 by more than rounding.
 const LEAST_PITCH: f64 = 1.000_001;
 
+/// How large the cells are: small ones hold fewer neighbours, large ones are passed less often.
+///
+/// Neither holds more than four disks if these are equal: a fifth would need a side of `$\sqrt 2$`. Where disks crowd the
+/// small ones gain 20 %, in a dilute gas the large ones as much.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) enum Mesh {
+    Fine,
+    Coarse,
+}
+
+impl Mesh {
+    /// Size of a cell in diameters of the largest disk.
+    const fn pitch(self) -> f64 {
+        match self {
+            Self::Fine => 1.08,
+            Self::Coarse => 1.4,
+        }
+    }
+
+    /// The mesh that suits disks which passed so many cells while they collided so often.
+    pub(super) fn suitable(self, cell_crossings: u64, collisions: u64) -> Self {
+        match self {
+            Self::Fine if cell_crossings > collisions => Self::Coarse,
+            Self::Coarse if 3 * cell_crossings < collisions => Self::Fine,
+            _ => self,
+        }
+    }
+}
+
 /// Columns and rows of cells, and around them a ring of ghosts, so that every cell has eight neighbours.
 ///
 /// Cells of one column are next to each other in memory: a wide, low box is the usual large system, and what is near in it
@@ -43,6 +73,7 @@ pub(super) struct Place {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Layout {
+    mesh: Mesh,
     columns: u32,
     rows: u32,
     /// Size of a cell; in an open container the rows grow from some height on.
@@ -53,7 +84,7 @@ impl Layout {
     /// Whether this is a grid of a sensible size for so many disks.
     #[cfg(feature = "serde")]
     pub(super) fn is_valid(&self, disks: usize) -> bool {
-        let Self { columns, rows, pitch } = *self;
+        let Self { columns, rows, pitch, .. } = *self;
         let most = 2.0 * (CELLS_PER_DISK * disks as f64 + SPARE_CELLS);
         columns > 0 && rows > 0 && f64::from(columns) * f64::from(rows) <= most && pitch.is_finite()
     }
@@ -68,7 +99,7 @@ impl Layout {
     pub(super) fn new(
         domain: &Domain,
         diameter: f64,
-        pitch: f64,
+        mesh: Mesh,
         count: usize,
         highest: f64,
     ) -> Option<Self> {
@@ -79,7 +110,7 @@ impl Layout {
             2.0 * open_height(domain, highest, diameter)
         };
         let most = CELLS_PER_DISK * count as f64 + SPARE_CELLS;
-        let pitch = (pitch.max(LEAST_PITCH) * diameter).max((width * height / most).sqrt());
+        let pitch = (mesh.pitch() * diameter).max((width * height / most).sqrt());
         let along = |length: f64, pitch: f64| (length / pitch).floor().max(1.0);
         let mut columns = along(width, pitch).min(most.floor());
         if domain.periodic && columns < 4.0 {
@@ -92,7 +123,7 @@ impl Layout {
         let rows = along(height, pitch).min((most / columns).max(1.0).floor());
         let valid = width > 0.0 && height > 0.0 && width.is_finite() && height.is_finite();
         let pitch = DVec2::new(width / columns, height / rows);
-        valid.then_some(Self { columns: columns as u32, rows: rows as u32, pitch })
+        valid.then_some(Self { mesh, columns: columns as u32, rows: rows as u32, pitch })
     }
 }
 
@@ -133,8 +164,13 @@ impl Grid {
         self.at_wall.len()
     }
 
-    pub(super) fn layout(&self) -> &Layout {
-        &self.layout
+    #[cfg(feature = "serde")]
+    pub(super) fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    pub(super) fn mesh(&self) -> Mesh {
+        self.layout.mesh
     }
 
     /// Cells in a column, ring included: how far apart in memory neighbours in a row are.
