@@ -5,10 +5,20 @@
 //! become runs of hours (docs/validation.md, “Hostile runs”).
 
 mod config;
+#[cfg(all(feature = "serde", unix))]
+mod faults;
+#[cfg(feature = "serde")]
+mod files;
+#[cfg(all(feature = "serde", unix))]
+mod forged;
 mod invariants;
 mod laws;
+#[cfg(all(feature = "serde", unix))]
+mod limits;
 mod random_runs;
 mod schedulers;
 mod script;
+#[cfg(feature = "serde")]
+mod specimens;
 mod systems;
 mod walls;
