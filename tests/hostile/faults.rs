@@ -142,7 +142,7 @@ fn a_checkpoint_survives_a_full_disk() {
     let path = disk.folder().join("state");
     let [old, new] = two_states();
     old.write(&path).unwrap();
-    let _ = fs::write(disk.folder().join("filler"), [0; 1 << 16]);
+    let _ = fs::write(disk.folder().join("filler"), vec![0; 1 << 16]);
     let error = new.write(&path).unwrap_err().to_string();
     assert!(error.contains("No space left"), "{error}");
     assert_eq!(Checkpoint::read(&path).unwrap(), old);

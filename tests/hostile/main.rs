@@ -5,6 +5,7 @@
 //! become runs of hours (docs/validation.md, “Hostile runs”).
 
 mod config;
+mod constructors;
 #[cfg(all(feature = "serde", unix))]
 mod faults;
 #[cfg(feature = "serde")]

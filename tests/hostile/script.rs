@@ -19,7 +19,7 @@ pub(crate) enum Operation {
     Rule(Law),
     Gravity(f64),
     /// Other walls, which the disks may not fit into.
-    Walls(Walls),
+    Walls(Box<Walls>),
     /// The walls that are there already.
     SameWalls,
     /// Save, and go on with what was saved where the interpreter says so.
@@ -32,7 +32,7 @@ pub(crate) fn script() -> impl Strategy<Value = Vec<Operation>> {
         2 => (0.0..0.5f64, 1..5u32).prop_map(|(duration, samples)| Operation::Run(duration, samples)),
         1 => law().prop_map(Operation::Rule),
         1 => gravity().prop_map(Operation::Gravity),
-        1 => walls().prop_map(Operation::Walls),
+        1 => walls().prop_map(|walls| Operation::Walls(Box::new(walls))),
         1 => Just(Operation::SameWalls),
         2 => Just(Operation::Checkpoint),
     ];
@@ -120,7 +120,10 @@ impl Actor {
                 self.run.set_rule(law.rule());
                 Ok(())
             }
-            Operation::Gravity(gravity) => Ok(self.run.set_gravity(*gravity).unwrap()),
+            Operation::Gravity(gravity) => {
+                self.run.set_gravity(*gravity).unwrap();
+                Ok(())
+            }
             Operation::Walls(walls) => self.rebuild(walls),
             Operation::SameWalls => self.keep_walls(),
             Operation::Checkpoint => self.save(),
