@@ -151,6 +151,10 @@ impl Study {
         let path = self.folder.record(ramp, value);
         let Some(record) = sealed::read_sealed::<Record>(&path)? else { return Ok(None) };
         self.check_origin(&record.origin, ramp, value, &path)?;
+        let most = self.specification.protocol().cycles().saturating_mul(value as u64 + 1);
+        if record.cycles > most {
+            return Err(sealed::damaged(&path, "it is longer than the protocol"));
+        }
         Ok(Some(record))
     }
 

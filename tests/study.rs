@@ -455,11 +455,16 @@ fn a_plan_is_read_as_it_is_written() -> Result<(), AnyError> {
 }
 
 /// A line of a plan, what takes its place, and what the error says.
-const REFUSED: [(&str, &str, &str); 18] = [
+const REFUSED: [(&str, &str, &str); 19] = [
     ("seed = 1", "seed = 1\nsede = 2", "unknown field `sede`"),
     ("disks = 30", "disks = 30\nmass = 2", "unknown field `mass`"),
     ("disks = 30", "disks = 0", "number of disks must be at least 1, but is 0"),
     ("disks = 30", "disks = 300000", "there is room for"),
+    (
+        "disks = 30\nwidth = 10.0\nheight = 30",
+        "disks = 9000000000000000000\nwidth = 10.0",
+        "but is 9000000000000000000",
+    ),
     ("disks = 30", "", "missing field `disks`"),
     ("width = 10.0", "width = -10.0", "width must be finite and positive, but is -10"),
     ("height = 30", "height = inf", "height must be finite and positive, but is inf"),

@@ -158,10 +158,10 @@ impl Record {
 
     /// Mean energy change in a collision of two disks, each collision counting alike.
     pub fn energy_change(&self) -> Estimate {
-        let collisions: u64 = self.samples.iter().map(|sample| sample.collisions).sum();
+        let collisions: f64 = self.samples.iter().map(|sample| sample.collisions as f64).sum();
         let total: f64 = self.samples.iter().map(|s| s.collisions as f64 * s.energy_change).sum();
-        let mean = total / collisions as f64;
-        let per_sample = collisions as f64 / self.samples.len() as f64;
+        let mean = total / collisions;
+        let per_sample = collisions / self.samples.len() as f64;
         // The error of a ratio is that of the mean residual, over the mean number of collisions.
         let error = self.mean(|s| s.collisions as f64 * (s.energy_change - mean) / per_sample).error;
         Estimate { mean, error }

@@ -5,11 +5,14 @@ use super::rule::Rule;
 use super::{Base, Parameter, Sides};
 use crate::boundary::{Container, Wall};
 use crate::collision::{ContactDuration, Elastic, Frictional};
-use crate::quantity::finite;
+use crate::quantity::{accept, finite};
 use crate::{Disk, ParameterError, initial};
 
 /// Radius of the disks: their diameter and mass are the units.
 const RADIUS: f64 = 0.5;
+
+/// Most disks of a study.
+const MOST_DISKS: usize = 1 << 24;
 
 /// A box of equal disks as data: how many, how they collide, what moves them. Diameter and mass of a disk are the units.
 ///
@@ -217,6 +220,8 @@ impl System {
         if self.disks == 0 {
             return Err(ParameterError::new("number of disks", "at least 1", 0.0).into());
         }
+        // An open box has room for any number: a slip of the pen must not cost all memory.
+        accept(self.disks <= MOST_DISKS, "number of disks", "at most 2^24", self.disks as f64)?;
         self.rule()?;
         self.gravity()?;
         self.initial_disks(0).map(|_| ())

@@ -62,19 +62,15 @@ pub(super) struct Active<'a> {
 impl<'a> Value<'a> {
     /// Starts the value, or goes on with it where `partial` was saved.
     pub(super) fn begin(&'a self, partial: Option<Partial>) -> Result<Active<'a>, StudyError> {
+        let start = self.before.map_or(0, |record| record.cycles);
         let Some(Partial { work, state, .. }) = partial else {
             let run = self.first_state()?;
-            let work = Work {
-                start: self.before.map_or(0, |record| record.cycles),
-                steps: 0,
-                counters: *run.counters(),
-                samples: Vec::new(),
-                profile: Vec::new(),
-            };
+            let work =
+                Work { start, steps: 0, counters: *run.counters(), samples: Vec::new(), profile: Vec::new() };
             return Ok(Active { value: self, work, run });
         };
         let run = self.resume(&state, &self.system)?;
-        Ok(Active { value: self, work, run })
+        Ok(Active { value: self, work: Work { start, ..work }, run })
     }
 
     /// The system at the start of the value.
@@ -238,11 +234,13 @@ impl Partial {
 /// What happened between two counts.
 fn since(before: &Counters, now: &Counters) -> Counters {
     Counters {
-        collisions: now.collisions - before.collisions,
-        wall_collisions: now.wall_collisions - before.wall_collisions,
-        contact_duration_collisions: now.contact_duration_collisions - before.contact_duration_collisions,
-        cell_crossings: now.cell_crossings - before.cell_crossings,
-        repredictions: now.repredictions - before.repredictions,
+        collisions: now.collisions.saturating_sub(before.collisions),
+        wall_collisions: now.wall_collisions.saturating_sub(before.wall_collisions),
+        contact_duration_collisions: now
+            .contact_duration_collisions
+            .saturating_sub(before.contact_duration_collisions),
+        cell_crossings: now.cell_crossings.saturating_sub(before.cell_crossings),
+        repredictions: now.repredictions.saturating_sub(before.repredictions),
         max_overlap: now.max_overlap,
     }
 }

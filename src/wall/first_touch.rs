@@ -6,6 +6,12 @@ use crate::roots::first_descent;
 /// Rounding of a gap, relative to the lengths that it is the difference of.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
+/// Room for a step where there is none, in units of the rounding: a search must end.
+const LEAST_ROOM: f64 = 1e-3;
+
+/// Looks at a bounce lower than rounding: enough for walls that keep to the bounds of their acceleration.
+const LOOKS: u32 = 64;
+
 /// A surface that approaches a wall: its height above the wall's place at rest, along the wall's normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Approach {
@@ -49,7 +55,11 @@ impl Approach {
 /// ```
 pub fn first_touch<M: WallMotion + ?Sized>(motion: &M, approach: &Approach, until: f64) -> Option<f64> {
     let search = Search { motion, approach, until };
-    let mut time = search.enters_reach()?;
+    let start = search.enters_reach()?;
+    if let Some(touch) = search.low_bounce(start) {
+        return (touch <= until).then_some(touch);
+    }
+    let mut time = start;
     while time <= until {
         match search.step(time) {
             Step::Touch(touch) => return (touch <= until).then_some(touch),
@@ -62,6 +72,19 @@ pub fn first_touch<M: WallMotion + ?Sized>(motion: &M, approach: &Approach, unti
 struct Search<'a, M: ?Sized> {
     motion: &'a M,
     approach: &'a Approach,
+    until: f64,
+}
+
+/// The gap and the wall at one time.
+#[derive(Clone, Copy)]
+struct Look {
+    gap: f64,
+    rate: f64,
+    /// No acceleration of the gap is below this until `until`.
+    pull: f64,
+    /// Whether it is the acceleration itself.
+    exact: bool,
+    tolerance: f64,
     until: f64,
 }
 
@@ -85,28 +108,69 @@ impl<M: WallMotion + ?Sized> Search<'_, M> {
     }
 
     fn step(&self, time: f64) -> Step {
-        let wall = self.motion.state(time);
-        let bounds = self.piece(time);
-        let gap = self.approach.height(time) - wall.displacement;
-        let rate = self.approach.velocity(time) - wall.velocity;
-        let pull = self.approach.acceleration - bounds.max;
-        let exact = bounds.min == bounds.max;
-        let tolerance = if exact { 0.0 } else { self.tolerance(time, rate) };
+        let Look { gap, rate, pull, exact, tolerance, until } = self.look(time);
         if gap <= tolerance && rate < 0.0 {
             return Step::Touch(time);
         }
         if !exact {
-            return Step::Open(Self::still_open(time, gap.abs() + tolerance, rate, pull).min(bounds.until));
+            let room = if gap.is_nan() { gap } else { (gap + tolerance).max(LEAST_ROOM * tolerance) };
+            return Step::Open(Self::still_open(time, room, rate, pull).min(until));
         }
         match first_descent(gap, rate, pull) {
-            Some(wait) if time + wait <= bounds.until => Step::Touch(time + wait),
-            _ => Step::Open(bounds.until),
+            Some(wait) if time + wait <= until => Step::Touch(time + wait),
+            _ => Step::Open(until),
         }
+    }
+
+    fn look(&self, time: f64) -> Look {
+        let wall = self.motion.state(time);
+        let bounds = self.piece(time);
+        let rate = self.approach.velocity(time) - wall.velocity;
+        let exact = bounds.min == bounds.max;
+        Look {
+            gap: self.approach.height(time) - wall.displacement,
+            rate,
+            pull: self.approach.acceleration - bounds.max,
+            exact,
+            tolerance: if exact { 0.0 } else { self.tolerance(time, rate) },
+            until: bounds.until,
+        }
+    }
+
+    /// The end of a bounce that begins at `start` and stays lower than rounding, if there is one.
+    ///
+    /// The gap cannot tell when such a bounce is over. It is over when the gap closes as fast as it opened: if it counted
+    /// before, bounces would lose speed that no rule takes, if after, each would go deeper into the wall than the last.
+    fn low_bounce(&self, start: f64) -> Option<f64> {
+        let first = self.look(start);
+        let is_low = first.rate * first.rate <= -2.0 * first.pull * first.tolerance;
+        if first.exact || first.gap > first.tolerance || first.rate < 0.0 || !is_low {
+            return None;
+        }
+        if first.rate == 0.0 {
+            // At rest on the wall, or about to leave it: that shows within the time of a fall through the rounding.
+            let soon = start + (2.0 * first.tolerance / -first.pull).sqrt();
+            return (self.look(soon).rate < 0.0).then_some(start);
+        }
+        let (mut time, mut now) = (start, first);
+        for _ in 0..LOOKS {
+            let back = time + (now.rate + first.rate) / -now.pull;
+            if now.rate <= -first.rate || back <= time {
+                return Some(time);
+            }
+            time = back.min(now.until);
+            now = self.look(time);
+            if now.gap > now.tolerance || now.pull >= 0.0 {
+                break;
+            }
+        }
+        None
     }
 
     /// A time, later than this one, until which the gap cannot have closed by more than `room`.
     ///
-    /// The room is the gap and its rounding: each step makes way, and the last ends in a gap closed by rounding.
+    /// The room is the gap and its rounding: each step makes way, and the last ends in a gap closed by rounding. A gap that
+    /// is closed by more has next to none: nothing goes much deeper into a wall than it is.
     fn still_open(time: f64, room: f64, rate: f64, pull: f64) -> f64 {
         if room.is_nan() {
             return f64::INFINITY;

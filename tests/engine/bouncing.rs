@@ -1,11 +1,11 @@
 //! A ball on a plate: closed forms, the end of Zeno's bounces, and late times.
 
-use granular_edmd::boundary::{Container, Wall};
+use granular_edmd::boundary::{Boundary, Container, Wall};
 use granular_edmd::collision::{ContactDuration, Elastic, Frictional, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, Energies, on_collision};
 use granular_edmd::simulation::RunError;
-use granular_edmd::wall::BiParabolic;
+use granular_edmd::wall::{BiParabolic, Sinusoidal};
 use granular_edmd::{Disk, Simulation};
 
 use crate::setups::Log;
@@ -163,4 +163,26 @@ fn a_disk_at_rest_on_the_floor_is_an_error_that_says_so() {
     let error = simulation.run_until(1.0, &mut ()).unwrap_err();
     assert!(matches!(error, RunError::Stalled { disk: 0, time, .. } if time < 1e-6), "{error}");
     assert!(error.to_string().contains("disk 0") && error.to_string().contains("at rest"), "{error}");
+}
+
+/// Its bounces become lower than rounding: none of them may go deeper into the floor than the one before.
+#[test]
+fn a_lossy_ball_does_not_sink_into_a_floor_of_varying_acceleration() {
+    for restitution in [0.0, 0.5, 0.9] {
+        let floor = Sinusoidal::new(0.1, 2.0).unwrap();
+        let mut simulation = Simulation::builder(
+            Smooth::from_restitution(restitution).unwrap(),
+            open().with_motion(Wall::Floor, floor).unwrap(),
+        )
+        .disks([ball(0.5)])
+        .gravity(1.0)
+        .build()
+        .unwrap();
+        let error = simulation.run_until(20.0, &mut ()).unwrap_err();
+        assert!(matches!(error, RunError::Stalled { disk: 0, .. }), "{restitution}: {error}");
+        let mut floor = simulation.boundary().clone();
+        floor.set_time_origin(simulation.time());
+        let overlap = floor.overlap(simulation.disk(0).position(), 0.5, 0.0);
+        assert!(overlap.is_none_or(|(_, depth)| depth < 1e-9), "{restitution}: {overlap:?}");
+    }
 }

@@ -1,0 +1,234 @@
+//! Every public constructor over every kind of number: refused with an error that names the value, or fit to run.
+
+use granular_edmd::analysis::{StateCriteria, distinct_clusters, thermal_noise};
+use granular_edmd::boundary::{Container, Region, Thermal, Wall};
+use granular_edmd::collision::Elastic;
+use granular_edmd::glam::DVec2;
+use granular_edmd::kinetic::{Maxwellian, MonteCarlo};
+use granular_edmd::observable::{EnergyChangeProfile, Fields, HeightProfile, SampleTimes};
+use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
+use granular_edmd::{Disk, Simulation, initial};
+
+/// Numbers that a file or a slip of the pen may bring.
+const NUMBERS: [f64; 18] = [
+    f64::NAN,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+    f64::MIN,
+    -1e300,
+    -1.0,
+    -1e-9,
+    -5e-324,
+    -0.0,
+    0.0,
+    5e-324,
+    1e-320,
+    1e-30,
+    0.3,
+    1.0,
+    1e30,
+    1e300,
+    f64::MAX,
+];
+
+/// A constructor of one number, by the name that its error must have, and which numbers it takes.
+type Case = (&'static str, fn(f64) -> Result<(), String>, fn(f64) -> bool);
+
+fn told<T>(result: Result<T, impl ToString>) -> Result<(), String> {
+    result.map(drop).map_err(|error| error.to_string())
+}
+
+fn positive(value: f64) -> bool {
+    value > 0.0 && value.is_finite()
+}
+
+fn not_negative(value: f64) -> bool {
+    value >= 0.0 && value.is_finite()
+}
+
+fn scale(value: f64) -> bool {
+    (1e-30..=1e30).contains(&value)
+}
+
+fn bounded(value: f64) -> bool {
+    value.abs() <= 1e60
+}
+
+fn times() -> SampleTimes {
+    SampleTimes::every(1.0).unwrap()
+}
+
+fn disk() -> Disk {
+    Disk::new(DVec2::new(2.0, 2.0), 0.5).unwrap()
+}
+
+fn box_of(width: f64) -> Container {
+    Container::closed(width, 6.0).unwrap()
+}
+
+fn motions() -> Vec<Case> {
+    let swings = |value: f64| positive(value) && positive(value * 9.0);
+    let turns = |value: f64| {
+        positive(value) && positive(std::f64::consts::TAU / value) && positive(0.1 * value * value)
+    };
+    vec![
+        ("", |value| told(BiParabolic::new(value, 3.0)), swings),
+        ("", |value| told(BiParabolic::new(0.1, value)), turns),
+        ("", |value| told(Sinusoidal::new(value, 3.0)), swings),
+        ("", |value| told(Sinusoidal::new(0.1, value)), turns),
+        ("", |value| told(Triangular::new(value, 3.0)), swings),
+        ("", |value| told(Sawtooth::new(0.1, value)), turns),
+    ]
+}
+
+fn engine() -> Vec<Case> {
+    vec![
+        ("position", |value| told(Disk::new(DVec2::new(0.0, value), 0.5)), bounded),
+        ("radius", |value| told(Disk::new(DVec2::ZERO, value)), scale),
+        ("position", |value| told(disk().with_position(DVec2::new(value, 0.0))), bounded),
+        ("velocity", |value| told(disk().with_velocity(DVec2::new(value, 0.0))), bounded),
+        ("angle", |value| told(disk().with_angle(value)), bounded),
+        ("angular velocity", |value| told(disk().with_angular_velocity(value)), bounded),
+        ("mass", |value| told(disk().with_mass(value)), scale),
+        (
+            "inertia factor",
+            |value| told(disk().with_inertia_factor(value)),
+            |value| (1e-6..=1.0).contains(&value),
+        ),
+        ("width", |value| told(Container::open(value)), positive),
+        ("width", |value| told(Container::closed(value, 1.0)), positive),
+        ("height", |value| told(Container::closed(1.0, value)), positive),
+        ("wall temperature", |value| told(Thermal::new(value)), positive),
+        ("temperature", |value| told(initial::with_maxwellian_velocities(vec![], value, 1)), not_negative),
+        (
+            "gravity",
+            |value| told(Simulation::builder(Elastic, box_of(8.0)).gravity(value).build()),
+            |value| value.is_finite(),
+        ),
+        (
+            "start time",
+            |value| told(Simulation::builder(Elastic, box_of(8.0)).start_time(value).build()),
+            f64::is_finite,
+        ),
+    ]
+}
+
+fn watching() -> Vec<Case> {
+    vec![
+        ("sampling interval", |value| told(SampleTimes::every(value)), positive),
+        ("first sampling time", |value| told(times().starting_at(value)), f64::is_finite),
+        ("top of the profile", |value| told(HeightProfile::new(0.0, value, 1, times())), positive),
+        (
+            "bottom of the profile",
+            |value| told(HeightProfile::new(value, 2.0, 1, times())),
+            |value| value.is_finite() && value < 2.0,
+        ),
+        ("top of the profile", |value| told(EnergyChangeProfile::new(0.0, value, 1, times())), positive),
+        ("edge of the grid", |value| told(grid(value)), |value| value > 1.0 && value.is_finite()),
+        ("translational temperature", |value| told(Maxwellian::new(value)), scale),
+        (
+            "rotational temperature",
+            |value| told(Maxwellian::new(1.0).unwrap().with_rotational_temperature(value)),
+            |value| (0.0..=1e30).contains(&value),
+        ),
+        ("standard error", |value| told(MonteCarlo::new(1).with_standard_error(value)), positive),
+        ("", |value| told(thermal_noise(value, 1.0, 10)), not_negative),
+        ("noise", |value| told(distinct_clusters(&[DVec2::ZERO], value, 1)), not_negative),
+        (
+            "multiple of the noise",
+            |value| told(StateCriteria::default().with_noise_multiple(value)),
+            not_negative,
+        ),
+        ("packing fraction", |value| told(StateCriteria::default().with_collapse(value, 0.1)), not_negative),
+        (
+            "least weight",
+            |value| told(StateCriteria::default().with_least_weight(value)),
+            |value| (0.0..=0.5).contains(&value),
+        ),
+    ]
+}
+
+fn grid(right: f64) -> Result<Fields, granular_edmd::ParameterError> {
+    Fields::new(Region { min: DVec2::ONE, max: DVec2::new(right, 2.0) }, 1, 1, times())
+}
+
+#[test]
+fn each_number_is_taken_or_named() {
+    for (name, construct, takes) in motions().into_iter().chain(engine()).chain(watching()) {
+        for value in NUMBERS {
+            match construct(value) {
+                Ok(()) => assert!(takes(value), "{name} {value:e} was taken"),
+                Err(error) => {
+                    assert!(!takes(value), "{value:e} was refused: {error}");
+                    let derived = ["area of", "peak", "period", "top of"];
+                    let by_itself = error.starts_with(name) && error.ends_with(&format!("but is {value}"));
+                    assert!(by_itself || derived.iter().any(|d| error.starts_with(d)), "{value}: {error}");
+                }
+            }
+        }
+    }
+}
+
+/// Up to a hundred events of two disks: an error or a run, and finite numbers.
+fn runs(container: &Container, gravity: f64, start: f64, speed: f64) {
+    for count in 0..3 {
+        let Ok(disks) = initial::lattice(container, count, 0.5) else { continue };
+        let disks = disks.into_iter().map(|disk| disk.with_velocity(DVec2::new(speed, 0.3 * speed)).unwrap());
+        let builder = Simulation::builder(Elastic, container.clone()).disks(disks);
+        let Ok(mut run) = builder.gravity(gravity).start_time(start).build() else { continue };
+        for _ in 0..100 {
+            if !matches!(run.step(&mut ()), Ok(Some(_))) {
+                break;
+            }
+        }
+        assert!(run.disks().iter().all(|disk| !disk.position().is_nan()), "{gravity} {start} {speed}");
+    }
+}
+
+#[test]
+fn systems_of_any_size_end_in_an_error_or_run() {
+    for value in NUMBERS.into_iter().filter(|value| value.is_finite()) {
+        runs(&box_of(8.0), value, 0.0, 1.0);
+        runs(&box_of(8.0), 1.0, value, 1.0);
+        if bounded(value) {
+            runs(&box_of(8.0), 0.1, 0.0, value);
+        }
+        if positive(value) {
+            runs(&box_of(value), 0.1, 0.0, 1.0);
+            runs(&box_of(value).with_periodic_sides(), 0.0, 0.0, 1.0);
+            runs(&Container::closed(8.0, value).unwrap(), 0.1, 0.0, 1.0);
+            runs(&Container::closed(value, value).unwrap(), 0.1, 0.0, 1.0);
+        }
+    }
+}
+
+#[test]
+fn walls_of_any_motion_end_in_an_error_or_run() {
+    for value in NUMBERS {
+        let floors = [
+            BiParabolic::new(value, 3.0).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
+            BiParabolic::new(0.1, value).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
+            Sinusoidal::new(value, 3.0).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
+            Sinusoidal::new(0.1, value).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
+            Sawtooth::new(0.1, value).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
+            Thermal::new(value).map(|thermal| box_of(8.0).with_temperature(Wall::Floor, thermal)),
+        ];
+        floors.into_iter().flatten().for_each(|floor| runs(&floor.unwrap(), 0.1, 0.0, 1.0));
+    }
+}
+
+/// Linear, not quadratic: a million disks are set up in seconds.
+#[test]
+#[ignore = "seconds in release, and half a gigabyte"]
+fn a_million_disks_are_set_up_in_seconds() {
+    let begin = std::time::Instant::now();
+    let container = Container::closed(2000.0, 2000.0).unwrap();
+    let disks = initial::lattice(&container, 1_000_000, 0.5).unwrap();
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
+    let mut run = Simulation::builder(Elastic, container.clone()).disks(disks).build().unwrap();
+    run.run_until(1e-3, &mut ()).unwrap();
+    assert_eq!(initial::random(&container, 1_000_000, 0.5, 2000.0, 1).unwrap().len(), 1_000_000);
+    let seconds = begin.elapsed().as_secs_f64();
+    println!("{seconds} s");
+    assert!(seconds < 60.0, "{seconds} s");
+}

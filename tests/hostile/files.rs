@@ -1,0 +1,171 @@
+//! Files of any contents: an error or a value, never a panic, and never a file read as what it is not.
+
+use std::fs;
+
+use granular_edmd::simulation::{Checkpoint, CheckpointError};
+use granular_edmd::study::{Specification, StudyError};
+use proptest::prelude::*;
+
+use crate::config::config;
+use crate::specimens::{CONTENTS_AT, Scratch, VERSION_AT, checkpoint, done_study, sealed, specification};
+
+#[test]
+fn a_sealed_file_is_resealed_as_the_library_does() {
+    let bytes = checkpoint().to_bytes().unwrap();
+    assert_eq!(sealed(&bytes, &bytes[CONTENTS_AT..]), bytes);
+}
+
+/// Files with one bit flipped, each `stride`-th one, and all beginnings.
+fn damaged(bytes: &[u8], stride: usize) -> impl Iterator<Item = Vec<u8>> {
+    let flipped = (0..8 * bytes.len()).step_by(stride).map(|bit| {
+        let mut bytes = bytes.to_vec();
+        bytes[bit / 8] ^= 1 << (bit % 8);
+        bytes
+    });
+    flipped.chain((0..bytes.len()).map(|length| bytes[..length].to_vec()))
+}
+
+#[test]
+fn each_flipped_bit_and_each_cut_of_a_checkpoint_is_noticed() {
+    let bytes = checkpoint().to_bytes().unwrap();
+    for (case, bytes) in damaged(&bytes, 1).enumerate() {
+        assert!(Checkpoint::from_bytes(&bytes).is_err(), "case {case}");
+    }
+}
+
+fn damaged_records(name: &str, stride: usize) {
+    let (scratch, study) = done_study(name);
+    let path = scratch.0.join("ramps/0000/0000.record");
+    let sound = fs::read(&path).unwrap();
+    for (case, bytes) in damaged(&sound, stride).enumerate() {
+        fs::write(&path, bytes).unwrap();
+        let error = study.record(0, 0).unwrap_err();
+        assert!(
+            matches!(&error, StudyError::Damaged { path: named, .. } if *named == path),
+            "{case}: {error}"
+        );
+    }
+}
+
+/// A bit of nearly each byte, in turn.
+#[test]
+fn flipped_bits_and_cuts_of_a_record_are_noticed() {
+    damaged_records("flips", 9);
+}
+
+#[test]
+#[ignore = "some seconds: all bits"]
+fn each_flipped_bit_and_each_cut_of_a_record_is_noticed() {
+    damaged_records("all-flips", 1);
+}
+
+#[test]
+fn another_version_is_named() {
+    let mut bytes = checkpoint().to_bytes().unwrap();
+    for version in [0, 77, u32::MAX] {
+        bytes[VERSION_AT..VERSION_AT + 4].copy_from_slice(&version.to_le_bytes());
+        let error = Checkpoint::from_bytes(&bytes).unwrap_err();
+        assert!(matches!(error, CheckpointError::Version { found, .. } if found == version), "{error}");
+        assert!(error.to_string().contains(&version.to_string()), "{error}");
+    }
+}
+
+#[test]
+fn files_that_cannot_be_read_are_errors() {
+    let scratch = Scratch::new("unreadable");
+    for path in [scratch.0.clone(), scratch.0.join("none"), "/dev/null".into()] {
+        let error = Checkpoint::read(&path).unwrap_err();
+        assert!(matches!(error, CheckpointError::Io(_) | CheckpointError::NotACheckpoint), "{error}");
+    }
+    let error = checkpoint().write(scratch.0.join("none/file")).unwrap_err();
+    assert!(matches!(error, CheckpointError::Io(_)), "{error}");
+    fs::write(scratch.0.join("specification.toml"), [0xff, 0xfe, 0]).unwrap();
+    let error = granular_edmd::study::Study::open(&scratch.0).unwrap_err().to_string();
+    assert!(error.contains("specification.toml"), "{error}");
+}
+
+/// A change of a text.
+#[derive(Debug, Clone)]
+enum Edit {
+    Remove(usize, usize),
+    Insert(usize, &'static str),
+    Replace(usize, char),
+}
+
+fn edit() -> impl Strategy<Value = Edit> {
+    let words = prop::sample::select(vec![
+        "nan",
+        "inf",
+        "-inf",
+        "-",
+        "0",
+        "9",
+        "e308",
+        "1e-320",
+        ".",
+        "\n",
+        "=",
+        "[",
+        "]",
+        "{",
+        "}",
+        "\"",
+        "#",
+        "9223372036854775807",
+        "18446744073709551616",
+        "[[sweep]]\n",
+        "[ramp]\n",
+        "disks = 1\n",
+        "\u{0}",
+        "é",
+    ]);
+    prop_oneof![
+        (any::<usize>(), 1..30usize).prop_map(|(at, length)| Edit::Remove(at, length)),
+        (any::<usize>(), words).prop_map(|(at, word)| Edit::Insert(at, word)),
+        (any::<usize>(), any::<char>()).prop_map(|(at, letter)| Edit::Replace(at, letter)),
+    ]
+}
+
+fn edited(text: &str, edits: &[Edit]) -> String {
+    let mut letters: Vec<char> = text.chars().collect();
+    for edit in edits {
+        let (at, count) = match edit {
+            Edit::Remove(at, count) => (*at, *count),
+            Edit::Insert(at, _) => (*at, 0),
+            Edit::Replace(at, _) => (*at, 1),
+        };
+        let start = at % (letters.len() + 1);
+        let new: Vec<char> = match edit {
+            Edit::Remove(..) => Vec::new(),
+            Edit::Insert(_, word) => word.chars().collect(),
+            Edit::Replace(_, letter) => vec![*letter],
+        };
+        let end = (start + count).min(letters.len());
+        letters.splice(start..end, new);
+    }
+    letters.into_iter().collect()
+}
+
+proptest! {
+    #![proptest_config(config(2000))]
+
+    #[test]
+    fn any_bytes_are_no_checkpoint(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        prop_assert!(Checkpoint::from_bytes(&bytes).is_err());
+    }
+
+    /// With a seal that is whole, whatever is behind it is decoded or refused.
+    #[test]
+    fn any_sealed_bytes_are_decoded_or_refused(contents in prop::collection::vec(any::<u8>(), 0..400)) {
+        let header = checkpoint().to_bytes().unwrap();
+        let _ = Checkpoint::from_bytes(&sealed(&header, &contents));
+    }
+
+    #[test]
+    fn any_plan_is_read_or_refused(edits in prop::collection::vec(edit(), 1..6)) {
+        let text = edited(&specification().to_toml().unwrap(), &edits);
+        if let Ok(plan) = Specification::from_toml(&text) {
+            prop_assert_eq!(Specification::from_toml(&plan.to_toml().unwrap()).unwrap(), plan);
+        }
+    }
+}

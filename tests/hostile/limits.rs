@@ -1,0 +1,45 @@
+//! Tests in processes of their own, which the system gives little.
+
+use std::process::{Command, Output};
+
+/// What a process may use.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limits {
+    pub(crate) memory_kib: u64,
+    pub(crate) seconds: u64,
+    /// Size of a file: what is beyond cannot be written.
+    pub(crate) file_kib: Option<u64>,
+}
+
+/// What became of a process.
+#[derive(Debug)]
+pub(crate) struct End(pub(crate) Output);
+
+impl End {
+    pub(crate) fn said(&self) -> String {
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        format!("{}\n{}", text(&self.0.stdout), text(&self.0.stderr))
+    }
+
+    pub(crate) fn assert_success(&self) {
+        assert!(self.0.status.success(), "{:?}\n{}", self.0.status, self.said());
+        assert!(self.said().contains("1 passed"), "{}", self.said());
+    }
+}
+
+/// Runs an ignored test of this executable in a process with these limits.
+///
+/// A file that grows too large is an error of the write, as on a full disk, not a signal.
+pub(crate) fn in_child(test: &str, limits: &Limits, variables: &[(&str, &str)]) -> End {
+    let file = limits.file_kib.map_or(String::new(), |kib| format!("trap '' XFSZ; ulimit -f {};", 2 * kib));
+    let script = format!(
+        "ulimit -v {}; ulimit -t {}; {file} exec \"$0\" --exact {test} --ignored --nocapture",
+        limits.memory_kib, limits.seconds
+    );
+    let executable = std::env::current_exe().unwrap();
+    let mut command = Command::new("sh");
+    command.arg("-c").arg(script).arg(executable).env("RUST_BACKTRACE", "0");
+    // The limits of the process are the limits of the child's children too; the cases are its own.
+    command.envs(variables.iter().copied());
+    End(command.output().unwrap())
+}

@@ -1,0 +1,25 @@
+//! Bad input and hostile runs: random simulations under every law that must hold, files of any contents, constructors over
+//! every kind of number, and faults of the machine.
+//!
+//! The seeds are fixed. `PROPTEST_CASES` sets the number of cases, `PROPTEST_RNG_SEED` another seed: that is how these tests
+//! become runs of hours (docs/validation.md, “Hostile runs”).
+
+mod config;
+mod constructors;
+#[cfg(all(feature = "serde", unix))]
+mod faults;
+#[cfg(feature = "serde")]
+mod files;
+#[cfg(all(feature = "serde", unix))]
+mod forged;
+mod invariants;
+mod laws;
+#[cfg(all(feature = "serde", unix))]
+mod limits;
+mod random_runs;
+mod schedulers;
+mod script;
+#[cfg(feature = "serde")]
+mod specimens;
+mod systems;
+mod walls;

@@ -1,0 +1,237 @@
+//! Random operations on a run, with all invariants checked after each event, and the trace that they leave.
+
+use granular_edmd::Disk;
+use granular_edmd::observable::{Collision, Observer, Snapshot};
+use granular_edmd::simulation::{BuildError, Event, RunError};
+use proptest::prelude::*;
+
+use crate::invariants::{Change, check_state};
+use crate::laws::{Law, law};
+use crate::schedulers::SCHEDULERS;
+use crate::systems::{Run, System, gravity};
+use crate::walls::{Walls, walls};
+
+#[derive(Debug, Clone)]
+pub(crate) enum Operation {
+    Steps(usize),
+    /// For this long, with this many samples.
+    Run(f64, u32),
+    Rule(Law),
+    Gravity(f64),
+    /// Other walls, which the disks may not fit into.
+    Walls(Box<Walls>),
+    /// The walls that are there already.
+    SameWalls,
+    /// Save, and go on with what was saved where the interpreter says so.
+    Checkpoint,
+}
+
+pub(crate) fn script() -> impl Strategy<Value = Vec<Operation>> {
+    let operation = prop_oneof![
+        8 => (1..40usize).prop_map(Operation::Steps),
+        2 => (0.0..0.5f64, 1..5u32).prop_map(|(duration, samples)| Operation::Run(duration, samples)),
+        1 => law().prop_map(Operation::Rule),
+        1 => gravity().prop_map(Operation::Gravity),
+        1 => walls().prop_map(|walls| Operation::Walls(Box::new(walls))),
+        1 => Just(Operation::SameWalls),
+        2 => Just(Operation::Checkpoint),
+    ];
+    prop::collection::vec(operation, 1..12)
+}
+
+/// One moment of a run, to the last bit.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Frame {
+    time: u64,
+    event: Option<Event>,
+    collisions: usize,
+    disks: Vec<[u64; 6]>,
+}
+
+fn bits(disk: &Disk) -> [u64; 6] {
+    let (position, velocity) = (disk.position(), disk.velocity());
+    [position.x, position.y, velocity.x, velocity.y, disk.angle(), disk.angular_velocity()].map(f64::to_bits)
+}
+
+/// Keeps all collisions, and takes one sample.
+struct Log {
+    collisions: Vec<Collision>,
+    sample: f64,
+    taken: Vec<f64>,
+}
+
+impl Log {
+    fn new(sample: f64) -> Self {
+        Self { collisions: Vec::new(), sample, taken: Vec::new() }
+    }
+}
+
+impl Observer for Log {
+    fn on_collision(&mut self, collision: &Collision) {
+        self.collisions.push(*collision);
+    }
+    fn next_sample(&self) -> f64 {
+        if self.taken.is_empty() { self.sample } else { f64::INFINITY }
+    }
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        self.taken.push(snapshot.time());
+    }
+}
+
+/// A run under a script.
+pub(crate) struct Actor {
+    run: Run,
+    walls: Walls,
+    law: Law,
+    /// Whether a checkpoint is also resumed, each time under the next scheduler.
+    resumes: bool,
+    resumed: usize,
+    pub(crate) trace: Vec<Frame>,
+    pub(crate) end: Option<RunError>,
+}
+
+impl Actor {
+    /// A run of `system` under the scheduler of this index.
+    pub(crate) fn new(system: &System, scheduler: usize, resumes: bool) -> Self {
+        let run = system.run(SCHEDULERS[scheduler]());
+        let (walls, law) = (system.walls.clone(), system.law);
+        Self { run, walls, law, resumes, resumed: scheduler, trace: Vec::new(), end: None }
+    }
+
+    /// Does all operations, up to an error of the run.
+    pub(crate) fn perform(mut self, script: &[Operation]) -> Result<Self, TestCaseError> {
+        check_state(&self.run)?;
+        for operation in script {
+            if self.end.is_some() {
+                break;
+            }
+            self.operate(operation)?;
+            self.film(None, 0);
+        }
+        Ok(self)
+    }
+
+    fn operate(&mut self, operation: &Operation) -> Result<(), TestCaseError> {
+        match operation {
+            Operation::Steps(count) => self.steps(*count),
+            Operation::Run(duration, samples) => self.run(*duration, *samples),
+            Operation::Rule(law) => {
+                self.law = *law;
+                self.run.set_rule(law.rule());
+                Ok(())
+            }
+            Operation::Gravity(gravity) => {
+                self.run.set_gravity(*gravity).unwrap();
+                Ok(())
+            }
+            Operation::Walls(walls) => self.rebuild(walls),
+            Operation::SameWalls => self.keep_walls(),
+            Operation::Checkpoint => self.save(),
+        }
+    }
+
+    fn film(&mut self, event: Option<Event>, collisions: usize) {
+        let disks = self.run.disks().iter().map(bits).collect();
+        self.trace.push(Frame { time: self.run.time().to_bits(), event, collisions, disks });
+    }
+
+    fn steps(&mut self, count: usize) -> Result<(), TestCaseError> {
+        for _ in 0..count {
+            let (time, before) = (self.run.time(), self.run.disks());
+            let mut log = Log::new(f64::INFINITY);
+            let event = match self.run.step(&mut log) {
+                Ok(Some(event)) => event,
+                Ok(None) => return Ok(()),
+                Err(error) => return self.fail(error),
+            };
+            prop_assert!(self.run.time() >= time, "time goes back from {time} to {}", self.run.time());
+            self.check(event, &before, self.run.time() - time, &log.collisions)?;
+            self.film(Some(event), log.collisions.len());
+        }
+        Ok(())
+    }
+
+    fn check(
+        &self,
+        event: Event,
+        before: &[Disk],
+        elapsed: f64,
+        collisions: &[Collision],
+    ) -> Result<(), TestCaseError> {
+        let Self { run, walls, law, .. } = self;
+        let change = Change { run, walls, law: *law, before, after: &run.disks(), elapsed };
+        let (collides, involved) = match event {
+            Event::Collision { disk, partner } => (true, [disk, partner]),
+            Event::WallCollision { disk, .. } => (true, [disk, disk]),
+            _ => (false, [usize::MAX; 2]),
+        };
+        prop_assert_eq!(collisions.len(), usize::from(collides), "{:?}", event);
+        (0..before.len()).filter(|disk| !involved.contains(disk)).try_for_each(|d| change.check_flight(d))?;
+        collisions.iter().try_for_each(|collision| change.check_collision(collision))?;
+        check_state(run)
+    }
+
+    fn run(&mut self, duration: f64, samples: u32) -> Result<(), TestCaseError> {
+        let start = self.run.time();
+        for sample in 1..=samples {
+            let time = start + duration * f64::from(sample) / f64::from(samples);
+            let mut log = Log::new(time);
+            if let Err(error) = self.run.run_until(time, &mut log) {
+                return self.fail(error);
+            }
+            prop_assert_eq!(&log.taken, &[time]);
+            check_state(&self.run)?;
+            self.film(None, log.collisions.len());
+        }
+        Ok(())
+    }
+
+    /// Events may pile up where a rule is lossy; nothing else may end a run.
+    fn fail(&mut self, error: RunError) -> Result<(), TestCaseError> {
+        prop_assert!(matches!(error, RunError::Stalled { .. }), "{error}");
+        self.end = Some(error);
+        check_state(&self.run)
+    }
+
+    fn rebuild(&mut self, walls: &Walls) -> Result<(), TestCaseError> {
+        let before: Vec<_> = self.run.disks().iter().map(bits).collect();
+        match self.run.set_boundary(walls.container()) {
+            Ok(()) => self.walls = walls.clone(),
+            Err(
+                BuildError::Outside { .. } | BuildError::OverlapsWall { .. } | BuildError::Overlap { .. },
+            ) => {
+                prop_assert_eq!(before, self.run.disks().iter().map(bits).collect::<Vec<_>>());
+            }
+            Err(error) => prop_assert!(false, "{error}"),
+        }
+        check_state(&self.run)
+    }
+
+    /// Disks that are inside walls fit into them: except at times so late that nobody can say where a wall is.
+    fn keep_walls(&mut self) -> Result<(), TestCaseError> {
+        let result = self.run.set_boundary(self.walls.container());
+        prop_assert!(result.is_ok() || self.run.time().abs() > 1e6, "{result:?} at {}", self.run.time());
+        Ok(())
+    }
+
+    #[cfg(feature = "serde")]
+    fn save(&mut self) -> Result<(), TestCaseError> {
+        use granular_edmd::Simulation;
+        use granular_edmd::simulation::Checkpoint;
+        let checkpoint = Checkpoint::from_bytes(&self.run.checkpoint().to_bytes().unwrap()).unwrap();
+        prop_assert_eq!(&checkpoint, &self.run.checkpoint());
+        if self.resumes {
+            self.resumed = (self.resumed + 1) % SCHEDULERS.len();
+            let (rule, walls) = (self.law.rule(), self.walls.container());
+            let run = Simulation::resume(&checkpoint, rule, walls, SCHEDULERS[self.resumed]());
+            self.run = run.map_err(|error| TestCaseError::fail(error.to_string()))?;
+        }
+        Ok(())
+    }
+
+    #[cfg(not(feature = "serde"))]
+    fn save(&mut self) -> Result<(), TestCaseError> {
+        let _ = (self.resumes, self.resumed);
+        Ok(())
+    }
+}
