@@ -69,3 +69,10 @@ fn messages_carry_the_number() {
     assert_eq!(text(0.25), "after the collision the surfaces still close, at speed 0.5");
     assert_eq!(text(1.5), "the collision gains the energy 0.75");
 }
+
+/// Equality breaks no law: nothing that happens to nothing.
+#[test]
+fn surfaces_at_rest_may_stay_so() {
+    let contact = Contact::new(0.0, 0.0, 0.5, 0.5 / 3.0);
+    assert_eq!(check(&contact, Impulse::new(0.0, 0.0)), Ok(()));
+}
