@@ -278,3 +278,20 @@ fn a_disk_that_hovers_just_above_the_reach_of_a_sine_ends() {
         }
     }
 }
+
+/// All that a motion says of a time.
+fn said<M: WallMotion>(motion: M) -> (WallState, AccelerationBounds, (f64, f64), Option<f64>) {
+    (motion.state(0.4), motion.acceleration(0.4), motion.reach(), motion.period())
+}
+
+#[test]
+fn a_motion_says_the_same_by_reference_and_in_a_box() {
+    let motion = BiParabolic::new(AMPLITUDE, FREQUENCY).unwrap();
+    let (_, _, reach, period) = said(motion);
+    assert_eq!((motion.amplitude(), motion.angular_frequency()), (AMPLITUDE, FREQUENCY));
+    assert_eq!((reach, period), ((-AMPLITUDE, AMPLITUDE), Some(PERIOD)));
+    let (reference, boxed): (&dyn WallMotion, Box<dyn WallMotion>) = (&motion, Box::new(motion));
+    assert_eq!(said(reference), said(motion));
+    assert_eq!(said(boxed), said(motion));
+    assert_eq!(Loose(Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap()).period(), None, "unless it says so");
+}
