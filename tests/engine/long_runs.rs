@@ -20,8 +20,9 @@ fn wanted() -> u64 {
     std::env::var("COLLISIONS").map_or(1_000_000_000, |text| text.parse().unwrap())
 }
 
-/// Positions are below 64, with a last digit of 2⁻⁴⁸: a distance is made of some ten numbers so rounded.
-const ROUNDING: f64 = 20.0 / (1_u64 << 48) as f64;
+/// Positions at the epoch stay below 512, far flights of the fastest disks included, with a last digit of 2⁻⁴⁴; a
+/// distance comes from four of them.
+const ROUNDING: f64 = 4.0 / (1_u64 << 44) as f64;
 
 /// Runs until this many collisions, and asserts energy and overlap at each hundredth of the way.
 fn run(mut simulation: Simulation<Elastic>, collisions: u64) {
