@@ -251,6 +251,9 @@ fn block_error_is_that_of_an_autoregressive_series() -> Outcome {
             let average = block_average(&(0..samples).map(step).collect::<Vec<_>>())?;
             assert!(average.is_converged());
             assert!((average.standard_error() / exact - 1.0).abs() < 0.35, "{rho}: {average:?}");
+            // The naive error is known far better, so that their ratio is as uncertain.
+            let growth = average.correlated_samples() * (1.0 - rho) / (1.0 + rho);
+            assert!((growth.sqrt() - 1.0).abs() < 0.35, "{rho}: {average:?}");
             squares += (average.mean() / average.standard_error()).powi(2);
         }
         // Mean of 40 squared normals: standard error 0.22, and 1/error^2 is biased up by a few per cent.
