@@ -36,8 +36,10 @@ const DURATIONS: [f64; 5] = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3];
 const RUNS: usize = 3;
 
 /// Close steps where a transition is expected.
-const FRICTIONS: [f64; 15] =
-    [0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.05, 0.055, 0.06, 0.065, 0.07, 0.1, 0.15, 0.175, 0.2];
+const FRICTIONS: [f64; 19] = [
+    0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.05, 0.055, 0.06, 0.065, 0.07, 0.075, 0.08, 0.09, 0.1, 0.15,
+    0.175, 0.2, 0.3,
+];
 const INELASTICITIES: [f64; 9] = [0.01, 0.02, 0.025, 0.03, 0.035, 0.04, 0.045, 0.05, 0.1];
 
 /// Friction while inelasticity is ramped.
