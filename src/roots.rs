@@ -41,6 +41,7 @@ mod tests {
         assert_eq!(first_descent(0.0, 0.0, -1.0), Some(0.0));
         assert_eq!(first_descent(0.0, 1.0, -1.0), Some(2.0));
         assert_eq!(first_descent(-1.0, 1.0, -1.0), Some(2.0), "it never opens: it counts when it is back");
+        assert_eq!(first_descent(-1.0, 1.0, -2.0), Some(1.0), "and that is sooner the stronger the pull");
     }
 
     proptest! {

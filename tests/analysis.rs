@@ -9,7 +9,7 @@ use granular_edmd::analysis::{
 use granular_edmd::collision::Frictional;
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::{IsoLine, Maxwellian};
-use granular_edmd::observable::{ConvectionOrder, DenseLayer};
+use granular_edmd::observable::{ConvectionOrder, DenseLayer, RunningMean};
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -251,6 +251,9 @@ fn block_error_is_that_of_an_autoregressive_series() -> Outcome {
             let average = block_average(&(0..samples).map(step).collect::<Vec<_>>())?;
             assert!(average.is_converged());
             assert!((average.standard_error() / exact - 1.0).abs() < 0.35, "{rho}: {average:?}");
+            // The naive error is known far better, so that their ratio is as uncertain.
+            let growth = average.correlated_samples() * (1.0 - rho) / (1.0 + rho);
+            assert!((growth.sqrt() - 1.0).abs() < 0.35, "{rho}: {average:?}");
             squares += (average.mean() / average.standard_error()).powi(2);
         }
         // Mean of 40 squared normals: standard error 0.22, and 1/error^2 is biased up by a few per cent.
@@ -261,9 +264,24 @@ fn block_error_is_that_of_an_autoregressive_series() -> Outcome {
 }
 
 #[test]
+fn the_block_taken_is_the_smallest_that_is_long_enough() -> Outcome {
+    // Of 300 independent samples: blocks of 8 are too short, 512 < 600, and blocks of 16 are not.
+    let mut random = Random::new(3);
+    let samples: Vec<f64> = (0..300).map(|_| random.normal()).collect();
+    let error = |block| {
+        let means = samples.chunks_exact(block).map(|chunk| chunk.iter().sum::<f64>() / block as f64);
+        means.collect::<RunningMean>().standard_error()
+    };
+    assert!((0.97..1.13).contains(&(error(8) / error(1))) && error(8) != error(16));
+    assert!((block_average(&samples)?.standard_error() / error(16) - 1.0).abs() < 1e-12);
+    Ok(())
+}
+
+#[test]
 fn short_constant_and_bad_series() -> Outcome {
     let constant = block_average(&[2.5; 100])?;
     assert_eq!((constant.mean(), constant.standard_error(), constant.correlated_samples()), (2.5, 0.0, 1.0));
+    assert!(constant.is_converged());
     // A single jump: nobody can tell how often there will be one.
     let jump: Vec<f64> = (0..64).map(|k| f64::from(k / 32)).collect();
     let average = block_average(&jump)?;

@@ -62,6 +62,7 @@ fn each_constructor_refuses_and_names_the_value() {
 fn the_ends_of_the_ranges_are_accepted() {
     for value in [0.0, 0.5] {
         assert_eq!(Smooth::new(value).unwrap().normal_inelasticity(), value);
+        assert_eq!(Rough::new(value, 0.2).unwrap().normal_inelasticity(), value);
         assert_eq!(Frictional::new(value, 0.0).unwrap().normal_inelasticity(), value);
     }
     for value in [0.0, 1.0] {

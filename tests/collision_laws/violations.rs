@@ -1,6 +1,8 @@
 //! The check for rules of one's own: it names each broken law, and passes everything that breaks none.
 
-use granular_edmd::collision::laws::{Violation, check, closing_speed_after, slip_speed_after};
+use granular_edmd::collision::laws::{
+    Violation, available_energy, check, closing_speed_after, slip_speed_after,
+};
 use granular_edmd::collision::{Contact, Impulse};
 use proptest::prelude::*;
 
@@ -35,7 +37,7 @@ proptest! {
     fn a_strong_push_gains_energy(contact in contact(), normal in 2.001..10.0) {
         let impulse = impulse(&contact, normal, 0.0);
         let energy_change = impulse.energy_change(&contact);
-        let available = granular_edmd::collision::laws::available_energy(&contact);
+        let available = available_energy(&contact);
         prop_assume!(energy_change > 1e-9 * available, "a gain too small beside the slip to be told from rounding");
         prop_assert_eq!(check(&contact, impulse), Err(Violation::EnergyGained { energy_change }));
     }
@@ -45,7 +47,7 @@ proptest! {
     fn a_wrong_twist_gains_energy(contact in contact(), twist in prop_oneof![-3.0..-0.001, 2.001..5.0]) {
         let impulse = impulse(&contact, 2.0, twist);
         let energy_change = impulse.energy_change(&contact);
-        let available = granular_edmd::collision::laws::available_energy(&contact);
+        let available = available_energy(&contact);
         prop_assume!(energy_change > 1e-9 * available, "a gain too small beside the approach to be told from rounding");
         prop_assert!(slip_speed_after(&contact, impulse).abs() > contact.slip_speed().abs());
         prop_assert_eq!(check(&contact, impulse), Err(Violation::EnergyGained { energy_change }));
@@ -68,4 +70,19 @@ fn messages_carry_the_number() {
     let text = |normal| check(&contact, Impulse::new(normal, 0.0)).unwrap_err().to_string();
     assert_eq!(text(0.25), "after the collision the surfaces still close, at speed 0.5");
     assert_eq!(text(1.5), "the collision gains the energy 0.75");
+}
+
+/// Equality breaks no law: nothing that happens to nothing.
+#[test]
+fn surfaces_at_rest_may_stay_so() {
+    let contact = Contact::new(0.0, 0.0, 0.5, 0.5 / 3.0);
+    assert_eq!(check(&contact, Impulse::new(0.0, 0.0)), Ok(()));
+}
+
+/// The most that can be lost is all of it: what `$\mu v_n$` and `$\mu_t v_t$` take away.
+#[test]
+fn the_available_energy_is_what_stopping_loses() {
+    let contact = Contact::new(2.0, 3.0, 0.5, 0.25);
+    assert_eq!(available_energy(&contact), 1.0 + 1.125);
+    assert_eq!(Impulse::new(1.0, 0.75).energy_change(&contact), -(1.0 + 1.125));
 }

@@ -6,6 +6,7 @@ mod balances;
 mod bouncing;
 mod changes;
 mod inputs;
+mod long_runs;
 mod oracle;
 mod setups;
 mod steps;

@@ -115,10 +115,21 @@ impl Setup {
 
 /// An elastic gas without friction in a closed box.
 pub(crate) fn elastic_gas(count: usize, width: f64, height: f64, gravity: f64) -> Simulation<Elastic> {
+    elastic_gas_at(0.0, count, width, height, gravity)
+}
+
+/// The same, started at this time.
+pub(crate) fn elastic_gas_at(
+    start: f64,
+    count: usize,
+    width: f64,
+    height: f64,
+    gravity: f64,
+) -> Simulation<Elastic> {
     let boundary = Container::closed(width, height).unwrap();
     let disks = initial::lattice(&boundary, count, 0.5).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 4).unwrap();
-    Simulation::builder(Elastic, boundary).disks(disks).gravity(gravity).build().unwrap()
+    Simulation::builder(Elastic, boundary).disks(disks).gravity(gravity).start_time(start).build().unwrap()
 }
 
 /// All collisions of a run until `end`, and the disks after it.

@@ -1,0 +1,147 @@
+//! How the transitions between convective states move with the contact duration.
+//!
+//! The paper's system at `g = 0.015625`: friction goes up at `q = 0`, and inelasticity goes up at `κ = 0.05`, with contact
+//! durations from 1e-7 to 1e-3, three independent ramps each. The paper has no contact duration; results that depend on
+//! it would be results of the remedy, not of the system.
+//!
+//! ```text
+//! cargo run --release --features serde,rayon --example contact_duration
+//! ```
+//!
+//! Writes the studies, and prints a table. Interrupted, the same command goes on.
+
+mod studies;
+
+use std::error::Error;
+use std::process::ExitCode;
+
+use clap::Parser;
+use granular_edmd::ParameterError;
+use granular_edmd::analysis::{ConvectiveRegime, StateCriteria, Transition, TransitionLine, transitions};
+use granular_edmd::observable::RunningMean;
+use granular_edmd::study::{
+    Axis, Base, Course, Outcome, Parameter, Protocol, Ramp, Record, Specification, SpecificationError, System,
+};
+
+/// Transitions at five contact durations.
+#[derive(Parser)]
+struct Arguments {
+    #[command(flatten)]
+    common: studies::Common,
+}
+
+const DURATIONS: [f64; 5] = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3];
+
+/// Independent ramps for each duration.
+const RUNS: usize = 3;
+
+/// Close steps where a transition is expected.
+const FRICTIONS: [f64; 19] = [
+    0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.05, 0.055, 0.06, 0.065, 0.07, 0.075, 0.08, 0.09, 0.1, 0.15,
+    0.175, 0.2, 0.3,
+];
+const INELASTICITIES: [f64; 9] = [0.01, 0.02, 0.025, 0.03, 0.035, 0.04, 0.045, 0.05, 0.1];
+
+/// Friction while inelasticity is ramped.
+const FRICTION: f64 = 0.05;
+
+fn main() -> ExitCode {
+    studies::end(run(&Arguments::parse()))
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let ramps = [
+        ("contact_duration-friction", Parameter::Friction, FRICTIONS.to_vec(), 0.0),
+        ("contact_duration-inelasticity", Parameter::Inelasticity, INELASTICITIES.to_vec(), FRICTION),
+    ];
+    for (name, parameter, values, friction) in ramps {
+        let specification = specification(&arguments.common, parameter, values, friction)?;
+        let Some(study) = studies::complete(&arguments.common.folder(name), &specification)? else {
+            return Ok(());
+        };
+        let records: Vec<Record> = study.records().collect::<Result<_, _>>()?;
+        print(parameter, &records)?;
+    }
+    Ok(())
+}
+
+/// Independent runs are a value that comes several times on an axis.
+fn specification(
+    common: &studies::Common,
+    parameter: Parameter,
+    values: Vec<f64>,
+    friction: f64,
+) -> Result<Specification, SpecificationError> {
+    let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
+    let system =
+        System::new(1000, 60.0, base).with_height(150.0).with_gravity(0.015_625).with_friction(friction);
+    let protocol = if common.quick { Protocol::new(100, 10, 10) } else { Protocol::new(500, 100, 10) };
+    let durations = DURATIONS.iter().flat_map(|&duration| [duration; RUNS]).collect();
+    Specification::new(system, protocol, common.seed)?
+        .with_ramp(Ramp::new(parameter, values, Course::Up))?
+        .with_axis(Axis::new(Parameter::ContactDuration, durations))
+}
+
+/// A row for each contact duration: where the transitions are, and how many collisions the model has changed.
+fn print(parameter: Parameter, records: &[Record]) -> Result<(), Box<dyn Error>> {
+    println!("transitions along {parameter}, with standard errors");
+    println!(
+        "| t_c | {} | changed, first | last value | stalled |",
+        TransitionLine::ALL.map(|line| line.to_string()).join(" | ")
+    );
+    println!("|---|---|---|---|---|---|---|---|");
+    let values = records.len() / (DURATIONS.len() * RUNS);
+    for (duration, group) in DURATIONS.iter().zip(records.chunks(values * RUNS)) {
+        let ramps: Vec<&[Record]> = group.chunks(values).collect();
+        let found: Vec<Vec<Transition>> =
+            ramps.iter().map(|ramp| rising(parameter, ramp)).collect::<Result<_, _>>()?;
+        let places = TransitionLine::ALL.map(|line| place(line, &found)).join(" | ");
+        let changed = [0, values - 1].map(|value| share_changed(ramps.iter().map(|ramp| &ramp[value])));
+        let stalled = group.iter().filter(|record| matches!(record.outcome(), Outcome::Stalled { .. }));
+        println!(
+            "| {duration:e} | {places} | {:.1e} | {:.1e} | {} |",
+            changed[0],
+            changed[1],
+            stalled.count()
+        );
+    }
+    Ok(())
+}
+
+/// The transitions of one ramp to states of more loss.
+fn rising(parameter: Parameter, ramp: &[Record]) -> Result<Vec<Transition>, ParameterError> {
+    let regime = |record: &Record| -> Result<(f64, ConvectiveRegime), ParameterError> {
+        let noise = record.thermal_noise();
+        let found = StateCriteria::default().classify(&record.order(), noise, record.densest_layer())?;
+        Ok((record.system().get(parameter).unwrap_or(f64::NAN), found.regime()))
+    };
+    let regimes: Vec<_> =
+        ramp.iter().filter(|record| !record.samples().is_empty()).map(regime).collect::<Result<_, _>>()?;
+    Ok(transitions(regimes)?.into_iter().filter(|transition| transition.rising).collect())
+}
+
+/// The first crossing of a line in each ramp: mean, and error from the scatter of ramps and the width of a step.
+fn place(line: TransitionLine, ramps: &[Vec<Transition>]) -> String {
+    let first: Vec<&Transition> =
+        ramps.iter().filter_map(|found| found.iter().find(|transition| transition.line == line)).collect();
+    let values: RunningMean = first.iter().map(|transition| transition.value).collect();
+    let half_steps: RunningMean = first.iter().map(|transition| transition.error).collect();
+    match values.count() {
+        0 => "–".to_owned(),
+        count => {
+            // Anywhere in a step alike: its standard deviation is the half step over the root of three.
+            let error = values.standard_error().hypot(half_steps.mean() / 3.0_f64.sqrt());
+            let of = if count < RUNS as u64 { format!(" ({count} of {RUNS})") } else { String::new() };
+            format!("{:.4} ± {error:.4}{of}", values.mean())
+        }
+    }
+}
+
+/// The share of all collisions, with disks and walls, that the model made elastic.
+fn share_changed<'a>(records: impl Iterator<Item = &'a Record>) -> f64 {
+    let (changed, all) = records.map(Record::counters).fold((0, 0), |(changed, all), counters| {
+        let collisions = counters.collisions + counters.wall_collisions;
+        (changed + counters.contact_duration_collisions, all + collisions)
+    });
+    changed as f64 / all as f64
+}

@@ -1,0 +1,79 @@
+//! Very long runs: no drift of the energy, no overlap beyond rounding, and late times as good as early ones.
+//!
+//! ```text
+//! COLLISIONS=10000000 cargo test --release --test engine -- --ignored --nocapture for_a_billion_collisions
+//! ```
+
+use granular_edmd::Simulation;
+use granular_edmd::collision::Elastic;
+use granular_edmd::observable::Energies;
+
+use crate::setups::elastic_gas_at;
+
+/// A gas of packing fraction 0.31 under a gravity that makes the density vary by a tenth.
+fn gas(start: f64) -> Simulation<Elastic> {
+    elastic_gas_at(start, 1000, 50.0, 50.0, 0.002)
+}
+
+/// How many disk–disk collisions a long run has: 10⁹, or what the variable `COLLISIONS` says.
+fn wanted() -> u64 {
+    std::env::var("COLLISIONS").map_or(1_000_000_000, |text| text.parse().unwrap())
+}
+
+/// Positions at the epoch stay below 512, far flights of the fastest disks included, with a last digit of 2⁻⁴⁴; a
+/// distance comes from four of them.
+const ROUNDING: f64 = 4.0 / (1_u64 << 44) as f64;
+
+/// Runs until this many collisions, and asserts energy and overlap at each hundredth of the way.
+fn run(mut simulation: Simulation<Elastic>, collisions: u64) {
+    let (start, before) = (simulation.time(), simulation.measure(&Energies).total());
+    let mut told = 0;
+    while simulation.counters().collisions < collisions {
+        let end = simulation.time() + 64.0;
+        simulation.run_until(end, &mut ()).unwrap();
+        let counters = *simulation.counters();
+        let drift = simulation.measure(&Energies).total() / before - 1.0;
+        if counters.collisions >= told {
+            let time = simulation.time() - start;
+            let overlap = counters.max_overlap;
+            println!(
+                "{:.2e} collisions, {time:.0} after {start:e}: drift {drift:.1e}, overlap {overlap:.1e}",
+                counters.collisions as f64
+            );
+            told += collisions.div_ceil(100);
+        }
+        assert!(drift.abs() < 1e-9, "{drift:e}");
+        assert!(counters.max_overlap < ROUNDING, "{:e}", counters.max_overlap);
+    }
+}
+
+#[test]
+fn a_long_run_keeps_energy_and_distance() {
+    run(gas(0.0), 20_000);
+}
+
+#[test]
+#[ignore = "a billion collisions: the better part of an hour in release"]
+fn elastic_disks_keep_energy_and_distance_for_a_billion_collisions() {
+    run(gas(0.0), wanted());
+}
+
+#[test]
+#[ignore = "a billion collisions: the better part of an hour in release"]
+fn late_elastic_disks_keep_energy_and_distance_for_a_billion_collisions() {
+    run(gas(1e7), wanted());
+}
+
+#[test]
+fn a_run_at_ten_million_has_the_digits_of_one_at_zero() {
+    // Between fixed walls nothing depends on the time: the same bits, although times have 23 binary digits fewer.
+    let after = |start: f64| {
+        let mut simulation = gas(start);
+        simulation.run_until(start + 64.0, &mut ()).unwrap();
+        (simulation.disks(), *simulation.counters())
+    };
+    let (early, late) = (after(0.0), after(1e7));
+    assert!(early.1.collisions > 20_000, "{:?}", early.1);
+    assert_eq!(early.0, late.0);
+    assert_eq!(early.1, late.1);
+}
