@@ -1,7 +1,7 @@
 //! What an event costs each scheduler: the earliest disk is found and gets a later time.
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use granular_edmd::scheduler::{EventScheduler, LinearScan, TournamentTree};
+use granular_edmd::scheduler::{BucketQueue, EventScheduler, LinearScan, TournamentTree};
 
 type New = fn() -> Box<dyn EventScheduler>;
 
@@ -24,8 +24,9 @@ fn events(criterion: &mut Criterion) {
     group.throughput(Throughput::Elements(EVENTS as u64));
     for count in [1_000, 100_000] {
         let due: Vec<f64> = (0..count).map(scattered).collect();
-        let schedulers: [(&str, New); 2] = [
+        let schedulers: [(&str, New); 3] = [
             ("tournament_tree", || Box::new(TournamentTree::new())),
+            ("bucket_queue", || Box::new(BucketQueue::new())),
             ("linear_scan", || Box::new(LinearScan::default())),
         ];
         for (name, new) in schedulers {

@@ -62,6 +62,7 @@ mod flight;
 pub mod initial;
 pub mod kinetic;
 pub mod observable;
+mod prefetch;
 pub mod prelude;
 mod quantity;
 mod random;

@@ -5,14 +5,18 @@
 //!
 //! | scheduler | cost of an event | use |
 //! |---|---|---|
-//! | [`TournamentTree`] | `$O(\log N)$`, no branches | default |
+//! | [`BySize`] | as the better of the next two | default |
+//! | [`TournamentTree`] | `$O(\log N)$`, no branches | up to some ten thousand disks |
+//! | [`BucketQueue`] | `$O(1)$` | more |
 //! | [`LinearScan`] | `$O(N)$` | the oracle that tests the others |
 
 mod bucket_queue;
+mod by_size;
 mod linear_scan;
 mod tournament_tree;
 
 pub use bucket_queue::BucketQueue;
+pub use by_size::BySize;
 pub use linear_scan::LinearScan;
 pub use tournament_tree::TournamentTree;
 
@@ -44,6 +48,13 @@ pub trait EventScheduler {
 
     /// The disk whose event is due first, and when. It does not change the scheduler: what is lazy tidies up in `set`.
     fn earliest(&self) -> (usize, f64);
+
+    /// A disk that is likely to be due some events from now, the more the larger `ahead` is: a hint, so that its data can be
+    /// fetched from memory in time. By default none is named.
+    fn soon(&self, ahead: usize) -> Option<usize> {
+        let _ = ahead;
+        None
+    }
 }
 
 impl<T: EventScheduler + ?Sized> EventScheduler for Box<T> {
@@ -55,5 +66,8 @@ impl<T: EventScheduler + ?Sized> EventScheduler for Box<T> {
     }
     fn earliest(&self) -> (usize, f64) {
         (**self).earliest()
+    }
+    fn soon(&self, ahead: usize) -> Option<usize> {
+        (**self).soon(ahead)
     }
 }

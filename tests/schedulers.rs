@@ -1,6 +1,6 @@
 //! Every scheduler against the obvious one, over scripts of operations.
 
-use granular_edmd::scheduler::{BucketQueue, EventScheduler, LinearScan, TournamentTree};
+use granular_edmd::scheduler::{BucketQueue, BySize, EventScheduler, LinearScan, TournamentTree};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -126,8 +126,13 @@ proptest! {
     }
 }
 
-fn every_scheduler() -> [Box<dyn EventScheduler>; 3] {
-    [Box::new(TournamentTree::new()), Box::new(BucketQueue::new()), Box::new(LinearScan::default())]
+fn every_scheduler() -> [Box<dyn EventScheduler>; 4] {
+    [
+        Box::new(BySize::new()),
+        Box::new(TournamentTree::new()),
+        Box::new(BucketQueue::new()),
+        Box::new(LinearScan::default()),
+    ]
 }
 
 #[test]
@@ -148,5 +153,26 @@ fn infinite_times_still_name_a_disk_and_ties_the_first() {
         assert_eq!(scheduler.earliest(), (0, f64::INFINITY));
         scheduler.reset(&[0.0, -0.0]);
         assert_eq!(scheduler.earliest().0, 0, "one zero is as early as the other");
+    }
+}
+
+/// More than a scheduler that chooses by size keeps in a tree, in lockstep with the tree.
+#[test]
+fn many_disks_come_up_in_the_same_order() {
+    let mut random = 1u64;
+    let mut wait = move || {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (random >> 40) as f64 / 1e4
+    };
+    let due: Vec<f64> = (0..60_000).map(|_| wait()).collect();
+    let (mut chosen, mut tree) = (BySize::new(), TournamentTree::new());
+    chosen.reset(&due);
+    tree.reset(&due);
+    for _ in 0..300_000 {
+        let (disk, time) = tree.earliest();
+        assert_eq!(chosen.earliest(), (disk, time));
+        let next = time + wait();
+        chosen.set(disk, next);
+        tree.set(disk, next);
     }
 }

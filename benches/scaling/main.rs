@@ -24,14 +24,15 @@ use common::Outcome;
 use common::ask;
 use common::quartiles::Quartiles;
 use common::state::{DILUTE, DISKS};
-use granular_edmd::scheduler::TournamentTree;
+use granular_edmd::scheduler::{BucketQueue, TournamentTree};
 use measurement::{Measurement, asked_for, measure};
 use tiles::{Numbering, Tiles};
 
 type Measure = fn(&Tiles, usize, Numbering, u32) -> Outcome<Measurement>;
 
 /// The schedulers that are compared.
-const SCHEDULERS: [(&str, Measure); 1] = [("tournament tree", measure_with::<TournamentTree>)];
+const SCHEDULERS: [(&str, Measure); 2] =
+    [("tournament tree", measure_with::<TournamentTree>), ("bucket queue", measure_with::<BucketQueue>)];
 
 fn measure_with<S: granular_edmd::scheduler::EventScheduler + Default>(
     tiles: &Tiles,

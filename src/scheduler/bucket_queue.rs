@@ -1,6 +1,7 @@
-//! A calendar that is turned page by page.
+//! A calendar that is turned page by page: for many disks.
 
 use super::EventScheduler;
+use crate::prefetch::prefetch;
 
 /// Buckets of a page for each disk; with [`BUCKETS_PER_EVENT`] a page lasts two events of each disk, so that turning it
 /// costs little.
@@ -12,11 +13,12 @@ const BUCKETS_PER_EVENT: f64 = 2.0;
 /// Least number of buckets.
 const LEAST_BUCKETS: usize = 64;
 
-/// The density of events is first judged by the earliest of the disks: one in so many. Some may have long to wait.
+/// Disks by which the density of events is judged at first, and the part of them that are due soon.
+const SAMPLE: usize = 256;
 const SOON: usize = 8;
 
-/// Events set for each bucket after which a page is turned at the latest: its buckets were too wide.
-const LONGEST_PAGE: usize = 1;
+/// Events, and steps past others, for each bucket after which a page is turned at the latest: its buckets are too wide.
+const LONGEST_PAGE: usize = 2;
 
 /// Buckets that share a word of flags.
 const WORD: usize = u64::BITS as usize;
@@ -28,11 +30,10 @@ const WORD: usize = u64::BITS as usize;
 /// are. When the page is used up, all events are dealt out anew, to buckets as wide as the events of the last page want.
 #[derive(Debug, Clone, Default)]
 pub struct BucketQueue {
-    due: Vec<f64>,
-    /// What follows each disk in its bucket and, behind all disks, what each bucket begins with.
-    next: Vec<u32>,
-    /// What comes before each disk; the last entry is written to for `NOBODY`, and never read.
-    previous: Vec<u32>,
+    /// All that concerns a disk, together in memory.
+    nodes: Vec<Node>,
+    /// The first disk of each bucket.
+    heads: Vec<u32>,
     /// A bit for each bucket that is not empty.
     flags: Vec<u64>,
     buckets: usize,
@@ -43,31 +44,36 @@ pub struct BucketQueue {
     rate: f64,
     /// Events set since the page was turned.
     set: usize,
-    /// Room for the waits of all disks.
-    waits: Vec<f64>,
+    /// Steps past disks that come first in their bucket, since the page was turned.
+    steps: usize,
 }
+
+/// A disk in its bucket.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    due: f64,
+    /// The disk behind it, or [`NOBODY`].
+    next: u32,
+    /// The disk before it, or [`NOBODY`] if it is the first.
+    previous: u32,
+}
+
+const NOBODY: u32 = u32::MAX;
 
 impl BucketQueue {
     /// A scheduler of no disks.
     pub const fn new() -> Self {
         Self {
-            due: Vec::new(),
-            next: Vec::new(),
-            previous: Vec::new(),
+            nodes: Vec::new(),
+            heads: Vec::new(),
             flags: Vec::new(),
             buckets: 0,
             current: 0,
             start: 0.0,
             rate: 0.0,
             set: 0,
-            waits: Vec::new(),
+            steps: 0,
         }
-    }
-
-    /// What stands at the end of a bucket.
-    #[inline]
-    fn nobody(&self) -> usize {
-        self.due.len()
     }
 
     /// The bucket of a time: they are in the order of their times, and the last one holds whatever is off the page.
@@ -79,32 +85,39 @@ impl BucketQueue {
 
     #[inline]
     fn unlink(&mut self, disk: usize) {
-        let (next, previous) = (self.next[disk], self.previous[disk]);
-        self.next[previous as usize] = next;
-        self.previous[next as usize] = previous;
-        // By arithmetic: whether a disk was alone in its bucket is a toss of a coin.
-        let bucket = (previous as usize).saturating_sub(self.nobody());
-        let alone = (next as usize == self.nobody()) & (previous as usize >= self.nobody());
-        self.flags[bucket / WORD] &= !(u64::from(alone) << (bucket % WORD));
+        let Node { due, next, previous } = self.nodes[disk];
+        if previous == NOBODY {
+            let bucket = self.bucket(due);
+            self.heads[bucket] = next;
+            self.flags[bucket / WORD] &= !(u64::from(next == NOBODY) << (bucket % WORD));
+        } else {
+            self.nodes[previous as usize].next = next;
+        }
+        if next != NOBODY {
+            self.nodes[next as usize].previous = previous;
+        }
     }
 
-    /// Puts a disk into the bucket of its time.
+    /// Puts a disk into the bucket of its time, behind those that come first.
     #[inline]
-    fn link(&mut self, disk: usize) {
-        let due = self.due[disk];
+    fn link(&mut self, disk: usize, due: f64) {
         let bucket = self.bucket(due);
-        let mut before = self.nobody() + bucket;
-        let mut after = self.next[before] as usize;
+        let (mut before, mut after) = (NOBODY, self.heads[bucket]);
         // Off the page there is no order.
-        while after != self.nobody() && bucket != self.buckets - 1 && self.precedes(after, due, disk) {
-            before = after;
-            after = self.next[after] as usize;
+        while after != NOBODY && bucket != self.buckets - 1 && self.precedes(after, due, disk) {
+            (before, after) = (after, self.nodes[after as usize].next);
+            self.steps += 1;
         }
-        self.next[before] = disk as u32;
-        self.next[disk] = after as u32;
-        self.previous[disk] = before as u32;
-        self.previous[after] = disk as u32;
-        self.flags[bucket / WORD] |= 1 << (bucket % WORD);
+        self.nodes[disk] = Node { due, next: after, previous: before };
+        if before == NOBODY {
+            self.heads[bucket] = disk as u32;
+            self.flags[bucket / WORD] |= 1 << (bucket % WORD);
+        } else {
+            self.nodes[before as usize].next = disk as u32;
+        }
+        if after != NOBODY {
+            self.nodes[after as usize].previous = disk as u32;
+        }
         if bucket < self.current {
             self.go_back_to(bucket);
         }
@@ -119,9 +132,9 @@ impl BucketQueue {
     }
 
     #[inline]
-    fn precedes(&self, other: usize, due: f64, disk: usize) -> bool {
-        let others = self.due[other];
-        others < due || (others == due && other < disk)
+    fn precedes(&self, other: u32, due: f64, disk: usize) -> bool {
+        let others = self.nodes[other as usize].due;
+        others < due || (others == due && (other as usize) < disk)
     }
 
     /// Finds the first bucket that is not empty; turns the page if that is the last, or the page does not end.
@@ -132,7 +145,7 @@ impl BucketQueue {
             word += 1;
         }
         self.current = word * WORD + self.flags[word].trailing_zeros() as usize;
-        if self.current == self.buckets - 1 || self.set > LONGEST_PAGE * self.buckets {
+        if self.current == self.buckets - 1 || self.set + self.steps > LONGEST_PAGE * self.buckets {
             self.turn_page();
         }
     }
@@ -141,43 +154,45 @@ impl BucketQueue {
     #[cold]
     #[inline(never)]
     fn turn_page(&mut self) {
-        let first = self.due.iter().copied().fold(f64::INFINITY, f64::min);
+        let first = self.nodes.iter().map(|node| node.due).fold(f64::INFINITY, f64::min);
         self.rate = BUCKETS_PER_EVENT * self.events_per_time(first);
         self.start = first;
-        self.set = 0;
+        (self.set, self.steps) = (0, 0);
         self.current = self.buckets - 1;
         self.flags.fill(0);
-        self.next[self.due.len()..].fill(self.due.len() as u32);
+        self.heads.fill(NOBODY);
         // From the last to the first: of equal times each goes to the front of its bucket at once.
-        for disk in (0..self.due.len()).rev() {
-            self.link(disk);
+        for disk in (0..self.nodes.len()).rev() {
+            self.link(disk, self.nodes[disk].due);
         }
     }
 
-    /// How dense events are: as on the last page, or else as the first of all disks' events will be.
-    fn events_per_time(&mut self, first: f64) -> f64 {
+    /// How dense events are: as on the last page, or else as a sample of the disks has it.
+    fn events_per_time(&self, first: f64) -> f64 {
         let past = self.set as f64 / (first - self.start);
-        if self.set >= self.due.len() && past.is_normal() && past > 0.0 {
+        if self.set >= self.nodes.len() && past.is_normal() && past > 0.0 {
             return past;
         }
-        self.waits.clear();
-        self.waits.extend(self.due.iter().map(|due| due - first));
-        let soon = self.due.len() / SOON;
-        let rate = match self.waits.get(soon) {
-            Some(_) => soon.max(1) as f64 / *self.waits.select_nth_unstable_by(soon, f64::total_cmp).1,
-            None => 1.0,
-        };
+        let mut waits = [f64::INFINITY; SAMPLE];
+        let stride = self.nodes.len().div_ceil(SAMPLE).max(1);
+        let mut count = 0;
+        for (wait, node) in waits.iter_mut().zip(self.nodes.iter().step_by(stride)) {
+            *wait = node.due - first;
+            count += 1;
+        }
+        // The earliest of them only: some may have long to wait.
+        let (_, &mut wait, _) = waits.select_nth_unstable_by(count / SOON, f64::total_cmp);
+        let rate = (stride * (count / SOON + 1)) as f64 / wait;
         if rate.is_normal() { rate } else { 1.0 }
     }
 }
 
 impl EventScheduler for BucketQueue {
     fn reset(&mut self, due: &[f64]) {
-        self.due.clear();
-        self.due.extend_from_slice(due);
+        self.nodes.clear();
+        self.nodes.extend(due.iter().map(|&due| Node { due, next: NOBODY, previous: NOBODY }));
         self.buckets = (BUCKETS_PER_DISK * due.len()).max(LEAST_BUCKETS);
-        self.next.resize(due.len() + self.buckets, 0);
-        self.previous.resize(due.len() + 1, 0);
+        self.heads.resize(self.buckets, NOBODY);
         self.flags.resize(self.buckets.div_ceil(WORD), 0);
         self.set = 0;
         self.turn_page();
@@ -186,16 +201,21 @@ impl EventScheduler for BucketQueue {
     #[inline]
     fn set(&mut self, disk: usize, due: f64) {
         self.unlink(disk);
-        self.due[disk] = due;
         self.set += 1;
-        self.link(disk);
+        self.link(disk, due);
         self.find_current();
     }
 
     #[inline]
     fn earliest(&self) -> (usize, f64) {
-        let first =
-            self.next.get(self.nobody() + self.current).map_or(self.nobody(), |&first| first as usize);
-        self.due.get(first).map_or((usize::MAX, f64::INFINITY), |&due| (first, due))
+        let first = self.heads.get(self.current).map_or(NOBODY, |&first| first);
+        self.nodes.get(first as usize).map_or((usize::MAX, f64::INFINITY), |node| (first as usize, node.due))
+    }
+
+    #[inline]
+    fn soon(&self, ahead: usize) -> Option<usize> {
+        let first = *self.heads.get(self.current + ahead)? as usize;
+        prefetch(&self.nodes, first);
+        (first < self.nodes.len()).then_some(first)
     }
 }

@@ -1,4 +1,4 @@
-//! The default scheduler: a binary tournament of times.
+//! A binary tournament of times.
 
 use std::hint::select_unpredictable;
 

@@ -65,30 +65,48 @@ pub(super) struct Bodies {
     pub(super) trajectories: Vec<Trajectory>,
     pub(super) spins: Vec<Spin>,
     pub(super) gravity: f64,
-    materials: Materials,
-    /// Radius, mass and inertia of each disk; its motion is that of the start.
-    disks: Vec<Disk>,
+    kinds: Kinds,
 }
 
-/// One material for all disks where they are equal, so that it stays in cache.
+/// What does not change about a disk: radius, mass and inertia. Its motion is that of the start.
+#[derive(Debug, Clone, Copy)]
+struct Kind {
+    disk: Disk,
+    material: Material,
+}
+
+/// One kind for all disks where they are equal, so that it stays in cache.
 #[derive(Debug, Clone)]
-enum Materials {
-    Same(Material),
-    Each(Vec<Material>),
+enum Kinds {
+    Same(Kind),
+    Each(Vec<Kind>),
 }
 
-impl Materials {
+impl Kinds {
     fn of(disks: &[Disk]) -> Self {
-        let each: Vec<_> = disks.iter().map(Material::of).collect();
-        match each.first() {
-            Some(first) if each.iter().all(|material| material == first) => Self::Same(*first),
-            _ => Self::Each(each),
+        let kind = |disk: &Disk| Kind { disk: *disk, material: Material::of(disk) };
+        match disks.split_first() {
+            Some((first, rest)) if rest.iter().all(|disk| is_alike(disk, first)) => Self::Same(kind(first)),
+            _ => Self::Each(disks.iter().map(kind).collect()),
+        }
+    }
+
+    #[inline]
+    fn get(&self, disk: usize) -> &Kind {
+        match self {
+            Self::Same(kind) => kind,
+            Self::Each(each) => &each[disk],
         }
     }
 }
 
+fn is_alike(disk: &Disk, other: &Disk) -> bool {
+    let properties = |disk: &Disk| [disk.radius(), disk.mass(), disk.inertia_factor()];
+    properties(disk) == properties(other)
+}
+
 impl Bodies {
-    pub(super) fn new(disks: Vec<Disk>, gravity: f64) -> Self {
+    pub(super) fn new(disks: &[Disk], gravity: f64) -> Self {
         Self {
             trajectories: disks
                 .iter()
@@ -103,29 +121,35 @@ impl Bodies {
                 })
                 .collect(),
             gravity,
-            materials: Materials::of(&disks),
-            disks,
+            kinds: Kinds::of(disks),
         }
     }
 
-    /// Bodies that go on where they were saved.
+    /// Bodies that go on where they were saved; disks that are all alike are one.
     #[cfg(feature = "serde")]
     pub(super) fn restored(
-        disks: Vec<Disk>,
+        kinds: &[Disk],
         gravity: f64,
         trajectories: Vec<Trajectory>,
         spins: Vec<Spin>,
     ) -> Self {
-        Self { trajectories, spins, ..Self::new(disks, gravity) }
+        Self { trajectories, spins, gravity, kinds: Kinds::of(kinds) }
     }
 
+    /// What [`Self::restored`] takes.
     #[cfg(feature = "serde")]
-    pub(super) fn disks(&self) -> &[Disk] {
-        &self.disks
+    pub(super) fn kinds(&self) -> Vec<Disk> {
+        match &self.kinds {
+            Kinds::Same(kind) => vec![kind.disk],
+            Kinds::Each(each) => each.iter().map(|kind| kind.disk).collect(),
+        }
     }
 
     pub(super) fn largest_radius(&self) -> f64 {
-        self.disks.iter().map(Disk::radius).fold(0.0, f64::max)
+        match &self.kinds {
+            Kinds::Same(kind) => kind.disk.radius(),
+            Kinds::Each(each) => each.iter().map(|kind| kind.disk.radius()).fold(0.0, f64::max),
+        }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -134,18 +158,15 @@ impl Bodies {
 
     #[inline]
     pub(super) fn material(&self, disk: usize) -> &Material {
-        match &self.materials {
-            Materials::Same(material) => material,
-            Materials::Each(each) => &each[disk],
-        }
+        &self.kinds.get(disk).material
     }
 
     /// The diameter, if all disks have the same.
     #[inline]
     pub(super) fn common_diameter(&self) -> Option<f64> {
-        match &self.materials {
-            Materials::Same(material) => Some(2.0 * material.radius),
-            Materials::Each(_) => None,
+        match &self.kinds {
+            Kinds::Same(kind) => Some(2.0 * kind.material.radius),
+            Kinds::Each(_) => None,
         }
     }
 
@@ -191,13 +212,13 @@ impl Bodies {
 
     #[inline]
     pub(super) fn moment_of_inertia(&self, disk: usize) -> f64 {
-        self.disks[disk].moment_of_inertia()
+        self.kinds.get(disk).disk.moment_of_inertia()
     }
 
     /// The disk as the outside world knows it.
     pub(super) fn disk(&self, disk: usize, offset: f64) -> Disk {
         let spin = &self.spins[disk];
-        self.disks[disk].with_motion(
+        self.kinds.get(disk).disk.with_motion(
             self.position(disk, offset),
             self.velocity(disk, offset),
             spin.angle + spin.angular_velocity * offset,
@@ -223,8 +244,10 @@ impl Bodies {
     /// A power of two, so that epochs add up without rounding.
     pub(super) fn epoch_length(&self) -> f64 {
         const DIAMETERS: f64 = 64.0;
-        let Some(first) = self.disks.first() else { return 1.0 };
-        let diameter = 2.0 * first.radius();
+        if self.len() == 0 {
+            return 1.0;
+        }
+        let diameter = 2.0 * self.material(0).radius;
         let squares: f64 = self.trajectories.iter().map(|t| t.velocity.length_squared()).sum();
         let speed = (squares / self.len() as f64).sqrt() + (DIAMETERS * self.gravity.abs() * diameter).sqrt();
         let length = DIAMETERS * diameter / speed;

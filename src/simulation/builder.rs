@@ -13,7 +13,7 @@ use crate::Disk;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::quantity::finite;
-use crate::scheduler::{EventScheduler, TournamentTree};
+use crate::scheduler::{BySize, EventScheduler};
 
 /// Most disks that a simulation can hold.
 const MOST_DISKS: usize = 1 << 28;
@@ -27,7 +27,7 @@ const TOUCHING: f64 = 1e-10;
 /// What a simulation is made of; see [`Simulation::builder`].
 #[derive(Debug, Clone)]
 #[must_use]
-pub struct SimulationBuilder<R, B, S = TournamentTree> {
+pub struct SimulationBuilder<R, B, S = BySize> {
     rule: R,
     boundary: B,
     scheduler: S,
@@ -37,7 +37,7 @@ pub struct SimulationBuilder<R, B, S = TournamentTree> {
     start_time: f64,
 }
 
-impl<R: CollisionRule, B: Boundary> Simulation<R, B, TournamentTree> {
+impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
     /// Starts to describe a simulation: the rule between the disks (and of walls without one of their own), and the
     /// walls around them.
     ///
@@ -60,7 +60,7 @@ impl<R: CollisionRule, B: Boundary> Simulation<R, B, TournamentTree> {
         SimulationBuilder {
             rule,
             boundary,
-            scheduler: TournamentTree::new(),
+            scheduler: BySize::new(),
             disks: Vec::new(),
             gravity: 0.0,
             seed: 0,
@@ -117,7 +117,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         let cells = cells_for(&boundary, &self.disks)?;
         check_overlaps(&boundary, &self.disks, &cells)?;
         let generator = Xoshiro256PlusPlus::seed_from_u64(self.seed);
-        let bodies = Bodies::new(self.disks, self.gravity);
+        let bodies = Bodies::new(&self.disks, self.gravity);
         Ok(Simulation::assemble(
             self.rule,
             boundary,

@@ -5,9 +5,13 @@ use glam::DVec2;
 use super::event::Exit;
 use super::grid::{Grid, Layout, Mesh, Place};
 use crate::boundary::Boundary;
+use crate::prefetch::prefetch;
 
 /// Disks that a cell has room for at first: no more equal disks have their centres in one cell of the usual size.
 const BLOCK: usize = 4;
+
+/// In the head of a cell: disks in it can touch a wall.
+const AT_WALL: u32 = 1 << 31;
 
 /// The disks in the cells of a grid.
 ///
@@ -17,11 +21,10 @@ const BLOCK: usize = 4;
 #[derive(Debug, Clone)]
 pub(super) struct Cells {
     grid: Grid,
-    slots: Vec<[u32; BLOCK]>,
+    /// For each cell a head, how many slots are taken and whether a wall is near, and the slots: together in memory.
+    table: Vec<u32>,
     /// Blocks of slots of a cell.
     blocks: usize,
-    /// Slots taken in each cell.
-    counts: Vec<u32>,
     /// Column and row of each disk.
     places: Vec<Place>,
 }
@@ -58,9 +61,9 @@ impl Cells {
         let domain = boundary.domain();
         let highest = positions.iter().map(|p| p.y).fold(domain.bottom, f64::max);
         let layout = Layout::new(&domain, diameter, mesh, positions.len(), highest)?;
-        let grid = Grid::new(boundary, 0.5 * diameter, layout);
+        let grid = Grid::new(&domain, layout);
         let places = positions.iter().map(|&position| grid.place_of(position)).collect();
-        Some(Self::filled(grid, places))
+        Some(Self::filled(boundary, 0.5 * diameter, grid, places))
     }
 
     /// The same grid as one that was saved, with the disks where they were.
@@ -70,7 +73,8 @@ impl Cells {
         largest_radius: f64,
         saved: &GridState,
     ) -> Self {
-        Self::filled(Grid::new(boundary, largest_radius, saved.layout), saved.places.clone())
+        let grid = Grid::new(&boundary.domain(), saved.layout);
+        Self::filled(boundary, largest_radius, grid, saved.places.clone())
     }
 
     #[cfg(feature = "serde")]
@@ -78,14 +82,28 @@ impl Cells {
         GridState { layout: self.grid.layout(), places: self.places.clone() }
     }
 
-    fn filled(grid: Grid, places: Vec<Place>) -> Self {
-        let count = grid.len();
-        let mut cells =
-            Self { grid, slots: vec![[0; BLOCK]; count], blocks: 1, counts: vec![0; count], places };
+    fn filled<B: Boundary + ?Sized>(
+        boundary: &B,
+        largest_radius: f64,
+        grid: Grid,
+        places: Vec<Place>,
+    ) -> Self {
+        let table = vec![0; grid.len() * (1 + BLOCK)];
+        let mut cells = Self { grid, table, blocks: 1, places };
+        cells.mark_walls(boundary, largest_radius);
         for disk in 0..cells.places.len() {
             cells.enter(disk);
         }
         cells
+    }
+
+    fn mark_walls<B: Boundary + ?Sized>(&mut self, boundary: &B, largest_radius: f64) {
+        for place in self.grid.places() {
+            if boundary.may_touch(&self.grid.region(place), largest_radius) {
+                let start = self.start(self.grid.index(place));
+                self.table[start] |= AT_WALL;
+            }
+        }
     }
 
     #[inline]
@@ -98,15 +116,37 @@ impl Cells {
         self.places[disk]
     }
 
+    /// Whether disks in this cell can touch a wall.
+    #[inline]
+    pub(super) fn is_at_wall(&self, place: Place) -> bool {
+        self.table[self.start(self.grid.index(place))] & AT_WALL != 0
+    }
+
+    /// Numbers that a cell has in the table.
+    #[inline]
+    fn width(&self) -> usize {
+        1 + self.blocks * BLOCK
+    }
+
+    /// Where a cell begins in the table.
+    #[inline]
+    fn start(&self, cell: usize) -> usize {
+        cell * self.width()
+    }
+
+    /// The head and the slots of a cell.
+    #[inline]
+    fn cell(&mut self, cell: usize) -> (&mut u32, &mut [u32]) {
+        let (start, width) = (self.start(cell), self.width());
+        let (head, slots) = self.table[start..start + width].split_at_mut(1);
+        (&mut head[0], slots)
+    }
+
     /// Writes a disk into its cell and the ghost of that.
     #[inline]
     fn enter(&mut self, disk: usize) {
         let place = self.places[disk];
-        let cell = self.grid.index(place);
-        if self.counts[cell] as usize == self.blocks * BLOCK {
-            self.grow();
-        }
-        self.push(cell, disk);
+        self.push(self.grid.index(place), disk);
         if let Some(ghost) = self.grid.mirror(place) {
             self.push(self.grid.index(ghost), disk);
         }
@@ -122,27 +162,22 @@ impl Cells {
         }
     }
 
-    /// The slots of a cell.
-    #[inline]
-    fn cell(&mut self, cell: usize) -> &mut [u32] {
-        let start = cell * self.blocks;
-        self.slots[start..start + self.blocks].as_flattened_mut()
-    }
-
     #[inline]
     fn push(&mut self, cell: usize, disk: usize) {
-        let count = self.counts[cell];
-        self.cell(cell)[count as usize] = disk as u32;
-        self.counts[cell] = count + 1;
+        if (self.table[self.start(cell)] & !AT_WALL) as usize == self.blocks * BLOCK {
+            self.grow();
+        }
+        let (head, slots) = self.cell(cell);
+        slots[(*head & !AT_WALL) as usize] = disk as u32;
+        *head += 1;
     }
 
     /// The last disk of the cell takes the place of the one that leaves.
     #[inline]
     fn remove(&mut self, cell: usize, disk: usize) {
-        self.counts[cell] -= 1;
-        let count = self.counts[cell] as usize;
-        let slots = self.cell(cell);
-        let last = slots[count];
+        let (head, slots) = self.cell(cell);
+        *head -= 1;
+        let last = slots[(*head & !AT_WALL) as usize];
         for slot in slots {
             *slot = if *slot == disk as u32 { last } else { *slot };
         }
@@ -151,12 +186,13 @@ impl Cells {
     /// Twice as many slots in every cell.
     #[cold]
     fn grow(&mut self) {
-        let mut slots = vec![[0; BLOCK]; 2 * self.slots.len()];
-        for (old, new) in self.slots.chunks_exact(self.blocks).zip(slots.chunks_exact_mut(2 * self.blocks)) {
-            new[..self.blocks].copy_from_slice(old);
-        }
-        self.slots = slots;
+        let old = self.width();
         self.blocks *= 2;
+        let mut table = vec![0; self.grid.len() * self.width()];
+        for (old, new) in self.table.chunks_exact(old).zip(table.chunks_exact_mut(self.width())) {
+            new[..old.len()].copy_from_slice(old);
+        }
+        self.table = table;
     }
 
     /// Takes a disk to the cell that it leaves for; returns what that adds to its `x`.
@@ -169,10 +205,25 @@ impl Cells {
         shift
     }
 
+    #[inline]
+    pub(super) fn prefetch_place(&self, disk: usize) {
+        prefetch(&self.places, disk);
+    }
+
+    /// Asks for the nine cells around a disk.
+    #[inline]
+    pub(super) fn prefetch_around(&self, disk: usize) {
+        let (centre, stride) = (self.grid.index(self.places[disk]), self.grid.stride());
+        for middle in [centre - stride, centre, centre + stride] {
+            prefetch(&self.table, self.start(middle - 1));
+            prefetch(&self.table, self.start(middle + 2));
+        }
+    }
+
     /// Room that [`Self::around`] and [`Self::ahead`] need.
     #[inline]
     pub(super) fn room(&self) -> usize {
-        self.places.len() + self.blocks * BLOCK
+        9 * self.blocks * BLOCK
     }
 
     /// Writes the disks in the nine cells around `disk` (itself included) to `found`; returns how many.
@@ -204,15 +255,26 @@ impl Cells {
     #[inline(always)]
     fn gather(&self, first: usize, step: usize, found: &mut [u32], mut count: usize) -> usize {
         for cell in [first, first + step, first + 2 * step] {
-            if self.blocks == 1 {
+            let start = self.start(cell);
+            if self.blocks == 1
+                && let Some(&[head, a, b, c, d]) = self.table[start..].first_chunk()
+                && let Some(room) = found[count..].first_chunk_mut()
+            {
                 // A copy of known length is one load and one store.
-                found[count..count + BLOCK].copy_from_slice(&self.slots[cell]);
+                *room = [a, b, c, d];
+                count += (head & !AT_WALL) as usize;
             } else {
-                let slots = self.slots[cell * self.blocks..(cell + 1) * self.blocks].as_flattened();
-                found[count..count + slots.len()].copy_from_slice(slots);
+                count += self.gather_many(start, &mut found[count..]);
             }
-            count += self.counts[cell] as usize;
         }
         count
+    }
+
+    /// Copies the disks of a cell of many slots.
+    #[inline(never)]
+    fn gather_many(&self, start: usize, found: &mut [u32]) -> usize {
+        let cell = &self.table[start..start + self.width()];
+        found[..cell.len() - 1].copy_from_slice(&cell[1..]);
+        (cell[0] & !AT_WALL) as usize
     }
 }

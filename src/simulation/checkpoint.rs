@@ -49,7 +49,8 @@ const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 2 };
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Checkpoint {
-    disks: Vec<Disk>,
+    /// One for each disk, or one for all if they are alike.
+    kinds: Vec<Disk>,
     gravity: f64,
     trajectories: Vec<Trajectory>,
     spins: Vec<Spin>,
@@ -147,10 +148,11 @@ impl Checkpoint {
 
     /// That the numbers make a state which the engine can go on with.
     fn check(&self, walls: usize) -> Result<(), CheckpointError> {
-        let count = self.disks.len();
-        let lengths = [self.trajectories.len(), self.spins.len(), self.slots.len(), self.grid.len()];
+        let count = self.trajectories.len();
+        let lengths = [self.spins.len(), self.slots.len(), self.grid.len()];
         let check = |valid: bool, what| if valid { Ok(()) } else { Err(CheckpointError::Inconsistent(what)) };
         check(lengths.iter().all(|&length| length == count), "its parts differ in length")?;
+        check([1, count].contains(&self.kinds.len()), "its disks are of too many kinds, or of none")?;
         check(self.times().iter().all(|time| time.is_finite()), "a time is not finite")?;
         check(self.epoch_length > 0.0 && self.now >= 0.0, "its epoch is out of order")?;
         check(self.trajectories.iter().all(Trajectory::is_finite), "a trajectory is not finite")?;
@@ -177,7 +179,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// The run as data.
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
-            disks: self.bodies.disks().to_vec(),
+            kinds: self.bodies.kinds(),
             gravity: self.bodies.gravity,
             trajectories: self.bodies.trajectories.clone(),
             spins: self.bodies.spins.clone(),
@@ -212,8 +214,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if saved != given {
             return Err(CheckpointError::Domain { saved, given });
         }
-        let Checkpoint { disks, gravity, trajectories, spins, grid, .. } = checkpoint.clone();
-        let bodies = Bodies::restored(disks, gravity, trajectories, spins);
+        let Checkpoint { kinds, gravity, trajectories, spins, grid, .. } = checkpoint.clone();
+        let bodies = Bodies::restored(&kinds, gravity, trajectories, spins);
         let cells = Cells::restored(&boundary, bodies.largest_radius(), &grid);
         Ok(Self::restored(rule, boundary, scheduler, bodies, cells, checkpoint))
     }

@@ -11,8 +11,18 @@ use super::prediction::{Earliest, LANES, cell_exit, earliest_collision};
 use super::resolution::{Meeting, NotFinite, by_contact_duration, resolve_pair, resolve_wall};
 use crate::boundary::{Boundary, Container};
 use crate::collision::{CollisionRule, Frictional};
-use crate::scheduler::{EventScheduler, TournamentTree};
+use crate::prefetch::prefetch;
+use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, Flight};
+
+/// Disks from which on the caches do not hold all of a system.
+const LARGE: usize = 20_000;
+
+/// How far ahead data are asked for, and what they lead to, in buckets of the bucket queue; and how many buckets an event takes.
+const FAR: usize = 48;
+const NEAR: usize = 32;
+const NEXT: usize = 16;
+const STRIDE: usize = 4;
 
 /// How far ahead a wall is searched for, in epochs: no search is endless.
 const HORIZON: f64 = 2.0;
@@ -42,7 +52,7 @@ const HORIZON: f64 = 2.0;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Simulation<R = Frictional, B = Container, S = TournamentTree> {
+pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     pub(super) rule: R,
     pub(super) boundary: B,
     pub(super) scheduler: S,
@@ -116,12 +126,17 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Predicts every disk's next event from the present state alone.
     pub(super) fn predict_all(&mut self) {
-        self.due.clear();
-        self.due.resize(self.slots.len(), f64::INFINITY);
-        self.scheduler.reset(&self.due);
         for disk in 0..self.slots.len() {
-            self.predict(disk);
+            self.find_next(disk);
         }
+        self.reset_scheduler();
+    }
+
+    /// Tells the scheduler the times of all events.
+    fn reset_scheduler(&mut self) {
+        self.due.clear();
+        self.due.extend(self.slots.iter().map(Slot::due));
+        self.scheduler.reset(&self.due);
     }
 
     /// The present.
@@ -134,6 +149,37 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     pub(super) fn next_due(&self, end: f64) -> Option<(usize, f64)> {
         let (disk, due) = self.scheduler.earliest();
         (due <= end && disk < self.slots.len()).then_some((disk, due))
+    }
+
+    /// Asks for what the next events will need, where the caches do not hold the system anyway.
+    ///
+    /// What is far ahead is asked for first, and what that leads to when it has come.
+    #[inline]
+    fn fetch_ahead(&mut self) {
+        if self.slots.len() < LARGE {
+            return;
+        }
+        for ahead in 0..STRIDE {
+            if let Some(disk) = self.scheduler.soon(FAR + ahead) {
+                prefetch(&self.slots, disk);
+                prefetch(&self.bodies.trajectories, disk);
+                self.cells.prefetch_place(disk);
+            }
+            if let Some(disk) = self.scheduler.soon(NEAR + ahead) {
+                let partner = self.slots[disk].partner as usize;
+                prefetch(&self.slots, partner);
+                prefetch(&self.bodies.trajectories, partner);
+                prefetch(&self.bodies.spins, partner);
+                prefetch(&self.bodies.spins, disk);
+                self.cells.prefetch_around(disk);
+            }
+            if let Some(disk) = self.scheduler.soon(NEXT + ahead) {
+                let count = self.cells.around(disk, &mut self.found);
+                for &neighbour in &self.found[..count] {
+                    prefetch(&self.bodies.trajectories, neighbour as usize);
+                }
+            }
+        }
     }
 
     /// Does the next event of `disk`.
@@ -155,6 +201,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if let Some(events) = self.guard.watch(self.now, self.epoch_length, self.slots.len()) {
             return Err(RunError::Stalled { time: self.time(), disk, events });
         }
+        self.fetch_ahead();
         let slot = self.slots[disk];
         if slot.collision_due <= slot.exit_due {
             let partner = slot.partner as usize;
@@ -240,6 +287,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             }
         }
         self.end_flight(disk);
+        self.scheduler.set(disk, self.slots[disk].due());
     }
 
     #[inline]
@@ -248,9 +296,16 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         earliest_collision(&self.bodies, period, disk, &mut self.found, count, self.now, known)
     }
 
+    /// Finds the next event of a disk among all its neighbours, and tells the scheduler.
+    #[inline(never)]
+    fn predict(&mut self, disk: usize) {
+        self.find_next(disk);
+        self.scheduler.set(disk, self.slots[disk].due());
+    }
+
     /// Finds the next event of a disk among all its neighbours.
-    #[inline]
-    pub(super) fn predict(&mut self, disk: usize) {
+    #[inline(always)]
+    fn find_next(&mut self, disk: usize) {
         self.make_room();
         let count = self.cells.around(disk, &mut self.found);
         let earliest = self.earliest_collision(disk, count, Earliest::NONE);
@@ -277,18 +332,17 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Finds when the flight of a disk in its cell ends, and how, and tells the scheduler what is next.
+    /// Finds when the flight of a disk in its cell ends, and how.
     #[inline]
     fn end_flight(&mut self, disk: usize) {
         let (place, grid) = (self.cells.place(disk), self.cells.grid());
         let (exit_due, exit) = cell_exit(&self.bodies, disk, &grid.region(place), self.now);
-        let at_wall = grid.is_at_wall(place);
+        let at_wall = self.cells.is_at_wall(place);
         let slot = &mut self.slots[disk];
         (slot.exit_due, slot.exit) = (exit_due, exit);
         if at_wall {
             self.end_at_wall(disk);
         }
-        self.scheduler.set(disk, self.slots[disk].due());
     }
 
     #[inline]
@@ -355,8 +409,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.now -= by;
         self.guard.shift(by);
         self.boundary.set_time_origin(self.origin);
-        self.due.clear();
-        self.due.extend(self.slots.iter().map(Slot::due));
-        self.scheduler.reset(&self.due);
+        self.reset_scheduler();
     }
 }

@@ -1,8 +1,8 @@
-//! The grid of neighbour cells: where a cell is, and which of them a wall comes near to.
+//! The grid of neighbour cells: how large they are and where each is.
 
 use glam::DVec2;
 
-use crate::boundary::{Boundary, Domain, Region};
+use crate::boundary::{Domain, Region};
 
 /// Cells per disk at most; more would cost memory and save nothing.
 const CELLS_PER_DISK: f64 = 8.0;
@@ -55,8 +55,6 @@ pub(super) struct Grid {
     /// `column_edges[c - 1]` and `column_edges[c]` bound column `c`; infinite at walls.
     column_edges: Vec<f64>,
     row_edges: Vec<f64>,
-    /// Whether disks in a cell can touch a wall.
-    at_wall: Vec<bool>,
     /// Width of the domain if its sides are periodic, else 0.
     period: f64,
 }
@@ -133,35 +131,26 @@ fn open_height(domain: &Domain, highest: f64, diameter: f64) -> f64 {
 }
 
 impl Grid {
-    /// The grid of this layout, for disks of at most this radius.
-    pub(super) fn new<B: Boundary + ?Sized>(boundary: &B, largest_radius: f64, layout: Layout) -> Self {
-        let domain = boundary.domain();
-        let stride = layout.rows + 2;
-        let mut grid = Self {
-            stride,
+    /// The grid of this layout.
+    pub(super) fn new(domain: &Domain, layout: Layout) -> Self {
+        Self {
+            stride: layout.rows + 2,
             column_edges: edges(domain.left, layout.pitch.x, layout.columns, !domain.periodic),
-            row_edges: row_edges(&domain, &layout),
-            at_wall: vec![false; stride as usize * (layout.columns as usize + 2)],
+            row_edges: row_edges(domain, &layout),
             period: if domain.periodic { domain.width() } else { 0.0 },
             layout,
-        };
-        grid.mark_walls(boundary, largest_radius);
-        grid
+        }
     }
 
-    fn mark_walls<B: Boundary + ?Sized>(&mut self, boundary: &B, largest_radius: f64) {
-        for column in 1..=self.layout.columns {
-            for row in 1..=self.layout.rows {
-                let place = Place { column, row };
-                let cell = self.index(place);
-                self.at_wall[cell] = boundary.may_touch(&self.region(place), largest_radius);
-            }
-        }
+    /// All cells but those of the ring.
+    pub(super) fn places(&self) -> impl Iterator<Item = Place> + use<> {
+        let Layout { columns, rows, .. } = self.layout;
+        (1..=columns).flat_map(move |column| (1..=rows).map(move |row| Place { column, row }))
     }
 
     /// How many cells there are, ring included.
     pub(super) fn len(&self) -> usize {
-        self.at_wall.len()
+        self.stride() * (self.layout.columns as usize + 2)
     }
 
     #[cfg(feature = "serde")]
@@ -190,12 +179,6 @@ impl Grid {
     #[inline]
     pub(super) fn index(&self, place: Place) -> usize {
         place.column as usize * self.stride as usize + place.row as usize
-    }
-
-    /// Whether disks in this cell can touch a wall.
-    #[inline]
-    pub(super) fn is_at_wall(&self, place: Place) -> bool {
-        self.at_wall[self.index(place)]
     }
 
     /// The rectangle of a cell; infinite beyond the walls.

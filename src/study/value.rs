@@ -8,7 +8,7 @@ use super::{Protocol, Sample, System};
 use crate::boundary::Container;
 use crate::observable::{EnergyChange, HeightProfile, Observer, SampleTimes};
 use crate::quantity::accept;
-use crate::scheduler::TournamentTree;
+use crate::scheduler::BySize;
 use crate::simulation::{BuildError, Checkpoint, CheckpointError, Counters, RunError};
 use crate::{ParameterError, Simulation};
 
@@ -18,7 +18,7 @@ const OPEN_PROFILE: f64 = 256.0;
 /// Largest height of a profile, in diameters.
 const HIGHEST_PROFILE: f64 = 65_536.0;
 
-type Run = Simulation<Rule, Container, TournamentTree>;
+type Run = Simulation<Rule, Container, BySize>;
 
 /// Which value is to be done.
 pub(super) struct Value<'a> {
@@ -103,7 +103,7 @@ impl<'a> Value<'a> {
     /// A saved state under the rule of this value, in the walls that it was saved in.
     fn resume(&self, state: &Checkpoint, saved: &System) -> Result<Run, StudyError> {
         let rule = self.parameter(self.system.rule())?;
-        Simulation::resume(state, rule, saved.container()?, TournamentTree::default())
+        Simulation::resume(state, rule, saved.container()?, BySize::default())
             .map_err(|source| self.cannot_go_on(source))
     }
 
