@@ -138,7 +138,7 @@ pub(super) fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> R
     // Without disks any cells will do.
     let diameter = if diameter > 0.0 { diameter } else { 0.125 * domain.width() };
     let too_small = BuildError::DomainTooSmall { width: domain.width(), height: domain.height(), diameter };
-    Cells::new(boundary, diameter, Mesh::Coarse, &positions).ok_or(too_small)
+    Cells::new(boundary, diameter, Mesh::Medium, &positions).ok_or(too_small)
 }
 
 /// That the walls can be numbered, all disks are inside the domain and none overlaps a wall.

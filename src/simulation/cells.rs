@@ -7,7 +7,7 @@ use super::grid::{Grid, Layout, Mesh, Place};
 use crate::boundary::Boundary;
 use crate::prefetch::prefetch;
 
-/// Disks that a cell has room for at first: no more equal disks have their centres in one cell of the usual size.
+/// The slots of a cell come in blocks of so many.
 const BLOCK: usize = 4;
 
 /// In the head of a cell: disks in it can touch a wall.
@@ -88,8 +88,9 @@ impl Cells {
         grid: Grid,
         places: Vec<Place>,
     ) -> Self {
-        let table = vec![0; grid.len() * (1 + BLOCK)];
-        let mut cells = Self { grid, table, blocks: 1, places };
+        let blocks = grid.mesh().slots().div_ceil(BLOCK);
+        let table = vec![0; grid.len() * (1 + blocks * BLOCK)];
+        let mut cells = Self { grid, table, blocks, places };
         cells.mark_walls(boundary, largest_radius);
         for disk in 0..cells.places.len() {
             cells.enter(disk);
@@ -255,26 +256,32 @@ impl Cells {
     #[inline(always)]
     fn gather(&self, first: usize, step: usize, found: &mut [u32], mut count: usize) -> usize {
         for cell in [first, first + step, first + 2 * step] {
-            let start = self.start(cell);
-            if self.blocks == 1
-                && let Some(&[head, a, b, c, d]) = self.table[start..].first_chunk()
-                && let Some(room) = found[count..].first_chunk_mut()
-            {
-                // A copy of known length is one load and one store.
-                *room = [a, b, c, d];
-                count += (head & !AT_WALL) as usize;
-            } else {
-                count += self.gather_many(start, &mut found[count..]);
-            }
+            let (cell, room) = (&self.table[self.start(cell)..], &mut found[count..]);
+            // Copies of known length are one load and one store each.
+            count += match self.blocks {
+                1 => copy::<BLOCK>(cell, room),
+                2 => copy::<{ 2 * BLOCK }>(cell, room),
+                blocks => copy_many(cell, blocks, room),
+            };
         }
         count
     }
+}
 
-    /// Copies the disks of a cell of many slots.
-    #[inline(never)]
-    fn gather_many(&self, start: usize, found: &mut [u32]) -> usize {
-        let cell = &self.table[start..start + self.width()];
-        found[..cell.len() - 1].copy_from_slice(&cell[1..]);
-        (cell[0] & !AT_WALL) as usize
+/// Copies all slots of a cell; returns how many are taken.
+#[inline(always)]
+fn copy<const SLOTS: usize>(cell: &[u32], room: &mut [u32]) -> usize {
+    if let Some((head, slots)) = cell.split_first()
+        && let (Some(slots), Some(room)) = (slots.first_chunk::<SLOTS>(), room.first_chunk_mut())
+    {
+        *room = *slots;
+        return (head & !AT_WALL) as usize;
     }
+    0
+}
+
+#[inline(never)]
+fn copy_many(cell: &[u32], blocks: usize, room: &mut [u32]) -> usize {
+    room[..blocks * BLOCK].copy_from_slice(&cell[1..=blocks * BLOCK]);
+    (cell[0] & !AT_WALL) as usize
 }

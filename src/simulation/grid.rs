@@ -15,29 +15,43 @@ const LEAST_PITCH: f64 = 1.000_001;
 
 /// How large the cells are: small ones hold fewer neighbours, large ones are passed less often.
 ///
-/// Neither holds more than four disks if these are equal: a fifth would need a side of `$\sqrt 2$`. Where disks crowd the
-/// small ones gain 20 %, in a dilute gas the large ones as much.
+/// Where disks crowd, the smallest gain 20 %; in a dilute gas the larger, and in a very dilute one the largest, 15 % each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum Mesh {
-    Fine,
-    Coarse,
+    Small,
+    Medium,
+    Large,
 }
 
 impl Mesh {
     /// Size of a cell in diameters of the largest disk.
     const fn pitch(self) -> f64 {
         match self {
-            Self::Fine => 1.08,
-            Self::Coarse => 1.4,
+            Self::Small => 1.08,
+            Self::Medium => 1.4,
+            Self::Large => 2.0,
+        }
+    }
+
+    /// Equal disks that a cell has room for at first: in the smaller ones a fifth would need a side of `$\sqrt 2$`.
+    pub(super) const fn slots(self) -> usize {
+        match self {
+            Self::Small | Self::Medium => 4,
+            Self::Large => 8,
         }
     }
 
     /// The mesh that suits disks which passed so many cells while they collided so often.
+    ///
+    /// The bounds are where runs of either mesh take as long, and far enough apart that none is changed to and fro.
     pub(super) fn suitable(self, cell_crossings: u64, collisions: u64) -> Self {
+        let passed = cell_crossings as f64 / collisions as f64;
         match self {
-            Self::Fine if cell_crossings > collisions => Self::Coarse,
-            Self::Coarse if 3 * cell_crossings < collisions => Self::Fine,
+            Self::Small if passed > 1.0 => Self::Medium,
+            Self::Medium if passed > 2.6 => Self::Large,
+            Self::Medium if passed < 0.4 => Self::Small,
+            Self::Large if passed < 1.3 => Self::Medium,
             _ => self,
         }
     }
