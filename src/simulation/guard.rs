@@ -5,8 +5,12 @@
 const PATIENCE: u64 = 200_000;
 const PATIENCE_PER_DISK: u64 = 20;
 
-/// Time that counts as progress, in epochs: some thousand units in the last place of a time offset.
-const RESOLUTION: f64 = 1.0 / (1u64 << 40) as f64;
+/// Time that counts as progress, in epochs: at less for so many events an epoch, in which a disk goes some tens of
+/// diameters, would take days.
+///
+/// Time need not stand still for that: a disk at rest on a wall bounces as high as rounding lets it. On the other side, a
+/// contact duration of a ten-millionth of the time that a disk takes for a diameter is progress even if all bounce at once.
+const RESOLUTION: f64 = 1.0 / (1u64 << 25) as f64;
 
 /// Counts events since time last progressed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
