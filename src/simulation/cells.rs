@@ -5,6 +5,8 @@ use glam::DVec2;
 use super::event::Exit;
 use super::grid::{Grid, Layout, Mesh, Place};
 use crate::boundary::Boundary;
+#[cfg(feature = "serde")]
+use crate::boundary::Domain;
 
 /// Disks that a cell has room for at first: no more equal disks have their centres in one cell of the usual size.
 const BLOCK: usize = 4;
@@ -40,9 +42,17 @@ impl GridState {
         self.places.len()
     }
 
-    /// Whether the grid has a sensible size, and every disk is in it.
-    pub(super) fn is_valid(&self) -> bool {
-        self.layout.is_valid(self.places.len())
+    pub(super) fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    pub(super) fn places(&self) -> &[Place] {
+        &self.places
+    }
+
+    /// Whether the grid is one for this domain and disks of at most this diameter, and every disk is in it.
+    pub(super) fn suits(&self, domain: &Domain, diameter: f64) -> bool {
+        self.layout.suits(domain, diameter, self.places.len())
             && self.places.iter().all(|&place| self.layout.contains(place))
     }
 }
@@ -63,14 +73,10 @@ impl Cells {
         Some(Self::filled(grid, places))
     }
 
-    /// The same grid as one that was saved, with the disks where they were.
+    /// Disks where they were saved.
     #[cfg(feature = "serde")]
-    pub(super) fn restored<B: Boundary + ?Sized>(
-        boundary: &B,
-        largest_radius: f64,
-        saved: &GridState,
-    ) -> Self {
-        Self::filled(Grid::new(boundary, largest_radius, saved.layout), saved.places.clone())
+    pub(super) fn restored(grid: Grid, places: &[Place]) -> Self {
+        Self::filled(grid, places.to_vec())
     }
 
     #[cfg(feature = "serde")]

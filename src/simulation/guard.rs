@@ -1,5 +1,8 @@
 //! The guard against runs that cannot progress.
 
+#[cfg(feature = "serde")]
+use super::event::MOST_COUNTED;
+
 /// Events allowed while time advances by less than [`RESOLUTION`] epochs: so many, and as many more for each disk, since
 /// disks on a lattice may all have something to do at the same time.
 const PATIENCE: u64 = 200_000;
@@ -33,6 +36,12 @@ impl Guard {
             return Some(std::mem::take(&mut self.events));
         }
         None
+    }
+
+    /// Whether it can have come to this.
+    #[cfg(feature = "serde")]
+    pub(super) fn is_valid(&self) -> bool {
+        self.since.is_finite() && self.events <= MOST_COUNTED
     }
 
     /// The epoch has moved.
