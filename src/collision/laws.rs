@@ -36,6 +36,9 @@ pub enum Violation {
 /// Rounding allowed in each law, relative to the speeds and energies of the contact.
 const ROUNDING: f64 = 1e-12;
 
+/// Speeds and impulses of light disks below this have fewer digits the lower they are.
+const LEAST_SPEED: f64 = 1e-280;
+
 /// Whether `impulse` is one that `contact` can suffer: finite, separating, not gaining energy.
 ///
 /// # Errors
@@ -56,7 +59,7 @@ pub fn check(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
         return Err(Violation::NotFinite { normal, tangential });
     }
     let closing_speed = closing_speed_after(contact, impulse);
-    if closing_speed > ROUNDING * contact.closing_speed().abs() {
+    if closing_speed > ROUNDING * contact.closing_speed().abs().max(LEAST_SPEED) {
         return Err(Violation::StillClosing { closing_speed });
     }
     let energy_change = impulse.energy_change(contact);

@@ -149,8 +149,10 @@ pub(super) fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -
     let domain = boundary.domain();
     for (disk, state) in disks.iter().enumerate() {
         let (position, radius) = (state.position(), state.radius());
-        let inside = (domain.left..=domain.right).contains(&position.x)
-            && (domain.bottom..=domain.top).contains(&position.y);
+        // A disk that is about to come in by the other one of two periodic sides may be beyond its own by rounding.
+        let slack = TOUCHING * radius;
+        let inside = (domain.left - slack..=domain.right + slack).contains(&position.x)
+            && (domain.bottom - slack..=domain.top + slack).contains(&position.y);
         if !inside {
             return Err(BuildError::Outside { disk, x: position.x, y: position.y });
         }

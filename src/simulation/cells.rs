@@ -5,6 +5,8 @@ use glam::DVec2;
 use super::event::Exit;
 use super::grid::{Grid, Layout, Mesh, Place};
 use crate::boundary::Boundary;
+#[cfg(feature = "serde")]
+use crate::boundary::Domain;
 use crate::prefetch::prefetch;
 
 /// The slots of a cell come in blocks of so many.
@@ -43,9 +45,17 @@ impl GridState {
         self.places.len()
     }
 
-    /// Whether the grid has a sensible size, and every disk is in it.
-    pub(super) fn is_valid(&self) -> bool {
-        self.layout.is_valid(self.places.len())
+    pub(super) fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    pub(super) fn places(&self) -> &[Place] {
+        &self.places
+    }
+
+    /// Whether the grid is one for this domain and disks of at most this diameter, and every disk is in it.
+    pub(super) fn suits(&self, domain: &Domain, diameter: f64) -> bool {
+        self.layout.suits(domain, diameter, self.places.len())
             && self.places.iter().all(|&place| self.layout.contains(place))
     }
 }
@@ -66,15 +76,15 @@ impl Cells {
         Some(Self::filled(boundary, 0.5 * diameter, grid, places))
     }
 
-    /// The same grid as one that was saved, with the disks where they were.
+    /// Disks where they were saved.
     #[cfg(feature = "serde")]
     pub(super) fn restored<B: Boundary + ?Sized>(
         boundary: &B,
         largest_radius: f64,
-        saved: &GridState,
+        grid: Grid,
+        places: &[Place],
     ) -> Self {
-        let grid = Grid::new(&boundary.domain(), saved.layout);
-        Self::filled(boundary, largest_radius, grid, saved.places.clone())
+        Self::filled(boundary, largest_radius, grid, places.to_vec())
     }
 
     #[cfg(feature = "serde")]

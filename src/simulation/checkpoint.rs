@@ -10,6 +10,7 @@ use super::bodies::{Bodies, Spin, Trajectory};
 use super::cells::{Cells, GridState};
 use super::engine::Simulation;
 use super::event::{Counters, Exit, Slot};
+use super::grid::{Grid, Place};
 use super::guard::Guard;
 use crate::Disk;
 use crate::boundary::{Boundary, Domain};
@@ -146,21 +147,44 @@ impl Checkpoint {
         Self::from_bytes(&std::fs::read(path)?)
     }
 
-    /// That the numbers make a state which the engine can go on with.
+    /// That the numbers make a state which the engine can go on with, but for the places of the disks.
     fn check(&self, walls: usize) -> Result<(), CheckpointError> {
         let count = self.trajectories.len();
         let lengths = [self.spins.len(), self.slots.len(), self.grid.len()];
-        let check = |valid: bool, what| if valid { Ok(()) } else { Err(CheckpointError::Inconsistent(what)) };
         check(lengths.iter().all(|&length| length == count), "its parts differ in length")?;
         check([1, count].contains(&self.kinds.len()), "its disks are of too many kinds, or of none")?;
         check(self.times().iter().all(|time| time.is_finite()), "a time is not finite")?;
         check(self.epoch_length > 0.0 && self.now >= 0.0, "its epoch is out of order")?;
         check(self.trajectories.iter().all(Trajectory::is_finite), "a trajectory is not finite")?;
         check(self.spins.iter().all(Spin::is_valid), "a rotation is not finite")?;
-        check(self.slots.iter().all(|slot| is_valid(slot, count, walls)), "an event is of nobody, or never")?;
+        check(self.are_slots_valid(walls), "an event is of nobody, or in the past")?;
+        check(self.counters.are_valid() && self.guard.is_valid(), "its counters are beyond all counting")?;
         let Counters { cell_crossings, collisions, .. } = self.counters;
-        check(self.tally.0 <= cell_crossings && self.tally.1 <= collisions, "its counters run backwards")?;
-        check(self.grid.is_valid(), "a disk is outside the neighbour cells")
+        check(self.tally.0 <= cell_crossings && self.tally.1 <= collisions, "its counters run backwards")
+    }
+
+    fn are_slots_valid(&self, walls: usize) -> bool {
+        let partner = |disk: usize, slot: &Slot| {
+            let partner = slot.partner as usize;
+            slot.collision_due == f64::INFINITY || (partner < self.slots.len() && partner != disk)
+        };
+        self.slots.iter().enumerate().all(|(disk, slot)| {
+            let wall = slot.exit != Exit::Wall || usize::from(slot.wall) < walls;
+            partner(disk, slot) && wall && slot.collision_due >= self.now && slot.exit_due >= self.now
+        })
+    }
+
+    /// That the grid is one of this boundary, and all disks are in it where they belong, and have where to go.
+    fn check_places(&self, grid: &Grid, domain: &Domain, bodies: &Bodies) -> Result<(), CheckpointError> {
+        let places = self.grid.places();
+        let inside = |(disk, &place): (usize, &Place)| grid.holds(place, bodies.position(disk, self.now));
+        check(places.iter().enumerate().all(inside), "a disk is outside its neighbour cell")?;
+        let radii = (0..self.slots.len()).map(|disk| bodies.material(disk).radius);
+        check(grid.has_room(domain, places.iter().copied().zip(radii)), "the disks of a cell overlap")?;
+        let leads = |(slot, &place): (&Slot, &Place)| {
+            slot.exit_due == f64::INFINITY || grid.contains(grid.neighbour(place, slot.exit.direction()).0)
+        };
+        check(self.slots.iter().zip(places).all(leads), "a disk leaves the neighbour cells")
     }
 
     fn times(&self) -> [f64; 4] {
@@ -168,11 +192,8 @@ impl Checkpoint {
     }
 }
 
-/// Whether an event has a time and partners.
-fn is_valid(slot: &Slot, disks: usize, walls: usize) -> bool {
-    let partner = slot.collision_due == f64::INFINITY || (slot.partner as usize) < disks;
-    let wall = slot.exit != Exit::Wall || usize::from(slot.wall) < walls;
-    partner && wall && slot.collision_due >= 0.0 && slot.exit_due >= 0.0
+fn check(valid: bool, what: &'static str) -> Result<(), CheckpointError> {
+    if valid { Ok(()) } else { Err(CheckpointError::Inconsistent(what)) }
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
@@ -214,9 +235,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if saved != given {
             return Err(CheckpointError::Domain { saved, given });
         }
-        let Checkpoint { kinds, gravity, trajectories, spins, grid, .. } = checkpoint.clone();
+        let Checkpoint { kinds, gravity, trajectories, spins, .. } = checkpoint.clone();
         let bodies = Bodies::restored(&kinds, gravity, trajectories, spins);
-        let cells = Cells::restored(&boundary, bodies.largest_radius(), &grid);
+        let radius = bodies.largest_radius();
+        let suits = checkpoint.grid.suits(&given, 2.0 * radius);
+        check(suits, "its neighbour cells are not those of the domain")?;
+        let grid = Grid::new(&given, checkpoint.grid.layout());
+        checkpoint.check_places(&grid, &given, &bodies)?;
+        let cells = Cells::restored(&boundary, radius, grid, checkpoint.grid.places());
         Ok(Self::restored(rule, boundary, scheduler, bodies, cells, checkpoint))
     }
 

@@ -49,6 +49,21 @@ pub struct Counters {
     pub max_overlap: f64,
 }
 
+/// More events than any run has.
+#[cfg(feature = "serde")]
+pub(super) const MOST_COUNTED: u64 = 1 << 60;
+
+#[cfg(feature = "serde")]
+impl Counters {
+    /// Whether a run can have come to this, and can go on counting.
+    pub(super) fn are_valid(&self) -> bool {
+        let Self { collisions, wall_collisions, contact_duration_collisions, .. } = *self;
+        let counts = [collisions, wall_collisions, contact_duration_collisions];
+        counts.iter().chain([&self.cell_crossings, &self.repredictions]).all(|&count| count <= MOST_COUNTED)
+            && self.max_overlap >= 0.0
+    }
+}
+
 /// How a disk's flight in its cell ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

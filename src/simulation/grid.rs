@@ -13,6 +13,11 @@ const SPARE_CELLS: f64 = 4096.0;
 /// Least size of a cell in diameters: above 1 by more than rounding.
 const LEAST_PITCH: f64 = 1.000_001;
 
+/// What a saved disk may be outside its cell by, and a saved grid differ in size by, in sizes of a cell and of the grid: more
+/// than rounding.
+#[cfg(feature = "serde")]
+const SLACK: f64 = 1e-3;
+
 /// How large the cells are: small ones hold fewer neighbours, large ones are passed less often.
 ///
 /// Where disks crowd, the smallest gain 20 %; in a dilute gas the larger, and in a very dilute one the largest, 15 % each.
@@ -93,12 +98,23 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Whether this is a grid of a sensible size for so many disks.
+    /// Whether this is a grid for this domain and so many disks of at most this diameter.
     #[cfg(feature = "serde")]
-    pub(super) fn is_valid(&self, disks: usize) -> bool {
+    pub(super) fn suits(&self, domain: &Domain, diameter: f64, disks: usize) -> bool {
         let Self { columns, rows, pitch, .. } = *self;
         let most = 2.0 * (CELLS_PER_DISK * disks as f64 + SPARE_CELLS);
-        columns > 0 && rows > 0 && f64::from(columns) * f64::from(rows) <= most && pitch.is_finite()
+        let covers = |count: u32, pitch: f64, length: f64| {
+            length.is_infinite() || (f64::from(count) * pitch / length - 1.0).abs() < SLACK
+        };
+        let wide = |count: u32, pitch: f64| count == 1 || pitch > diameter;
+        columns.min(rows) > 0
+            && f64::from(columns) * f64::from(rows) <= most
+            && (columns >= 4 || !domain.periodic)
+            && covers(columns, pitch.x, domain.width())
+            && covers(rows, pitch.y, domain.height())
+            && wide(columns, pitch.x)
+            && wide(rows, pitch.y)
+            && pitch.is_finite()
     }
 
     /// Whether a place is one of its cells, not of the ring.
@@ -203,6 +219,38 @@ impl Grid {
             min: DVec2::new(self.column_edges[column - 1], self.row_edges[row - 1]),
             max: DVec2::new(self.column_edges[column], self.row_edges[row]),
         }
+    }
+
+    /// Whether a place is one of the cells, not of the ring.
+    #[cfg(feature = "serde")]
+    pub(super) fn contains(&self, place: Place) -> bool {
+        self.layout.contains(place)
+    }
+
+    /// Whether a disk at this position belongs into this cell.
+    #[cfg(feature = "serde")]
+    pub(super) fn holds(&self, place: Place, position: DVec2) -> bool {
+        let (Region { min, max }, slack) = (self.region(place), SLACK * self.layout.pitch);
+        position.is_finite() && position.cmpge(min - slack).all() && position.cmple(max + slack).all()
+    }
+
+    /// Whether the disks in these places, of these radii, can be in their cells without overlaps.
+    #[cfg(feature = "serde")]
+    pub(super) fn has_room(&self, domain: &Domain, disks: impl Iterator<Item = (Place, f64)>) -> bool {
+        let mut cells = vec![(0.0, 0.0); self.len()];
+        for (place, radius) in disks {
+            let (area, largest): &mut (f64, f64) = &mut cells[self.index(place)];
+            *area += std::f64::consts::PI * radius * radius;
+            *largest = largest.max(radius);
+            let Region { min, max } = self.region(place);
+            let low = min.max(DVec2::new(domain.left, domain.bottom)) - *largest;
+            let size = max.min(DVec2::new(domain.right, domain.top)) + *largest - low;
+            // The densest packing has an area fraction of 0.91; this is more than the slack of the cells.
+            if *area > size.x * size.y {
+                return false;
+            }
+        }
+        true
     }
 
     /// The width of the domain if its sides are periodic, else 0.

@@ -1,12 +1,19 @@
 //! The guard against runs that cannot progress.
 
+#[cfg(feature = "serde")]
+use super::event::MOST_COUNTED;
+
 /// Events allowed while time advances by less than [`RESOLUTION`] epochs: so many, and as many more for each disk, since
 /// disks on a lattice may all have something to do at the same time.
 const PATIENCE: u64 = 200_000;
 const PATIENCE_PER_DISK: u64 = 20;
 
-/// Time that counts as progress, in epochs: some thousand units in the last place of a time offset.
-const RESOLUTION: f64 = 1.0 / (1u64 << 40) as f64;
+/// Time that counts as progress, in epochs: at less for so many events an epoch, in which a disk goes some tens of
+/// diameters, would take days.
+///
+/// Time need not stand still for that: a disk at rest on a wall bounces as high as rounding lets it. On the other side, a
+/// contact duration of a ten-millionth of the time that a disk takes for a diameter is progress even if all bounce at once.
+const RESOLUTION: f64 = 1.0 / (1u64 << 25) as f64;
 
 /// Counts events since time last progressed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -29,6 +36,12 @@ impl Guard {
             return Some(std::mem::take(&mut self.events));
         }
         None
+    }
+
+    /// Whether it can have come to this.
+    #[cfg(feature = "serde")]
+    pub(super) fn is_valid(&self) -> bool {
+        self.since.is_finite() && self.events <= MOST_COUNTED
     }
 
     /// The epoch has moved.

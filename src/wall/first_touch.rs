@@ -44,8 +44,11 @@ impl Approach {
 ///
 /// On a piece with acceleration at most `$a_{max}$` the gap is never below the parabola with that acceleration: the
 /// search steps to its root, where the gap is still open, and repeats until the gap is closed. One step is exact
-/// where the acceleration is constant; elsewhere the steps shrink quadratically, down to the rounding of the gap. No contact is ever stepped over. A
-/// gap that is closed at the start counts only while it closes.
+/// where the acceleration is constant; elsewhere the steps shrink quadratically, down to the rounding of the gap. No contact is
+/// ever stepped over. A gap that is closed at the start counts only while it closes.
+///
+/// Flights beyond the reach of the wall are skipped, at the start and after a bounce. Within it the wall sweeps over every height
+/// in each period, so the search takes no more steps than some periods have, however fast the wall and long the flight.
 ///
 /// ```
 /// use granular_edmd::wall::{Approach, Fixed, first_touch};
@@ -55,7 +58,7 @@ impl Approach {
 /// ```
 pub fn first_touch<M: WallMotion + ?Sized>(motion: &M, approach: &Approach, until: f64) -> Option<f64> {
     let search = Search { motion, approach, until };
-    let start = search.enters_reach()?;
+    let start = search.enters_reach(approach.time)?;
     if let Some(touch) = search.low_bounce(start) {
         return (touch <= until).then_some(touch);
     }
@@ -63,7 +66,7 @@ pub fn first_touch<M: WallMotion + ?Sized>(motion: &M, approach: &Approach, unti
     while time <= until {
         match search.step(time) {
             Step::Touch(touch) => return (touch <= until).then_some(touch),
-            Step::Open(next) => time = next,
+            Step::Open(next) => time = search.enters_reach(next)?,
         }
     }
     None
@@ -97,14 +100,14 @@ enum Step {
 }
 
 impl<M: WallMotion + ?Sized> Search<'_, M> {
-    /// The first time at which the surface is no higher than the wall ever gets.
-    fn enters_reach(&self) -> Option<f64> {
-        let above = self.approach.height - self.motion.reach().1;
-        if above <= 0.0 {
-            return Some(self.approach.time);
+    /// The first time from this one on at which the surface is no higher than the wall ever gets.
+    fn enters_reach(&self, time: f64) -> Option<f64> {
+        let Approach { acceleration, .. } = *self.approach;
+        let above = self.approach.height(time) - self.motion.reach().1;
+        if above > 0.0 {
+            return Some(time + first_descent(above, self.approach.velocity(time), acceleration)?);
         }
-        let fall = first_descent(above, self.approach.velocity, self.approach.acceleration)?;
-        Some(self.approach.time + fall)
+        Some(time)
     }
 
     fn step(&self, time: f64) -> Step {

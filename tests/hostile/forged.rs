@@ -131,7 +131,6 @@ fn forged_records() {
 }
 
 #[test]
-#[ignore = "the engine takes forged counters and exits at their word"]
 fn forged_checkpoints_are_refused_or_run() {
     in_child("forged::forged_checkpoints", &LITTLE, &[]).assert_success();
 }

@@ -17,6 +17,7 @@ mod laws;
 #[cfg(all(feature = "serde", unix))]
 mod limits;
 mod random_runs;
+mod regressions;
 mod schedulers;
 mod script;
 #[cfg(feature = "serde")]

@@ -1,0 +1,76 @@
+//! What the random runs found, each as small as it gets.
+
+use std::cell::Cell;
+
+use granular_edmd::boundary::{Container, Wall};
+use granular_edmd::collision::{ContactDuration, Elastic, Smooth};
+use granular_edmd::glam::DVec2;
+use granular_edmd::simulation::RunError;
+use granular_edmd::wall::{
+    AccelerationBounds, Approach, BiParabolic, Sinusoidal, WallMotion, WallState, first_touch,
+};
+use granular_edmd::{Disk, Simulation};
+
+fn disk(x: f64, y: f64, velocity: DVec2) -> Disk {
+    Disk::new(DVec2::new(x, y), 0.5).unwrap().with_velocity(velocity).unwrap()
+}
+
+/// Without restitution nothing is left to bounce with but rounding: some 1e-15 of time an event, but never none.
+#[test]
+fn a_disk_that_sticks_to_the_floor_under_a_contact_duration_stalls() {
+    let still = Container::closed(9.6, 13.0).unwrap();
+    let moving = still.clone().with_motion(Wall::Floor, BiParabolic::new(0.2, 10.0).unwrap()).unwrap();
+    for floor in [still, moving] {
+        let rule = ContactDuration::new(Smooth::from_restitution(0.0).unwrap(), 0.015).unwrap();
+        let disks = [disk(2.0, 2.3, DVec2::new(0.1, -1.0))];
+        let mut run = Simulation::builder(rule, floor).disks(disks).gravity(0.05).build().unwrap();
+        let error = run.run_until(1e3, &mut ()).unwrap_err();
+        assert!(matches!(error, RunError::Stalled { disk: 0, .. }), "{error}");
+        assert!(run.counters().wall_collisions < 1_000_000, "{:?}", run.counters());
+    }
+}
+
+/// The moment at which a disk comes in by the other side is rounded: the domain ends there, give or take rounding.
+#[test]
+fn a_disk_on_the_line_between_periodic_sides_is_inside_both_ways() {
+    let container = Container::closed(15.5, 8.0).unwrap().with_periodic_sides();
+    for x in [-7.1e-15, -1e-30, 0.0, 15.5, 15.5_f64.next_up()] {
+        let disks = [disk(x, 4.0, DVec2::new(-1.0, 0.0)), disk(7.0, 4.0, DVec2::ZERO)];
+        let mut run = Simulation::builder(Elastic, container.clone()).disks(disks).build().unwrap();
+        run.run_until(100.0, &mut ()).unwrap();
+        // One after a way of 7.5, and then one each time that they have gone round the ring, less two diameters.
+        assert_eq!(run.counters().collisions, 7, "{x}");
+        run.set_boundary(container.clone()).unwrap();
+    }
+}
+
+/// A motion that counts how often it is asked for its acceleration.
+struct Counting<M>(M, Cell<u32>);
+
+impl<M: WallMotion> WallMotion for Counting<M> {
+    fn state(&self, time: f64) -> WallState {
+        self.0.state(time)
+    }
+    fn acceleration(&self, time: f64) -> AccelerationBounds {
+        self.1.set(self.1.get() + 1);
+        self.0.acceleration(time)
+    }
+    fn reach(&self) -> (f64, f64) {
+        self.0.reach()
+    }
+}
+
+/// A disk that bounces off a fast wall is out of its reach for a million periods, and not one of these is looked at.
+#[test]
+fn a_search_takes_some_periods_of_a_wall_however_fast_it_is() {
+    for frequency in [1e3, 1e6, 1e9] {
+        let wall = Counting(Sinusoidal::new(1.0 / frequency, frequency).unwrap(), Cell::new(0));
+        for step in 0..100 {
+            let start = f64::from(step) * 0.063 / frequency;
+            let place = wall.state(start).displacement;
+            wall.1.set(0);
+            let touch = first_touch(&wall, &Approach::new(start, place, 2.0, -1.0), 10.0).unwrap();
+            assert!(touch > 3.9 && wall.1.get() < 200, "{frequency:e}: {} looks", wall.1.get());
+        }
+    }
+}
