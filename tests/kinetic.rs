@@ -168,6 +168,36 @@ fn monte_carlo_averages_the_other_rules() -> Outcome {
     Ok(())
 }
 
+/// Where both inelasticities of a line meet, and at the corners of the plane, rounding must not lose them.
+#[test]
+fn iso_line_keeps_the_corners_of_the_plane() -> Outcome {
+    let gas = Maxwellian::new(1.0)?;
+    assert_eq!(IsoLine::new(-1.0, &gas)?.inelasticities(0.0)?, [0.5]);
+    assert_eq!(IsoLine::new(0.0, &gas)?.inelasticities(0.0)?, [0.0]);
+    Ok(())
+}
+
+/// With hot spins the loss at large friction has its maximum below `$q$` = 1/2, and just below it two inelasticities.
+#[test]
+fn iso_line_finds_both_inelasticities() -> Outcome {
+    let gas = Maxwellian::new(1.0)?.with_rotational_temperature(4.0)?;
+    let at = |q: f64| mean_energy_change(&Frictional::new(q, 0.3).unwrap(), &gas);
+    let lowest = (0..=500).map(|i| at(f64::from(i) * 1e-3)).fold(0.0, f64::min);
+    let change = 0.5 * (lowest + at(0.5));
+    let found = IsoLine::new(change, &gas)?.inelasticities(0.3)?;
+    assert!(found.len() == 2 && found.iter().all(|&q| (at(q) - change).abs() < 1e-13), "{found:?}");
+    Ok(())
+}
+
+/// Any finite friction, up to the largest number and down to the smallest.
+#[test]
+fn sticking_fraction_is_finite_for_any_friction() -> Outcome {
+    let gas = Maxwellian::new(1.0)?;
+    let fraction = |friction| Ok(sticking_fraction(&Frictional::new(0.1, friction)?, &gas));
+    assert_eq!((fraction(f64::MAX)?, fraction(5e-324)?), (1.0, 1e-323));
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(config(500))]
 
