@@ -23,8 +23,9 @@ const AT_WALL: u32 = 1 << 31;
 #[derive(Debug, Clone)]
 pub(super) struct Cells {
     grid: Grid,
-    /// For each cell a head, how many slots are taken and whether a wall is near, and the slots: together in memory.
-    table: Vec<u32>,
+    /// For each cell how many slots are taken, and whether a wall is near.
+    heads: Vec<u32>,
+    slots: Vec<[u32; BLOCK]>,
     /// Blocks of slots of a cell.
     blocks: usize,
     /// Column and row of each disk.
@@ -99,8 +100,8 @@ impl Cells {
         places: Vec<Place>,
     ) -> Self {
         let blocks = grid.mesh().slots().div_ceil(BLOCK);
-        let table = vec![0; grid.len() * (1 + blocks * BLOCK)];
-        let mut cells = Self { grid, table, blocks, places };
+        let (heads, slots) = (vec![0; grid.len()], vec![[0; BLOCK]; grid.len() * blocks]);
+        let mut cells = Self { grid, heads, slots, blocks, places };
         cells.mark_walls(boundary, largest_radius);
         for disk in 0..cells.places.len() {
             cells.enter(disk);
@@ -111,8 +112,7 @@ impl Cells {
     fn mark_walls<B: Boundary + ?Sized>(&mut self, boundary: &B, largest_radius: f64) {
         for place in self.grid.places() {
             if boundary.may_touch(&self.grid.region(place), largest_radius) {
-                let start = self.start(self.grid.index(place));
-                self.table[start] |= AT_WALL;
+                self.heads[self.grid.index(place)] |= AT_WALL;
             }
         }
     }
@@ -130,27 +130,13 @@ impl Cells {
     /// Whether disks in this cell can touch a wall.
     #[inline]
     pub(super) fn is_at_wall(&self, place: Place) -> bool {
-        self.table[self.start(self.grid.index(place))] & AT_WALL != 0
+        self.heads[self.grid.index(place)] & AT_WALL != 0
     }
 
-    /// Numbers that a cell has in the table.
+    /// The slots of a cell.
     #[inline]
-    fn width(&self) -> usize {
-        1 + self.blocks * BLOCK
-    }
-
-    /// Where a cell begins in the table.
-    #[inline]
-    fn start(&self, cell: usize) -> usize {
-        cell * self.width()
-    }
-
-    /// The head and the slots of a cell.
-    #[inline]
-    fn cell(&mut self, cell: usize) -> (&mut u32, &mut [u32]) {
-        let (start, width) = (self.start(cell), self.width());
-        let (head, slots) = self.table[start..start + width].split_at_mut(1);
-        (&mut head[0], slots)
+    fn cell(&mut self, cell: usize) -> &mut [u32] {
+        self.slots[cell * self.blocks..(cell + 1) * self.blocks].as_flattened_mut()
     }
 
     /// Writes a disk into its cell and the ghost of that.
@@ -175,20 +161,21 @@ impl Cells {
 
     #[inline]
     fn push(&mut self, cell: usize, disk: usize) {
-        if (self.table[self.start(cell)] & !AT_WALL) as usize == self.blocks * BLOCK {
+        let count = (self.heads[cell] & !AT_WALL) as usize;
+        if count == self.blocks * BLOCK {
             self.grow();
         }
-        let (head, slots) = self.cell(cell);
-        slots[(*head & !AT_WALL) as usize] = disk as u32;
-        *head += 1;
+        self.cell(cell)[count] = disk as u32;
+        self.heads[cell] += 1;
     }
 
     /// The last disk of the cell takes the place of the one that leaves.
     #[inline]
     fn remove(&mut self, cell: usize, disk: usize) {
-        let (head, slots) = self.cell(cell);
-        *head -= 1;
-        let last = slots[(*head & !AT_WALL) as usize];
+        self.heads[cell] -= 1;
+        let count = (self.heads[cell] & !AT_WALL) as usize;
+        let slots = self.cell(cell);
+        let last = slots[count];
         for slot in slots {
             *slot = if *slot == disk as u32 { last } else { *slot };
         }
@@ -197,13 +184,12 @@ impl Cells {
     /// Twice as many slots in every cell.
     #[cold]
     fn grow(&mut self) {
-        let old = self.width();
-        self.blocks *= 2;
-        let mut table = vec![0; self.grid.len() * self.width()];
-        for (old, new) in self.table.chunks_exact(old).zip(table.chunks_exact_mut(self.width())) {
-            new[..old.len()].copy_from_slice(old);
+        let mut slots = vec![[0; BLOCK]; 2 * self.slots.len()];
+        for (old, new) in self.slots.chunks_exact(self.blocks).zip(slots.chunks_exact_mut(2 * self.blocks)) {
+            new[..self.blocks].copy_from_slice(old);
         }
-        self.table = table;
+        self.slots = slots;
+        self.blocks *= 2;
     }
 
     /// Takes a disk to the cell that it leaves for; returns what that adds to its `x`.
@@ -226,8 +212,9 @@ impl Cells {
     pub(super) fn prefetch_around(&self, disk: usize) {
         let (centre, stride) = (self.grid.index(self.places[disk]), self.grid.stride());
         for middle in [centre - stride, centre, centre + stride] {
-            prefetch(&self.table, self.start(middle - 1));
-            prefetch(&self.table, self.start(middle + 2));
+            prefetch(&self.heads, middle);
+            prefetch(&self.slots, (middle - 1) * self.blocks);
+            prefetch(&self.slots, (middle + 2) * self.blocks - 1);
         }
     }
 
@@ -266,32 +253,20 @@ impl Cells {
     #[inline(always)]
     fn gather(&self, first: usize, step: usize, found: &mut [u32], mut count: usize) -> usize {
         for cell in [first, first + step, first + 2 * step] {
-            let (cell, room) = (&self.table[self.start(cell)..], &mut found[count..]);
             // Copies of known length are one load and one store each.
-            count += match self.blocks {
-                1 => copy::<BLOCK>(cell, room),
-                2 => copy::<{ 2 * BLOCK }>(cell, room),
-                blocks => copy_many(cell, blocks, room),
-            };
+            match self.blocks {
+                1 => found[count..count + BLOCK].copy_from_slice(&self.slots[cell]),
+                2 => {
+                    found[count..count + BLOCK].copy_from_slice(&self.slots[2 * cell]);
+                    found[count + BLOCK..count + 2 * BLOCK].copy_from_slice(&self.slots[2 * cell + 1]);
+                }
+                blocks => {
+                    let slots = self.slots[cell * blocks..(cell + 1) * blocks].as_flattened();
+                    found[count..count + slots.len()].copy_from_slice(slots);
+                }
+            }
+            count += (self.heads[cell] & !AT_WALL) as usize;
         }
         count
     }
-}
-
-/// Copies all slots of a cell; returns how many are taken.
-#[inline(always)]
-fn copy<const SLOTS: usize>(cell: &[u32], room: &mut [u32]) -> usize {
-    if let Some((head, slots)) = cell.split_first()
-        && let (Some(slots), Some(room)) = (slots.first_chunk::<SLOTS>(), room.first_chunk_mut())
-    {
-        *room = *slots;
-        return (head & !AT_WALL) as usize;
-    }
-    0
-}
-
-#[inline(never)]
-fn copy_many(cell: &[u32], blocks: usize, room: &mut [u32]) -> usize {
-    room[..blocks * BLOCK].copy_from_slice(&cell[1..=blocks * BLOCK]);
-    (cell[0] & !AT_WALL) as usize
 }
