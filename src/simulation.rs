@@ -17,10 +17,12 @@ mod cells;
 #[cfg(feature = "serde")]
 mod checkpoint;
 mod engine;
+mod epoch;
 mod errors;
 mod event;
 mod grid;
 mod guard;
+mod lookahead;
 mod prediction;
 mod resolution;
 mod view;

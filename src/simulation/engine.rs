@@ -11,18 +11,8 @@ use super::prediction::{Earliest, LANES, cell_exit, earliest_collision};
 use super::resolution::{Meeting, NotFinite, by_contact_duration, resolve_pair, resolve_wall};
 use crate::boundary::{Boundary, Container};
 use crate::collision::{CollisionRule, Frictional};
-use crate::prefetch::prefetch;
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, Flight};
-
-/// Disks from which on the caches do not hold all of a system.
-const LARGE: usize = 20_000;
-
-/// How far ahead data are asked for, and what they lead to, in buckets of the bucket queue; and how many buckets an event takes.
-const FAR: usize = 48;
-const NEAR: usize = 32;
-const NEXT: usize = 16;
-const STRIDE: usize = 4;
 
 /// How far ahead a wall is searched for, in epochs: no search is endless.
 const HORIZON: f64 = 2.0;
@@ -70,9 +60,9 @@ pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     /// Cell crossings and collisions until the epoch last moved.
     pub(super) tally: (u64, u64),
     /// Room for the neighbours of one disk.
-    found: Vec<u32>,
+    pub(super) found: Vec<u32>,
     /// Room for the times of all disks.
-    due: Vec<f64>,
+    pub(super) due: Vec<f64>,
     /// Room for the disks of one snapshot.
     pub(super) copies: Vec<Disk>,
 }
@@ -124,21 +114,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Predicts every disk's next event from the present state alone.
-    pub(super) fn predict_all(&mut self) {
-        for disk in 0..self.slots.len() {
-            self.find_next(disk);
-        }
-        self.reset_scheduler();
-    }
-
-    /// Tells the scheduler the times of all events.
-    fn reset_scheduler(&mut self) {
-        self.due.clear();
-        self.due.extend(self.slots.iter().map(Slot::due));
-        self.scheduler.reset(&self.due);
-    }
-
     /// The present.
     pub fn time(&self) -> f64 {
         self.origin + self.now
@@ -149,37 +124,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     pub(super) fn next_due(&self, end: f64) -> Option<(usize, f64)> {
         let (disk, due) = self.scheduler.earliest();
         (due <= end && disk < self.slots.len()).then_some((disk, due))
-    }
-
-    /// Asks for what the next events will need, where the caches do not hold the system anyway.
-    ///
-    /// What is far ahead is asked for first, and what that leads to when it has come.
-    #[inline]
-    fn fetch_ahead(&mut self) {
-        if self.slots.len() < LARGE {
-            return;
-        }
-        for ahead in 0..STRIDE {
-            if let Some(disk) = self.scheduler.soon(FAR + ahead) {
-                prefetch(&self.slots, disk);
-                prefetch(&self.bodies.trajectories, disk);
-                self.cells.prefetch_place(disk);
-            }
-            if let Some(disk) = self.scheduler.soon(NEAR + ahead) {
-                let partner = self.slots[disk].partner as usize;
-                prefetch(&self.slots, partner);
-                prefetch(&self.bodies.trajectories, partner);
-                prefetch(&self.bodies.spins, partner);
-                prefetch(&self.bodies.spins, disk);
-                self.cells.prefetch_around(disk);
-            }
-            if let Some(disk) = self.scheduler.soon(NEXT + ahead) {
-                let count = self.cells.around(disk, &mut self.found);
-                for &neighbour in &self.found[..count] {
-                    prefetch(&self.bodies.trajectories, neighbour as usize);
-                }
-            }
-        }
     }
 
     /// Does the next event of `disk`.
@@ -305,7 +249,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Finds the next event of a disk among all its neighbours.
     #[inline(always)]
-    fn find_next(&mut self, disk: usize) {
+    pub(super) fn find_next(&mut self, disk: usize) {
         self.make_room();
         let count = self.cells.around(disk, &mut self.found);
         let earliest = self.earliest_collision(disk, count, Earliest::NONE);
@@ -363,52 +307,5 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         } else if slot.exit_due > horizon {
             (slot.exit_due, slot.exit) = (horizon, Exit::Stay);
         }
-    }
-
-    /// Moves the epoch to a little before the offset `due`, and returns the new offset of the same time.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn move_epoch(&mut self, due: f64) -> f64 {
-        let by = (due / self.epoch_length).floor() * self.epoch_length;
-        self.shift_epoch(by);
-        self.epoch_length = self.bodies.epoch_length();
-        due - by
-    }
-
-    /// Changes to larger or smaller cells, if those suit what happened since the last epoch; returns whether it did.
-    ///
-    /// All events are predicted anew from the present, also the one that was due.
-    #[cold]
-    fn adapt_cells(&mut self) -> bool {
-        let Counters { cell_crossings, collisions, .. } = self.counters;
-        let (last_crossings, last_collisions) =
-            std::mem::replace(&mut self.tally, (cell_crossings, collisions));
-        let mesh = self.cells.grid().mesh();
-        let suitable = mesh.suitable(cell_crossings - last_crossings, collisions - last_collisions);
-        if suitable == mesh {
-            return false;
-        }
-        let positions: Vec<_> =
-            (0..self.bodies.len()).map(|disk| self.bodies.position(disk, self.now)).collect();
-        let diameter = 2.0 * self.bodies.largest_radius();
-        if let Some(cells) = Cells::new(&self.boundary, diameter, suitable, &positions) {
-            self.cells = cells;
-            self.predict_all();
-            return true;
-        }
-        false
-    }
-
-    pub(super) fn shift_epoch(&mut self, by: f64) {
-        self.bodies.shift(by);
-        for slot in &mut self.slots {
-            slot.collision_due -= by;
-            slot.exit_due -= by;
-        }
-        self.origin += by;
-        self.now -= by;
-        self.guard.shift(by);
-        self.boundary.set_time_origin(self.origin);
-        self.reset_scheduler();
     }
 }
