@@ -11,6 +11,9 @@ pub const HOMOGENEOUS: f64 = 0.5;
 /// Largest and smallest magnitude of a radius or mass: products of a few of them stay finite and normal.
 const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
+/// Most disks that there can be at once.
+pub(crate) const MOST_DISKS: usize = 1 << 28;
+
 /// Largest magnitude of a component of a position or velocity, and of an angle or angular velocity.
 const LARGEST: f64 = 1e60;
 

@@ -8,7 +8,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use thiserror::Error;
 
 use crate::boundary::{Boundary, Domain};
-use crate::quantity::{non_negative, positive};
+use crate::disk::MOST_DISKS;
+use crate::quantity::{accept, non_negative, positive};
 use crate::random::{normal, uniform};
 use crate::{Disk, ParameterError};
 
@@ -46,7 +47,7 @@ pub enum PlacementError {
 /// Neighbours are up to 1.4 diameters apart, closer if the boundary is not high enough for that.
 ///
 /// # Errors
-/// If the radius is not finite and positive, or there is no room.
+/// If the radius is not finite and positive, there are more than 2²⁸ disks, or there is no room.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -62,6 +63,7 @@ pub fn lattice<B: Boundary + ?Sized>(
     radius: f64,
 ) -> Result<Vec<Disk>, PlacementError> {
     positive("radius", radius)?;
+    countable(count)?;
     let room = room(&boundary.interior(), radius);
     let spacings = (0..=40).map(|k| LOOSE + (CLOSE - LOOSE) * f64::from(k) / 40.0);
     let mut most = 0;
@@ -74,6 +76,11 @@ pub fn lattice<B: Boundary + ?Sized>(
         most = most.max(disks.len());
     }
     Err(PlacementError::NoRoom { count, placed: most, radius })
+}
+
+/// An open container has room for any number: a slip of the pen must not cost all memory.
+fn countable(count: usize) -> Result<(), ParameterError> {
+    accept(count <= MOST_DISKS, "number of disks", "at most 2^28", count as f64).map(|_| ())
 }
 
 /// Where a centre may be; an open top stays open.
@@ -136,6 +143,7 @@ pub fn random<B: Boundary + ?Sized>(
 ) -> Result<Vec<Disk>, PlacementError> {
     positive("radius", radius)?;
     positive("height", below)?;
+    countable(count)?;
     let radii = std::iter::repeat_n(radius, count);
     let disks = radii.map(|radius| Disk::new(DVec2::ZERO, radius)).collect::<Result<Vec<_>, _>>()?;
     placed_at_random(boundary, disks, below, seed)

@@ -12,11 +12,9 @@ use super::grid::Mesh;
 use crate::Disk;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
+use crate::disk::MOST_DISKS;
 use crate::quantity::finite;
 use crate::scheduler::{BySize, EventScheduler};
-
-/// Most disks that a simulation can hold.
-const MOST_DISKS: usize = 1 << 28;
 
 /// Most walls that a boundary can have.
 const MOST_WALLS: usize = 1 << 16;

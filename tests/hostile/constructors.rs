@@ -232,3 +232,14 @@ fn a_million_disks_are_set_up_in_seconds() {
     println!("{seconds} s");
     assert!(seconds < 60.0, "{seconds} s");
 }
+
+#[test]
+fn more_disks_than_memory_holds_are_refused_at_once() {
+    let open = Container::open(1e9).unwrap();
+    for count in [usize::MAX, 1 << 40, (1 << 28) + 1] {
+        let refused = initial::lattice(&open, count, 0.5).unwrap_err().to_string();
+        assert!(refused.contains("number of disks"), "{refused}");
+        let refused = initial::random(&open, count, 0.5, 1e9, 1).unwrap_err().to_string();
+        assert!(refused.contains("number of disks"), "{refused}");
+    }
+}
