@@ -116,15 +116,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         check_overlaps(&boundary, &self.disks, &cells)?;
         let generator = Xoshiro256PlusPlus::seed_from_u64(self.seed);
         let bodies = Bodies::new(&self.disks, self.gravity);
-        Ok(Simulation::assemble(
-            self.rule,
-            boundary,
-            self.scheduler,
-            bodies,
-            cells,
-            generator,
-            self.start_time,
-        ))
+        let (rule, scheduler, start) = (self.rule, self.scheduler, self.start_time);
+        let mut simulation = Simulation::idle(rule, boundary, scheduler, bodies, cells, generator, start);
+        simulation.predict_all();
+        Ok(simulation)
     }
 }
 

@@ -68,21 +68,6 @@ pub struct Simulation<R = Frictional, B = Container, S = BySize> {
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// A simulation at its start, with all first events predicted.
-    pub(super) fn assemble(
-        rule: R,
-        boundary: B,
-        scheduler: S,
-        bodies: Bodies,
-        cells: Cells,
-        generator: Xoshiro256PlusPlus,
-        origin: f64,
-    ) -> Self {
-        let mut simulation = Self::idle(rule, boundary, scheduler, bodies, cells, generator, origin);
-        simulation.predict_all();
-        simulation
-    }
-
     /// A simulation that knows of no event yet.
     pub(super) fn idle(
         rule: R,
@@ -241,6 +226,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Finds the next event of a disk among all its neighbours, and tells the scheduler.
+    ///
+    /// One copy for its five callers: all of the search is inlined into it.
     #[inline(never)]
     fn predict(&mut self, disk: usize) {
         self.find_next(disk);
@@ -250,8 +237,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Finds the next event of a disk among all its neighbours.
     #[inline(always)]
     pub(super) fn find_next(&mut self, disk: usize) {
-        self.make_room();
-        let count = self.cells.around(disk, &mut self.found);
+        let count = self.find_neighbours(disk);
         let earliest = self.earliest_collision(disk, count, Earliest::NONE);
         self.meet_next(disk, earliest);
         self.end_flight(disk);
@@ -265,6 +251,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         slot.collision_due = earliest.due;
         slot.partner = earliest.partner;
         slot.partner_collisions = partner_collisions;
+    }
+
+    /// Writes the disks around this one to the room for neighbours; returns how many.
+    #[inline]
+    pub(super) fn find_neighbours(&mut self, disk: usize) -> usize {
+        self.make_room();
+        self.cells.around(disk, &mut self.found)
     }
 
     /// Keeps the room for neighbours in step with the cells, which may have grown.

@@ -23,7 +23,8 @@ pub enum Event {
         /// The disk.
         disk: usize,
     },
-    /// A disk's partner had collided with another meanwhile, and the disk's next event was predicted anew: no physics.
+    /// A disk's partner had collided with another meanwhile, and the disk's next event was predicted anew; or all were, for
+    /// neighbour cells of another size. No physics.
     Repredicted {
         /// The disk.
         disk: usize,

@@ -39,7 +39,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 self.cells.prefetch_around(disk);
             }
             if let Some(disk) = self.scheduler.soon(NEXT + ahead) {
-                let count = self.cells.around(disk, &mut self.found);
+                let count = self.find_neighbours(disk);
                 for &neighbour in &self.found[..count] {
                     prefetch(&self.bodies.trajectories, neighbour as usize);
                 }
