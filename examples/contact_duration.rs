@@ -20,7 +20,7 @@ use granular_edmd::ParameterError;
 use granular_edmd::analysis::{ConvectiveRegime, StateCriteria, Transition, TransitionLine, transitions};
 use granular_edmd::observable::RunningMean;
 use granular_edmd::study::{
-    Axis, Base, Course, Outcome, Parameter, Protocol, Ramp, Record, Specification, SpecificationError, System,
+    Axis, Course, Outcome, Parameter, Protocol, Ramp, Record, Specification, SpecificationError,
 };
 
 /// Transitions at five contact durations.
@@ -72,9 +72,7 @@ fn specification(
     values: Vec<f64>,
     friction: f64,
 ) -> Result<Specification, SpecificationError> {
-    let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
-    let system =
-        System::new(1000, 60.0, base).with_height(150.0).with_gravity(0.015_625).with_friction(friction);
+    let system = studies::vibrated_box(0.015_625).with_friction(friction);
     let protocol = if common.quick { Protocol::new(100, 10, 10) } else { Protocol::new(500, 100, 10) };
     let durations = DURATIONS.iter().flat_map(|&duration| [duration; RUNS]).collect();
     Specification::new(system, protocol, common.seed)?

@@ -17,7 +17,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::study::{
-    Base, Course, Parameter, Protocol, Ramp, Record, Sample, Specification, SpecificationError, Study, System,
+    Course, Parameter, Protocol, Ramp, Record, Sample, Specification, SpecificationError, Study,
 };
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::figure::Figure;
@@ -39,11 +39,7 @@ const STEP: f64 = 0.005;
 
 impl Arguments {
     fn specification(&self) -> Result<Specification, SpecificationError> {
-        let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
-        let system = System::new(1000, 60.0, base)
-            .with_height(150.0)
-            .with_gravity(0.015_625)
-            .with_contact_duration(1e-4);
+        let system = studies::vibrated_box(0.015_625);
         // The paper keeps each value for 100 000 oscillations, and draws all samples, those of the transient included.
         let protocol =
             if self.common.quick { Protocol::new(0, 200, 50) } else { Protocol::new(0, 1000, 100) };

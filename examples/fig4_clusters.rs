@@ -20,9 +20,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use granular_edmd::analysis::{Classification, ConvectiveState, StateCriteria};
 use granular_edmd::glam::DVec2;
-use granular_edmd::study::{
-    Axis, Base, Parameter, Protocol, Record, Specification, SpecificationError, Study, System,
-};
+use granular_edmd::study::{Axis, Parameter, Protocol, Record, Specification, SpecificationError, Study};
 use kuva::plot::scatter::MarkerShape;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 
@@ -43,11 +41,7 @@ struct Arguments {
 
 impl Arguments {
     fn specification(&self) -> Result<Specification, SpecificationError> {
-        let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
-        let system = System::new(1000, 60.0, base)
-            .with_height(150.0)
-            .with_gravity(0.015_625)
-            .with_contact_duration(1e-4);
+        let system = studies::vibrated_box(0.015_625);
         // The paper: 100 000 oscillations, sampled every 100, the first half discarded.
         let protocol =
             if self.common.quick { Protocol::new(4_000, 400, 20) } else { Protocol::new(50_000, 500, 100) };

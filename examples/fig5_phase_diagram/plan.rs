@@ -1,9 +1,9 @@
 //! What is simulated: ramps of friction, up and down, side by side for each inelasticity.
 
 use clap::ValueEnum;
-use granular_edmd::study::{
-    Axis, Base, Course, Parameter, Protocol, Ramp, Specification, SpecificationError, System,
-};
+use granular_edmd::study::{Axis, Course, Parameter, Protocol, Ramp, Specification, SpecificationError};
+
+use crate::studies;
 
 /// How much is done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -94,11 +94,7 @@ fn specification(
     course: Course,
     inelasticities: Vec<f64>,
 ) -> Result<Specification, SpecificationError> {
-    let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
-    let system = System::new(1000, 60.0, base)
-        .with_height(150.0)
-        .with_gravity(gravity.value())
-        .with_contact_duration(1e-4);
+    let system = studies::vibrated_box(gravity.value());
     let frictions = if size == Size::Quick { FEW_FRICTIONS.to_vec() } else { FRICTIONS.to_vec() };
     Specification::new(system, protocol(size), seed)?
         .with_ramp(Ramp::new(Parameter::Friction, frictions, course))?

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
-use granular_edmd::study::{Control, Progress, Specification, Study};
+use granular_edmd::study::{Base, Control, Progress, Specification, Study, System};
 use indicatif::{ProgressBar, ProgressStyle};
 use kuva::backend::png::PngBackend;
 use kuva::render::figure::Figure;
@@ -34,6 +34,12 @@ impl Common {
     pub(crate) fn folder(&self, name: &str) -> PathBuf {
         self.out.join(if self.quick { format!("{name}-quick") } else { name.to_owned() })
     }
+}
+
+/// The paper's vibrated box at this gravity, with the contact duration that our figures take.
+pub(crate) fn vibrated_box(gravity: f64) -> System {
+    let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
+    System::new(1000, 60.0, base).with_height(150.0).with_gravity(gravity).with_contact_duration(1e-4)
 }
 
 /// Says in one line what went wrong, if something did.

