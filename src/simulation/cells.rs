@@ -251,21 +251,30 @@ impl Cells {
 
     /// Appends the disks of three cells.
     #[inline(always)]
-    fn gather(&self, first: usize, step: usize, found: &mut [u32], mut count: usize) -> usize {
-        for cell in [first, first + step, first + 2 * step] {
-            // Copies of known length are one load and one store each.
-            match self.blocks {
-                1 => found[count..count + BLOCK].copy_from_slice(&self.slots[cell]),
-                2 => {
-                    found[count..count + BLOCK].copy_from_slice(&self.slots[2 * cell]);
-                    found[count + BLOCK..count + 2 * BLOCK].copy_from_slice(&self.slots[2 * cell + 1]);
-                }
-                blocks => {
-                    let slots = self.slots[cell * blocks..(cell + 1) * blocks].as_flattened();
-                    found[count..count + slots.len()].copy_from_slice(slots);
-                }
-            }
-            count += (self.heads[cell] & !AT_WALL) as usize;
+    fn gather(&self, first: usize, step: usize, found: &mut [u32], count: usize) -> usize {
+        // Copies of a length that the compiler knows are one load and one store each.
+        match self.blocks {
+            1 => self.gather_blocks(1, first, step, found, count),
+            2 => self.gather_blocks(2, first, step, found, count),
+            blocks => self.gather_blocks(blocks, first, step, found, count),
+        }
+    }
+
+    #[inline(always)]
+    fn gather_blocks(
+        &self,
+        blocks: usize,
+        first: usize,
+        step: usize,
+        found: &mut [u32],
+        mut count: usize,
+    ) -> usize {
+        let heads = &self.heads[first..=first + 2 * step];
+        let slots = &self.slots[first * blocks..(first + 2 * step + 1) * blocks];
+        for cell in [0, step, 2 * step] {
+            let slots = slots[cell * blocks..(cell + 1) * blocks].as_flattened();
+            found[count..count + slots.len()].copy_from_slice(slots);
+            count += (heads[cell] & !AT_WALL) as usize;
         }
         count
     }

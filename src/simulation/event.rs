@@ -65,6 +65,17 @@ impl Counters {
     }
 }
 
+/// The earliest collision of a disk that is known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Earliest {
+    pub(super) due: f64,
+    pub(super) partner: u32,
+}
+
+impl Earliest {
+    pub(super) const NONE: Self = Self { due: f64::INFINITY, partner: u32::MAX };
+}
+
 /// How a disk's flight in its cell ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -119,6 +130,14 @@ impl Slot {
         exit: Exit::Stay,
         wall: 0,
     };
+
+    /// The next collision is this one, with a partner that has collided so often.
+    #[inline]
+    pub(super) fn meet(&mut self, earliest: Earliest, partner_collisions: u32) {
+        self.collision_due = earliest.due;
+        self.partner = earliest.partner;
+        self.partner_collisions = partner_collisions;
+    }
 
     #[inline]
     pub(super) fn due(&self) -> f64 {

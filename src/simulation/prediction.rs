@@ -1,7 +1,7 @@
 //! When a disk meets another, and when it leaves its cell.
 
 use super::bodies::Bodies;
-use super::event::Exit;
+use super::event::{Earliest, Exit};
 use crate::boundary::Region;
 
 /// Pairs that are predicted side by side.
@@ -9,28 +9,6 @@ use crate::boundary::Region;
 /// Each step of the arithmetic is written for all lanes at once, so that the compiler turns it into vector instructions
 /// and no branch depends on whether a pair approaches: such branches are coin tosses.
 pub(super) const LANES: usize = 4;
-
-/// The earliest collision found so far.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Earliest {
-    pub(super) due: f64,
-    pub(super) partner: u32,
-}
-
-impl Earliest {
-    pub(super) const NONE: Self = Self { due: f64::INFINITY, partner: u32::MAX };
-
-    /// Time and partner as one number, in the order of both: times are not negative, so their bits are in order.
-    #[inline]
-    fn rank(self) -> u128 {
-        (u128::from(self.due.to_bits()) << 32) | u128::from(self.partner)
-    }
-
-    #[inline]
-    fn from_rank(rank: u128) -> Self {
-        Self { due: f64::from_bits((rank >> 32) as u64), partner: rank as u32 }
-    }
-}
 
 /// Relative positions and velocities of some pairs.
 #[derive(Debug, Clone, Copy, Default)]
@@ -94,8 +72,11 @@ impl Best {
     /// The earliest of all lanes.
     #[inline]
     fn earliest(&self) -> Earliest {
-        let rank = |lane: usize| Earliest { due: self.due[lane], partner: self.partner[lane] as u32 }.rank();
-        Earliest::from_rank((1..LANES).fold(rank(0), |first, lane| first.min(rank(lane))))
+        // Time and partner as one number, in the order of both: times are not negative, so their bits are in order.
+        let rank =
+            |lane: usize| (u128::from(self.due[lane].to_bits()) << 32) | u128::from(self.partner[lane]);
+        let first = (1..LANES).fold(rank(0), |first, lane| first.min(rank(lane)));
+        Earliest { due: f64::from_bits((first >> 32) as u64), partner: first as u32 }
     }
 }
 
