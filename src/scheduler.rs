@@ -49,11 +49,10 @@ pub trait EventScheduler {
     /// The disk whose event is due first, and when. It does not change the scheduler: what is lazy tidies up in `set`.
     fn earliest(&self) -> (usize, f64);
 
-    /// A disk that is likely to be due some events from now, the more the larger `ahead` is: a hint, so that its data can be
-    /// fetched from memory in time. By default none is named.
-    fn soon(&self, ahead: usize) -> Option<usize> {
-        let _ = ahead;
-        None
+    /// Adds the disks whose events come up soon and have come into sight since this was last called: a hint, so that their
+    /// data can be fetched from memory in time. By default there are none; some may be missed, or be named twice.
+    fn come_into_sight(&mut self, disks: &mut Vec<usize>) {
+        let _ = disks;
     }
 }
 
@@ -67,7 +66,7 @@ impl<T: EventScheduler + ?Sized> EventScheduler for Box<T> {
     fn earliest(&self) -> (usize, f64) {
         (**self).earliest()
     }
-    fn soon(&self, ahead: usize) -> Option<usize> {
-        (**self).soon(ahead)
+    fn come_into_sight(&mut self, disks: &mut Vec<usize>) {
+        (**self).come_into_sight(disks);
     }
 }

@@ -20,6 +20,9 @@ const SOON: usize = 8;
 /// Events, and steps past others, for each bucket after which a page is turned at the latest: its buckets are too wide.
 const LONGEST_PAGE: usize = 2;
 
+/// Buckets from the present one to those that come into sight: some dozens of events.
+const SIGHT: usize = 96;
+
 /// Buckets that share a word of flags.
 const WORD: usize = u64::BITS as usize;
 
@@ -39,6 +42,8 @@ pub struct BucketQueue {
     buckets: usize,
     /// The first bucket that is not empty.
     current: usize,
+    /// Buckets before this one have come into sight.
+    sighted: usize,
     /// Time at which the page starts, and buckets per time.
     start: f64,
     rate: f64,
@@ -69,6 +74,7 @@ impl BucketQueue {
             flags: Vec::new(),
             buckets: 0,
             current: 0,
+            sighted: 0,
             start: 0.0,
             rate: 0.0,
             set: 0,
@@ -157,7 +163,7 @@ impl BucketQueue {
         let first = self.nodes.iter().map(|node| node.due).fold(f64::INFINITY, f64::min);
         self.rate = BUCKETS_PER_EVENT * self.events_per_time(first);
         self.start = first;
-        (self.set, self.steps) = (0, 0);
+        (self.set, self.steps, self.sighted) = (0, 0, 0);
         self.current = self.buckets - 1;
         self.flags.fill(0);
         self.heads.fill(NOBODY);
@@ -212,10 +218,21 @@ impl EventScheduler for BucketQueue {
         self.nodes.get(first as usize).map_or((usize::MAX, f64::INFINITY), |node| (first as usize, node.due))
     }
 
-    #[inline]
-    fn soon(&self, ahead: usize) -> Option<usize> {
-        let first = *self.heads.get(self.current + ahead)? as usize;
-        prefetch(&self.nodes, first);
-        (first < self.nodes.len()).then_some(first)
+    fn come_into_sight(&mut self, disks: &mut Vec<usize>) {
+        let end = (self.current + SIGHT).min(self.buckets.saturating_sub(1));
+        for bucket in self.sighted.max(self.current)..end {
+            if let Some(&first) = self.heads.get(bucket + SIGHT) {
+                prefetch(&self.nodes, first as usize);
+            }
+            if let Some(first) = self.nodes.get(self.heads[bucket] as usize) {
+                disks.push(self.heads[bucket] as usize);
+                // Three in a bucket are rare.
+                if first.next != NOBODY {
+                    disks.push(first.next as usize);
+                    prefetch(&self.nodes, first.next as usize);
+                }
+            }
+        }
+        self.sighted = end;
     }
 }

@@ -51,7 +51,9 @@ impl EventScheduler for BySize {
     }
 
     #[inline]
-    fn soon(&self, ahead: usize) -> Option<usize> {
-        if self.many { self.queue.soon(ahead) } else { None }
+    fn come_into_sight(&mut self, disks: &mut Vec<usize>) {
+        if self.many {
+            self.queue.come_into_sight(disks);
+        }
     }
 }

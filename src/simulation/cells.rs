@@ -212,10 +212,35 @@ impl Cells {
     pub(super) fn prefetch_around(&self, disk: usize) {
         let (centre, stride) = (self.grid.index(self.places[disk]), self.grid.stride());
         for middle in [centre - stride, centre, centre + stride] {
-            prefetch(&self.heads, middle);
-            prefetch(&self.slots, (middle - 1) * self.blocks);
-            prefetch(&self.slots, (middle + 2) * self.blocks - 1);
+            self.prefetch_cells(middle - 1, middle + 1);
         }
+    }
+
+    /// Asks for the cells that a disk leaves and enters by `exit`, and those that then come within reach.
+    #[inline]
+    pub(super) fn prefetch_ahead(&self, disk: usize, exit: Exit) {
+        let from = self.places[disk];
+        let (to, _) = self.grid.neighbour(from, exit.direction());
+        self.grid.prefetch_region(to);
+        for cell in [from, to].map(|place| self.grid.index(place)) {
+            self.prefetch_cells(cell, cell);
+        }
+        let (first, step) = self.three_ahead(to, exit);
+        if step == 1 {
+            self.prefetch_cells(first, first + 2);
+        } else {
+            for cell in [first, first + step, first + 2 * step] {
+                self.prefetch_cells(cell, cell);
+            }
+        }
+    }
+
+    /// Asks for these cells, which are not more than two cache lines.
+    #[inline]
+    fn prefetch_cells(&self, first: usize, last: usize) {
+        prefetch(&self.heads, first);
+        prefetch(&self.slots, first * self.blocks);
+        prefetch(&self.slots, (last + 1) * self.blocks - 1);
     }
 
     /// Room that [`Self::around`] and [`Self::ahead`] need.
@@ -236,17 +261,28 @@ impl Cells {
         count
     }
 
-    /// The same for the three cells that come within reach after `disk` has left its cell by `exit`.
+    /// The same for the three cells that come within reach of `place` when a disk has come there by `exit`.
     #[inline]
-    pub(super) fn ahead(&self, disk: usize, exit: Exit, found: &mut [u32]) -> usize {
+    pub(super) fn ahead(&self, place: Place, exit: Exit, found: &mut [u32]) -> usize {
+        let (first, step) = self.three_ahead(place, exit);
+        self.gather(first, step, found, 0)
+    }
+
+    /// The first of these three cells, and how far apart they are.
+    #[inline]
+    fn three_ahead(&self, place: Place, exit: Exit) -> (usize, usize) {
         let (right, up) = exit.direction();
         let stride = self.grid.stride();
-        let middle = self
-            .grid
-            .index(self.places[disk])
-            .wrapping_add_signed(right as isize * stride.cast_signed() + up as isize);
+        let middle =
+            self.grid.index(place).wrapping_add_signed(right as isize * stride.cast_signed() + up as isize);
         let step = if up == 0 { 1 } else { stride };
-        self.gather(middle - step, step, found, 0)
+        (middle - step, step)
+    }
+
+    /// The place that a disk is at when it has left its cell by `exit`.
+    #[inline]
+    pub(super) fn next_place(&self, disk: usize, exit: Exit) -> Place {
+        self.grid.neighbour(self.places[disk], exit.direction()).0
     }
 
     /// Appends the disks of three cells.

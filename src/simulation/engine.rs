@@ -9,6 +9,7 @@ use super::cells::Cells;
 use super::errors::RunError;
 use super::event::{Counters, Earliest, Event, Exit, Slot};
 use super::guard::Guard;
+use super::lookahead::Lookahead;
 use super::prediction::{LANES, cell_exit, earliest_collision};
 use super::resolution::{Meeting, NotFinite, by_contact_duration, resolve_pair, resolve_wall};
 use crate::boundary::{Boundary, Container};
@@ -61,6 +62,7 @@ pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     pub(super) guard: Guard,
     /// Cell crossings and collisions until the epoch last moved.
     pub(super) tally: (u64, u64),
+    pub(super) lookahead: Lookahead,
     /// Room for the neighbours of one disk.
     pub(super) found: Vec<u32>,
     /// Room for the times of all disks.
@@ -95,6 +97,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             counters: Counters::default(),
             guard: Guard::default(),
             tally: (0, 0),
+            lookahead: Lookahead::default(),
             found: Vec::new(),
             due: Vec::new(),
             copies: Vec::new(),
@@ -132,7 +135,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if let Some(events) = self.guard.watch(self.now, self.epoch_length, self.slots.len()) {
             return Err(RunError::Stalled { time: self.time(), disk, events });
         }
-        self.fetch_ahead();
+        self.look_ahead();
         let slot = self.slots[disk];
         if slot.collision_due <= slot.exit_due {
             let partner = slot.partner as usize;
@@ -212,7 +215,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.counters.cell_crossings += 1;
         self.bodies.trajectories[disk].position.x += self.cells.cross(disk, exit);
         self.make_room();
-        let count = self.cells.ahead(disk, exit, &mut self.found);
+        let count = self.cells.ahead(self.cells.place(disk), exit, &mut self.found);
         // Before the search for a partner: its branches are then decided, right or wrong, while that is still under way.
         self.end_flight(disk);
         let slot = &self.slots[disk];
@@ -273,7 +276,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Keeps the room for neighbours in step with the cells, which may have grown.
     #[inline]
-    fn make_room(&mut self) {
+    pub(super) fn make_room(&mut self) {
         let room = self.cells.room() + LANES;
         if self.found.len() < room {
             self.found.resize(room, 0);

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::boundary::{Domain, Region};
+use crate::prefetch::prefetch;
 
 /// Cells per disk at most; more would cost memory and save nothing.
 const CELLS_PER_DISK: f64 = 8.0;
@@ -219,6 +220,12 @@ impl Grid {
             min: DVec2::new(self.column_edges[column - 1], self.row_edges[row - 1]),
             max: DVec2::new(self.column_edges[column], self.row_edges[row]),
         }
+    }
+
+    /// Asks for what [`Self::region`] needs: wide systems have many columns.
+    #[inline]
+    pub(super) fn prefetch_region(&self, place: Place) {
+        prefetch(&self.column_edges, place.column as usize);
     }
 
     /// Whether a place is one of the cells, not of the ring.
