@@ -23,6 +23,9 @@ const LONGEST_PAGE: usize = 2;
 /// Buckets from the present one to those that come into sight: some dozens of events.
 const SIGHT: usize = 96;
 
+/// Disks that wait for their bucket to come from memory.
+const QUEUE: usize = 16;
+
 /// Buckets that share a word of flags.
 const WORD: usize = u64::BITS as usize;
 
@@ -31,7 +34,7 @@ const WORD: usize = u64::BITS as usize;
 /// A disk goes into the bucket of its time, where it seldom meets another, or into the last one if it is off the page; a flag
 /// for each bucket that is not empty leads to the next event. That is a few loads and stores, however many disks there
 /// are. When the page is used up, all events are dealt out anew, to buckets as wide as the events of the last page want.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct BucketQueue {
     /// All that concerns a disk, together in memory.
     nodes: Vec<Node>,
@@ -44,6 +47,10 @@ pub struct BucketQueue {
     current: usize,
     /// Buckets before this one have come into sight.
     sighted: usize,
+    /// Disks that are not in their buckets yet, the next one to go there first, and the first of those buckets.
+    waiting: [Waiting; QUEUE],
+    oldest: usize,
+    waiting_from: usize,
     /// Time at which the page starts, and buckets per time.
     start: f64,
     rate: f64,
@@ -65,6 +72,26 @@ struct Node {
 
 const NOBODY: u32 = u32::MAX;
 
+/// In place of [`Node::previous`]: the disk waits.
+const WAITS: u32 = u32::MAX - 1;
+
+/// A disk on its way to a bucket that is not in the caches.
+#[derive(Debug, Clone, Copy)]
+struct Waiting {
+    disk: u32,
+    bucket: u32,
+}
+
+impl Waiting {
+    const NOBODY: Self = Self { disk: NOBODY, bucket: 0 };
+}
+
+impl Default for BucketQueue {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl BucketQueue {
     /// A scheduler of no disks.
     pub const fn new() -> Self {
@@ -75,6 +102,9 @@ impl BucketQueue {
             buckets: 0,
             current: 0,
             sighted: 0,
+            waiting: [Waiting::NOBODY; QUEUE],
+            oldest: 0,
+            waiting_from: usize::MAX,
             start: 0.0,
             rate: 0.0,
             set: 0,
@@ -92,6 +122,9 @@ impl BucketQueue {
     #[inline]
     fn unlink(&mut self, disk: usize) {
         let Node { due, next, previous } = self.nodes[disk];
+        if previous == WAITS {
+            return self.call_off(disk);
+        }
         if previous == NOBODY {
             let bucket = self.bucket(due);
             self.heads[bucket] = next;
@@ -143,14 +176,67 @@ impl BucketQueue {
         others < due || (others == due && (other as usize) < disk)
     }
 
+    /// Puts a disk into the bucket of its time: at once if that is in sight, else when it has come from memory.
+    #[inline]
+    fn place(&mut self, disk: usize, due: f64) {
+        let bucket = self.bucket(due);
+        if bucket < self.current + SIGHT {
+            return self.link(disk, due);
+        }
+        prefetch(&self.heads, bucket);
+        self.nodes[disk] = Node { due, next: NOBODY, previous: WAITS };
+        self.waiting_from = self.waiting_from.min(bucket);
+        let waiting = Waiting { disk: disk as u32, bucket: bucket as u32 };
+        let longest = std::mem::replace(&mut self.waiting[self.oldest], waiting);
+        self.oldest = (self.oldest + 1) % QUEUE;
+        let halfway = self.waiting[(self.oldest + QUEUE / 2) % QUEUE];
+        prefetch(&self.nodes, self.heads[halfway.bucket as usize] as usize);
+        self.arrive(longest);
+    }
+
+    #[inline]
+    fn arrive(&mut self, waiting: Waiting) {
+        if waiting.disk != NOBODY {
+            self.link(waiting.disk as usize, self.nodes[waiting.disk as usize].due);
+        }
+    }
+
+    /// All that wait arrive.
+    #[cold]
+    fn hurry(&mut self) {
+        self.waiting_from = usize::MAX;
+        for waiting in std::mem::replace(&mut self.waiting, [Waiting::NOBODY; QUEUE]) {
+            self.arrive(waiting);
+        }
+    }
+
+    /// A disk waits no longer.
+    #[cold]
+    fn call_off(&mut self, disk: usize) {
+        for waiting in self.waiting.iter_mut().filter(|waiting| waiting.disk as usize == disk) {
+            *waiting = Waiting::NOBODY;
+        }
+    }
+
+    /// The first bucket from the present one on that is not empty, or the end.
+    #[inline]
+    fn first_bucket(&self) -> usize {
+        let mut word = self.current / WORD;
+        while word < self.flags.len() && self.flags[word] == 0 {
+            word += 1;
+        }
+        self.flags.get(word).map_or(self.buckets, |flags| word * WORD + flags.trailing_zeros() as usize)
+    }
+
     /// Finds the first bucket that is not empty; turns the page if that is the last, or the page does not end.
     #[inline]
     fn find_current(&mut self) {
-        let mut word = self.current / WORD;
-        while self.flags[word] == 0 {
-            word += 1;
+        let mut first = self.first_bucket();
+        if first >= self.waiting_from {
+            self.hurry();
+            first = self.first_bucket();
         }
-        self.current = word * WORD + self.flags[word].trailing_zeros() as usize;
+        self.current = first;
         if self.current == self.buckets - 1 || self.set + self.steps > LONGEST_PAGE * self.buckets {
             self.turn_page();
         }
@@ -165,6 +251,8 @@ impl BucketQueue {
         self.start = first;
         (self.set, self.steps, self.sighted) = (0, 0, 0);
         self.current = self.buckets - 1;
+        self.waiting = [Waiting::NOBODY; QUEUE];
+        self.waiting_from = usize::MAX;
         self.flags.fill(0);
         self.heads.fill(NOBODY);
         // From the last to the first: of equal times each goes to the front of its bucket at once.
@@ -208,7 +296,7 @@ impl EventScheduler for BucketQueue {
     fn set(&mut self, disk: usize, due: f64) {
         self.unlink(disk);
         self.set += 1;
-        self.link(disk, due);
+        self.place(disk, due);
         self.find_current();
     }
 

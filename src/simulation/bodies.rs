@@ -8,6 +8,7 @@
 
 use glam::DVec2;
 
+use super::event::Slot;
 use crate::Disk;
 use crate::collision::{Body, Material};
 
@@ -60,9 +61,24 @@ impl Spin {
     }
 }
 
+/// What predictions look at, one cache line for a disk: where large systems are slow, it is for the lines that an event touches.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Particle {
+    pub(super) trajectory: Trajectory,
+    pub(super) slot: Slot,
+}
+
+impl Particle {
+    /// A particle with this trajectory whose next event is not known.
+    fn new(trajectory: Trajectory) -> Self {
+        Self { trajectory, slot: Slot::NEW }
+    }
+}
+
 #[derive(Debug, Clone)]
 pub(super) struct Bodies {
-    pub(super) trajectories: Vec<Trajectory>,
+    pub(super) particles: Vec<Particle>,
     pub(super) spins: Vec<Spin>,
     pub(super) gravity: f64,
     kinds: Kinds,
@@ -108,9 +124,10 @@ fn is_alike(disk: &Disk, other: &Disk) -> bool {
 impl Bodies {
     pub(super) fn new(disks: &[Disk], gravity: f64) -> Self {
         Self {
-            trajectories: disks
+            particles: disks
                 .iter()
                 .map(|disk| Trajectory { position: disk.position(), velocity: disk.velocity() })
+                .map(Particle::new)
                 .collect(),
             spins: disks
                 .iter()
@@ -130,10 +147,13 @@ impl Bodies {
     pub(super) fn restored(
         kinds: &[Disk],
         gravity: f64,
-        trajectories: Vec<Trajectory>,
+        trajectories: &[Trajectory],
+        slots: &[Slot],
         spins: Vec<Spin>,
     ) -> Self {
-        Self { trajectories, spins, gravity, kinds: Kinds::of(kinds) }
+        let particle = |(&trajectory, &slot)| Particle { trajectory, slot };
+        let particles = trajectories.iter().zip(slots).map(particle).collect();
+        Self { particles, spins, gravity, kinds: Kinds::of(kinds) }
     }
 
     /// What [`Self::restored`] takes.
@@ -153,7 +173,7 @@ impl Bodies {
     }
 
     pub(super) fn len(&self) -> usize {
-        self.trajectories.len()
+        self.particles.len()
     }
 
     #[inline]
@@ -180,20 +200,20 @@ impl Bodies {
     /// Position in the frame of the container.
     #[inline]
     pub(super) fn position(&self, disk: usize, offset: f64) -> DVec2 {
-        self.trajectories[disk].at(offset) + self.fall(offset).0
+        self.particles[disk].trajectory.at(offset) + self.fall(offset).0
     }
 
     /// Velocity in the frame of the container.
     #[inline]
     pub(super) fn velocity(&self, disk: usize, offset: f64) -> DVec2 {
-        self.trajectories[disk].velocity + self.fall(offset).1
+        self.particles[disk].trajectory.velocity + self.fall(offset).1
     }
 
     /// Motion as a collision of two disks sees it: velocities in the free-fall frame.
     #[inline]
     pub(super) fn body(&self, disk: usize) -> Body {
         Body {
-            velocity: self.trajectories[disk].velocity,
+            velocity: self.particles[disk].trajectory.velocity,
             angular_velocity: self.spins[disk].angular_velocity,
         }
     }
@@ -201,7 +221,7 @@ impl Bodies {
     /// A collision at this time offset changes the motion of `disk`; where it is stays as it was.
     #[inline]
     pub(super) fn kick(&mut self, disk: usize, velocity: DVec2, angular_velocity: f64, offset: f64) {
-        let trajectory = &mut self.trajectories[disk];
+        let trajectory = &mut self.particles[disk].trajectory;
         trajectory.velocity += velocity;
         trajectory.position -= velocity * offset;
         let spin = &mut self.spins[disk];
@@ -229,7 +249,8 @@ impl Bodies {
     /// Moves the epoch by this much.
     pub(super) fn shift(&mut self, by: f64) {
         let (fallen, gained) = self.fall(by);
-        for trajectory in &mut self.trajectories {
+        for Particle { trajectory, slot } in &mut self.particles {
+            slot.shift(by);
             trajectory.position = trajectory.at(by) + fallen;
             trajectory.velocity += gained;
         }
@@ -248,7 +269,7 @@ impl Bodies {
             return 1.0;
         }
         let diameter = 2.0 * self.material(0).radius;
-        let squares: f64 = self.trajectories.iter().map(|t| t.velocity.length_squared()).sum();
+        let squares: f64 = self.particles.iter().map(|p| p.trajectory.velocity.length_squared()).sum();
         let speed = (squares / self.len() as f64).sqrt() + (DIAMETERS * self.gravity.abs() * diameter).sqrt();
         let length = DIAMETERS * diameter / speed;
         if length.is_finite() && length > 0.0 {

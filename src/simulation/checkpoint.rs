@@ -202,9 +202,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Checkpoint {
             kinds: self.bodies.kinds(),
             gravity: self.bodies.gravity,
-            trajectories: self.bodies.trajectories.clone(),
+            trajectories: self.bodies.particles.iter().map(|particle| particle.trajectory).collect(),
             spins: self.bodies.spins.clone(),
-            slots: self.slots.clone(),
+            slots: self.bodies.particles.iter().map(|particle| particle.slot).collect(),
             grid: self.cells.state(),
             domain: self.boundary.domain(),
             generator: self.generator.clone(),
@@ -235,8 +235,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if saved != given {
             return Err(CheckpointError::Domain { saved, given });
         }
-        let Checkpoint { kinds, gravity, trajectories, spins, .. } = checkpoint.clone();
-        let bodies = Bodies::restored(&kinds, gravity, trajectories, spins);
+        let Checkpoint { kinds, gravity, trajectories, slots, spins, .. } = checkpoint;
+        let bodies = Bodies::restored(kinds, *gravity, trajectories, slots, spins.clone());
         let radius = bodies.largest_radius();
         let suits = checkpoint.grid.suits(&given, 2.0 * radius);
         check(suits, "its neighbour cells are not those of the domain")?;
@@ -256,7 +256,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ) -> Self {
         let mut run =
             Self::idle(rule, boundary, scheduler, bodies, cells, saved.generator.clone(), saved.origin);
-        run.slots.clone_from(&saved.slots);
         run.now = saved.now;
         run.epoch_length = saved.epoch_length;
         run.counters = saved.counters;

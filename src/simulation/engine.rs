@@ -51,7 +51,6 @@ pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     pub(super) scheduler: S,
     pub(super) bodies: Bodies,
     pub(super) cells: Cells,
-    pub(super) slots: Vec<Slot>,
     pub(super) generator: Xoshiro256PlusPlus,
     /// The epoch: absolute time of the time offset 0.
     pub(super) origin: f64,
@@ -82,7 +81,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         generator: Xoshiro256PlusPlus,
         origin: f64,
     ) -> Self {
-        let count = bodies.len();
         Self {
             rule,
             boundary,
@@ -90,7 +88,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             epoch_length: bodies.epoch_length(),
             bodies,
             cells,
-            slots: vec![Slot::NEW; count],
             generator,
             origin,
             now: 0.0,
@@ -113,7 +110,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline]
     pub(super) fn next_due(&self, end: f64) -> Option<(usize, f64)> {
         let (disk, due) = self.scheduler.earliest();
-        (due <= end && disk < self.slots.len()).then_some((disk, due))
+        (due <= end && disk < self.bodies.len()).then_some((disk, due))
     }
 
     /// Does the next event of `disk`.
@@ -132,14 +129,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         } else {
             self.now = due;
         }
-        if let Some(events) = self.guard.watch(self.now, self.epoch_length, self.slots.len()) {
+        if let Some(events) = self.guard.watch(self.now, self.epoch_length, self.bodies.len()) {
             return Err(RunError::Stalled { time: self.time(), disk, events });
         }
         self.look_ahead();
-        let slot = self.slots[disk];
+        let slot = *self.slot(disk);
         if slot.collision_due <= slot.exit_due {
             let partner = slot.partner as usize;
-            if self.slots[partner].collisions != slot.partner_collisions {
+            if self.slot(partner).collisions != slot.partner_collisions {
                 self.counters.repredictions += 1;
                 self.predict(disk);
                 return Ok(Event::Repredicted { disk });
@@ -199,13 +196,23 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(Event::WallCollision { disk, wall })
     }
 
+    #[inline]
+    pub(super) fn slot(&self, disk: usize) -> &Slot {
+        &self.bodies.particles[disk].slot
+    }
+
+    #[inline]
+    fn slot_mut(&mut self, disk: usize) -> &mut Slot {
+        &mut self.bodies.particles[disk].slot
+    }
+
     fn meeting(&self, disk: usize) -> Meeting {
         Meeting { disk, offset: self.now, time: self.time() }
     }
 
     #[inline]
     fn count_collision(&mut self, disk: usize) {
-        let collisions = &mut self.slots[disk].collisions;
+        let collisions = &mut self.slot_mut(disk).collisions;
         *collisions = collisions.wrapping_add(1);
     }
 
@@ -213,12 +220,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline]
     fn cross(&mut self, disk: usize, exit: Exit) {
         self.counters.cell_crossings += 1;
-        self.bodies.trajectories[disk].position.x += self.cells.cross(disk, exit);
+        self.bodies.particles[disk].trajectory.position.x += self.cells.cross(disk, exit);
         self.make_room();
         let count = self.cells.ahead(self.cells.place(disk), exit, &mut self.found);
         // Before the search for a partner: its branches are then decided, right or wrong, while that is still under way.
         self.end_flight(disk);
-        let slot = &self.slots[disk];
+        let slot = self.slot(disk);
         let known = Earliest { due: slot.collision_due, partner: slot.partner };
         let earliest = self.earliest_collision(disk, count, known);
         self.meet_next(disk, earliest, known);
@@ -244,15 +251,16 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     pub(super) fn find_next(&mut self, disk: usize) {
         let count = self.find_neighbours(disk);
         let earliest = self.earliest_collision(disk, count, Earliest::NONE);
-        let partner_collisions = self.slots.get(earliest.partner as usize).map_or(0, |slot| slot.collisions);
-        self.slots[disk].meet(earliest, partner_collisions);
+        let partner_collisions =
+            self.bodies.particles.get(earliest.partner as usize).map_or(0, |partner| partner.slot.collisions);
+        self.slot_mut(disk).meet(earliest, partner_collisions);
         self.end_flight(disk);
     }
 
     /// Tells the scheduler when the next event of a disk is due.
     #[inline]
     fn schedule(&mut self, disk: usize) {
-        self.scheduler.set(disk, self.slots[disk].due());
+        self.scheduler.set(disk, self.slot(disk).due());
     }
 
     /// The next collision of a disk, where `known` was before, is this one.
@@ -260,11 +268,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// No branch on whether it is the same: that is known last of all, and much would be undone (dilute 4 % slower).
     #[inline]
     fn meet_next(&mut self, disk: usize, earliest: Earliest, known: Earliest) {
-        let nobody = earliest.partner as usize >= self.slots.len();
+        let nobody = earliest.partner as usize >= self.bodies.len();
         let partner = select_unpredictable(nobody, disk, earliest.partner as usize);
-        let counted = self.slots[disk].partner_collisions;
-        let collisions = select_unpredictable(earliest == known, counted, self.slots[partner].collisions);
-        self.slots[disk].meet(earliest, collisions);
+        let counted = self.slot(disk).partner_collisions;
+        let collisions = select_unpredictable(earliest == known, counted, self.slot(partner).collisions);
+        self.slot_mut(disk).meet(earliest, collisions);
     }
 
     /// Writes the disks around this one to the room for neighbours; returns how many.
@@ -289,7 +297,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let (place, grid) = (self.cells.place(disk), self.cells.grid());
         let (exit_due, exit) = cell_exit(&self.bodies, disk, &grid.region(place), self.now);
         let at_wall = self.cells.is_at_wall(place);
-        let slot = &mut self.slots[disk];
+        let slot = self.slot_mut(disk);
         (slot.exit_due, slot.exit) = (exit_due, exit);
         if at_wall {
             self.end_at_wall(disk);
@@ -308,7 +316,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     fn end_at_wall(&mut self, disk: usize) {
         let horizon = self.now + HORIZON * self.epoch_length;
         let flight = self.flight(disk);
-        let slot = &mut self.slots[disk];
+        let slot = &mut self.bodies.particles[disk].slot;
         if let Some(touch) = self.boundary.first_touch(&flight, slot.exit_due.min(horizon)) {
             (slot.exit_due, slot.exit, slot.wall) = (touch.time, Exit::Wall, touch.wall as u16);
         } else if slot.exit_due > horizon {

@@ -2,7 +2,7 @@
 
 use super::cells::Cells;
 use super::engine::Simulation;
-use super::event::{Counters, Slot};
+use super::event::Counters;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::scheduler::EventScheduler;
@@ -10,7 +10,7 @@ use crate::scheduler::EventScheduler;
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Predicts every disk's next event from the present state alone.
     pub(super) fn predict_all(&mut self) {
-        for disk in 0..self.slots.len() {
+        for disk in 0..self.bodies.len() {
             self.find_next(disk);
         }
         self.reset_scheduler();
@@ -19,7 +19,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Tells the scheduler the times of all events.
     fn reset_scheduler(&mut self) {
         self.due.clear();
-        self.due.extend(self.slots.iter().map(Slot::due));
+        self.due.extend(self.bodies.particles.iter().map(|particle| particle.slot.due()));
         self.scheduler.reset(&self.due);
     }
 
@@ -59,10 +59,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     pub(super) fn shift_epoch(&mut self, by: f64) {
         self.bodies.shift(by);
-        for slot in &mut self.slots {
-            slot.collision_due -= by;
-            slot.exit_due -= by;
-        }
         self.origin += by;
         self.now -= by;
         self.guard.shift(by);

@@ -139,6 +139,12 @@ impl Slot {
         self.partner_collisions = partner_collisions;
     }
 
+    /// The epoch has moved.
+    pub(super) fn shift(&mut self, by: f64) {
+        self.collision_due -= by;
+        self.exit_due -= by;
+    }
+
     #[inline]
     pub(super) fn due(&self) -> f64 {
         if self.collision_due <= self.exit_due { self.collision_due } else { self.exit_due }

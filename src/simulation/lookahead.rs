@@ -39,7 +39,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Asks for what the next events will need, where the caches do not hold the system anyway.
     #[inline]
     pub(super) fn look_ahead(&mut self) {
-        if self.slots.len() >= LARGE {
+        if self.bodies.len() >= LARGE {
             self.look_far();
         }
     }
@@ -60,15 +60,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// What its event is, and where.
     #[inline]
     fn prefetch_disk(&self, disk: usize) {
-        prefetch(&self.slots, disk);
-        prefetch(&self.bodies.trajectories, disk);
+        prefetch(&self.bodies.particles, disk);
         self.cells.prefetch_place(disk);
     }
 
     /// The partner or the cells ahead.
     #[inline]
     fn prefetch_cells(&self, disk: usize) {
-        let slot = self.slots[disk];
+        let slot = *self.slot(disk);
         if slot.exit_due < slot.collision_due {
             return self.cells.prefetch_ahead(disk, slot.exit);
         }
@@ -82,7 +81,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// The trajectories of those that it may meet.
     #[inline]
     fn prefetch_neighbours(&mut self, disk: usize) {
-        let slot = self.slots[disk];
+        let slot = *self.slot(disk);
         let count = if slot.exit_due < slot.collision_due {
             if matches!(slot.exit, Exit::Wall | Exit::Stay) {
                 return;
@@ -90,13 +89,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             self.make_room();
             self.cells.ahead(self.cells.next_place(disk, slot.exit), slot.exit, &mut self.found)
         } else {
-            if (slot.partner as usize) < self.slots.len() {
+            if (slot.partner as usize) < self.bodies.len() {
                 self.cells.prefetch_around(slot.partner as usize);
             }
             self.find_neighbours(disk)
         };
         for &neighbour in &self.found[..count] {
-            prefetch(&self.bodies.trajectories, neighbour as usize);
+            prefetch(&self.bodies.particles, neighbour as usize);
         }
     }
 }

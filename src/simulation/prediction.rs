@@ -127,11 +127,11 @@ fn scan(
     contact: impl Fn(usize) -> f64,
     image: impl Fn(f64) -> f64,
 ) -> Earliest {
-    let mine = bodies.trajectories[disk].row();
+    let mine = bodies.particles[disk].trajectory.row();
     let mut best = Best::new(known);
     for lanes in candidates.chunks_exact(LANES) {
         let rows: [[f64; 4]; LANES] = std::array::from_fn(|lane| {
-            let other = bodies.trajectories[lanes[lane] as usize].row();
+            let other = bodies.particles[lanes[lane] as usize].trajectory.row();
             std::array::from_fn(|k| other[k] - mine[k])
         });
         let mut pairs = Pairs::default();

@@ -32,8 +32,8 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
     partner: usize,
 ) -> Result<(Collision, f64), NotFinite> {
     let Meeting { disk, offset, time } = meeting;
-    let here = bodies.trajectories[disk].at(offset);
-    let mut separation = here - bodies.trajectories[partner].at(offset);
+    let here = bodies.particles[disk].trajectory.at(offset);
+    let mut separation = here - bodies.particles[partner].trajectory.at(offset);
     separation.x = nearest_image(separation.x, period);
     let distance = separation.length();
     let normal = if distance > 0.0 { separation / distance } else { DVec2::Y };
