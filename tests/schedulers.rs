@@ -110,6 +110,26 @@ proptest! {
         agrees_with_the_oracle(BucketQueue::new(), &script)?;
     }
 
+    /// Far buckets are filled late, near ones at once; disks change their mind on the way, and looking ahead changes nothing.
+    #[test]
+    fn disks_on_their_way_to_a_far_bucket_are_not_lost(
+        steps in prop::collection::vec((0..300usize, 0.0..2.0f64, 0..4u8), 0..2000),
+    ) {
+        let due: Vec<f64> = (0..300).map(|disk| f64::from(disk * 7919 % 300) / 300.0).collect();
+        let (mut oracle, mut queue, mut sighted) = (LinearScan::default(), BucketQueue::new(), Vec::new());
+        oracle.reset(&due);
+        queue.reset(&due);
+        for (disk, by, kind) in steps {
+            let (first, now) = oracle.earliest();
+            let disk = if kind == 0 { disk } else { first };
+            oracle.set(disk, now + by);
+            queue.set(disk, now + by);
+            queue.come_into_sight(&mut sighted);
+            prop_assert_eq!(queue.earliest(), oracle.earliest());
+        }
+        prop_assert!(sighted.iter().all(|&disk| disk < due.len()));
+    }
+
     #[test]
     fn a_boxed_scheduler_is_the_same(script in prop::collection::vec(operation(), 0..50)) {
         agrees_with_the_oracle(Box::new(TournamentTree::new()) as Box<dyn EventScheduler>, &script)?;
