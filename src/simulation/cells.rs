@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::event::Exit;
-use super::grid::{Crowd, Grid, Layout, Mesh, Place};
+use super::grid::{Grid, Layout, Mesh, Place};
 use crate::boundary::Boundary;
 #[cfg(feature = "serde")]
 use crate::boundary::Domain;
@@ -70,7 +70,8 @@ impl Cells {
         positions: &[DVec2],
     ) -> Option<Self> {
         let domain = boundary.domain();
-        let layout = Layout::new(&domain, diameter, mesh, positions.len(), Crowd::of(positions))?;
+        let highest = positions.iter().map(|p| p.y).fold(domain.bottom, f64::max);
+        let layout = Layout::new(&domain, diameter, mesh, positions.len(), highest)?;
         let grid = Grid::new(&domain, layout);
         let places = positions.iter().map(|&position| grid.place_of(position)).collect();
         Some(Self::filled(boundary, 0.5 * diameter, grid, places))
@@ -114,14 +115,6 @@ impl Cells {
                 self.heads[self.grid.index(place)] |= AT_WALL;
             }
         }
-    }
-
-    /// Whether more disks than a few have risen above the even rows.
-    pub(super) fn are_outgrown(&self) -> bool {
-        const FEW: f64 = 0.02;
-        let count = |place| (self.heads[self.grid.index(place)] & !AT_WALL) as usize;
-        let risen: usize = self.grid.tall_places().map(count).sum();
-        risen as f64 > FEW * self.places.len() as f64
     }
 
     #[inline]

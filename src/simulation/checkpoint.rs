@@ -19,7 +19,7 @@ use crate::scheduler::EventScheduler;
 use crate::sealed::{Broken, Seal, write_whole};
 
 /// What marks a checkpoint, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 3 };
+const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 2 };
 
 /// Everything that the future of a run depends on, except its rule and its walls.
 ///

@@ -43,7 +43,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             std::mem::replace(&mut self.tally, (cell_crossings, collisions));
         let mesh = self.cells.grid().mesh();
         let suitable = mesh.suitable(cell_crossings - last_crossings, collisions - last_collisions);
-        if suitable == mesh && !(self.boundary.domain().top.is_finite() && self.cells.are_outgrown()) {
+        if suitable == mesh {
             return false;
         }
         let positions: Vec<_> =

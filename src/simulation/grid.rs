@@ -94,9 +94,7 @@ pub(super) struct Layout {
     mesh: Mesh,
     columns: u32,
     rows: u32,
-    /// Rows of the same height, from the bottom; those above them are taller and taller.
-    even: u32,
-    /// Size of a cell in the even rows.
+    /// Size of a cell; in an open container the rows grow from some height on.
     pitch: DVec2,
 }
 
@@ -104,7 +102,7 @@ impl Layout {
     /// Whether this is a grid for this domain and so many disks of at most this diameter.
     #[cfg(feature = "serde")]
     pub(super) fn suits(&self, domain: &Domain, diameter: f64, disks: usize) -> bool {
-        let Self { columns, rows, even, pitch, .. } = *self;
+        let Self { columns, rows, pitch, .. } = *self;
         let most = 2.0 * (CELLS_PER_DISK * disks as f64 + SPARE_CELLS);
         let covers = |count: u32, pitch: f64, length: f64| {
             length.is_infinite() || (f64::from(count) * pitch / length - 1.0).abs() < SLACK
@@ -114,19 +112,10 @@ impl Layout {
             && f64::from(columns) * f64::from(rows) <= most
             && (columns >= 4 || !domain.periodic)
             && covers(columns, pitch.x, domain.width())
-            && (1..=rows).contains(&even)
+            && covers(rows, pitch.y, domain.height())
             && wide(columns, pitch.x)
             && wide(rows, pitch.y)
             && pitch.is_finite()
-            && (domain.top.is_infinite() || self.closes(domain))
-    }
-
-    /// Whether its rows are those of a closed container.
-    #[cfg(feature = "serde")]
-    fn closes(&self, domain: &Domain) -> bool {
-        // No rows can be counted that would not end.
-        let reach = (TALLEST * f64::from(self.rows) + 1.0) * self.pitch.y;
-        reach >= domain.height() && self.rows == closed_rows(domain, self.pitch.y, self.even).len() as u32
     }
 
     /// Whether a place is one of its cells, not of the ring.
@@ -141,10 +130,14 @@ impl Layout {
         diameter: f64,
         mesh: Mesh,
         count: usize,
-        crowd: Crowd,
+        highest: f64,
     ) -> Option<Self> {
-        let (width, open) = (domain.width(), domain.top.is_infinite());
-        let height = if open { 2.0 * open_height(domain, crowd.highest, diameter) } else { domain.height() };
+        let width = domain.width();
+        let height = if domain.top.is_finite() {
+            domain.height()
+        } else {
+            2.0 * open_height(domain, highest, diameter)
+        };
         let most = CELLS_PER_DISK * count as f64 + SPARE_CELLS;
         let pitch = (mesh.pitch() * diameter).max((width * height / most).sqrt());
         let along = |length: f64, pitch: f64| (length / pitch).floor().max(1.0);
@@ -158,61 +151,10 @@ impl Layout {
         }
         let rows = along(height, pitch).min((most / columns).max(1.0).floor());
         let valid = width > 0.0 && height > 0.0 && width.is_finite() && height.is_finite();
-        if !valid {
-            return None;
-        }
         let pitch = DVec2::new(width / columns, height / rows);
-        let even = if open { 0.5 * rows } else { crowd.rows(domain, pitch.y, diameter).min(rows) };
-        let (columns, even) = (columns as u32, (even as u32).max(1));
-        let rows = if open { rows as u32 } else { closed_rows(domain, pitch.y, even).len() as u32 };
-        Some(Self { mesh, columns, rows, even, pitch })
+        valid.then_some(Self { mesh, columns: columns as u32, rows: rows as u32, pitch })
     }
 }
-
-/// How high disks are.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Crowd {
-    highest: f64,
-    /// Nearly all are below.
-    most: f64,
-}
-
-impl Crowd {
-    /// Part of the disks that may be above the others.
-    const FEW: f64 = 0.005;
-
-    pub(super) fn of(positions: &[DVec2]) -> Self {
-        let mut heights: Vec<f64> = positions.iter().map(|position| position.y).collect();
-        let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let few = (Self::FEW * heights.len() as f64) as usize;
-        let most = heights.len().checked_sub(few + 1);
-        let most = most.map_or(highest, |nth| *heights.select_nth_unstable_by(nth, f64::total_cmp).1);
-        Self { highest, most }
-    }
-
-    /// Rows of this height up to a little above most of them.
-    fn rows(&self, domain: &Domain, pitch: f64, diameter: f64) -> f64 {
-        ((1.25 * (self.most - domain.bottom).max(0.0) + 8.0 * diameter) / pitch).ceil()
-    }
-}
-
-/// The upper edges of the rows of a closed container: above the crowd they are taller, which spares memory for cells that are
-/// hardly ever visited.
-fn closed_rows(domain: &Domain, pitch: f64, even: u32) -> Vec<f64> {
-    let mut edges: Vec<f64> = (1..=even).map(|row| domain.bottom + f64::from(row) * pitch).collect();
-    let mut height = pitch;
-    while let Some(&edge) = edges.last()
-        && edge + 0.5 * pitch < domain.top
-    {
-        height = (GROWTH * height).min(TALLEST * pitch);
-        edges.push(edge + height);
-    }
-    edges
-}
-
-/// Each row above the even ones is at most so much taller than the one below, and in a closed container so much taller than those.
-const GROWTH: f64 = 1.1;
-const TALLEST: f64 = 6.0;
 
 /// How high the even part of the grid of an open container reaches.
 fn open_height(domain: &Domain, highest: f64, diameter: f64) -> f64 {
@@ -235,12 +177,6 @@ impl Grid {
     pub(super) fn places(&self) -> impl Iterator<Item = Place> + use<> {
         let Layout { columns, rows, .. } = self.layout;
         (1..=columns).flat_map(move |column| (1..=rows).map(move |row| Place { column, row }))
-    }
-
-    /// All cells above the even rows of a closed container.
-    pub(super) fn tall_places(&self) -> impl Iterator<Item = Place> + use<> {
-        let Layout { columns, rows, even, .. } = self.layout;
-        (1..=columns).flat_map(move |column| (even + 1..=rows).map(move |row| Place { column, row }))
     }
 
     /// How many cells there are, ring included.
@@ -371,16 +307,14 @@ fn edges(start: f64, pitch: f64, count: u32, walls: bool) -> Vec<f64> {
 /// Edges of the rows. In an open container the upper half of them grows in proportion to the height: however high a disk
 /// flies, it does not share its cell with all others that are high.
 fn row_edges(domain: &Domain, layout: &Layout) -> Vec<f64> {
-    if domain.top.is_finite() {
-        let mut edges = closed_rows(domain, layout.pitch.y, layout.even);
-        edges.insert(0, f64::NEG_INFINITY);
-        edges[layout.rows as usize] = f64::INFINITY;
-        return edges;
-    }
+    const GROWTH: f64 = 1.1;
     let mut edges = edges(domain.bottom, layout.pitch.y, layout.rows, true);
-    for row in layout.even as usize + 1..edges.len() - 1 {
-        let height = edges[row - 1] - domain.bottom.min(edges[row - 1]);
-        edges[row] = edges[row - 1] + (height * (GROWTH - 1.0)).max(layout.pitch.y);
+    if domain.top.is_infinite() {
+        let even = (layout.rows as usize / 2).max(1);
+        for row in even + 1..edges.len() - 1 {
+            let height = edges[row - 1] - domain.bottom.min(edges[row - 1]);
+            edges[row] = edges[row - 1] + (height * (GROWTH - 1.0)).max(layout.pitch.y);
+        }
     }
     edges
 }
