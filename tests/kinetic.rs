@@ -174,6 +174,18 @@ fn iso_line_keeps_the_corners_of_the_plane() -> Outcome {
     let gas = Maxwellian::new(1.0)?;
     assert_eq!(IsoLine::new(-1.0, &gas)?.inelasticities(0.0)?, [0.5]);
     assert_eq!(IsoLine::new(0.0, &gas)?.inelasticities(0.0)?, [0.0]);
+    let nearly = IsoLine::new(-1e-12, &gas)?.inelasticities(0.0)?;
+    assert!((nearly[0] / effective_inelasticity(-1e-12, 1.0)? - 1.0).abs() < 1e-15, "no digit cancels");
+    Ok(())
+}
+
+/// Sliding that loses nothing has no friction of largest loss, with sticking that loses nothing either, or something.
+#[test]
+fn without_dynamic_friction_there_is_no_largest_loss() -> Outcome {
+    for tangential in [0.0, 0.1, 1.0] {
+        let rule = Frictional::from_inelasticity(0.1, tangential)?.with_friction(1.0, 0.0)?;
+        assert_eq!(friction_of_largest_loss(&rule, &Maxwellian::new(1.0)?), None);
+    }
     Ok(())
 }
 

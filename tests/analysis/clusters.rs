@@ -96,6 +96,37 @@ fn k_means_reaches_the_best_partition_of_few_points() -> Outcome {
     Ok(())
 }
 
+/// One descent ends where every point is nearest to the centre of its own cluster, and more of them end no worse.
+#[test]
+fn one_descent_ends_at_rest_and_more_end_no_worse() -> Outcome {
+    let points = Random::new(1).cloud((0.0, 0.0), 1.0, 100);
+    for seed in 0..20 {
+        let scatter = |restarts| -> Result<f64, ParameterError> {
+            let found = KMeans::new(4, seed)?.with_restarts(restarts)?.fit(&points)?;
+            let own =
+                |label: usize, point: &DVec2| found.get(label).unwrap().center().distance_squared(*point);
+            for (&label, point) in found.labels().iter().zip(&points) {
+                assert!((0..4).all(|other| own(label, point) <= own(other, point)), "seed {seed}");
+            }
+            Ok(found.labels().iter().zip(&points).map(|(&label, point)| own(label, point)).sum())
+        };
+        assert!(scatter(8)? <= scatter(1)? + 1e-9, "seed {seed}");
+    }
+    Ok(())
+}
+
+/// The first centres are far from each other: of four distant groups none is left without.
+#[test]
+fn one_descent_finds_groups_that_are_far_apart() -> Outcome {
+    let corners = [(0.0, 0.0), (1e6, 0.0), (0.0, 1e6), (1e6, 1e6)];
+    let points: Vec<DVec2> = corners.into_iter().flat_map(|at| Random::new(2).cloud(at, 1.0, 5)).collect();
+    for seed in 0..50 {
+        let found = KMeans::new(4, seed)?.with_restarts(1)?.fit(&points)?;
+        assert!(found.len() == 4 && found.iter().all(|cluster| cluster.count() == 5), "seed {seed}");
+    }
+    Ok(())
+}
+
 #[test]
 fn degenerate_points_are_clustered_and_bad_ones_refused() -> Outcome {
     let equal = [DVec2::new(0.1, -0.2); 7];
