@@ -42,6 +42,8 @@ fn a_rare_visit_is_a_cluster_but_no_coexistence() -> Outcome {
     assert_eq!((found.clusters().len(), found.regime()), (2, OneRoll));
     let strict = StateCriteria::default().with_least_weight(0.01)?;
     assert_eq!(strict.classify(&orders(&figure_4(3, [0, 490, 10])), NOISE, None)?.regime(), Coexistence);
+    let none = StateCriteria::default().with_least_weight(0.0)?;
+    assert_eq!(none.classify(&orders(&figure_4(3, [0, 490, 0])), NOISE, None)?.regime(), OneRoll);
     Ok(())
 }
 
@@ -114,6 +116,12 @@ fn equal_weights_have_a_name_all_the_same() -> Outcome {
     assert_eq!(found(&[one, one, two, two, none])?.regime(), TwoRolls, "each has less than the least weight");
     assert_eq!(found(&[one, one, back, two])?.regime(), OneRoll);
     Ok(())
+}
+
+#[test]
+fn criteria_and_noise_are_those_asked_for() {
+    assert_ne!(StateCriteria::default().with_seed(1), StateCriteria::default());
+    assert_eq!((thermal_noise(2.0, 4.0, 25), thermal_noise(0.0, 1.0, 1)), (Ok(0.1), Ok(0.0)));
 }
 
 #[test]
