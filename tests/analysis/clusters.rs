@@ -131,6 +131,9 @@ fn one_descent_finds_groups_that_are_far_apart() -> Outcome {
     for seed in 0..50 {
         let found = KMeans::new(4, seed)?.with_restarts(1)?.fit(&points)?;
         assert!(found.len() == 4 && found.iter().all(|cluster| cluster.count() == 5), "seed {seed}");
+        // Two points whose squared distance is the smallest number there is.
+        let close = [DVec2::ZERO, DVec2::new(2e-162, 0.0)];
+        assert_eq!(KMeans::new(2, seed)?.with_restarts(1)?.fit(&close)?.len(), 2, "seed {seed}");
     }
     Ok(())
 }
