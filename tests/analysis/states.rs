@@ -2,7 +2,9 @@
 
 use granular_edmd::ParameterError;
 use granular_edmd::analysis::ConvectiveRegime::{Coexistence, Collapsed, Conductive, OneRoll, TwoRolls};
-use granular_edmd::analysis::{ConvectiveRegime, ConvectiveState, StateCriteria, thermal_noise};
+use granular_edmd::analysis::{
+    ConvectiveRegime, ConvectiveState, StateCriteria, TransitionLine, thermal_noise,
+};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{ConvectionOrder, DenseLayer};
 
@@ -79,6 +81,15 @@ fn names_follow_the_mirror() -> Outcome {
     assert_eq!(name(3.1 * NOISE, 0.0)?, ConvectiveState::ClockwiseRoll);
     assert_eq!(name(0.1, -0.1)?, ConvectiveState::ClockwiseRoll, "two rolls are above the diagonal");
     Ok(())
+}
+
+#[test]
+fn states_regimes_and_lines_have_the_names_of_the_paper() {
+    assert_eq!(ConvectiveState::TwoRollsUp.to_string(), "two rolls, up in the middle");
+    assert_eq!(Coexistence.to_string(), "coexistence of one roll and two");
+    assert_eq!(TransitionLine::OneTwoBeginning.to_string(), "1-2(a)");
+    let rolls = [ConvectiveState::Conductive, ConvectiveState::TwoRollsDown, ConvectiveState::Collapsed];
+    assert_eq!(rolls.map(ConvectiveState::rolls), [Some(0), Some(2), None]);
 }
 
 #[test]
