@@ -168,12 +168,34 @@ fn monte_carlo_averages_the_other_rules() -> Outcome {
     Ok(())
 }
 
+/// `$S = T\sum 1/m$` and `$V = S + T_r\sum 1/\beta m$`, of a disk of mass 2 and a ring of mass 4.
+#[test]
+fn variances_are_those_of_the_two_temperatures() -> Outcome {
+    let gas = Maxwellian::new(2.0)?.with_rotational_temperature(0.5)?;
+    let gas = gas.with_partners(&disk(2.0, 0.5), &disk(4.0, 1.0));
+    assert_eq!((gas.closing_variance(), gas.slip_variance()), (1.5, 1.5 + 0.5 * 1.25));
+    assert!((gas.normal_mass() - 4.0 / 3.0).abs() < 1e-15 && gas.tangential_mass() == 0.5);
+    Ok(())
+}
+
 /// Where both inelasticities of a line meet, and at the corners of the plane, rounding must not lose them.
 #[test]
 fn iso_line_keeps_the_corners_of_the_plane() -> Outcome {
     let gas = Maxwellian::new(1.0)?;
     assert_eq!(IsoLine::new(-1.0, &gas)?.inelasticities(0.0)?, [0.5]);
     assert_eq!(IsoLine::new(0.0, &gas)?.inelasticities(0.0)?, [0.0]);
+    let nearly = IsoLine::new(-1e-12, &gas)?.inelasticities(0.0)?;
+    assert!((nearly[0] / effective_inelasticity(-1e-12, 1.0)? - 1.0).abs() < 1e-15, "no digit cancels");
+    Ok(())
+}
+
+/// Sliding that loses nothing has no friction of largest loss, with sticking that loses nothing either, or something.
+#[test]
+fn without_dynamic_friction_there_is_no_largest_loss() -> Outcome {
+    for tangential in [0.0, 0.1, 1.0] {
+        let rule = Frictional::from_inelasticity(0.1, tangential)?.with_friction(1.0, 0.0)?;
+        assert_eq!(friction_of_largest_loss(&rule, &Maxwellian::new(1.0)?), None);
+    }
     Ok(())
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use granular_edmd::boundary::{Container, Domain, Region};
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{Fields, HeightProfile, Observer, SampleTimes, Snapshot};
+use granular_edmd::observable::{DenseLayer, Fields, HeightProfile, Observer, SampleTimes, Snapshot};
 use granular_edmd::{Disk, ParameterError, initial};
 
 const DOMAIN: Domain = Domain { left: 0.0, right: 60.0, bottom: 0.0, top: 150.0, periodic: false };
@@ -46,6 +46,33 @@ fn what_is_outside_a_profile_is_left_out() -> Result<(), ParameterError> {
     assert!((values[0] - half).abs() < 1e-15 && (values[9] - half).abs() < 1e-15);
     assert!(values[1..9].iter().all(|&packing| packing == 0.0));
     Ok(())
+}
+
+/// Two disks over bins of a quarter of their radius, against their chords.
+#[test]
+fn a_disk_is_cut_at_the_edges_of_bins() -> Result<(), ParameterError> {
+    let mut profile = HeightProfile::new(2.0, 6.0, 32, times()?)?;
+    let disks = [disk(5.0, 4.1)?, disk(7.0, 2.05)?];
+    for time in [1.0, 2.0] {
+        profile.on_sample(&Snapshot::new(time, &disks, DOMAIN, 0.0));
+    }
+    let chord = |away: f64| 2.0 * (0.25 - away * away).max(0.0).sqrt();
+    for (height, packing) in profile.iter() {
+        let slices = (0..1000).map(|k| height + 0.125 * ((f64::from(k) + 0.5) / 1000.0 - 0.5));
+        let mean: f64 = slices.map(|y| chord(y - 4.1) + chord(y - 2.05)).sum::<f64>() / 1000.0 / 60.0;
+        // The slices resolve the ends of a disk to a thousandth of the square root there.
+        assert!((packing - mean).abs() < 1e-7, "{height}: {packing} {mean}");
+    }
+    assert!(profile.iter().map(|(height, _)| height).eq((0..32).map(|k| 2.0625 + 0.125 * f64::from(k))));
+    Ok(())
+}
+
+#[test]
+fn the_densest_layer_is_the_lowest_of_equals() {
+    let layer = |profile: &[(f64, f64)]| DenseLayer::among(profile.iter().copied());
+    let expected = DenseLayer { height: 1.5, packing_fraction: 0.5, least_below: 0.2 };
+    assert_eq!(layer(&[(0.5, 0.2), (1.5, 0.5), (2.5, 0.1), (3.5, 0.5)]), Some(expected));
+    assert_eq!(layer(&[]), None);
 }
 
 #[test]
@@ -104,6 +131,43 @@ fn a_swirl_is_flow_and_not_temperature() -> Result<(), Box<dyn std::error::Error
         assert_eq!(cell.center, DVec2::new(10.0 * f64::from(column) + 5.0, 30.0 * f64::from(row) + 15.0));
     }
     assert_eq!((fields.iter().count(), fields.shape(), fields.samples()), (30, (6, 5), 2));
+    Ok(())
+}
+
+/// Three disks of different masses in one cell of a grid away from the origin, and what is on its edges.
+#[test]
+fn a_mixture_has_the_flow_and_the_temperatures_of_its_masses() -> Result<(), ParameterError> {
+    let region = Region { min: DVec2::new(10.0, 20.0), max: DVec2::new(16.0, 24.0) };
+    let mut fields = Fields::new(region, 3, 1, times()?)?;
+    let kind = |x: f64, mass: f64, factor: f64, vx: f64, vy: f64, spin: f64| {
+        let disk =
+            Disk::new(DVec2::new(x, 20.5), 0.25 * mass)?.with_mass(mass)?.with_inertia_factor(factor)?;
+        disk.with_velocity(DVec2::new(vx, vy))?.with_angular_velocity(spin)
+    };
+    let own = [
+        kind(12.5, 1.0, 1.0, 1.0, 3.0, 2.0)?,
+        kind(13.0, 2.0, 0.5, -1.0, 0.0, -1.0)?,
+        kind(12.1, 4.0, 0.25, 0.5, -2.0, 5.0)?,
+    ];
+    let edges =
+        [(10.0, 20.0), (16.0, 20.0), (15.0, 24.0), (9.9, 21.0), (15.0, 19.9)].map(|(x, y)| disk(x, y));
+    let disks = edges.into_iter().chain(own.map(Ok)).collect::<Result<Vec<_>, _>>()?;
+    fields.on_sample(&Snapshot::new(1.0, &disks, DOMAIN, 0.0));
+    assert_eq!(fields.next_sample(), 2.0);
+    assert_eq!(fields.iter().map(|cell| cell.count).collect::<Vec<_>>(), [1, 3, 0]);
+    let cell = fields.cell(1, 0).unwrap();
+    assert_eq!(cell.center, DVec2::new(13.0, 22.0));
+    let sum = |quantity: &dyn Fn(&Disk) -> f64| own.iter().map(quantity).sum::<f64>();
+    let flow = own.iter().map(|disk| disk.mass() * disk.velocity()).sum::<DVec2>() / 7.0;
+    let inertia = sum(&Disk::moment_of_inertia);
+    let spin = sum(&|disk| disk.moment_of_inertia() * disk.angular_velocity()) / inertia;
+    let translational = sum(&|disk| disk.mass() * (disk.velocity() - flow).length_squared()) / 6.0;
+    let rotational = sum(&|disk| disk.moment_of_inertia() * (disk.angular_velocity() - spin).powi(2)) / 3.0;
+    assert!((cell.velocity - flow).length() < 1e-14 && (cell.angular_velocity - spin).abs() < 1e-14);
+    assert!((cell.translational_temperature - translational).abs() < 1e-13);
+    assert!((cell.rotational_temperature - rotational).abs() < 1e-13);
+    assert_eq!(cell.number_density, 3.0 / 8.0);
+    assert!((cell.packing_fraction - PI * 21.0 / 16.0 / 8.0).abs() < 1e-14);
     Ok(())
 }
 

@@ -1,7 +1,7 @@
 //! The friction at which most energy is lost.
 
+use super::Maxwellian;
 use super::bisection::boundary;
-use super::{Maxwellian, mean_energy_change};
 use crate::collision::Frictional;
 
 /// Static friction `$\kappa_s$` at which the mean energy loss is largest, all else as in `rule`.
@@ -14,8 +14,8 @@ use crate::collision::Frictional;
 /// \kappa = \frac{(1-q_t)\,w}{\lambda(1-q_n)}\,\frac{s}{\sqrt{1-s^2}},
 /// ```
 ///
-/// which exists for `$q_t < 1/3$` (notation of [`mean_energy_change`]; `docs/physics-kinetic.md`). Elastic disks lose
-/// most at `$\kappa = 0.2627$`: the paper's `$\kappa\approx0.3$`.
+/// which exists for `$q_t < 1/3$` (notation of [`mean_energy_change`](super::mean_energy_change);
+/// `docs/physics-kinetic.md`). Elastic disks lose most at `$\kappa = 0.2627$`: the paper's `$\kappa\approx0.3$`.
 ///
 /// `None` if no finite friction loses most: where sticking itself loses much (`$q_t\ge1/3$` for `$\rho=1$`) the loss
 /// grows with friction all the way to rough disks, and for `$\rho = 0$` sliding loses nothing.
@@ -32,31 +32,22 @@ use crate::collision::Frictional;
 pub fn friction_of_largest_loss(rule: &Frictional, gas: &Maxwellian) -> Option<f64> {
     let ratio = friction_ratio(rule);
     let tangential = rule.tangential_inelasticity();
-    let sine = Slope::new(ratio, tangential).first_root()?;
+    let sine = Slope::new(ratio, tangential).root()?;
     let cosine = ((1.0 - sine) * (1.0 + sine)).sqrt();
-    let friction = (1.0 - tangential) * gas.slip_ratio_squared().sqrt() * sine
-        / (gas.mass_ratio() * (1.0 - rule.normal_inelasticity()) * cosine);
-    let at_friction = rule.with_friction(friction, ratio * friction).ok()?;
-    (mean_energy_change(&at_friction, gas) < rough_limit(rule, gas)).then_some(friction)
+    let slip_ratio = gas.slip_ratio_squared().sqrt();
+    let opposite = gas.mass_ratio() * (1.0 - rule.normal_inelasticity());
+    Some((1.0 - tangential) * slip_ratio * sine / (opposite * cosine))
 }
 
 fn friction_ratio(rule: &Frictional) -> f64 {
     if rule.static_friction() == 0.0 { 1.0 } else { rule.dynamic_friction() / rule.static_friction() }
 }
 
-/// `$\langle dE\rangle$` for infinite friction.
-fn rough_limit(rule: &Frictional, gas: &Maxwellian) -> f64 {
-    let (normal, tangential) = (rule.normal_inelasticity(), rule.tangential_inelasticity());
-    let slip = gas.slip_ratio_squared() / gas.mass_ratio();
-    -gas.translational_temperature()
-        * (4.0 * normal * (1.0 - normal) + 2.0 * tangential * (1.0 - tangential) * slip)
-}
-
 /// Sign of the slope of `$\langle dE\rangle$` in friction, as a function of the sticking probability `$s$`:
 /// `$-\rho + 3Gs^2 + 2H\,(1-(1+s)^{-2})$` with `$H = \rho^2(1-q_t)$`, `$G = \rho - q_t - H$`.
 ///
-/// It starts negative (loss grows) and rises at most once before it falls, so that its first root is the only
-/// minimum of `$\langle dE\rangle$`.
+/// It starts negative (loss grows). Where `$G<0$` it stays so; elsewhere it rises, so that its root is the only minimum of
+/// `$\langle dE\rangle$`.
 struct Slope {
     ratio: f64,
     quadratic: f64,
@@ -76,13 +67,7 @@ impl Slope {
         -self.ratio + 3.0 * self.quadratic * sine * sine + 2.0 * self.saturating * saturated
     }
 
-    fn rises(&self, sine: f64) -> bool {
-        let above = 1.0 + sine;
-        6.0 * self.quadratic * sine * above * above * above + 4.0 * self.saturating > 0.0
-    }
-
-    fn first_root(&self) -> Option<f64> {
-        let peak = if self.rises(1.0) { 1.0 } else { boundary(0.0, 1.0, |sine| self.rises(sine)) };
-        (self.at(peak) > 0.0).then(|| boundary(0.0, peak, |sine| self.at(sine) < 0.0))
+    fn root(&self) -> Option<f64> {
+        (self.at(1.0) > 0.0).then(|| boundary(0.0, 1.0, |sine| self.at(sine) < 0.0))
     }
 }

@@ -1,5 +1,8 @@
 //! The first touch of a disk with a moving wall, against fine sampling of the gap: none missed, none early.
 
+mod low_bounces;
+mod motions;
+
 use std::f64::consts::TAU;
 
 use granular_edmd::wall::{
@@ -276,35 +279,5 @@ fn a_disk_that_hovers_just_above_the_reach_of_a_sine_ends() {
             assert!(above < 1e-14);
             assert!((base.state(touch).displacement - AMPLITUDE).abs() < 1e-14);
         }
-    }
-}
-
-/// All that a motion says of a time.
-fn said<M: WallMotion>(motion: M) -> (WallState, AccelerationBounds, (f64, f64), Option<f64>) {
-    (motion.state(0.4), motion.acceleration(0.4), motion.reach(), motion.period())
-}
-
-#[test]
-fn a_motion_says_the_same_by_reference_and_in_a_box() {
-    let motion = BiParabolic::new(AMPLITUDE, FREQUENCY).unwrap();
-    let (_, _, reach, period) = said(motion);
-    assert_eq!((motion.amplitude(), motion.angular_frequency()), (AMPLITUDE, FREQUENCY));
-    assert_eq!((reach, period), ((-AMPLITUDE, AMPLITUDE), Some(PERIOD)));
-    let (reference, boxed): (&dyn WallMotion, Box<dyn WallMotion>) = (&motion, Box::new(motion));
-    assert_eq!(said(reference), said(motion));
-    assert_eq!(said(boxed), said(motion));
-    assert_eq!(Loose(Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap()).period(), None, "unless it says so");
-}
-
-#[test]
-fn the_bi_parabolic_base_is_its_formula() {
-    let base = BiParabolic::new(AMPLITUDE, FREQUENCY).unwrap();
-    for step in -100..100 {
-        let time = 0.137 * f64::from(step);
-        let s = (2.0 * time / PERIOD).rem_euclid(2.0);
-        let (sign, s) = if s < 1.0 { (1.0, s) } else { (-1.0, s - 1.0) };
-        let WallState { displacement, velocity } = base.state(time);
-        assert!((displacement - sign * 4.0 * AMPLITUDE * s * (1.0 - s)).abs() < 1e-13, "{time}");
-        assert!((velocity - sign * 8.0 * AMPLITUDE / PERIOD * (1.0 - 2.0 * s)).abs() < 1e-13, "{time}");
     }
 }
