@@ -16,11 +16,16 @@ mod invariants;
 mod laws;
 #[cfg(all(feature = "serde", unix))]
 mod limits;
+mod log;
 mod random_runs;
+#[cfg(feature = "serde")]
+mod records;
 mod regressions;
 mod schedulers;
 mod script;
 #[cfg(feature = "serde")]
 mod specimens;
 mod systems;
+#[cfg(feature = "serde")]
+mod unknown_fields;
 mod walls;

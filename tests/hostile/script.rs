@@ -3,12 +3,13 @@
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
 use granular_edmd::Disk;
-use granular_edmd::observable::{Collision, Observer, Snapshot};
+use granular_edmd::observable::Collision;
 use granular_edmd::simulation::{BuildError, Event, RunError};
 use proptest::prelude::*;
 
 use crate::invariants::{Change, check_state};
 use crate::laws::{Law, law};
+use crate::log::{KEPT, Log, Spent};
 use crate::schedulers::SCHEDULERS;
 use crate::systems::{Run, System, gravity};
 use crate::walls::{Walls, walls};
@@ -19,9 +20,6 @@ const ENOUGH: usize = 10_000;
 /// Collisions of a case, after which it ends in the middle of a run: a disk at rest bounces up to 1e15 times in the time of
 /// one run. Twice as many as the guard lets pass without progress, so that it is the guard that ends what it should.
 const BUDGET: usize = 400_000;
-
-/// Collisions of one step, and some more.
-const KEPT: usize = 4;
 
 /// How deep one bounce may put a disk into a wall: the rounding of its height, which a disk at rest sums up.
 const SINKING: f64 = 16.0 * f64::EPSILON;
@@ -74,42 +72,6 @@ pub(crate) enum End {
     Error(RunError),
     /// It had as many collisions as it may.
     Spent,
-}
-
-/// What unwinds a run that has spent its budget: no observer can end it otherwise.
-struct Spent;
-
-/// Counts the collisions, up to a budget, keeps the first ones, and takes one sample.
-struct Log {
-    count: usize,
-    budget: usize,
-    collisions: Vec<Collision>,
-    sample: f64,
-    taken: Vec<f64>,
-}
-
-impl Log {
-    fn new(sample: f64, budget: usize) -> Self {
-        Self { count: 0, budget, collisions: Vec::new(), sample, taken: Vec::new() }
-    }
-}
-
-impl Observer for Log {
-    fn on_collision(&mut self, collision: &Collision) {
-        self.count += 1;
-        if self.collisions.len() < KEPT {
-            self.collisions.push(*collision);
-        }
-        if self.count > self.budget {
-            resume_unwind(Box::new(Spent));
-        }
-    }
-    fn next_sample(&self) -> f64 {
-        if self.taken.is_empty() { self.sample } else { f64::INFINITY }
-    }
-    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-        self.taken.push(snapshot.time());
-    }
 }
 
 /// A run under a script.
