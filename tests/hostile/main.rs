@@ -8,6 +8,7 @@ mod config;
 mod constructors;
 #[cfg(all(feature = "serde", unix))]
 mod faults;
+mod few;
 #[cfg(feature = "serde")]
 mod files;
 #[cfg(all(feature = "serde", unix))]

@@ -7,7 +7,7 @@ use granular_edmd::observable::Collision;
 use granular_edmd::simulation::{BuildError, Event, RunError};
 use proptest::prelude::*;
 
-use crate::invariants::{Change, check_state};
+use crate::invariants::{Change, check_state, farthest};
 use crate::laws::{Law, law};
 use crate::log::{KEPT, Log, Spent};
 use crate::schedulers::SCHEDULERS;
@@ -84,6 +84,8 @@ pub(crate) struct Actor {
     resumed: usize,
     /// Collisions that the case may still have.
     budget: usize,
+    /// How far from the origin a disk has been.
+    farthest: f64,
     pub(crate) trace: Vec<Frame>,
     pub(crate) end: Option<End>,
 }
@@ -93,12 +95,22 @@ impl Actor {
     pub(crate) fn new(system: &System, scheduler: usize, resumes: bool) -> Self {
         let run = system.run(SCHEDULERS[scheduler]());
         let (walls, law) = (system.walls.clone(), system.law);
-        Self { run, walls, law, resumes, resumed: scheduler, budget: BUDGET, trace: Vec::new(), end: None }
+        Self {
+            run,
+            walls,
+            law,
+            resumes,
+            resumed: scheduler,
+            budget: BUDGET,
+            farthest: 0.0,
+            trace: Vec::new(),
+            end: None,
+        }
     }
 
     /// Does all operations, up to an error of the run or the end of its budget.
     pub(crate) fn perform(mut self, script: &[Operation]) -> Result<Self, TestCaseError> {
-        check_state(&self.run)?;
+        self.check_state()?;
         for operation in script {
             if self.end.is_some() {
                 break;
@@ -150,7 +162,7 @@ impl Actor {
     }
 
     fn check(
-        &self,
+        &mut self,
         event: Event,
         before: &[Disk],
         elapsed: f64,
@@ -166,7 +178,12 @@ impl Actor {
         prop_assert_eq!(collisions.len(), usize::from(collides), "{:?}", event);
         (0..before.len()).filter(|disk| !involved.contains(disk)).try_for_each(|d| change.check_flight(d))?;
         collisions.iter().try_for_each(|collision| change.check_collision(collision))?;
-        check_state(run)
+        self.check_state()
+    }
+
+    fn check_state(&mut self) -> Result<(), TestCaseError> {
+        self.farthest = self.farthest.max(farthest(&self.run));
+        check_state(&self.run, self.farthest)
     }
 
     /// Runs twice as long each time, as long as that is not too much: disks at rest bounce as often as rounding lets them.
@@ -183,7 +200,7 @@ impl Actor {
             }
             self.budget -= log.count;
             prop_assert_eq!(&log.taken, &[time]);
-            check_state(&self.run)?;
+            self.check_state()?;
             self.film(None, log.count);
             if log.count > ENOUGH {
                 break;
@@ -215,7 +232,7 @@ impl Actor {
         prop_assert!(matches!(end, End::Spent | End::Error(RunError::Stalled { .. })), "{end:?}");
         self.film(None, 0);
         self.end = Some(end);
-        check_state(&self.run)
+        self.check_state()
     }
 
     fn rebuild(&mut self, walls: &Walls) -> Result<(), TestCaseError> {
@@ -229,7 +246,7 @@ impl Actor {
             }
             Err(error) => prop_assert!(false, "{error}"),
         }
-        check_state(&self.run)
+        self.check_state()
     }
 
     /// Disks that are inside walls fit into them: except at times so late that nobody can say where a wall is.
@@ -238,9 +255,7 @@ impl Actor {
         match self.run.set_boundary(self.walls.container()) {
             Ok(()) => Ok(()),
             Err(_) if self.run.time().abs() > 1e6 => Ok(()),
-            Err(BuildError::OverlapsWall { depth, .. }) if depth <= SINKING * bounces => {
-                check_state(&self.run)
-            }
+            Err(BuildError::OverlapsWall { depth, .. }) if depth <= SINKING * bounces => self.check_state(),
             Err(error) => Err(TestCaseError::fail(format!("{error}, {:?}", self.run.counters()))),
         }
     }
