@@ -41,11 +41,11 @@ impl Specimen {
         fs::write(&self.path, sealed(&self.file, &contents)).unwrap();
     }
 
-    /// Writes it with one number in the place of another.
+    /// Writes it with one number in the place of the last that is another.
     fn put(&self, new: f64, old: f64) {
         self.forge(|contents| {
             let (new, old) = (new.to_le_bytes(), old.to_le_bytes());
-            let at = contents.windows(8).position(|window| window == old).unwrap();
+            let at = contents.windows(8).rposition(|window| window == old).unwrap();
             contents[at..at + 8].copy_from_slice(&new);
         });
     }
@@ -70,6 +70,12 @@ fn a_record_with_impossible_numbers_is_damaged() {
     for bad in [f64::NAN, 0.3, -0.2] {
         record.put(bad, 0.2);
         record.assert_damaged("its system is of another value");
+    }
+    fs::write(&record.path, &record.file).unwrap();
+    let time = record.study.record(0, 1).unwrap().unwrap().state().time();
+    for bad in [0.0, 2.0 * time, 1e300] {
+        record.put(bad, time);
+        record.assert_damaged("its state is of another time");
     }
     record.forge(|contents| contents.push(0));
     record.assert_damaged("there is more in it than there should be");
@@ -134,13 +140,13 @@ fn a_value_half_done_that_cannot_be_is_started_again() {
     assert!(fs::read(&finished).unwrap() == expected.file);
 }
 
-/// A state of another time would end the value at once, or make it longer.
+/// Its samples and its state would not be those of the step.
 #[test]
-fn a_value_half_done_at_another_time_is_started_again() {
-    let partial = Specimen::partial("another-time");
-    let expected = Specimen::record("another-time-not");
+fn a_value_half_done_at_another_step_is_started_again() {
+    let partial = Specimen::partial("another-step");
+    let expected = Specimen::record("another-step-not");
     let finished = partial.path.with_extension("record");
-    // The number of steps comes after the origin and the cycles before: one more and one less than there are.
+    // The number of steps, three, comes after the cycles of the value before, five.
     let steps = partial.file[CONTENTS_AT..].windows(2).position(|window| window == [5, 3]).unwrap() + 1;
     for bad in [0, 2, 4, 5, 100] {
         partial.forge(|contents| contents[steps] = bad);
