@@ -256,7 +256,10 @@ impl Actor {
             Ok(()) => Ok(()),
             Err(_) if self.run.time().abs() > 1e6 => Ok(()),
             Err(BuildError::OverlapsWall { depth, .. }) if depth <= SINKING * bounces => self.check_state(),
-            Err(error) => Err(TestCaseError::fail(format!("{error}, {:?}", self.run.counters()))),
+            Err(error) => {
+                let (time, counters) = (self.run.time(), self.run.counters());
+                Err(TestCaseError::fail(format!("{error}, at {time}, {counters:?}")))
+            }
         }
     }
 
