@@ -228,7 +228,8 @@ impl Bins {
     fn is_free(&self, site: DVec2, radius: f64, placed: &[Disk]) -> bool {
         let (column, row) = self.bin(site);
         let columns = [column + self.columns - 1, column, column + 1].map(|c| c % self.columns);
-        let near = columns.into_iter().flat_map(|c| [row - 1, row, row + 1].map(|r| (c, r)));
+        let rows = [row.saturating_sub(1), row, row.saturating_add(1)];
+        let near = columns.into_iter().flat_map(|c| rows.map(|r| (c, r)));
         near.filter_map(|bin| self.disks.get(&bin)).flatten().all(|&other| {
             let contact = radius + placed[other].radius();
             self.domain.separation(site, placed[other].position()).length_squared() > contact * contact

@@ -151,10 +151,7 @@ impl Study {
         let path = self.folder.record(ramp, value);
         let Some(record) = sealed::read_sealed::<Record>(&path)? else { return Ok(None) };
         self.check_origin(&record.origin, ramp, value, &path)?;
-        let most = self.specification.protocol().cycles().saturating_mul(value as u64 + 1);
-        if record.cycles > most {
-            return Err(sealed::damaged(&path, "it is longer than the protocol"));
-        }
+        record.check(&self.specification).map_err(|reason| sealed::damaged(&path, reason))?;
         Ok(Some(record))
     }
 

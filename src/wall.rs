@@ -36,7 +36,7 @@ pub struct WallState {
 /// Bounds of a wall's acceleration on the piece of time from the one asked for to `until`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AccelerationBounds {
-    /// End of the piece, later than the time asked for.
+    /// End of the piece, later than the time asked for; what it means if it is not, [`first_touch`] says.
     pub until: f64,
     /// No acceleration on the piece is below this.
     pub min: f64,

@@ -7,7 +7,7 @@ use crate::quantity::positive;
 
 /// A point of a transition line in the plane of friction and inelasticity; made by [`plane_transitions`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct PlaneTransition {
     /// Which line is crossed.

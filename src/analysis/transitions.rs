@@ -61,7 +61,7 @@ impl std::fmt::Display for TransitionLine {
 
 /// A point of a transition line; made by [`transitions`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Transition {
     /// Which line is crossed.

@@ -11,7 +11,7 @@ use glam::DVec2;
 /// assert_eq!(domain.separation(glam::DVec2::new(59.0, 0.0), glam::DVec2::new(1.0, 0.0)).x, 2.0);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Domain {
     /// Left end.
     pub left: f64,

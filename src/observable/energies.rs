@@ -5,7 +5,7 @@ use crate::Disk;
 
 /// Energies per disk.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct EnergyPerDisk {
     /// `$\langle\tfrac12 m v^2\rangle$`.
     pub translational: f64,

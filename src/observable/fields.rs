@@ -12,7 +12,7 @@ const MOST_CELLS: usize = 1 << 22;
 
 /// The fields in one cell of a grid, averaged over all samples; made by [`Fields`]. All are 0 where no disk was seen.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct FieldCell {
     /// Middle of the cell.

@@ -6,7 +6,7 @@ use super::{Observable, Snapshot};
 
 /// `$\Psi_1$` and `$\Psi_2$`: how strongly the flow is one roll, or two.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct ConvectionOrder {
     /// `$\Psi_1$`: one roll; positive if it turns clockwise.
     pub one_roll: f64,

@@ -5,7 +5,7 @@ use crate::Disk;
 
 /// Temperatures per degree of freedom, in units of energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Temperature {
     /// `$T_x = \langle m v_x^2\rangle$`.
     pub horizontal: f64,

@@ -48,7 +48,7 @@ impl Protocol {
 
     /// How many cycles a value lasts.
     pub const fn cycles(&self) -> u64 {
-        self.settle + self.samples * self.every
+        self.settle.saturating_add(self.samples.saturating_mul(self.every))
     }
 
     /// How many steps a value is done in: some without a sample to settle, then one for each sample.
@@ -68,6 +68,16 @@ impl Protocol {
         } else {
             self.settle + (step - settling + 1) * self.every
         }
+    }
+
+    /// The cycles that this many steps take.
+    pub(super) fn cycles_of(&self, steps: u64) -> u64 {
+        steps.checked_sub(1).map_or(0, |last| self.end_of(last))
+    }
+
+    /// How many samples this many steps take.
+    pub(super) const fn samples_of(&self, steps: u64) -> u64 {
+        steps.saturating_sub(self.settling_steps())
     }
 
     /// Whether a step ends with a sample.

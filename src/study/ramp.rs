@@ -68,15 +68,33 @@ impl Ramp {
 
     /// Its values in the order in which they come.
     pub fn path(&self) -> impl Iterator<Item = (Leg, f64)> {
-        let turn = self.values.len().saturating_sub(1);
-        let up = if self.course == Course::Down { &[] } else { self.values.as_slice() };
-        let down = match self.course {
-            Course::Up => &[],
-            Course::Down => self.values.as_slice(),
-            Course::UpAndDown => &self.values[..turn],
-        };
-        let up = up.iter().map(|&value| (Leg::Up, value));
-        up.chain(down.iter().rev().map(|&value| (Leg::Down, value)))
+        (0..self.len()).filter_map(|index| self.at(index))
+    }
+
+    /// How many values come.
+    pub(super) fn len(&self) -> usize {
+        self.ups() + self.downs()
+    }
+
+    /// The value of this index, and the way to it.
+    pub(super) fn at(&self, index: usize) -> Option<(Leg, f64)> {
+        if index < self.ups() {
+            return Some((Leg::Up, self.values[index]));
+        }
+        let downs = &self.values[..self.downs()];
+        downs.iter().rev().nth(index - self.ups()).map(|&value| (Leg::Down, value))
+    }
+
+    const fn ups(&self) -> usize {
+        if matches!(self.course, Course::Down) { 0 } else { self.values.len() }
+    }
+
+    const fn downs(&self) -> usize {
+        match self.course {
+            Course::Up => 0,
+            Course::Down => self.values.len(),
+            Course::UpAndDown => self.values.len().saturating_sub(1),
+        }
     }
 
     pub(super) fn check(&self) -> Result<(), SpecificationError> {

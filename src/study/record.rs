@@ -1,9 +1,15 @@
 //! What is kept of a finished value.
 
-use super::{Leg, Sample, System};
+use super::{Leg, Sample, Specification, System};
 use crate::analysis::{block_average, thermal_noise};
 use crate::observable::{ConvectionOrder, DenseLayer};
 use crate::simulation::{Checkpoint, Counters};
+
+/// Largest number of bins of a profile: of one diameter each.
+pub(super) const MOST_BINS: usize = 65_536;
+
+/// Rounding of a time that was run to, relative to it.
+const TIME_ROUNDING: f64 = 1e-12;
 
 /// How a value ended.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -81,6 +87,21 @@ pub(super) struct Origin {
 }
 
 impl Record {
+    /// That it is what its place in this study can hold; why not, else.
+    pub(super) fn check(&self, study: &Specification) -> Result<(), &'static str> {
+        let Origin { ramp, value, .. } = self.origin;
+        let protocol = study.protocol();
+        let most = protocol.cycles().saturating_mul(value as u64 + 1);
+        let expected = protocol.samples() == self.samples.len() as u64;
+        let is_short = self.outcome != Outcome::Completed && protocol.samples() > self.samples.len() as u64;
+        check(self.cycles <= most, "it is longer than the protocol")?;
+        check(expected || is_short, "its samples are not as many as in the protocol")?;
+        check(study.system(ramp, value).as_ref() == Ok(&self.system), "its system is of another value")?;
+        check(study.leg(value) == self.leg, "it is on another way through the ramp")?;
+        check_state(&self.state, self.cycles, &self.system)?;
+        check_samples(&self.samples, &self.profile)
+    }
+
     /// Index of its ramp.
     pub const fn ramp(&self) -> usize {
         self.origin.ramp
@@ -172,6 +193,24 @@ impl Record {
         let temperature = self.mean(|sample| sample.vertical_temperature).mean;
         thermal_noise(temperature, 1.0, self.system.disks()).unwrap_or(f64::NAN)
     }
+}
+
+pub(super) fn check(valid: bool, reason: &'static str) -> Result<(), &'static str> {
+    if valid { Ok(()) } else { Err(reason) }
+}
+
+/// That a state is of the time so many cycles after the start of its ramp.
+pub(super) fn check_state(state: &Checkpoint, cycles: u64, system: &System) -> Result<(), &'static str> {
+    let time = cycles as f64 * system.cycle();
+    check((state.time() - time).abs() <= TIME_ROUNDING * time, "its state is of another time")
+}
+
+/// That what was measured can be.
+pub(super) fn check_samples(samples: &[Sample], profile: &[f64]) -> Result<(), &'static str> {
+    check(samples.iter().all(Sample::is_finite), "a sample is not finite")?;
+    let is_fraction = |fraction: &f64| fraction.is_finite() && *fraction >= 0.0;
+    check(profile.iter().all(is_fraction), "a packing fraction is negative or not finite")?;
+    check(profile.len() <= MOST_BINS, "its profile is higher than any")
 }
 
 fn estimate(values: &[f64]) -> Estimate {

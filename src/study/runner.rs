@@ -136,8 +136,7 @@ impl Shift<'_> {
         let system = study.specification.system(ramp, value)?;
         let origin = study.origin(ramp, value);
         let plan = Value { specification: &study.specification, origin, system, before };
-        let partial = self.if_sound(self.partial(ramp, value))?;
-        let mut active = plan.begin(partial)?;
+        let mut active = self.if_sound(self.saved(&plan))?.map_or_else(|| plan.begin(), Ok)?;
         self.meter.advance(ramp, value, active.steps());
         let record = match self.steps(&mut active, ramp, value)? {
             Pause::Done => active.record(),
@@ -150,16 +149,14 @@ impl Shift<'_> {
         Ok(Some(record))
     }
 
-    /// What was saved of a value half done.
-    fn partial(&self, ramp: usize, value: usize) -> Result<Option<Partial>, StudyError> {
+    /// A value half done, as it was saved.
+    fn saved<'v>(&self, plan: &'v Value<'_>) -> Result<Option<Active<'v>>, StudyError> {
+        let Origin { ramp, value, .. } = plan.origin;
         let path = self.study.folder.partial(ramp, value);
         let Some(partial) = sealed::read_sealed::<Partial>(&path)? else { return Ok(None) };
         self.study.check_origin(&partial.origin, ramp, value, &path)?;
         check_version(&partial.origin, &path)?;
-        match partial.check(self.study.specification.protocol()) {
-            Ok(()) => Ok(Some(partial)),
-            Err(_) => Err(sealed::damaged(&path, "it is longer than the protocol")),
-        }
+        plan.go_on(partial).map(Some).map_err(|reason| sealed::damaged(&path, reason))
     }
 
     /// Does the steps of a value until it is done, saving it now and then.

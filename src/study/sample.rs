@@ -47,6 +47,14 @@ impl Sample {
         }
     }
 
+    pub(super) fn is_finite(&self) -> bool {
+        let Self { time, one_roll, two_rolls, height, translational_energy, rotational_energy, .. } = *self;
+        let flow = [time, one_roll, two_rolls, height];
+        let energies =
+            [translational_energy, rotational_energy, self.vertical_temperature, self.energy_change];
+        flow.iter().chain(&energies).all(|number| number.is_finite())
+    }
+
     pub(super) fn with_collisions(self, change: &EnergyChange) -> Self {
         Self { collisions: change.disks().count(), energy_change: change.disks().mean(), ..self }
     }

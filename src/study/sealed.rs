@@ -44,7 +44,11 @@ fn unseal<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, &'static str> {
         Broken::Cut => "it was cut",
         Broken::Changed => "its checksum does not match",
     })?;
-    postcard::from_bytes(contents).map_err(|_| "its contents make no sense")
+    match postcard::take_from_bytes(contents) {
+        Ok((data, [])) => Ok(data),
+        Ok(_) => Err("there is more in it than there should be"),
+        Err(_) => Err("its contents make no sense"),
+    }
 }
 
 /// Removes a file, if it is there.

@@ -111,7 +111,7 @@ impl Specification {
 
     /// How many values each ramp has.
     pub fn values(&self) -> usize {
-        self.ramp.as_ref().map_or(1, |ramp| ramp.path().count())
+        self.ramp.as_ref().map_or(1, Ramp::len)
     }
 
     /// The parameters that vary: of the axes in their order, then of the ramp.
@@ -150,7 +150,7 @@ impl Specification {
     }
 
     fn step(&self, value: usize) -> Option<(Leg, f64)> {
-        self.ramp.as_ref().and_then(|ramp| ramp.path().nth(value))
+        self.ramp.as_ref().and_then(|ramp| ramp.at(value))
     }
 
     /// The specification, if it can be carried out.
@@ -185,14 +185,14 @@ impl Specification {
 
     /// That all systems have a meaning, and the disks fit into each box.
     fn check_systems(&self) -> Result<(), SpecificationError> {
+        let mut roomy: Option<System> = None;
         for ramp in 0..self.ramps() {
-            self.system(ramp, 0)?.check()?;
-            for value in 1..self.values() {
-                let system = self.system(ramp, value)?;
-                system.rule()?;
-                system.gravity()?;
-                system.container()?;
+            let first = self.system(ramp, 0)?;
+            if !roomy.is_some_and(|system| system.has_walls_of(&first)) {
+                first.check_room()?;
             }
+            roomy = Some(first);
+            (0..self.values()).try_for_each(|value| self.system(ramp, value)?.check())?;
         }
         Ok(())
     }

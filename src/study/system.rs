@@ -215,15 +215,20 @@ impl System {
             && self.base == other.base
     }
 
-    /// That everything in it has a meaning and the disks fit in.
-    pub(super) fn check(&self) -> Result<(), SpecificationError> {
+    /// That the disks fit in.
+    pub(super) fn check_room(&self) -> Result<(), SpecificationError> {
         if self.disks == 0 {
             return Err(ParameterError::new("number of disks", "at least 1", 0.0).into());
         }
         // An open box has room for any number: a slip of the pen must not cost all memory.
         accept(self.disks <= MOST_DISKS, "number of disks", "at most 2^24", self.disks as f64)?;
+        self.initial_disks(0).map(|_| ())
+    }
+
+    /// That everything in it has a meaning.
+    pub(super) fn check(&self) -> Result<(), SpecificationError> {
         self.rule()?;
         self.gravity()?;
-        self.initial_disks(0).map(|_| ())
+        self.container().map(|_| ())
     }
 }

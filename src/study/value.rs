@@ -1,22 +1,18 @@
 //! One value of a ramp, from its start to its record: a pure function of specification, index and the record before.
 
 use super::errors::StudyError;
-use super::record::{Origin, Outcome, Record};
+use super::record::{MOST_BINS, Origin, Outcome, Record, check, check_samples, check_state};
 use super::rule::Rule;
 use super::specification::{Specification, derived_seed};
 use super::{Protocol, Sample, System};
 use crate::boundary::Container;
 use crate::observable::{EnergyChange, HeightProfile, Observer, SampleTimes};
-use crate::quantity::accept;
 use crate::scheduler::BySize;
 use crate::simulation::{BuildError, Checkpoint, CheckpointError, Counters, RunError};
 use crate::{ParameterError, Simulation};
 
 /// Height of the profile of an open box, in diameters.
 const OPEN_PROFILE: f64 = 256.0;
-
-/// Largest height of a profile, in diameters.
-const HIGHEST_PROFILE: f64 = 65_536.0;
 
 type Run = Simulation<Rule, Container, BySize>;
 
@@ -60,17 +56,27 @@ pub(super) struct Active<'a> {
 }
 
 impl<'a> Value<'a> {
-    /// Starts the value, or goes on with it where `partial` was saved.
-    pub(super) fn begin(&'a self, partial: Option<Partial>) -> Result<Active<'a>, StudyError> {
-        let start = self.before.map_or(0, |record| record.cycles);
-        let Some(Partial { work, state, .. }) = partial else {
-            let run = self.first_state()?;
-            let work =
-                Work { start, steps: 0, counters: *run.counters(), samples: Vec::new(), profile: Vec::new() };
-            return Ok(Active { value: self, work, run });
-        };
-        let run = self.resume(&state, &self.system)?;
-        Ok(Active { value: self, work: Work { start, ..work }, run })
+    /// Starts the value.
+    pub(super) fn begin(&'a self) -> Result<Active<'a>, StudyError> {
+        let run = self.first_state()?;
+        let (start, counters) = (self.start(), *run.counters());
+        let work = Work { start, steps: 0, counters, samples: Vec::new(), profile: Vec::new() };
+        Ok(Active { value: self, work, run })
+    }
+
+    /// Goes on with the value where it was saved; says why, if that cannot be.
+    pub(super) fn go_on(&'a self, Partial { work, state, .. }: Partial) -> Result<Active<'a>, &'static str> {
+        work.check(self.protocol())?;
+        check(work.start == self.start(), "it starts elsewhere")?;
+        check_state(&state, work.start + self.protocol().cycles_of(work.steps), &self.system)?;
+        let run = self.resume(&state, &self.system).map_err(|_| "its state cannot go on")?;
+        check(Ok(run.gravity()) == self.system.gravity(), "its state has another gravity")?;
+        Ok(Active { value: self, work, run })
+    }
+
+    /// Cycles from the start of the ramp to that of the value.
+    fn start(&self) -> u64 {
+        self.before.map_or(0, |record| record.cycles)
     }
 
     /// The system at the start of the value.
@@ -103,8 +109,13 @@ impl<'a> Value<'a> {
     /// A saved state under the rule of this value, in the walls that it was saved in.
     fn resume(&self, state: &Checkpoint, saved: &System) -> Result<Run, StudyError> {
         let rule = self.parameter(self.system.rule())?;
-        Simulation::resume(state, rule, saved.container()?, BySize::default())
-            .map_err(|source| self.cannot_go_on(source))
+        let run = Simulation::resume(state, rule, saved.container()?, BySize::default())
+            .map_err(|source| self.cannot_go_on(source))?;
+        if run.len() == saved.disks() {
+            return Ok(run);
+        }
+        Err(self
+            .cannot_go_on(CheckpointError::Inconsistent("it has another number of disks than the system")))
     }
 
     fn parameter<T>(&self, value: Result<T, ParameterError>) -> Result<T, StudyError> {
@@ -163,7 +174,7 @@ impl Active<'_> {
     /// The packing fraction by height now.
     fn profile(&mut self) -> Vec<f64> {
         let snapshot = self.run.snapshot();
-        let top = snapshot.domain().top.min(HIGHEST_PROFILE);
+        let top = snapshot.domain().top.min(MOST_BINS as f64);
         let bins = if snapshot.domain().top.is_finite() { top.ceil() } else { OPEN_PROFILE };
         let profile = SampleTimes::every(1.0)
             .and_then(|times| HeightProfile::new(0.0, bins, bins as usize, times))
@@ -216,18 +227,17 @@ impl Active<'_> {
 }
 
 impl Work {
+    /// That it is what a value can be at some step.
+    fn check(&self, protocol: &Protocol) -> Result<(), &'static str> {
+        check(self.steps <= protocol.steps(), "it is longer than the protocol")?;
+        let samples = protocol.samples_of(self.steps);
+        check(samples == self.samples.len() as u64, "its samples are not as many as its steps")?;
+        check_samples(&self.samples, &self.profile)
+    }
+
     fn add_profile(&mut self, profile: &[f64]) {
         self.profile.resize(profile.len(), 0.0);
         self.profile.iter_mut().zip(profile).for_each(|(sum, fraction)| *sum += fraction);
-    }
-}
-
-impl Partial {
-    /// That it is not more than a value can be.
-    pub(super) fn check(&self, protocol: &Protocol) -> Result<(), ParameterError> {
-        let steps = self.work.steps;
-        accept(steps <= protocol.steps(), "steps of a saved value", "at most those of a value", steps as f64)
-            .map(|_| ())
     }
 }
 

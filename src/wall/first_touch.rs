@@ -1,6 +1,6 @@
 //! The one search for the first touch of a disk with a moving wall.
 
-use super::{AccelerationBounds, WallMotion};
+use super::WallMotion;
 use crate::roots::first_descent;
 
 /// Rounding of a gap, relative to the lengths that it is the difference of.
@@ -8,9 +8,6 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Room for a step where there is none, in units of the rounding: a search must end.
 const LEAST_ROOM: f64 = 1e-3;
-
-/// Looks at a bounce lower than rounding: enough for walls that keep to the bounds of their acceleration.
-const LOOKS: u32 = 64;
 
 /// A surface that approaches a wall: its height above the wall's place at rest, along the wall's normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,7 +45,12 @@ impl Approach {
 /// ever stepped over. A gap that is closed at the start counts only while it closes.
 ///
 /// Flights beyond the reach of the wall are skipped, at the start and after a bounce. Within it the wall sweeps over every height
-/// in each period, so the search takes no more steps than some periods have, however fast the wall and long the flight.
+/// in each period, so the search takes no more steps than some periods have, however fast the wall and long the flight. A surface
+/// that stays below the reach and outruns the wall, or that hovers in a reach which the wall never gets to, is followed from piece
+/// to piece: give such a search an end.
+///
+/// Where times are too far from each other to tell the pieces of the motion apart, nobody can say where the wall is. It then
+/// counts as everywhere within its reach, at every speed: the touch is the first time at which the surface is within it.
 ///
 /// ```
 /// use granular_edmd::wall::{Approach, Fixed, first_touch};
@@ -57,15 +59,16 @@ impl Approach {
 /// assert_eq!(first_touch(&Fixed, &falling, 1.0), None);
 /// ```
 pub fn first_touch<M: WallMotion + ?Sized>(motion: &M, approach: &Approach, until: f64) -> Option<f64> {
-    let search = Search { motion, approach, until };
+    let search = Search { motion, approach };
+    let is_in_time = |time: f64| time <= until && time < f64::INFINITY;
     let start = search.enters_reach(approach.time)?;
     if let Some(touch) = search.low_bounce(start) {
-        return (touch <= until).then_some(touch);
+        return is_in_time(touch).then_some(touch);
     }
     let mut time = start;
-    while time <= until {
+    while is_in_time(time) {
         match search.step(time) {
-            Step::Touch(touch) => return (touch <= until).then_some(touch),
+            Step::Touch(touch) => return is_in_time(touch).then_some(touch),
             Step::Open(next) => time = search.enters_reach(next)?,
         }
     }
@@ -75,7 +78,6 @@ pub fn first_touch<M: WallMotion + ?Sized>(motion: &M, approach: &Approach, unti
 struct Search<'a, M: ?Sized> {
     motion: &'a M,
     approach: &'a Approach,
-    until: f64,
 }
 
 /// The gap and the wall at one time.
@@ -88,6 +90,7 @@ struct Look {
     /// Whether it is the acceleration itself.
     exact: bool,
     tolerance: f64,
+    /// End of the piece: not later than the time of the look where times cannot tell the pieces apart.
     until: f64,
 }
 
@@ -112,11 +115,15 @@ impl<M: WallMotion + ?Sized> Search<'_, M> {
 
     fn step(&self, time: f64) -> Step {
         let Look { gap, rate, pull, exact, tolerance, until } = self.look(time);
-        if gap <= tolerance && rate < 0.0 {
+        if !gap.is_finite() {
+            return Step::Open(f64::INFINITY);
+        }
+        let is_resolved = until > time;
+        if !is_resolved || (gap <= tolerance && rate < 0.0) {
             return Step::Touch(time);
         }
         if !exact {
-            let room = if gap.is_nan() { gap } else { (gap + tolerance).max(LEAST_ROOM * tolerance) };
+            let room = (gap + tolerance).max(LEAST_ROOM * tolerance);
             return Step::Open(Self::still_open(time, room, rate, pull).min(until));
         }
         match first_descent(gap, rate, pull) {
@@ -127,7 +134,7 @@ impl<M: WallMotion + ?Sized> Search<'_, M> {
 
     fn look(&self, time: f64) -> Look {
         let wall = self.motion.state(time);
-        let bounds = self.piece(time);
+        let bounds = self.motion.acceleration(time);
         let rate = self.approach.velocity(time) - wall.velocity;
         let exact = bounds.min == bounds.max;
         Look {
@@ -142,32 +149,25 @@ impl<M: WallMotion + ?Sized> Search<'_, M> {
 
     /// The end of a bounce that begins at `start` and stays lower than rounding, if there is one.
     ///
-    /// The gap cannot tell when such a bounce is over. It is over when the gap closes as fast as it opened: if it counted
-    /// before, bounces would lose speed that no rule takes, if after, each would go deeper into the wall than the last.
+    /// The gap cannot tell when such a bounce is over, but the bounce is so short that the acceleration does not change in it:
+    /// it is a parabola over the gap that it starts from, and ends when that gap closes as fast as it opened. If it ended
+    /// before, bounces would lose speed that no rule takes; if after, each would go deeper into the wall than the last.
     fn low_bounce(&self, start: f64) -> Option<f64> {
         let first = self.look(start);
-        let is_low = first.rate * first.rate <= -2.0 * first.pull * first.tolerance;
-        if first.exact || first.gap > first.tolerance || first.rate < 0.0 || !is_low {
+        let is_low = |pull: f64| first.rate * first.rate <= -2.0 * pull * first.tolerance;
+        if first.exact || first.gap > first.tolerance || first.rate < 0.0 || !is_low(first.pull) {
             return None;
         }
-        if first.rate == 0.0 {
-            // At rest on the wall, or about to leave it: that shows within the time of a fall through the rounding.
-            let soon = start + (2.0 * first.tolerance / -first.pull).sqrt();
-            return (self.look(soon).rate < 0.0).then_some(start);
-        }
-        let (mut time, mut now) = (start, first);
-        for _ in 0..LOOKS {
-            let back = time + (now.rate + first.rate) / -now.pull;
-            if now.rate <= -first.rate || back <= time {
-                return Some(time);
-            }
-            time = back.min(now.until);
-            now = self.look(time);
-            if now.gap > now.tolerance || now.pull >= 0.0 {
-                break;
-            }
-        }
-        None
+        let pull = self.pull_after(start, &first);
+        let end = start + first_descent(0.0, first.rate, pull)?;
+        (is_low(pull) && end < first.until).then_some(end)
+    }
+
+    /// The acceleration of the gap in the time of a fall through the rounding, which cannot leave the piece.
+    fn pull_after(&self, start: f64, first: &Look) -> f64 {
+        let fall = (-2.0 * first.tolerance / first.pull).sqrt();
+        let soon = (start + fall.min(0.5 * (first.until - start))).max(start.next_up());
+        (self.look(soon).rate - first.rate) / (soon - start)
     }
 
     /// A time, later than this one, until which the gap cannot have closed by more than `room`.
@@ -175,17 +175,7 @@ impl<M: WallMotion + ?Sized> Search<'_, M> {
     /// The room is the gap and its rounding: each step makes way, and the last ends in a gap closed by rounding. A gap that
     /// is closed by more has next to none: nothing goes much deeper into a wall than it is.
     fn still_open(time: f64, room: f64, rate: f64, pull: f64) -> f64 {
-        if room.is_nan() {
-            return f64::INFINITY;
-        }
         first_descent(room, rate, pull).map_or(f64::INFINITY, |wait| (time + wait).max(time.next_up()))
-    }
-
-    /// Bounds of the acceleration; a motion that breaks its contract and names no later end costs accuracy, not a hang.
-    fn piece(&self, time: f64) -> AccelerationBounds {
-        let bounds = self.motion.acceleration(time);
-        let until = if bounds.until > time { bounds.until } else { self.until.max(time).next_up() };
-        AccelerationBounds { until, ..bounds }
     }
 
     /// Gaps below this are closed: rounding of the lengths, and of the time at this speed.

@@ -232,11 +232,17 @@ fn hostile_flights_end() {
                 for velocity in hostile {
                     for acceleration in [0.0, -1.0, 1.0, -1e140, 1e140, 1e-300, -1e-300, f64::NAN] {
                         let approach = Approach::new(start, height, velocity, acceleration);
-                        if let Some(touch) = first_touch(&motion, &approach, start + 10.0) {
-                            assert!(
-                                (start..=start + 10.0).contains(&touch),
-                                "{name} {start} {height} {velocity} {acceleration}: {touch}"
-                            );
+                        // What outruns the wall from far below, or hovers in a reach that is too large, is followed
+                        // for as long as it takes.
+                        let is_followed = height < -1.0 || name == "loose";
+                        let end = if is_followed { start + 1e3 } else { f64::INFINITY };
+                        for end in [start + 10.0, end] {
+                            if let Some(touch) = first_touch(&motion, &approach, end) {
+                                assert!(
+                                    (start..=end).contains(&touch) && touch < f64::INFINITY,
+                                    "{name} {start} {height} {velocity} {acceleration}: {touch}"
+                                );
+                            }
                         }
                     }
                 }
@@ -263,9 +269,54 @@ fn motions_that_break_their_contract_do_not_hang_the_search() {
     for backward in [1.0, 0.5, f64::NAN, f64::NEG_INFINITY] {
         for height in [0.5, 0.0, -0.5, f64::NAN] {
             for velocity in [0.0, 1.0, -1.0] {
-                let _ = first_touch(&Backward(backward), &Approach::new(1.0, height, velocity, -1.0), 100.0);
+                for end in [100.0, f64::INFINITY] {
+                    let approach = Approach::new(1.0, height, velocity, -1.0);
+                    let touch = first_touch(&Backward(backward), &approach, end);
+                    // Wherever the wall is, the surface is within its reach from the start.
+                    assert_eq!(touch, (!height.is_nan()).then_some(1.0), "{backward} {height} {velocity}");
+                }
             }
         }
+    }
+}
+
+#[test]
+fn a_wall_too_fast_for_the_times_is_everywhere_within_its_reach() {
+    for frequency in [1e12, 1e20, 1e100] {
+        let motions: [Box<dyn WallMotion>; 4] = [
+            Box::new(BiParabolic::new(AMPLITUDE, frequency).unwrap()),
+            Box::new(Sinusoidal::new(AMPLITUDE, frequency).unwrap()),
+            Box::new(Triangular::new(AMPLITUDE, frequency).unwrap()),
+            Box::new(Sawtooth::new(AMPLITUDE, frequency).unwrap()),
+        ];
+        let falling = |start: f64| Approach::new(start, AMPLITUDE + 1.0, -1.0, 0.0);
+        let hovering = |start: f64| Approach::new(start, 0.0, 0.0, 0.0);
+        let leaving = |start: f64| Approach::new(start, AMPLITUDE + 1e-9, 1.0, 0.0);
+        for (motion, start) in motions.iter().flat_map(|motion| [1e6, 1e9, 1e15].map(|start| (motion, start)))
+        {
+            for end in [start + 100.0, f64::INFINITY] {
+                let touch = first_touch(motion, &falling(start), end).unwrap();
+                assert!((start + 1.0..start + 2.0).contains(&touch), "{frequency:e}: {touch}");
+                let touch = first_touch(motion, &hovering(start), end).unwrap();
+                assert!((start..start + 1e-9 * start).contains(&touch), "{frequency:e}: {touch}");
+                assert_eq!(first_touch(motion, &leaving(start), end), None, "{frequency:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_search_without_an_end_ends_with_the_flight() {
+    let wall = Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap();
+    let never =
+        |height, velocity| first_touch(&wall, &Approach::new(0.0, height, velocity, 0.0), f64::INFINITY);
+    assert_eq!(never(0.4, 0.0), None, "it hovers out of reach");
+    assert_eq!(never(0.0, 9.0), None, "it leaves");
+    let slow = never(1e3, -1e-3).unwrap();
+    assert!((slow - 999_700.0).abs() < PERIOD, "{slow}");
+    for height in [0.0, -1.0] {
+        let resting = Approach::new(0.0, height, 0.0, 0.0);
+        assert_eq!(first_touch(&Fixed, &resting, f64::INFINITY), None, "it rests, and nothing closes");
     }
 }
 

@@ -11,7 +11,7 @@ use granular_edmd::simulation::Checkpoint;
 use granular_edmd::study::{Control, Sample, Study};
 
 use crate::limits::{Limits, in_child};
-use crate::specimens::{CONTENTS_AT, checkpoint, done_study, resume, sealed};
+use crate::specimens::{CONTENTS_AT, checkpoint, done_study, resume, run_steps, sealed, stopped_study};
 
 /// What is written over the contents at each place: floats, and lengths and indices in their encoding.
 fn patterns() -> Vec<Vec<u8>> {
@@ -128,6 +128,33 @@ fn forged_records() {
         // All values have records: this reads them and writes tables.
         let _ = Study::open(&scratch.0).unwrap().run(&Control::default());
     });
+}
+
+#[test]
+#[ignore = "started by the test of forged values half done"]
+fn forged_partials() {
+    let (scratch, study) = stopped_study("forged-partials", 8);
+    let path = scratch.0.join("ramps/0000/0001.partial");
+    let file = fs::read(&path).unwrap();
+    let stride = std::env::var(STRIDE).map_or(1, |stride| stride.parse().unwrap());
+    none_panics(forged(&file, stride), |bytes| {
+        fs::write(&path, bytes).unwrap();
+        match run_steps(&study, 8) {
+            Ok(summary) => assert!(summary.redone.iter().all(|redone| *redone == path)),
+            Err(error) => assert!(error.to_string().contains("0001.partial"), "{error}"),
+        }
+    });
+}
+
+#[test]
+fn forged_values_half_done_are_started_again_or_go_on() {
+    in_child("forged::forged_partials", &LITTLE, &[(STRIDE, "101")]).assert_success();
+}
+
+#[test]
+#[ignore = "minutes: many more of them"]
+fn all_forged_values_half_done_are_started_again_or_go_on() {
+    in_child("forged::forged_partials", &LITTLE, &[(STRIDE, "3")]).assert_success();
 }
 
 #[test]

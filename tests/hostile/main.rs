@@ -8,6 +8,7 @@ mod config;
 mod constructors;
 #[cfg(all(feature = "serde", unix))]
 mod faults;
+mod few;
 #[cfg(feature = "serde")]
 mod files;
 #[cfg(all(feature = "serde", unix))]
@@ -16,11 +17,16 @@ mod invariants;
 mod laws;
 #[cfg(all(feature = "serde", unix))]
 mod limits;
+mod log;
 mod random_runs;
+#[cfg(feature = "serde")]
+mod records;
 mod regressions;
 mod schedulers;
 mod script;
 #[cfg(feature = "serde")]
 mod specimens;
 mod systems;
+#[cfg(feature = "serde")]
+mod unknown_fields;
 mod walls;

@@ -2,12 +2,13 @@
 
 use std::cell::Cell;
 
-use granular_edmd::boundary::{Container, Wall};
+use granular_edmd::boundary::{Boundary, Container, Wall};
 use granular_edmd::collision::{ContactDuration, Elastic, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::RunError;
 use granular_edmd::wall::{
-    AccelerationBounds, Approach, BiParabolic, Sinusoidal, WallMotion, WallState, first_touch,
+    AccelerationBounds, Approach, BiParabolic, Sawtooth, Sinusoidal, Triangular, WallMotion, WallState,
+    first_touch,
 };
 use granular_edmd::{Disk, Simulation};
 
@@ -41,6 +42,28 @@ fn a_disk_on_the_line_between_periodic_sides_is_inside_both_ways() {
         // One after a way of 7.5, and then one each time that they have gone round the ring, less two diameters.
         assert_eq!(run.counters().collisions, 7, "{x}");
         run.set_boundary(container.clone()).unwrap();
+    }
+}
+
+/// A disk at rest on a steadily moving lid bounces by rounding only, and each bounce rounds its height: it sinks, but by no more.
+#[test]
+fn a_disk_at_rest_on_a_moving_wall_sinks_by_less_than_the_rounding_of_its_bounces() {
+    let lids: [Box<dyn WallMotion + Send + Sync>; 4] = [
+        Box::new(Sawtooth::new(0.04, 14.7).unwrap()),
+        Box::new(Triangular::new(0.1, 2.0).unwrap()),
+        Box::new(BiParabolic::new(0.1, 1.0).unwrap()),
+        Box::new(Sinusoidal::new(0.1, 1.0).unwrap()),
+    ];
+    for lid in lids {
+        let container = Container::closed(9.0, 8.53).unwrap().with_motion(Wall::Lid, lid).unwrap();
+        let rule = ContactDuration::new(Smooth::from_restitution(0.0).unwrap(), 0.1).unwrap();
+        let disks = [disk(4.0, 7.0, DVec2::new(0.1, 0.4))];
+        let mut run = Simulation::builder(rule, container).disks(disks).gravity(-0.4).build().unwrap();
+        while run.counters().wall_collisions < 100_000 && run.step(&mut ()).is_ok() {}
+        let mut walls = run.boundary().clone();
+        walls.set_time_origin(run.time());
+        let depth = walls.overlap(run.disk(0).position(), 0.5, 0.0).map_or(0.0, |(_, depth)| depth);
+        assert!(depth < 1e5 * 8.0 * f64::EPSILON, "{depth:e}");
     }
 }
 

@@ -2,13 +2,15 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::{ContactDuration, Frictional};
 use granular_edmd::scheduler::LinearScan;
 use granular_edmd::simulation::{Checkpoint, CheckpointError};
 use granular_edmd::study::{
-    Base, Control, Course, Parameter, Protocol, Ramp, Specification, Study, System as StudySystem,
+    Base, Control, Course, Parameter, Progress, Protocol, Ramp, Specification, Study, StudyError, Summary,
+    System as StudySystem,
 };
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{Simulation, initial};
@@ -74,6 +76,21 @@ impl Drop for Scratch {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.0);
     }
+}
+
+/// The small study, stopped after so many steps.
+pub(crate) fn stopped_study(name: &str, steps: u64) -> (Scratch, Study) {
+    let scratch = Scratch::new(name);
+    let study = Study::create(&scratch.0, &specification()).unwrap();
+    run_steps(&study, steps).unwrap();
+    (scratch, study)
+}
+
+/// Runs a study until it has done so many steps in all.
+pub(crate) fn run_steps(study: &Study, steps: u64) -> Result<Summary, StudyError> {
+    let stop = AtomicBool::new(false);
+    let progress = |progress: &Progress| stop.store(progress.done >= steps, Ordering::Relaxed);
+    study.run(&Control::default().with_progress(&progress).with_interrupt(&stop))
 }
 
 /// The small study, done.

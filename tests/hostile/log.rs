@@ -1,0 +1,44 @@
+//! What is seen of a run, and what ends it in the middle.
+
+use std::panic::resume_unwind;
+
+use granular_edmd::observable::{Collision, Observer, Snapshot};
+
+/// Collisions of one step, and some more.
+pub(crate) const KEPT: usize = 4;
+
+/// What unwinds a run that has spent its budget: no observer can end it otherwise.
+pub(crate) struct Spent;
+
+/// Counts the collisions, up to a budget, keeps the first ones, and takes one sample.
+pub(crate) struct Log {
+    pub(crate) count: usize,
+    budget: usize,
+    pub(crate) collisions: Vec<Collision>,
+    sample: f64,
+    pub(crate) taken: Vec<f64>,
+}
+
+impl Log {
+    pub(crate) fn new(sample: f64, budget: usize) -> Self {
+        Self { count: 0, budget, collisions: Vec::new(), sample, taken: Vec::new() }
+    }
+}
+
+impl Observer for Log {
+    fn on_collision(&mut self, collision: &Collision) {
+        self.count += 1;
+        if self.collisions.len() < KEPT {
+            self.collisions.push(*collision);
+        }
+        if self.count > self.budget {
+            resume_unwind(Box::new(Spent));
+        }
+    }
+    fn next_sample(&self) -> f64 {
+        if self.taken.is_empty() { self.sample } else { f64::INFINITY }
+    }
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        self.taken.push(snapshot.time());
+    }
+}

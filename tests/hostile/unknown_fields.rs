@@ -1,0 +1,153 @@
+//! Every kind of value that is read from files, with a field too many: refused, by name.
+
+use std::fmt::Debug;
+
+use granular_edmd::analysis::{PlaneTransition, Transition};
+use granular_edmd::boundary::{Boundary, Thermal};
+use granular_edmd::collision::{ContactDuration, Frictional, Rough, Smooth};
+use granular_edmd::glam::DVec2;
+use granular_edmd::kinetic::Maxwellian;
+use granular_edmd::observable::{Energies, Fields, OrderParameters, SampleTimes, Temperatures};
+use granular_edmd::study::{Axis, Base, Course, Parameter, Protocol, Ramp, Record, Specification, System};
+use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
+use granular_edmd::{Disk, initial};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+
+use crate::specimens::{checkpoint, container, done_study, resume, specification};
+
+/// Gives each object of a value a field too many, in turn.
+fn with_intruders(value: &Value) -> Vec<Value> {
+    match value {
+        Value::Object(fields) => {
+            let mut all = vec![value.clone()];
+            all[0]["intruder"] = json!(1);
+            for (name, field) in fields {
+                all.extend(with_intruders(field).into_iter().map(|changed| {
+                    let mut whole = value.clone();
+                    whole[name] = changed;
+                    whole
+                }));
+            }
+            all
+        }
+        Value::Array(items) => {
+            let changed = |(at, item)| {
+                with_intruders(item).into_iter().map(move |changed| {
+                    let mut whole = value.clone();
+                    whole[at] = changed;
+                    whole
+                })
+            };
+            items.iter().enumerate().take(2).flat_map(changed).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn refuses<T: Serialize + DeserializeOwned + PartialEq + Debug>(sound: &T) {
+    let value = serde_json::to_value(sound).unwrap();
+    assert_eq!(&serde_json::from_value::<T>(value.clone()).unwrap(), sound);
+    refuses_intruders::<T>(&value);
+}
+
+fn refuses_intruders<T: DeserializeOwned>(value: &Value) {
+    let intruders = with_intruders(value);
+    assert!(!intruders.is_empty(), "{value}");
+    for changed in intruders {
+        let error = serde_json::from_value::<T>(changed.clone()).err().map(|error| error.to_string());
+        let error = error.unwrap_or_else(|| panic!("{changed}"));
+        // Beside the name of a choice, a field is a second choice.
+        assert!(error.contains("intruder") || error.contains("single key"), "{error}: {changed}");
+    }
+}
+
+#[test]
+fn parameters_with_a_field_too_many_are_refused() {
+    refuses(&Disk::new(DVec2::new(1.0, 2.0), 0.5).unwrap());
+    refuses(&Smooth::new(0.1).unwrap());
+    refuses(&Rough::new(0.1, 0.2).unwrap());
+    refuses(&Frictional::new(0.1, 0.2).unwrap());
+    refuses(&ContactDuration::new(Frictional::new(0.1, 0.2).unwrap(), 1e-3).unwrap());
+    refuses(&BiParabolic::new(0.1, 3.0).unwrap());
+    refuses(&Sinusoidal::new(0.1, 3.0).unwrap());
+    refuses(&Triangular::new(0.1, 3.0).unwrap());
+    refuses(&Sawtooth::new(0.1, 3.0).unwrap());
+    refuses(&Thermal::new(2.0).unwrap());
+    refuses(&Maxwellian::new(1.0).unwrap().with_rotational_temperature(0.5).unwrap());
+}
+
+#[test]
+fn what_was_measured_with_a_field_too_many_is_refused() {
+    let mut run = resume(&checkpoint()).unwrap();
+    refuses(&run.boundary().domain());
+    refuses(&run.measure(&OrderParameters));
+    refuses(&run.measure(&Energies));
+    refuses(&run.measure(&Temperatures));
+    let region = granular_edmd::boundary::Region { min: DVec2::ZERO, max: DVec2::ONE };
+    let fields = Fields::new(region, 1, 1, SampleTimes::every(1.0).unwrap()).unwrap();
+    refuses(&fields.cell(0, 0).unwrap());
+    let transition = json!({ "line": "ZeroOne", "value": 0.1, "error": 0.01, "rising": true });
+    refuses(&serde_json::from_value::<Transition>(transition).unwrap());
+    let transition = json!({
+        "line": "ZeroOne", "friction": 0.1, "inelasticity": 0.0, "between": [[0.1, 0.0], [0.2, 0.0]], "rising": true
+    });
+    refuses(&serde_json::from_value::<PlaneTransition>(transition).unwrap());
+}
+
+#[test]
+fn plans_and_records_with_a_field_too_many_are_refused() {
+    refuses(&specification());
+    refuses(&Ramp::new(Parameter::Friction, vec![0.1], Course::Down));
+    refuses(&Axis::new(Parameter::Friction, vec![0.1]));
+    for base in [
+        Base::BiParabolic { amplitude: 0.1, angular_frequency: 1.0 },
+        Base::Sinusoidal { amplitude: 0.1, angular_frequency: 1.0 },
+        Base::Thermal { temperature: 1.0, slip: true },
+    ] {
+        let system = System::new(3, 4.0, base).with_height(3.0).with_contact_duration(1e-3);
+        refuses(&Specification::new(system, Protocol::new(2, 3, 1), 5).unwrap());
+    }
+    let (_scratch, study) = done_study("intruder");
+    // Without its plan, tried above, and what is of the engine: JSON has no infinity.
+    let mut record = serde_json::to_value(study.record(0, 1).unwrap().unwrap()).unwrap();
+    for part in ["system", "state", "counters"] {
+        record.as_object_mut().unwrap().remove(part);
+    }
+    refuses_intruders::<Record>(&record);
+    let mut state = serde_json::to_value(checkpoint()).unwrap();
+    state["intruder"] = json!(1);
+    let error = serde_json::from_value::<granular_edmd::simulation::Checkpoint>(state).unwrap_err();
+    assert!(error.to_string().contains("intruder"), "{error}");
+}
+
+/// The same in TOML, at each place of a plan.
+#[test]
+fn a_plan_in_toml_with_a_field_too_many_is_refused() {
+    let text = specification().to_toml().unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    for at in 0..=lines.len() {
+        let changed = [&lines[..at], &["intruder = 1"], &lines[at..]].concat().join("\n");
+        let error = Specification::from_toml(&changed).unwrap_err().to_string();
+        assert!(error.contains("intruder"), "{error}");
+    }
+}
+
+/// Numbers deep in each other are refused; so is a plan that is too large, at once.
+#[test]
+fn plans_that_are_too_deep_or_too_long_are_refused_at_once() {
+    let text = specification().to_toml().unwrap();
+    let deep = [text.as_str(), "\nsweep = ", &"[".repeat(100_000)].concat();
+    assert!(Specification::from_toml(&deep).is_err());
+    let count = 1_000_001;
+    let values: Vec<f64> = (0..count).map(f64::from).collect();
+    let ramp = Ramp::new(Parameter::Gravity, values, Course::Up);
+    let error = specification().with_ramp(ramp).unwrap_err().to_string();
+    assert!(error.contains("1000001"), "{error}");
+    let values: Vec<f64> = (0..200_000).map(f64::from).collect();
+    let ramp = Ramp::new(Parameter::Gravity, values, Course::UpAndDown);
+    assert_eq!(specification().with_ramp(ramp).unwrap().values(), 399_999, "in time that grows with it only");
+    let crowd = initial::lattice(&container(), usize::MAX, 0.5).unwrap_err().to_string();
+    assert!(crowd.contains("number of disks"), "{crowd}");
+}
