@@ -222,8 +222,10 @@ impl Bodies {
     #[inline]
     pub(super) fn kick(&mut self, disk: usize, velocity: DVec2, angular_velocity: f64, offset: f64) {
         let trajectory = &mut self.particles[disk].trajectory;
+        let before = trajectory.velocity;
         trajectory.velocity += velocity;
-        trajectory.position -= velocity * offset;
+        // What the velocity changed by after rounding, or the disk would jump.
+        trajectory.position -= (trajectory.velocity - before) * offset;
         let spin = &mut self.spins[disk];
         spin.angular_velocity += angular_velocity;
         spin.angle -= angular_velocity * offset;
