@@ -128,7 +128,9 @@ impl Checkpoint {
             Broken::Version(found) => CheckpointError::Version { found, known: SEAL.version },
             Broken::Cut | Broken::Changed => CheckpointError::Damaged,
         })?;
-        Ok(postcard::from_bytes(contents)?)
+        let (checkpoint, rest) = postcard::take_from_bytes(contents)?;
+        check(rest.is_empty(), "something follows it")?;
+        Ok(checkpoint)
     }
 
     /// Writes the checkpoint to a file, whole or not at all: a reader never sees half of it.

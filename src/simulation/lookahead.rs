@@ -7,8 +7,8 @@ use crate::collision::CollisionRule;
 use crate::prefetch::prefetch;
 use crate::scheduler::EventScheduler;
 
-/// Disks from which on the caches do not hold all of a system.
-const LARGE: usize = 20_000;
+/// Disks from which on the caches hold so little of a system that looking ahead pays: it takes 200 ns a collision.
+const LARGE: usize = 50_000;
 
 /// How many disks later what a disk leads to is asked for, and again what that leads to.
 const LATER: usize = 16;

@@ -96,6 +96,14 @@ const STRIDE: &str = "GRANULAR_EDMD_HOSTILE_STRIDE";
 const LITTLE: Limits = Limits { memory_kib: 1 << 20, seconds: 600, file_kib: None };
 
 #[test]
+fn bytes_behind_a_checkpoint_are_refused() {
+    let file = checkpoint().to_bytes().unwrap();
+    let longer = sealed(&file, &[&file[CONTENTS_AT..], &[0]].concat());
+    let error = Checkpoint::from_bytes(&longer).unwrap_err();
+    assert!(error.to_string().contains("something follows it"), "{error}");
+}
+
+#[test]
 #[ignore = "started by the test of forged checkpoints"]
 fn forged_checkpoints() {
     let file = checkpoint().to_bytes().unwrap();
