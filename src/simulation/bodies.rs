@@ -12,6 +12,9 @@ use super::event::Slot;
 use crate::Disk;
 use crate::collision::{Body, Material};
 
+/// How much faster than the typical disk one may be before it decides how often the epoch moves.
+const FASTER: f64 = 16.0;
+
 /// A straight trajectory in the free-fall frame; one row is one 32-byte load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(32))]
@@ -262,18 +265,27 @@ impl Bodies {
         }
     }
 
-    /// How far the epoch may be left behind: until a typical disk has gone, or fallen, some tens of diameters.
-    ///
-    /// A power of two, so that epochs add up without rounding.
+    /// How far the epoch may be left behind: until a typical disk has gone, or fallen, some tens of diameters, and none
+    /// [`FASTER`] times as far.
     pub(super) fn epoch_length(&self) -> f64 {
+        let squares = || self.particles.iter().map(|particle| particle.trajectory.velocity.length_squared());
+        let typical = (squares().sum::<f64>() / self.len() as f64).sqrt();
+        self.epoch_length_at(typical.max(squares().fold(0.0, f64::max).sqrt() / FASTER))
+    }
+
+    /// How far the epoch may be left behind for this disk: walls can make it faster than all were.
+    pub(super) fn epoch_length_of(&self, disk: usize) -> f64 {
+        self.epoch_length_at(self.particles[disk].trajectory.velocity.length() / FASTER)
+    }
+
+    /// A power of two, so that epochs add up without rounding.
+    fn epoch_length_at(&self, speed: f64) -> f64 {
         const DIAMETERS: f64 = 64.0;
         if self.len() == 0 {
             return 1.0;
         }
         let diameter = 2.0 * self.material(0).radius;
-        let squares: f64 = self.particles.iter().map(|p| p.trajectory.velocity.length_squared()).sum();
-        let speed = (squares / self.len() as f64).sqrt() + (DIAMETERS * self.gravity.abs() * diameter).sqrt();
-        let length = DIAMETERS * diameter / speed;
+        let length = DIAMETERS * diameter / (speed + (DIAMETERS * self.gravity.abs() * diameter).sqrt());
         if length.is_finite() && length > 0.0 {
             length.log2().floor().clamp(-900.0, 900.0).exp2()
         } else {

@@ -188,6 +188,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let collision =
             resolve_wall(&mut self.bodies, &self.rule, &mut self.generator, &surface, meeting, wall)
                 .map_err(|NotFinite| RunError::NotFinite { disk, time: meeting.time })?;
+        self.epoch_length = self.epoch_length.min(self.bodies.epoch_length_of(disk));
         self.counters.wall_collisions += 1;
         self.counters.contact_duration_collisions += u64::from(by_contact_duration(&collision));
         self.count_collision(disk);
