@@ -23,6 +23,7 @@ mod event;
 mod grid;
 mod guard;
 mod lookahead;
+mod next_event;
 mod prediction;
 mod resolution;
 mod view;

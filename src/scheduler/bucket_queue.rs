@@ -1,5 +1,9 @@
 //! A calendar that is turned page by page: for many disks.
 
+mod arrivals;
+
+use arrivals::Arrivals;
+
 use super::EventScheduler;
 use crate::prefetch::prefetch;
 
@@ -23,9 +27,6 @@ const LONGEST_PAGE: usize = 2;
 /// Buckets from the present one to those that come into sight: some dozens of events.
 const SIGHT: usize = 96;
 
-/// Disks that wait for their bucket to come from memory.
-const QUEUE: usize = 16;
-
 /// Buckets that share a word of flags.
 const WORD: usize = u64::BITS as usize;
 
@@ -47,10 +48,8 @@ pub struct BucketQueue {
     current: usize,
     /// Buckets before this one have come into sight.
     sighted: usize,
-    /// Disks that are not in their buckets yet, the next one to go there first, and the first of those buckets.
-    waiting: [Waiting; QUEUE],
-    oldest: usize,
-    waiting_from: usize,
+    /// Disks that are not in their buckets yet.
+    arrivals: Arrivals,
     /// Time at which the page starts, and buckets per time.
     start: f64,
     rate: f64,
@@ -72,19 +71,8 @@ struct Node {
 
 const NOBODY: u32 = u32::MAX;
 
-/// In place of [`Node::previous`]: the disk waits.
-const WAITS: u32 = u32::MAX - 1;
-
-/// A disk on its way to a bucket that is not in the caches.
-#[derive(Debug, Clone, Copy)]
-struct Waiting {
-    disk: u32,
-    bucket: u32,
-}
-
-impl Waiting {
-    const NOBODY: Self = Self { disk: NOBODY, bucket: 0 };
-}
+/// In place of [`Node::previous`]: the disk is on its way.
+const ON_THE_WAY: u32 = u32::MAX - 1;
 
 impl Default for BucketQueue {
     fn default() -> Self {
@@ -102,9 +90,7 @@ impl BucketQueue {
             buckets: 0,
             current: 0,
             sighted: 0,
-            waiting: [Waiting::NOBODY; QUEUE],
-            oldest: 0,
-            waiting_from: usize::MAX,
+            arrivals: Arrivals::NONE,
             start: 0.0,
             rate: 0.0,
             set: 0,
@@ -122,8 +108,8 @@ impl BucketQueue {
     #[inline]
     fn unlink(&mut self, disk: usize) {
         let Node { due, next, previous } = self.nodes[disk];
-        if previous == WAITS {
-            return self.call_off(disk);
+        if previous == ON_THE_WAY {
+            return self.arrivals.call_off(disk);
         }
         if previous == NOBODY {
             let bucket = self.bucket(due);
@@ -184,37 +170,18 @@ impl BucketQueue {
             return self.link(disk, due);
         }
         prefetch(&self.heads, bucket);
-        self.nodes[disk] = Node { due, next: NOBODY, previous: WAITS };
-        self.waiting_from = self.waiting_from.min(bucket);
-        let waiting = Waiting { disk: disk as u32, bucket: bucket as u32 };
-        let longest = std::mem::replace(&mut self.waiting[self.oldest], waiting);
-        self.oldest = (self.oldest + 1) % QUEUE;
-        let halfway = self.waiting[(self.oldest + QUEUE / 2) % QUEUE];
-        prefetch(&self.nodes, self.heads[halfway.bucket as usize] as usize);
-        self.arrive(longest);
-    }
-
-    #[inline]
-    fn arrive(&mut self, waiting: Waiting) {
-        if waiting.disk != NOBODY {
-            self.link(waiting.disk as usize, self.nodes[waiting.disk as usize].due);
+        self.nodes[disk] = Node { due, next: NOBODY, previous: ON_THE_WAY };
+        let arrived = self.arrivals.send(disk, bucket);
+        prefetch(&self.nodes, self.heads[self.arrivals.halfway()] as usize);
+        if let Some(disk) = arrived {
+            self.link(disk, self.nodes[disk].due);
         }
     }
 
-    /// All that wait arrive.
     #[cold]
     fn hurry(&mut self) {
-        self.waiting_from = usize::MAX;
-        for waiting in std::mem::replace(&mut self.waiting, [Waiting::NOBODY; QUEUE]) {
-            self.arrive(waiting);
-        }
-    }
-
-    /// A disk waits no longer.
-    #[cold]
-    fn call_off(&mut self, disk: usize) {
-        for waiting in self.waiting.iter_mut().filter(|waiting| waiting.disk as usize == disk) {
-            *waiting = Waiting::NOBODY;
+        for disk in self.arrivals.hurry() {
+            self.link(disk, self.nodes[disk].due);
         }
     }
 
@@ -232,7 +199,7 @@ impl BucketQueue {
     #[inline]
     fn find_current(&mut self) {
         let mut first = self.first_bucket();
-        if first >= self.waiting_from {
+        if first >= self.arrivals.first_bucket() {
             self.hurry();
             first = self.first_bucket();
         }
@@ -251,8 +218,7 @@ impl BucketQueue {
         self.start = first;
         (self.set, self.steps, self.sighted) = (0, 0, 0);
         self.current = self.buckets - 1;
-        self.waiting = [Waiting::NOBODY; QUEUE];
-        self.waiting_from = usize::MAX;
+        self.arrivals = Arrivals::NONE;
         self.flags.fill(0);
         self.heads.fill(NOBODY);
         // From the last to the first: of equal times each goes to the front of its bucket at once.
