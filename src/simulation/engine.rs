@@ -132,7 +132,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             let partner = slot.partner as usize;
             if self.slot(partner).collisions != slot.partner_collisions {
                 self.counters.repredictions += 1;
-                self.predict(disk);
+                self.predict_partner(disk);
                 return Ok(Event::Repredicted { disk });
             }
             return self.collide(disk, partner, observer);

@@ -23,8 +23,8 @@ pub enum Event {
         /// The disk.
         disk: usize,
     },
-    /// A disk's partner had collided with another meanwhile, and the disk's next event was predicted anew; or all were, for
-    /// neighbour cells of another size. No physics.
+    /// A disk's partner had collided with another meanwhile, and the disk's next collision was predicted anew; or all events were,
+    /// for neighbour cells of another size. No physics.
     Repredicted {
         /// The disk.
         disk: usize,
@@ -33,7 +33,7 @@ pub enum Event {
 
 /// What happened since the simulation was built.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Counters {
     /// Collisions of two disks.

@@ -31,12 +31,25 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// One copy for all callers: the whole search is inlined into it.
     #[inline(never)]
     pub(super) fn find_next(&mut self, disk: usize) {
+        self.find_partner(disk);
+        self.end_flight(disk);
+    }
+
+    /// Finds another partner for a disk whose partner has collided meanwhile: its own flight in its cell ends as it did.
+    #[inline(never)]
+    pub(super) fn predict_partner(&mut self, disk: usize) {
+        self.find_partner(disk);
+        self.schedule(disk);
+    }
+
+    /// Finds the next collision of a disk among all its neighbours.
+    #[inline(always)]
+    fn find_partner(&mut self, disk: usize) {
         let count = self.find_neighbours(disk);
         let earliest = self.earliest_collision(disk, count, Earliest::NONE);
         let partner_collisions =
             self.bodies.particles.get(earliest.partner as usize).map_or(0, |partner| partner.slot.collisions);
         self.slot_mut(disk).meet(earliest, partner_collisions);
-        self.end_flight(disk);
     }
 
     /// Tells the scheduler when the next event of a disk is due.
