@@ -85,23 +85,12 @@ impl Plane {
             flight.velocity(flight.time()).dot(self.normal),
             flight.acceleration().dot(self.normal),
         );
-        if self.stays_beyond_reach(flight, height, until) {
+        // True for all walls but one, or all, of most flights in a cell: it spares them the search.
+        if approach.stays_above(self.highest, until + self.phase) {
             return None;
         }
         let touch = first_touch(&*self.motion, &approach, until + self.phase)?;
         Some((touch - self.phase).clamp(flight.time(), until))
-    }
-
-    /// Whether the flight begins and ends higher than the wall ever gets, and is no lower between.
-    ///
-    /// True for all walls but one, or all, of most flights in a cell: it spares them the search.
-    #[inline]
-    fn stays_beyond_reach(&self, flight: &Flight, height: f64, until: f64) -> bool {
-        let highest = self.highest;
-        let acceleration = flight.acceleration().dot(self.normal);
-        let elapsed = until - flight.time();
-        let rise = (flight.velocity(flight.time()).dot(self.normal) + 0.5 * acceleration * elapsed) * elapsed;
-        (acceleration <= 0.0) & (height > highest) & (height + rise > highest)
     }
 
     pub(super) fn surface(&self, time: f64) -> Surface<'_> {

@@ -12,6 +12,9 @@ use super::event::Slot;
 use crate::Disk;
 use crate::collision::{Body, Material};
 
+/// How far a typical disk goes, or falls, in an epoch, in diameters.
+const DIAMETERS: f64 = 64.0;
+
 /// How much faster than the typical disk one may be before it decides how often the epoch moves.
 const FASTER: f64 = 16.0;
 
@@ -273,14 +276,22 @@ impl Bodies {
         self.epoch_length_at(typical.max(squares().fold(0.0, f64::max).sqrt() / FASTER))
     }
 
-    /// How far the epoch may be left behind for this disk: walls can make it faster than all were.
+    /// Whether a disk goes further in an epoch of this length than any should: a collision can make it faster than all were.
+    #[inline]
+    pub(super) fn outruns(&self, disk: usize, epoch_length: f64) -> bool {
+        let most = FASTER * DIAMETERS * 2.0 * self.material(0).radius;
+        let way = self.particles[disk].trajectory.velocity * epoch_length;
+        way.length_squared() > most * most
+    }
+
+    /// How far the epoch may be left behind for this disk.
+    #[cold]
     pub(super) fn epoch_length_of(&self, disk: usize) -> f64 {
         self.epoch_length_at(self.particles[disk].trajectory.velocity.length() / FASTER)
     }
 
     /// A power of two, so that epochs add up without rounding.
     fn epoch_length_at(&self, speed: f64) -> f64 {
-        const DIAMETERS: f64 = 64.0;
         if self.len() == 0 {
             return 1.0;
         }

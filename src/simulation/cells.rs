@@ -219,8 +219,7 @@ impl Cells {
     /// Asks for the cells that a disk leaves and enters by `exit`, and those that then come within reach.
     #[inline]
     pub(super) fn prefetch_ahead(&self, disk: usize, exit: Exit) {
-        let from = self.places[disk];
-        let (to, _) = self.grid.neighbour(from, exit.direction());
+        let (from, to) = (self.places[disk], self.next_place(disk, exit));
         self.grid.prefetch_region(to);
         for cell in [from, to].map(|place| self.grid.index(place)) {
             self.prefetch_cells(cell, cell);

@@ -159,8 +159,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.counters.collisions += 1;
         self.counters.contact_duration_collisions += u64::from(by_contact_duration(&collision));
         self.counters.max_overlap = self.counters.max_overlap.max(overlap);
-        self.count_collision(disk);
-        self.count_collision(partner);
+        self.has_collided(disk);
+        self.has_collided(partner);
         observer.on_collision(&collision);
         for disk in [disk, partner] {
             self.find_next(disk);
@@ -182,10 +182,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let collision =
             resolve_wall(&mut self.bodies, &self.rule, &mut self.generator, &surface, meeting, wall)
                 .map_err(|NotFinite| RunError::NotFinite { disk, time: meeting.time })?;
-        self.epoch_length = self.epoch_length.min(self.bodies.epoch_length_of(disk));
         self.counters.wall_collisions += 1;
         self.counters.contact_duration_collisions += u64::from(by_contact_duration(&collision));
-        self.count_collision(disk);
+        self.has_collided(disk);
         observer.on_collision(&collision);
         self.predict(disk);
         Ok(Event::WallCollision { disk, wall })
@@ -205,10 +204,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Meeting { disk, offset: self.now, time: self.time() }
     }
 
+    /// What all collisions of a disk have in common: predictions with it are out of date, and it may have become so fast that
+    /// the epoch must end early.
     #[inline]
-    fn count_collision(&mut self, disk: usize) {
+    fn has_collided(&mut self, disk: usize) {
         let collisions = &mut self.slot_mut(disk).collisions;
         *collisions = collisions.wrapping_add(1);
+        if self.bodies.outruns(disk, self.epoch_length) {
+            self.epoch_length = self.bodies.epoch_length_of(disk);
+        }
     }
 
     /// Takes a disk to its next cell. Its trajectory does not change: only the cells ahead can hold an earlier partner.

@@ -31,6 +31,12 @@ impl Approach {
         self.height + (self.velocity + 0.5 * self.acceleration * elapsed) * elapsed
     }
 
+    /// Whether the surface begins and ends above this height, and is no lower between.
+    #[inline]
+    pub(crate) fn stays_above(&self, height: f64, until: f64) -> bool {
+        (self.acceleration <= 0.0) & (self.height > height) & (self.height(until) > height)
+    }
+
     #[inline]
     fn velocity(&self, time: f64) -> f64 {
         self.velocity + self.acceleration * (time - self.time)

@@ -4,9 +4,11 @@
 //! COLLISIONS=10000000 cargo test --release --test engine -- --ignored --nocapture for_a_billion_collisions
 //! ```
 
-use granular_edmd::Simulation;
-use granular_edmd::collision::Elastic;
+use granular_edmd::boundary::{Boundary, Container, Wall};
+use granular_edmd::collision::{Contact, Elastic, Impulse, from_fn};
+use granular_edmd::glam::DVec2;
 use granular_edmd::observable::Energies;
+use granular_edmd::{Disk, Simulation};
 
 use crate::setups::elastic_gas_at;
 
@@ -76,4 +78,28 @@ fn a_run_at_ten_million_has_the_digits_of_one_at_zero() {
     assert!(early.1.collisions > 20_000, "{:?}", early.1);
     assert_eq!(early.0, late.0);
     assert_eq!(early.1, late.1);
+}
+
+#[test]
+fn disks_that_a_collision_makes_fast_keep_their_digits() {
+    // They creep towards each other for a million times, and their rule has them part at a speed of 123.4.
+    let burst = from_fn(|contact: &Contact| {
+        Impulse::new(contact.normal_mass() * (contact.closing_speed() + 123.4), 0.0)
+    });
+    let walls = [Wall::Floor, Wall::Lid, Wall::Left, Wall::Right];
+    let closed = Container::closed(10.0, 10.0).unwrap();
+    let walls = walls.into_iter().fold(closed, |walls, wall| walls.with_rule(wall, Elastic).unwrap());
+    let disk = |x: f64, velocity: f64| {
+        let disk = Disk::new(DVec2::new(x, 5.0), 0.5).unwrap();
+        disk.with_velocity(DVec2::new(velocity, 1e-7)).unwrap()
+    };
+    let disks = [disk(3.1, 1e-6), disk(7.3, -1.3e-6)];
+    let mut simulation = Simulation::builder(burst, walls.clone()).disks(disks).build().unwrap();
+    while simulation.counters().wall_collisions < 1000 {
+        simulation.step(&mut ()).unwrap().unwrap();
+        for disk in simulation.disks() {
+            let overlap = walls.overlap(disk.position(), 0.5, simulation.time());
+            assert!(overlap.is_none_or(|(_, depth)| depth < 1e-12), "{overlap:?} at {}", simulation.time());
+        }
+    }
 }
