@@ -12,6 +12,7 @@
 
 mod bucket_queue;
 mod by_size;
+mod entry;
 mod linear_scan;
 mod tournament_tree;
 

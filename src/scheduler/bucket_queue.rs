@@ -1,78 +1,56 @@
 //! A calendar that is turned page by page: for many disks.
 
-mod arrivals;
+mod piles;
 
-use arrivals::Arrivals;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 use super::EventScheduler;
-use crate::prefetch::prefetch;
+use super::entry::Entry;
+use piles::Piles;
 
-/// Buckets of a page for each disk; with [`BUCKETS_PER_EVENT`] a page lasts two events of each disk, so that turning it
-/// costs little.
-const BUCKETS_PER_DISK: usize = 4;
+/// Events that are due in the time of a bucket, so many that what concerns the buckets stays in the caches.
+const EVENTS_PER_BUCKET: usize = 512;
 
-/// Buckets for each event that is due in their time: so many that few hold two.
-const BUCKETS_PER_EVENT: f64 = 2.0;
-
-/// Least number of buckets.
-const LEAST_BUCKETS: usize = 64;
+/// Events of a page for each disk: turning it costs little then.
+const EVENTS_PER_DISK: usize = 2;
 
 /// Disks by which the density of events is judged at first, and the part of them that are due soon.
 const SAMPLE: usize = 256;
 const SOON: usize = 8;
 
-/// Events, and steps past others, for each bucket after which a page is turned at the latest: its buckets are too wide.
-const LONGEST_PAGE: usize = 2;
+/// Events from the present one to those that come into sight.
+const SIGHT: usize = 64;
 
-/// Buckets from the present one to those that come into sight: some dozens of events.
-const SIGHT: usize = 96;
-
-/// Buckets that share a word of flags.
-const WORD: usize = u64::BITS as usize;
-
-/// A page of equally wide buckets of time, each with the disks that are due in it, in order.
+/// A page of equally wide buckets of time; in each, in no order, the disks that are due in it.
 ///
-/// A disk goes into the bucket of its time, where it seldom meets another, or into the last one if it is off the page; a flag
-/// for each bucket that is not empty leads to the next event. That is a few loads and stores, however many disks there
-/// are. When the page is used up, all events are dealt out anew, to buckets as wide as the events of the last page want.
+/// A disk is written to the end of the bucket of its time, and nothing is taken out of the one where it was: what is out of
+/// date is left out when the bucket is opened, just before its time, and its disks are put in order. Disks that become due in
+/// a time that is open already wait in a heap, and those off the page are not written down at all: when the page is used up,
+/// all disks are dealt out anew, to buckets as wide as the events of the last page want. So whatever an event writes is in the
+/// caches, however many disks there are, but for the time of its disk.
 #[derive(Debug, Clone)]
 pub struct BucketQueue {
-    /// All that concerns a disk, together in memory.
-    nodes: Vec<Node>,
-    /// The first disk of each bucket.
-    heads: Vec<u32>,
-    /// A bit for each bucket that is not empty.
-    flags: Vec<u64>,
-    buckets: usize,
-    /// The first bucket that is not empty.
-    current: usize,
-    /// Buckets before this one have come into sight.
+    /// When each disk is due.
+    due: Vec<f64>,
+    /// The disks of each bucket of the page.
+    buckets: Piles,
+    /// Buckets before this one have been opened.
+    opened: usize,
+    /// The events of the open buckets in order, and how many of them are over.
+    open: Vec<Entry>,
+    over: usize,
+    /// How many of them have come into sight.
     sighted: usize,
-    /// Disks that are not in their buckets yet.
-    arrivals: Arrivals,
+    /// Events that were set later, in the time of the open buckets.
+    late: BinaryHeap<Reverse<Entry>>,
+    first: Entry,
     /// Time at which the page starts, and buckets per time.
     start: f64,
     rate: f64,
     /// Events set since the page was turned.
     set: usize,
-    /// Steps past disks that come first in their bucket, since the page was turned.
-    steps: usize,
 }
-
-/// A disk in its bucket.
-#[derive(Debug, Clone, Copy)]
-struct Node {
-    due: f64,
-    /// The disk behind it, or [`NOBODY`].
-    next: u32,
-    /// The disk before it, or [`NOBODY`] if it is the first.
-    previous: u32,
-}
-
-const NOBODY: u32 = u32::MAX;
-
-/// In place of [`Node::previous`]: the disk is on its way.
-const ON_THE_WAY: u32 = u32::MAX - 1;
 
 impl Default for BucketQueue {
     fn default() -> Self {
@@ -84,160 +62,127 @@ impl BucketQueue {
     /// A scheduler of no disks.
     pub const fn new() -> Self {
         Self {
-            nodes: Vec::new(),
-            heads: Vec::new(),
-            flags: Vec::new(),
-            buckets: 0,
-            current: 0,
+            due: Vec::new(),
+            buckets: Piles::NONE,
+            opened: 0,
+            open: Vec::new(),
+            over: 0,
             sighted: 0,
-            arrivals: Arrivals::NONE,
+            late: BinaryHeap::new(),
+            first: Entry::EMPTY,
             start: 0.0,
             rate: 0.0,
             set: 0,
-            steps: 0,
         }
     }
 
-    /// The bucket of a time: they are in the order of their times, and the last one holds whatever is off the page.
+    /// The bucket of a time: they are in the order of their times, without end.
     #[inline]
     fn bucket(&self, due: f64) -> usize {
         // The cast saturates: what is early goes to the first bucket.
-        (((due - self.start) * self.rate) as usize).min(self.buckets - 1)
+        ((due - self.start) * self.rate) as usize
     }
 
     #[inline]
-    fn unlink(&mut self, disk: usize) {
-        let Node { due, next, previous } = self.nodes[disk];
-        if previous == ON_THE_WAY {
-            return self.arrivals.call_off(disk);
-        }
-        if previous == NOBODY {
-            let bucket = self.bucket(due);
-            self.heads[bucket] = next;
-            self.flags[bucket / WORD] &= !(u64::from(next == NOBODY) << (bucket % WORD));
-        } else {
-            self.nodes[previous as usize].next = next;
-        }
-        if next != NOBODY {
-            self.nodes[next as usize].previous = previous;
-        }
+    fn is_up_to_date(&self, entry: Entry) -> bool {
+        self.due[entry.disk] == entry.due()
     }
 
-    /// Puts a disk into the bucket of its time, behind those that come first.
-    #[inline]
-    fn link(&mut self, disk: usize, due: f64) {
-        let bucket = self.bucket(due);
-        let (mut before, mut after) = (NOBODY, self.heads[bucket]);
-        // Off the page there is no order.
-        while after != NOBODY && bucket != self.buckets - 1 && self.precedes(after, due, disk) {
-            (before, after) = (after, self.nodes[after as usize].next);
-            self.steps += 1;
-        }
-        self.nodes[disk] = Node { due, next: after, previous: before };
-        if before == NOBODY {
-            self.heads[bucket] = disk as u32;
-            self.flags[bucket / WORD] |= 1 << (bucket % WORD);
-        } else {
-            self.nodes[before as usize].next = disk as u32;
-        }
-        if after != NOBODY {
-            self.nodes[after as usize].previous = disk as u32;
-        }
-        if bucket < self.current {
-            self.go_back_to(bucket);
-        }
-    }
-
-    /// A branch that is hardly ever taken, not a minimum: so the processor begins with the next event before it knows when
-    /// the disk of the last one is due again.
-    #[cold]
-    #[inline(never)]
-    fn go_back_to(&mut self, bucket: usize) {
-        self.current = bucket;
-    }
-
-    #[inline]
-    fn precedes(&self, other: u32, due: f64, disk: usize) -> bool {
-        let others = self.nodes[other as usize].due;
-        others < due || (others == due && (other as usize) < disk)
-    }
-
-    /// Puts a disk into the bucket of its time: at once if that is in sight, else when it has come from memory.
+    /// Writes down when a disk is due.
     #[inline]
     fn place(&mut self, disk: usize, due: f64) {
         let bucket = self.bucket(due);
-        if bucket < self.current + SIGHT {
-            return self.link(disk, due);
-        }
-        prefetch(&self.heads, bucket);
-        self.nodes[disk] = Node { due, next: NOBODY, previous: ON_THE_WAY };
-        let arrived = self.arrivals.send(disk, bucket);
-        prefetch(&self.nodes, self.heads[self.arrivals.halfway()] as usize);
-        if let Some(disk) = arrived {
-            self.link(disk, self.nodes[disk].due);
+        if bucket < self.opened {
+            self.late.push(Reverse(Entry::new(disk, due)));
+        } else if bucket < self.buckets.len() {
+            self.buckets.push(bucket, disk);
         }
     }
 
+    /// Finds the first event that is up to date.
+    #[inline]
+    fn find_first(&mut self) {
+        loop {
+            if self.open.len() - self.over < SIGHT {
+                self.open_buckets();
+            }
+            let next = self.open.get(self.over).copied().unwrap_or_default();
+            let late = self.late.peek().map_or(Entry::EMPTY, |&Reverse(late)| late);
+            self.first = next.min(late);
+            if self.first == Entry::EMPTY {
+                return self.turn_page();
+            }
+            if self.is_up_to_date(self.first) {
+                return;
+            }
+            if late < next {
+                self.late.pop();
+            } else {
+                self.over += 1;
+            }
+        }
+    }
+
+    /// Opens buckets until enough events are in sight, or the page ends.
     #[cold]
-    fn hurry(&mut self) {
-        for disk in self.arrivals.hurry() {
-            self.link(disk, self.nodes[disk].due);
+    #[inline(never)]
+    fn open_buckets(&mut self) {
+        if self.opened == self.buckets.len() {
+            return;
+        }
+        self.open.drain(..self.over);
+        self.sighted = self.sighted.saturating_sub(self.over);
+        self.over = 0;
+        while self.opened < self.buckets.len() && self.open.len() < SIGHT {
+            self.open_bucket();
         }
     }
 
-    /// The first bucket from the present one on that is not empty, or the end.
-    #[inline]
-    fn first_bucket(&self) -> usize {
-        let mut word = self.current / WORD;
-        while word < self.flags.len() && self.flags[word] == 0 {
-            word += 1;
-        }
-        self.flags.get(word).map_or(self.buckets, |flags| word * WORD + flags.trailing_zeros() as usize)
-    }
-
-    /// Finds the first bucket that is not empty; turns the page if that is the last, or the page does not end.
-    #[inline]
-    fn find_current(&mut self) {
-        let mut first = self.first_bucket();
-        if first >= self.arrivals.first_bucket() {
-            self.hurry();
-            first = self.first_bucket();
-        }
-        self.current = first;
-        if self.current == self.buckets - 1 || self.set + self.steps > LONGEST_PAGE * self.buckets {
-            self.turn_page();
-        }
+    fn open_bucket(&mut self) {
+        let Self { due, open, start, rate, opened, .. } = self;
+        let from = open.len();
+        let bucket = *opened;
+        self.buckets.take(bucket, |disk| {
+            let due = due[disk];
+            // Another bucket: it is out of date.
+            if ((due - *start) * *rate) as usize == bucket {
+                open.push(Entry::new(disk, due));
+            }
+        });
+        open[from..].sort_unstable();
+        *opened += 1;
     }
 
     /// Deals all events out to a new page.
     #[cold]
     #[inline(never)]
     fn turn_page(&mut self) {
-        let first = self.nodes.iter().map(|node| node.due).fold(f64::INFINITY, f64::min);
-        self.rate = BUCKETS_PER_EVENT * self.events_per_time(first);
+        let first = self.due.iter().enumerate().map(|(disk, &due)| Entry::new(disk, due)).min();
+        self.first = first.unwrap_or_default();
+        let first = self.first.due();
+        self.rate = self.events_per_time(first) / EVENTS_PER_BUCKET as f64;
         self.start = first;
-        (self.set, self.steps, self.sighted) = (0, 0, 0);
-        self.current = self.buckets - 1;
-        self.arrivals = Arrivals::NONE;
-        self.flags.fill(0);
-        self.heads.fill(NOBODY);
-        // From the last to the first: of equal times each goes to the front of its bucket at once.
-        for disk in (0..self.nodes.len()).rev() {
-            self.link(disk, self.nodes[disk].due);
+        (self.set, self.opened, self.over, self.sighted) = (0, 0, 0, 0);
+        self.buckets.clear((EVENTS_PER_DISK * self.due.len()).div_ceil(EVENTS_PER_BUCKET) + 1);
+        self.open.clear();
+        self.late.clear();
+        for disk in 0..self.due.len() {
+            self.place(disk, self.due[disk]);
         }
+        self.open_buckets();
     }
 
     /// How dense events are: as on the last page, or else as a sample of the disks has it.
     fn events_per_time(&self, first: f64) -> f64 {
         let past = self.set as f64 / (first - self.start);
-        if self.set >= self.nodes.len() && past.is_normal() && past > 0.0 {
+        if self.set >= self.due.len() && past.is_normal() && past > 0.0 {
             return past;
         }
         let mut waits = [f64::INFINITY; SAMPLE];
-        let stride = self.nodes.len().div_ceil(SAMPLE).max(1);
+        let stride = self.due.len().div_ceil(SAMPLE).max(1);
         let mut count = 0;
-        for (wait, node) in waits.iter_mut().zip(self.nodes.iter().step_by(stride)) {
-            *wait = node.due - first;
+        for (wait, due) in waits.iter_mut().zip(self.due.iter().step_by(stride)) {
+            *wait = due - first;
             count += 1;
         }
         // The earliest of them only: some may have long to wait.
@@ -249,43 +194,34 @@ impl BucketQueue {
 
 impl EventScheduler for BucketQueue {
     fn reset(&mut self, due: &[f64]) {
-        self.nodes.clear();
-        self.nodes.extend(due.iter().map(|&due| Node { due, next: NOBODY, previous: NOBODY }));
-        self.buckets = (BUCKETS_PER_DISK * due.len()).max(LEAST_BUCKETS);
-        self.heads.resize(self.buckets, NOBODY);
-        self.flags.resize(self.buckets.div_ceil(WORD), 0);
+        self.due.clear();
+        self.due.extend_from_slice(due);
         self.set = 0;
         self.turn_page();
     }
 
     #[inline]
     fn set(&mut self, disk: usize, due: f64) {
-        self.unlink(disk);
+        self.due[disk] = due;
         self.set += 1;
         self.place(disk, due);
-        self.find_current();
+        if self.set > 2 * EVENTS_PER_DISK * self.due.len() {
+            self.turn_page();
+        } else {
+            self.find_first();
+        }
     }
 
     #[inline]
     fn earliest(&self) -> (usize, f64) {
-        let first = self.heads.get(self.current).map_or(NOBODY, |&first| first);
-        self.nodes.get(first as usize).map_or((usize::MAX, f64::INFINITY), |node| (first as usize, node.due))
+        self.first.answer()
     }
 
     fn come_into_sight(&mut self, disks: &mut Vec<usize>) {
-        let end = (self.current + SIGHT).min(self.buckets.saturating_sub(1));
-        for bucket in self.sighted.max(self.current)..end {
-            if let Some(&first) = self.heads.get(bucket + SIGHT) {
-                prefetch(&self.nodes, first as usize);
-            }
-            if let Some(first) = self.nodes.get(self.heads[bucket] as usize) {
-                disks.push(self.heads[bucket] as usize);
-                // Three in a bucket are rare.
-                if first.next != NOBODY {
-                    disks.push(first.next as usize);
-                    prefetch(&self.nodes, first.next as usize);
-                }
-            }
+        let end = (self.over + SIGHT).min(self.open.len());
+        let from = self.sighted.max(self.over);
+        if from < end {
+            disks.extend(self.open[from..end].iter().map(|entry| entry.disk));
         }
         self.sighted = end;
     }

@@ -3,6 +3,7 @@
 use std::hint::select_unpredictable;
 
 use super::EventScheduler;
+use super::entry::Entry;
 
 /// Players of a match.
 const PLAYERS: usize = 4;
@@ -21,37 +22,7 @@ pub struct TournamentTree {
     winner: Entry,
 }
 
-/// A disk and its time, as a number in the order of times.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Entry {
-    order: u64,
-    disk: usize,
-}
-
-const SIGN: u64 = 1 << 63;
-
-impl Default for Entry {
-    fn default() -> Self {
-        Self::EMPTY
-    }
-}
-
 impl Entry {
-    /// What stands where no disk is: later than any time.
-    const EMPTY: Self = Self { order: u64::MAX - 1, disk: usize::MAX };
-
-    #[inline]
-    fn new(disk: usize, due: f64) -> Self {
-        // Adding 0 makes the two zeros equal. Negative floats are in the reverse order of their bits.
-        let bits = (due + 0.0).to_bits();
-        Self { order: if bits & SIGN == 0 { bits | SIGN } else { !bits }, disk }
-    }
-
-    #[inline]
-    fn due(self) -> f64 {
-        f64::from_bits(if self.order & SIGN == 0 { !self.order } else { self.order & !SIGN })
-    }
-
     /// The earlier of two; of equal times the smaller disk.
     #[inline]
     fn earlier(self, other: Self) -> Self {
@@ -116,9 +87,6 @@ impl EventScheduler for TournamentTree {
 
     #[inline]
     fn earliest(&self) -> (usize, f64) {
-        if self.winner == Entry::EMPTY {
-            return (usize::MAX, f64::INFINITY);
-        }
-        (self.winner.disk, self.winner.due())
+        self.winner.answer()
     }
 }
