@@ -11,6 +11,7 @@
 //! 4. A run that cannot progress ends with [`RunError::Stalled`], within seconds.
 //! 5. A checkpoint restores everything that the future depends on, except rule and boundary, which are given again.
 
+mod block;
 mod bodies;
 mod builder;
 mod cells;

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::block::{Block, SLOTS};
 use super::event::Exit;
 use super::grid::{Grid, Layout, Mesh, Place};
 use crate::boundary::Boundary;
@@ -9,25 +10,18 @@ use crate::boundary::Boundary;
 use crate::boundary::Domain;
 use crate::prefetch::prefetch;
 
-/// The slots of a cell come in blocks of so many.
-const BLOCK: usize = 4;
-
-/// In the head of a cell: disks in it can touch a wall.
-const AT_WALL: u32 = 1 << 31;
 
 /// The disks in the cells of a grid.
 ///
 /// Ghosts are empty beyond walls; at periodic sides they mirror the cells of the opposite side. Every cell has the same
-/// number of slots, filled from the first on: cells are collected by copying all of their slots and going on behind the
-/// last that is taken, without a branch on how many those are.
+/// number of blocks, filled from the first on.
 #[derive(Debug, Clone)]
 pub(super) struct Cells {
     grid: Grid,
-    /// For each cell how many slots are taken, and whether a wall is near.
-    heads: Vec<u32>,
-    slots: Vec<[u32; BLOCK]>,
-    /// Blocks of slots of a cell.
-    blocks: usize,
+    /// The blocks of all cells.
+    blocks: Vec<Block>,
+    /// How many there are in each cell.
+    depth: usize,
     /// Column and row of each disk.
     places: Vec<Place>,
 }
@@ -99,9 +93,9 @@ impl Cells {
         grid: Grid,
         places: Vec<Place>,
     ) -> Self {
-        let blocks = grid.mesh().slots().div_ceil(BLOCK);
-        let (heads, slots) = (vec![0; grid.len()], vec![[0; BLOCK]; grid.len() * blocks]);
-        let mut cells = Self { grid, heads, slots, blocks, places };
+        let depth = grid.mesh().slots().div_ceil(SLOTS);
+        let blocks = vec![Block::EMPTY; grid.len() * depth];
+        let mut cells = Self { grid, blocks, depth, places };
         cells.mark_walls(boundary, largest_radius);
         for disk in 0..cells.places.len() {
             cells.enter(disk);
@@ -112,7 +106,8 @@ impl Cells {
     fn mark_walls<B: Boundary + ?Sized>(&mut self, boundary: &B, largest_radius: f64) {
         for place in self.grid.places() {
             if boundary.may_touch(&self.grid.region(place), largest_radius) {
-                self.heads[self.grid.index(place)] |= AT_WALL;
+                let first = self.grid.index(place) * self.depth;
+                self.blocks[first].mark_wall();
             }
         }
     }
@@ -130,13 +125,12 @@ impl Cells {
     /// Whether disks in this cell can touch a wall.
     #[inline]
     pub(super) fn is_at_wall(&self, place: Place) -> bool {
-        self.heads[self.grid.index(place)] & AT_WALL != 0
+        self.blocks[self.grid.index(place) * self.depth].is_at_wall()
     }
 
-    /// The slots of a cell.
     #[inline]
-    fn cell(&mut self, cell: usize) -> &mut [u32] {
-        self.slots[cell * self.blocks..(cell + 1) * self.blocks].as_flattened_mut()
+    fn cell(&mut self, cell: usize) -> &mut [Block] {
+        &mut self.blocks[cell * self.depth..(cell + 1) * self.depth]
     }
 
     /// Writes a disk into its cell and the ghost of that.
@@ -161,35 +155,48 @@ impl Cells {
 
     #[inline]
     fn push(&mut self, cell: usize, disk: usize) {
-        let count = (self.heads[cell] & !AT_WALL) as usize;
-        if count == self.blocks * BLOCK {
-            self.grow();
+        match &mut self.blocks[cell * self.depth] {
+            first if first.len() < SLOTS => first.push(disk),
+            _ => self.push_behind_first(cell, disk),
         }
-        self.cell(cell)[count] = disk as u32;
-        self.heads[cell] += 1;
+    }
+
+    #[cold]
+    fn push_behind_first(&mut self, cell: usize, disk: usize) {
+        if let Some(block) = self.cell(cell).iter_mut().find(|block| block.len() < SLOTS) {
+            return block.push(disk);
+        }
+        self.grow();
+        self.push(cell, disk);
     }
 
     /// The last disk of the cell takes the place of the one that leaves.
     #[inline]
     fn remove(&mut self, cell: usize, disk: usize) {
-        self.heads[cell] -= 1;
-        let count = (self.heads[cell] & !AT_WALL) as usize;
-        let slots = self.cell(cell);
-        let last = slots[count];
-        for slot in slots {
-            *slot = if *slot == disk as u32 { last } else { *slot };
+        match &mut self.blocks[cell * self.depth] {
+            first if first.len() < SLOTS => first.remove(disk),
+            _ => self.remove_from_full(cell, disk),
         }
     }
 
-    /// Twice as many slots in every cell.
+    #[cold]
+    fn remove_from_full(&mut self, cell: usize, disk: usize) {
+        let blocks = self.cell(cell);
+        let last = blocks.iter().rposition(|block| block.len() > 0).unwrap_or(0);
+        let replacement = blocks[last].last();
+        blocks[last].remove(replacement as usize);
+        blocks.iter_mut().for_each(|block| block.replace(disk, replacement));
+    }
+
+    /// Twice as many blocks in every cell.
     #[cold]
     fn grow(&mut self) {
-        let mut slots = vec![[0; BLOCK]; 2 * self.slots.len()];
-        for (old, new) in self.slots.chunks_exact(self.blocks).zip(slots.chunks_exact_mut(2 * self.blocks)) {
-            new[..self.blocks].copy_from_slice(old);
+        let mut blocks = vec![Block::EMPTY; 2 * self.blocks.len()];
+        for (old, new) in self.blocks.chunks_exact(self.depth).zip(blocks.chunks_exact_mut(2 * self.depth)) {
+            new[..self.depth].copy_from_slice(old);
         }
-        self.slots = slots;
-        self.blocks *= 2;
+        self.blocks = blocks;
+        self.depth *= 2;
     }
 
     /// Takes a disk to the cell that it leaves for; returns what that adds to its `x`.
@@ -237,15 +244,14 @@ impl Cells {
     /// Asks for these cells, which are not more than two cache lines.
     #[inline]
     fn prefetch_cells(&self, first: usize, last: usize) {
-        prefetch(&self.heads, first);
-        prefetch(&self.slots, first * self.blocks);
-        prefetch(&self.slots, (last + 1) * self.blocks - 1);
+        prefetch(&self.blocks, first * self.depth);
+        prefetch(&self.blocks, (last + 1) * self.depth - 1);
     }
 
     /// Room that [`Self::around`] and [`Self::ahead`] need.
     #[inline]
     pub(super) fn room(&self) -> usize {
-        9 * self.blocks * BLOCK
+        9 * self.depth * SLOTS
     }
 
     /// Writes the disks in the nine cells around `disk` (itself included) to `found`; returns how many.
@@ -287,29 +293,33 @@ impl Cells {
     /// Appends the disks of three cells.
     #[inline(always)]
     fn gather(&self, first: usize, step: usize, found: &mut [u32], count: usize) -> usize {
-        // Copies of a length that the compiler knows are one load and one store each.
-        match self.blocks {
+        // Loops of a length that the compiler knows are unrolled.
+        match self.depth {
             1 => self.gather_blocks(1, first, step, found, count),
             2 => self.gather_blocks(2, first, step, found, count),
-            blocks => self.gather_blocks(blocks, first, step, found, count),
+            depth => self.gather_blocks(depth, first, step, found, count),
         }
     }
 
+    /// All slots of a block are copied; the next goes on behind the last that is taken, without a branch on how many those are.
     #[inline(always)]
     fn gather_blocks(
         &self,
-        blocks: usize,
+        depth: usize,
         first: usize,
         step: usize,
         found: &mut [u32],
         mut count: usize,
     ) -> usize {
-        let heads = &self.heads[first..=first + 2 * step];
-        let slots = &self.slots[first * blocks..(first + 2 * step + 1) * blocks];
+        let blocks = &self.blocks[first * depth..(first + 2 * step + 1) * depth];
         for cell in [0, step, 2 * step] {
-            let slots = slots[cell * blocks..(cell + 1) * blocks].as_flattened();
-            found[count..count + slots.len()].copy_from_slice(slots);
-            count += (heads[cell] & !AT_WALL) as usize;
+            for block in &blocks[cell * depth..(cell + 1) * depth] {
+                found[count..count + SLOTS].copy_from_slice(&block.slots());
+                count += block.len();
+                if block.len() < SLOTS {
+                    break;
+                }
+            }
         }
         count
     }
