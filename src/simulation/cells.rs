@@ -66,7 +66,7 @@ impl Cells {
         let domain = boundary.domain();
         let highest = positions.iter().map(|p| p.y).fold(domain.bottom, f64::max);
         let layout = Layout::new(&domain, diameter, mesh, positions.len(), highest)?;
-        let grid = Grid::new(&domain, layout);
+        let grid = Grid::new(&domain, layout, diameter);
         let places = positions.iter().map(|&position| grid.place_of(position)).collect();
         Some(Self::filled(boundary, 0.5 * diameter, grid, places))
     }

@@ -242,7 +242,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let radius = bodies.largest_radius();
         let suits = checkpoint.grid.suits(&given, 2.0 * radius);
         check(suits, "its neighbour cells are not those of the domain")?;
-        let grid = Grid::new(&given, checkpoint.grid.layout());
+        let grid = Grid::new(&given, checkpoint.grid.layout(), 2.0 * radius);
         checkpoint.check_places(&grid, &given, &bodies)?;
         let cells = Cells::restored(&boundary, radius, grid, checkpoint.grid.places());
         Ok(Self::restored(rule, boundary, scheduler, bodies, cells, checkpoint))

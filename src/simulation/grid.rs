@@ -75,6 +75,8 @@ pub(super) struct Grid {
     /// `column_edges[c - 1]` and `column_edges[c]` bound column `c`; infinite at walls.
     column_edges: Vec<f64>,
     row_edges: Vec<f64>,
+    /// How far beyond its edges a cell keeps its disks.
+    margin: DVec2,
     /// Width of the domain if its sides are periodic, else 0.
     period: f64,
 }
@@ -163,11 +165,18 @@ fn open_height(domain: &Domain, highest: f64, diameter: f64) -> f64 {
 
 impl Grid {
     /// The grid of this layout.
-    pub(super) fn new(domain: &Domain, layout: Layout) -> Self {
+    pub(super) fn new(domain: &Domain, layout: Layout, diameter: f64) -> Self {
+        let margin = (0.5 * (layout.pitch - LEAST_PITCH * diameter)).max(DVec2::ZERO);
+        let mut column_edges = edges(domain.left, layout.pitch.x, layout.columns, !domain.periodic);
+        if domain.periodic {
+            column_edges[0] += margin.x;
+            column_edges[layout.columns as usize] -= margin.x;
+        }
         Self {
             stride: layout.rows + 2,
-            column_edges: edges(domain.left, layout.pitch.x, layout.columns, !domain.periodic),
+            column_edges,
             row_edges: row_edges(domain, &layout),
+            margin,
             period: if domain.periodic { domain.width() } else { 0.0 },
             layout,
         }
@@ -217,8 +226,8 @@ impl Grid {
     pub(super) fn region(&self, place: Place) -> Region {
         let (column, row) = (place.column as usize, place.row as usize);
         Region {
-            min: DVec2::new(self.column_edges[column - 1], self.row_edges[row - 1]),
-            max: DVec2::new(self.column_edges[column], self.row_edges[row]),
+            min: DVec2::new(self.column_edges[column - 1], self.row_edges[row - 1]) - self.margin,
+            max: DVec2::new(self.column_edges[column], self.row_edges[row]) + self.margin,
         }
     }
 
