@@ -11,7 +11,6 @@
 //! 4. A run that cannot progress ends with [`RunError::Stalled`], within seconds.
 //! 5. A checkpoint restores everything that the future depends on, except rule and boundary, which are given again.
 
-mod block;
 mod bodies;
 mod builder;
 mod cells;

@@ -1,27 +1,25 @@
 //! Neighbour cells: a disk can only collide with disks in its own cell and the eight around it.
 
+mod block;
+mod contents;
+
 use glam::DVec2;
 
-use super::block::{Block, SLOTS};
 use super::event::Exit;
 use super::grid::{Grid, Layout, Mesh, Place};
 use crate::boundary::Boundary;
 #[cfg(feature = "serde")]
 use crate::boundary::Domain;
 use crate::prefetch::prefetch;
-
+use contents::Contents;
 
 /// The disks in the cells of a grid.
 ///
-/// Ghosts are empty beyond walls; at periodic sides they mirror the cells of the opposite side. Every cell has the same
-/// number of blocks, filled from the first on.
+/// Ghosts are empty beyond walls; at periodic sides they mirror the cells of the opposite side.
 #[derive(Debug, Clone)]
 pub(super) struct Cells {
     grid: Grid,
-    /// The blocks of all cells.
-    blocks: Vec<Block>,
-    /// How many there are in each cell.
-    depth: usize,
+    contents: Contents,
     /// Column and row of each disk.
     places: Vec<Place>,
 }
@@ -93,9 +91,8 @@ impl Cells {
         grid: Grid,
         places: Vec<Place>,
     ) -> Self {
-        let depth = grid.mesh().slots().div_ceil(SLOTS);
-        let blocks = vec![Block::EMPTY; grid.len() * depth];
-        let mut cells = Self { grid, blocks, depth, places };
+        let contents = Contents::empty(grid.len(), grid.mesh().slots());
+        let mut cells = Self { grid, contents, places };
         cells.mark_walls(boundary, largest_radius);
         for disk in 0..cells.places.len() {
             cells.enter(disk);
@@ -106,8 +103,7 @@ impl Cells {
     fn mark_walls<B: Boundary + ?Sized>(&mut self, boundary: &B, largest_radius: f64) {
         for place in self.grid.places() {
             if boundary.may_touch(&self.grid.region(place), largest_radius) {
-                let first = self.grid.index(place) * self.depth;
-                self.blocks[first].mark_wall();
+                self.contents.mark_wall(self.grid.index(place));
             }
         }
     }
@@ -125,21 +121,16 @@ impl Cells {
     /// Whether disks in this cell can touch a wall.
     #[inline]
     pub(super) fn is_at_wall(&self, place: Place) -> bool {
-        self.blocks[self.grid.index(place) * self.depth].is_at_wall()
-    }
-
-    #[inline]
-    fn cell(&mut self, cell: usize) -> &mut [Block] {
-        &mut self.blocks[cell * self.depth..(cell + 1) * self.depth]
+        self.contents.is_at_wall(self.grid.index(place))
     }
 
     /// Writes a disk into its cell and the ghost of that.
     #[inline]
     fn enter(&mut self, disk: usize) {
         let place = self.places[disk];
-        self.push(self.grid.index(place), disk);
+        self.contents.push(self.grid.index(place), disk);
         if let Some(ghost) = self.grid.mirror(place) {
-            self.push(self.grid.index(ghost), disk);
+            self.contents.push(self.grid.index(ghost), disk);
         }
     }
 
@@ -147,56 +138,10 @@ impl Cells {
     #[inline]
     fn leave(&mut self, disk: usize) {
         let place = self.places[disk];
-        self.remove(self.grid.index(place), disk);
+        self.contents.remove(self.grid.index(place), disk);
         if let Some(ghost) = self.grid.mirror(place) {
-            self.remove(self.grid.index(ghost), disk);
+            self.contents.remove(self.grid.index(ghost), disk);
         }
-    }
-
-    #[inline]
-    fn push(&mut self, cell: usize, disk: usize) {
-        match &mut self.blocks[cell * self.depth] {
-            first if first.len() < SLOTS => first.push(disk),
-            _ => self.push_behind_first(cell, disk),
-        }
-    }
-
-    #[cold]
-    fn push_behind_first(&mut self, cell: usize, disk: usize) {
-        if let Some(block) = self.cell(cell).iter_mut().find(|block| block.len() < SLOTS) {
-            return block.push(disk);
-        }
-        self.grow();
-        self.push(cell, disk);
-    }
-
-    /// The last disk of the cell takes the place of the one that leaves.
-    #[inline]
-    fn remove(&mut self, cell: usize, disk: usize) {
-        match &mut self.blocks[cell * self.depth] {
-            first if first.len() < SLOTS => first.remove(disk),
-            _ => self.remove_from_full(cell, disk),
-        }
-    }
-
-    #[cold]
-    fn remove_from_full(&mut self, cell: usize, disk: usize) {
-        let blocks = self.cell(cell);
-        let last = blocks.iter().rposition(|block| block.len() > 0).unwrap_or(0);
-        let replacement = blocks[last].last();
-        blocks[last].remove(replacement as usize);
-        blocks.iter_mut().for_each(|block| block.replace(disk, replacement));
-    }
-
-    /// Twice as many blocks in every cell.
-    #[cold]
-    fn grow(&mut self) {
-        let mut blocks = vec![Block::EMPTY; 2 * self.blocks.len()];
-        for (old, new) in self.blocks.chunks_exact(self.depth).zip(blocks.chunks_exact_mut(2 * self.depth)) {
-            new[..self.depth].copy_from_slice(old);
-        }
-        self.blocks = blocks;
-        self.depth *= 2;
     }
 
     /// Takes a disk to the cell that it leaves for; returns what that adds to its `x`.
@@ -219,7 +164,7 @@ impl Cells {
     pub(super) fn prefetch_around(&self, disk: usize) {
         let (centre, stride) = (self.grid.index(self.places[disk]), self.grid.stride());
         for middle in [centre - stride, centre, centre + stride] {
-            self.prefetch_cells(middle - 1, middle + 1);
+            self.contents.prefetch(middle - 1, middle + 1);
         }
     }
 
@@ -229,29 +174,22 @@ impl Cells {
         let (from, to) = (self.places[disk], self.next_place(disk, exit));
         self.grid.prefetch_region(to);
         for cell in [from, to].map(|place| self.grid.index(place)) {
-            self.prefetch_cells(cell, cell);
+            self.contents.prefetch(cell, cell);
         }
         let (first, step) = self.three_ahead(to, exit);
         if step == 1 {
-            self.prefetch_cells(first, first + 2);
+            self.contents.prefetch(first, first + 2);
         } else {
             for cell in [first, first + step, first + 2 * step] {
-                self.prefetch_cells(cell, cell);
+                self.contents.prefetch(cell, cell);
             }
         }
-    }
-
-    /// Asks for these cells, which are not more than two cache lines.
-    #[inline]
-    fn prefetch_cells(&self, first: usize, last: usize) {
-        prefetch(&self.blocks, first * self.depth);
-        prefetch(&self.blocks, (last + 1) * self.depth - 1);
     }
 
     /// Room that [`Self::around`] and [`Self::ahead`] need.
     #[inline]
     pub(super) fn room(&self) -> usize {
-        9 * self.depth * SLOTS
+        self.contents.room(9)
     }
 
     /// Writes the disks in the nine cells around `disk` (itself included) to `found`; returns how many.
@@ -261,7 +199,7 @@ impl Cells {
         let stride = self.grid.stride();
         let mut count = 0;
         for first in [centre - stride - 1, centre - 1, centre + stride - 1] {
-            count = self.gather(first, 1, found, count);
+            count = self.contents.gather(first, 1, found, count);
         }
         count
     }
@@ -270,7 +208,7 @@ impl Cells {
     #[inline]
     pub(super) fn ahead(&self, place: Place, exit: Exit, found: &mut [u32]) -> usize {
         let (first, step) = self.three_ahead(place, exit);
-        self.gather(first, step, found, 0)
+        self.contents.gather(first, step, found, 0)
     }
 
     /// The first of these three cells, and how far apart they are.
@@ -288,39 +226,5 @@ impl Cells {
     #[inline]
     pub(super) fn next_place(&self, disk: usize, exit: Exit) -> Place {
         self.grid.neighbour(self.places[disk], exit.direction()).0
-    }
-
-    /// Appends the disks of three cells.
-    #[inline(always)]
-    fn gather(&self, first: usize, step: usize, found: &mut [u32], count: usize) -> usize {
-        // Loops of a length that the compiler knows are unrolled.
-        match self.depth {
-            1 => self.gather_blocks(1, first, step, found, count),
-            2 => self.gather_blocks(2, first, step, found, count),
-            depth => self.gather_blocks(depth, first, step, found, count),
-        }
-    }
-
-    /// All slots of a block are copied; the next goes on behind the last that is taken, without a branch on how many those are.
-    #[inline(always)]
-    fn gather_blocks(
-        &self,
-        depth: usize,
-        first: usize,
-        step: usize,
-        found: &mut [u32],
-        mut count: usize,
-    ) -> usize {
-        let blocks = &self.blocks[first * depth..(first + 2 * step + 1) * depth];
-        for cell in [0, step, 2 * step] {
-            for block in &blocks[cell * depth..(cell + 1) * depth] {
-                found[count..count + SLOTS].copy_from_slice(&block.slots());
-                count += block.len();
-                if block.len() < SLOTS {
-                    break;
-                }
-            }
-        }
-        count
     }
 }
