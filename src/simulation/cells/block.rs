@@ -60,7 +60,8 @@ impl Block {
         let (count, above) = (self.count(), self.above());
         let mut slots = self.slots();
         for (slot, there) in slots.iter_mut().enumerate() {
-            *there = if slot == count { disk as u32 } else { *there };
+            let here = u32::from(slot == count).wrapping_neg();
+            *there = (*there & !here) | (disk as u32 & here);
         }
         slots[0] |= above + ONE;
         self.0 = slots;
