@@ -15,6 +15,9 @@ const EVENTS_PER_BUCKET: usize = 512;
 /// Events of a page for each disk: turning it costs little then.
 const EVENTS_PER_DISK: usize = 2;
 
+/// Events for each disk after which a page is turned at the latest: its buckets are too wide.
+const LONGEST_PAGE: usize = 2 * EVENTS_PER_DISK;
+
 /// Disks by which the density of events is judged at first, and the part of them that are due soon.
 const SAMPLE: usize = 256;
 const SOON: usize = 8;
@@ -172,12 +175,16 @@ impl BucketQueue {
         self.open_buckets();
     }
 
-    /// How dense events are: as on the last page, or else as a sample of the disks has it.
+    /// How dense events are: as on the last page if it was long enough, or else as a sample of the disks has it.
     fn events_per_time(&self, first: f64) -> f64 {
         let past = self.set as f64 / (first - self.start);
-        if self.set >= self.due.len() && past.is_normal() && past > 0.0 {
-            return past;
-        }
+        let known = [past, self.sampled_events_per_time(first), past, 1.0];
+        let usable = |rate: &&f64| rate.is_normal() && **rate > 0.0;
+        let from = if self.set >= self.due.len() { 0 } else { 1 };
+        known[from..].iter().find(usable).copied().unwrap_or(1.0)
+    }
+
+    fn sampled_events_per_time(&self, first: f64) -> f64 {
         let mut waits = [f64::INFINITY; SAMPLE];
         let stride = self.due.len().div_ceil(SAMPLE).max(1);
         let mut count = 0;
@@ -187,8 +194,7 @@ impl BucketQueue {
         }
         // The earliest of them only: some may have long to wait.
         let (_, &mut wait, _) = waits.select_nth_unstable_by(count / SOON, f64::total_cmp);
-        let rate = (stride * (count / SOON + 1)) as f64 / wait;
-        if rate.is_normal() { rate } else { 1.0 }
+        (stride * (count / SOON + 1)) as f64 / wait
     }
 }
 
@@ -205,7 +211,7 @@ impl EventScheduler for BucketQueue {
         self.due[disk] = due;
         self.set += 1;
         self.place(disk, due);
-        if self.set > 2 * EVENTS_PER_DISK * self.due.len() {
+        if self.set > LONGEST_PAGE * self.due.len() {
             self.turn_page();
         } else {
             self.find_first();
