@@ -96,7 +96,7 @@ impl Plan {
             return Ok(Self { largest: 10_000, rounds: 1, settle: 20, work: 50_000 });
         }
         let largest = ask::number("LARGEST", 1_000_000)?.max(1000) as usize;
-        Ok(Self { largest, rounds: ask::number("ROUNDS", 3)?, settle: 2000, work: 8_000_000 })
+        Ok(Self { largest, rounds: ask::number("ROUNDS", 3)?, settle: 2000, work: 25_000_000 })
     }
 }
 

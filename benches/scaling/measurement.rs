@@ -53,7 +53,10 @@ impl fmt::Display for Measurement {
     }
 }
 
-/// Builds the system and runs it for so many oscillations, after two that do not count.
+/// Oscillations that do not count: until the epoch has moved, and the neighbour cells have found their size.
+const WARM_UP: u32 = 30;
+
+/// Builds the system and runs it for so many oscillations, after [`WARM_UP`].
 pub(crate) fn measure<S: EventScheduler + Default>(
     state: &State,
     disks: impl FnOnce() -> Outcome<Vec<Disk>>,
@@ -65,7 +68,7 @@ pub(crate) fn measure<S: EventScheduler + Default>(
     let start = Instant::now();
     let mut run = state.run(disks, boxes, S::default())?;
     let set_up_seconds = start.elapsed().as_secs_f64();
-    oscillate(&mut run, 2)?;
+    oscillate(&mut run, WARM_UP)?;
     let bytes_per_disk = (resident_bytes() - memory) / count as f64;
     let (watch, before) = (Stopwatch::of_thread(), *run.counters());
     oscillate(&mut run, oscillations)?;

@@ -180,7 +180,7 @@ impl BucketQueue {
         let past = self.set as f64 / (first - self.start);
         let known = [past, self.sampled_events_per_time(first), past, 1.0];
         let usable = |rate: &&f64| rate.is_normal() && **rate > 0.0;
-        let from = if self.set >= self.due.len() { 0 } else { 1 };
+        let from = usize::from(self.set < self.due.len());
         known[from..].iter().find(usable).copied().unwrap_or(1.0)
     }
 

@@ -1,6 +1,5 @@
 //! Checks everything once, and makes a simulation of it.
 
-use glam::DVec2;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -125,13 +124,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
 
 /// Neighbour cells that suit these disks.
 pub(super) fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells, BuildError> {
-    let positions: Vec<DVec2> = disks.iter().map(Disk::position).collect();
     let diameter = 2.0 * disks.iter().map(Disk::radius).fold(0.0, f64::max);
     let domain = boundary.domain();
     // Without disks any cells will do.
     let diameter = if diameter > 0.0 { diameter } else { 0.125 * domain.width() };
     let too_small = BuildError::DomainTooSmall { width: domain.width(), height: domain.height(), diameter };
-    Cells::new(boundary, diameter, Mesh::Medium, &positions).ok_or(too_small)
+    Cells::new(boundary, diameter, Mesh::Medium, disks.iter().map(Disk::position)).ok_or(too_small)
 }
 
 /// That the walls can be numbered, all disks are inside the domain and none overlaps a wall.

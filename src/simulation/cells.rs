@@ -59,13 +59,13 @@ impl Cells {
         boundary: &B,
         diameter: f64,
         mesh: Mesh,
-        positions: &[DVec2],
+        positions: impl ExactSizeIterator<Item = DVec2> + Clone,
     ) -> Option<Self> {
         let domain = boundary.domain();
-        let highest = positions.iter().map(|p| p.y).fold(domain.bottom, f64::max);
+        let highest = positions.clone().map(|position| position.y).fold(domain.bottom, f64::max);
         let layout = Layout::new(&domain, diameter, mesh, positions.len(), highest)?;
         let grid = Grid::new(&domain, layout, diameter);
-        let places = positions.iter().map(|&position| grid.place_of(position)).collect();
+        let places = positions.map(|position| grid.place_of(position)).collect();
         Some(Self::filled(boundary, 0.5 * diameter, grid, places))
     }
 
@@ -91,7 +91,7 @@ impl Cells {
         grid: Grid,
         places: Vec<Place>,
     ) -> Self {
-        let contents = Contents::empty(grid.len(), grid.mesh().slots());
+        let contents = Contents::empty(grid.len(), 1);
         let mut cells = Self { grid, contents, places };
         cells.mark_walls(boundary, largest_radius);
         for disk in 0..cells.places.len() {

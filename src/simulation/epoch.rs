@@ -3,6 +3,7 @@
 use super::cells::Cells;
 use super::engine::Simulation;
 use super::event::Counters;
+use super::lookahead::LARGE;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::scheduler::EventScheduler;
@@ -18,9 +19,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Tells the scheduler the times of all events.
     fn reset_scheduler(&mut self) {
-        self.due.clear();
-        self.due.extend(self.bodies.particles.iter().map(|particle| particle.slot.due()));
-        self.scheduler.reset(&self.due);
+        let mut due = std::mem::take(&mut self.due);
+        due.clear();
+        due.extend(self.bodies.particles.iter().map(|particle| particle.slot.due()));
+        self.scheduler.reset(&due);
+        // Kept, so that nothing is allocated again; in large systems memory counts for more.
+        if due.len() < LARGE {
+            self.due = due;
+        }
     }
 
     /// Moves the epoch to a little before the offset `due`, and returns the new offset of the same time.
@@ -46,10 +52,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if suitable == mesh {
             return false;
         }
-        let positions: Vec<_> =
-            (0..self.bodies.len()).map(|disk| self.bodies.position(disk, self.now)).collect();
+        let positions = (0..self.bodies.len()).map(|disk| self.bodies.position(disk, self.now));
         let diameter = 2.0 * self.bodies.largest_radius();
-        if let Some(cells) = Cells::new(&self.boundary, diameter, suitable, &positions) {
+        if let Some(cells) = Cells::new(&self.boundary, diameter, suitable, positions) {
             self.cells = cells;
             self.predict_all();
             return true;

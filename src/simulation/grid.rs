@@ -40,24 +40,16 @@ impl Mesh {
         }
     }
 
-    /// Equal disks that a cell has room for at first: in the smaller ones a fifth would need a side of `$\sqrt 2$`.
-    pub(super) const fn slots(self) -> usize {
-        match self {
-            Self::Small | Self::Medium => 4,
-            Self::Large => 8,
-        }
-    }
-
     /// The mesh that suits disks which passed so many cells while they collided so often.
     ///
     /// The bounds are where runs of either mesh take as long, and far enough apart that none is changed to and fro.
     pub(super) fn suitable(self, cell_crossings: u64, collisions: u64) -> Self {
         let passed = cell_crossings as f64 / collisions as f64;
         match self {
-            Self::Small if passed > 0.9 => Self::Medium,
-            Self::Medium if passed > 1.8 => Self::Large,
-            Self::Medium if passed < 0.3 => Self::Small,
-            Self::Large if passed < 0.9 => Self::Medium,
+            Self::Small if passed > 1.2 => Self::Medium,
+            Self::Medium if passed > 1.45 => Self::Large,
+            Self::Medium if passed < 0.45 => Self::Small,
+            Self::Large if passed < 0.55 => Self::Medium,
             _ => self,
         }
     }

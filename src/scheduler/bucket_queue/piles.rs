@@ -8,7 +8,7 @@ const NOWHERE: u32 = u32::MAX;
 /// Piles of disks in blocks that they share: a block that one has been read from serves another.
 #[derive(Debug, Clone)]
 pub(super) struct Piles {
-    piles: Vec<Pile>,
+    ends: Vec<Pile>,
     blocks: Vec<Block>,
     /// The first block of no pile.
     free: u32,
@@ -34,12 +34,12 @@ struct Block {
 }
 
 impl Piles {
-    pub(super) const NONE: Self = Self { piles: Vec::new(), blocks: Vec::new(), free: NOWHERE };
+    pub(super) const NONE: Self = Self { ends: Vec::new(), blocks: Vec::new(), free: NOWHERE };
 
     /// So many piles, all empty.
     pub(super) fn clear(&mut self, piles: usize) {
-        self.piles.clear();
-        self.piles.resize(piles, Pile::EMPTY);
+        self.ends.clear();
+        self.ends.resize(piles, Pile::EMPTY);
         self.blocks.clear();
         self.free = NOWHERE;
     }
@@ -47,35 +47,35 @@ impl Piles {
     /// How many piles there are.
     #[inline]
     pub(super) fn len(&self) -> usize {
-        self.piles.len()
+        self.ends.len()
     }
 
     #[inline]
     pub(super) fn push(&mut self, pile: usize, disk: usize) {
-        if self.piles[pile].count == ROOM as u32 {
+        if self.ends[pile].count == ROOM as u32 {
             self.add_block(pile);
         }
-        let Pile { last, count } = &mut self.piles[pile];
+        let Pile { last, count } = &mut self.ends[pile];
         self.blocks[*last as usize].disks[*count as usize] = disk as u32;
         *count += 1;
     }
 
     #[cold]
     fn add_block(&mut self, pile: usize) {
-        let previous = self.piles[pile].last;
+        let previous = self.ends[pile].last;
         let block = self.free;
         if let Some(reused) = self.blocks.get_mut(block as usize) {
             self.free = std::mem::replace(&mut reused.previous, previous);
-            self.piles[pile] = Pile { last: block, count: 0 };
+            self.ends[pile] = Pile { last: block, count: 0 };
         } else {
-            self.piles[pile] = Pile { last: self.blocks.len() as u32, count: 0 };
+            self.ends[pile] = Pile { last: self.blocks.len() as u32, count: 0 };
             self.blocks.push(Block { disks: [0; ROOM], previous });
         }
     }
 
     /// Names all disks of a pile, which is empty then.
     pub(super) fn take(&mut self, pile: usize, mut name: impl FnMut(usize)) {
-        let Pile { mut last, count } = std::mem::replace(&mut self.piles[pile], Pile::EMPTY);
+        let Pile { mut last, count } = std::mem::replace(&mut self.ends[pile], Pile::EMPTY);
         let mut count = count as usize;
         while let Some(block) = self.blocks.get_mut(last as usize) {
             block.disks[..count].iter().for_each(|&disk| name(disk as usize));

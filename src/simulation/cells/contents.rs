@@ -1,13 +1,11 @@
 //! Which disks are in which cell.
 
-use std::collections::HashMap;
-
 use super::block::{Block, CROWDED, SLOTS};
 use crate::prefetch::prefetch;
 
 /// Disks without room in their cell, and one for so many cells, from which on every cell gets more room.
-const FEW: usize = 4;
-const CELLS: usize = 256;
+const FEW: usize = 16;
+const CELLS: usize = 1024;
 
 /// The disks of each cell, by the index of the cell.
 ///
@@ -18,17 +16,22 @@ pub(super) struct Contents {
     blocks: Vec<Block>,
     /// How many blocks there are in each cell.
     depth: usize,
-    /// What does not fit into the blocks of a cell.
-    crowds: HashMap<usize, Vec<u32>>,
-    /// How many disks that is.
-    outside: usize,
+    /// Disks that do not fit into the blocks of their cell, in no order.
+    outside: Vec<Outside>,
+}
+
+/// A disk without room in its cell.
+#[derive(Debug, Clone, Copy)]
+struct Outside {
+    cell: u32,
+    disk: u32,
 }
 
 impl Contents {
-    /// So many empty cells with room for so many disks each.
-    pub(super) fn empty(cells: usize, slots: usize) -> Self {
-        let depth = slots.div_ceil(SLOTS);
-        Self { blocks: vec![Block::EMPTY; cells * depth], depth, crowds: HashMap::new(), outside: 0 }
+    /// So many empty cells of so many blocks.
+    pub(super) fn empty(cells: usize, depth: usize) -> Self {
+        let outside = Vec::with_capacity(FEW + cells / CELLS);
+        Self { blocks: vec![Block::EMPTY; cells * depth], depth, outside }
     }
 
     pub(super) fn mark_wall(&mut self, cell: usize) {
@@ -59,14 +62,12 @@ impl Contents {
         if let Some(block) = blocks.iter_mut().find(|block| block.count() < SLOTS) {
             return block.push(disk);
         }
-        if let Some(last) = blocks.last_mut() {
-            last.set_crowded(true);
-        }
-        self.crowds.entry(cell).or_default().push(disk as u32);
-        self.outside += 1;
-        if self.outside > FEW + self.blocks.len() / (self.depth * CELLS) {
+        if self.outside.len() == self.outside.capacity() {
             self.grow();
+            return self.push(cell, disk);
         }
+        self.outside.push(Outside { cell: cell as u32, disk: disk as u32 });
+        self.mark_crowded(cell);
     }
 
     /// The last disk of the cell takes the place of the one that leaves.
@@ -92,31 +93,42 @@ impl Contents {
 
     /// Takes a disk for which its cell had no room.
     fn pop_outside(&mut self, cell: usize) -> Option<u32> {
-        let crowd = self.crowds.get_mut(&cell)?;
-        let last = crowd.pop()?;
-        self.outside -= 1;
-        if crowd.is_empty() {
-            self.crowds.remove(&cell);
-            self.blocks_of(cell).last_mut()?.set_crowded(false);
+        let there = self.outside.iter().rposition(|outside| outside.cell as usize == cell)?;
+        let Outside { disk, .. } = self.outside.swap_remove(there);
+        self.mark_crowded(cell);
+        Some(disk)
+    }
+
+    /// Notes in the last block of a full cell whether disks of it are outside.
+    fn mark_crowded(&mut self, cell: usize) {
+        let crowded = self.outside.iter().any(|outside| outside.cell as usize == cell);
+        if let Some(last) = self.blocks_of(cell).last_mut() {
+            last.set_crowded(crowded);
         }
-        Some(last)
     }
 
     fn replace(&mut self, cell: usize, disk: usize, by: u32) {
-        self.blocks_of(cell).iter_mut().for_each(|block| block.replace(disk, by));
-        let crowd = self.crowds.get_mut(&cell).into_iter().flatten();
-        crowd.filter(|there| **there as usize == disk).for_each(|there| *there = by);
+        for block in self.blocks_of(cell) {
+            block.replace(disk, by);
+        }
+        let here = |outside: &&mut Outside| outside.cell as usize == cell && outside.disk as usize == disk;
+        if let Some(outside) = self.outside.iter_mut().find(here) {
+            outside.disk = by;
+        }
     }
 
     /// Twice as many blocks in every cell.
     fn grow(&mut self) {
-        let mut grown = Self::empty(self.blocks.len() / self.depth, 2 * self.depth * SLOTS);
-        for (old, new) in self.blocks.chunks_exact(self.depth).zip(grown.blocks.chunks_exact_mut(grown.depth)) {
+        let mut grown = Self::empty(self.blocks.len() / self.depth, 2 * self.depth);
+        for (old, new) in self.blocks.chunks_exact(self.depth).zip(grown.blocks.chunks_exact_mut(grown.depth))
+        {
             new[..self.depth].copy_from_slice(old);
         }
-        for (cell, crowd) in std::mem::take(&mut self.crowds) {
-            grown.blocks[cell * grown.depth + self.depth - 1].set_crowded(false);
-            crowd.into_iter().for_each(|disk| grown.push(cell, disk as usize));
+        for Outside { cell, .. } in &self.outside {
+            grown.blocks[*cell as usize * grown.depth + self.depth - 1].set_crowded(false);
+        }
+        for Outside { cell, disk } in std::mem::take(&mut self.outside) {
+            grown.push(cell as usize, disk as usize);
         }
         *self = grown;
     }
@@ -124,7 +136,7 @@ impl Contents {
     /// Room that so many cells need at most.
     #[inline]
     pub(super) fn room(&self, cells: usize) -> usize {
-        cells * self.depth * SLOTS + self.outside
+        cells * self.depth * SLOTS + self.outside.len()
     }
 
     /// Appends the disks of three cells, `step` apart, to the first `count` of those found.
@@ -166,10 +178,12 @@ impl Contents {
 
     #[cold]
     #[inline(never)]
-    fn gather_outside(&self, cell: usize, found: &mut [u32], count: usize) -> usize {
-        let crowd = self.crowds.get(&cell).map_or(&[][..], Vec::as_slice);
-        found[count..count + crowd.len()].copy_from_slice(crowd);
-        count + crowd.len()
+    fn gather_outside(&self, cell: usize, found: &mut [u32], mut count: usize) -> usize {
+        for outside in self.outside.iter().filter(|outside| outside.cell as usize == cell) {
+            found[count] = outside.disk;
+            count += 1;
+        }
+        count
     }
 
     /// Asks for these cells, which are not more than two cache lines.
