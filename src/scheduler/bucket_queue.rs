@@ -7,6 +7,7 @@ use std::collections::BinaryHeap;
 
 use super::EventScheduler;
 use super::entry::Entry;
+use crate::prefetch::prefetch;
 use piles::Piles;
 
 /// Events that are due in the time of a bucket, so many that what concerns the buckets stays in the caches.
@@ -23,7 +24,7 @@ const SAMPLE: usize = 256;
 const SOON: usize = 8;
 
 /// Events from the present one to those that come into sight.
-const SIGHT: usize = 64;
+const SIGHT: usize = 48;
 
 /// A page of equally wide buckets of time; in each, in no order, the disks that are due in it.
 ///
@@ -142,18 +143,23 @@ impl BucketQueue {
     }
 
     fn open_bucket(&mut self) {
-        let Self { due, open, start, rate, opened, .. } = self;
-        let from = open.len();
-        let bucket = *opened;
-        self.buckets.take(bucket, |disk| {
-            let due = due[disk];
-            // Another bucket: it is out of date.
-            if ((due - *start) * *rate) as usize == bucket {
-                open.push(Entry::new(disk, due));
+        let Self { due, open, start, rate, .. } = self;
+        let (from, bucket) = (open.len(), self.opened);
+        self.buckets.take(bucket, |disks| {
+            // All at once: 3 % of the time of 10⁶ disks.
+            for &disk in disks {
+                prefetch(due, disk as usize);
+            }
+            for &disk in disks {
+                let (disk, due) = (disk as usize, due[disk as usize]);
+                // Another bucket: it is out of date.
+                if ((due - *start) * *rate) as usize == bucket {
+                    open.push(Entry::new(disk, due));
+                }
             }
         });
         open[from..].sort_unstable();
-        *opened += 1;
+        self.opened += 1;
     }
 
     /// Deals all events out to a new page.

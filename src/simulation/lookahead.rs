@@ -11,7 +11,7 @@ use crate::scheduler::EventScheduler;
 pub(super) const LARGE: usize = 30_000;
 
 /// How many disks later what a disk leads to is asked for, and again what that leads to.
-const LATER: usize = 16;
+const LATER: usize = 12;
 
 /// The disks that last came into sight: each is asked for, then the cells that its event needs, then its neighbours there.
 #[derive(Debug, Clone, Default)]

@@ -73,12 +73,12 @@ impl Piles {
         }
     }
 
-    /// Names all disks of a pile, which is empty then.
-    pub(super) fn take(&mut self, pile: usize, mut name: impl FnMut(usize)) {
+    /// Shows all disks of a pile, block by block; it is empty then.
+    pub(super) fn take(&mut self, pile: usize, mut show: impl FnMut(&[u32])) {
         let Pile { mut last, count } = std::mem::replace(&mut self.ends[pile], Pile::EMPTY);
         let mut count = count as usize;
         while let Some(block) = self.blocks.get_mut(last as usize) {
-            block.disks[..count].iter().for_each(|&disk| name(disk as usize));
+            show(&block.disks[..count]);
             let previous = std::mem::replace(&mut block.previous, self.free);
             self.free = last;
             (last, count) = (previous, ROOM);
