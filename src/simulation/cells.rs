@@ -164,7 +164,8 @@ impl Cells {
     pub(super) fn prefetch_around(&self, disk: usize) {
         let (centre, stride) = (self.grid.index(self.places[disk]), self.grid.stride());
         for middle in [centre - stride, centre, centre + stride] {
-            self.contents.prefetch(middle - 1, middle + 1);
+            self.contents.prefetch(middle - 1);
+            self.contents.prefetch(middle + 1);
         }
     }
 
@@ -173,16 +174,9 @@ impl Cells {
     pub(super) fn prefetch_ahead(&self, disk: usize, exit: Exit) {
         let (from, to) = (self.places[disk], self.next_place(disk, exit));
         self.grid.prefetch_region(to);
-        for cell in [from, to].map(|place| self.grid.index(place)) {
-            self.contents.prefetch(cell, cell);
-        }
         let (first, step) = self.three_ahead(to, exit);
-        if step == 1 {
-            self.contents.prefetch(first, first + 2);
-        } else {
-            for cell in [first, first + step, first + 2 * step] {
-                self.contents.prefetch(cell, cell);
-            }
+        for cell in [self.grid.index(from), self.grid.index(to), first, first + step, first + 2 * step] {
+            self.contents.prefetch(cell);
         }
     }
 

@@ -186,10 +186,9 @@ impl Contents {
         count
     }
 
-    /// Asks for these cells, which are not more than two cache lines.
+    /// Asks for a cell.
     #[inline]
-    pub(super) fn prefetch(&self, first: usize, last: usize) {
-        prefetch(&self.blocks, first * self.depth);
-        prefetch(&self.blocks, (last + 1) * self.depth - 1);
+    pub(super) fn prefetch(&self, cell: usize) {
+        prefetch(&self.blocks, cell * self.depth);
     }
 }
