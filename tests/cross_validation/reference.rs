@@ -29,7 +29,7 @@ pub(crate) fn run(program: &str, point: Point, seed: u64) -> Result<Means, Box<d
         ("--seed", seed as f64),
     ];
     let flags = flags.iter().flat_map(|(name, value)| [(*name).to_owned(), value.to_string()]);
-    let output = Command::new(program).args(flags).output()?;
+    let output = Command::new(program).args(flags).output().map_err(|error| format!("{program}: {error}"))?;
     let intervals = intervals(&String::from_utf8(output.stdout)?)?;
     let expected = (settling + SAMPLES) as usize;
     if intervals.len() != expected {
