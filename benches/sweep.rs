@@ -29,7 +29,7 @@ use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// Runs of a study: enough for four times as many threads as they are usually measured with.
-const RUNS: u32 = 8;
+const RUNS: u32 = 24;
 
 /// Seconds of the study and of the arithmetic on so many threads, by the wall clock and on all processors together.
 struct Times {
