@@ -10,7 +10,7 @@ const CELLS: usize = 1024;
 /// The disks of each cell, by the index of the cell.
 ///
 /// Every cell has the same number of blocks, filled from the first on. The few disks for which their cell has no room are kept
-/// elsewhere.
+/// in a list, which is searched: nearly always it is short, and a cell says whether it has some there.
 #[derive(Debug, Clone)]
 pub(super) struct Contents {
     blocks: Vec<Block>,
@@ -32,6 +32,11 @@ impl Contents {
     pub(super) fn empty(cells: usize, depth: usize) -> Self {
         let outside = Vec::with_capacity(FEW + cells / CELLS);
         Self { blocks: vec![Block::EMPTY; cells * depth], depth, outside }
+    }
+
+    /// How many cells there are.
+    fn cells(&self) -> usize {
+        self.blocks.len() / self.depth
     }
 
     pub(super) fn mark_wall(&mut self, cell: usize) {
@@ -62,7 +67,7 @@ impl Contents {
         if let Some(block) = blocks.iter_mut().find(|block| block.count() < SLOTS) {
             return block.push(disk);
         }
-        if self.outside.len() == self.outside.capacity() {
+        if self.outside.len() == FEW + self.cells() / CELLS {
             self.grow();
             return self.push(cell, disk);
         }
@@ -119,7 +124,7 @@ impl Contents {
 
     /// Twice as many blocks in every cell.
     fn grow(&mut self) {
-        let mut grown = Self::empty(self.blocks.len() / self.depth, 2 * self.depth);
+        let mut grown = Self::empty(self.cells(), 2 * self.depth);
         for (old, new) in self.blocks.chunks_exact(self.depth).zip(grown.blocks.chunks_exact_mut(grown.depth))
         {
             new[..self.depth].copy_from_slice(old);
