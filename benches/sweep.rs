@@ -4,7 +4,7 @@
 //! RUSTFLAGS="-C target-cpu=native" cargo bench --all-features --bench sweep
 //! ```
 //!
-//! A study of eight runs is done on one thread and on more, in turn, `ROUNDS` times. So is a loop of plain arithmetic
+//! A study of 24 runs is done on one thread and on more, in turn, `ROUNDS` times. So is a loop of plain arithmetic
 //! that touches no memory: what it gains is all that the machine has to give at the time, and the quotient of the two
 //! gains is what the study makes of it. On a machine with other work on it even that says little; then look at the time
 //! on processors, which is the same on more threads as on one as long as the runs do not get into each other's way.
@@ -28,7 +28,7 @@ use granular_edmd::study::{
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// Runs of a study: enough for four times as many threads as they are usually measured with.
+/// Runs of a study: so many that no thread waits long for the last one.
 const RUNS: u32 = 24;
 
 /// Seconds of the study and of the arithmetic on so many threads, by the wall clock and on all processors together.
