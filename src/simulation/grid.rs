@@ -1,9 +1,13 @@
 //! The grid of neighbour cells: how large they are and where each is.
 
+mod mesh;
+
 use glam::DVec2;
 
 use crate::boundary::{Domain, Region};
 use crate::prefetch::prefetch;
+
+pub(super) use mesh::Mesh;
 
 /// Cells per disk at most; more would cost memory and save nothing.
 const CELLS_PER_DISK: f64 = 8.0;
@@ -18,42 +22,6 @@ const LEAST_PITCH: f64 = 1.000_001;
 /// than rounding.
 #[cfg(feature = "serde")]
 const SLACK: f64 = 1e-3;
-
-/// How large the cells are: small ones hold fewer neighbours, large ones are passed less often.
-///
-/// Where disks crowd, the smallest gain 20 %; in a dilute gas the larger, and in a very dilute one the largest, 15 % each.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) enum Mesh {
-    Small,
-    Medium,
-    Large,
-}
-
-impl Mesh {
-    /// Size of a cell in diameters of the largest disk.
-    const fn pitch(self) -> f64 {
-        match self {
-            Self::Small => 1.08,
-            Self::Medium => 1.4,
-            Self::Large => 2.0,
-        }
-    }
-
-    /// The mesh that suits disks which passed so many cells while they collided so often.
-    ///
-    /// The bounds are where runs of either mesh take as long, and far enough apart that none is changed to and fro.
-    pub(super) fn suitable(self, cell_crossings: u64, collisions: u64) -> Self {
-        let passed = cell_crossings as f64 / collisions as f64;
-        match self {
-            Self::Small if passed > 1.2 => Self::Medium,
-            Self::Medium if passed > 1.45 => Self::Large,
-            Self::Medium if passed < 0.45 => Self::Small,
-            Self::Large if passed < 0.55 => Self::Medium,
-            _ => self,
-        }
-    }
-}
 
 /// Columns and rows of cells, and around them a ring of ghosts, so that every cell has eight neighbours.
 ///
