@@ -197,3 +197,56 @@ impl Contents {
         prefetch(&self.blocks, cell * self.depth);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
+
+    use super::{Contents, SLOTS};
+
+    const DISKS: usize = 80;
+
+    /// The same on every run and machine.
+    fn config() -> ProptestConfig {
+        let rng_seed = RngSeed::Fixed(72_011_305);
+        ProptestConfig { cases: 50, rng_seed, failure_persistence: None, ..ProptestConfig::default() }
+    }
+
+    /// The disks of three neighbour cells, in order.
+    fn found(contents: &Contents) -> Vec<u32> {
+        let mut found = vec![0; contents.room(3) + SLOTS];
+        let count = contents.gather(0, 1, &mut found, 0);
+        found.truncate(count);
+        found.sort_unstable();
+        found
+    }
+
+    fn present(homes: &[Option<usize>]) -> Vec<u32> {
+        (0..DISKS as u32).filter(|&disk| homes[disk as usize].is_some()).collect()
+    }
+
+    proptest! {
+        #![proptest_config(config())]
+
+        /// However crowded: cells with room, cells whose disks are outside, all cells with more room, and empty ones again.
+        #[test]
+        fn cells_hold_the_disks_that_entered_and_did_not_leave(
+            moves in prop::collection::vec((0..DISKS, 0..3usize), 0..400),
+        ) {
+            let (mut contents, mut homes) = (Contents::empty(3, 1), [None; DISKS]);
+            contents.mark_wall(1);
+            let drain = (0..DISKS).map(|disk| (disk, 0));
+            for (step, (disk, cell)) in moves.iter().copied().chain(drain).enumerate() {
+                if let Some(home) = homes[disk].take() {
+                    contents.remove(home, disk);
+                } else if step < moves.len() {
+                    contents.push(cell, disk);
+                    homes[disk] = Some(cell);
+                }
+                prop_assert_eq!(found(&contents), present(&homes));
+            }
+            prop_assert_eq!([0, 1, 2].map(|cell| contents.is_at_wall(cell)), [false, true, false]);
+        }
+    }
+}
