@@ -3,7 +3,7 @@
 /// Asks for the cache line of an element, if there is such an element; nothing else happens.
 ///
 /// In systems that exceed the caches each event touches a dozen lines that nobody has touched for long. Asked for some events
-/// ahead, they spare half of the time of a run of 10⁵ or 10⁶ disks.
+/// ahead, they spare two thirds of the time of a run of 10⁵ disks, and three fifths of one of 10⁶.
 #[inline(always)]
 #[allow(unsafe_code)]
 pub(crate) fn prefetch<T>(slice: &[T], index: usize) {

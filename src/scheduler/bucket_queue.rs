@@ -49,11 +49,26 @@ pub struct BucketQueue {
     /// Events that were set later, in the time of the open buckets.
     late: BinaryHeap<Reverse<Entry>>,
     first: Entry,
-    /// Time at which the page starts, and buckets per time.
-    start: f64,
-    rate: f64,
+    page: Page,
     /// Events set since the page was turned.
     set: usize,
+}
+
+/// Which time belongs to which bucket.
+#[derive(Debug, Clone, Copy)]
+struct Page {
+    start: f64,
+    /// Buckets per time.
+    rate: f64,
+}
+
+impl Page {
+    /// The bucket of a time: they are in the order of their times, without end.
+    #[inline]
+    fn bucket(self, due: f64) -> usize {
+        // The cast saturates: what is early goes to the first bucket.
+        ((due - self.start) * self.rate) as usize
+    }
 }
 
 impl Default for BucketQueue {
@@ -74,17 +89,9 @@ impl BucketQueue {
             sighted: 0,
             late: BinaryHeap::new(),
             first: Entry::EMPTY,
-            start: 0.0,
-            rate: 0.0,
+            page: Page { start: 0.0, rate: 0.0 },
             set: 0,
         }
-    }
-
-    /// The bucket of a time: they are in the order of their times, without end.
-    #[inline]
-    fn bucket(&self, due: f64) -> usize {
-        // The cast saturates: what is early goes to the first bucket.
-        ((due - self.start) * self.rate) as usize
     }
 
     #[inline]
@@ -95,7 +102,7 @@ impl BucketQueue {
     /// Writes down when a disk is due.
     #[inline]
     fn place(&mut self, disk: usize, due: f64) {
-        let bucket = self.bucket(due);
+        let bucket = self.page.bucket(due);
         if bucket < self.opened {
             self.late.push(Reverse(Entry::new(disk, due)));
         } else if bucket < self.buckets.len() {
@@ -143,7 +150,7 @@ impl BucketQueue {
     }
 
     fn open_bucket(&mut self) {
-        let Self { due, open, start, rate, .. } = self;
+        let Self { due, open, page, .. } = self;
         let (from, bucket) = (open.len(), self.opened);
         self.buckets.take(bucket, |disks| {
             // All at once: 3 % of the time of 10⁶ disks.
@@ -153,7 +160,7 @@ impl BucketQueue {
             for &disk in disks {
                 let (disk, due) = (disk as usize, due[disk as usize]);
                 // Another bucket: it is out of date.
-                if ((due - *start) * *rate) as usize == bucket {
+                if page.bucket(due) == bucket {
                     open.push(Entry::new(disk, due));
                 }
             }
@@ -169,8 +176,7 @@ impl BucketQueue {
         let first = self.due.iter().enumerate().map(|(disk, &due)| Entry::new(disk, due)).min();
         self.first = first.unwrap_or_default();
         let first = self.first.due();
-        self.rate = self.events_per_time(first) / EVENTS_PER_BUCKET as f64;
-        self.start = first;
+        self.page = Page { start: first, rate: self.events_per_time(first) / EVENTS_PER_BUCKET as f64 };
         (self.set, self.opened, self.over, self.sighted) = (0, 0, 0, 0);
         self.buckets.clear((EVENTS_PER_DISK * self.due.len()).div_ceil(EVENTS_PER_BUCKET) + 1);
         self.open.clear();
@@ -183,11 +189,10 @@ impl BucketQueue {
 
     /// How dense events are: as on the last page if it was long enough, or else as a sample of the disks has it.
     fn events_per_time(&self, first: f64) -> f64 {
-        let past = self.set as f64 / (first - self.start);
-        let known = [past, self.sampled_events_per_time(first), past, 1.0];
-        let usable = |rate: &&f64| rate.is_normal() && **rate > 0.0;
-        let from = usize::from(self.set < self.due.len());
-        known[from..].iter().find(usable).copied().unwrap_or(1.0)
+        let past = self.set as f64 / (first - self.page.start);
+        let sampled = self.sampled_events_per_time(first);
+        let choice = if self.set >= self.due.len() { [past, sampled] } else { [sampled, past] };
+        choice.into_iter().find(|rate| rate.is_normal() && *rate > 0.0).unwrap_or(1.0)
     }
 
     fn sampled_events_per_time(&self, first: f64) -> f64 {

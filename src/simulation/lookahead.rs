@@ -7,7 +7,8 @@ use crate::collision::CollisionRule;
 use crate::prefetch::prefetch;
 use crate::scheduler::EventScheduler;
 
-/// Disks from which on the caches hold so little of a system that looking ahead pays: it takes 200 ns a collision.
+/// Disks from which on the caches hold so little of a system that looking ahead pays: it is a quarter of the
+/// instructions.
 pub(super) const LARGE: usize = 30_000;
 
 /// How many disks later what a disk leads to is asked for, and again what that leads to.

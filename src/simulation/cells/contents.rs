@@ -155,7 +155,8 @@ impl Contents {
         }
     }
 
-    /// All slots of a block are copied; the next goes on behind the last that is taken, without a branch on how many those are.
+    /// All slots of a block are copied; the next goes on behind the last that is taken. There is a branch on whether a block is
+    /// full, which few are, and none on how many slots are taken.
     #[inline(always)]
     fn gather_blocks(
         &self,
