@@ -58,6 +58,7 @@ pub mod boundary;
 pub mod collision;
 mod disk;
 mod error;
+mod fingerprint;
 mod flight;
 pub mod initial;
 pub mod kinetic;
@@ -77,6 +78,7 @@ pub mod wall;
 
 pub use disk::{Disk, HOMOGENEOUS};
 pub use error::ParameterError;
+pub use fingerprint::Fingerprint;
 pub use flight::Flight;
 pub use glam;
 pub use simulation::Simulation;
