@@ -2,6 +2,8 @@
 
 #![cfg(feature = "serde")]
 
+mod support;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -512,7 +514,7 @@ fn plans_with_errors_are_refused_by_name() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(support::config(64))]
 
     /// Every number survives the file, to the last bit.
     #[test]

@@ -10,4 +10,6 @@ mod long_runs;
 mod oracle;
 mod setups;
 mod steps;
+#[path = "../support/mod.rs"]
+mod support;
 mod thermal;

@@ -4,7 +4,6 @@
 //! The seeds are fixed. `PROPTEST_CASES` sets the number of cases, `PROPTEST_RNG_SEED` another seed: that is how these tests
 //! become runs of hours (docs/validation.md, “Hostile runs”).
 
-mod config;
 mod constructors;
 #[cfg(all(feature = "serde", unix))]
 mod faults;
@@ -26,6 +25,8 @@ mod schedulers;
 mod script;
 #[cfg(feature = "serde")]
 mod specimens;
+#[path = "../support/mod.rs"]
+mod support;
 mod systems;
 #[cfg(feature = "serde")]
 mod unknown_fields;

@@ -4,8 +4,8 @@ use granular_edmd::boundary::{Container, MissingWall, Thermal, Wall};
 use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
 use proptest::prelude::*;
 
-use crate::config::decades;
 use crate::laws::{Law, law};
+use crate::support::decades;
 
 #[derive(Debug, Clone, Copy)]
 enum Shape {
