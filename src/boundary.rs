@@ -41,8 +41,13 @@ pub trait Boundary {
         self.domain()
     }
 
-    /// The names of the walls, in the order of their indices.
-    fn walls(&self) -> &[&'static str];
+    fn wall_count(&self) -> usize;
+    fn wall_name(&self, wall: usize) -> std::borrow::Cow<'_, str> {
+        format!("wall {wall}").into()
+    }
+    fn fingerprint(&self) -> Option<crate::Fingerprint> {
+        None
+    }
 
     /// All times from now on are measured from this absolute time.
     fn set_time_origin(&mut self, origin: f64);
@@ -71,8 +76,11 @@ impl<T: Boundary + ?Sized> Boundary for Box<T> {
     fn interior(&self) -> Domain {
         (**self).interior()
     }
-    fn walls(&self) -> &[&'static str] {
-        (**self).walls()
+    fn wall_count(&self) -> usize {
+        (**self).wall_count()
+    }
+    fn wall_name(&self, wall: usize) -> std::borrow::Cow<'_, str> {
+        (**self).wall_name(wall)
     }
     fn set_time_origin(&mut self, origin: f64) {
         (**self).set_time_origin(origin);

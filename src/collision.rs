@@ -70,6 +70,13 @@ use crate::quantity::accept;
 pub trait CollisionRule {
     /// The impulse on the first partner; the second receives its opposite.
     fn impulse(&self, contact: &Contact) -> Impulse;
+    fn explain(&self, contact: &Contact) -> Option<String> {
+        let _ = contact;
+        None
+    }
+    fn fingerprint(&self) -> Option<crate::Fingerprint> {
+        None
+    }
 }
 
 impl<T: CollisionRule + ?Sized> CollisionRule for &T {

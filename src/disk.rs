@@ -15,7 +15,7 @@ const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 pub(crate) const MOST_DISKS: usize = 1 << 28;
 
 /// Largest magnitude of a component of a position or velocity, and of an angle or angular velocity.
-const LARGEST: f64 = 1e60;
+pub(crate) const LARGEST: f64 = 1e60;
 
 /// A rotating hard disk: position, velocity, angle, angular velocity, radius, mass and inertia factor.
 ///

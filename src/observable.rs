@@ -68,6 +68,11 @@ pub trait Observable {
 /// A sample at time `$t$` has seen all events up to and at `$t$`. After a sample, `next_sample` must name a later
 /// time; the run ends with an error otherwise.
 pub trait Observer {
+    fn on_start(&mut self, _: &Moment) {}
+    fn on_end(&mut self, _: &Moment) {}
+    fn verdict(&mut self) -> Result<std::ops::ControlFlow<()>, ObserverError> {
+        Ok(std::ops::ControlFlow::Continue(()))
+    }
     /// A collision has just happened.
     fn on_collision(&mut self, collision: &Collision) {
         let _ = collision;
@@ -81,5 +86,18 @@ pub trait Observer {
     /// The sample that was asked for.
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         let _ = snapshot;
+    }
+}
+
+pub type ObserverError = Box<dyn std::error::Error + Send + Sync>;
+pub struct Moment {
+    time: f64,
+}
+impl Moment {
+    pub fn new(time: f64, _: usize, _: usize, _: crate::boundary::Domain, _: f64) -> Self {
+        Self { time }
+    }
+    pub fn time(&self) -> f64 {
+        self.time
     }
 }

@@ -204,8 +204,11 @@ impl Boundary for Container {
         }
     }
 
-    fn walls(&self) -> &[&'static str] {
-        &self.names
+    fn wall_count(&self) -> usize {
+        self.names.len()
+    }
+    fn wall_name(&self, wall: usize) -> std::borrow::Cow<'_, str> {
+        self.names.get(wall).copied().unwrap_or("?").into()
     }
 
     fn set_time_origin(&mut self, origin: f64) {

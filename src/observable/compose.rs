@@ -13,6 +13,9 @@ impl<T: Observer + ?Sized> Observer for &mut T {
     fn next_sample(&self) -> f64 {
         (**self).next_sample()
     }
+    fn verdict(&mut self) -> Result<std::ops::ControlFlow<()>, crate::observable::ObserverError> {
+        (**self).verdict()
+    }
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         (**self).on_sample(snapshot);
     }
@@ -25,6 +28,9 @@ impl<T: Observer + ?Sized> Observer for Box<T> {
     }
     fn next_sample(&self) -> f64 {
         (**self).next_sample()
+    }
+    fn verdict(&mut self) -> Result<std::ops::ControlFlow<()>, crate::observable::ObserverError> {
+        (**self).verdict()
     }
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         (**self).on_sample(snapshot);

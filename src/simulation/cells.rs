@@ -1,17 +1,20 @@
 //! Neighbour cells: a disk can only collide with disks in its own cell and the eight around it.
 
 mod block;
+mod cell_size;
 mod contents;
+mod grid;
 
 use glam::DVec2;
 
-use super::event::Exit;
-use super::grid::{Grid, Layout, Mesh, Place};
+use super::state::Exit;
 use crate::boundary::Boundary;
 #[cfg(feature = "serde")]
 use crate::boundary::Domain;
 use crate::prefetch::prefetch;
+pub(super) use cell_size::CellSize;
 use contents::Contents;
+pub(super) use grid::{Grid, Layout, Place};
 
 /// The disks in the cells of a grid.
 ///
@@ -58,12 +61,12 @@ impl Cells {
     pub(super) fn new<B: Boundary + ?Sized>(
         boundary: &B,
         diameter: f64,
-        mesh: Mesh,
+        cell_size: CellSize,
         positions: impl ExactSizeIterator<Item = DVec2> + Clone,
     ) -> Option<Self> {
         let domain = boundary.domain();
         let highest = positions.clone().map(|position| position.y).fold(domain.bottom, f64::max);
-        let layout = Layout::new(&domain, diameter, mesh, positions.len(), highest)?;
+        let layout = Layout::new(&domain, diameter, cell_size, positions.len(), highest)?;
         let grid = Grid::new(&domain, layout, diameter);
         let places = positions.map(|position| grid.place_of(position)).collect();
         Some(Self::filled(boundary, 0.5 * diameter, grid, places))

@@ -1,7 +1,7 @@
 //! The guard against runs that cannot progress.
 
 #[cfg(feature = "serde")]
-use super::event::MOST_COUNTED;
+use crate::simulation::checkpoint::MOST_COUNTED;
 
 /// Events allowed while time advances by less than [`RESOLUTION`] epochs: so many, and as many more for each disk, since
 /// disks on a lattice may all have something to do at the same time.
@@ -18,7 +18,7 @@ const RESOLUTION: f64 = 1.0 / (1u64 << 25) as f64;
 /// Counts events since time last progressed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Guard {
+pub(in crate::simulation) struct Guard {
     since: f64,
     events: u64,
 }
@@ -27,7 +27,12 @@ impl Guard {
     /// Takes note of an event; returns how many there were without progress, if too many, and starts afresh: whoever
     /// mends the cause may go on.
     #[inline]
-    pub(super) fn watch(&mut self, time_offset: f64, epoch_length: f64, disks: usize) -> Option<u64> {
+    pub(in crate::simulation) fn watch(
+        &mut self,
+        time_offset: f64,
+        epoch_length: f64,
+        disks: usize,
+    ) -> Option<u64> {
         if time_offset - self.since > RESOLUTION * epoch_length {
             *self = Self { since: time_offset, events: 0 };
         }
@@ -40,12 +45,12 @@ impl Guard {
 
     /// Whether it can have come to this.
     #[cfg(feature = "serde")]
-    pub(super) fn is_valid(&self) -> bool {
+    pub(in crate::simulation) fn is_valid(&self) -> bool {
         self.since.is_finite() && self.events <= MOST_COUNTED
     }
 
     /// The epoch has moved.
-    pub(super) fn shift(&mut self, by: f64) {
+    pub(in crate::simulation) fn shift(&mut self, by: f64) {
         self.since -= by;
     }
 }

@@ -1,13 +1,11 @@
 //! The grid of neighbour cells: how large they are and where each is.
 
-mod mesh;
-
 use glam::DVec2;
 
 use crate::boundary::{Domain, Region};
 use crate::prefetch::prefetch;
 
-pub(super) use mesh::Mesh;
+use super::cell_size::CellSize;
 
 /// Cells per disk at most; more would cost memory and save nothing.
 const CELLS_PER_DISK: f64 = 8.0;
@@ -28,7 +26,7 @@ const SLACK: f64 = 1e-3;
 /// Cells of one column are next to each other in memory: a wide, low box is the usual large system, and what is near in it
 /// is then near in memory, too.
 #[derive(Debug, Clone)]
-pub(super) struct Grid {
+pub(in crate::simulation) struct Grid {
     layout: Layout,
     /// Cells in a column, ring included.
     stride: u32,
@@ -44,16 +42,16 @@ pub(super) struct Grid {
 /// A cell by its column and row, ring included: the first real ones are 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Place {
-    pub(super) column: u32,
-    pub(super) row: u32,
+pub(in crate::simulation) struct Place {
+    pub(in crate::simulation) column: u32,
+    pub(in crate::simulation) row: u32,
 }
 
 /// The size of the grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Layout {
-    mesh: Mesh,
+pub(in crate::simulation) struct Layout {
+    cell_size: CellSize,
     columns: u32,
     rows: u32,
     /// Size of a cell; in an open container the rows grow from some height on.
@@ -63,7 +61,7 @@ pub(super) struct Layout {
 impl Layout {
     /// Whether this is a grid for this domain and so many disks of at most this diameter.
     #[cfg(feature = "serde")]
-    pub(super) fn suits(&self, domain: &Domain, diameter: f64, disks: usize) -> bool {
+    pub(in crate::simulation) fn suits(&self, domain: &Domain, diameter: f64, disks: usize) -> bool {
         let Self { columns, rows, pitch, .. } = *self;
         let most = 2.0 * (CELLS_PER_DISK * disks as f64 + SPARE_CELLS);
         let covers = |count: u32, pitch: f64, length: f64| {
@@ -82,15 +80,15 @@ impl Layout {
 
     /// Whether a place is one of its cells, not of the ring.
     #[cfg(feature = "serde")]
-    pub(super) fn contains(&self, place: Place) -> bool {
+    pub(in crate::simulation) fn contains(&self, place: Place) -> bool {
         (1..=self.columns).contains(&place.column) && (1..=self.rows).contains(&place.row)
     }
 
     /// The grid for `count` disks of at most this diameter; `None` if the domain is too small.
-    pub(super) fn new(
+    pub(in crate::simulation) fn new(
         domain: &Domain,
         diameter: f64,
-        mesh: Mesh,
+        cell_size: CellSize,
         count: usize,
         highest: f64,
     ) -> Option<Self> {
@@ -101,7 +99,7 @@ impl Layout {
             2.0 * open_height(domain, highest, diameter)
         };
         let most = CELLS_PER_DISK * count as f64 + SPARE_CELLS;
-        let pitch = (mesh.pitch() * diameter).max((width * height / most).sqrt());
+        let pitch = (cell_size.pitch() * diameter).max((width * height / most).sqrt());
         let along = |length: f64, pitch: f64| (length / pitch).floor().max(1.0);
         let mut columns = along(width, pitch).min(most.floor());
         if domain.periodic && columns < 4.0 {
@@ -114,7 +112,7 @@ impl Layout {
         let rows = along(height, pitch).min((most / columns).max(1.0).floor());
         let valid = width > 0.0 && height > 0.0 && width.is_finite() && height.is_finite();
         let pitch = DVec2::new(width / columns, height / rows);
-        valid.then_some(Self { mesh, columns: columns as u32, rows: rows as u32, pitch })
+        valid.then_some(Self { cell_size, columns: columns as u32, rows: rows as u32, pitch })
     }
 }
 
@@ -125,7 +123,7 @@ fn open_height(domain: &Domain, highest: f64, diameter: f64) -> f64 {
 
 impl Grid {
     /// The grid of this layout.
-    pub(super) fn new(domain: &Domain, layout: Layout, diameter: f64) -> Self {
+    pub(in crate::simulation) fn new(domain: &Domain, layout: Layout, diameter: f64) -> Self {
         let margin = margin(domain, &layout, diameter);
         let mut column_edges = edges(domain.left, layout.pitch.x, layout.columns, !domain.periodic);
         if domain.periodic {
@@ -144,32 +142,32 @@ impl Grid {
     }
 
     /// All cells but those of the ring.
-    pub(super) fn places(&self) -> impl Iterator<Item = Place> + use<> {
+    pub(in crate::simulation) fn places(&self) -> impl Iterator<Item = Place> + use<> {
         let Layout { columns, rows, .. } = self.layout;
         (1..=columns).flat_map(move |column| (1..=rows).map(move |row| Place { column, row }))
     }
 
     /// How many cells there are, ring included.
-    pub(super) fn len(&self) -> usize {
+    pub(in crate::simulation) fn len(&self) -> usize {
         self.stride() * (self.layout.columns as usize + 2)
     }
 
     #[cfg(feature = "serde")]
-    pub(super) fn layout(&self) -> Layout {
+    pub(in crate::simulation) fn layout(&self) -> Layout {
         self.layout
     }
 
-    pub(super) fn mesh(&self) -> Mesh {
-        self.layout.mesh
+    pub(in crate::simulation) fn cell_size(&self) -> CellSize {
+        self.layout.cell_size
     }
 
     /// Cells in a column, ring included: how far apart in memory neighbours in a row are.
     #[inline]
-    pub(super) fn stride(&self) -> usize {
+    pub(in crate::simulation) fn stride(&self) -> usize {
         self.stride as usize
     }
 
-    pub(super) fn place_of(&self, position: DVec2) -> Place {
+    pub(in crate::simulation) fn place_of(&self, position: DVec2) -> Place {
         let along = |edges: &[f64], x: f64| {
             let inner = &edges[1..edges.len() - 1];
             1 + inner.partition_point(|&edge| edge <= x) as u32
@@ -178,13 +176,13 @@ impl Grid {
     }
 
     #[inline]
-    pub(super) fn index(&self, place: Place) -> usize {
+    pub(in crate::simulation) fn index(&self, place: Place) -> usize {
         place.column as usize * self.stride as usize + place.row as usize
     }
 
     /// The rectangle in which a cell keeps its disks; infinite beyond the walls.
     #[inline]
-    pub(super) fn region(&self, place: Place) -> Region {
+    pub(in crate::simulation) fn region(&self, place: Place) -> Region {
         let (column, row) = (place.column as usize, place.row as usize);
         Region {
             min: DVec2::new(self.column_edges[column - 1], self.row_edges[row - 1]) - self.margin,
@@ -194,26 +192,30 @@ impl Grid {
 
     /// Asks for what [`Self::region`] needs: wide systems have many columns.
     #[inline]
-    pub(super) fn prefetch_region(&self, place: Place) {
+    pub(in crate::simulation) fn prefetch_region(&self, place: Place) {
         prefetch(&self.column_edges, place.column as usize);
     }
 
     /// Whether a place is one of the cells, not of the ring.
     #[cfg(feature = "serde")]
-    pub(super) fn contains(&self, place: Place) -> bool {
+    pub(in crate::simulation) fn contains(&self, place: Place) -> bool {
         self.layout.contains(place)
     }
 
     /// Whether a disk at this position belongs into this cell.
     #[cfg(feature = "serde")]
-    pub(super) fn holds(&self, place: Place, position: DVec2) -> bool {
+    pub(in crate::simulation) fn holds(&self, place: Place, position: DVec2) -> bool {
         let (Region { min, max }, slack) = (self.region(place), SLACK * self.layout.pitch);
         position.is_finite() && position.cmpge(min - slack).all() && position.cmple(max + slack).all()
     }
 
     /// Whether the disks in these places, of these radii, can be in their cells without overlaps.
     #[cfg(feature = "serde")]
-    pub(super) fn has_room(&self, domain: &Domain, disks: impl Iterator<Item = (Place, f64)>) -> bool {
+    pub(in crate::simulation) fn has_room(
+        &self,
+        domain: &Domain,
+        disks: impl Iterator<Item = (Place, f64)>,
+    ) -> bool {
         let mut cells = vec![(0.0, 0.0); self.len()];
         for (place, radius) in disks {
             let (area, largest): &mut (f64, f64) = &mut cells[self.index(place)];
@@ -232,13 +234,13 @@ impl Grid {
 
     /// The width of the domain if its sides are periodic, else 0.
     #[inline]
-    pub(super) fn period(&self) -> f64 {
+    pub(in crate::simulation) fn period(&self) -> f64 {
         self.period
     }
 
     /// The ghost that mirrors a cell at a periodic side, if it has one.
     #[inline]
-    pub(super) fn mirror(&self, place: Place) -> Option<Place> {
+    pub(in crate::simulation) fn mirror(&self, place: Place) -> Option<Place> {
         let columns = self.layout.columns;
         match place.column {
             _ if self.period == 0.0 => None,
@@ -250,7 +252,7 @@ impl Grid {
 
     /// The neighbour so many columns to the right and rows up, and what going there adds to `x`.
     #[inline]
-    pub(super) fn neighbour(&self, place: Place, (right, up): (i32, i32)) -> (Place, f64) {
+    pub(in crate::simulation) fn neighbour(&self, place: Place, (right, up): (i32, i32)) -> (Place, f64) {
         let mut to =
             Place { column: place.column.wrapping_add_signed(right), row: place.row.wrapping_add_signed(up) };
         let mut shift = 0.0;

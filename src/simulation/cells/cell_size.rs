@@ -5,15 +5,15 @@
 /// Where disks crowd, the smallest gain 15 % over the next; in a dilute gas the largest do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(in crate::simulation) enum Mesh {
+pub(in crate::simulation) enum CellSize {
     Small,
     Medium,
     Large,
 }
 
-impl Mesh {
+impl CellSize {
     /// Size of a cell in diameters of the largest disk.
-    pub(super) const fn pitch(self) -> f64 {
+    pub(in crate::simulation) const fn pitch(self) -> f64 {
         match self {
             Self::Small => 1.08,
             Self::Medium => 1.4,
