@@ -3,10 +3,9 @@
 use super::cells::Cells;
 use super::engine::Simulation;
 use super::event::Counters;
-use super::lookahead::LARGE;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
-use crate::scheduler::EventScheduler;
+use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Predicts every disk's next event from the present state alone.
@@ -24,7 +23,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         due.extend(self.bodies.particles.iter().map(|particle| particle.slot.due()));
         self.scheduler.reset(&due);
         // Kept, so that nothing is allocated again; in large systems memory counts for more.
-        if due.len() < LARGE {
+        if due.len() < LARGE_SYSTEM {
             self.due = due;
         }
     }

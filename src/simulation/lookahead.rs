@@ -5,11 +5,7 @@ use super::event::Exit;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::prefetch::prefetch;
-use crate::scheduler::EventScheduler;
-
-/// Disks from which on the caches hold so little of a system that looking ahead pays: it is a quarter of the
-/// instructions.
-pub(super) const LARGE: usize = 30_000;
+use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
 
 /// How many disks later what a disk leads to is asked for, and again what that leads to.
 const LATER: usize = 12;
@@ -40,7 +36,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Asks for what the next events will need, where the caches do not hold the system anyway.
     #[inline]
     pub(super) fn look_ahead(&mut self) {
-        if self.bodies.len() >= LARGE {
+        if self.bodies.len() >= LARGE_SYSTEM {
             self.look_far();
         }
     }
@@ -48,8 +44,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline(never)]
     fn look_far(&mut self) {
         let mut fresh = std::mem::take(&mut self.lookahead.fresh);
-        self.scheduler.come_into_sight(&mut fresh);
-        for disk in fresh.drain(..) {
+        self.scheduler.upcoming(&mut fresh);
+        let count = self.bodies.len();
+        for disk in fresh.drain(..).filter(|&disk| disk < count) {
             let (second, third) = self.lookahead.note(disk);
             self.prefetch_disk(disk);
             self.prefetch_cells(second);

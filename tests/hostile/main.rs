@@ -22,6 +22,7 @@ mod random_runs;
 #[cfg(feature = "serde")]
 mod records;
 mod regressions;
+#[path = "../support/schedulers.rs"]
 mod schedulers;
 mod script;
 #[cfg(feature = "serde")]
