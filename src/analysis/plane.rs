@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn lines_of_equal_energy_loss_come_back() -> Result<(), ParameterError> {
-        let frictions = (0..=60).map(|step| 0.005 * (0.1066 * f64::from(step)).exp());
+        let frictions = (0..=60).map(|step| 0.005 * libm::exp(0.1066 * f64::from(step)));
         let grid =
             frictions.flat_map(|friction| (0..=40).map(move |step| (friction, 0.002 * f64::from(step))));
         let seen: Vec<_> = grid

@@ -172,7 +172,9 @@ impl Sample {
         use std::f64::consts::{FRAC_PI_2, PI};
         let angle = PI * (f64::from(stratum) + uniform(generator)) / f64::from(STRATA);
         let (sine, cosine) = libm::sincos(angle);
-        let square = -2.0 * libm::log(uniform(generator) * uniform(generator)) + normal(generator).powi(2);
+        let two_components = -2.0 * libm::log(uniform(generator) * uniform(generator));
+        let third = normal(generator);
+        let square = two_components + third * third;
         let length = square.sqrt();
         Self { closing: length * sine, slip: length * cosine, weight: FRAC_PI_2 * sine * 3.0 / square }
     }
