@@ -10,13 +10,16 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Beginning and ending of the names of files that are being written.
 const TEMPORARY: (&str, &str) = ("granular-edmd-", ".tmp");
 
-/// Number of names that are tried before giving up. The second is needed only if two random numbers are the same.
+/// Number of names that are tried before giving up. The second is needed only if two random numbers are the
+/// same.
 const NAMES: usize = 8;
 
-/// Writes a file, whole or not at all: a reader never sees half of it, and a file of that name stays if this fails.
+/// Writes a file, whole or not at all: a reader never sees half of it, and a file of that name stays if this
+/// fails.
 ///
-/// The bytes go to a temporary file beside it, which then takes its name. Any number of threads, processes and
-/// hosts may write the same file at a time: each has a temporary file of its own, and the last one to rename wins.
+/// The bytes go to a temporary file beside it, which then takes its name. Any number of threads, processes
+/// and hosts may write the same file at a time: each has a temporary file of its own, and the last one to
+/// rename wins.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if path.file_name().is_none() {
         return Err(io::Error::new(
@@ -66,8 +69,8 @@ fn create_new(path: &Path) -> io::Result<(PathBuf, File)> {
 
 /// Returns a name that no other writer has.
 ///
-/// The process tells programs on this host apart, the count the writers in this process, and the random number the
-/// hosts that share a disk. The file's own name is not in it, so that it cannot become too long.
+/// The process tells programs on this host apart, the count the writers in this process, and the random
+/// number the hosts that share a disk. The file's own name is not in it, so that it cannot become too long.
 fn unique_name() -> String {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
@@ -83,7 +86,8 @@ fn write_synced(mut file: File, bytes: &[u8]) -> io::Result<()> {
 
 /// Asks the system to keep the new name through a loss of power, too.
 ///
-/// Best effort: the file is in its place, and there are file systems on which folders cannot be opened or synced.
+/// Best effort: the file is in its place, and there are file systems on which folders cannot be opened or
+/// synced.
 fn sync_folder(path: &Path) {
     if cfg!(unix) {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
