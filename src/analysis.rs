@@ -1,4 +1,4 @@
-//! Analysis: from measured series to states, transitions and Table I.
+//! Analysis: states, transitions and Table I from measured series.
 //!
 //! | question | answer | source |
 //! |---|---|---|

@@ -1,9 +1,10 @@
-//! Mean energy loss per collision `$\langle dE\rangle$`: the quantity that the states of the driven system follow.
+//! Mean energy loss per collision, the quantity that the states of the driven system follow.
 //!
-//! A gas of disks with Maxwellian velocities and spins ([`Maxwellian`]) collides under a rule; `$\langle dE\rangle$`
-//! is the mean change of kinetic energy per collision, negative when energy is lost. Two roads lead to it, each
-//! testing the other: [`mean_energy_change`] in closed form for the paper's rule, and [`MonteCarlo`] for any
-//! [`CollisionRule`](crate::collision::CollisionRule). No simulation is needed.
+//! A gas of disks with Maxwellian velocities and spins ([`Maxwellian`]) collides under a rule;
+//! `$\langle dE\rangle$` is the mean change of kinetic energy per collision, negative when energy is lost.
+//! Two roads lead to it, and each tests the other: [`mean_energy_change`] in closed form for the paper's
+//! rule, and [`MonteCarlo`] for any [`CollisionRule`](crate::collision::CollisionRule). Neither needs a
+//! simulation.
 //!
 //! | question | answer | source |
 //! |---|---|---|

@@ -58,6 +58,8 @@ pub mod boundary;
 pub mod collision;
 mod disk;
 mod error;
+#[cfg(feature = "serde")]
+mod file;
 mod fingerprint;
 mod flight;
 pub mod initial;
@@ -69,8 +71,6 @@ mod quantity;
 mod random;
 mod roots;
 pub mod scheduler;
-#[cfg(feature = "serde")]
-mod sealed;
 pub mod simulation;
 #[cfg(feature = "serde")]
 pub mod study;

@@ -1,8 +1,8 @@
 //! Schedulers: the disk whose event is the earliest.
 //!
-//! The engine keeps one event for each disk, the earliest that it knows of. A scheduler puts the times of these
-//! events in order and knows nothing else of them. Equal times go to the smaller index, so any two schedulers give
-//! the same trajectory bit for bit.
+//! The engine keeps one event for each disk, the earliest that it knows of. A scheduler puts the times of
+//! these events in order and knows nothing else of them. Equal times go to the smaller index, so any two
+//! schedulers give the same trajectory bit for bit.
 //!
 //! | scheduler | cost of an event | use |
 //! |---|---|---|
@@ -28,39 +28,41 @@ pub use tournament_tree::TournamentTree;
 
 /// The answer of a scheduler without disks: no disk, never.
 ///
-/// Its index is that of no disk and its time is after the end of any run, so the comparison with the end, which the
-/// engine makes at each event anyway, rejects it.
+/// Its index is that of no disk and its time is after the end of any run, so the comparison with the end,
+/// which the engine makes at each event anyway, rejects it.
 pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 
 /// Puts the events of the disks in the order of their times.
 ///
 /// # What an implementer guarantees
-/// 1. **The earliest comes first.** [`earliest`](Self::earliest) names the disk with the smallest time among the last
-///    ones given for each disk, and that time.
-/// 2. **Ties go to the smallest index.** `0.0` and `-0.0` are the same time. Where all times are infinite, the disk
-///    with the smallest index is named, with its infinite time.
-/// 3. **Time may go back.** [`set`](Self::set) takes any time: later than that of the disk before, or earlier,
-///    because a faster partner has appeared, or earlier than the last answer. After most events the disk just named
-///    gets a later time; a scheduler may be slow in the other cases, but not wrong.
-/// 4. **Nothing outlives a reset.** [`reset`](Self::reset) may come with more disks, with fewer, or with none.
+/// 1. **The earliest comes first.** [`earliest`](Self::earliest) names the disk with the smallest of the times
+///    last given for each disk, and that time.
+/// 2. **Ties go to the smallest index.** `0.0` and `-0.0` are the same time. Where all times are infinite,
+///    the disk with the smallest index is named, with its infinite time.
+/// 3. **Time may go back.** [`set`](Self::set) takes any time: later than that of the disk before, or
+///    earlier, because a faster partner has appeared, or earlier than the last answer. After most events the
+///    disk just named gets a later time; a scheduler may be slow in the other cases, but not wrong.
+/// 4. **Nothing outlives a reset.** [`reset`](Self::reset) may come with more disks, with fewer, or with
+///    none.
 /// 5. Without disks, as before the first `reset`, the answer is [`NOTHING_DUE`].
 ///
 /// # What the engine guarantees
 /// - Times are offsets from the epoch of the run, never NaN. They may be infinite: an event that never comes.
-/// - `reset` comes first, and again whenever many times change at once, as when the epoch moves. After a `reset` with
-///   `$n$` times only disks below `$n$` are `set`.
-/// - For each event it asks `earliest`, then, in systems so large that memory is slow, [`upcoming`](Self::upcoming),
-///   and then sets the disks whose next event has changed: mostly one or two.
+/// - `reset` comes first, and again whenever many times change at once, as when the epoch moves. After a
+///   `reset` with `$n$` times only disks below `$n$` are `set`.
+/// - For each event it asks `earliest`, then, in systems so large that memory is slow,
+///   [`upcoming`](Self::upcoming), and then sets the disks whose next event has changed: mostly one or two.
 ///
 /// # What happens otherwise
-/// The engine compares each answer with the event that it keeps: a disk that does not exist, or a time other than
-/// the last one set for it, ends the run with an error. A disk that is named although another one is due before it
-/// cannot be noticed at this price; events then come out of order and the trajectory is wrong. [`laws::check`]
-/// finds both kinds of fault.
+/// The engine compares each answer with the event that it keeps: a disk that does not exist, or a time other
+/// than the last one set for it, ends the run with an error. A disk that is named although another one is due
+/// before it cannot be noticed at this price; events then come out of order and the trajectory is wrong.
+/// [`laws::check`] finds both kinds of fault.
 ///
 /// # The answer is a pair, not an `Option`
-/// It is asked for at every event. A pair comes back in two registers, and [`NOTHING_DUE`] fails the comparison with
-/// the end of the run that is needed in any case; an `Option` would add a branch to each event and say no more.
+/// It is asked for at every event. A pair comes back in two registers, and [`NOTHING_DUE`] fails the
+/// comparison with the end of the run that is needed in any case; an `Option` would add a branch to each
+/// event and say no more.
 ///
 /// ```
 /// use granular_edmd::scheduler::{EventScheduler, LinearScan, NOTHING_DUE, TournamentTree};
@@ -79,8 +81,8 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a scheduler of events",
     label = "this type does not implement `EventScheduler`",
-    note = "`scheduler::BySize::new()` is the default; `&mut S` and `Box<dyn EventScheduler>` are schedulers, too",
-    note = "a scheduler of your own implements `reset`, `set` and `earliest`; `scheduler::laws::check` tests it"
+    note = "the default is `scheduler::BySize::new()`; `&mut S` and `Box<dyn EventScheduler>` will do, too",
+    note = "one of your own implements `reset`, `set` and `earliest`; `scheduler::laws::check` tests it"
 )]
 pub trait EventScheduler {
     /// Forgets everything and takes these times, one for each disk.
@@ -94,11 +96,12 @@ pub trait EventScheduler {
     /// It only looks: a lazy scheduler removes what is out of date in `set`.
     fn earliest(&self) -> (usize, f64);
 
-    /// Appends the disks whose events are due soon and that have not been named yet, if the scheduler knows them.
+    /// Appends the disks whose events are due soon and that have not been named yet, if the scheduler knows
+    /// them.
     ///
-    /// A hint, by which the engine asks the memory in time for what their events will need. It changes neither the
-    /// order of events nor what `disks` holds already. Disks may be missing, or be named twice or in any order;
-    /// those that do not exist are ignored by the engine. By default none is named.
+    /// A hint, by which the engine asks the memory in time for what their events will need. It changes
+    /// neither the order of events nor what `disks` holds already. Disks may be missing, or be named twice or
+    /// in any order; those that do not exist are ignored by the engine. By default none is named.
     fn upcoming(&mut self, disks: &mut Vec<usize>) {
         let _ = disks;
     }

@@ -2,6 +2,9 @@
 
 #![cfg(feature = "serde")]
 
+#[path = "support/report.rs"]
+mod report;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,6 +17,7 @@ use granular_edmd::study::{
     StudyError, System,
 };
 use proptest::prelude::*;
+use report::report;
 
 type AnyError = Box<dyn std::error::Error>;
 
@@ -328,10 +332,36 @@ fn a_damaged_half_done_value_is_started_again() -> Result<(), AnyError> {
     let partial = scratch.0.join("ramps/0000/0000.partial");
     let bytes = fs::read(&partial)?;
     fs::write(&partial, &bytes[..bytes.len() / 2])?;
-    fs::write(scratch.0.join("ramps/0000/0001.record.tmp"), "of a killed process")?;
+    fs::write(scratch.0.join("ramps/0000").join(TEMPORARY), "of a killed process")?;
     let summary = study.run(&Control::default())?;
     assert_eq!(summary.redone, [partial]);
     assert_same(&scratch.0, &expected.0);
+    Ok(())
+}
+
+/// Name of a file that a killed process was writing.
+const TEMPORARY: &str = "granular-edmd-4711-0-0123456789abcdef.tmp";
+
+#[test]
+fn only_temporary_files_of_the_library_are_removed() -> Result<(), AnyError> {
+    let scratch = Scratch::new("temporaries");
+    let study = Study::create(&scratch.0, &small_study())?;
+    fs::create_dir_all(scratch.0.join("ramps/0000"))?;
+    let theirs = ["data.tmp", "granular-edmd.tmp", "ramps/0000/0001.record.tmp", "ramps/0000/notes.tmp"];
+    for name in theirs {
+        fs::write(scratch.0.join(name), name)?;
+    }
+    for folder in ["", "ramps/0000"] {
+        fs::write(scratch.0.join(folder).join(TEMPORARY), "of a killed process")?;
+    }
+    fs::create_dir(scratch.0.join("granular-edmd-4711-1-0123456789abcdef.tmp"))?;
+    assert!(study.run(&Control::default())?.is_complete());
+    for name in theirs {
+        assert_eq!(fs::read_to_string(scratch.0.join(name))?, name);
+    }
+    for folder in ["", "ramps/0000"] {
+        assert!(!scratch.0.join(folder).join(TEMPORARY).exists(), "{folder}");
+    }
     Ok(())
 }
 
@@ -392,7 +422,7 @@ fn a_read_only_folder_is_an_error() -> Result<(), AnyError> {
     let result = study.run(&Control::default());
     fs::set_permissions(&scratch.0, fs::Permissions::from_mode(0o755))?;
     if !superuser {
-        let error = result.unwrap_err().to_string();
+        let error = report(&result.unwrap_err());
         assert!(error.starts_with("cannot write") && error.contains("ermission denied"), "{error}");
     }
     Ok(())

@@ -10,8 +10,8 @@ use super::entry::Entry;
 use crate::prefetch::prefetch;
 use piles::Piles;
 
-/// Events due within the time of one bucket. With so many in each there are few buckets, and the ends of all of them
-/// stay in the caches.
+/// Events due within the time of one bucket. With so many in each there are few buckets, and the ends of all
+/// of them stay in the caches.
 const EVENTS_PER_BUCKET: usize = 512;
 
 /// Events of a page for each disk: dealing out all disks anew is then shared by twice as many events.
@@ -32,14 +32,15 @@ const SIGHT: usize = 48;
 
 /// A calendar: a page of equally wide buckets of time, and in each bucket, in no order, the disks due in it.
 ///
-/// - A disk that gets a new time is written to the end of the bucket of that time. Its old entry stays where it is.
+/// - A disk that gets a new time is written to the end of the bucket of that time. Its old entry stays where
+///   it is.
 /// - A bucket is opened just before its time comes: old entries are dropped, and the others put in order.
 /// - A disk that becomes due within a bucket that is open already waits in a heap.
-/// - A disk that is due after the page is not written down. When the page is used up, all disks are dealt out to a
-///   new one, whose buckets are as wide as the events of the last page suggest.
+/// - A disk that is due after the page is not written down. When the page is used up, all disks are dealt out
+///   to a new one, whose buckets are as wide as the events of the last page suggest.
 ///
-/// So an event writes only to places that are in the caches, however many disks there are. The one exception is the
-/// time of its disk.
+/// So an event writes only to places that are in the caches, however many disks there are. The one exception
+/// is the time of its disk.
 #[derive(Debug, Clone)]
 pub struct BucketQueue {
     /// The time of each disk.
@@ -75,7 +76,8 @@ impl Page {
     /// Returns the bucket of a time. Buckets follow each other without end, also beyond those of the page.
     #[inline]
     fn bucket(self, due: f64) -> usize {
-        // The cast saturates: times before the page belong to its first bucket, infinite ones to the last number.
+        // The cast saturates: times before the page belong to its first bucket, infinite ones to the last
+        // number.
         ((due - self.start) * self.rate) as usize
     }
 }
@@ -168,8 +170,8 @@ impl BucketQueue {
             }
             for &disk in disks {
                 let (disk, due) = (disk as usize, due[disk as usize]);
-                // An entry is out of date if the time of its disk has moved to another bucket. One that has moved
-                // within this bucket is here twice, with the same time: no harm.
+                // An entry is out of date if the time of its disk has moved to another bucket. One that has
+                // moved within this bucket is here twice, with the same time: no harm.
                 if page.bucket(due) == bucket {
                     open.push(Entry::new(disk, due));
                 }
@@ -197,8 +199,8 @@ impl BucketQueue {
         self.open_buckets();
     }
 
-    /// Estimates the number of events per time: from the last page, or from a sample of the disks if that page was
-    /// short.
+    /// Estimates the number of events per time: from the last page, or from a sample of the disks if that
+    /// page was short.
     fn events_per_time(&self, first: f64) -> f64 {
         let past = self.set as f64 / (first - self.page.start);
         let sampled = self.sampled_events_per_time(first);

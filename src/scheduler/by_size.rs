@@ -4,9 +4,10 @@ use super::{BucketQueue, EventScheduler, TournamentTree};
 
 /// Number of disks from which on the processor's caches no longer hold a system.
 ///
-/// Above it an event waits for the memory, and work that spares memory pays: an order that is written page by page
-/// ([`BucketQueue`]), and requests for what the next events will need. Below it the same work is a loss. The place
-/// of the change is measured by `cargo bench --bench scaling`; it is flat, so one number serves both.
+/// Above it an event waits for the memory, and work that spares memory pays: an order that is written page by
+/// page ([`BucketQueue`]), and requests for what the next events will need. Below it the same work is a loss.
+/// The place of the change is measured by `cargo bench --bench scaling`; it is flat, so one number serves
+/// both.
 pub(crate) const LARGE_SYSTEM: usize = 30_000;
 
 /// A [`TournamentTree`] for fewer than 30 000 disks, a [`BucketQueue`] from there on.

@@ -24,8 +24,9 @@ impl Entry {
 
     #[inline]
     pub(super) fn new(disk: usize, due: f64) -> Self {
-        // Adding 0 turns -0 into 0, so that both zeros are the same time. The bits of a positive float grow with it,
-        // those of a negative one with its magnitude: all are flipped there, and only the sign elsewhere.
+        // Adding 0 turns -0 into 0, so that both zeros are the same time. The bits of a positive float grow
+        // with it, those of a negative one with its magnitude: all are flipped there, and only the sign
+        // elsewhere.
         let bits = (due + 0.0).to_bits();
         Self { order: if bits & SIGN == 0 { bits | SIGN } else { !bits }, disk }
     }
@@ -35,7 +36,8 @@ impl Entry {
         f64::from_bits(if self.order & SIGN == 0 { !self.order } else { self.order & !SIGN })
     }
 
-    /// Returns the answer of [`EventScheduler::earliest`](super::EventScheduler::earliest) if this is the first.
+    /// Returns the answer of [`EventScheduler::earliest`](super::EventScheduler::earliest) if this is the
+    /// first.
     #[inline]
     pub(super) fn answer(self) -> (usize, f64) {
         if self == Self::EMPTY { NOTHING_DUE } else { (self.disk, self.due()) }

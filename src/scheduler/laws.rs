@@ -1,7 +1,8 @@
 //! The laws that a scheduler can break, as a check for schedulers of your own.
 //!
-//! A wrong order of events does not crash: it gives a trajectory that is wrong. So a scheduler is tested for itself,
-//! against the plain [`LinearScan`], over scripts of operations that look random and are the same on every run.
+//! A wrong order of events does not crash: it gives a trajectory that is wrong. So a scheduler is tested for
+//! itself, against the plain [`LinearScan`], over scripts of operations that look random and are the same on
+//! every run.
 
 mod script;
 
@@ -53,10 +54,11 @@ pub enum Violation {
 
 /// Checks a scheduler against its contract, the one of [`EventScheduler`].
 ///
-/// `make` gives a fresh scheduler without disks; it is called for every script. The scripts have from none to some
-/// ten thousand disks, times that go on, come back, or are before the last answer, ties, both zeros, negative and
-/// infinite times, a single busy disk among many that wait, and resets to more, fewer and no disks. Now and then
-/// they ask for [`upcoming`](EventScheduler::upcoming) disks, which must not change the order.
+/// `make` gives a fresh scheduler without disks; it is called for every script. The scripts have from none to
+/// some ten thousand disks, times that go on, come back, or are before the last answer, ties, both zeros,
+/// negative and infinite times, a single busy disk among many that wait, and resets to more, fewer and no
+/// disks. Now and then they ask for [`upcoming`](EventScheduler::upcoming) disks, which must not change the
+/// order.
 ///
 /// # Errors
 /// The first law that is broken. A scheduler that panics is not caught.

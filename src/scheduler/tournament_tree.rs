@@ -10,10 +10,10 @@ const PLAYERS: usize = 4;
 
 /// A tournament in matches of four: the earliest of four disks goes on to the next round, until one is left.
 ///
-/// A change of one disk replays its matches, round by round. Each replay selects and does not branch, because no
-/// processor can foresee the winner of a match, and a branch that is foreseen wrongly costs more than the whole
-/// match. Matches of four need half as many rounds as matches of two, and the best of the three others is found
-/// while the round below is still being played.
+/// A change of one disk replays its matches, round by round. Each replay selects and does not branch, because
+/// no processor can foresee the winner of a match, and a branch that is foreseen wrongly costs more than the
+/// whole match. Matches of four need half as many rounds as matches of two, and the best of the three others
+/// is found while the round below is still being played.
 #[derive(Debug, Clone, Default)]
 pub struct TournamentTree {
     /// The matches of all rounds, one round after the other.
@@ -27,8 +27,8 @@ impl Entry {
     /// Returns the earlier of two; of equal times the smaller disk.
     #[inline]
     fn earlier(self, other: Self) -> Self {
-        // A comparison of the two as pairs would become a branch on some processors. The sum cannot overflow: no
-        // time has the largest order, which is why EMPTY has the one before it.
+        // A comparison of the two as pairs would become a branch on some processors. The sum cannot overflow:
+        // no time has the largest order, which is why EMPTY has the one before it.
         let wins = other.order < self.order + u64::from(other.disk < self.disk);
         Self {
             order: select_unpredictable(wins, other.order, self.order),

@@ -15,8 +15,8 @@ use super::guard::Guard;
 use crate::Disk;
 use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
+use crate::file::{Broken, Seal, write_whole};
 use crate::scheduler::EventScheduler;
-use crate::sealed::{Broken, Seal, write_whole};
 
 /// What marks a checkpoint, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 2 };

@@ -22,6 +22,10 @@ mod random_runs;
 #[cfg(feature = "serde")]
 mod records;
 mod regressions;
+#[cfg(feature = "serde")]
+#[path = "../support/report.rs"]
+mod report;
+#[path = "../support/schedulers.rs"]
 mod schedulers;
 mod script;
 #[cfg(feature = "serde")]

@@ -160,7 +160,8 @@ fn few(stage: &mut Stage) -> Operation {
     extreme(stage, disks)
 }
 
-/// As in a run: the first disk gets a later time, now and then another one does, or has its time of before again.
+/// As in a run: the first disk gets a later time, now and then another one does, or has its time of before
+/// again.
 fn run(stage: &mut Stage, first: usize, now: f64) -> Operation {
     if !now.is_finite() {
         return to_and_fro(stage, first, now);

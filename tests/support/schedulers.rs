@@ -4,10 +4,10 @@ use granular_edmd::scheduler::{BucketQueue, BySize, EventScheduler, LinearScan, 
 
 pub(crate) type Scheduler = Box<dyn EventScheduler>;
 
-/// How to make each of them; the first is the default.
+/// Functions that make each of them; the first is the default.
 pub(crate) const SCHEDULERS: [fn() -> Scheduler; 4] = [
-    || Box::new(BySize::default()),
-    || Box::new(TournamentTree::default()),
-    || Box::new(BucketQueue::default()),
-    || Box::new(LinearScan::default()),
+    || Box::new(BySize::new()),
+    || Box::new(TournamentTree::new()),
+    || Box::new(BucketQueue::new()),
+    || Box::new(LinearScan::new()),
 ];

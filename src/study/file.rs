@@ -1,16 +1,16 @@
-//! The files of a study: whole or not there, and sealed where they hold records.
+//! The files of a study: whole or absent, and sealed where they hold records.
 
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::errors::StudyError;
-use crate::sealed::{Broken, Seal, TEMPORARY, write_whole};
+use crate::file::{Broken, Seal, is_temporary, write_whole};
 
-/// What marks a record, and the version of the format that this crate writes and reads.
+/// Mark of a record, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal { magic: *b"GRANSTUD", version: 1 };
 
 /// Writes a file, whole or not at all.
@@ -20,7 +20,9 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
 
 /// Writes data with magic, version and checksum.
 pub(super) fn write_sealed(path: &Path, data: &impl Serialize) -> Result<(), StudyError> {
-    write(path, &SEAL.seal(&postcard::to_stdvec(data)?))
+    let contents = postcard::to_stdvec(data)
+        .map_err(|error| StudyError::Encode { path: path.to_owned(), source: Box::new(error) })?;
+    write(path, &SEAL.seal(&contents))
 }
 
 /// Reads data that [`write_sealed`] has written; `None` if there is no such file.
@@ -59,16 +61,14 @@ pub(super) fn remove(path: &Path) -> Result<(), StudyError> {
     }
 }
 
-/// Removes what a killed process was writing in a folder.
+/// Removes the temporary files that a killed process has left in a folder, and nothing else.
 pub(super) fn remove_temporaries(folder: &Path) -> Result<(), StudyError> {
-    let unfinished = |path: &PathBuf| path.extension().is_some_and(|ending| ending == TEMPORARY);
-    files(folder)?.iter().filter(|path| unfinished(path)).try_for_each(|path| remove(path))
-}
-
-/// What a folder holds.
-fn files(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
-    let entries = fs::read_dir(folder).and_then(|entries| {
-        entries.map(|entry| entry.map(|entry| entry.path())).collect::<io::Result<Vec<_>>>()
-    });
-    entries.map_err(StudyError::io("read", folder))
+    let cannot_read = || StudyError::io("read", folder);
+    for entry in fs::read_dir(folder).map_err(cannot_read())? {
+        let entry = entry.map_err(cannot_read())?;
+        if is_temporary(&entry.file_name()) && entry.file_type().is_ok_and(|kind| kind.is_file()) {
+            remove(&entry.path())?;
+        }
+    }
+    Ok(())
 }
