@@ -65,7 +65,7 @@ pub mod kinetic;
 pub mod observable;
 mod prefetch;
 pub mod prelude;
-mod quantity;
+pub mod quantity;
 mod random;
 mod roots;
 pub mod scheduler;
