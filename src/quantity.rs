@@ -113,7 +113,7 @@ impl<Q: Quantity> Checked<Q> {
 
 impl<Q> Checked<Q> {
     #[inline]
-    pub(crate) const fn get(&self) -> f64 {
+    pub(crate) const fn get(self) -> f64 {
         self.0
     }
 }
