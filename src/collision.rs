@@ -1,10 +1,10 @@
 //! Collision rules: what happens when two disks, or a disk and a wall, touch.
 //!
-//! A rule is a pure function from a [`Contact`] (how fast the surfaces close and slip, and the masses that resist)
-//! to an [`Impulse`]. The engine applies the impulse to one partner and its opposite to the other at the contact
-//! point, so momentum, angular momentum and Galilean invariance hold for *any* rule; what a rule can get wrong is
-//! energy, separation and friction, and [`laws`] checks those. A wall is a partner of infinite mass: one rule serves
-//! both.
+//! A rule is a pure function from a [`Contact`] (how fast the surfaces close and slip, and the masses that
+//! resist) to an [`Impulse`]. The engine applies the impulse to one partner and its opposite to the other at
+//! the contact point, so momentum, angular momentum and Galilean invariance hold for *any* rule; what a rule
+//! can get wrong is energy, separation and friction, and [`laws`] checks those. A wall is a partner of
+//! infinite mass: one rule serves both.
 //!
 //! | rule | energy loss | source |
 //! |---|---|---|
@@ -16,9 +16,9 @@
 //! | [`from_fn`] | yours, as a closure | |
 //!
 //! # A rule of your own
-//! A rule that decides the normal direction takes the tangential one from [`Friction`]. Here is the restitution of
-//! C. Bizon et al., Phys. Rev. Lett. **80**, 57 (1998), which falls with the speed of the impact until it is constant,
-//! `$r_n = 1 - (1 - r_0)\min(v_n/v_0, 1)^{3/4}$`:
+//! A rule that decides the normal direction takes the tangential one from [`Friction`]. Here is the
+//! restitution of C. Bizon et al., Phys. Rev. Lett. **80**, 57 (1998), which falls with the speed of the
+//! impact until it is constant, `$r_n = 1 - (1 - r_0)\min(v_n/v_0, 1)^{3/4}$`:
 //!
 //! ```
 //! use granular_edmd::collision::{CollisionRule, Contact, Friction, Impulse, laws};
@@ -71,21 +71,24 @@ pub use smooth::Smooth;
 
 use crate::Fingerprint;
 
-/// What happens when two surfaces touch.
+/// The law of a collision: from a contact to an impulse.
 ///
 /// # Contract
-/// The engine calls [`Self::impulse`] once for each collision that the rule decides, of disks or with a wall. It
-/// guarantees of the contact:
+/// The engine calls [`Self::impulse`] once for each collision that the rule decides, of disks or with a wall.
+/// It guarantees of the contact:
 /// - the closing speed is finite and not negative; it may be zero;
 /// - the slip speed is finite, of either sign or zero;
 /// - the masses are finite and positive, the tangential one not above the normal one.
 ///
 /// The rule guarantees:
-/// 1. The same contact gets the same impulse, to the bit, every time: a rule that wants history finds it in the
-///    contact. Else a run depends on what was computed before, and a resumed run is another one.
-/// 2. The impulse is finite. Else the run ends with an error that names the partners, with what [`Self::explain`] says.
-/// 3. The surfaces do not close any more afterwards. Else they collide again at once, until the run ends as stalled.
-/// 4. The collision gains no energy, unless that is what the rule is for. Else the system heats up, and nobody tells.
+/// 1. The same contact gets the same impulse, to the bit, every time: a rule that wants history finds it in
+///    the contact. Else a run depends on what was computed before, and a resumed run is another one.
+/// 2. The impulse is finite. Else the run ends with an error that names the partners, with what
+///    [`Self::explain`] says.
+/// 3. The surfaces do not close any more afterwards. Else they collide again at once, until the run ends as
+///    stalled.
+/// 4. The collision gains no energy, unless that is what the rule is for. Else the system heats up, and
+///    nobody tells.
 ///
 /// [`laws::check_rule`] tests all four.
 #[diagnostic::on_unimplemented(
@@ -105,7 +108,7 @@ pub trait CollisionRule {
         None
     }
 
-    /// Says who the rule is, so that a checkpoint notices when a run is resumed under another one.
+    /// Names the rule by a number, so that a checkpoint notices when a run is resumed under another rule.
     ///
     /// Rules of equal fingerprints must give equal impulses. A rule that says nothing is not compared.
     fn fingerprint(&self) -> Option<Fingerprint> {

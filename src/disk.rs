@@ -16,14 +16,14 @@ pub(crate) const LARGEST: f64 = 1e60;
 
 /// A rotating hard disk: position, velocity, angle, angular velocity, radius, mass and inertia factor.
 ///
-/// Its moment of inertia is `$I = \beta m R^2$`, with `$\beta = 1/2$` unless said otherwise. Lengths, times and
-/// masses are in any consistent units; the paper takes the diameter and the mass of a disk as units.
+/// Its moment of inertia is `$I = \beta m R^2$`, with `$\beta = 1/2$` unless said otherwise. Lengths, times
+/// and masses are in any consistent units; the paper takes the diameter and the mass of a disk as units.
 ///
 /// ```
 /// use glam::DVec2;
 /// use granular_edmd::Disk;
 ///
-/// let disk = Disk::new(DVec2::new(3.0, 4.0), 0.5)?.with_velocity(DVec2::new(1.0, 0.0))?.with_angular_velocity(2.0)?;
+/// let disk = Disk::new(DVec2::new(3.0, 4.0), 0.5)?.with_velocity(DVec2::X)?.with_angular_velocity(2.0)?;
 /// assert_eq!(disk.mass(), 1.0);
 /// assert_eq!(disk.moment_of_inertia(), 0.125);
 /// assert_eq!(disk.translational_energy() + disk.rotational_energy(), 0.75);
@@ -103,8 +103,8 @@ impl Disk {
         Ok(Self { mass: scale("mass", mass)?, ..self })
     }
 
-    /// The same disk with the moment of inertia `$I = \beta m R^2$` for this `$\beta$`: 1/2 for a homogeneous disk,
-    /// 1 for a ring.
+    /// The same disk with the moment of inertia `$I = \beta m R^2$` for this `$\beta$`: 1/2 for a homogeneous
+    /// disk, 1 for a ring.
     ///
     /// # Errors
     /// If it is not in `[1e-6, 1]`.

@@ -1,8 +1,8 @@
 //! Random inputs for property tests of your own rules and walls; needs the feature `proptest`.
 //!
-//! Each function gives a [`proptest`] strategy, made to be hostile: ordinary values, the edges of their ranges, and
-//! values spread over many decades, in mixtures that a run of the simulation might take days to meet. The crate's own
-//! tests use the same ones.
+//! Each function gives a [`Strategy`], made to be hostile: ordinary values, the edges of their
+//! ranges, and values spread over many decades, in mixtures that a run of the simulation might take days to
+//! meet. The crate's own tests use the same ones.
 //!
 //! A rule of your own, against momentum conservation and the laws of friction:
 //! ```
@@ -164,8 +164,8 @@ pub fn touching_pair() -> impl Strategy<Value = (Disk, Disk)> {
     )
 }
 
-/// A disk that closes onto a wall which moves or rests: the disk, the unit vector from the wall to it, and the wall's
-/// velocity, as [`collide_with_wall`](crate::collision::collide_with_wall) takes them.
+/// A disk that closes onto a wall which moves or rests: the disk, the unit vector from the wall to it, and
+/// the wall's velocity, as [`collide_with_wall`](crate::collision::collide_with_wall) takes them.
 ///
 /// ```
 /// use granular_edmd::collision::{Elastic, collide_with_wall, laws};

@@ -50,8 +50,9 @@ impl Body {
 fn contact(normal: DVec2, first: (&Body, &Material), second: (&Body, &Material)) -> Contact {
     let approach = second.0.velocity - first.0.velocity;
     let closing = approach.dot(normal);
-    // Bodies that touch may part, by rounding or because the caller did not ask: no rule should take roots of that.
-    // A comparison is false for NaN, too, and gives one kind of zero; `f64::max` may give either, as the processor does.
+    // Bodies that touch may part, by rounding or because the caller did not ask: no rule should take roots of
+    // that. A comparison is false for NaN, too, and gives one kind of zero; `f64::max` may give either, as
+    // the processor does.
     let closing = if closing > 0.0 { closing } else { 0.0 };
     let surface = second.1.radius * second.0.angular_velocity + first.1.radius * first.0.angular_velocity;
     let (normal_mass, tangential_mass) = (
@@ -61,7 +62,8 @@ fn contact(normal: DVec2, first: (&Body, &Material), second: (&Body, &Material))
     Contact::new(closing, approach.dot(normal.perp()) + surface, normal_mass, tangential_mass)
 }
 
-/// `body` after an impulse along the normal and its perpendicular; both partners of a collision turn the same way.
+/// `body` after an impulse along the normal and its perpendicular; both partners of a collision turn the same
+/// way.
 #[inline]
 fn kicked(body: &Body, material: &Material, kick: DVec2, tangential: f64) -> Body {
     Body {

@@ -4,10 +4,10 @@ use std::fmt;
 
 /// Two surfaces that touch: how fast they close and slip, and the masses that resist.
 ///
-/// With `$\hat n$` from partner 2 to partner 1 and `$\vec v = \vec v_{C2} - \vec v_{C1}$` the relative velocity of
-/// the points in contact, the closing speed is `$v_n = \vec v\cdot\hat n$` and the slip speed
-/// `$v_t = \vec v\cdot\hat t$`. An impulse `$\Delta_n$` changes `$v_n$` by `$-\Delta_n/\mu$`, and `$\Delta_t$` changes
-/// `$v_t$` by `$-\Delta_t/\mu_t$`, where `$1/\mu = \sum 1/m_i$` and
+/// With `$\hat n$` from partner 2 to partner 1 and `$\vec v = \vec v_{C2} - \vec v_{C1}$` the relative
+/// velocity of the points in contact, the closing speed is `$v_n = \vec v\cdot\hat n$` and the slip speed
+/// `$v_t = \vec v\cdot\hat t$`. An impulse `$\Delta_n$` changes `$v_n$` by `$-\Delta_n/\mu$`, and
+/// `$\Delta_t$` changes `$v_t$` by `$-\Delta_t/\mu_t$`, where `$1/\mu = \sum 1/m_i$` and
 /// `$1/\mu_t = \sum (1 + 1/\beta_i)/m_i$` (for homogeneous disks `$\mu_t = \mu/3$`).
 ///
 /// ```
@@ -76,7 +76,8 @@ impl Contact {
 
     /// Normal impulse of a restitution `$r_n$`: `$\Delta_n = (1 + r_n)\,\mu\,v_n$` (paper, Eqs. (1), (3)).
     ///
-    /// The restitution is not checked: this is for rules that compute it from the contact, in every collision.
+    /// The restitution is not checked: this is for rules that compute it from the contact, in every
+    /// collision.
     ///
     /// ```
     /// use granular_edmd::collision::Contact;

@@ -18,12 +18,13 @@ pub enum TangentialResponse {
     Unchanged,
 }
 
-/// The contact-duration (TC) model over any rule: a collision of a body that collided less than `$t_c$` ago loses
-/// no energy (Luding and McNamara 1998).
+/// The contact-duration (TC) model over any rule: a collision of a body that collided less than `$t_c$` ago
+/// loses no energy (Luding and McNamara 1998).
 ///
-/// Without it, dense inelastic states collide infinitely often in finite time, and a run ends with an error. The
-/// simulation counts the collisions changed this way, so that one sees when the model matters: with a collision rate
-/// `$\omega_c$` per disk, a share of about `$2.25\,\omega_c t_c$` of the dissipation is lost to it.
+/// Without it, dense inelastic states collide infinitely often in finite time, and a run ends with an error.
+/// The simulation counts the collisions changed this way, so that one sees when the model matters: with a
+/// collision rate `$\omega_c$` per disk, a share of about `$2.25\,\omega_c t_c$` of the dissipation is lost
+/// to it.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, ContactDuration, Frictional, Regime};

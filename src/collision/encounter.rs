@@ -34,8 +34,8 @@ pub struct WallEncounter {
 
 /// Lets two disks collide under `rule` (paper, Eq. (2)), as a simulation does. Useful to test rules.
 ///
-/// The normal is taken from their centres; that they touch is not checked. The closing speed of disks that part is
-/// zero.
+/// The normal is taken from their centres; that they touch is not checked. The closing speed of disks that
+/// part is zero.
 ///
 /// ```
 /// use glam::DVec2;
@@ -70,7 +70,8 @@ pub fn collide<R: CollisionRule + ?Sized>(rule: &R, first: &Disk, second: &Disk)
 
 /// Lets a disk collide under `rule` with a wall that moves at `wall_velocity`, as a simulation does.
 ///
-/// The unit vector `normal` points from the wall to the disk. The closing speed of a disk that leaves is zero.
+/// The unit vector `normal` points from the wall to the disk. The closing speed of a disk that leaves is
+/// zero.
 ///
 /// ```
 /// use glam::DVec2;

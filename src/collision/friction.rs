@@ -56,7 +56,8 @@ impl Friction {
         Self::from_inelasticity(tangential_inelasticity)?.with_coefficients(coefficient, coefficient)
     }
 
-    /// The tangential inelasticity `$q_t \in [0, 1]$`, still without friction; see [`Self::with_coefficients`].
+    /// The tangential inelasticity `$q_t \in [0, 1]$`, still without friction; see
+    /// [`Self::with_coefficients`].
     ///
     /// # Errors
     /// If the inelasticity is out of its range.
@@ -64,7 +65,8 @@ impl Friction {
         TangentialInelasticity::new(tangential).map(Self::without_coefficients)
     }
 
-    /// The tangential restitution `$r_t \in [-1, 1]$`, still without friction; see [`Self::with_coefficients`].
+    /// The tangential restitution `$r_t \in [-1, 1]$`, still without friction; see
+    /// [`Self::with_coefficients`].
     ///
     /// # Errors
     /// If the restitution is out of its range.
@@ -79,8 +81,8 @@ impl Friction {
     /// The same inelasticity with the friction coefficients `$\kappa_s \ge \kappa_d \ge 0$`.
     ///
     /// # Errors
-    /// If one is negative or not finite, or the dynamic coefficient exceeds the static one: sliding could then
-    /// gain energy.
+    /// If one is negative or not finite, or the dynamic coefficient exceeds the static one: sliding could
+    /// then gain energy.
     pub fn with_coefficients(
         self,
         static_coefficient: f64,
@@ -93,7 +95,8 @@ impl Friction {
         Ok(Self { static_coefficient, dynamic_coefficient, ..self })
     }
 
-    /// Returns the whole impulse of a contact: the `normal` one as given, with the tangential one that it allows.
+    /// Returns the whole impulse of a contact: the `normal` one as given, with the tangential one that it
+    /// allows.
     #[inline]
     pub fn impulse(&self, contact: &Contact, normal: f64) -> Impulse {
         let sticking = self.tangential_inelasticity.impulse(contact);

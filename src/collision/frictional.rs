@@ -4,7 +4,8 @@ use super::inelasticity::NormalInelasticity;
 use super::{CollisionRule, Contact, Friction, Impulse};
 use crate::{Fingerprint, ParameterError};
 
-/// Inelastic collisions with Coulomb friction (paper, Eqs. (1)–(5); Jenkins & Zhang 2002), for any two bodies:
+/// Inelastic collisions with Coulomb friction (paper, Eqs. (1)–(5); Jenkins & Zhang 2002), for any two
+/// bodies:
 ///
 /// ```math
 /// \Delta_n = 2(1-q_n)\,\mu\,v_n,\qquad
@@ -27,7 +28,7 @@ use crate::{Fingerprint, ParameterError};
 ///
 /// let rule = Frictional::from_restitution(0.8, 0.6)?.with_friction(0.5, 0.4)?;
 /// assert!((rule.tangential_inelasticity() - 0.2).abs() < 1e-15);
-/// assert!(rule.with_friction(0.4, 0.5).is_err(), "dynamic friction above static friction could gain energy");
+/// assert!(rule.with_friction(0.4, 0.5).is_err(), "dynamic above static friction could gain energy");
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,8 +74,8 @@ impl Frictional {
     /// The same rule with the friction coefficients `$\kappa_s \ge \kappa_d \ge 0$`.
     ///
     /// # Errors
-    /// If one is negative or not finite, or the dynamic coefficient exceeds the static one: sliding could then
-    /// gain energy.
+    /// If one is negative or not finite, or the dynamic coefficient exceeds the static one: sliding could
+    /// then gain energy.
     pub fn with_friction(self, static_friction: f64, dynamic_friction: f64) -> Result<Self, ParameterError> {
         Ok(Self { friction: self.friction.with_coefficients(static_friction, dynamic_friction)?, ..self })
     }

@@ -1,9 +1,10 @@
 //! The laws that a collision rule can break, as checks for rules of your own.
 //!
-//! Momentum, angular momentum and Galilean invariance hold by construction: the engine applies any impulse and its
-//! opposite at the contact point. Left to the rule are separation, energy and friction.
+//! Momentum, angular momentum and Galilean invariance hold by construction: the engine applies any impulse
+//! and its opposite at the contact point. Left to the rule are separation, energy and friction.
 //!
-//! [`check_rule`] asks a rule about some ten thousand contacts, always the same ones, and fits into a plain test:
+//! [`check_rule`] asks a rule about some ten thousand contacts, always the same ones, and fits into a plain
+//! test:
 //!
 //! ```
 //! use granular_edmd::collision::laws::{self, Promises, Violation};
@@ -16,8 +17,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! For contacts of your own there are [`check`], [`check_friction_opposes_slip`] and [`check_friction_cone`], and under
-//! the feature `proptest` the module [`strategies`](crate::strategies) makes random ones.
+//! For contacts of your own there are [`check`], [`check_friction_opposes_slip`] and [`check_friction_cone`],
+//! and under the feature `proptest` the module `strategies` makes random ones.
 
 mod hostile;
 mod rule;
@@ -32,7 +33,8 @@ use super::{Contact, Impulse};
 /// Rounding allowed in each law, relative to the speeds and energies of the contact.
 const ROUNDING: f64 = 1e-12;
 
-/// Smaller products than this have the fewer digits the smaller they are, so that no relative bound holds for them.
+/// Smaller products than this have the fewer digits the smaller they are, so that no relative bound holds for
+/// them.
 const LEAST: f64 = f64::MIN_POSITIVE;
 
 /// Checks that `impulse` is one that `contact` can suffer: finite, separating, not gaining energy.
@@ -72,8 +74,8 @@ fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation
 
 /// Checks that the tangential impulse is one of friction: it slows the slip, and at most reverses it.
 ///
-/// A rule may add to the slip and still lose energy, which it then takes from the normal direction: [`check`] allows
-/// that, friction does not do it.
+/// A rule may add to the slip and still lose energy, which it then takes from the normal direction: [`check`]
+/// allows that, friction does not do it.
 ///
 /// # Errors
 /// If the slip is faster afterwards.
@@ -135,8 +137,8 @@ pub fn slip_speed_after(contact: &Contact, impulse: Impulse) -> f64 {
     contact.slip_speed() - impulse.tangential() / contact.tangential_mass()
 }
 
-/// Kinetic energy of the relative motion, `$\tfrac12\mu v_n^2 + \tfrac12\mu_t v_t^2$`: the most that a collision
-/// can lose.
+/// Kinetic energy of the relative motion, `$\tfrac12\mu v_n^2 + \tfrac12\mu_t v_t^2$`: the most that a
+/// collision can lose.
 pub fn available_energy(contact: &Contact) -> f64 {
     let (closing, slip) = (contact.closing_speed(), contact.slip_speed());
     0.5 * contact.normal_mass() * (closing * closing) + 0.5 * contact.tangential_mass() * (slip * slip)

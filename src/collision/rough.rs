@@ -4,8 +4,8 @@ use super::inelasticity::{NormalInelasticity, TangentialInelasticity};
 use super::{CollisionRule, Contact, Impulse, Regime};
 use crate::{Fingerprint, ParameterError};
 
-/// Rough inelastic collisions without a Coulomb limit: every collision sticks,
-/// `$\Delta_n = 2(1-q_n)\mu v_n$` and `$\Delta_t = 2(1-q_t)\mu_t v_t$` (paper, Eqs. (3), (4) with `$\kappa\to\infty$`).
+/// Rough inelastic collisions without a Coulomb limit: every collision sticks, `$\Delta_n = 2(1-q_n)\mu v_n$`
+/// and `$\Delta_t = 2(1-q_t)\mu_t v_t$` (paper, Eqs. (3), (4) with `$\kappa\to\infty$`).
 ///
 /// `$q_t = 0$` is perfectly rough and elastic in the tangential direction, `$q_t = 1$` perfectly smooth.
 ///

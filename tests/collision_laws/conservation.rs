@@ -6,8 +6,8 @@ use granular_edmd::collision::{CollisionRule, Contact, Impulse, collide, from_fn
 use granular_edmd::strategies::{decades, direction, touching_pair};
 use proptest::prelude::*;
 
-use crate::hostile::{config, law};
 use crate::kinematics::{EPSILON, angular_magnitude, angular_momentum, momentum, normal};
+use crate::rules::{config, law};
 
 /// Each component of each momentum is rounded a few times at its own size, before and after.
 fn momentum_is_conserved(before: (&Disk, &Disk), after: (&Disk, &Disk)) -> Result<(), TestCaseError> {

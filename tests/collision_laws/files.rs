@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::hostile::config;
+use crate::rules::config;
 
 fn returns<T: Serialize + DeserializeOwned + PartialEq>(value: &T) -> bool {
     let text = serde_json::to_string(value).unwrap();

@@ -5,7 +5,7 @@ use granular_edmd::collision::{CollisionRule, Contact, Friction, Frictional, Imp
 use granular_edmd::strategies::{contact, decades};
 use proptest::prelude::*;
 
-use crate::hostile::config;
+use crate::rules::config;
 
 fn rule() -> Frictional {
     Frictional::from_inelasticity(0.1, 0.3).and_then(|rule| rule.with_friction(0.5, 0.4)).unwrap()

@@ -1,12 +1,12 @@
-//! Who a rule is, and what it says of itself, however it is held.
+//! The identity of a rule and its words about itself, however it is held.
 
 use std::collections::HashSet;
 use std::sync::Arc;
 
 use granular_edmd::Fingerprint;
 use granular_edmd::collision::{
-    CollisionRule, Contact, ContactDuration, Elastic, Frictional, Impulse, Rough, Smooth, TangentialResponse,
-    from_fn,
+    CollisionRule, Contact, ContactDuration, Elastic, Friction, Frictional, Impulse, Rough, Smooth,
+    TangentialResponse, from_fn,
 };
 
 /// A rule that answers everything that it can be asked.
@@ -87,4 +87,14 @@ fn a_closure_has_none_and_neither_has_a_model_of_it() {
     let closure = from_fn(|contact: &Contact| Impulse::new(contact.normal_impulse(0.5), 0.0));
     assert_eq!(closure.fingerprint(), None);
     assert_eq!(ContactDuration::new(closure, 1e-4).unwrap().fingerprint(), None);
+}
+
+/// Rules are shared by threads, and sent to them.
+#[test]
+fn rules_go_to_other_threads() {
+    const fn both<T: Send + Sync>() {}
+    const {
+        both::<(Contact, Impulse, Friction, Elastic, Smooth, Rough, Frictional)>();
+        both::<ContactDuration<Arc<dyn CollisionRule + Send + Sync>>>();
+    }
 }

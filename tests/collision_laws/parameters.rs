@@ -3,7 +3,8 @@
 use granular_edmd::ParameterError;
 use granular_edmd::collision::{ContactDuration, Elastic, Friction, Frictional, Rough, Smooth};
 
-/// A constructor of one parameter, that parameter's name, and values that it must refuse beside the usual ones.
+/// A constructor of one parameter, that parameter's name, and values that it must refuse beside the usual
+/// ones.
 type Case = (&'static str, fn(f64) -> Result<(), ParameterError>, &'static [f64]);
 
 const NOT_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];

@@ -8,8 +8,8 @@ use granular_edmd::collision::{CollisionRule, Encounter, collide};
 use granular_edmd::strategies::{direction, touching_pair};
 use proptest::prelude::*;
 
-use crate::hostile::{Law, config, law};
 use crate::kinematics::{EPSILON, speed_magnitude};
+use crate::rules::{Law, config, law};
 
 /// The disk with its vectors mapped by `map` and its angular velocity multiplied by `turn`.
 fn mapped(disk: &Disk, map: impl Fn(DVec2) -> DVec2, turn: f64) -> Disk {
@@ -24,7 +24,7 @@ fn collided(law: &Law, first: &Disk, second: &Disk) -> (Disk, Disk) {
     (after.first, after.second)
 }
 
-/// How far apart two outcomes are, as a speed.
+/// Distance of two outcomes, as a speed.
 fn distance(left: &Disk, right: &Disk) -> f64 {
     let spin = left.radius() * (left.angular_velocity() - right.angular_velocity());
     (left.velocity() - right.velocity()).length() + spin.abs()
@@ -67,12 +67,14 @@ proptest! {
         prop_assert_eq!(collided(&law, &turn(&first), &turn(&second)), (turn(&new_first), turn(&new_second)));
     }
 
-    /// Any turn rounds the velocities; sliding passes the rounding of the closing speed on to the spin, multiplied
-    /// by the friction and the inverse inertia factor. On the edge of sticking the two views may disagree.
+    /// Any turn rounds the velocities; sliding passes the rounding of the closing speed on to the spin,
+    /// multiplied by the friction and the inverse inertia factor. On the edge of sticking the two views may
+    /// disagree.
     #[test]
     fn rotation(law in law(), (first, second) in touching_pair(), way in direction()) {
         let turn = |disk: &Disk| mapped(disk, |vector| way.rotate(vector), 1.0);
-        let Encounter { first: new_first, second: new_second, contact, .. } = collide(&law.rule(), &first, &second);
+        let encounter = collide(&law.rule(), &first, &second);
+        let Encounter { first: new_first, second: new_second, contact, .. } = encounter;
         let turned = collide(&law.rule(), &turn(&first), &turn(&second));
         prop_assume!(law.sticks(&contact) == law.sticks(&turned.contact));
         let inertia = first.inertia_factor().min(second.inertia_factor());

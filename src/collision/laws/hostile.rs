@@ -23,8 +23,8 @@ const TIMES: [f64; 4] = [0.0, 1e-9, 1e-3, f64::INFINITY];
 
 /// Contacts that rules tend to forget, the same ones in the same order every time.
 ///
-/// Closing and slip speeds, masses and their ratio, over all decades that the engine accepts; slip of both signs and
-/// none, central and grazing, no closing speed, and partners that have just collided.
+/// Closing and slip speeds, masses and their ratio, over all decades that the engine accepts; slip of both
+/// signs and none, central and grazing, no closing speed, and partners that have just collided.
 ///
 /// ```
 /// use granular_edmd::collision::laws::hostile_contacts;

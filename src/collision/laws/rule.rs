@@ -6,7 +6,7 @@ use super::{
 };
 use crate::collision::{CollisionRule, Contact, Impulse};
 
-/// What a rule promises beyond finite impulses that separate and repeat.
+/// Promises of a rule, beyond finite impulses that separate and repeat.
 ///
 /// ```
 /// use granular_edmd::collision::laws::{Promises, check_rule};
@@ -29,8 +29,8 @@ impl Promises {
         Self { energy_gain: false, opposed_slip: false, static_friction: None }
     }
 
-    /// The same, with Coulomb friction: the impulse stays in the cone of this coefficient `$\kappa_s$`, and opposes
-    /// the slip.
+    /// The same, with Coulomb friction: the impulse stays in the cone of this coefficient `$\kappa_s$`, and
+    /// opposes the slip.
     pub const fn with_friction(self, static_friction: f64) -> Self {
         Self { opposed_slip: true, static_friction: Some(static_friction), ..self }
     }
@@ -64,8 +64,8 @@ impl Default for Promises {
     }
 }
 
-/// Checks that `rule` keeps its promises for all [`hostile_contacts`], and gives the same answers when it is asked
-/// again, in another order.
+/// Checks that `rule` keeps its promises for all [`hostile_contacts`], and gives the same answers when it is
+/// asked again, in another order.
 ///
 /// # Errors
 /// The first promise that is broken, with the contact and the impulse that break it.

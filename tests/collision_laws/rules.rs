@@ -35,8 +35,8 @@ pub(crate) enum Kind {
     Closure,
 }
 
-/// A rule with the coefficients that it should obey; without friction `static_friction` is zero, without a Coulomb
-/// limit infinite.
+/// A rule with the coefficients that it should obey; without friction `static_friction` is zero, without a
+/// Coulomb limit infinite.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Law {
     pub(crate) kind: Kind,
@@ -71,7 +71,7 @@ impl Law {
         if self.adapted { Box::new(ContactDuration::new(rule, 1e-4).unwrap()) } else { Box::new(rule) }
     }
 
-    /// Whether the surfaces hold: the paper's inequality, with `$\mu/\mu_t$` for its 3.
+    /// Tells whether the surfaces hold: the paper's inequality, with `$\mu/\mu_t$` for its 3.
     pub(crate) fn sticks(&self, contact: &Contact) -> bool {
         let holding = (1.0 - self.tangential_inelasticity) * contact.tangential_mass() * contact.slip_speed();
         let limit = (1.0 - self.normal_inelasticity) * contact.normal_mass() * contact.closing_speed();
