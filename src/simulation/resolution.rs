@@ -7,8 +7,7 @@ use super::errors::{FailedCollision, RunError};
 use super::prediction::nearest_image;
 use super::state::{Bodies, Clock};
 use crate::boundary::{Response, Surface, Thermal};
-use crate::collision::{Body, CollisionRule, Elastic, Impulse, Material, meet};
-use crate::disk::LARGEST;
+use crate::collision::{Body, CollisionRule, Elastic, Impulse, Material, Regime, collide_bodies};
 use crate::observable::{Collision, Partner};
 use crate::random::{normal, rayleigh};
 
@@ -66,7 +65,10 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
     let since = offset - bodies.spins[disk].last_collision.max(bodies.spins[partner].last_collision);
     let (first, second) = (bodies.body(disk), bodies.body(partner));
     let (material, other) = (bodies.material(disk), bodies.material(partner));
-    let outcome = meet(rule, normal, since, (&first, material), (&second, other));
+    let outcome = collide_bodies(rule, normal, since, (&first, material), (&second, other));
+    let overlap = material.radius + other.radius - distance;
+    apply(bodies, disk, &first, &outcome.first, offset)?;
+    apply(bodies, partner, &second, &outcome.second, offset)?;
     let collision = Collision {
         time: clock.time(),
         disk,
@@ -99,7 +101,13 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     let since = offset - bodies.spins[disk].last_collision;
     let partner = Body { velocity: surface.velocity, angular_velocity: 0.0 };
     let against = |rule: &dyn CollisionRule| {
-        meet(rule, surface.normal, since, (&arriving, material), (&partner, &Material::WALL))
+        collide_bodies(
+            rule,
+            surface.normal,
+            since,
+            (&arriving, bodies.material(disk)),
+            (&partner, &Material::WALL),
+        )
     };
     let (leaving, contact, impulse) = match surface.response {
         Response::Thermal(thermal) => {
@@ -113,8 +121,9 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
             (outcome.first, outcome.contact, outcome.impulse)
         }
         Response::Shared => {
-            let wall = (&partner, &Material::WALL);
-            let outcome = meet(rule, surface.normal, since, (&arriving, material), wall);
+            let walls = (&partner, &Material::WALL);
+            let outcome =
+                collide_bodies(rule, surface.normal, since, (&arriving, bodies.material(disk)), walls);
             (outcome.first, outcome.contact, outcome.impulse)
         }
     };
