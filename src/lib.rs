@@ -67,7 +67,7 @@ mod prefetch;
 pub mod prelude;
 mod quantity;
 mod random;
-mod roots;
+pub mod roots;
 pub mod scheduler;
 #[cfg(feature = "serde")]
 mod sealed;

@@ -134,8 +134,8 @@ pub(super) fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> R
 
 /// That the walls can be numbered, all disks are inside the domain and none overlaps a wall.
 pub(super) fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<(), BuildError> {
-    if boundary.walls().len() > MOST_WALLS {
-        return Err(BuildError::TooManyWalls { count: boundary.walls().len(), most: MOST_WALLS });
+    if boundary.wall_count() > MOST_WALLS {
+        return Err(BuildError::TooManyWalls { count: boundary.wall_count(), most: MOST_WALLS });
     }
     let domain = boundary.domain();
     for (disk, state) in disks.iter().enumerate() {
@@ -150,7 +150,7 @@ pub(super) fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -
         if let Some((wall, depth)) = boundary.overlap(position, radius, 0.0)
             && depth > TOUCHING * radius
         {
-            let wall = boundary.walls().get(wall).copied().unwrap_or("unnamed").to_owned();
+            let wall = boundary.wall_name(wall).into_owned();
             return Err(BuildError::OverlapsWall { disk, x: position.x, y: position.y, wall, depth });
         }
     }
