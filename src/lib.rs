@@ -50,6 +50,7 @@
 //! |---|---|
 //! | `serde` | parameters that serialise through their validating constructors, checkpoints, studies |
 //! | `rayon` | Monte Carlo and sweeps on all cores, with the same bits |
+//! | `proptest` | random contacts and disks for property tests of your own rules: `strategies` |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -65,18 +66,20 @@ pub mod kinetic;
 pub mod observable;
 mod prefetch;
 pub mod prelude;
-mod quantity;
+pub mod quantity;
 mod random;
 pub mod roots;
 pub mod scheduler;
 #[cfg(feature = "serde")]
 mod sealed;
 pub mod simulation;
+#[cfg(feature = "proptest")]
+pub mod strategies;
 #[cfg(feature = "serde")]
 pub mod study;
 pub mod wall;
 
-pub use disk::{Disk, HOMOGENEOUS};
+pub use disk::Disk;
 pub use error::ParameterError;
 pub use fingerprint::Fingerprint;
 pub use flight::Flight;

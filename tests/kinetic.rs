@@ -1,7 +1,7 @@
 //! The mean energy loss per collision: two roads to it, and the paper's figures of it.
 
 use granular_edmd::collision::{
-    CollisionRule, Contact, Elastic, Frictional, Impulse, Rough, Smooth, collide, from_fn,
+    CollisionRule, Contact, Elastic, Encounter, Frictional, Impulse, Rough, Smooth, collide, from_fn,
 };
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::{
@@ -119,7 +119,7 @@ fn closed_form_is_the_mean_over_colliding_disks() -> Outcome {
         let (mut rate, mut loss) = (0.0, 0.0);
         for _ in 0..200_000 {
             let before = [first, partner].map(|disk| thermal(disk, rotational, &mut generator));
-            let (one, other, contact, _) = collide(&rule, &before[0], &before[1]);
+            let Encounter { first: one, second: other, contact, .. } = collide(&rule, &before[0], &before[1]);
             let weight = contact.closing_speed().max(0.0);
             rate += weight;
             loss += weight * (energy(&one) + energy(&other) - energy(&before[0]) - energy(&before[1]));

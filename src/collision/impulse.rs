@@ -1,4 +1,6 @@
-//! What a collision rule answers.
+//! The answer of a collision rule.
+
+use std::fmt;
 
 use super::Contact;
 
@@ -77,5 +79,11 @@ impl Impulse {
         let tangential =
             self.tangential * (contact.slip_speed() - 0.5 * self.tangential / contact.tangential_mass());
         -(normal + tangential)
+    }
+}
+
+impl fmt::Display for Impulse {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "({:?}, {:?})", self.normal, self.tangential)
     }
 }

@@ -58,7 +58,7 @@ impl Maxwellian {
             translational_temperature: temperature,
             rotational_temperature: temperature,
             masses: [1.0; 2],
-            inertia_factors: [crate::HOMOGENEOUS; 2],
+            inertia_factors: [crate::Disk::HOMOGENEOUS_INERTIA_FACTOR; 2],
         })
     }
 

@@ -6,7 +6,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use super::bodies::Bodies;
 use super::prediction::nearest_image;
 use crate::boundary::{Response, Surface, Thermal};
-use crate::collision::{Body, CollisionRule, Elastic, Impulse, Material, Regime, meet};
+use crate::collision::{Body, CollisionRule, Elastic, Impulse, Material, Regime, collide_bodies};
 use crate::observable::{Collision, Partner};
 use crate::random::{normal, rayleigh};
 
@@ -40,7 +40,7 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
     let since = offset - bodies.spins[disk].last_collision.max(bodies.spins[partner].last_collision);
     let (first, second) = (bodies.body(disk), bodies.body(partner));
     let (material, other) = (bodies.material(disk), bodies.material(partner));
-    let outcome = meet(rule, normal, since, (&first, material), (&second, other));
+    let outcome = collide_bodies(rule, normal, since, (&first, material), (&second, other));
     let overlap = material.radius + other.radius - distance;
     apply(bodies, disk, &first, &outcome.first, offset)?;
     apply(bodies, partner, &second, &outcome.second, offset)?;
@@ -73,7 +73,13 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     let since = offset - bodies.spins[disk].last_collision;
     let partner = Body { velocity: surface.velocity, angular_velocity: 0.0 };
     let against = |rule: &dyn CollisionRule| {
-        meet(rule, surface.normal, since, (&arriving, bodies.material(disk)), (&partner, &Material::WALL))
+        collide_bodies(
+            rule,
+            surface.normal,
+            since,
+            (&arriving, bodies.material(disk)),
+            (&partner, &Material::WALL),
+        )
     };
     let mass = 1.0 / bodies.material(disk).inverse_mass;
     let (leaving, contact, impulse) = match surface.response {
@@ -91,7 +97,8 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
         }
         Response::Shared => {
             let walls = (&partner, &Material::WALL);
-            let outcome = meet(rule, surface.normal, since, (&arriving, bodies.material(disk)), walls);
+            let outcome =
+                collide_bodies(rule, surface.normal, since, (&arriving, bodies.material(disk)), walls);
             (outcome.first, outcome.contact, outcome.impulse)
         }
     };

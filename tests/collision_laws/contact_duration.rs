@@ -3,9 +3,10 @@
 use granular_edmd::collision::{
     CollisionRule, ContactDuration, Elastic, Regime, TangentialResponse, collide, collide_with_wall, laws,
 };
+use granular_edmd::strategies::{contact, decades, disk_closing_on_wall, touching_pair};
 use proptest::prelude::*;
 
-use crate::hostile::{Law, config, contact, decades, law, pair, wall_meeting};
+use crate::hostile::{Law, config, law};
 use crate::kinematics::EPSILON;
 
 fn model(law: &Law, duration: f64) -> ContactDuration<Box<dyn CollisionRule>> {
@@ -60,7 +61,7 @@ proptest! {
 
     /// Two disks, or a disk and a wall, outside a simulation have never collided before.
     #[test]
-    fn a_first_meeting_is_the_rules(law in law(), (first, second) in pair(), (disk, normal, wall) in wall_meeting()) {
+    fn a_first_meeting_is_the_rules(law in law(), (first, second) in touching_pair(), (disk, normal, wall) in disk_closing_on_wall()) {
         let model = model(&law, f64::MAX);
         prop_assert_eq!(collide(&model, &first, &second), collide(&law.rule(), &first, &second));
         prop_assert_eq!(

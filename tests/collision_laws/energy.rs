@@ -1,9 +1,10 @@
 //! Energy: never gained, and lost by exactly the amount that the formulas say.
 
-use granular_edmd::collision::{Contact, Regime, collide, laws};
+use granular_edmd::collision::{Contact, Encounter, Regime, collide, laws};
+use granular_edmd::strategies::{contact, touching_pair};
 use proptest::prelude::*;
 
-use crate::hostile::{Law, config, contact, law, pair};
+use crate::hostile::{Law, config, law};
 use crate::kinematics::{EPSILON, kinetic_energy};
 
 /// The change of energy from the coefficients alone: Eq. (6) with the factor 1/3, and Eq. (7), for any two bodies.
@@ -43,8 +44,8 @@ proptest! {
 
     /// What the impulse says is what the disks lose; rounding of their velocities counts with their whole energy.
     #[test]
-    fn the_disks_lose_what_the_impulse_says(law in law(), (first, second) in pair()) {
-        let (new_first, new_second, contact, impulse) = collide(&law.rule(), &first, &second);
+    fn the_disks_lose_what_the_impulse_says(law in law(), (first, second) in touching_pair()) {
+        let Encounter { first: new_first, second: new_second, contact, impulse, .. } = collide(&law.rule(), &first, &second);
         let before = kinetic_energy(&first) + kinetic_energy(&second);
         let after = kinetic_energy(&new_first) + kinetic_energy(&new_second);
         let change = impulse.energy_change(&contact);

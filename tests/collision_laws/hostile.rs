@@ -1,12 +1,9 @@
-//! Inputs over the whole range that the constructors accept, and the rules under test.
+//! The rules under test, with coefficients over the whole range that the constructors accept.
 
-use std::f64::consts::TAU;
-
-use glam::DVec2;
-use granular_edmd::Disk;
 use granular_edmd::collision::{
     CollisionRule, Contact, ContactDuration, Elastic, Frictional, Impulse, Rough, Smooth, from_fn,
 };
+use granular_edmd::strategies::decades;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -21,34 +18,12 @@ pub(crate) fn config() -> ProptestConfig {
     }
 }
 
-/// Numbers spread evenly over the decades `10^low..10^high`.
-pub(crate) fn decades(low: f64, high: f64) -> impl Strategy<Value = f64> {
-    (low..=high).prop_map(|exponent| 10f64.powf(exponent))
-}
-
-/// Speeds of either sign: ordinary, over 24 decades, or zero.
-fn speed() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        4 => -3.0..3.0,
-        4 => (decades(-12.0, 12.0), any::<bool>()).prop_map(|(size, sign)| if sign { size } else { -size }),
-        1 => Just(0.0),
-    ]
-}
-
 fn inelasticity(top: f64) -> impl Strategy<Value = f64> {
     prop_oneof![4 => 0.0..=top, 1 => Just(0.0), 1 => Just(top), 1 => decades(-15.0, -3.0)]
 }
 
 fn friction() -> impl Strategy<Value = f64> {
     prop_oneof![4 => 0.0..2.0, 1 => Just(0.0), 2 => decades(-9.0, 9.0), 1 => Just(f64::MAX)]
-}
-
-/// Directions: any angle, and the axes, where components vanish.
-pub(crate) fn direction() -> impl Strategy<Value = DVec2> {
-    prop_oneof![
-        4 => (0.0..TAU).prop_map(DVec2::from_angle),
-        1 => prop_oneof![Just(DVec2::X), Just(DVec2::Y), Just(-DVec2::X), Just(-DVec2::Y)],
-    ]
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -145,43 +120,4 @@ pub(crate) fn law() -> impl Strategy<Value = Law> {
             }
         },
     )
-}
-
-fn disk() -> impl Strategy<Value = Disk> {
-    let one_or = |low, high| prop_oneof![1 => Just(1.0), 2 => decades(low, high)];
-    (one_or(-12.0, 12.0), one_or(-6.0, 6.0), prop_oneof![Just(0.5), Just(1.0), decades(-3.0, 0.0)], speed())
-        .prop_map(|(mass, radius, factor, surface)| {
-            let disk = Disk::new(DVec2::ZERO, radius).and_then(|disk| disk.with_mass(mass));
-            disk.and_then(|disk| disk.with_inertia_factor(factor))
-                .and_then(|disk| disk.with_angular_velocity(surface / radius))
-                .unwrap()
-        })
-}
-
-/// Two disks that touch and approach; the second is at the origin.
-pub(crate) fn pair() -> impl Strategy<Value = (Disk, Disk)> {
-    let velocity = (speed(), speed());
-    (disk(), disk(), direction(), velocity, prop_oneof![0.1..3.0, decades(-12.0, 12.0)], speed())
-        .prop_map(|(first, second, normal, velocity, closing, slip)| {
-            let velocity = DVec2::from(velocity);
-            let approach = normal * closing + normal.perp() * slip;
-            let first = first.with_position(normal * (first.radius() + second.radius()));
-            let first = first.and_then(|disk| disk.with_velocity(velocity - approach)).unwrap();
-            (first, second.with_velocity(velocity).unwrap())
-        })
-        .prop_filter("rounding must leave them approaching", |(first, second)| {
-            let normal = first.position().normalize();
-            (second.velocity() - first.velocity()).dot(normal) > 0.0
-        })
-}
-
-/// A disk that meets a wall: the disk, the wall's normal and its velocity.
-pub(crate) fn wall_meeting() -> impl Strategy<Value = (Disk, DVec2, DVec2)> {
-    pair().prop_map(|(first, second)| (first, first.position().normalize(), second.velocity()))
-}
-
-/// A contact as a rule sees it.
-pub(crate) fn contact() -> impl Strategy<Value = Contact> {
-    (prop_oneof![0.1..3.0, decades(-12.0, 12.0)], speed(), decades(-12.0, 12.0), decades(-3.0, 0.0))
-        .prop_map(|(closing, slip, mass, share)| Contact::new(closing, slip, mass, mass * share))
 }

@@ -1,9 +1,10 @@
 //! The boundary between sticking and sliding.
 
 use granular_edmd::collision::{CollisionRule, Contact, Frictional, Regime, laws};
+use granular_edmd::strategies::decades;
 use proptest::prelude::*;
 
-use crate::hostile::{config, decades};
+use crate::hostile::config;
 
 /// Far above rounding, far below anything else.
 const STEP: f64 = 1e-9;

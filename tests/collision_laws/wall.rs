@@ -2,10 +2,11 @@
 
 use glam::DVec2;
 use granular_edmd::Disk;
-use granular_edmd::collision::{collide, collide_with_wall};
+use granular_edmd::collision::{Encounter, WallEncounter, collide, collide_with_wall};
+use granular_edmd::strategies::disk_closing_on_wall;
 use proptest::prelude::*;
 
-use crate::hostile::{config, law, wall_meeting};
+use crate::hostile::{config, law};
 use crate::kinematics::{
     EPSILON, angular_magnitude, angular_momentum, kinetic_energy, momentum, speed_magnitude, surface_velocity,
 };
@@ -26,11 +27,11 @@ proptest! {
     /// A partner `HEAVY` times heavier changes the effective masses, hence the impulse, by a few parts in `HEAVY`;
     /// the impulse changes speeds by at most twice the speeds of the contact.
     #[test]
-    fn a_heavy_partner_is_a_wall(law in law(), (disk, normal, velocity) in wall_meeting()) {
+    fn a_heavy_partner_is_a_wall(law in law(), (disk, normal, velocity) in disk_closing_on_wall()) {
         let giant = giant(&disk, velocity);
         let near = disk.with_position(normal * (disk.radius() + giant.radius())).unwrap();
-        let (limit, new_giant, limit_contact, _) = collide(&law.rule(), &near, &giant);
-        let (bounced, contact, _) = collide_with_wall(&law.rule(), &disk, near.position().normalize(), velocity);
+        let Encounter { first: limit, second: new_giant, contact: limit_contact, .. } = collide(&law.rule(), &near, &giant);
+        let WallEncounter { disk: bounced, contact, .. } = collide_with_wall(&law.rule(), &disk, near.position().normalize(), velocity);
         prop_assert_eq!(limit_contact.closing_speed(), contact.closing_speed());
         prop_assert_eq!(limit_contact.slip_speed(), contact.slip_speed());
         let speeds = contact.closing_speed() + contact.slip_speed().abs();
@@ -43,8 +44,8 @@ proptest! {
     }
 
     #[test]
-    fn the_masses_are_those_of_the_disk(law in law(), (disk, normal, velocity) in wall_meeting()) {
-        let (_, contact, _) = collide_with_wall(&law.rule(), &disk, normal, velocity);
+    fn the_masses_are_those_of_the_disk(law in law(), (disk, normal, velocity) in disk_closing_on_wall()) {
+        let contact = collide_with_wall(&law.rule(), &disk, normal, velocity).contact;
         let tangential = disk.mass() / (1.0 + 1.0 / disk.inertia_factor());
         prop_assert!((contact.normal_mass() / disk.mass() - 1.0).abs() <= 2.0 * EPSILON);
         prop_assert!((contact.tangential_mass() / tangential - 1.0).abs() <= 4.0 * EPSILON);
@@ -52,8 +53,8 @@ proptest! {
 
     /// The surface leaves the wall, in the wall's frame, as from any other partner.
     #[test]
-    fn the_surface_parts_from_the_wall(law in law(), (disk, normal, velocity) in wall_meeting()) {
-        let (bounced, contact, _) = collide_with_wall(&law.rule(), &disk, normal, velocity);
+    fn the_surface_parts_from_the_wall(law in law(), (disk, normal, velocity) in disk_closing_on_wall()) {
+        let WallEncounter { disk: bounced, contact, .. } = collide_with_wall(&law.rule(), &disk, normal, velocity);
         let relative = velocity - surface_velocity(&bounced, -normal * disk.radius());
         let speeds = speed_magnitude(&disk) + speed_magnitude(&bounced) + velocity.length();
         let tolerance = 16.0 * EPSILON * speeds;
@@ -67,8 +68,8 @@ proptest! {
 
     /// The disk's momentum changes by the impulse; its angular momentum about the contact point does not.
     #[test]
-    fn the_wall_gives_the_impulse(law in law(), (disk, normal, velocity) in wall_meeting()) {
-        let (bounced, _, impulse) = collide_with_wall(&law.rule(), &disk, normal, velocity);
+    fn the_wall_gives_the_impulse(law in law(), (disk, normal, velocity) in disk_closing_on_wall()) {
+        let WallEncounter { disk: bounced, impulse, .. } = collide_with_wall(&law.rule(), &disk, normal, velocity);
         let kick = normal * impulse.normal() + normal.perp() * impulse.tangential();
         let size = momentum(&disk).length() + momentum(&bounced).length();
         prop_assert!((momentum(&bounced) - momentum(&disk) - kick).length() <= 8.0 * EPSILON * size);
@@ -82,8 +83,8 @@ proptest! {
 
     /// In the laboratory the wall's motion does the work `$\vec\Delta\cdot\vec V$` on top of the loss.
     #[test]
-    fn a_moving_wall_does_work(law in law(), (disk, normal, velocity) in wall_meeting()) {
-        let (bounced, contact, impulse) = collide_with_wall(&law.rule(), &disk, normal, velocity);
+    fn a_moving_wall_does_work(law in law(), (disk, normal, velocity) in disk_closing_on_wall()) {
+        let WallEncounter { disk: bounced, contact, impulse, .. } = collide_with_wall(&law.rule(), &disk, normal, velocity);
         let work = (normal * impulse.normal() + normal.perp() * impulse.tangential()).dot(velocity);
         let (before, after) = (kinetic_energy(&disk), kinetic_energy(&bounced));
         let wall = 0.5 * disk.mass() * velocity.length_squared();

@@ -5,7 +5,7 @@ use granular_edmd::analysis::{
     plane_transitions, thermal_noise, transitions,
 };
 use granular_edmd::boundary::{Boundary, Container, Region, Wall};
-use granular_edmd::collision::{Elastic, Frictional, collide};
+use granular_edmd::collision::{Elastic, Encounter, Frictional, collide};
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::{
     IsoLine, Maxwellian, MonteCarlo, effective_inelasticity, friction_of_largest_loss,
@@ -156,7 +156,7 @@ fn collisions_of_extreme_disks_have_finite_ends() {
         for speed in SIZES {
             let (Ok(first), Ok(second)) = (disk(one, speed, -1.0), disk(other, speed, 1.0)) else { continue };
             let rule = Frictional::new(0.05, 0.1).unwrap();
-            let (first, second, _, _) = collide(&rule, &first, &second);
+            let Encounter { first, second, .. } = collide(&rule, &first, &second);
             assert!(
                 first.velocity().is_finite() && second.velocity().is_finite(),
                 "{one:e} {other:e} {speed:e}"
