@@ -70,7 +70,7 @@ mod prefetch;
 pub mod prelude;
 pub mod quantity;
 mod random;
-mod roots;
+pub mod roots;
 pub mod scheduler;
 pub mod simulation;
 #[cfg(feature = "proptest")]

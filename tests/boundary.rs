@@ -22,7 +22,7 @@ fn moving(wall: Wall, amplitude: f64) -> Container {
 }
 
 fn region(min: (f64, f64), max: (f64, f64)) -> Region {
-    Region { min: min.into(), max: max.into() }
+    Region::new(min.into(), max.into())
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn walls_have_names_numbers_and_sizes() {
 
 #[test]
 fn the_domain_reaches_as_far_as_walls_go_and_the_interior_ends_where_they_come() {
-    let still = Domain { left: 0.0, right: 10.0, bottom: 0.0, top: 20.0, periodic: false };
+    let still = Domain::new(0.0, 10.0, 0.0, 20.0);
     let cases = [
         (closed(), still, still),
         (
@@ -60,7 +60,7 @@ fn the_domain_reaches_as_far_as_walls_go_and_the_interior_ends_where_they_come()
 
 #[test]
 fn separations_take_the_shortest_way_across_periodic_sides_only() {
-    let domain = Domain { left: -1.0, right: 9.0, bottom: -2.0, top: 5.0, periodic: true };
+    let domain = Domain::new(-1.0, 9.0, -2.0, 5.0).with_periodic_sides();
     assert_eq!((domain.width(), domain.height()), (10.0, 7.0));
     let (from, to) = (DVec2::new(8.0, 3.0), DVec2::new(0.5, 1.0));
     assert_eq!(domain.separation(from, to), DVec2::new(2.5, -2.0));

@@ -39,7 +39,7 @@ impl Measured {
         let rule = Frictional::new(0.0, friction)?;
         let mut simulation = Simulation::builder(rule, boundary).disks(disks).gravity(0.015_625).build()?;
         let times = SampleTimes::every(20.0 * PERIOD)?.starting_at(0.5 * oscillations * PERIOD)?;
-        let region = Region { min: DVec2::ZERO, max: DVec2::new(60.0, 60.0) };
+        let region = Region::new(DVec2::ZERO, DVec2::new(60.0, 60.0));
         let mut measured = Self {
             orders: Series::new((OrderParameters, Temperatures), times),
             profile: HeightProfile::new(0.0, 150.0, 150, times)?,

@@ -13,7 +13,7 @@ use granular_edmd::{Disk, ParameterError, Simulation, initial};
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
 /// The place of the first disk is a quarter of the width from the left, that of the second the middle.
-const DOMAIN: Domain = Domain { left: -1.0, right: 7.0, bottom: 0.0, top: 6.0, periodic: false };
+const DOMAIN: Domain = Domain::new(-1.0, 7.0, 0.0, 6.0);
 
 fn disks() -> Result<[Disk; 2], ParameterError> {
     let light = Disk::new(DVec2::new(1.0, 1.0), 0.5)?.with_velocity(DVec2::new(1.0, 2.0))?;

@@ -7,7 +7,7 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{DenseLayer, Fields, HeightProfile, Observer, SampleTimes, Snapshot};
 use granular_edmd::{Disk, ParameterError, initial};
 
-const DOMAIN: Domain = Domain { left: 0.0, right: 60.0, bottom: 0.0, top: 150.0, periodic: false };
+const DOMAIN: Domain = Domain::new(0.0, 60.0, 0.0, 150.0);
 
 fn times() -> Result<SampleTimes, ParameterError> {
     SampleTimes::every(1.0)
@@ -106,7 +106,7 @@ fn a_sediment_has_nothing_below() -> Result<(), ParameterError> {
 #[test]
 fn a_swirl_is_flow_and_not_temperature() -> Result<(), Box<dyn std::error::Error>> {
     // Uniform in each cell: two disks with u + c and u - c, spins w + d and w - d.
-    let region = Region { min: DVec2::ZERO, max: DVec2::new(60.0, 150.0) };
+    let region = Region::new(DVec2::ZERO, DVec2::new(60.0, 150.0));
     let mut fields = Fields::new(region, 6, 5, times()?)?;
     let flow = |column: i32, row: i32| DVec2::new(f64::from(row) - 2.0, 2.5 - f64::from(column)) * 1e3;
     let mut disks = Vec::new();
@@ -137,7 +137,7 @@ fn a_swirl_is_flow_and_not_temperature() -> Result<(), Box<dyn std::error::Error
 /// Three disks of different masses in one cell of a grid away from the origin, and what is on its edges.
 #[test]
 fn a_mixture_has_the_flow_and_the_temperatures_of_its_masses() -> Result<(), ParameterError> {
-    let region = Region { min: DVec2::new(10.0, 20.0), max: DVec2::new(16.0, 24.0) };
+    let region = Region::new(DVec2::new(10.0, 20.0), DVec2::new(16.0, 24.0));
     let mut fields = Fields::new(region, 3, 1, times()?)?;
     let kind = |x: f64, mass: f64, factor: f64, vx: f64, vy: f64, spin: f64| {
         let disk =
@@ -173,7 +173,7 @@ fn a_mixture_has_the_flow_and_the_temperatures_of_its_masses() -> Result<(), Par
 
 #[test]
 fn a_gas_at_rest_has_its_temperature_and_no_flow() -> Result<(), Box<dyn std::error::Error>> {
-    let region = Region { min: DVec2::ZERO, max: DVec2::new(60.0, 150.0) };
+    let region = Region::new(DVec2::ZERO, DVec2::new(60.0, 150.0));
     let mut fields = Fields::new(region, 1, 1, times()?)?;
     let disks = gas()?;
     fields.on_sample(&Snapshot::new(1.0, &disks, DOMAIN, 0.0));
@@ -188,7 +188,7 @@ fn a_gas_at_rest_has_its_temperature_and_no_flow() -> Result<(), Box<dyn std::er
 
 #[test]
 fn grids_without_extent_are_refused() -> Result<(), ParameterError> {
-    let region = |x: f64, y: f64| Region { min: DVec2::ZERO, max: DVec2::new(x, y) };
+    let region = |x: f64, y: f64| Region::new(DVec2::ZERO, DVec2::new(x, y));
     let times = times()?;
     for (x, y, columns, rows) in [
         (0.0, 1.0, 1, 1),

@@ -1,25 +1,51 @@
-//! What a disk meets when it touches a wall.
+//! Surfaces of walls: where they point, how they move and what a touch does.
 
 use std::fmt;
 
 use glam::DVec2;
 
-use crate::ParameterError;
 use crate::collision::CollisionRule;
 use crate::quantity::positive;
+use crate::{Fingerprint, ParameterError};
 
 /// The surface of a wall at the point of a touch.
+///
+/// ```
+/// use granular_edmd::boundary::{Response, Surface};
+/// use granular_edmd::collision::Elastic;
+/// use granular_edmd::glam::DVec2;
+///
+/// let belt = Surface::new(DVec2::Y, DVec2::new(0.3, 0.0));
+/// assert!(matches!(belt.response, Response::Shared));
+/// assert!(matches!(belt.with_response(Response::Rule(&Elastic)).response, Response::Rule(_)));
+/// ```
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Surface<'a> {
     /// Unit vector from the wall to the disk.
     pub normal: DVec2,
     /// Velocity of the wall.
     pub velocity: DVec2,
-    /// What the touch does to the disk.
+    /// Response to the touch.
     pub response: Response<'a>,
 }
 
-/// What a touch does to a disk.
+impl<'a> Surface<'a> {
+    /// Creates a surface under the rule of the disks, with this unit normal and this velocity.
+    #[inline]
+    pub const fn new(normal: DVec2, velocity: DVec2) -> Self {
+        Self { normal, velocity, response: Response::Shared }
+    }
+
+    /// Returns the same surface with another response.
+    #[must_use]
+    #[inline]
+    pub const fn with_response(self, response: Response<'a>) -> Self {
+        Self { response, ..self }
+    }
+}
+
+/// Response of a wall to a touch.
 #[derive(Clone, Copy)]
 #[non_exhaustive]
 pub enum Response<'a> {
@@ -62,7 +88,7 @@ pub struct Thermal {
 }
 
 impl Thermal {
-    /// A wall of the temperature `$T_0$` for translation and rotation.
+    /// Creates a wall of the temperature `$T_0$` for translation and rotation.
     ///
     /// # Errors
     /// If the temperature is not finite and positive.
@@ -70,19 +96,23 @@ impl Thermal {
         Ok(Self { temperature: positive("wall temperature", temperature)?, slip: false })
     }
 
-    /// The same wall, leaving tangential and angular velocity as they are.
+    /// Returns the same wall, leaving tangential and angular velocity as they are.
     pub const fn with_slip(self) -> Self {
         Self { slip: true, ..self }
     }
 
-    /// `$T_0$`, in units of energy.
+    /// Returns `$T_0$`, in units of energy.
     pub const fn temperature(&self) -> f64 {
         self.temperature
     }
 
-    /// Whether tangential and angular velocity are left as they are.
+    /// Tells whether tangential and angular velocity are left as they are.
     pub const fn slip(&self) -> bool {
         self.slip
+    }
+
+    pub(super) fn fingerprint(&self) -> Fingerprint {
+        Fingerprint::of(if self.slip { "Thermal with slip" } else { "Thermal" }).number(self.temperature)
     }
 }
 

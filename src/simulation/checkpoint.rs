@@ -232,7 +232,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         boundary: B,
         scheduler: S,
     ) -> Result<Self, CheckpointError> {
-        checkpoint.check(boundary.walls().len())?;
+        checkpoint.check(boundary.wall_count())?;
         let (saved, given) = (checkpoint.domain, boundary.domain());
         if saved != given {
             return Err(CheckpointError::Domain { saved, given });

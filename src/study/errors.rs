@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::Parameter;
 use crate::ParameterError;
-use crate::boundary::MissingWall;
+use crate::boundary::WallError;
 use crate::initial::PlacementError;
 use crate::simulation::{BuildError, CheckpointError};
 
@@ -21,9 +21,9 @@ pub enum SpecificationError {
     /// The disks do not fit.
     #[error(transparent)]
     Placement(#[from] PlacementError),
-    /// A wall that the container lacks.
+    /// A wall of the container cannot be so.
     #[error(transparent)]
-    Wall(#[from] MissingWall),
+    Wall(#[from] WallError),
     /// The text is not a specification.
     #[error("{0}")]
     Toml(String),

@@ -2,7 +2,7 @@
 
 use super::oscillation::{Oscillation, is_even, piece};
 use super::{AccelerationBounds, WallMotion, WallState};
-use crate::ParameterError;
+use crate::{Fingerprint, ParameterError};
 
 /// Piecewise constant acceleration that mimics `$A\sin\omega t$` (paper, Sec. III): two parabolic arcs a period.
 ///
@@ -31,7 +31,7 @@ pub struct BiParabolic {
 }
 
 impl BiParabolic {
-    /// A motion of this amplitude `$A$` and angular frequency `$\omega$`.
+    /// Creates a motion of this amplitude `$A$` and angular frequency `$\omega$`.
     ///
     /// # Errors
     /// If one is not finite and positive; use [`Fixed`](super::Fixed) for no motion.
@@ -39,19 +39,19 @@ impl BiParabolic {
         Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
     }
 
-    /// `$A$`.
+    /// Returns `$A$`.
     pub const fn amplitude(&self) -> f64 {
         self.oscillation.amplitude()
     }
 
-    /// `$\omega$`.
+    /// Returns `$\omega$`.
     pub const fn angular_frequency(&self) -> f64 {
         self.oscillation.angular_frequency()
     }
 
-    fn arc(&self, time: f64) -> Arc {
+    fn arc(&self, phase: f64) -> Arc {
         let length = 0.5 * self.oscillation.period();
-        let (number, end) = piece(time, length);
+        let (number, end) = piece(phase, length);
         let height = if is_even(number) { self.amplitude() } else { -self.amplitude() };
         Arc { start: number * length, end, length, height }
     }
@@ -66,19 +66,17 @@ struct Arc {
 }
 
 impl WallMotion for BiParabolic {
-    fn state(&self, time: f64) -> WallState {
-        let arc = self.arc(time);
-        let share = (time - arc.start) / arc.length;
-        WallState {
-            displacement: 4.0 * arc.height * share * (1.0 - share),
-            velocity: 4.0 * arc.height * (1.0 - 2.0 * share) / arc.length,
-        }
+    fn state(&self, phase: f64) -> WallState {
+        let arc = self.arc(phase);
+        let share = (phase - arc.start) / arc.length;
+        let displacement = 4.0 * arc.height * share * (1.0 - share);
+        WallState::new(displacement, 4.0 * arc.height * (1.0 - 2.0 * share) / arc.length)
     }
 
-    fn acceleration(&self, time: f64) -> AccelerationBounds {
-        let arc = self.arc(time);
+    fn acceleration(&self, phase: f64) -> AccelerationBounds {
+        let arc = self.arc(phase);
         let value = -8.0 * arc.height / (arc.length * arc.length);
-        AccelerationBounds { until: arc.end, min: value, max: value }
+        AccelerationBounds::new(arc.end, value, value)
     }
 
     fn reach(&self) -> (f64, f64) {
@@ -87,5 +85,8 @@ impl WallMotion for BiParabolic {
 
     fn period(&self) -> Option<f64> {
         Some(self.oscillation.period())
+    }
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        Some(self.oscillation.fingerprint("BiParabolic"))
     }
 }

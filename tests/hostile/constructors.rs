@@ -149,7 +149,7 @@ fn watching() -> Vec<Case> {
 }
 
 fn grid(right: f64) -> Result<Fields, granular_edmd::ParameterError> {
-    Fields::new(Region { min: DVec2::ONE, max: DVec2::new(right, 2.0) }, 1, 1, times())
+    Fields::new(Region::new(DVec2::ONE, DVec2::new(right, 2.0)), 1, 1, times())
 }
 
 #[test]

@@ -50,7 +50,7 @@ fn a_run_of_none_one_or_two_is_measured_under_each_scheduler() {
 }
 
 fn grid(columns: usize, rows: usize) -> Result<Fields, granular_edmd::ParameterError> {
-    Fields::new(Region { min: DVec2::ZERO, max: DVec2::splat(5.0) }, columns, rows, times())
+    Fields::new(Region::new(DVec2::ZERO, DVec2::splat(5.0)), columns, rows, times())
 }
 
 #[test]

@@ -19,7 +19,7 @@ fn order(flow: impl Fn(f64) -> f64) -> Result<ConvectionOrder, ParameterError> {
         Disk::new(DVec2::new(x, 5.0), 0.5)?.with_velocity(DVec2::new(0.0, flow(x)))
     };
     let disks = (0..10_000).map(disk).collect::<Result<Vec<_>, _>>()?;
-    let domain = Domain { left: 0.0, right: WIDTH, bottom: 0.0, top: 150.0, periodic: false };
+    let domain = Domain::new(0.0, WIDTH, 0.0, 150.0);
     Ok(OrderParameters.measure(&Snapshot::new(0.0, &disks, domain, 0.0)))
 }
 

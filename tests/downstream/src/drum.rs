@@ -32,7 +32,7 @@ impl Drum {
 impl Boundary for Drum {
     fn domain(&self) -> Domain {
         let radius = self.radius;
-        Domain { left: -radius, right: radius, bottom: -radius, top: radius, periodic: false }
+        Domain::new(-radius, radius, -radius, radius)
     }
 
     fn walls(&self) -> &[&'static str] {
