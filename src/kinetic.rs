@@ -33,8 +33,8 @@
 
 mod bisection;
 mod closed_form;
+mod collision_average;
 mod effective_inelasticity;
-mod estimate;
 mod iso_line;
 mod largest_loss;
 mod maxwellian;
@@ -42,8 +42,8 @@ mod monte_carlo;
 mod stick_slip;
 
 pub use closed_form::{mean_energy_change, sticking_fraction};
+pub use collision_average::CollisionAverage;
 pub use effective_inelasticity::{effective_inelasticity, frictionless_energy_change};
-pub use estimate::Estimate;
 pub use iso_line::{IsoLine, Piece};
 pub use largest_loss::friction_of_largest_loss;
 pub use maxwellian::Maxwellian;

@@ -34,7 +34,7 @@
 //! | floor | what is there |
 //! |---|---|
 //! | [`study`] (feature `serde`) | studies as data: ramps, sweeps, records, resume |
-//! | [`analysis`] | convective states, clusters, transitions, errors of correlated samples |
+//! | [`analysis`] | convective states, clusters, transitions |
 //! | [`kinetic`] | ⟨dE⟩ by closed form and Monte Carlo, effective inelasticity; needs no simulation |
 //! | [`simulation`] | the engine: builder, event loop, checkpoints |
 //! | [`observable`] | what is measured, and when |
@@ -42,6 +42,7 @@
 //! | [`boundary`], [`wall`] | the walls around the disks, and how they move |
 //! | [`collision`] | what a collision does |
 //! | [`initial`], [`Disk`] | where everything starts |
+//! | [`statistics`] | means, and errors of correlated samples |
 //!
 //! Imports run downward in this order only.
 //!
@@ -73,8 +74,7 @@ mod random;
 pub mod roots;
 pub mod scheduler;
 pub mod simulation;
-#[cfg(feature = "proptest")]
-pub mod strategies;
+pub mod statistics;
 #[cfg(feature = "serde")]
 pub mod study;
 pub mod wall;

@@ -59,7 +59,7 @@ pub use errors::{SpecificationError, StudyError};
 pub use parameter::Parameter;
 pub use protocol::Protocol;
 pub use ramp::{Axis, Course, Leg, Ramp};
-pub use record::{Estimate, Outcome, Record};
+pub use record::{Outcome, Record};
 pub use sample::Sample;
 pub use specification::Specification;
 pub use system::System;

@@ -8,7 +8,7 @@ use std::error::Error;
 use std::f64::consts::TAU;
 
 use granular_edmd::analysis::{
-    Classification, ConvectiveRegime, ConvectiveState, StateCriteria, block_average, thermal_noise,
+    Classification, ConvectiveRegime, ConvectiveState, StateCriteria, thermal_noise,
 };
 use granular_edmd::boundary::{Container, Region, Wall};
 use granular_edmd::collision::Frictional;
@@ -16,6 +16,7 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
     ConvectionOrder, Fields, HeightProfile, OrderParameters, SampleTimes, Series, Temperature, Temperatures,
 };
+use granular_edmd::statistics::block_average;
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{Simulation, initial};
 

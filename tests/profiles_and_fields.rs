@@ -70,7 +70,7 @@ fn a_disk_is_cut_at_the_edges_of_bins() -> Result<(), ParameterError> {
 #[test]
 fn the_densest_layer_is_the_lowest_of_equals() {
     let layer = |profile: &[(f64, f64)]| DenseLayer::among(profile.iter().copied());
-    let expected = DenseLayer { height: 1.5, packing_fraction: 0.5, least_below: 0.2 };
+    let expected = DenseLayer::new(1.5, 0.5, 0.2);
     assert_eq!(layer(&[(0.5, 0.2), (1.5, 0.5), (2.5, 0.1), (3.5, 0.5)]), Some(expected));
     assert_eq!(layer(&[]), None);
 }
@@ -215,6 +215,7 @@ fn energy_change_by_height_sums_up_to_that_of_all_collisions() -> Result<(), Box
     use granular_edmd::kinetic::{Maxwellian, mean_energy_change};
     use granular_edmd::observable::{EnergyChange, EnergyChangeProfile};
     use granular_edmd::prelude::*;
+    use granular_edmd::statistics::BlockedMean;
 
     let rule = Frictional::new(0.001, 0.02)?;
     let container =
@@ -227,9 +228,9 @@ fn energy_change_by_height_sums_up_to_that_of_all_collisions() -> Result<(), Box
     let mut profile = EnergyChangeProfile::new(0.0, 100.0, 4, SampleTimes::every(0.5)?)?;
     simulation.run_until(20.0, &mut (&mut all, &mut profile))?;
 
-    let layers = profile.layers().iter().map(|layer| layer.energy_change);
-    assert_eq!(layers.clone().map(|change| change.count()).sum::<u64>(), all.disks().count());
-    let sum: f64 = layers.map(|change| change.sum()).sum();
+    let layers = profile.layers().iter().map(|layer| &layer.energy_change);
+    assert_eq!(layers.clone().map(BlockedMean::count).sum::<u64>(), all.disks().count());
+    let sum: f64 = layers.map(BlockedMean::sum).sum();
     assert!((sum - all.disks().sum()).abs() < 1e-10 * sum.abs());
 
     // Some ten collisions a disk, each pair losing 4 % of T: the gas cools by a fifth underway. The standard error of 5000

@@ -104,7 +104,7 @@ fn a_study_records_what_it_was_asked_for() {
         // All disks are in the profile: its area is theirs.
         let area: f64 = record.profile().map(|(_, fraction)| fraction * 10.0).sum();
         approx::assert_relative_eq!(area, 30.0 * std::f64::consts::FRAC_PI_4, max_relative = 1e-3);
-        assert!(record.energy_change().mean < 0.0 && record.energy_change().error > 0.0);
+        assert!(record.energy_change().mean() < 0.0 && record.energy_change().standard_error() > 0.0);
     }
     let friction: Vec<_> = records[..5].iter().map(|r| r.system().get(Parameter::Friction)).collect();
     assert_eq!(friction, [0.01, 0.1, 0.3, 0.1, 0.01].map(Some));

@@ -59,7 +59,7 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 /// ```
 /// use granular_edmd::analysis::{ConvectiveRegime, StateCriteria};
 /// use granular_edmd::observable::ConvectionOrder;
-/// let at = |one_roll, two_rolls| ConvectionOrder { one_roll, two_rolls };
+/// let at = ConvectionOrder::new;
 /// let samples = [at(0.118, 0.045), at(-0.118, 0.045), at(0.0, 0.122), at(0.001, 0.122)];
 /// let found = StateCriteria::default().classify(&samples, 0.012, None)?;
 /// assert_eq!(found.regime(), ConvectiveRegime::Coexistence);

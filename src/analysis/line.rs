@@ -3,8 +3,8 @@
 use crate::ParameterError;
 use crate::collision::Frictional;
 use crate::kinetic::{Maxwellian, effective_inelasticity, mean_energy_change};
-use crate::observable::RunningMean;
 use crate::quantity::accept;
+use crate::statistics::RunningMean;
 
 /// A row of the paper's Table I; made by [`line_average`].
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,11 +3,12 @@
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::{Estimate, Maxwellian};
+use super::{CollisionAverage, Maxwellian};
 use crate::ParameterError;
 use crate::collision::{CollisionRule, Regime};
 use crate::quantity::positive;
 use crate::random::{normal, uniform};
+use crate::statistics::{Estimate, RunningMean};
 
 /// Strata of the angle between closing and slip speed.
 const STRATA: u32 = 64;
@@ -89,6 +90,14 @@ impl MonteCarlo {
     where
         R: CollisionRule + Sync + ?Sized,
     {
+        self.average(rule, gas).energy_change()
+    }
+
+    /// Returns averages over the collisions of `rule` in `gas`: the energy change, and the fraction that sticks.
+    pub fn average<R>(&self, rule: &R, gas: &Maxwellian) -> CollisionAverage
+    where
+        R: CollisionRule + Sync + ?Sized,
+    {
         let chunks = self.samples.div_ceil(CHUNK).max(1);
         let mut streams = Streams(Xoshiro256PlusPlus::seed_from_u64(self.seed));
         let mut total = Total::default();
@@ -98,11 +107,14 @@ impl MonteCarlo {
             for chunk in map(round, |generator| chunk(rule, gas, generator)) {
                 total.add(&chunk);
             }
-            if self.standard_error.is_some_and(|wanted| total.estimate().standard_error() <= wanted) {
+            if self
+                .standard_error
+                .is_some_and(|wanted| total.average().energy_change().standard_error() <= wanted)
+            {
                 break;
             }
         }
-        total.estimate()
+        total.average()
     }
 }
 
@@ -146,17 +158,17 @@ where
 {
     let mut chunk = Chunk::default();
     for stratum in 0..STRATA {
-        let (mut energy, mut sticking) = (Moments::default(), 0.0);
+        let (mut energy, mut sticking) = (RunningMean::default(), 0.0);
         for _ in 0..SAMPLES {
             let sample = Sample::draw(stratum, &mut generator);
             let contact = gas.contact(sample.closing, sample.slip);
             let impulse = rule.impulse(&contact);
-            energy.add(sample.weight * impulse.energy_change(&contact));
+            energy.push(sample.weight * impulse.energy_change(&contact));
             sticking += if impulse.regime() == Regime::Sticking { sample.weight } else { 0.0 };
         }
         let strata = f64::from(STRATA);
-        chunk.energy += energy.mean / strata;
-        chunk.variance += energy.variance_of_mean() / (strata * strata);
+        chunk.energy += energy.mean() / strata;
+        chunk.variance += energy.variance() / f64::from(SAMPLES) / (strata * strata);
         chunk.sticking += sticking / CHUNK as f64;
     }
     chunk
@@ -186,27 +198,6 @@ impl Sample {
     }
 }
 
-/// Running mean and sum of squared deviations (Welford 1962).
-#[derive(Default)]
-struct Moments {
-    count: f64,
-    mean: f64,
-    squares: f64,
-}
-
-impl Moments {
-    fn add(&mut self, value: f64) {
-        self.count += 1.0;
-        let deviation = value - self.mean;
-        self.mean += deviation / self.count;
-        self.squares += deviation * (value - self.mean);
-    }
-
-    fn variance_of_mean(&self) -> f64 {
-        self.squares / (self.count * (self.count - 1.0))
-    }
-}
-
 /// Sums over chunks.
 #[derive(Default)]
 struct Total {
@@ -222,13 +213,10 @@ impl Total {
         self.sum.sticking += chunk.sticking;
     }
 
-    fn estimate(&self) -> Estimate {
+    fn average(&self) -> CollisionAverage {
         let chunks = self.chunks as f64;
-        Estimate::new(
-            self.sum.energy / chunks,
-            self.sum.variance.sqrt() / chunks,
-            self.chunks * CHUNK,
-            self.sum.sticking / chunks,
-        )
+        let (mean, error) = (self.sum.energy / chunks, self.sum.variance.sqrt() / chunks);
+        let energy_change = Estimate::independent(mean, error, self.chunks * CHUNK);
+        CollisionAverage::new(energy_change, self.sum.sticking / chunks)
     }
 }

@@ -6,6 +6,7 @@ use crate::Disk;
 /// Energies per disk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub struct EnergyPerDisk {
     /// `$\langle\tfrac12 m v^2\rangle$`.
     pub translational: f64,
@@ -16,13 +17,18 @@ pub struct EnergyPerDisk {
 }
 
 impl EnergyPerDisk {
-    /// All three together.
+    /// Makes energies of these values.
+    pub const fn new(translational: f64, rotational: f64, potential: f64) -> Self {
+        Self { translational, rotational, potential }
+    }
+
+    /// Returns the sum of all three.
     pub fn total(&self) -> f64 {
         self.translational + self.rotational + self.potential
     }
 }
 
-/// Translational, rotational and potential energy, averaged over the disks.
+/// Translational, rotational and potential energy, averaged over the disks; NaN without disks.
 ///
 /// ```
 /// use glam::DVec2;
@@ -31,12 +37,13 @@ impl EnergyPerDisk {
 /// use granular_edmd::observable::{Energies, Observable, Snapshot};
 ///
 /// let disks = [Disk::new(DVec2::new(1.0, 3.0), 0.5)?.with_velocity(DVec2::X)?];
-/// let domain = Domain::new(0.0, 4.0, 0.0, 6.0);
+/// let domain = Domain { left: 0.0, right: 4.0, bottom: 0.0, top: 6.0, periodic: false };
 /// let energies = Energies.measure(&Snapshot::new(0.0, &disks, domain, 2.0));
 /// assert_eq!((energies.translational, energies.potential), (0.5, 6.0));
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Energies;
 
 impl Observable for Energies {

@@ -6,6 +6,7 @@ use crate::Disk;
 /// Temperatures per degree of freedom, in units of energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub struct Temperature {
     /// `$T_x = \langle m v_x^2\rangle$`.
     pub horizontal: f64,
@@ -16,15 +17,20 @@ pub struct Temperature {
 }
 
 impl Temperature {
-    /// `$T = (T_x + T_y)/2$`.
+    /// Makes temperatures of these values.
+    pub const fn new(horizontal: f64, vertical: f64, rotational: f64) -> Self {
+        Self { horizontal, vertical, rotational }
+    }
+
+    /// Returns `$T = (T_x + T_y)/2$`.
     pub fn translational(&self) -> f64 {
         0.5 * (self.horizontal + self.vertical)
     }
 }
 
-/// Horizontal, vertical and rotational temperature over all disks, about the frame of the container.
+/// Horizontal, vertical and rotational temperature over all disks, in the frame of the container; NaN without disks.
 ///
-/// The flow of convection rolls counts as temperature here; it is a small part (`$\Psi^2\ll T$`).
+/// The flow of convection rolls counts as temperature here: a small part (`$\Psi^2\ll T$`).
 ///
 /// ```
 /// use glam::DVec2;
@@ -33,12 +39,13 @@ impl Temperature {
 /// use granular_edmd::observable::{Observable, Snapshot, Temperatures};
 ///
 /// let disks = [Disk::new(DVec2::ONE, 0.5)?.with_velocity(DVec2::new(1.0, 2.0))?.with_angular_velocity(4.0)?];
-/// let domain = Domain::new(0.0, 4.0, 0.0, 6.0);
+/// let domain = Domain { left: 0.0, right: 4.0, bottom: 0.0, top: 6.0, periodic: false };
 /// let temperature = Temperatures.measure(&Snapshot::new(0.0, &disks, domain, 2.0));
 /// assert_eq!((temperature.horizontal, temperature.vertical, temperature.rotational), (1.0, 4.0, 2.0));
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Temperatures;
 
 impl Observable for Temperatures {
@@ -46,8 +53,8 @@ impl Observable for Temperatures {
 
     fn measure(&self, snapshot: &Snapshot<'_>) -> Temperature {
         Temperature {
-            horizontal: snapshot.mean(|disk| disk.mass() * disk.velocity().x.powi(2)),
-            vertical: snapshot.mean(|disk| disk.mass() * disk.velocity().y.powi(2)),
+            horizontal: snapshot.mean(|disk| disk.mass() * (disk.velocity().x * disk.velocity().x)),
+            vertical: snapshot.mean(|disk| disk.mass() * (disk.velocity().y * disk.velocity().y)),
             rotational: 2.0 * snapshot.mean(Disk::rotational_energy),
         }
     }

@@ -166,11 +166,12 @@ pub(super) fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> R
     Cells::new(boundary, diameter, CellSize::Medium, disks.iter().map(Disk::position)).ok_or(too_small)
 }
 
-/// That the walls can be numbered, all disks are inside the domain and none overlaps a wall.
-pub(super) fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<(), BuildError> {
-    if boundary.wall_count() > MOST_WALLS {
-        return Err(BuildError::TooManyWalls { count: boundary.wall_count(), most: MOST_WALLS });
-    }
+/// Checks that all disks are inside the domain and none overlaps a wall at this time offset.
+pub(super) fn check_inside<B: Boundary + ?Sized>(
+    boundary: &B,
+    disks: &[Disk],
+    offset: f64,
+) -> Result<(), BuildError> {
     let domain = boundary.domain();
     for (disk, state) in disks.iter().enumerate() {
         let (position, radius) = (state.position(), state.radius());

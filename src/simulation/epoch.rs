@@ -2,8 +2,8 @@
 
 use super::Simulation;
 use super::cells::Cells;
-use super::engine::Simulation;
-use super::event::Counters;
+use super::errors::{Outcome, RunError};
+use super::state::Tally;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
@@ -25,7 +25,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.scheduler.reset(&due);
         // Kept, so that nothing is allocated again; in large systems memory counts for more.
         if due.len() < LARGE_SYSTEM {
-            self.due = due;
+            self.scratch.due = due;
         }
     }
 

@@ -3,9 +3,9 @@
 use super::cells::Cells;
 use super::state::Bodies;
 use crate::prefetch::prefetch;
-use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
+use crate::scheduler::EventScheduler;
 
-/// How many disks later what a disk leads to is asked for, and again what that leads to.
+/// Disks named after a disk until what its event leads to is asked for, and as many more until what that leads to is.
 const LATER: usize = 12;
 
 /// The disks that last came into sight: each is asked for, then the cells that its event needs, then its neighbors there.
@@ -53,27 +53,19 @@ impl Lookahead {
     }
 }
 
-impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Asks for what the next events will need, where the caches do not hold the system anyway.
-    #[inline]
-    pub(super) fn look_ahead(&mut self) {
-        if self.bodies.len() >= LARGE_SYSTEM {
-            self.look_far();
-        }
-    }
+/// Asks for the next event of a disk, and for its place.
+#[inline]
+fn prefetch_disk(bodies: &Bodies, cells: &Cells, disk: usize) {
+    prefetch(&bodies.particles, disk);
+    cells.prefetch_place(disk);
+}
 
-    #[inline(never)]
-    fn look_far(&mut self) {
-        let mut fresh = std::mem::take(&mut self.lookahead.fresh);
-        self.scheduler.upcoming(&mut fresh);
-        let count = self.bodies.len();
-        for disk in fresh.drain(..).filter(|&disk| disk < count) {
-            let (second, third) = self.lookahead.note(disk);
-            self.prefetch_disk(disk);
-            self.prefetch_cells(second);
-            self.prefetch_neighbours(third);
-        }
-        self.lookahead.fresh = fresh;
+/// Asks for the partner of a disk, or for the cells ahead of it.
+#[inline]
+fn prefetch_cells(bodies: &Bodies, cells: &Cells, disk: usize) {
+    let forecast = bodies.particles[disk].forecast;
+    if !forecast.is_collision() {
+        return cells.prefetch_ahead(disk, forecast.exit);
     }
     let partner = forecast.partner as usize;
     prefetch_disk(bodies, cells, partner);

@@ -7,7 +7,8 @@ use super::errors::{FailedCollision, RunError};
 use super::prediction::nearest_image;
 use super::state::{Bodies, Clock};
 use crate::boundary::{Response, Surface, Thermal};
-use crate::collision::{Body, CollisionRule, Elastic, Impulse, Material, Regime, collide_bodies};
+use crate::collision::{Body, CollisionRule, Elastic, Impulse, Material, collide_bodies};
+use crate::disk::LARGEST;
 use crate::observable::{Collision, Partner};
 use crate::random::{normal, rayleigh};
 
@@ -66,9 +67,6 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
     let (first, second) = (bodies.body(disk), bodies.body(partner));
     let (material, other) = (bodies.material(disk), bodies.material(partner));
     let outcome = collide_bodies(rule, normal, since, (&first, material), (&second, other));
-    let overlap = material.radius + other.radius - distance;
-    apply(bodies, disk, &first, &outcome.first, offset)?;
-    apply(bodies, partner, &second, &outcome.second, offset)?;
     let collision = Collision {
         time: clock.time(),
         disk,
@@ -101,13 +99,7 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     let since = offset - bodies.spins[disk].last_collision;
     let partner = Body { velocity: surface.velocity, angular_velocity: 0.0 };
     let against = |rule: &dyn CollisionRule| {
-        collide_bodies(
-            rule,
-            surface.normal,
-            since,
-            (&arriving, bodies.material(disk)),
-            (&partner, &Material::WALL),
-        )
+        collide_bodies(rule, surface.normal, since, (&arriving, material), (&partner, &Material::WALL))
     };
     let (leaving, contact, impulse) = match surface.response {
         Response::Thermal(thermal) => {
@@ -121,9 +113,8 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
             (outcome.first, outcome.contact, outcome.impulse)
         }
         Response::Shared => {
-            let walls = (&partner, &Material::WALL);
-            let outcome =
-                collide_bodies(rule, surface.normal, since, (&arriving, bodies.material(disk)), walls);
+            let wall = (&partner, &Material::WALL);
+            let outcome = collide_bodies(rule, surface.normal, since, (&arriving, material), wall);
             (outcome.first, outcome.contact, outcome.impulse)
         }
     };

@@ -38,8 +38,8 @@ proptest! {
         prop_assert_eq!(alone.counters(), watched.counters());
         let samples = (0..).map_while(|k| Some(setup.start + f64::from(k) * interval).filter(|&t| t <= end));
         prop_assert_eq!(series.times(), samples.collect::<Vec<_>>());
-        prop_assert_eq!(others.1.disks(), watched.counters().collisions);
-        prop_assert_eq!(others.1.walls(), watched.counters().wall_collisions);
+        prop_assert_eq!(others.1.disk_collisions(), watched.counters().collisions);
+        prop_assert_eq!(others.1.wall_collisions(), watched.counters().wall_collisions);
     }
 
     #[test]

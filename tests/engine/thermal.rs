@@ -4,7 +4,8 @@ use granular_edmd::Simulation;
 use granular_edmd::boundary::{Boundary, Container, Thermal, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{Collision, RunningMean, on_collision};
+use granular_edmd::observable::{Collision, on_collision};
+use granular_edmd::statistics::RunningMean;
 use granular_edmd::{Disk, initial};
 
 /// What leaves the floor of a box with a thermal floor of temperature 2: normal speed, tangential velocity, and the

@@ -1,8 +1,8 @@
 //! None, one and two of everything, and extreme numbers where they are not checked by name: an answer or an error, at once.
 
 use granular_edmd::analysis::{
-    ConvectiveRegime, KMeans, StateCriteria, block_average, distinct_clusters, line_average,
-    plane_transitions, thermal_noise, transitions,
+    ConvectiveRegime, KMeans, StateCriteria, distinct_clusters, line_average, plane_transitions,
+    thermal_noise, transitions,
 };
 use granular_edmd::boundary::{Boundary, Container, Region, Wall};
 use granular_edmd::collision::{Elastic, Encounter, Frictional, collide};
@@ -15,6 +15,7 @@ use granular_edmd::observable::{
     CenterOfMass, ConvectionOrder, DenseLayer, Energies, EnergyChangeProfile, Fields, HeightProfile,
     OrderParameters, SampleTimes, Temperatures,
 };
+use granular_edmd::statistics::block_average;
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{Disk, Simulation, initial};
 
@@ -91,7 +92,7 @@ fn analysis_of_none_one_or_two_is_an_answer_or_an_error() {
         let samples: Vec<f64> = points[..count].iter().map(|point| point.x).collect();
         assert_eq!(block_average(&samples).is_ok(), count == 2);
         assert_eq!(distinct_clusters(&points[..count], 0.1, 1).is_ok(), count > 0);
-        let order: Vec<_> = samples.iter().map(|&x| ConvectionOrder { one_roll: x, two_rolls: x }).collect();
+        let order: Vec<_> = samples.iter().map(|&x| ConvectionOrder::new(x, x)).collect();
         assert_eq!(StateCriteria::default().classify(&order, 0.1, None).is_ok(), count > 0);
         let seen = samples.iter().map(|&x| (x, ConvectiveRegime::OneRoll));
         assert!(transitions(seen).unwrap().is_empty());

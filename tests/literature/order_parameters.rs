@@ -4,7 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use granular_edmd::boundary::{Boundary, Domain};
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{ConvectionOrder, Observable, OrderParameters, RunningMean, Snapshot};
+use granular_edmd::observable::{ConvectionOrder, Observable, OrderParameters, Snapshot};
+use granular_edmd::statistics::RunningMean;
 use granular_edmd::{Disk, ParameterError, initial};
 
 use crate::Outcome;

@@ -2,13 +2,13 @@
 
 use std::f64::consts::{FRAC_1_PI, TAU};
 
-use granular_edmd::analysis::block_average;
 use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::{ContactDuration, Elastic, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    CenterOfMass, Collision, EnergyChange, RunningMean, SampleTimes, Series, Temperatures, on_collision,
+    CenterOfMass, Collision, EnergyChange, SampleTimes, Series, Temperatures, on_collision,
 };
+use granular_edmd::statistics::{RunningMean, block_average};
 use granular_edmd::wall::{BiParabolic, WallMotion};
 use granular_edmd::{Disk, Simulation, initial};
 

@@ -79,8 +79,8 @@ fn a_vector_of_observers_sees_what_each_would_see_alone() {
     assert_eq!(momentum.values(), momentum_alone.values());
     assert_eq!(momentum.times().len(), 21);
     assert_eq!(energies.times().len(), 30);
-    assert_eq!(counts.disks(), simulation.counters().collisions);
-    assert_eq!(counts.walls(), simulation.counters().wall_collisions);
+    assert_eq!(counts.disk_collisions(), simulation.counters().collisions);
+    assert_eq!(counts.wall_collisions(), simulation.counters().wall_collisions);
     assert_eq!(simulation.disks(), alone.disks());
 }
 
