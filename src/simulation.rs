@@ -44,7 +44,7 @@ use crate::observable::{Moment, Observable, Observer, Snapshot};
 use crate::quantity::finite;
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, ParameterError};
-use builder::{cells_for, check_inside, check_overlaps, count_walls};
+use builder::fit;
 use cells::Cells;
 use errors::Outcome;
 use lookahead::Lookahead;
@@ -252,7 +252,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// All disks as they are now.
     pub fn disks(&self) -> Vec<Disk> {
-        (0..self.len()).map(|disk| self.bodies.disk(disk, self.clock.now)).collect()
+        self.bodies.disks(self.clock.now)
     }
 
     /// The value of an observable now.
@@ -318,11 +318,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// If the disks do not fit into them; the simulation is as before.
     pub fn set_boundary(&mut self, mut boundary: B) -> Result<(), BuildError> {
         boundary.set_time_origin(self.clock.origin);
-        let disks = self.disks();
-        let wall_count = count_walls(&boundary)?;
-        check_inside(&boundary, &disks, self.clock.now)?;
-        let cells = cells_for(&boundary, &disks)?;
-        check_overlaps(&boundary, &disks, &cells)?;
+        let (wall_count, cells) = fit(&boundary, &self.disks(), self.clock.now)?;
         (self.boundary, self.wall_count, self.cells) = (boundary, wall_count, cells);
         self.predict_all();
         Ok(())

@@ -18,7 +18,7 @@ use crate::quantity::finite;
 use crate::scheduler::{BySize, EventScheduler};
 
 /// Most walls that a boundary can have.
-pub(super) const MOST_WALLS: usize = 1 << 16;
+const MOST_WALLS: usize = 1 << 16;
 
 /// Overlap, relative to the diameter, that counts as touching: rounding of positions.
 const TOUCHING: f64 = 1e-10;
@@ -112,10 +112,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         }
         let mut boundary = self.boundary;
         boundary.set_time_origin(self.start_time);
-        let wall_count = count_walls(&boundary)?;
-        check_inside(&boundary, &self.disks, 0.0)?;
-        let cells = cells_for(&boundary, &self.disks)?;
-        check_overlaps(&boundary, &self.disks, &cells)?;
+        let (wall_count, cells) = fit(&boundary, &self.disks, 0.0)?;
         let bodies = Bodies::new(&self.disks, self.gravity);
         let clock = Clock::new(self.start_time, bodies.epoch_length());
         check_start(&clock, &self.disks)?;
@@ -135,6 +132,19 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         simulation.predict_all();
         Ok(simulation)
     }
+}
+
+/// Number of walls, and the neighbor cells, for disks that fit into the boundary at this time offset.
+pub(super) fn fit<B: Boundary + ?Sized>(
+    boundary: &B,
+    disks: &[Disk],
+    offset: f64,
+) -> Result<(usize, Cells), BuildError> {
+    let wall_count = count_walls(boundary)?;
+    check_inside(boundary, disks, offset)?;
+    let cells = cells_for(boundary, disks)?;
+    check_overlaps(boundary, disks, &cells)?;
+    Ok((wall_count, cells))
 }
 
 /// Checks that time does not stand still at the start.
@@ -157,7 +167,7 @@ pub(super) fn count_walls<B: Boundary + ?Sized>(boundary: &B) -> Result<usize, B
 }
 
 /// Neighbour cells that suit these disks.
-pub(super) fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells, BuildError> {
+fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells, BuildError> {
     let diameter = 2.0 * disks.iter().map(Disk::radius).fold(0.0, f64::max);
     let domain = boundary.domain();
     // Without disks any cells will do.
@@ -167,11 +177,7 @@ pub(super) fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> R
 }
 
 /// Checks that all disks are inside the domain and none overlaps a wall at this time offset.
-pub(super) fn check_inside<B: Boundary + ?Sized>(
-    boundary: &B,
-    disks: &[Disk],
-    offset: f64,
-) -> Result<(), BuildError> {
+fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk], offset: f64) -> Result<(), BuildError> {
     let domain = boundary.domain();
     for (disk, state) in disks.iter().enumerate() {
         let (position, radius) = (state.position(), state.radius());
@@ -193,7 +199,7 @@ pub(super) fn check_inside<B: Boundary + ?Sized>(
 }
 
 /// Checks that no two disks overlap.
-pub(super) fn check_overlaps<B: Boundary + ?Sized>(
+fn check_overlaps<B: Boundary + ?Sized>(
     boundary: &B,
     disks: &[Disk],
     cells: &Cells,

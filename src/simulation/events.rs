@@ -60,6 +60,24 @@ pub struct Counters {
 }
 
 impl Counters {
+    /// What was counted since `earlier`; the largest overlaps are those of the whole run.
+    #[must_use]
+    pub const fn since(&self, earlier: &Self) -> Self {
+        Self {
+            collisions: self.collisions.saturating_sub(earlier.collisions),
+            wall_collisions: self.wall_collisions.saturating_sub(earlier.wall_collisions),
+            contact_duration_collisions: self
+                .contact_duration_collisions
+                .saturating_sub(earlier.contact_duration_collisions),
+            cell_crossings: self.cell_crossings.saturating_sub(earlier.cell_crossings),
+            repredictions: self.repredictions.saturating_sub(earlier.repredictions),
+            horizons: self.horizons.saturating_sub(earlier.horizons),
+            cell_resizes: self.cell_resizes.saturating_sub(earlier.cell_resizes),
+            max_overlap: self.max_overlap,
+            max_wall_overlap: self.max_wall_overlap,
+        }
+    }
+
     /// Number of all events.
     pub const fn events(&self) -> u64 {
         self.collisions + self.wall_collisions + self.cell_crossings + self.repredictions + self.horizons

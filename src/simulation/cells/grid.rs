@@ -8,18 +8,13 @@ use crate::prefetch::prefetch;
 use super::cell_size::CellSize;
 
 /// Cells per disk at most; more would cost memory and save nothing.
-const CELLS_PER_DISK: f64 = 8.0;
+pub(in crate::simulation) const CELLS_PER_DISK: f64 = 8.0;
 
 /// Cells that are always allowed.
-const SPARE_CELLS: f64 = 4096.0;
+pub(in crate::simulation) const SPARE_CELLS: f64 = 4096.0;
 
 /// Least size of a cell in diameters: above 1 by more than rounding.
 const LEAST_PITCH: f64 = 1.000_001;
-
-/// What a saved disk may be outside its cell by, and a saved grid differ in size by, in sizes of a cell and of the grid: more
-/// than rounding.
-#[cfg(feature = "serde")]
-const SLACK: f64 = 1e-3;
 
 /// Columns and rows of cells, and around them a ring of ghosts, so that every cell has eight neighbours.
 ///
@@ -27,7 +22,7 @@ const SLACK: f64 = 1e-3;
 /// is then near in memory, too.
 #[derive(Debug, Clone)]
 pub(in crate::simulation) struct Grid {
-    layout: Layout,
+    pub(in crate::simulation) layout: Layout,
     /// Cells in a column, ring included.
     stride: u32,
     /// `column_edges[c - 1]` and `column_edges[c]` bound column `c`; infinite at walls.
@@ -51,39 +46,14 @@ pub(in crate::simulation) struct Place {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Layout {
-    cell_size: CellSize,
-    columns: u32,
-    rows: u32,
+    pub(in crate::simulation) cell_size: CellSize,
+    pub(in crate::simulation) columns: u32,
+    pub(in crate::simulation) rows: u32,
     /// Size of a cell; in an open container the rows grow from some height on.
-    pitch: DVec2,
+    pub(in crate::simulation) pitch: DVec2,
 }
 
 impl Layout {
-    /// Whether this is a grid for this domain and so many disks of at most this diameter.
-    #[cfg(feature = "serde")]
-    pub(in crate::simulation) fn suits(&self, domain: &Domain, diameter: f64, disks: usize) -> bool {
-        let Self { columns, rows, pitch, .. } = *self;
-        let most = 2.0 * (CELLS_PER_DISK * disks as f64 + SPARE_CELLS);
-        let covers = |count: u32, pitch: f64, length: f64| {
-            length.is_infinite() || (f64::from(count) * pitch / length - 1.0).abs() < SLACK
-        };
-        let wide = |count: u32, pitch: f64| count == 1 || pitch > diameter;
-        columns.min(rows) > 0
-            && f64::from(columns) * f64::from(rows) <= most
-            && (columns >= 4 || !domain.periodic)
-            && covers(columns, pitch.x, domain.width())
-            && covers(rows, pitch.y, domain.height())
-            && wide(columns, pitch.x)
-            && wide(rows, pitch.y)
-            && pitch.is_finite()
-    }
-
-    /// Whether a place is one of its cells, not of the ring.
-    #[cfg(feature = "serde")]
-    pub(in crate::simulation) fn contains(&self, place: Place) -> bool {
-        (1..=self.columns).contains(&place.column) && (1..=self.rows).contains(&place.row)
-    }
-
     /// The grid for `count` disks of at most this diameter; `None` if the domain is too small.
     pub(in crate::simulation) fn new(
         domain: &Domain,
@@ -152,11 +122,6 @@ impl Grid {
         self.stride() * (self.layout.columns as usize + 2)
     }
 
-    #[cfg(feature = "serde")]
-    pub(in crate::simulation) fn layout(&self) -> Layout {
-        self.layout
-    }
-
     pub(in crate::simulation) fn cell_size(&self) -> CellSize {
         self.layout.cell_size
     }
@@ -194,42 +159,6 @@ impl Grid {
     #[inline]
     pub(in crate::simulation) fn prefetch_region(&self, place: Place) {
         prefetch(&self.column_edges, place.column as usize);
-    }
-
-    /// Whether a place is one of the cells, not of the ring.
-    #[cfg(feature = "serde")]
-    pub(in crate::simulation) fn contains(&self, place: Place) -> bool {
-        self.layout.contains(place)
-    }
-
-    /// Whether a disk at this position belongs into this cell.
-    #[cfg(feature = "serde")]
-    pub(in crate::simulation) fn holds(&self, place: Place, position: DVec2) -> bool {
-        let (Region { min, max }, slack) = (self.region(place), SLACK * self.layout.pitch);
-        position.is_finite() && position.cmpge(min - slack).all() && position.cmple(max + slack).all()
-    }
-
-    /// Whether the disks in these places, of these radii, can be in their cells without overlaps.
-    #[cfg(feature = "serde")]
-    pub(in crate::simulation) fn has_room(
-        &self,
-        domain: &Domain,
-        disks: impl Iterator<Item = (Place, f64)>,
-    ) -> bool {
-        let mut cells = vec![(0.0, 0.0); self.len()];
-        for (place, radius) in disks {
-            let (area, largest): &mut (f64, f64) = &mut cells[self.index(place)];
-            *area += std::f64::consts::PI * radius * radius;
-            *largest = largest.max(radius);
-            let Region { min, max } = self.region(place);
-            let low = min.max(DVec2::new(domain.left, domain.bottom)) - *largest;
-            let size = max.min(DVec2::new(domain.right, domain.top)) + *largest - low;
-            // The densest packing has an area fraction of 0.91; this is more than the slack of the cells.
-            if *area > size.x * size.y {
-                return false;
-            }
-        }
-        true
     }
 
     /// The width of the domain if its sides are periodic, else 0.

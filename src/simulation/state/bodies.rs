@@ -287,6 +287,11 @@ impl Bodies {
         )
     }
 
+    /// All disks as the outside world knows them.
+    pub(in crate::simulation) fn disks(&self, offset: f64) -> Vec<Disk> {
+        (0..self.len()).map(|disk| self.disk(disk, offset)).collect()
+    }
+
     /// Moves the epoch by this much.
     pub(in crate::simulation) fn shift(&mut self, by: f64) {
         let (fallen, gained) = self.fall(by);

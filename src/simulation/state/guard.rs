@@ -1,8 +1,5 @@
 //! The guard against runs that cannot progress.
 
-#[cfg(feature = "serde")]
-use crate::simulation::checkpoint::MOST_COUNTED;
-
 /// Events allowed while time advances by less than [`RESOLUTION`] epochs: so many, and as many more for each disk, since
 /// disks on a lattice may all have something to do at the same time.
 const PATIENCE: u64 = 200_000;
@@ -19,8 +16,8 @@ const RESOLUTION: f64 = 1.0 / (1u64 << 25) as f64;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Guard {
-    since: f64,
-    events: u64,
+    pub(in crate::simulation) since: f64,
+    pub(in crate::simulation) events: u64,
 }
 
 impl Guard {
@@ -41,12 +38,6 @@ impl Guard {
             return Some(std::mem::take(&mut self.events));
         }
         None
-    }
-
-    /// Whether it can have come to this.
-    #[cfg(feature = "serde")]
-    pub(in crate::simulation) fn is_valid(&self) -> bool {
-        self.since.is_finite() && self.events <= MOST_COUNTED
     }
 
     /// The epoch has moved.
