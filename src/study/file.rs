@@ -11,7 +11,7 @@ use super::errors::StudyError;
 use crate::file::{Broken, Seal, is_temporary, write_whole};
 
 /// Mark of a record, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal { magic: *b"GRANSTUD", version: 1 };
+const SEAL: Seal = Seal { magic: *b"GRANSTUD", version: 2 };
 
 /// Writes a file, whole or not at all.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
