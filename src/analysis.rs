@@ -5,7 +5,7 @@
 //! | clusters of points in a plane | [`KMeans`], [`distinct_clusters`] | paper, Fig. 4 |
 //! | which convective states a run shows | [`StateCriteria::classify`] | paper, section III |
 //! | where a ramp changes state, and its hysteresis | [`transitions`] | paper, Fig. 5 |
-//! | the lines of transitions in the plane of friction and inelasticity | [`plane_transitions`] | paper, Fig. 5 |
+//! | lines of transitions in friction and inelasticity | [`plane_transitions`] | paper, Fig. 5 |
 //! | energy loss along a line of transitions | [`line_average`] | paper, Table I |
 //!
 //! The error of a mean over a correlated series is in [`statistics`](crate::statistics).

@@ -8,7 +8,8 @@
 //!
 //! | question | answer | source |
 //! |---|---|---|
-//! | `$\langle dE\rangle$` of the paper's rule | [`mean_energy_change`], [`sticking_fraction`] | paper, Fig. 1 |
+//! | `$\langle dE\rangle$` of the paper's rule | [`mean_energy_change`] | paper, Fig. 1 |
+//! | the share of its collisions that stick | [`sticking_fraction`] | paper, section II |
 //! | `$\langle dE\rangle$` of any rule | [`MonteCarlo`] | paper, section II |
 //! | friction with the largest loss | [`friction_of_largest_loss`] | paper, `$\kappa\approx0.3$` |
 //! | one coefficient for inelasticity and friction | [`effective_inelasticity`] | paper, Eq. (9) |

@@ -48,8 +48,9 @@ pub(crate) fn end(result: Result<(), Box<dyn Error>>) -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             let sources = std::iter::successors(error.source(), |&source| source.source());
-            let reasons: String = sources.map(|source| format!(": {source}")).collect();
-            eprintln!("error: {error}{reasons}");
+            let reasons = sources.map(ToString::to_string);
+            let told: Vec<String> = std::iter::once(error.to_string()).chain(reasons).collect();
+            eprintln!("error: {}", told.join(": "));
             ExitCode::FAILURE
         }
     }

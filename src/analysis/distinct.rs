@@ -37,7 +37,9 @@ const DISTINCT: f64 = 4.0;
 /// ```
 /// use granular_edmd::analysis::distinct_clusters;
 /// use granular_edmd::glam::DVec2;
-/// let cloud = |x: f64| (0..50).map(move |k| DVec2::new(x + 0.01 * f64::from(k % 10), 0.01 * f64::from(k / 10)));
+/// let cloud = |x: f64| {
+///     (0..50).map(move |k| DVec2::new(x + 0.01 * f64::from(k % 10), 0.01 * f64::from(k / 10)))
+/// };
 /// let one: Vec<DVec2> = cloud(0.0).collect();
 /// let two: Vec<DVec2> = cloud(0.0).chain(cloud(0.3)).collect();
 /// assert_eq!(distinct_clusters(&one, 0.01, 7)?.len(), 1);

@@ -27,7 +27,8 @@ const LARGEST: f64 = 1e100;
 /// ```
 /// use granular_edmd::analysis::KMeans;
 /// use granular_edmd::glam::DVec2;
-/// let points = [(0.0, 0.1), (5.0, 0.1), (0.0, -0.1), (5.0, -0.1), (5.0, 0.0)].map(|(x, y)| DVec2::new(x, y));
+/// let points = [(0.0, 0.1), (5.0, 0.1), (0.0, -0.1), (5.0, -0.1), (5.0, 0.0)];
+/// let points = points.map(|(x, y)| DVec2::new(x, y));
 /// let clusters = KMeans::new(2, 1)?.fit(&points)?;
 /// assert_eq!(clusters.labels(), [0, 1, 0, 1, 1]);
 /// assert_eq!(clusters.get(1).map(|cluster| cluster.center()), Some(DVec2::new(5.0, 0.0)));

@@ -41,7 +41,7 @@ impl LineAverage {
 /// use granular_edmd::analysis::line_average;
 /// use granular_edmd::collision::Frictional;
 /// use granular_edmd::kinetic::Maxwellian;
-/// // The ends of the first line at the larger gravity, on the axes, for the paper's value of the energy change.
+/// // Points on the axes of the first line at the larger gravity, for the paper's energy change.
 /// let line = [Frictional::new(0.0119, 0.0)?, Frictional::new(0.0, 0.0143)?, Frictional::new(0.0, 1.792)?];
 /// let average = line_average(&line, &Maxwellian::new(1.0)?)?;
 /// assert!((average.energy_change().mean() + 0.047).abs() < 5e-4);

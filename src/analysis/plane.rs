@@ -38,8 +38,9 @@ pub struct PlaneTransition {
 /// ```
 /// use granular_edmd::analysis::ConvectiveRegime::{Conductive, OneRoll};
 /// use granular_edmd::analysis::plane_transitions;
-/// let grid = [(0.01, 0.00, Conductive), (0.04, 0.00, OneRoll), (0.01, 0.02, OneRoll), (0.04, 0.02, OneRoll)];
-/// let found = plane_transitions(grid)?;
+/// let smooth = [(0.01, 0.00, Conductive), (0.04, 0.00, OneRoll)];
+/// let inelastic = [(0.01, 0.02, OneRoll), (0.04, 0.02, OneRoll)];
+/// let found = plane_transitions(smooth.into_iter().chain(inelastic))?;
 /// assert_eq!(found.len(), 2);
 /// assert!((found[0].friction - 0.02).abs() < 1e-12 && found[0].inelasticity == 0.0);
 /// assert!(found[1].friction == 0.01 && (found[1].inelasticity - 0.01).abs() < 1e-12);

@@ -164,6 +164,7 @@ mod tests {
         assert_eq!(scratch.names(), ["folder"]);
     }
 
+    #[cfg(unix)]
     #[test]
     fn a_name_of_the_greatest_length_is_written() {
         let scratch = Scratch::new("length");

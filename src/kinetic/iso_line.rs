@@ -18,8 +18,8 @@ pub type Piece = Vec<(f64, f64)>;
 /// ```
 /// use granular_edmd::kinetic::{IsoLine, Maxwellian};
 ///
-/// // The transition from two rolls to collapse at the larger gravity (paper, Table I). Without inelasticity it
-/// // lies at two frictions, the paper's re-entrance.
+/// // The transition from two rolls to collapse at the larger gravity (paper, Table I). Without inelasticity
+/// // it lies at two frictions, the paper's re-entrance.
 /// let line = IsoLine::new(-0.290, &Maxwellian::new(1.0)?)?;
 /// assert_eq!(line.inelasticities(0.3)?, []);
 /// assert!((line.inelasticities(0.0)?[0] - 0.0787).abs() < 1e-4);

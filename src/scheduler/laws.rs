@@ -39,9 +39,7 @@ pub enum Violation {
         given: (usize, f64),
     },
     /// [`EventScheduler::upcoming`] changes what it should only add to.
-    #[error(
-        "script \"{script}\" of {disks} disks, step {step}: asked for upcoming disks, it removes some named before"
-    )]
+    #[error("script \"{script}\" of {disks} disks, step {step}: the look at upcoming disks removes others")]
     Removed {
         /// Name of the script.
         script: &'static str,

@@ -1,6 +1,5 @@
 //! The scripts by which schedulers are checked.
 
-use std::f64::{INFINITY, NEG_INFINITY};
 use std::fmt;
 
 use rand::SeedableRng;
@@ -99,7 +98,7 @@ impl Stage {
     /// Returns a time from here on: soon mostly, at once, in a while, or never.
     fn wait(&mut self) -> f64 {
         match self.below(40) {
-            0 => INFINITY,
+            0 => f64::INFINITY,
             1..=3 => 0.0,
             4..=8 => 1e-3 * uniform(&mut self.generator),
             _ => 3.0 * uniform(&mut self.generator),
@@ -112,12 +111,12 @@ impl Stage {
 
     /// Returns one of few times, both zeros among them.
     fn tied_time(&mut self) -> f64 {
-        [-2.0, -1.0, -0.0, 0.0, 1.0, 2.0, INFINITY][self.below(7)]
+        [-2.0, -1.0, -0.0, 0.0, 1.0, 2.0, f64::INFINITY][self.below(7)]
     }
 
     fn extreme_time(&mut self) -> f64 {
         const EXTREMES: [f64; 10] = [
-            NEG_INFINITY,
+            f64::NEG_INFINITY,
             f64::MIN,
             -f64::MIN_POSITIVE,
             -5e-324,
@@ -126,7 +125,7 @@ impl Stage {
             5e-324,
             f64::MIN_POSITIVE,
             f64::MAX,
-            INFINITY,
+            f64::INFINITY,
         ];
         match self.below(12) {
             choice if choice < EXTREMES.len() => EXTREMES[choice],
@@ -152,7 +151,7 @@ fn extreme(stage: &mut Stage, disks: usize) -> Operation {
 }
 
 fn idle(stage: &mut Stage, disks: usize) -> Operation {
-    reset(stage, disks, |_| INFINITY)
+    reset(stage, disks, |_| f64::INFINITY)
 }
 
 fn few(stage: &mut Stage) -> Operation {
@@ -193,7 +192,11 @@ fn to_extremes(stage: &mut Stage, first: usize, _: f64) -> Operation {
 
 /// One disk is due again and again, in long steps, and all others never.
 fn one_busy(stage: &mut Stage, first: usize, now: f64) -> Operation {
-    if now < INFINITY { Operation::Set(first, now + 1e6) } else { Operation::Set(stage.due.len() / 2, 0.0) }
+    if now < f64::INFINITY {
+        Operation::Set(first, now + 1e6)
+    } else {
+        Operation::Set(stage.due.len() / 2, 0.0)
+    }
 }
 
 fn reset_often(stage: &mut Stage, first: usize, now: f64) -> Operation {
