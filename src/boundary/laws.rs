@@ -117,10 +117,9 @@ impl Random {
     /// Returns a place in the domain where a disk overlaps no wall.
     fn place<B: Boundary + ?Sized>(&mut self, trial: &Trial<'_, B>, time: f64) -> Result<DVec2, Violation> {
         let (low, high) = trial.rectangle();
-        let place =
-            (0..PLACES).map(|_| DVec2::new(self.between(low.x, high.x), self.between(low.y, high.y))).find(
-                |&place| trial.depth(place, 0.0, time).is_none(),
-            );
+        let place = (0..PLACES)
+            .map(|_| DVec2::new(self.between(low.x, high.x), self.between(low.y, high.y)))
+            .find(|&place| trial.depth(place, 0.0, time).is_none());
         place.ok_or(Violation::NoRoom { radius: trial.radius(), time })
     }
 }

@@ -215,7 +215,12 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
     fn low_bounce(&self, start: f64) -> Option<f64> {
         let first = self.look(start);
         let is_low = |pull: f64| first.rate * first.rate <= -2.0 * pull * first.tolerance;
-        if first.exact || !first.finite || first.gap > first.tolerance || first.rate < 0.0 || !is_low(first.pull) {
+        if first.exact
+            || !first.finite
+            || first.gap > first.tolerance
+            || first.rate < 0.0
+            || !is_low(first.pull)
+        {
             return None;
         }
         let pull = self.pull_after(start, &first);

@@ -137,7 +137,7 @@ fn check_surface<B: Boundary + ?Sized>(
 ) -> Result<(), Violation> {
     let Touch { wall, time, .. } = touch;
     let normal = surface.normal;
-    if !((normal.length_squared() - 1.0).abs() <= UNIT) {
+    if !normal.is_finite() || (normal.length_squared() - 1.0).abs() > UNIT {
         return Err(Violation::NormalLength { wall, normal, place, time });
     }
     if !surface.velocity.is_finite() {
@@ -150,7 +150,11 @@ fn check_surface<B: Boundary + ?Sized>(
     let is_alone = here.0 == wall && outward.0 == wall;
     let comes_out = (here.1 - outward.1 - step).abs() <= SLOPE * step;
     let goes_in = inward.1 - here.1 >= (1.0 - SLOPE) * step;
-    if goes_in && (comes_out || !is_alone) { Ok(()) } else { Err(Violation::Normal { wall, normal, place, time }) }
+    if goes_in && (comes_out || !is_alone) {
+        Ok(())
+    } else {
+        Err(Violation::Normal { wall, normal, place, time })
+    }
 }
 
 /// Checks that there is no touch when the flight ends before it, and one at once when it goes on from it.

@@ -41,7 +41,9 @@ pub enum Violation {
         now: usize,
     },
     /// No free place was found for a disk.
-    #[error("no place was found in the domain where a disk of radius {radius} overlaps no wall at time {time}")]
+    #[error(
+        "no place was found in the domain where a disk of radius {radius} overlaps no wall at time {time}"
+    )]
     NoRoom {
         /// The radius.
         radius: f64,
@@ -49,7 +51,9 @@ pub enum Violation {
         time: f64,
     },
     /// A disk is let into a wall.
-    #[error("a disk is {depth} deep in wall {wall} at time {time}, before a touch at {found:?}, on {flight:?}")]
+    #[error(
+        "a disk is {depth} deep in wall {wall} at time {time}, before a touch at {found:?}, on {flight:?}"
+    )]
     LetThrough {
         /// The wall.
         wall: usize,
@@ -135,7 +139,9 @@ pub enum Violation {
         time: f64,
     },
     /// A disk that is moved along the normal does not come out of the wall.
-    #[error("the normal {normal} of wall {wall} does not lead out of it, for a disk at {place} at time {time}")]
+    #[error(
+        "the normal {normal} of wall {wall} does not lead out of it, for a disk at {place} at time {time}"
+    )]
     Normal {
         /// The wall.
         wall: usize,

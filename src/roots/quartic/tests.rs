@@ -36,12 +36,18 @@ fn compare(coefficients: &[f64; 5], end: f64) -> Option<f64> {
         let gap = value(coefficients, time);
         has_opened |= gap > rounding(time);
         let least = if has_opened { 0.0 } else { level };
-        assert!(gap > least - 2.0 * rounding(time), "{coefficients:?}: missed before {time}, found {found:?}");
+        assert!(
+            gap > least - 2.0 * rounding(time),
+            "{coefficients:?}: missed before {time}, found {found:?}"
+        );
     }
     if let Some(time) = found {
         let least = if has_opened { 0.0 } else { level };
         assert!((0.0..=end).contains(&time), "{coefficients:?}: {time}");
-        assert!((value(coefficients, time) - least).abs() <= rounding(time), "{coefficients:?}: open at {time}");
+        assert!(
+            (value(coefficients, time) - least).abs() <= rounding(time),
+            "{coefficients:?}: open at {time}"
+        );
         let soon = time + 1e-4 * time.max(1.0);
         let drop = value(coefficients, soon) - value(coefficients, time);
         assert!(drop < rounding(soon), "{coefficients:?}: it rises by {drop} at {time}");
@@ -75,7 +81,8 @@ fn known_zeros_are_found_in_order() {
         let mut zeros: Vec<f64> =
             (0..=generator_index(&mut generator, 4)).map(|_| between(&mut generator, -1.0, 5.0)).collect();
         zeros.sort_by(f64::total_cmp);
-        if zeros.windows(2).any(|pair| pair[1] - pair[0] < 1e-3) || zeros.iter().any(|zero| zero.abs() < 1e-3) {
+        if zeros.windows(2).any(|pair| pair[1] - pair[0] < 1e-3) || zeros.iter().any(|zero| zero.abs() < 1e-3)
+        {
             continue;
         }
         let pairs = if zeros.len() < 3 { vec![(between(&mut generator, 0.0, 5.0), 0.3)] } else { Vec::new() };
@@ -105,7 +112,9 @@ fn generator_index(generator: &mut Xoshiro256PlusPlus, count: u32) -> u32 {
 #[test]
 fn flights_in_a_circle_end_at_its_wall() {
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(3);
-    let mut draw = |size: f64| glam::DVec2::new(between(&mut generator, -size, size), between(&mut generator, -size, size));
+    let mut draw = |size: f64| {
+        glam::DVec2::new(between(&mut generator, -size, size), between(&mut generator, -size, size))
+    };
     for case in 0..5000 {
         let (r, v, a) = (draw(0.7), draw(3.0), glam::DVec2::new(0.0, draw(1.0).x));
         let gap = [
@@ -140,7 +149,21 @@ fn closed_gaps_count_only_while_they_close() {
 
 #[test]
 fn hostile_numbers_end() {
-    let hostile = [0.0, -0.0, 1.0, -1.0, 1e-300, -1e-300, 5e-324, 1e300, -1e300, f64::MAX, f64::MIN, f64::INFINITY, f64::NAN];
+    let hostile = [
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        1e-300,
+        -1e-300,
+        5e-324,
+        1e300,
+        -1e300,
+        f64::MAX,
+        f64::MIN,
+        f64::INFINITY,
+        f64::NAN,
+    ];
     for [a, b] in hostile.map(|a| hostile.map(|b| [a, b])).concat() {
         for [c, d] in hostile.map(|c| hostile.map(|d| [c, d])).concat() {
             for e in hostile {
