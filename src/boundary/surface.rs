@@ -5,7 +5,7 @@ use std::fmt;
 use glam::DVec2;
 
 use crate::collision::CollisionRule;
-use crate::quantity::positive;
+use crate::quantity::{Checked, Quantity, Range};
 use crate::{Fingerprint, ParameterError};
 
 /// The surface of a wall at the point of a touch.
@@ -81,10 +81,19 @@ impl fmt::Debug for Response<'_> {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawThermal"))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Thermal {
-    temperature: f64,
+    temperature: Checked<WallTemperature>,
     slip: bool,
+}
+
+/// Kind of number that the temperature of a wall is.
+#[derive(Debug, Clone, Copy)]
+struct WallTemperature;
+
+impl Quantity for WallTemperature {
+    const NAME: &'static str = "wall temperature";
+    const RANGE: Range = Range::POSITIVE;
 }
 
 impl Thermal {
@@ -93,7 +102,7 @@ impl Thermal {
     /// # Errors
     /// If the temperature is not finite and positive.
     pub fn new(temperature: f64) -> Result<Self, ParameterError> {
-        Ok(Self { temperature: positive("wall temperature", temperature)?, slip: false })
+        Ok(Self { temperature: Checked::new(temperature)?, slip: false })
     }
 
     /// Returns the same wall, leaving tangential and angular velocity as they are.
@@ -103,7 +112,7 @@ impl Thermal {
 
     /// Returns `$T_0$`, in units of energy.
     pub const fn temperature(&self) -> f64 {
-        self.temperature
+        self.temperature.get()
     }
 
     /// Tells whether tangential and angular velocity are left as they are.
@@ -112,23 +121,6 @@ impl Thermal {
     }
 
     pub(super) fn fingerprint(&self) -> Fingerprint {
-        Fingerprint::of(if self.slip { "Thermal with slip" } else { "Thermal" }).number(self.temperature)
-    }
-}
-
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Thermal")]
-struct RawThermal {
-    temperature: f64,
-    slip: bool,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawThermal> for Thermal {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawThermal) -> Result<Self, ParameterError> {
-        Ok(Self { slip: raw.slip, ..Self::new(raw.temperature)? })
+        Fingerprint::of(if self.slip { "Thermal with slip" } else { "Thermal" }).number(self.temperature())
     }
 }

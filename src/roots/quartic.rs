@@ -42,8 +42,7 @@ pub fn first_descent_of_quartic(coefficients: &[f64; 5], end: f64) -> Option<f64
     if gap[3] == 0.0 && gap[4] == 0.0 {
         return first_descent(gap[0], gap[1], 2.0 * gap[2]).filter(|&time| time <= end);
     }
-    // False for NaN, too.
-    if !(end >= 0.0) {
+    if end.is_nan() || end < 0.0 {
         return None;
     }
     if gap[0] <= 0.0 && falls_from_the_start(&gap) {

@@ -146,7 +146,7 @@ fn initial_states_are_accepted_by_the_builder() {
                 initial::random(&boundary, 12, 0.5, 6.0, 3).unwrap(),
             ] {
                 let builder = Simulation::builder(Elastic, boundary.clone()).disks(disks).start_time(start);
-                assert!(builder.build().is_ok(), "{:?}", boundary.walls());
+                assert!(builder.build().is_ok(), "{:?}", boundary);
             }
         }
     }

@@ -1,5 +1,6 @@
 //! The first touch of a disk with a moving wall, against fine sampling of the gap: none missed, none early.
 
+mod endless;
 mod low_bounces;
 mod motions;
 
@@ -21,7 +22,7 @@ impl WallMotion for Loose {
     }
     fn acceleration(&self, _time: f64) -> AccelerationBounds {
         let most = 3.0 * self.0.amplitude() * self.0.angular_frequency().powi(2);
-        AccelerationBounds { until: f64::INFINITY, min: -most, max: most }
+        AccelerationBounds::new(f64::INFINITY, -most, most)
     }
     fn reach(&self) -> (f64, f64) {
         (-2.0 * self.0.amplitude(), 2.0 * self.0.amplitude())
@@ -257,10 +258,10 @@ fn motions_that_break_their_contract_do_not_hang_the_search() {
     struct Backward(f64);
     impl WallMotion for Backward {
         fn state(&self, _: f64) -> WallState {
-            WallState { displacement: 0.0, velocity: 0.0 }
+            WallState::new(0.0, 0.0)
         }
         fn acceleration(&self, time: f64) -> AccelerationBounds {
-            AccelerationBounds { until: self.0 * time, min: -1.0, max: 1.0 }
+            AccelerationBounds::new(self.0 * time, -1.0, 1.0)
         }
         fn reach(&self) -> (f64, f64) {
             (-1.0, 1.0)
@@ -272,8 +273,8 @@ fn motions_that_break_their_contract_do_not_hang_the_search() {
                 for end in [100.0, f64::INFINITY] {
                     let approach = Approach::new(1.0, height, velocity, -1.0);
                     let touch = first_touch(&Backward(backward), &approach, end);
-                    // Wherever the wall is, the surface is within its reach from the start.
-                    assert_eq!(touch, (!height.is_nan()).then_some(1.0), "{backward} {height} {velocity}");
+                    // Wherever the wall is, the surface is within its reach from the start, or nobody knows where.
+                    assert_eq!(touch, Some(1.0), "{backward} {height} {velocity}");
                 }
             }
         }

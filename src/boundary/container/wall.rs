@@ -57,7 +57,7 @@ pub enum WallError {
         wall: Wall,
     },
     /// The motion answers with numbers that no run can do without.
-    #[error("the motion of the wall {wall} cannot be used: {violation}")]
+    #[error("the motion of the wall \"{wall}\" cannot be used: {violation}")]
     Motion {
         /// The wall.
         wall: Wall,

@@ -137,7 +137,7 @@ fn check_surface<B: Boundary + ?Sized>(
 ) -> Result<(), Violation> {
     let Touch { wall, time, .. } = touch;
     let normal = surface.normal;
-    if !((normal.length_squared() - 1.0).abs() <= UNIT) {
+    if !normal.is_finite() || (normal.length_squared() - 1.0).abs() > UNIT {
         return Err(Violation::NormalLength { wall, normal, place, time });
     }
     if !surface.velocity.is_finite() {

@@ -10,7 +10,7 @@ use crate::boundary::{Boundary, Domain, Region};
 /// Rounding allowed, relative to the size of the domain.
 const ROUNDING: f64 = 1e-9;
 
-/// Sizes of the regions around a touch, relative to the radius.
+/// Sizes of the regions around a touch, relative to the radius; the smallest holds the rounding of its place.
 const REGIONS: [f64; 3] = [0.0, 0.5, 5.0];
 
 /// A boundary, and what is tried with it.
@@ -106,7 +106,7 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
 
     /// Checks that every region that holds this place of a touch may be touched.
     pub(super) fn check_regions(&self, place: DVec2) -> Result<(), Violation> {
-        for size in REGIONS.map(|size| DVec2::splat(size * self.radius)) {
+        for size in REGIONS.map(|size| DVec2::splat(size * self.radius + self.rounding())) {
             let around = Region::new(place - size, place + size);
             for region in [around, self.open_at_edges(around)] {
                 for radius in [self.radius, 1.5 * self.radius] {

@@ -2,7 +2,7 @@ use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::{first_descent_of_quartic, value};
+use super::{derivative, first_descent_of_quartic, value};
 use crate::random::uniform;
 use crate::roots::first_descent;
 
@@ -48,9 +48,10 @@ fn compare(coefficients: &[f64; 5], end: f64) -> Option<f64> {
             (value(coefficients, time) - least).abs() <= rounding(time),
             "{coefficients:?}: open at {time}"
         );
-        let soon = time + 1e-4 * time.max(1.0);
-        let drop = value(coefficients, soon) - value(coefficients, time);
-        assert!(drop < rounding(soon), "{coefficients:?}: it rises by {drop} at {time}");
+        // At a double zero the slope is lost to the rounding of the place.
+        let rate = value(&derivative(coefficients), time);
+        let steep = size(&derivative(coefficients), time);
+        assert!(rate <= 1e-6 * steep, "{coefficients:?}: it rises at {time}, by {rate}");
     }
     found
 }
@@ -127,7 +128,9 @@ fn flights_in_a_circle_end_at_its_wall() {
         let time = compare(&gap, 1e3).unwrap();
         let place = r + (v + 0.5 * time * a) * time;
         assert!((place.length() - 1.0).abs() < 1e-13, "{case}: {}", place.length());
-        assert_eq!(first_descent_of_quartic(&gap, time), Some(time), "an end at the descent still holds it");
+        // An end at the descent still holds it, up to the rounding of the gap.
+        let again = first_descent_of_quartic(&gap, time).unwrap();
+        assert!(again <= time && time - again < 1e-13 * (1.0 + time), "{case}: {time} {again}");
         assert_eq!(first_descent_of_quartic(&gap, time * (1.0 - 1e-9)), None);
     }
 }

@@ -1,0 +1,7 @@
+//! The contracts of wall motions and boundaries: ours keep them, and each planted fault is caught.
+
+mod boundaries;
+mod containers;
+mod fingerprints;
+mod motions;
+mod names;
