@@ -55,6 +55,10 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+// The old floating-point unit of x86 keeps more digits than a double has, so the same inputs would give other bits there.
+#[cfg(all(target_arch = "x86", not(target_feature = "sse2")))]
+compile_error!("granular-edmd needs SSE2 on x86: build for i686, or with `-C target-feature=+sse2`");
+
 pub mod analysis;
 pub mod boundary;
 pub mod collision;

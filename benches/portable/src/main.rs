@@ -1,0 +1,118 @@
+//! Two small runs through all that could differ between platforms, and the bits of their last states: what
+//! `.ci/portable` compares.
+//!
+//! Prints for each run its name, its collisions, and a hash of the state and of the checkpoint.
+
+use std::error::Error;
+use std::process::ExitCode;
+
+use granular_edmd::boundary::{Boundary, Container, Thermal, Wall};
+use granular_edmd::collision::{ContactDuration, Frictional, Rough};
+use granular_edmd::glam::DVec2;
+use granular_edmd::scheduler::{BucketQueue, EventScheduler, TournamentTree};
+use granular_edmd::simulation::Checkpoint;
+use granular_edmd::wall::{BiParabolic, Sinusoidal, Triangular};
+use granular_edmd::{Disk, Simulation, initial};
+
+type Outcome<T> = Result<T, Box<dyn Error>>;
+type Rule = ContactDuration<Frictional>;
+
+fn main() -> ExitCode {
+    let runs = [("box", shaken_box as fn() -> Outcome<String>), ("column", heated_column)];
+    for (name, run) in runs {
+        match run() {
+            Ok(line) => println!("{name} {line}"),
+            Err(error) => {
+                eprintln!("error: {name}: {error}");
+                return ExitCode::FAILURE;
+            }
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+/// Unequal disks in a box whose floor, left side and lid move each in its own way, and whose right side is rough.
+fn shaken_box() -> Outcome<String> {
+    let container = || -> Outcome<Container> {
+        Ok(Container::closed(20.0, 24.0)?
+            .with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?
+            .with_motion(Wall::Left, Sinusoidal::new(0.2, 7.0)?)?
+            .with_motion(Wall::Lid, Triangular::new(0.3, 3.0)?)?
+            .with_rule(Wall::Right, Rough::new(0.05, 0.4)?)?)
+    };
+    run(&container, 0.05, 0.0, 60.0)
+}
+
+/// Unequal disks between periodic sides over a thermal floor that heaves, at a late time.
+fn heated_column() -> Outcome<String> {
+    let container = || -> Outcome<Container> {
+        Ok(Container::open(20.0)?
+            .with_periodic_sides()
+            .with_motion(Wall::Floor, Sinusoidal::new(0.05, 20.0)?)?
+            .with_temperature(Wall::Floor, Thermal::new(1.0)?)?)
+    };
+    run(&container, 0.2, 1e7, 100.0)
+}
+
+/// Runs for half of the time, goes through the bytes of a checkpoint to another scheduler, rule and gravity, and runs on.
+fn run(
+    container: &dyn Fn() -> Outcome<Container>,
+    gravity: f64,
+    start: f64,
+    duration: f64,
+) -> Outcome<String> {
+    let rule = rule(0.02, 0.1)?;
+    let mut first = Simulation::builder(rule, container()?)
+        .disks(disks(&container()?)?)
+        .gravity(gravity)
+        .seed(3)
+        .start_time(start)
+        .scheduler(TournamentTree::new())
+        .build()?;
+    first.run_until(start + 0.5 * duration, &mut ())?;
+    let bytes = first.checkpoint().to_bytes()?;
+    let mut second =
+        Simulation::resume(&Checkpoint::from_bytes(&bytes)?, rule, container()?, BucketQueue::new())?;
+    second.set_rule(self::rule(0.05, 0.5)?);
+    second.set_gravity(1.5 * gravity)?;
+    second.run_until(start + duration, &mut ())?;
+    let collisions = second.counters().collisions + second.counters().wall_collisions;
+    Ok(format!("{collisions} {:016x} {:016x}", of_state(&second), of_bytes(&bytes)))
+}
+
+fn rule(inelasticity: f64, friction: f64) -> Outcome<Rule> {
+    Ok(ContactDuration::new(Frictional::new(inelasticity, friction)?, 1e-3)?)
+}
+
+/// Disks of three sizes, with masses and inertias of their own, on a lattice.
+fn disks(container: &Container) -> Outcome<Vec<Disk>> {
+    let lattice = initial::with_maxwellian_velocities(initial::lattice(container, 180, 0.5)?, 1.0, 5)?;
+    let unequal = lattice.iter().enumerate().map(|(index, disk)| {
+        let size = [0.5, 0.4, 0.3][index % 3];
+        Ok(Disk::new(disk.position(), size)?
+            .with_velocity(disk.velocity())?
+            .with_angular_velocity(disk.angular_velocity() - size)?
+            .with_mass(4.0 * size * size)?
+            .with_inertia_factor(if index % 2 == 0 { 0.5 } else { 1.0 })?)
+    });
+    unequal.collect()
+}
+
+/// Hash of all bits of time and disks.
+fn of_state<B: Boundary, S: EventScheduler>(run: &Simulation<Rule, B, S>) -> u64 {
+    let mut bytes = run.time().to_bits().to_le_bytes().to_vec();
+    for disk in run.disks() {
+        let (DVec2 { x, y }, DVec2 { x: u, y: v }) = (disk.position(), disk.velocity());
+        for number in [x, y, u, v, disk.angle(), disk.angular_velocity()] {
+            bytes.extend(number.to_bits().to_le_bytes());
+        }
+    }
+    of_bytes(&bytes)
+}
+
+/// FNV-1a: a few lines, the same everywhere.
+fn of_bytes(bytes: &[u8]) -> u64 {
+    bytes
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
