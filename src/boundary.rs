@@ -1,8 +1,9 @@
 //! Boundaries: the walls around the disks, and what a touch does.
 //!
-//! [`Container`] is the rectangular box of the paper and its relatives: side walls or periodic sides, a floor that is
-//! fixed, moving or thermal, a lid or an open top, each wall with a rule of its own if wanted. A geometry of your own
-//! implements [`Boundary`]; [`roots`](crate::roots) has the numerics that it needs, and [`laws`] checks it.
+//! [`Container`] is the rectangular box of the paper and its relatives: side walls or periodic sides, a floor
+//! that is fixed, moving or thermal, a lid or an open top, each wall with a rule of its own if wanted. A
+//! geometry of your own implements [`Boundary`]; [`roots`](crate::roots) has the numerics that it needs, and
+//! [`laws`] checks it.
 
 mod container;
 mod domain;
@@ -26,40 +27,45 @@ use crate::{Fingerprint, Flight};
 /// The walls around the disks.
 ///
 /// # Times
-/// All times are *offsets*: from the absolute time that [`set_time_origin`](Self::set_time_origin) was given last.
-/// Absolute times grow without bound and would lose digits. Before the first call, the origin is 0. A
+/// All times are *offsets*: from the absolute time that [`set_time_origin`](Self::set_time_origin) was given
+/// last. Absolute times grow without bound and would lose digits. Before the first call, the origin is 0. A
 /// boundary whose walls do not move may ignore the origin. One with walls that move reduces it by whole
 /// periods to a phase of their motion, as [`WallMotion`](crate::wall::WallMotion) explains.
 ///
 /// # Contract
 /// An implementation guarantees:
-/// 1. [`domain`](Self::domain), [`interior`](Self::interior) and [`wall_count`](Self::wall_count) never change. A disk that
-///    has not passed a wall has its centre in the domain at all times.
-/// 2. [`may_touch`](Self::may_touch) holds for all times: it is false only for a region in which no disk of this radius, or a
-///    smaller one, can touch a wall at any time. A region that contains another may be touched where the other may.
-/// 3. [`first_touch`](Self::first_touch) misses no touch, and finds none where a gap is open. Its time is neither
-///    before the flight nor after `until`, and its wall is less than `wall_count`.
-/// 4. A wall that is touched already, by rounding too, counts at once while the disk approaches it, and never while the disk
-///    leaves it.
-/// 5. [`surface`](Self::surface) gives a unit normal that points from the wall to the disk, and finite velocities.
-/// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise it is the depth to which the disk reaches into a wall.
-/// 7. Another origin changes nothing but the numbers of the times: the same flight touches the same wall at the same
-///    absolute time.
+/// 1. [`domain`](Self::domain), [`interior`](Self::interior) and [`wall_count`](Self::wall_count) never
+///    change. A disk that has not passed a wall has its centre in the domain at all times.
+/// 2. [`may_touch`](Self::may_touch) holds for all times: it is false only for a region in which no disk of
+///    this radius, or a smaller one, can touch a wall at any time. A region that contains another may be
+///    touched where the other may.
+/// 3. [`first_touch`](Self::first_touch) misses no touch, and finds none where a gap is open. Its time is
+///    neither before the flight nor after `until`, and its wall is less than `wall_count`.
+/// 4. A wall that is touched already, by rounding too, counts at once while the disk approaches it, and never
+///    while the disk leaves it.
+/// 5. [`surface`](Self::surface) gives a unit normal that points from the wall to the disk, and finite
+///    velocities.
+/// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise it is the depth to which the disk
+///    reaches into a wall.
+/// 7. Another origin changes nothing but the numbers of the times: the same flight touches the same wall at
+///    the same absolute time.
 /// 8. The same questions get the same answers, bit for bit.
 ///
 /// The engine guarantees:
 /// - It sets the origin first, whenever its epoch moves, and never asks for a time before the origin.
-/// - Flights have finite numbers, begin at the present, in the domain, and end where the disk leaves a cell, at most a
-///   few epochs later. At periodic sides a flight ends at the side.
-/// - `first_touch` is asked only in cells for which `may_touch` holds, with the largest of all radii. Cells at
-///   the edges of the domain reach to infinity beyond them.
-/// - `surface` is asked at a touch that `first_touch` found, for its wall and time and the place of the disk then.
-/// - `overlap` is asked when a simulation is built or gets other walls, and wherever disks are placed at random.
+/// - Flights have finite numbers, begin at the present, in the domain, and end where the disk leaves a cell,
+///   at most a few epochs later. At periodic sides a flight ends at the side.
+/// - `first_touch` is asked only in cells for which `may_touch` holds, with the largest of all radii. Cells
+///   at the edges of the domain reach to infinity beyond them.
+/// - `surface` is asked at a touch that `first_touch` found, for its wall and time and the place of the disk
+///   then.
+/// - `overlap` is asked when a simulation is built or gets other walls, and wherever disks are placed at
+///   random.
 ///
 /// # Boundaries that break it
-/// [`laws::check`] finds most faults. A missed touch lets a disk through: it leaves the domain unseen. An early one
-/// turns disks back in mid-air. A touch of a wall that disks leave comes again at once, until the run ends for want of progress.
-/// A velocity or normal that is not finite ends the run with an error.
+/// [`laws::check`] finds most faults. A missed touch lets a disk through: it leaves the domain unseen. An
+/// early one turns disks back in mid-air. A touch of a wall that disks leave comes again at once, until the
+/// run ends for want of progress. A velocity or normal that is not finite ends the run with an error.
 ///
 /// ```
 /// use std::borrow::Cow;
@@ -124,7 +130,8 @@ pub trait Boundary {
     /// Returns the rectangle that holds the centres of all disks at all times.
     fn domain(&self) -> Domain;
 
-    /// Returns a rectangle in the domain in which initial states are placed: without the reach of walls that move.
+    /// Returns a rectangle in the domain in which initial states are placed: without the reach of walls that
+    /// move.
     fn interior(&self) -> Domain {
         self.domain()
     }
@@ -142,8 +149,8 @@ pub trait Boundary {
 
     /// Tells whether a disk with its centre in `region` can touch a wall at any time.
     ///
-    /// The engine asks [`first_touch`](Self::first_touch) only there. Regions at the edge of the domain reach to infinity
-    /// beyond it.
+    /// The engine asks [`first_touch`](Self::first_touch) only there. Regions at the edge of the domain reach
+    /// to infinity beyond it.
     fn may_touch(&self, region: &Region, radius: f64) -> bool;
 
     /// Returns the first touch of this flight, not later than `until`.
@@ -156,7 +163,8 @@ pub trait Boundary {
     /// The wall is one of those that there are; for another index the call may panic.
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_>;
 
-    /// Returns a wall that a disk at `position` overlaps at `time`, and how deep; `None` if the disk is inside.
+    /// Returns a wall that a disk at `position` overlaps at `time`, and how deep; `None` if the disk is
+    /// inside.
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)>;
 
     /// Returns the fingerprint of the boundary: its name and everything that decides what it does.

@@ -8,8 +8,9 @@
 //! | [`Triangular`] | constant speed up, constant speed down | |
 //! | [`Sawtooth`] | constant speed up, instantly back | |
 //!
-//! [`first_touch`] finds the contact for all of them and for yours: it needs bounds of the acceleration on pieces of
-//! time, nothing more. See [`WallMotion`] for an example, and [`laws`] for a check of your own motion.
+//! [`first_touch`] finds the contact for all of them and for yours: it needs bounds of the acceleration on
+//! pieces of time, nothing more. See [`WallMotion`] for an example, and [`laws`] for a check of your own
+//! motion.
 
 mod bi_parabolic;
 mod first_touch;
@@ -72,31 +73,31 @@ impl AccelerationBounds {
 /// The motion of a wall along its normal.
 ///
 /// # Phases
-/// A motion is asked for *phases*. For a motion without a period, the phase is the absolute time of the run. For one with
-/// a period it is the absolute time less some whole periods, which keeps all digits of late times. It is then below
-/// one period in magnitude when an epoch of the run begins, grows as the epoch goes on, and is negative only in runs that
-/// begin at a negative time. A motion whose smallest and largest displacement are equal never moves: it is
-/// asked for small phases, whatever the time.
+/// A motion is asked for *phases*. For a motion without a period, the phase is the absolute time of the run.
+/// For one with a period it is the absolute time less some whole periods, which keeps all digits of late
+/// times. It is then below one period in magnitude when an epoch of the run begins, grows as the epoch goes
+/// on, and is negative only in runs that begin at a negative time. A motion whose smallest and largest
+/// displacement are equal never moves: it is asked for small phases, whatever the time.
 ///
 /// # Contract
 /// An implementation guarantees, for every phase:
-/// 1. [`state`](Self::state) and [`acceleration`](Self::acceleration) give finite numbers, the same ones each time they are
-///    asked; only `until` may be infinite.
+/// 1. [`state`](Self::state) and [`acceleration`](Self::acceleration) give finite numbers, the same ones each
+///    time they are asked; only `until` may be infinite.
 /// 2. The displacement lies within [`reach`](Self::reach).
 /// 3. A piece ends later than the phase asked for, and its bounds hold for the acceleration up to its end.
-/// 4. Inside a piece, displacement and velocity are continuous, and the one is the integral of the other. At the end of a
-///    piece the velocity may jump, and the displacement may jump away from the disks, never toward them. The state at that
-///    phase is the one after the jump.
+/// 4. Inside a piece, displacement and velocity are continuous, and the one is the integral of the other. At
+///    the end of a piece the velocity may jump, and the displacement may jump away from the disks, never
+///    toward them. The state at that phase is the one after the jump.
 /// 5. If there is a [`period`](Self::period), everything repeats after it.
 ///
-/// [`laws::check`] tries all of this on a stretch of phases. A container calls the methods in any order and from
-/// any thread.
+/// [`laws::check`] tries all of this on a stretch of phases. A container calls the methods in any order and
+/// from any thread.
 ///
 /// # Motions that break it
-/// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion that answers with numbers that are
-/// not finite, at phases from 0 on that it looks at. Whatever a motion answers, [`first_touch`] ends: see there. Bounds that are
-/// too small, a reach that is too small or a jump toward the disks let disks pass into the wall. Bounds
-/// that are too large cost time only.
+/// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion that answers with
+/// numbers that are not finite, at phases from 0 on that it looks at. Whatever a motion answers,
+/// [`first_touch`] ends: see there. Bounds that are too small, a reach that is too small or a jump toward the
+/// disks let disks pass into the wall. Bounds that are too large cost time only.
 ///
 /// ```
 /// use granular_edmd::wall::{AccelerationBounds, Approach, WallMotion, WallState, first_touch, laws};
@@ -150,8 +151,8 @@ pub trait WallMotion {
 
     /// Returns the fingerprint of the motion: its name and all numbers that decide how it moves.
     ///
-    /// Checkpoints compare it when a run is resumed. Without one, a boundary with this motion has none either, and is
-    /// not compared.
+    /// Checkpoints compare it when a run is resumed. Without one, a boundary with this motion has none
+    /// either, and is not compared.
     fn fingerprint(&self) -> Option<Fingerprint> {
         None
     }

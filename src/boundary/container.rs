@@ -18,8 +18,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 
 /// A rectangular container with its lower left corner at the origin: the paper's box and its relatives.
 ///
-/// All walls start fixed, under the rule that the disks have among themselves. Each can be given a motion along its
-/// normal (which points inward), a rule of its own, or a temperature.
+/// All walls start fixed, under the rule that the disks have among themselves. Each can be given a motion
+/// along its normal (which points inward), a rule of its own, or a temperature.
 ///
 /// ```
 /// use granular_edmd::boundary::{Boundary, Container, Thermal, Wall};
@@ -86,8 +86,8 @@ impl Container {
     /// Returns the same container with a wall that moves along its normal, which points inward.
     ///
     /// # Errors
-    /// If the container has no such wall, or the motion answers with numbers that are not finite at one of the phases that
-    /// [`laws::check_finite`](crate::wall::laws::check_finite) looks at.
+    /// If the container has no such wall, or the motion answers with numbers that are not finite at one of
+    /// the phases that [`laws::check_finite`](crate::wall::laws::check_finite) looks at.
     pub fn with_motion(
         mut self,
         wall: Wall,

@@ -1,6 +1,7 @@
 //! The contract of a boundary, as a check for boundaries of your own.
 //!
-//! [`check`] sends disks on random flights between the walls, and looks at all that the boundary says of them.
+//! [`check`] sends disks on random flights between the walls, and looks at all that the boundary says of
+//! them.
 
 mod flight;
 mod trial;
@@ -29,21 +30,24 @@ const PLACES: usize = 1000;
 /// Largest absolute time at which a flight begins, in times that a disk takes across the domain.
 const LATEST: f64 = 100.0;
 
-/// Checks that a boundary keeps its contract with disks of this radius, on random flights at about this speed.
+/// Checks that a boundary keeps its contract with disks of this radius, on random flights at about this
+/// speed.
 ///
-/// Each of four hundred disks flies from a free place, with and without gravity, at various times, and is turned back where
-/// it touches a wall, four times in a row. The check asks of each flight:
-/// - Sampled along it, the disk neither overlaps a wall nor leaves the domain before the touch, or before the end of the flight
-///   if there is none.
-/// - The touch is neither before the flight nor after its limit, at a wall that there is, and the gap to
-///   that wall is closed up to rounding. The disk approaches the wall there, and would touch it again at once if it did not turn.
+/// Each of four hundred disks flies from a free place, with and without gravity, at various times, and is
+/// turned back where it touches a wall, four times in a row. The check asks of each flight:
+/// - Sampled along it, the disk neither overlaps a wall nor leaves the domain before the touch, or before the
+///   end of the flight if there is none.
+/// - The touch is neither before the flight nor after its limit, at a wall that there is, and the gap to that
+///   wall is closed up to rounding. The disk approaches the wall there, and would touch it again at once if
+///   it did not turn.
 /// - The normal is a unit vector along which a disk comes out of the wall, and the velocity is finite.
-/// - `may_touch` holds for all kinds of regions around the touch, those without ends at the edges of the domain too.
+/// - `may_touch` holds for all kinds of regions around the touch, those without ends at the edges of the
+///   domain too.
 /// - With another time origin, the same flight touches at the same absolute time.
 /// - Domain and count of walls stay the same, and the interior lies in the domain.
 ///
-/// The speed should be one that disks have: walls that move are met while they are at all places. The boundary is left with
-/// another time origin.
+/// The speed should be one that disks have: walls that move are met while they are at all places. The
+/// boundary is left with another time origin.
 ///
 /// # Errors
 /// The first violation that it finds, with the flight on which it did.

@@ -62,7 +62,8 @@ impl Plane {
     pub(super) fn set_time_origin(&mut self, origin: f64) {
         let (low, high) = self.motion.reach();
         self.phase = match self.motion.period() {
-            // A wall that never leaves its place is the same at all times: phase 0 costs none of their digits.
+            // A wall that never leaves its place is the same at all times: phase 0 costs none of their
+            // digits.
             _ if low == high => 0.0,
             // The remainder of two floats is exact: the phase keeps all its digits however late the time is.
             Some(period) => origin % period,
@@ -77,7 +78,8 @@ impl Plane {
     /// Tells whether a disk with its centre in `region` can touch the wall at any time.
     pub(super) fn may_touch(&self, region: &Region, radius: f64) -> bool {
         let nearest = DVec2::select(self.normal.cmpgt(DVec2::ZERO), region.min, region.max);
-        // A component of the normal that is zero must not meet an infinite edge: their product is not a number.
+        // A component of the normal that is zero must not meet an infinite edge: their product is not a
+        // number.
         let along = |component: f64, edge: f64| if component == 0.0 { 0.0 } else { component * edge };
         let height = along(self.normal.x, nearest.x) + along(self.normal.y, nearest.y) - self.place;
         height - radius <= self.highest
@@ -116,7 +118,8 @@ impl Plane {
         wall + radius - position.dot(self.normal)
     }
 
-    /// Returns the fingerprint of motion and response, if both have one; the place is the container's to tell.
+    /// Returns the fingerprint of motion and response, if both have one; the place is the container's to
+    /// tell.
     pub(super) fn fingerprint(&self) -> Option<Fingerprint> {
         let plane = Fingerprint::of("Plane").part(self.motion.fingerprint()?);
         Some(plane.part(match &self.conduct {

@@ -67,11 +67,12 @@ impl fmt::Debug for Response<'_> {
     }
 }
 
-/// A stochastic wall: a disk that touches it leaves as if from a gas of this temperature at rest behind the wall.
+/// A stochastic wall: a disk that touches it leaves as if from a gas of this temperature at rest behind the
+/// wall.
 ///
-/// The normal speed has the flux-weighted density `$(m v/T_0)\,e^{-m v^2/2T_0}$`; the tangential velocity and the
-/// angular velocity are normal with variances `$T_0/m$` and `$T_0/I$`. The slip variant redraws the normal speed
-/// only (the base of Ramírez, Risso, Cordero, PRL 85, 1230 (2000)).
+/// The normal speed has the flux-weighted density `$(m v/T_0)\,e^{-m v^2/2T_0}$`; the tangential velocity and
+/// the angular velocity are normal with variances `$T_0/m$` and `$T_0/I$`. The slip variant redraws the
+/// normal speed only (the base of Ramírez, Risso, Cordero, PRL 85, 1230 (2000)).
 ///
 /// ```
 /// use granular_edmd::boundary::Thermal;

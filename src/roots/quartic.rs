@@ -11,17 +11,17 @@ const LARGEST: f64 = 1e300;
 /// Exact scale of larger coefficients, a power of two: 2⁻⁶⁰.
 const SMALLER: f64 = 1.0 / (1u64 << 60) as f64;
 
-/// Returns the first time, not later than `end`, at which the gap `c₀ + c₁t + c₂t² + c₃t³ + c₄t⁴` is closed and closes
-/// further.
+/// Returns the first time, not later than `end`, at which the gap `c₀ + c₁t + c₂t² + c₃t³ + c₄t⁴` is closed
+/// and closes further.
 ///
 /// The meaning is that of [`first_descent`], to which polynomials of degree two and less are passed on:
 /// - An open gap counts at its first zero at which it falls.
 /// - A gap that is closed and closes further counts at once, at time 0.
-/// - A gap that is closed and opens counts when it closes next. As long as it has not been open, it counts when it
-///   falls back to its first value.
+/// - A gap that is closed and opens counts when it closes next. As long as it has not been open, it counts
+///   when it falls back to its first value.
 ///
-/// If a coefficient is not finite, there is no answer. `end` may be infinite. The search uses `+ - * /` and, for degree
-/// two, the square root only, so its bits are the same on every platform.
+/// If a coefficient is not finite, there is no answer. `end` may be infinite. The search uses `+ - * /` and,
+/// for degree two, the square root only, so its bits are the same on every platform.
 ///
 /// ```
 /// use granular_edmd::roots::first_descent_of_quartic;
@@ -54,8 +54,8 @@ pub fn first_descent_of_quartic(coefficients: &[f64; 5], end: f64) -> Option<f64
 /// Looks for the descent on one stretch after the other between which the gap turns.
 fn search(gap: &Coefficients, end: f64) -> Option<f64> {
     let slope = derivative(gap);
-    // A gap that begins closed is measured from its first value, with a constant term that is zero exactly: a bounce
-    // lower than rounding then ends as fast as it began. From the first opening on, zero is zero.
+    // A gap that begins closed is measured from its first value, with a constant term that is zero exactly: a
+    // bounce lower than rounding then ends as fast as it began. From the first opening on, zero is zero.
     let mut measured = *gap;
     measured[0] = measured[0].max(0.0);
     let turns = turns(gap, end);
@@ -63,7 +63,8 @@ fn search(gap: &Coefficients, end: f64) -> Option<f64> {
         if value(gap, from) > 0.0 {
             measured = *gap;
         }
-        // The slope between two turns has one sign; the difference of the values at its ends may be lost to rounding.
+        // The slope between two turns has one sign; the difference of the values at its ends may be lost to
+        // rounding.
         let falls = value(&slope, middle(from, to)) < 0.0;
         if !falls || value(&measured, to) > 0.0 {
             return None;
@@ -78,13 +79,13 @@ fn falls_from_the_start(gap: &Coefficients) -> bool {
     gap[1..].iter().find(|&&c| c != 0.0).is_some_and(|&c| c < 0.0)
 }
 
-/// Returns a time beyond all zeros of a polynomial and of its derivatives (Cauchy's bound, and the theorem of Gauss and
-/// Lucas: derivatives have theirs among those of the polynomial).
+/// Returns a time beyond all zeros of a polynomial and of its derivatives (Cauchy's bound, and the theorem of
+/// Gauss and Lucas: derivatives have theirs among those of the polynomial).
 fn bound_of_zeros(polynomial: &Coefficients) -> f64 {
     let leading = polynomial.iter().rposition(|&c| c != 0.0).unwrap_or(0);
     let largest = polynomial[..leading].iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
-    // Finite, where a tiny leading coefficient puts a zero beyond all numbers: values out there may overflow, but
-    // at a finite time an infinite partial sum keeps its sign.
+    // Finite, where a tiny leading coefficient puts a zero beyond all numbers: values out there may overflow,
+    // but at a finite time an infinite partial sum keeps its sign.
     (1.0 + largest / polynomial[leading].abs()).min(f64::MAX)
 }
 
@@ -122,7 +123,8 @@ impl Marks {
 
     /// Returns the changes of sign of a polynomial whose derivative changes its own at these marks.
     ///
-    /// Between two of them it is monotonic, and changes its sign once at most: none can be missed, however close two are.
+    /// Between two of them it is monotonic, and changes its sign once at most: none can be missed, however
+    /// close two are.
     fn refined(&self, polynomial: &Coefficients) -> Self {
         let (start, end) = (self.times[0], self.times[self.count - 1]);
         let mut marks = Self { times: [start; 5], count: 1 };
@@ -136,8 +138,8 @@ impl Marks {
     }
 }
 
-/// Returns the times between 0 and `end` at which the polynomial turns: the zeros of its slope, from those of the slope's
-/// derivatives.
+/// Returns the times between 0 and `end` at which the polynomial turns: the zeros of its slope, from those of
+/// the slope's derivatives.
 fn turns(polynomial: &Coefficients, end: f64) -> Marks {
     let first = derivative(polynomial);
     let second = derivative(&first);
@@ -148,9 +150,9 @@ fn turns(polynomial: &Coefficients, end: f64) -> Marks {
 
 /// Returns the first number beyond a change of sign between `low` and `high`.
 ///
-/// By bisection. Newton's method would be faster, but at a double zero its slope is nothing but rounding, and it
-/// would leave the stretch. Here each step decides one bit. The far side of the change is returned, so that a search
-/// that ends there finds it again.
+/// By bisection. Newton's method would be faster, but at a double zero its slope is nothing but rounding, and
+/// it would leave the stretch. Here each step decides one bit. The far side of the change is returned, so
+/// that a search that ends there finds it again.
 fn change_of_sign(polynomial: &Coefficients, mut low: f64, mut high: f64) -> f64 {
     let positive = value(polynomial, low) > 0.0;
     loop {

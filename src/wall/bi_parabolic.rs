@@ -4,7 +4,8 @@ use super::oscillation::{Oscillation, is_even, piece};
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::{Fingerprint, ParameterError};
 
-/// Piecewise constant acceleration that mimics `$A\sin\omega t$` (paper, Sec. III): two parabolic arcs a period.
+/// Piecewise constant acceleration that mimics `$A\sin\omega t$` (paper, Sec. III): two parabolic arcs a
+/// period.
 ///
 /// With the half period `$H=\pi/\omega$` and `$s = t/H$`,
 ///
@@ -12,8 +13,8 @@ use crate::{Fingerprint, ParameterError};
 /// z(t) = 4A\,s(1-s)\quad (0\le s<1),\qquad z(t+H) = -z(t),
 /// ```
 ///
-/// so amplitude and period are those of the sine; the peak speed is `$4A/H = 4A\omega/\pi$` and the acceleration
-/// `$\mp 8A/H^2$`. Every contact is the root of a parabola: exact, no iteration.
+/// so amplitude and period are those of the sine; the peak speed is `$4A/H = 4A\omega/\pi$` and the
+/// acceleration `$\mp 8A/H^2$`. Every contact is the root of a parabola: exact, no iteration.
 ///
 /// ```
 /// use granular_edmd::wall::{BiParabolic, WallMotion};

@@ -9,12 +9,14 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Room for a step where there is none, in units of the rounding: a search must end.
 const LEAST_ROOM: f64 = 1e-3;
 
-/// Most steps of a search. A wall that sweeps over its reach in each period is met within a few periods, each a few tens
-/// of steps: so many are taken only under a wall that stays away from a large part of what it claims to reach.
+/// Most steps of a search. A wall that sweeps over its reach in each period is met within a few periods, each
+/// a few tens of steps: so many are taken only under a wall that stays away from a large part of what it
+/// claims to reach.
 const MOST_STEPS: u32 = 1 << 20;
 
-/// Most steps of a search that are as short as times can be told apart. A search that converges takes some of them at
-/// its end; more come from a motion whose pieces are too short, or whose bounds are too large, for its times.
+/// Most steps of a search that are as short as times can be told apart. A search that converges takes some of
+/// them at its end; more come from a motion whose pieces are too short, or whose bounds are too large, for
+/// its times.
 const MOST_SHORT_STEPS: u32 = 1 << 10;
 
 /// A surface that approaches a wall: its height above the wall's place at rest, along the wall's normal.
@@ -44,7 +46,8 @@ impl Approach {
     /// Tells whether the surface begins and ends above this height, and is no lower between.
     #[inline]
     pub(crate) fn stays_above(&self, height: f64, until: f64) -> bool {
-        // Pulled down it is highest in between, so its ends are enough; no branch, for most flights pass both tests.
+        // Pulled down it is highest in between, so its ends are enough; no branch, for most flights pass both
+        // tests.
         (self.acceleration <= 0.0) & (self.height > height) & (self.height(until) > height)
     }
 
@@ -56,26 +59,31 @@ impl Approach {
 
 /// Returns the first time, not later than `until`, at which the surface touches the wall and closes.
 ///
-/// On a piece with acceleration at most `$a_{max}$` the gap is never below the parabola with that acceleration: the
-/// search steps to its root, where the gap is still open, and repeats until the gap is closed. One step is exact
-/// where the acceleration is constant; elsewhere the steps shrink quadratically, down to the rounding of the gap. No contact
-/// is ever stepped over. A gap that is closed at the start counts only while it closes.
+/// On a piece with acceleration at most `$a_{max}$` the gap is never below the parabola with that
+/// acceleration: the search steps to its root, where the gap is still open, and repeats until the gap is
+/// closed. One step is exact where the acceleration is constant; elsewhere the steps shrink quadratically,
+/// down to the rounding of the gap. No contact is ever stepped over. A gap that is closed at the start counts
+/// only while it closes.
 ///
-/// Flights beyond the reach of the wall are skipped, at the start and after a bounce. Within it the wall sweeps over
-/// every height in each period, so the search takes no more steps than some periods have, however fast the wall and
-/// long the flight. A surface that stays below the reach and outruns the wall, or that hovers in a reach which the wall
-/// never gets to, is followed from piece to piece: give such a search an end.
+/// Flights beyond the reach of the wall are skipped, at the start and after a bounce. Within it the wall
+/// sweeps over every height in each period, so the search takes no more steps than some periods have, however
+/// fast the wall and long the flight. A surface that stays below the reach and outruns the wall, or that
+/// hovers in a reach which the wall never gets to, is followed from piece to piece: give such a search an
+/// end.
 ///
 /// # Walls whose place nobody can tell
-/// The search ends whatever the motion answers, and never lets the surface through unseen. In these cases the wall counts as
-/// everywhere within its reach, at every speed, so the touch is the first time at which the surface is within it:
-/// - Times are too far from each other to tell the pieces of the motion apart, or a piece ends before it begins.
+/// The search ends whatever the motion answers, and never lets the surface through unseen. In these cases the
+/// wall counts as everywhere within its reach, at every speed, so the touch is the first time at which the
+/// surface is within it:
+/// - Times are too far from each other to tell the pieces of the motion apart, or a piece ends before it
+///   begins.
 /// - The state or the bounds are not finite. A reach that is not finite counts as one without ends.
-/// - The search has taken more than a million steps, or more than a thousand that were as short as times can be told apart:
-///   the pieces are too short, or the bounds too large, for the times.
+/// - The search has taken more than a million steps, or more than a thousand that were as short as times can
+///   be told apart: the pieces are too short, or the bounds too large, for the times.
 ///
-/// The gap then need not be closed at the touch. An engine that resolves it finds the number that is not finite, or a
-/// run without progress, and says so. A gap that is itself not a number counts as touched at once.
+/// The gap then need not be closed at the touch. An engine that resolves it finds the number that is not
+/// finite, or a run without progress, and says so. A gap that is itself not a number counts as touched at
+/// once.
 ///
 /// ```
 /// use granular_edmd::wall::{Approach, Fixed, first_touch};
@@ -208,10 +216,10 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
 
     /// Returns the end of a bounce that begins at `start` and stays lower than rounding, if there is one.
     ///
-    /// The gap cannot tell when such a bounce is over, but the bounce is so short that the acceleration does not change
-    /// in it: it is a parabola over the gap that it starts from, and ends when that gap closes as fast as it opened. If
-    /// it ended before, bounces would lose speed that no rule takes; if after, each would go deeper into the wall than
-    /// the last.
+    /// The gap cannot tell when such a bounce is over, but the bounce is so short that the acceleration does
+    /// not change in it: it is a parabola over the gap that it starts from, and ends when that gap closes as
+    /// fast as it opened. If it ended before, bounces would lose speed that no rule takes; if after, each
+    /// would go deeper into the wall than the last.
     fn low_bounce(&self, start: f64) -> Option<f64> {
         let first = self.look(start);
         let is_low = |pull: f64| first.rate * first.rate <= -2.0 * pull * first.tolerance;
@@ -228,7 +236,8 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         (is_low(pull) && end < first.until).then_some(end)
     }
 
-    /// Returns the acceleration of the gap in the time of a fall through the rounding, which cannot leave the piece.
+    /// Returns the acceleration of the gap in the time of a fall through the rounding, which cannot leave the
+    /// piece.
     ///
     /// From the change of the rate: the motion says no more than bounds of it.
     fn pull_after(&self, start: f64, first: &Look) -> f64 {
@@ -239,13 +248,15 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
 
     /// Returns a time, later than this one, until which the gap cannot have closed by more than `room`.
     ///
-    /// The room is the gap and its rounding: each step makes way, and the last ends in a gap closed by rounding. A gap
-    /// that is closed by more has next to none: nothing goes much deeper into a wall than it is.
+    /// The room is the gap and its rounding: each step makes way, and the last ends in a gap closed by
+    /// rounding. A gap that is closed by more has next to none: nothing goes much deeper into a wall than it
+    /// is.
     fn still_open(time: f64, room: f64, rate: f64, pull: f64) -> f64 {
         first_descent(room, rate, pull).map_or(f64::INFINITY, |wait| (time + wait).max(time.next_up()))
     }
 
-    /// Returns the gap below which it counts as closed: rounding of the lengths, and of the time at this speed.
+    /// Returns the gap below which it counts as closed: rounding of the lengths, and of the time at this
+    /// speed.
     fn tolerance(&self, time: f64, rate: f64) -> f64 {
         let (low, high) = self.reach;
         let lengths = low.abs().max(high.abs()) + self.approach.height.abs();

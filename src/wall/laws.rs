@@ -1,7 +1,7 @@
 //! The contract of a wall motion, as a check for motions of your own.
 //!
-//! [`check`] tries all of it on a stretch of phases, [`check_finite`] only that all answers are finite: the container asks
-//! the latter of every motion that it is given.
+//! [`check`] tries all of it on a stretch of phases, [`check_finite`] only that all answers are finite: the
+//! container asks the latter of every motion that it is given.
 
 mod violation;
 
@@ -32,11 +32,11 @@ const PROBES: [f64; 9] = [0.0, 1e-3, 0.1, 1.0, 10.0, 1e2, 1e3, 1e4, 1e6];
 
 /// Checks that a motion keeps its contract between two phases.
 ///
-/// It samples each piece that begins between them: state finite and within reach, bounds that hold for the change of the
-/// velocity between samples, a displacement that is the integral of the velocity, pieces that go on, jumps only at
-/// their ends and only away from the disks, and a period that is one. A fault narrower than a five-hundredth of a piece
-/// can be missed: check a motion with one long piece on several short stretches. A stretch of more than ten thousand
-/// pieces is refused.
+/// It samples each piece that begins between them: state finite and within reach, bounds that hold for the
+/// change of the velocity between samples, a displacement that is the integral of the velocity, pieces that
+/// go on, jumps only at their ends and only away from the disks, and a period that is one. A fault narrower
+/// than a five-hundredth of a piece can be missed: check a motion with one long piece on several short
+/// stretches. A stretch of more than ten thousand pieces is refused.
 ///
 /// # Errors
 /// The first violation that it finds.
@@ -226,8 +226,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         }
         let rise = to.state.displacement - from.state.displacement;
         let expected = 0.5 * (from.state.velocity + to.state.velocity) * wait;
-        // Between given velocities, the least and the most displacement belong to all of one bound first and then all of
-        // the other: triangles over the mean of the velocities, of this height at most.
+        // Between given velocities, the least and the most displacement belong to all of one bound first and
+        // then all of the other: triangles over the mean of the velocities, of this height at most.
         let spread = 0.125 * (bounds.max - bounds.min) * wait * wait;
         if (rise - expected).abs() > spread + self.length_rounding(from, bounds) + slack * wait {
             return Err(Violation::Displacement { from: from.phase, to: to.phase, rise, expected });
@@ -251,7 +251,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
     /// Checks that all is the same some periods later, at a phase inside a piece of this length.
     fn repeats(&self, phase: f64, length: f64) -> Result<(), Violation> {
         let Some(period) = self.motion.period() else { return Ok(()) };
-        // A piece that is nothing but the rounding of its ends may be elsewhere, or missing, in the next period.
+        // A piece that is nothing but the rounding of its ends may be elsewhere, or missing, in the next
+        // period.
         if length < SHORT * (phase.abs() + period) {
             return Ok(());
         }
@@ -264,7 +265,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
             let changed = (then_bounds.min - bounds.min).abs().max((then_bounds.max - bounds.max).abs());
             let differs = moved > self.length_rounding(then, &bounds)
                 || gained > self.speed_rounding(then, &bounds)
-                // The ends of pieces are rounded, and bounds at them change with the third derivative, which nobody tells.
+                // The ends of pieces are rounded, and bounds at them change with the third derivative, which
+                // nobody tells.
                 || changed > 1e-6 * strength;
             if differs {
                 return Err(Violation::Period { phase, period, later });
@@ -291,8 +293,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         ROUNDING * (speed + acceleration * sample.phase.abs())
     }
 
-    /// Returns the speed that the acceleration gives over the length of the motion: the terms of a velocity that passes
-    /// zero are no smaller.
+    /// Returns the speed that the acceleration gives over the length of the motion: the terms of a velocity
+    /// that passes zero are no smaller.
     fn speed_scale(&self, bounds: &AccelerationBounds) -> f64 {
         (bounds.min.abs().max(bounds.max.abs()) * (self.high - self.low)).sqrt()
     }

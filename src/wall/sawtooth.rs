@@ -7,7 +7,8 @@ use crate::{Fingerprint, ParameterError};
 
 /// Sawtooth motion: from `$-A$` to `$A$` in one period at constant speed, then instantly back to `$-A$`.
 ///
-/// The speed is `$A\omega/\pi$`. A disk only ever meets the rising wall, as in the theory of fast vibrated gases.
+/// The speed is `$A\omega/\pi$`. A disk only ever meets the rising wall, as in the theory of fast vibrated
+/// gases.
 ///
 /// ```
 /// use granular_edmd::wall::{Sawtooth, WallMotion};

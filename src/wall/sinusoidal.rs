@@ -4,8 +4,8 @@ use super::oscillation::{Oscillation, piece};
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::{Fingerprint, ParameterError};
 
-/// Pieces of a period on which the acceleration is bounded: a multiple of four, so that it is monotonic on each and the
-/// values at its ends are the bounds.
+/// Pieces of a period on which the acceleration is bounded: a multiple of four, so that it is monotonic on
+/// each and the values at its ends are the bounds.
 const PIECES: f64 = 16.0;
 
 /// Harmonic motion `$z(t) = A\sin\omega t$`.

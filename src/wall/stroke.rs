@@ -3,7 +3,8 @@
 use super::oscillation::piece;
 use super::{AccelerationBounds, WallState};
 
-/// Returns the state in a stroke at constant speed from `-amplitude` to `amplitude`, one stroke in each piece of this length.
+/// Returns the state in a stroke at constant speed from `-amplitude` to `amplitude`, one stroke in each piece
+/// of this length.
 pub(super) fn stroke(phase: f64, length: f64, amplitude: f64) -> WallState {
     let (number, _) = piece(phase, length);
     let share = (phase - number * length) / length;

@@ -77,7 +77,8 @@ fn a_reach_that_is_no_number_is_everywhere() {
     }
 }
 
-/// A disk must not fly on through a wall that cannot say where it is: whoever resolves the touch finds the NaN.
+/// A disk must not fly on through a wall that cannot say where it is: whoever resolves the touch finds the
+/// NaN.
 #[test]
 fn a_state_that_is_no_number_is_touched_at_once() {
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {

@@ -6,8 +6,8 @@ use granular_edmd::wall::{Approach, Sinusoidal, Triangular, WallMotion, WallStat
 
 use crate::{AMPLITUDE, FREQUENCY, Flight, Loose, PERIOD};
 
-/// A disk that leaves a sine so slowly that the whole bounce is lower than rounding: it ends when the gap closes as fast
-/// as it opened.
+/// A disk that leaves a sine so slowly that the whole bounce is lower than rounding: it ends when the gap
+/// closes as fast as it opened.
 #[test]
 fn a_bounce_lower_than_rounding_takes_its_time() {
     let base = Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap();
@@ -23,7 +23,8 @@ fn a_bounce_lower_than_rounding_takes_its_time() {
     }
 }
 
-/// Beyond its top the wall falls away: a disk that leaves it slowly meets it again when it comes up, not before.
+/// Beyond its top the wall falls away: a disk that leaves it slowly meets it again when it comes up, not
+/// before.
 #[test]
 fn a_wall_that_falls_away_is_not_touched_by_what_leaves_it() {
     let motion = Loose(Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap());
@@ -40,7 +41,8 @@ fn a_wall_that_falls_away_is_not_touched_by_what_leaves_it() {
     }
 }
 
-/// The wall falls away from the disk for a while, then less: what begins lower than rounding rises far above it.
+/// The wall falls away from the disk for a while, then less: what begins lower than rounding rises far above
+/// it.
 #[test]
 fn a_bounce_that_begins_low_may_rise() {
     let base = Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap();

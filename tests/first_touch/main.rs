@@ -143,7 +143,7 @@ fn a_touching_start_counts_only_while_it_closes() {
 
 #[test]
 fn a_touch_does_not_repeat_itself() {
-    // What the engine does: turn the disk round where it touches, and ask again.
+    // As the engine does: turn the disk round where it touches, and ask again.
     for (name, motion) in motions() {
         let mut generator = Xoshiro256PlusPlus::seed_from_u64(5);
         for case in 0..300 {
@@ -233,8 +233,8 @@ fn hostile_flights_end() {
                 for velocity in hostile {
                     for acceleration in [0.0, -1.0, 1.0, -1e140, 1e140, 1e-300, -1e-300, f64::NAN] {
                         let approach = Approach::new(start, height, velocity, acceleration);
-                        // What outruns the wall from far below, or hovers in a reach that is too large, is followed
-                        // for as long as it takes.
+                        // A surface that outruns the wall from far below, or hovers in a reach that is too large, is
+                        // followed for as long as it takes.
                         let is_followed = height < -1.0 || name == "loose";
                         let end = if is_followed { start + 1e3 } else { f64::INFINITY };
                         for end in [start + 10.0, end] {
@@ -273,7 +273,8 @@ fn motions_that_break_their_contract_do_not_hang_the_search() {
                 for end in [100.0, f64::INFINITY] {
                     let approach = Approach::new(1.0, height, velocity, -1.0);
                     let touch = first_touch(&Backward(backward), &approach, end);
-                    // Wherever the wall is, the surface is within its reach from the start, or nobody knows where.
+                    // Wherever the wall is, the surface is within its reach from the start, or nobody knows
+                    // where.
                     assert_eq!(touch, Some(1.0), "{backward} {height} {velocity}");
                 }
             }

@@ -1,4 +1,4 @@
-//! What the motions of walls say of themselves.
+//! Answers of wall motions about themselves.
 
 use std::f64::consts::TAU;
 

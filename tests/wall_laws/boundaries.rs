@@ -199,7 +199,8 @@ fn wrong_surfaces_are_caught() {
 
 #[test]
 fn a_boundary_that_ignores_the_time_origin_is_caught() {
-    // It is always where it is at time zero: the same flight finds it at the same offset, whatever the origin.
+    // It is always where it is at time zero: the same flight finds it at the same offset, whatever the
+    // origin.
     assert!(matches!(verdict(Fault::IgnoresTheOrigin), Violation::TimeOrigin { .. }));
 }
 

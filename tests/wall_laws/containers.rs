@@ -1,4 +1,5 @@
-//! Containers keep the contract of a boundary: walls at rest and moving, periodic sides, an open top, thermal walls.
+//! Containers keep the contract of a boundary: walls at rest and moving, periodic sides, an open top, thermal
+//! walls.
 
 use granular_edmd::boundary::{Boundary, Container, Thermal, Wall, laws};
 use granular_edmd::wall::{BiParabolic, Fixed, Sawtooth, Sinusoidal, Triangular, WallMotion};

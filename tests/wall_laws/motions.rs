@@ -1,4 +1,5 @@
-//! Faults planted in a motion: the check names each, and the container refuses those that no run can do without.
+//! Faults planted in a motion: the check names each, and the container refuses those that no run can do
+//! without.
 
 use std::error::Error;
 
@@ -113,7 +114,8 @@ fn verdict(fault: Fault) -> Result<(), Violation> {
 fn a_sound_motion_passes() {
     assert_eq!(verdict(Fault::None), Ok(()));
     assert_eq!(check_finite(&spoilt(Fault::None)), Ok(()));
-    // Bounds may be loose, and a wall may jump away from the disks where a piece ends, if it comes back slowly.
+    // Bounds may be loose, and a wall may jump away from the disks where a piece ends, if it comes back
+    // slowly.
     assert_eq!(verdict(Fault::Bounds(1.0)), Ok(()));
 }
 

@@ -128,7 +128,8 @@ fn check_place<B: Boundary + ?Sized>(
     Ok(Meeting { touch, place, velocity, rate, is_grazing: rate > -GRAZING * speed })
 }
 
-/// Checks that the normal is a unit vector, that a disk moved along it comes out of the wall, and that the wall has a velocity.
+/// Checks that the normal is a unit vector, that a disk moved along it comes out of the wall, and that the
+/// wall has a velocity.
 fn check_surface<B: Boundary + ?Sized>(
     trial: &Trial<'_, B>,
     touch: Touch,

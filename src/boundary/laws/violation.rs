@@ -174,8 +174,8 @@ pub enum Violation {
     },
     /// The same flight told from another time origin touches at another time.
     #[error(
-        "with a time origin earlier than {origin} by {shift}, the touch is at time {after:?} and not {before:?}, on \
-         {flight:?}"
+        "with a time origin earlier than {origin} by {shift}, the touch is at time {after:?} and not \
+         {before:?}, on {flight:?}"
     )]
     TimeOrigin {
         /// The time origin.

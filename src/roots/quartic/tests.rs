@@ -15,8 +15,12 @@ fn product(scale: f64, zeros: &[f64], pairs: &[(f64, f64)]) -> [f64; 5] {
             *c = (0..=k.min(2)).map(|j| factor[j] * old[k - j]).sum();
         }
     };
-    zeros.iter().for_each(|&zero| multiply([-zero, 1.0, 0.0]));
-    pairs.iter().for_each(|&(middle, width)| multiply([middle * middle + width * width, -2.0 * middle, 1.0]));
+    for &zero in zeros {
+        multiply([-zero, 1.0, 0.0]);
+    }
+    for &(middle, width) in pairs {
+        multiply([middle * middle + width * width, -2.0 * middle, 1.0]);
+    }
     coefficients
 }
 
@@ -25,7 +29,8 @@ fn size(coefficients: &[f64; 5], time: f64) -> f64 {
     value(&coefficients.map(f64::abs), time)
 }
 
-/// Steps along the gap and says what the search may not say: no answer where the gap falls through, or one where it is open.
+/// Steps along the gap and says what the search may not say: no answer where the gap falls through, or one
+/// where it is open.
 fn compare(coefficients: &[f64; 5], end: f64) -> Option<f64> {
     let found = first_descent_of_quartic(coefficients, end);
     let rounding = |time: f64| 1e-12 * size(coefficients, time);
@@ -90,7 +95,7 @@ fn known_zeros_are_found_in_order() {
         for scale in [1.0, -1.0, 1e-200, -1e200] {
             let coefficients = product(scale, &zeros, &pairs);
             // The gap falls through every other zero; behind the last it has the sign of the scale.
-            let falling = (0..zeros.len()).filter(|k| ((zeros.len() - k) % 2 == 0) == (scale > 0.0));
+            let falling = (0..zeros.len()).filter(|k| (zeros.len() - k).is_multiple_of(2) == (scale > 0.0));
             let expected = falling.map(|k| zeros[k]).find(|&zero| zero > 0.0);
             let is_closing = coefficients[0] <= 0.0 && coefficients[1] < 0.0;
             let found = first_descent_of_quartic(&coefficients, f64::INFINITY);

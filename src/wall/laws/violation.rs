@@ -55,7 +55,7 @@ pub enum Violation {
         phase: f64,
         /// The phase at which the last ends.
         until: f64,
-        /// How many there are.
+        /// Count of the pieces.
         pieces: u32,
     },
     /// The displacement is outside of the reach.
@@ -72,8 +72,8 @@ pub enum Violation {
     },
     /// The velocity changes faster than the bounds of the acceleration allow, or jumps inside a piece.
     #[error(
-        "from phase {from} to {to} its velocity changes by {gain}, which is not between {least} and {most}, as its \
-         bounds of the acceleration say"
+        "from phase {from} to {to} its velocity changes by {gain}, which is not between {least} and {most}, as \
+         its bounds of the acceleration say"
     )]
     Velocity {
         /// The first phase.
@@ -104,7 +104,7 @@ pub enum Violation {
     Jump {
         /// The phase.
         phase: f64,
-        /// How far it jumps.
+        /// Length of the jump.
         jump: f64,
     },
     /// The motion does not repeat after its period.
