@@ -79,6 +79,8 @@ pub mod roots;
 pub mod scheduler;
 pub mod simulation;
 pub mod statistics;
+#[cfg(feature = "proptest")]
+pub mod strategies;
 #[cfg(feature = "serde")]
 pub mod study;
 pub mod wall;
@@ -88,4 +90,4 @@ pub use error::ParameterError;
 pub use fingerprint::Fingerprint;
 pub use flight::Flight;
 pub use glam;
-pub use simulation::Simulation;
+pub use simulation::{BoxedSimulation, Simulation};

@@ -157,7 +157,8 @@ fn a_value_is_the_engine_s_run() -> Result<(), AnyError> {
         1e-4,
     )?;
     let scheduler = granular_edmd::scheduler::TournamentTree::default();
-    let mut run = granular_edmd::Simulation::resume(record.state(), rule, container, scheduler)?;
+    let resumption = granular_edmd::Simulation::resume(record.state(), rule, container);
+    let mut run = resumption.with_another_rule().scheduler(scheduler).build()?;
     let period = std::f64::consts::TAU / 10.0;
     let times = SampleTimes::every(10.0 * period)?.starting_at(95.0 * period)?;
     let mut series = Series::new(OrderParameters, times);

@@ -3,7 +3,7 @@
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::Elastic;
 use granular_edmd::observable::{CollisionCounts, EnergyChange, OrderParameters, SampleTimes, Series};
-use granular_edmd::scheduler::{BySize, EventScheduler, LinearScan, TournamentTree};
+use granular_edmd::scheduler::{EventScheduler, LinearScan, TournamentTree};
 use granular_edmd::{Simulation, initial};
 use proptest::prelude::*;
 
@@ -71,8 +71,9 @@ fn many_disks_resume_to_the_same_bits() {
     let mut run = Simulation::builder(Elastic, container.clone()).disks(disks).gravity(0.1).build().unwrap();
     run.run_until(0.2, &mut ()).unwrap();
     let saved = run.checkpoint();
-    let mut same = Simulation::resume(&saved, Elastic, container.clone(), BySize::default()).unwrap();
-    let mut tree = Simulation::resume(&saved, Elastic, container, TournamentTree::default()).unwrap();
+    let mut same = Simulation::resume(&saved, Elastic, container.clone()).build().unwrap();
+    let mut tree =
+        Simulation::resume(&saved, Elastic, container).scheduler(TournamentTree::default()).build().unwrap();
     run.run_until(0.6, &mut ()).unwrap();
     same.run_until(0.6, &mut ()).unwrap();
     tree.run_until(0.6, &mut ()).unwrap();

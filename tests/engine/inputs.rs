@@ -1,6 +1,6 @@
 //! What cannot be run is refused with an error that names it.
 
-use granular_edmd::boundary::{Boundary, Container, Wall};
+use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::initial::{self, PlacementError};
@@ -66,7 +66,7 @@ fn disks_must_be_inside_and_apart() {
 #[test]
 fn touching_is_not_overlapping() {
     let mut touching = build(closed(), &[at(0.5, 0.5), at(1.5, 0.5), at(7.5, 5.5)]).unwrap();
-    touching.step(&mut ()).unwrap();
+    touching.step_until(1.0, &mut ()).unwrap();
     let third = 1.0 / 3.0;
     let disks = [at(third + 0.5, 2.0), at(third + 1.5, 2.0), at(third + 2.5, 2.0)];
     build(closed(), &disks).unwrap().run_until(0.1, &mut ()).unwrap();
@@ -158,7 +158,7 @@ fn hostile_disks_end_in_an_error_or_run_but_do_not_hang() {
         let disk = at(2.0, 2.0).with_velocity(DVec2::new(speed, 0.3 * speed)).unwrap();
         let mut simulation = build(closed(), &[disk, at(5.0, 3.0)]).unwrap();
         for _ in 0..1000 {
-            if simulation.step(&mut ()).is_err() {
+            if simulation.step_until(simulation.time() + 1.0, &mut ()).is_err() {
                 break;
             }
         }

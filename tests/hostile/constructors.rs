@@ -177,7 +177,8 @@ fn runs(container: &Container, gravity: f64, start: f64, speed: f64) {
         let builder = Simulation::builder(Elastic, container.clone()).disks(disks);
         let Ok(mut run) = builder.gravity(gravity).start_time(start).build() else { continue };
         for _ in 0..100 {
-            if !matches!(run.step(&mut ()), Ok(Some(_))) {
+            let end = run.time() + 1.0;
+            if run.step_until(end, &mut ()).is_err() {
                 break;
             }
         }

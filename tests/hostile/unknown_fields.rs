@@ -80,7 +80,7 @@ fn parameters_with_a_field_too_many_are_refused() {
 
 #[test]
 fn what_was_measured_with_a_field_too_many_is_refused() {
-    let mut run = resume(&checkpoint()).unwrap();
+    let run = resume(&checkpoint()).unwrap();
     refuses(&run.boundary().domain());
     refuses(&run.measure(&OrderParameters));
     refuses(&run.measure(&Energies));
