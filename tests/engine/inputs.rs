@@ -1,6 +1,6 @@
 //! What cannot be run is refused with an error that names it.
 
-use granular_edmd::boundary::{Boundary, Container, Wall};
+use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::initial::{self, PlacementError};
@@ -146,7 +146,7 @@ fn initial_states_are_accepted_by_the_builder() {
                 initial::random(&boundary, 12, 0.5, 6.0, 3).unwrap(),
             ] {
                 let builder = Simulation::builder(Elastic, boundary.clone()).disks(disks).start_time(start);
-                assert!(builder.build().is_ok(), "{:?}", boundary);
+                assert!(builder.build().is_ok(), "{boundary:?}");
             }
         }
     }
