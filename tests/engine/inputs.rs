@@ -36,7 +36,7 @@ fn containers_refuse_sizes_that_are_none() {
         .unwrap()
         .with_motion(Wall::Lid, BiParabolic::new(0.1, 1.0).unwrap())
         .unwrap_err();
-    assert!(error.to_string().contains("Lid"));
+    assert!(error.to_string().contains("lid"));
 }
 
 #[test]
