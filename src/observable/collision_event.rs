@@ -9,7 +9,7 @@ use crate::collision::{Contact, Impulse};
 pub enum Partner {
     /// Another disk, by its index.
     Disk(usize),
-    /// A wall, by its index into [`Boundary::walls`](crate::boundary::Boundary::walls).
+    /// A wall, by its index into [`Boundary::wall_name`](crate::boundary::Boundary::wall_name).
     Wall(usize),
 }
 

@@ -15,7 +15,7 @@ pub enum Event {
     WallCollision {
         /// The disk.
         disk: usize,
-        /// The wall, an index into [`Boundary::walls`](crate::boundary::Boundary::walls).
+        /// The wall, an index into [`Boundary::wall_name`](crate::boundary::Boundary::wall_name).
         wall: usize,
     },
     /// A disk passed from one neighbour cell to another: no physics.
