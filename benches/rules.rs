@@ -3,7 +3,9 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use granular_edmd::collision::{CollisionRule, Contact, ContactDuration, Elastic, Frictional, Rough, Smooth};
+use granular_edmd::collision::{
+    CollisionRule, Contact, ContactDuration, Elastic, Friction, Frictional, Impulse, Rough, Smooth, from_fn,
+};
 
 const CONTACTS: usize = 1024;
 
@@ -13,13 +15,23 @@ fn contacts() -> Vec<Contact> {
     speeds.map(|(closing, slip)| Contact::new(0.02 * closing, 0.02 * slip, 0.5, 0.5 / 3.0)).collect()
 }
 
+/// A rule as a user writes it: restitution that falls with the speed of the impact, over the library's friction.
+fn speed_dependent() -> impl CollisionRule {
+    let friction = Friction::new(0.05, 0.1).expect("valid");
+    from_fn(move |contact: &Contact| -> Impulse {
+        let restitution = 1.0 / (1.0 + 0.05 * contact.closing_speed().sqrt());
+        friction.impulse(contact, contact.normal_impulse(restitution))
+    })
+}
+
 fn impulses(criterion: &mut Criterion) {
     let frictional = Frictional::new(0.05, 0.1).expect("valid");
-    let rules: [(&str, Box<dyn CollisionRule>); 5] = [
+    let rules: [(&str, Box<dyn CollisionRule>); 6] = [
         ("elastic", Box::new(Elastic)),
         ("smooth", Box::new(Smooth::new(0.05).expect("valid"))),
         ("rough", Box::new(Rough::new(0.05, 0.1).expect("valid"))),
         ("frictional", Box::new(frictional)),
+        ("speed_dependent", Box::new(speed_dependent())),
         ("contact_duration", Box::new(ContactDuration::new(frictional, 1e-5).expect("valid"))),
     ];
     let contacts = contacts();

@@ -18,7 +18,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use granular_edmd::ParameterError;
 use granular_edmd::analysis::{ConvectiveRegime, StateCriteria, Transition, TransitionLine, transitions};
-use granular_edmd::observable::RunningMean;
+use granular_edmd::statistics::RunningMean;
 use granular_edmd::study::{
     Axis, Course, Outcome, Parameter, Protocol, Ramp, Record, Specification, SpecificationError,
 };
@@ -82,7 +82,9 @@ fn specification(
 
 /// A row for each contact duration: where the transitions are, and how many collisions the model has changed.
 fn print(parameter: Parameter, records: &[Record]) -> Result<(), Box<dyn Error>> {
-    println!("transitions along {parameter}, with standard errors");
+    println!(
+        "transitions along {parameter}; ± is the standard error over independent ramps, and over a step"
+    );
     println!(
         "| t_c | {} | changed, first | last value | stalled |",
         TransitionLine::ALL.map(|line| line.to_string()).join(" | ")

@@ -96,7 +96,7 @@ fn measured(arguments: &Arguments) -> Result<(Fields, Fields), Box<dyn Error>> {
     let end = arguments.oscillations as f64 * oscillation;
     simulation.run_until(0.5 * end, &mut ())?;
     let times = SampleTimes::every(INTERVAL * oscillation)?.starting_at(0.5 * end)?;
-    let region = Region { min: DVec2::ZERO, max: BOX };
+    let region = Region::new(DVec2::ZERO, BOX);
     let mut fields =
         (Fields::new(region, FINE.0, FINE.1, times)?, Fields::new(region, COARSE.0, COARSE.1, times)?);
     simulation.run_until(end, &mut fields)?;

@@ -164,7 +164,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Closed form beside Monte Carlo at the largest loss of a few inelasticities.
 fn compare(gas: &Maxwellian, seed: u64) -> Result<(), ParameterError> {
-    println!("largest loss:   q   kappa     <dE>      Monte Carlo (standard error)");
+    println!("largest loss:   q   kappa     <dE>      Monte Carlo (standard error of independent samples)");
     for q in [0.0, 0.025, 0.05, 0.1, 0.2] {
         let Some(friction) = friction_of_largest_loss(&Frictional::new(q, 0.0)?, gas) else { continue };
         let rule = Frictional::new(q, friction)?;

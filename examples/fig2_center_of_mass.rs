@@ -17,6 +17,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::Parser;
+use granular_edmd::statistics::Estimate;
 use granular_edmd::study::{
     Axis, Base, Parameter, Protocol, Specification, SpecificationError, Study, System,
 };
@@ -62,8 +63,7 @@ impl Arguments {
 /// A point of the figure.
 struct Point {
     friction: f64,
-    height: f64,
-    error: f64,
+    height: Estimate,
 }
 
 fn main() -> ExitCode {
@@ -81,38 +81,37 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 
 fn points(study: &Study) -> Result<Vec<Point>, Box<dyn Error>> {
     let point = |record: granular_edmd::study::Record| {
-        let height = record.mean(|sample| sample.height);
         let friction = record.system().get(Parameter::Friction).unwrap_or(f64::NAN);
-        Point { friction, height: height.mean, error: height.error }
+        Point { friction, height: record.mean(|sample| sample.height) }
     };
     Ok(study.records().map(|record| record.map(point)).collect::<Result<_, _>>()?)
 }
 
 fn print(points: &[Point]) {
-    println!("friction   Y_cm   (standard error)");
-    for Point { friction, height, error } in points {
-        println!("{friction:8}  {height:6.2}  ({error:.2})");
+    println!("friction   Y_cm ± standard error of correlated samples");
+    for Point { friction, height } in points {
+        println!("{friction:8}  {height:.2}");
     }
-    if let Some(lowest) = points.iter().min_by(|a, b| a.height.total_cmp(&b.height)) {
-        println!("lowest at friction {}: {:.2}", lowest.friction, lowest.height);
+    if let Some(lowest) = points.iter().min_by(|a, b| a.height.mean().total_cmp(&b.height.mean())) {
+        println!("lowest at friction {}: {:.2}", lowest.friction, lowest.height.mean());
     }
 }
 
 fn figure(points: &[Point], slip: bool) -> Figure {
     // The axis is logarithmic: no friction is a line.
     let drawn: Vec<&Point> = points.iter().filter(|point| point.friction > 0.0).collect();
-    let places: Vec<(f64, f64)> = drawn.iter().map(|point| (point.friction, point.height)).collect();
+    let places: Vec<(f64, f64)> = drawn.iter().map(|point| (point.friction, point.height.mean())).collect();
     let line =
         LinePlot::new().with_data(places.clone()).with_color("rgb(150,170,210)").with_stroke_width(1.2);
     let dots = ScatterPlot::new()
         .with_data(places)
-        .with_y_err(drawn.iter().map(|point| point.error))
+        .with_y_err(drawn.iter().map(|point| point.height.standard_error()))
         .with_color("rgb(30,80,180)")
         .with_size(4.5)
         .with_legend("κ > 0");
     let mut plots = vec![Plot::Line(line), Plot::Scatter(dots)];
     if let Some(smooth) = points.iter().find(|point| point.friction == 0.0) {
-        let level = [(0.007, smooth.height), (14.0, smooth.height)];
+        let level = [0.007, 14.0].map(|friction| (friction, smooth.height.mean()));
         let level = LinePlot::new()
             .with_data(level)
             .with_color("gray")

@@ -17,7 +17,7 @@ use granular_edmd::ParameterError;
 use granular_edmd::analysis::{LineAverage, line_average};
 use granular_edmd::collision::Frictional;
 use granular_edmd::kinetic::{Maxwellian, effective_inelasticity};
-use granular_edmd::observable::RunningMean;
+use granular_edmd::statistics::RunningMean;
 
 /// Effective inelasticity of every transition (paper, Table I, by Eq. (9)).
 #[derive(Parser)]
@@ -142,6 +142,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!(
         "g         transition   <dE>              q_eff             printed         verdict   (T_0 = 1)"
     );
+    println!("±: the scatter along a line of transitions, not the error of its mean");
     for row in &TABLE {
         print(row)?;
         let measured = measured(row, &points)?;

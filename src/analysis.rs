@@ -1,13 +1,14 @@
-//! Analysis: from measured series to states, transitions and Table I.
+//! Analysis: states, transitions and Table I from measured series.
 //!
 //! | question | answer | source |
 //! |---|---|---|
-//! | mean of a correlated series, with an honest error | [`block_average`] | Flyvbjerg & Petersen 1989 |
 //! | clusters of points in a plane | [`KMeans`], [`distinct_clusters`] | paper, Fig. 4 |
 //! | which convective states a run shows | [`StateCriteria::classify`] | paper, section III |
 //! | where a ramp changes state, and its hysteresis | [`transitions`] | paper, Fig. 5 |
-//! | the lines of transitions in the plane of friction and inelasticity | [`plane_transitions`] | paper, Fig. 5 |
+//! | lines of transitions in friction and inelasticity | [`plane_transitions`] | paper, Fig. 5 |
 //! | energy loss along a line of transitions | [`line_average`] | paper, Table I |
+//!
+//! The error of a mean over a correlated series is in [`statistics`](crate::statistics).
 //!
 //! Everything is deterministic: the same numbers and seeds give the same bits.
 //!
@@ -16,7 +17,7 @@
 //! use granular_edmd::observable::ConvectionOrder;
 //!
 //! // A roll that turns clockwise for most of the time, and the other way for a while.
-//! let order = |one_roll| ConvectionOrder { one_roll, two_rolls: 0.04 };
+//! let order = |one_roll| ConvectionOrder::new(one_roll, 0.04);
 //! let samples = [[0.12; 3].as_slice(), &[-0.12; 2], &[0.12; 3]].concat().into_iter().map(order);
 //! let noise = thermal_noise(0.3, 1.0, 1000)?;
 //! let found = StateCriteria::default().classify(&samples.collect::<Vec<_>>(), noise, None)?;
@@ -25,7 +26,6 @@
 //! # Ok::<(), granular_edmd::ParameterError>(())
 //! ```
 
-mod blocking;
 mod classification;
 mod clusters;
 mod distinct;
@@ -35,7 +35,6 @@ mod plane;
 mod state;
 mod transitions;
 
-pub use blocking::{BlockAverage, block_average};
 pub use classification::{Classification, StateCriteria, thermal_noise};
 pub use clusters::{Cluster, Clusters};
 pub use distinct::distinct_clusters;

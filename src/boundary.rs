@@ -1,92 +1,176 @@
 //! Boundaries: the walls around the disks, and what a touch does.
 //!
-//! [`Container`] is the rectangular box of the paper and its relatives: side walls or periodic sides, a floor that is
-//! fixed, moving or thermal, a lid or an open top, each wall with a rule of its own if wanted. A geometry of your own
-//! implements [`Boundary`].
+//! [`Container`] is the rectangular box of the paper and its relatives: side walls or periodic sides, a floor
+//! that is fixed, moving or thermal, a lid or an open top, each wall with a rule of its own if wanted. A
+//! geometry of your own implements [`Boundary`]; [`roots`](crate::roots) has the numerics that it needs, and
+//! [`laws`] checks it.
 
 mod container;
 mod domain;
+mod forward;
+pub mod laws;
 mod plane;
 mod surface;
+mod touch;
 
-pub use container::{Container, MissingWall, Wall};
+pub use container::{Container, Wall, WallError};
 pub use domain::{Domain, Region};
 pub use surface::{Response, Surface, Thermal};
+pub use touch::Touch;
+
+use std::borrow::Cow;
 
 use glam::DVec2;
 
-use crate::Flight;
-
-/// The first touch of a flight with a wall.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touch {
-    /// When.
-    pub time: f64,
-    /// Which wall, an index into [`Boundary::walls`].
-    pub wall: usize,
-}
+use crate::{Fingerprint, Flight};
 
 /// The walls around the disks.
 ///
+/// # Times
+/// All times are *offsets*: from the absolute time that [`set_time_origin`](Self::set_time_origin) was given
+/// last. Absolute times grow without bound and would lose digits. Before the first call, the origin is 0. A
+/// boundary whose walls do not move may ignore the origin. One with walls that move reduces it by whole
+/// periods to a phase of their motion, as [`WallMotion`](crate::wall::WallMotion) explains.
+///
 /// # Contract
-/// All times are offsets from the origin set last by [`Self::set_time_origin`]: absolute times grow without bound and
-/// would lose digits. A boundary whose walls do not move may ignore it. The centres of disks that no wall has been
-/// passed by lie in [`Self::domain`] at all times.
+/// An implementation guarantees:
+/// 1. [`domain`](Self::domain), [`interior`](Self::interior) and [`wall_count`](Self::wall_count) never
+///    change. A disk that has not passed a wall has its centre in the domain at all times.
+/// 2. [`may_touch`](Self::may_touch) holds for all times: it is false only for a region in which no disk of
+///    this radius, or a smaller one, can touch a wall at any time. A region that contains another may be
+///    touched where the other may.
+/// 3. [`first_touch`](Self::first_touch) misses no touch, and finds none where a gap is open. Its time is
+///    neither before the flight nor after `until`, and its wall is less than `wall_count`.
+/// 4. A wall that is touched already, by rounding too, counts at once while the disk approaches it, and never
+///    while the disk leaves it.
+/// 5. [`surface`](Self::surface) gives a unit normal that points from the wall to the disk, and finite
+///    velocities.
+/// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise it is the depth to which the disk
+///    reaches into a wall.
+/// 7. Another origin changes nothing but the numbers of the times: the same flight touches the same wall at
+///    the same absolute time.
+/// 8. The same questions get the same answers, bit for bit.
+///
+/// The engine guarantees:
+/// - It sets the origin first, whenever its epoch moves, and never asks for a time before the origin.
+/// - Flights have finite numbers, begin at the present, in the domain, and end where the disk leaves a cell,
+///   at most a few epochs later. At periodic sides a flight ends at the side.
+/// - `first_touch` is asked only in cells for which `may_touch` holds, with the largest of all radii. Cells
+///   at the edges of the domain reach to infinity beyond them.
+/// - `surface` is asked at a touch that `first_touch` found, for its wall and time and the place of the disk
+///   then.
+/// - `overlap` is asked when a simulation is built or gets other walls, and wherever disks are placed at
+///   random.
+///
+/// # Boundaries that break it
+/// [`laws::check`] finds most faults. A missed touch lets a disk through: it leaves the domain unseen. An
+/// early one turns disks back in mid-air. A touch of a wall that disks leave comes again at once, until the
+/// run ends for want of progress. A velocity or normal that is not finite ends the run with an error.
+///
+/// ```
+/// use std::borrow::Cow;
+/// use granular_edmd::Flight;
+/// use granular_edmd::boundary::{Boundary, Domain, Region, Surface, Touch, laws};
+/// use granular_edmd::glam::DVec2;
+/// use granular_edmd::roots::first_descent_of_quartic;
+///
+/// /// A round dish about the origin.
+/// struct Dish {
+///     radius: f64,
+///     name: String,
+/// }
+///
+/// impl Boundary for Dish {
+///     fn domain(&self) -> Domain {
+///         Domain::new(-self.radius, self.radius, -self.radius, self.radius)
+///     }
+///     fn wall_count(&self) -> usize {
+///         1
+///     }
+///     fn wall_name(&self, _wall: usize) -> Cow<'_, str> {
+///         Cow::Borrowed(&self.name)
+///     }
+///     fn set_time_origin(&mut self, _origin: f64) {}
+///     fn may_touch(&self, region: &Region, radius: f64) -> bool {
+///         region.min.abs().max(region.max.abs()).length() + radius >= self.radius
+///     }
+///     fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+///         let start = flight.time();
+///         let (r, v, a) = (flight.position(start), flight.velocity(start), flight.acceleration());
+///         let free = self.radius - flight.radius();
+///         // The square of `free` less that of the distance from the middle, as a polynomial of the time.
+///         let gap = [
+///             (free - r.length()) * (free + r.length()),
+///             -2.0 * r.dot(v),
+///             -(v.length_squared() + r.dot(a)),
+///             -v.dot(a),
+///             -0.25 * a.length_squared(),
+///         ];
+///         let wait = first_descent_of_quartic(&gap, until - start)?;
+///         Some(Touch::new((start + wait).min(until), 0))
+///     }
+///     fn surface(&self, _wall: usize, position: DVec2, _time: f64) -> Surface<'_> {
+///         Surface::new(-position.normalize_or(DVec2::Y), DVec2::ZERO)
+///     }
+///     fn overlap(&self, position: DVec2, radius: f64, _time: f64) -> Option<(usize, f64)> {
+///         let depth = position.length() + radius - self.radius;
+///         (depth > 0.0).then_some((0, depth))
+///     }
+/// }
+///
+/// let mut dish = Dish { radius: 6.0, name: "rim".to_owned() };
+/// assert_eq!(laws::check(&mut dish, 0.5, 1.0, 42), Ok(()));
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a boundary",
+    label = "not a boundary",
+    note = "take a `granular_edmd::boundary::Container`, or implement `Boundary` for a geometry of your own"
+)]
 pub trait Boundary {
-    /// The rectangle that holds the centres of all disks at all times.
+    /// Returns the rectangle that holds the centres of all disks at all times.
     fn domain(&self) -> Domain;
 
-    /// A rectangle in the domain in which initial states are placed: without the reach of walls that move.
+    /// Returns a rectangle in the domain in which initial states are placed: without the reach of walls that
+    /// move.
     fn interior(&self) -> Domain {
         self.domain()
     }
 
-    /// The names of the walls, in the order of their indices.
-    fn walls(&self) -> &[&'static str];
+    /// Returns how many walls there are; their indices are less than this.
+    fn wall_count(&self) -> usize;
 
-    /// All times from now on are measured from this absolute time.
+    /// Returns the name of a wall, for messages; a number does for an index without a wall.
+    fn wall_name(&self, wall: usize) -> Cow<'_, str> {
+        Cow::Owned(format!("wall {wall}"))
+    }
+
+    /// Measures all times from this absolute time on.
     fn set_time_origin(&mut self, origin: f64);
 
-    /// Whether a disk with its centre in `region` can touch a wall; the engine asks [`Self::first_touch`] only there.
+    /// Tells whether a disk with its centre in `region` can touch a wall at any time.
     ///
-    /// Regions at the edge of the domain reach to infinity beyond it.
+    /// The engine asks [`first_touch`](Self::first_touch) only there. Regions at the edge of the domain reach
+    /// to infinity beyond it.
     fn may_touch(&self, region: &Region, radius: f64) -> bool;
 
-    /// The first touch of this flight, not later than `until`.
+    /// Returns the first touch of this flight, not later than `until`.
     ///
     /// A wall that is touched already counts at once while it is approached, and never while it is left.
     fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch>;
 
-    /// The surface that a disk at `position` touches at `time`.
+    /// Returns the surface that a disk at `position` touches at `time`.
+    ///
+    /// The wall is one of those that there are; for another index the call may panic.
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_>;
 
-    /// A wall that a disk at `position` overlaps at `time`, and by how much; `None` if it is inside.
+    /// Returns a wall that a disk at `position` overlaps at `time`, and how deep; `None` if the disk is
+    /// inside.
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)>;
-}
 
-impl<T: Boundary + ?Sized> Boundary for Box<T> {
-    fn domain(&self) -> Domain {
-        (**self).domain()
-    }
-    fn interior(&self) -> Domain {
-        (**self).interior()
-    }
-    fn walls(&self) -> &[&'static str] {
-        (**self).walls()
-    }
-    fn set_time_origin(&mut self, origin: f64) {
-        (**self).set_time_origin(origin);
-    }
-    fn may_touch(&self, region: &Region, radius: f64) -> bool {
-        (**self).may_touch(region, radius)
-    }
-    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
-        (**self).first_touch(flight, until)
-    }
-    fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
-        (**self).surface(wall, position, time)
-    }
-    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
-        (**self).overlap(position, radius, time)
+    /// Returns the fingerprint of the boundary: its name and everything that decides what it does.
+    ///
+    /// Checkpoints compare it when a run is resumed. Without one, the boundary is not compared.
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        None
     }
 }

@@ -1,9 +1,10 @@
 //! Collision rules: what happens when two disks, or a disk and a wall, touch.
 //!
-//! A rule is a pure function from a [`Contact`] (how fast the surfaces close and slip, and the masses that resist)
-//! to an [`Impulse`]. The engine applies the impulse to one partner and its opposite to the other at the contact
-//! point, so momentum, angular momentum and Galilean invariance hold for *any* rule; what a rule can get wrong is
-//! energy and separation, and [`laws`] checks those. A wall is a partner of infinite mass: one rule serves both.
+//! A rule is a pure function from a [`Contact`] (how fast the surfaces close and slip, and the masses that
+//! resist) to an [`Impulse`]. The engine applies the impulse to one partner and its opposite to the other at
+//! the contact point, so momentum, angular momentum and Galilean invariance hold for *any* rule; what a rule
+//! can get wrong is energy, separation and friction, and [`laws`] checks those. A wall is a partner of
+//! infinite mass: one rule serves both.
 //!
 //! | rule | energy loss | source |
 //! |---|---|---|
@@ -15,66 +16,115 @@
 //! | [`from_fn`] | yours, as a closure | |
 //!
 //! # A rule of your own
-//! ```
-//! use granular_edmd::collision::{CollisionRule, Contact, Impulse, laws};
+//! A rule that decides the normal direction takes the tangential one from [`Friction`]. Here is the
+//! restitution of C. Bizon et al., Phys. Rev. Lett. **80**, 57 (1998), which falls with the speed of the
+//! impact until it is constant, `$r_n = 1 - (1 - r_0)\min(v_n/v_0, 1)^{3/4}$`:
 //!
-//! /// Restitution that falls with the speed of the impact.
-//! struct Viscoelastic {
-//!     loss: f64,
+//! ```
+//! use granular_edmd::collision::{CollisionRule, Contact, Friction, Impulse, laws};
+//!
+//! struct Bizon {
+//!     restitution: f64,
+//!     speed: f64,
+//!     friction: Friction,
 //! }
 //!
-//! impl CollisionRule for Viscoelastic {
+//! impl CollisionRule for Bizon {
 //!     fn impulse(&self, contact: &Contact) -> Impulse {
-//!         let restitution = 1.0 / (1.0 + self.loss * contact.closing_speed().powf(0.2));
-//!         Impulse::new((1.0 + restitution) * contact.normal_mass() * contact.closing_speed(), 0.0)
+//!         // Square roots have the same bits on every platform, `powf(0.75)` has not.
+//!         let root = (contact.closing_speed() / self.speed).min(1.0).sqrt();
+//!         let restitution = 1.0 - (1.0 - self.restitution) * root * root.sqrt();
+//!         self.friction.impulse(contact, contact.normal_impulse(restitution))
 //!     }
 //! }
 //!
-//! let contact = Contact::new(2.0, 0.5, 0.5, 1.0 / 6.0);
-//! let impulse = Viscoelastic { loss: 0.1 }.impulse(&contact);
-//! laws::check(&contact, impulse)?;
-//! # Ok::<(), laws::Violation>(())
+//! let rule = Bizon { restitution: 0.7, speed: 1.0, friction: Friction::new(0.25, 0.5)? };
+//! laws::check_rule(&rule, &laws::Promises::new().with_friction(0.5))?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod body;
 mod contact;
 mod contact_duration;
 mod elastic;
 mod encounter;
+mod friction;
 mod frictional;
 mod from_fn;
 mod impulse;
+mod inelasticity;
 pub mod laws;
 mod rough;
 mod smooth;
 
+pub(crate) use body::{Body, Material, collide_bodies};
 pub use contact::Contact;
 pub use contact_duration::{ContactDuration, TangentialResponse};
 pub use elastic::Elastic;
-pub(crate) use encounter::{Body, Material, meet};
-pub use encounter::{collide, collide_with_wall};
+pub use encounter::{Encounter, WallEncounter, collide, collide_with_wall};
+pub use friction::Friction;
 pub use frictional::Frictional;
 pub use from_fn::{FromFn, from_fn};
 pub use impulse::{Impulse, Regime};
 pub use rough::Rough;
 pub use smooth::Smooth;
 
-use crate::ParameterError;
-use crate::quantity::accept;
+use crate::Fingerprint;
 
-/// What happens when two surfaces touch.
+/// The law of a collision: from a contact to an impulse.
 ///
 /// # Contract
-/// `impulse` is called only for contacts that close (`closing_speed > 0`, by rounding sometimes `>= 0`). It returns
-/// the same impulse for the same contact, every time: a rule that wants history finds it in the contact. The impulse
-/// should leave the partners separating and should not add energy; [`laws::check`] tells whether it does.
+/// The engine calls [`Self::impulse`] once for each collision that the rule decides, of disks or with a wall.
+/// It guarantees of the contact:
+/// - the closing speed is finite and not negative; it may be zero;
+/// - the slip speed is finite, of either sign or zero;
+/// - the masses are finite and positive, the tangential one not above the normal one.
+///
+/// The rule guarantees:
+/// 1. The same contact gets the same impulse, to the bit, every time: a rule that wants history finds it in
+///    the contact. Else a run depends on what was computed before, and a resumed run is another one.
+/// 2. The impulse is finite. Else the run ends with an error that names the partners, with what
+///    [`Self::explain`] says.
+/// 3. The surfaces do not close any more afterwards. Else they collide again at once, until the run ends as
+///    stalled.
+/// 4. The collision gains no energy, unless that is what the rule is for. Else the system heats up, and
+///    nobody tells.
+///
+/// [`laws::check_rule`] tests all four.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a collision rule",
+    label = "the trait `CollisionRule` is not implemented for `{Self}`",
+    note = "wrap a closure in `granular_edmd::collision::from_fn`, with its argument written as `|contact: &Contact|`"
+)]
 pub trait CollisionRule {
-    /// The impulse on the first partner; the second receives its opposite.
+    /// Returns the impulse on the first partner; the second receives its opposite.
     fn impulse(&self, contact: &Contact) -> Impulse;
+
+    /// Says why the rule has no answer for a contact.
+    ///
+    /// The engine asks only after an impulse that is not finite, and puts the text into its error.
+    fn explain(&self, contact: &Contact) -> Option<String> {
+        let _ = contact;
+        None
+    }
+
+    /// Names the rule by a number, so that a checkpoint notices when a run is resumed under another rule.
+    ///
+    /// Rules of equal fingerprints must give equal impulses. A rule that says nothing is not compared.
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        None
+    }
 }
 
 impl<T: CollisionRule + ?Sized> CollisionRule for &T {
     fn impulse(&self, contact: &Contact) -> Impulse {
         (**self).impulse(contact)
+    }
+    fn explain(&self, contact: &Contact) -> Option<String> {
+        (**self).explain(contact)
+    }
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        (**self).fingerprint()
     }
 }
 
@@ -82,32 +132,22 @@ impl<T: CollisionRule + ?Sized> CollisionRule for Box<T> {
     fn impulse(&self, contact: &Contact) -> Impulse {
         (**self).impulse(contact)
     }
+    fn explain(&self, contact: &Contact) -> Option<String> {
+        (**self).explain(contact)
+    }
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        (**self).fingerprint()
+    }
 }
 
 impl<T: CollisionRule + ?Sized> CollisionRule for std::sync::Arc<T> {
     fn impulse(&self, contact: &Contact) -> Impulse {
         (**self).impulse(contact)
     }
-}
-
-/// Normal inelasticity `$q_n = (1 - r_n)/2$` (paper, Eq. (1)), in `[0, 1/2]`.
-fn normal_inelasticity(value: f64) -> Result<f64, ParameterError> {
-    accept((0.0..=0.5).contains(&value), "normal inelasticity", "in [0, 0.5]", value)
-}
-
-/// Tangential inelasticity `$q_t = (1 - r_t)/2$` (paper, Eq. (1)), in `[0, 1]`.
-fn tangential_inelasticity(value: f64) -> Result<f64, ParameterError> {
-    accept((0.0..=1.0).contains(&value), "tangential inelasticity", "in [0, 1]", value)
-}
-
-/// Inelasticity of a normal restitution in `[0, 1]`.
-fn from_normal_restitution(value: f64) -> Result<f64, ParameterError> {
-    accept((0.0..=1.0).contains(&value), "normal restitution", "in [0, 1]", value)?;
-    Ok(0.5 * (1.0 - value))
-}
-
-/// Inelasticity of a tangential restitution in `[-1, 1]`.
-fn from_tangential_restitution(value: f64) -> Result<f64, ParameterError> {
-    accept((-1.0..=1.0).contains(&value), "tangential restitution", "in [-1, 1]", value)?;
-    Ok(0.5 * (1.0 - value))
+    fn explain(&self, contact: &Contact) -> Option<String> {
+        (**self).explain(contact)
+    }
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        (**self).fingerprint()
+    }
 }

@@ -3,10 +3,7 @@
 use glam::DVec2;
 
 use crate::ParameterError;
-use crate::quantity::{accept, positive};
-
-/// Inertia factor of a homogeneous disk, `$\beta = 1/2$` in `$I = \beta m R^2$`.
-pub const HOMOGENEOUS: f64 = 0.5;
+use crate::quantity::{accept, finite, positive};
 
 /// Largest and smallest magnitude of a radius or mass: products of a few of them stay finite and normal.
 const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
@@ -14,19 +11,19 @@ const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 /// Most disks that there can be at once.
 pub(crate) const MOST_DISKS: usize = 1 << 28;
 
-/// Largest magnitude of a component of a position or velocity, and of an angle or angular velocity.
-const LARGEST: f64 = 1e60;
+/// Largest magnitude of a component of a position or velocity, and of an angular velocity.
+pub(crate) const LARGEST: f64 = 1e60;
 
 /// A rotating hard disk: position, velocity, angle, angular velocity, radius, mass and inertia factor.
 ///
-/// Its moment of inertia is `$I = \beta m R^2$`, with `$\beta = 1/2$` unless said otherwise. Lengths, times and
-/// masses are in any consistent units; the paper takes the diameter and the mass of a disk as units.
+/// Its moment of inertia is `$I = \beta m R^2$`, with `$\beta = 1/2$` unless said otherwise. Lengths, times
+/// and masses are in any consistent units; the paper takes the diameter and the mass of a disk as units.
 ///
 /// ```
 /// use glam::DVec2;
 /// use granular_edmd::Disk;
 ///
-/// let disk = Disk::new(DVec2::new(3.0, 4.0), 0.5)?.with_velocity(DVec2::new(1.0, 0.0))?.with_angular_velocity(2.0)?;
+/// let disk = Disk::new(DVec2::new(3.0, 4.0), 0.5)?.with_velocity(DVec2::X)?.with_angular_velocity(2.0)?;
 /// assert_eq!(disk.mass(), 1.0);
 /// assert_eq!(disk.moment_of_inertia(), 0.125);
 /// assert_eq!(disk.translational_energy() + disk.rotational_energy(), 0.75);
@@ -47,6 +44,9 @@ pub struct Disk {
 }
 
 impl Disk {
+    /// Inertia factor of a homogeneous disk, `$\beta = 1/2$` in `$I = \beta m R^2$`.
+    pub const HOMOGENEOUS_INERTIA_FACTOR: f64 = 0.5;
+
     /// A homogeneous disk of mass 1 at rest.
     ///
     /// # Errors
@@ -59,7 +59,7 @@ impl Disk {
             angular_velocity: 0.0,
             radius: scale("radius", radius)?,
             mass: 1.0,
-            inertia_factor: HOMOGENEOUS,
+            inertia_factor: Self::HOMOGENEOUS_INERTIA_FACTOR,
         })
     }
 
@@ -82,9 +82,9 @@ impl Disk {
     /// The same disk turned to this angle, in radians, counterclockwise.
     ///
     /// # Errors
-    /// If the angle is not finite, or above 1e60 in magnitude.
+    /// If the angle is not finite. It may be as large as a long run makes it.
     pub fn with_angle(self, angle: f64) -> Result<Self, ParameterError> {
-        Ok(Self { angle: bounded("angle", angle)?, ..self })
+        Ok(Self { angle: finite("angle", angle)?, ..self })
     }
 
     /// The same disk with this angular velocity, in radians per time, counterclockwise.
@@ -103,8 +103,8 @@ impl Disk {
         Ok(Self { mass: scale("mass", mass)?, ..self })
     }
 
-    /// The same disk with the moment of inertia `$I = \beta m R^2$` for this `$\beta$`: 1/2 for a homogeneous disk,
-    /// 1 for a ring.
+    /// The same disk with the moment of inertia `$I = \beta m R^2$` for this `$\beta$`: 1/2 for a homogeneous
+    /// disk, 1 for a ring.
     ///
     /// # Errors
     /// If it is not in `[1e-6, 1]`.
@@ -189,7 +189,7 @@ fn bounded_vector(name: &'static str, vector: DVec2) -> Result<DVec2, ParameterE
     Ok(DVec2::new(bounded(name, vector.x)?, bounded(name, vector.y)?))
 }
 
-/// What a file holds, before it has passed the constructors.
+/// The fields of a file, before they have passed the constructors.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields, rename = "Disk")]

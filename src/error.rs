@@ -22,7 +22,8 @@ pub struct ParameterError {
 impl ParameterError {
     /// An error for the parameter `name`, which should meet `requirement` but has this `value`.
     ///
-    /// Meant for rules, walls and observables of your own, so that all parameters fail alike.
+    /// Meant for rules, walls and observables of your own, so that all parameters fail alike; the checks of
+    /// [`quantity`](crate::quantity) make it for the usual ranges.
     pub const fn new(name: &'static str, requirement: &'static str, value: f64) -> Self {
         Self { name, requirement, value }
     }

@@ -2,7 +2,10 @@
 
 use glam::DVec2;
 
-/// A disk's free flight from `time` on: `$\vec r(t) = \vec r_0 + \vec v_0 (t-t_0) + \tfrac12\vec a (t-t_0)^2$`.
+/// A disk's free flight at constant acceleration, from one time on.
+///
+/// The centre moves as `$\vec r(t) = \vec r_0 + \vec v_0 (t-t_0) + \tfrac12\vec a (t-t_0)^2$`. Times are
+/// offsets from the origin that a [`Boundary`](crate::boundary::Boundary) was given last.
 ///
 /// ```
 /// use glam::DVec2;
@@ -21,38 +24,38 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// A flight that starts at `time` with this position and velocity of the centre.
+    /// Creates a flight that starts at `time` with this position and velocity of the centre.
     #[inline]
     pub const fn new(time: f64, position: DVec2, velocity: DVec2, acceleration: DVec2, radius: f64) -> Self {
         Self { time, position, velocity, acceleration, radius }
     }
 
-    /// When the flight starts.
+    /// Returns the time at which the flight starts.
     #[inline]
     pub const fn time(&self) -> f64 {
         self.time
     }
 
-    /// The disk's radius.
+    /// Returns the disk's radius.
     #[inline]
     pub const fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// Acceleration, the same all along.
+    /// Returns the acceleration, the same all along.
     #[inline]
     pub const fn acceleration(&self) -> DVec2 {
         self.acceleration
     }
 
-    /// Position of the centre at `time`.
+    /// Returns the position of the centre at `time`.
     #[inline]
     pub fn position(&self, time: f64) -> DVec2 {
         let elapsed = time - self.time;
         self.position + (self.velocity + 0.5 * elapsed * self.acceleration) * elapsed
     }
 
-    /// Velocity of the centre at `time`.
+    /// Returns the velocity of the centre at `time`.
     #[inline]
     pub fn velocity(&self, time: f64) -> DVec2 {
         self.velocity + (time - self.time) * self.acceleration

@@ -1,13 +1,15 @@
-//! Mean energy loss per collision `$\langle dE\rangle$`: the quantity that the states of the driven system follow.
+//! Mean energy loss per collision, the quantity that the states of the driven system follow.
 //!
-//! A gas of disks with Maxwellian velocities and spins ([`Maxwellian`]) collides under a rule; `$\langle dE\rangle$`
-//! is the mean change of kinetic energy per collision, negative when energy is lost. Two roads lead to it, each
-//! testing the other: [`mean_energy_change`] in closed form for the paper's rule, and [`MonteCarlo`] for any
-//! [`CollisionRule`](crate::collision::CollisionRule). No simulation is needed.
+//! A gas of disks with Maxwellian velocities and spins ([`Maxwellian`]) collides under a rule;
+//! `$\langle dE\rangle$` is the mean change of kinetic energy per collision, negative when energy is lost.
+//! Two roads lead to it, and each tests the other: [`mean_energy_change`] in closed form for the paper's
+//! rule, and [`MonteCarlo`] for any [`CollisionRule`](crate::collision::CollisionRule). Neither needs a
+//! simulation.
 //!
 //! | question | answer | source |
 //! |---|---|---|
-//! | `$\langle dE\rangle$` of the paper's rule | [`mean_energy_change`], [`sticking_fraction`] | paper, Fig. 1 |
+//! | `$\langle dE\rangle$` of the paper's rule | [`mean_energy_change`] | paper, Fig. 1 |
+//! | the share of its collisions that stick | [`sticking_fraction`] | paper, section II |
 //! | `$\langle dE\rangle$` of any rule | [`MonteCarlo`] | paper, section II |
 //! | friction with the largest loss | [`friction_of_largest_loss`] | paper, `$\kappa\approx0.3$` |
 //! | one coefficient for inelasticity and friction | [`effective_inelasticity`] | paper, Eq. (9) |
@@ -32,8 +34,8 @@
 
 mod bisection;
 mod closed_form;
+mod collision_average;
 mod effective_inelasticity;
-mod estimate;
 mod iso_line;
 mod largest_loss;
 mod maxwellian;
@@ -41,8 +43,8 @@ mod monte_carlo;
 mod stick_slip;
 
 pub use closed_form::{mean_energy_change, sticking_fraction};
+pub use collision_average::CollisionAverage;
 pub use effective_inelasticity::{effective_inelasticity, frictionless_energy_change};
-pub use estimate::Estimate;
 pub use iso_line::{IsoLine, Piece};
 pub use largest_loss::friction_of_largest_loss;
 pub use maxwellian::Maxwellian;

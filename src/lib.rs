@@ -34,7 +34,7 @@
 //! | floor | what is there |
 //! |---|---|
 //! | [`study`] (feature `serde`) | studies as data: ramps, sweeps, records, resume |
-//! | [`analysis`] | convective states, clusters, transitions, errors of correlated samples |
+//! | [`analysis`] | convective states, clusters, transitions |
 //! | [`kinetic`] | ⟨dE⟩ by closed form and Monte Carlo, effective inelasticity; needs no simulation |
 //! | [`simulation`] | the engine: builder, event loop, checkpoints |
 //! | [`observable`] | what is measured, and when |
@@ -42,6 +42,7 @@
 //! | [`boundary`], [`wall`] | the walls around the disks, and how they move |
 //! | [`collision`] | what a collision does |
 //! | [`initial`], [`Disk`] | where everything starts |
+//! | [`statistics`] | means, and errors of correlated samples |
 //!
 //! Imports run downward in this order only.
 //!
@@ -50,6 +51,7 @@
 //! |---|---|
 //! | `serde` | parameters that serialise through their validating constructors, checkpoints, studies |
 //! | `rayon` | Monte Carlo and sweeps on all cores, with the same bits |
+//! | `proptest` | random contacts and disks for property tests of your own rules: `strategies` |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -62,6 +64,8 @@ pub mod boundary;
 pub mod collision;
 mod disk;
 mod error;
+#[cfg(feature = "serde")]
+mod file;
 mod fingerprint;
 mod flight;
 pub mod initial;
@@ -69,20 +73,21 @@ pub mod kinetic;
 pub mod observable;
 mod prefetch;
 pub mod prelude;
-mod quantity;
+pub mod quantity;
 mod random;
-mod roots;
+pub mod roots;
 pub mod scheduler;
-#[cfg(feature = "serde")]
-mod sealed;
 pub mod simulation;
+pub mod statistics;
+#[cfg(feature = "proptest")]
+pub mod strategies;
 #[cfg(feature = "serde")]
 pub mod study;
 pub mod wall;
 
-pub use disk::{Disk, HOMOGENEOUS};
+pub use disk::Disk;
 pub use error::ParameterError;
 pub use fingerprint::Fingerprint;
 pub use flight::Flight;
 pub use glam;
-pub use simulation::Simulation;
+pub use simulation::{BoxedSimulation, Simulation};

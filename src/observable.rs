@@ -1,15 +1,16 @@
-//! Observables and observers: what is measured, and when.
+//! Observables and observers: quantities of a state, and watchers of a run.
 //!
-//! An [`Observable`] is a pure function of a [`Snapshot`]. An [`Observer`] is told of every [`Collision`] and is shown
-//! a snapshot at the times that it asks for. Both are lent to a run and read afterwards; several compose as a tuple, a
-//! `Vec`, an `Option` or a `Box`. Watching never changes a trajectory.
+//! An [`Observable`] is a pure function of a [`Snapshot`]. An [`Observer`] is told when a run begins and ends and of every
+//! [`Collision`], is shown a snapshot at the times that it asks for, and may stop the run. Both are lent to a run and read
+//! afterwards; several compose as a tuple, a slice, a `Vec`, an `Option` or a `Box`. Watching never changes a trajectory.
 //!
 //! | observable | value |
 //! |---|---|
 //! | [`OrderParameters`] | Ψ1 and Ψ2 of the convection rolls (paper, Eqs. (10), (11)) |
-//! | [`CenterOfMass`] | position of the centre of mass |
+//! | [`CenterOfMass`] | position of the center of mass |
 //! | [`Energies`] | translational, rotational and potential energy per disk |
 //! | [`Temperatures`] | horizontal, vertical and rotational temperature |
+//! | [`from_fn`] | the result of a closure |
 //!
 //! | observer | keeps |
 //! |---|---|
@@ -19,12 +20,53 @@
 //! | [`CollisionCounts`] | counts by partner and regime, and rates |
 //! | [`HeightProfile`] | packing fraction by height |
 //! | [`Fields`] | density, flow and temperatures on a grid |
-//! | [`on_collision`], [`on_sample`] | whatever your closure keeps |
+//! | [`on_collision`], [`on_sample`] | whatever a closure keeps |
+//! | [`stop_when`], [`stop_when_sampled`] | nothing: they stop the run when a closure says so |
+//!
+//! # An observer of one's own
+//! [`SampleTimes`] is the clock of all observers here, and of one's own: [`laws::check`] tells in a plain test whether an
+//! observer keeps its contract.
+//!
+//! ```
+//! use granular_edmd::observable::{Collision, Moment, Observer, SampleTimes, Snapshot, laws};
+//!
+//! /// Counts the collisions within each interval.
+//! struct Beats {
+//!     times: SampleTimes,
+//!     present: u64,
+//!     counts: Vec<u64>,
+//! }
+//!
+//! impl Observer for Beats {
+//!     fn on_start(&mut self, moment: &Moment) {
+//!         self.times.start_at(moment.time());
+//!     }
+//!     fn on_collision(&mut self, _: &Collision) {
+//!         self.present += 1;
+//!     }
+//!     fn next_sample(&self) -> f64 {
+//!         self.times.upcoming()
+//!     }
+//!     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+//!         self.counts.push(std::mem::take(&mut self.present));
+//!         self.times.advance_past(snapshot.time());
+//!     }
+//! }
+//!
+//! laws::check(&mut Beats { times: SampleTimes::every(0.5)?, present: 0, counts: Vec::new() })?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # A measurement that goes on later
+//! With the feature `serde` the observers of this module, but for closures, can be written to a file beside the checkpoint
+//! of the run. Read back and lent to the resumed run, they end with the same bits as in a run without interruption. JSON keeps
+//! them if its reader rounds correctly (serde_json's `float_roundtrip`).
 
 mod center_of_mass;
 mod collision_counts;
 mod collision_event;
 mod compose;
+mod contract;
 mod energies;
 mod energy_change;
 mod energy_change_profile;
@@ -32,54 +74,29 @@ mod fields;
 mod from_fn;
 mod height_bins;
 mod height_profile;
+pub mod laws;
+mod moment;
 mod order_parameters;
+mod sample_times;
 mod series;
 mod snapshot;
-mod statistics;
+mod stop;
 mod temperatures;
 
 pub use center_of_mass::CenterOfMass;
 pub use collision_counts::CollisionCounts;
 pub use collision_event::{Collision, Partner};
+pub use contract::{Observable, Observer, ObserverError, Verdict};
 pub use energies::{Energies, EnergyPerDisk};
 pub use energy_change::EnergyChange;
 pub use energy_change_profile::{EnergyChangeLayer, EnergyChangeProfile};
 pub use fields::{FieldCell, Fields};
-pub use from_fn::{OnCollision, OnSample, on_collision, on_sample};
+pub use from_fn::{FromFn, OnCollision, OnSample, from_fn, on_collision, on_sample};
 pub use height_profile::{DenseLayer, HeightProfile};
+pub use moment::Moment;
 pub use order_parameters::{ConvectionOrder, OrderParameters};
-pub use series::{SampleTimes, Series};
+pub use sample_times::SampleTimes;
+pub use series::Series;
 pub use snapshot::Snapshot;
-pub use statistics::RunningMean;
+pub use stop::{StopWhen, StopWhenSampled, stop_when, stop_when_sampled};
 pub use temperatures::{Temperature, Temperatures};
-
-/// A quantity that a snapshot determines.
-pub trait Observable {
-    /// What is measured.
-    type Value;
-
-    /// Its value now.
-    fn measure(&self, snapshot: &Snapshot<'_>) -> Self::Value;
-}
-
-/// Someone who watches a run.
-///
-/// # Contract
-/// A sample at time `$t$` has seen all events up to and at `$t$`. After a sample, `next_sample` must name a later
-/// time; the run ends with an error otherwise.
-pub trait Observer {
-    /// A collision has just happened.
-    fn on_collision(&mut self, collision: &Collision) {
-        let _ = collision;
-    }
-
-    /// When the next sample is wanted; infinite for never.
-    fn next_sample(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    /// The sample that was asked for.
-    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-        let _ = snapshot;
-    }
-}

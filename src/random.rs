@@ -1,20 +1,22 @@
-//! The few samplers that enter a trajectory, kept here so that no dependency can change their bits.
+//! The few samplers that enter a trajectory. They are our own, so that no dependency can change their bits.
 
 use rand::Rng;
 
-/// Uniform in the open interval (0, 1).
+/// Draws a number uniform in the open interval (0, 1).
 pub(crate) fn uniform<G: Rng + ?Sized>(generator: &mut G) -> f64 {
+    // The middles of 2⁵² equal intervals: neither end is drawn, so that a logarithm of the result is finite.
     const SCALE: f64 = 1.0 / (1u64 << 52) as f64;
     ((generator.next_u64() >> 12) as f64 + 0.5) * SCALE
 }
 
-/// Normal with mean 0 and variance 1 (Box & Muller 1958, one of the pair).
+/// Draws a normal variable of mean 0 and variance 1 (Box & Muller 1958, one of the pair).
 pub(crate) fn normal<G: Rng + ?Sized>(generator: &mut G) -> f64 {
     let radius = rayleigh(generator);
     radius * libm::cos(std::f64::consts::TAU * uniform(generator))
 }
 
-/// Rayleigh, density `$v\,e^{-v^2/2}$`: the normal speed of particles that leave a wall of temperature 1.
+/// Draws a Rayleigh variable, of density `$v\,e^{-v^2/2}$`: the normal speed at which a wall of temperature 1
+/// is left.
 pub(crate) fn rayleigh<G: Rng + ?Sized>(generator: &mut G) -> f64 {
     (-2.0 * libm::log(uniform(generator))).sqrt()
 }

@@ -1,36 +1,326 @@
 //! The engine: it takes disks from event to event.
 //!
 //! [`Simulation::builder`] checks disks, gravity and boundary and makes a [`Simulation`]; [`Simulation::run_until`] and
-//! [`Simulation::step`] advance it; rule, boundary and gravity can be changed between runs.
+//! [`Simulation::step_until`] advance it; rule, boundary and gravity can be changed between runs.
 //!
 //! # Promises
 //! 1. The same inputs give the same bits, under every scheduler, with any observer, and however a run is cut into
 //!    pieces.
 //! 2. Equal times are ordered by the smaller disk index, then the smaller partner index, disks before walls.
 //! 3. A sample at time `$t$` has seen all events up to and at `$t$`.
-//! 4. A run that cannot progress ends with [`RunError::Stalled`], within seconds.
-//! 5. A checkpoint restores everything that the future depends on, except rule and boundary, which are given again.
+//! 4. A run that cannot progress ends with [`RunError::Stalled`]. Events that pile up in less than some 1e-8 of the time in which
+//!    a typical disk goes its diameter are such a run; a run that is only slow goes on.
+//! 5. A checkpoint restores everything that the future depends on, except rule and boundary, which are given again; it
+//!    tells if they are others, as far as they can say who they are.
+//! 6. A part that breaks its contract (a rule, boundary, scheduler or observer) ends the run with an error that names what it
+//!    answered; it never makes the engine go back in time or name a disk or wall that there is not.
 
-mod bodies;
 mod builder;
 mod cells;
 #[cfg(feature = "serde")]
 mod checkpoint;
-mod engine;
 mod epoch;
 mod errors;
-mod event;
-mod grid;
-mod guard;
+mod event_loop;
+mod events;
 mod lookahead;
-mod next_event;
 mod prediction;
 mod resolution;
-mod view;
+mod state;
 
 pub use builder::SimulationBuilder;
 #[cfg(feature = "serde")]
-pub use checkpoint::{Checkpoint, CheckpointError};
-pub use engine::Simulation;
-pub use errors::{BuildError, RunError};
-pub use event::{Counters, Event};
+pub use checkpoint::{Checkpoint, CheckpointError, Resumption};
+pub use errors::{BoundaryFault, BuildError, FailedCollision, RunError};
+pub use events::{Counters, Event, RunEnd};
+
+use std::ops::ControlFlow;
+
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use crate::boundary::{Boundary, Container};
+use crate::collision::{CollisionRule, Frictional};
+use crate::observable::{Moment, Observable, Observer, Snapshot};
+use crate::quantity::finite;
+use crate::scheduler::{BySize, EventScheduler};
+use crate::{Disk, ParameterError};
+use builder::fit;
+use cells::Cells;
+use errors::Outcome;
+use lookahead::Lookahead;
+use state::{Bodies, Clock};
+
+/// A system of disks that is taken from event to event.
+///
+/// Times given and returned are absolute times, in the units of the caller; inside they are offsets from an epoch that moves on,
+/// so that late times keep their digits. See [`Simulation::builder`] for how to make one, and [the module](crate::simulation) for
+/// its promises.
+///
+/// ```
+/// use granular_edmd::boundary::{Container, Wall};
+/// use granular_edmd::collision::Frictional;
+/// use granular_edmd::initial;
+/// use granular_edmd::observable::{OrderParameters, SampleTimes, Series};
+/// use granular_edmd::wall::BiParabolic;
+/// use granular_edmd::Simulation;
+///
+/// let boundary = Container::closed(20.0, 50.0)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?;
+/// let disks = initial::lattice(&boundary, 100, 0.5)?;
+/// let disks = initial::with_maxwellian_velocities(disks, 1.0, 7)?;
+/// let mut simulation =
+///     Simulation::builder(Frictional::new(0.0, 0.05)?, boundary).disks(disks).gravity(0.0156).build()?;
+/// let mut series = Series::new(OrderParameters, SampleTimes::every(1.0)?);
+/// simulation.run_until(10.0, &mut series)?;
+/// assert_eq!(series.values().len(), 10);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Simulation<R = Frictional, B = Container, S = BySize> {
+    rule: R,
+    boundary: B,
+    /// Walls of the boundary; its answers are checked against it.
+    wall_count: usize,
+    scheduler: S,
+    bodies: Bodies,
+    cells: Cells,
+    clock: Clock,
+    generator: Xoshiro256PlusPlus,
+    counters: Counters,
+    lookahead: Lookahead,
+    scratch: Scratch,
+}
+
+/// A simulation whose rule, boundary and scheduler are chosen when the program runs.
+pub type BoxedSimulation = Simulation<
+    Box<dyn CollisionRule + Send + Sync>,
+    Box<dyn Boundary + Send + Sync>,
+    Box<dyn EventScheduler + Send + Sync>,
+>;
+
+/// Room that is used again and again.
+#[derive(Debug, Clone, Default)]
+struct Scratch {
+    /// The neighbors of one disk.
+    found: Vec<u32>,
+    /// The times of all disks.
+    due: Vec<f64>,
+    /// The disks of one snapshot.
+    copies: Vec<Disk>,
+}
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
+    /// Runs until the absolute time `end`, with `observer` watching; `&mut ()` for nobody. Returns what ended the run.
+    ///
+    /// The observer is told of the start, of each collision, is shown the samples that it asks for and is told of the end, also
+    /// if that is an error. If it stops the run, the present is the time of the collision or sample at which it did, and
+    /// the next run goes on from there with the same bits.
+    ///
+    /// # Errors
+    /// If the end is not finite or before the present, the run cannot progress, a rule, boundary, scheduler or observer breaks its
+    /// contract, or an observer fails. The state is that of the moment.
+    pub fn run_until<O: Observer + ?Sized>(
+        &mut self,
+        end: f64,
+        observer: &mut O,
+    ) -> Result<RunEnd, RunError> {
+        self.watched_until(end, observer).map_err(|error| *error)
+    }
+
+    fn watched_until<O: Observer + ?Sized>(&mut self, end: f64, observer: &mut O) -> Outcome<RunEnd> {
+        self.check_end(end)?;
+        observer.on_start(&self.moment());
+        let ended = match self.verdict_of(observer) {
+            Ok(ControlFlow::Continue(())) => self.sample_until(end, observer),
+            stopped => stopped.map(|_| RunEnd::Observer),
+        };
+        observer.on_end(&self.moment());
+        // A wish to stop comes too late now; a failure, such as of a last write, must still be told.
+        let last = self.verdict_of(observer);
+        ended.and_then(|end| last.map(|_| end))
+    }
+
+    /// Goes to the next collision not after the absolute time `end`, and returns it; `None`, at `end`, if there is none.
+    ///
+    /// The observer is told of the collision; no samples are taken, and there is no start or end to tell of.
+    ///
+    /// ```
+    /// # use glam::DVec2;
+    /// # use granular_edmd::{Disk, Simulation, boundary::Container, collision::Elastic, simulation::Event};
+    /// let disk = Disk::new(DVec2::new(2.0, 1.0), 0.5)?.with_velocity(DVec2::NEG_Y)?;
+    /// let mut run = Simulation::builder(Elastic, Container::open(4.0)?).disks([disk]).build()?;
+    /// assert_eq!(run.step_until(10.0, &mut ())?, Some(Event::WallCollision { disk: 0, wall: 0 }));
+    /// assert_eq!(run.time(), 0.5);
+    /// assert_eq!(run.step_until(10.0, &mut ())?, None);
+    /// assert_eq!(run.time(), 10.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Self::run_until`].
+    pub fn step_until<O: Observer + ?Sized>(
+        &mut self,
+        end: f64,
+        observer: &mut O,
+    ) -> Result<Option<Event>, RunError> {
+        self.watched_step(end, observer).map_err(|error| *error)
+    }
+
+    fn watched_step<O: Observer + ?Sized>(&mut self, end: f64, observer: &mut O) -> Outcome<Option<Event>> {
+        self.check_end(end)?;
+        let event = self.collide_until(end, observer)?;
+        // A wish to stop is idle here: whoever takes single steps can stop at any.
+        let _: ControlFlow<()> = self.verdict_of(observer)?;
+        Ok(event)
+    }
+
+    /// Goes from sample to sample until `end`.
+    fn sample_until<O: Observer + ?Sized>(&mut self, end: f64, observer: &mut O) -> Outcome<RunEnd> {
+        loop {
+            let sample = observer.next_sample();
+            if sample.is_nan() {
+                return Err(Box::new(RunError::SampleTime { next: sample, time: self.time() }));
+            }
+            let stop = end.min(sample.max(self.time()));
+            while self.collide_until(stop, observer)?.is_some() {
+                if self.verdict_of(observer)?.is_break() {
+                    return Ok(RunEnd::Observer);
+                }
+            }
+            if sample > stop {
+                return Ok(RunEnd::Time);
+            }
+            observer.on_sample(&self.snapshot_as_of(stop));
+            if self.verdict_of(observer)?.is_break() {
+                return Ok(RunEnd::Observer);
+            }
+            let next = observer.next_sample();
+            if next.is_nan() || next <= sample {
+                return Err(Box::new(RunError::SampleTime { next, time: self.time() }));
+            }
+        }
+    }
+
+    /// Does all events until the next collision, or until the absolute time `stop`, and goes there.
+    #[inline]
+    fn collide_until<O: Observer + ?Sized>(&mut self, stop: f64, observer: &mut O) -> Outcome<Option<Event>> {
+        // The epoch may move with each event: the offset of `stop` is another then.
+        while let Some((disk, due)) = self.next_due(stop - self.clock.origin) {
+            let event = self.advance(disk, due, observer)?;
+            if event.is_some() {
+                return Ok(event);
+            }
+        }
+        self.clock.now = self.clock.now.max(stop - self.clock.origin);
+        Ok(None)
+    }
+
+    fn check_end(&self, end: f64) -> Outcome<()> {
+        let is_ahead = end.is_finite() && end >= self.time() - self.clock.rounding();
+        if is_ahead { Ok(()) } else { Err(Box::new(RunError::End { end, time: self.time() })) }
+    }
+
+    /// Asks the observer whether the run shall go on.
+    #[inline]
+    fn verdict_of<O: Observer + ?Sized>(&self, observer: &mut O) -> Outcome<ControlFlow<()>> {
+        observer.verdict().map_err(|source| Box::new(RunError::Observer { time: self.time(), source }))
+    }
+
+    fn moment(&self) -> Moment {
+        let domain = self.boundary.domain();
+        Moment::new(self.time(), self.len(), self.wall_count, domain, self.bodies.gravity)
+    }
+
+    /// The present, in absolute time.
+    pub fn time(&self) -> f64 {
+        self.clock.time()
+    }
+
+    /// Number of disks.
+    pub fn len(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// Whether there are no disks.
+    pub fn is_empty(&self) -> bool {
+        self.bodies.len() == 0
+    }
+
+    /// A disk as it is now; `None` if there is no such disk.
+    pub fn disk(&self, disk: usize) -> Option<Disk> {
+        (disk < self.len()).then(|| self.bodies.disk(disk, self.clock.now))
+    }
+
+    /// All disks as they are now.
+    pub fn disks(&self) -> Vec<Disk> {
+        self.bodies.disks(self.clock.now)
+    }
+
+    /// The value of an observable now.
+    pub fn measure<Q: Observable + ?Sized>(&self, observable: &Q) -> Q::Value {
+        let disks = self.disks();
+        observable.measure(&Snapshot::new(self.time(), &disks, self.boundary.domain(), self.bodies.gravity))
+    }
+
+    /// The present state, for observables and observers of one's own; `&mut`, since the copies of the disks are kept for the next.
+    pub fn snapshot(&mut self) -> Snapshot<'_> {
+        self.snapshot_as_of(self.time())
+    }
+
+    /// The present state under the name by which it was asked for, which [`Self::time`] may miss by rounding.
+    fn snapshot_as_of(&mut self, time: f64) -> Snapshot<'_> {
+        let Self { bodies, scratch, clock, .. } = self;
+        scratch.copies.clear();
+        scratch.copies.extend((0..bodies.len()).map(|disk| bodies.disk(disk, clock.now)));
+        Snapshot::new(time, &self.scratch.copies, self.boundary.domain(), self.bodies.gravity)
+    }
+
+    /// Numbers of events since the simulation was built.
+    pub const fn counters(&self) -> &Counters {
+        &self.counters
+    }
+
+    /// The rule between the disks.
+    pub const fn rule(&self) -> &R {
+        &self.rule
+    }
+
+    /// The walls.
+    pub const fn boundary(&self) -> &B {
+        &self.boundary
+    }
+
+    /// Gravity, pointing down.
+    pub const fn gravity(&self) -> f64 {
+        self.bodies.gravity
+    }
+
+    /// Sets another rule from now on. Predictions stay: a rule decides the outcome of a collision, not its time.
+    pub fn set_rule(&mut self, rule: R) {
+        self.rule = rule;
+    }
+
+    /// Sets gravity from now on.
+    ///
+    /// # Errors
+    /// If it is not finite; the simulation is as before.
+    pub fn set_gravity(&mut self, gravity: f64) -> Result<(), ParameterError> {
+        finite("gravity", gravity)?;
+        self.shift_epoch(self.clock.exact_offset());
+        self.bodies.set_gravity(gravity, self.clock.now);
+        self.clock.epoch_length = self.bodies.epoch_length();
+        self.predict_all();
+        Ok(())
+    }
+
+    /// Sets other walls from now on.
+    ///
+    /// # Errors
+    /// If the disks do not fit into them; the simulation is as before.
+    pub fn set_boundary(&mut self, mut boundary: B) -> Result<(), BuildError> {
+        boundary.set_time_origin(self.clock.origin);
+        let (wall_count, cells) = fit(&boundary, &self.disks(), self.clock.now)?;
+        (self.boundary, self.wall_count, self.cells) = (boundary, wall_count, cells);
+        self.predict_all();
+        Ok(())
+    }
+}

@@ -36,6 +36,7 @@
 mod base;
 mod control;
 mod errors;
+mod file;
 mod folder;
 mod lock;
 mod parameter;
@@ -45,7 +46,6 @@ mod record;
 mod rule;
 mod runner;
 mod sample;
-mod sealed;
 mod specification;
 mod system;
 mod tables;
@@ -59,7 +59,7 @@ pub use errors::{SpecificationError, StudyError};
 pub use parameter::Parameter;
 pub use protocol::Protocol;
 pub use ramp::{Axis, Course, Leg, Ramp};
-pub use record::{Estimate, Outcome, Record};
+pub use record::{Outcome, Record};
 pub use sample::Sample;
 pub use specification::Specification;
 pub use system::System;
@@ -149,9 +149,9 @@ impl Study {
     /// If the file is damaged, of another study, or cannot be read.
     pub fn record(&self, ramp: usize, value: usize) -> Result<Option<Record>, StudyError> {
         let path = self.folder.record(ramp, value);
-        let Some(record) = sealed::read_sealed::<Record>(&path)? else { return Ok(None) };
+        let Some(record) = file::read_sealed::<Record>(&path)? else { return Ok(None) };
         self.check_origin(&record.origin, ramp, value, &path)?;
-        record.check(&self.specification).map_err(|reason| sealed::damaged(&path, reason))?;
+        record.check(&self.specification).map_err(|reason| file::damaged(&path, reason))?;
         Ok(Some(record))
     }
 
@@ -179,7 +179,7 @@ impl Study {
         if (Origin { version: found.version.clone(), ..self.origin(ramp, value) }) == *found {
             Ok(())
         } else {
-            Err(sealed::damaged(path, "it is of another value"))
+            Err(file::damaged(path, "it is of another value"))
         }
     }
 }

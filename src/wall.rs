@@ -8,24 +8,33 @@
 //! | [`Triangular`] | constant speed up, constant speed down | |
 //! | [`Sawtooth`] | constant speed up, instantly back | |
 //!
-//! [`first_touch`] finds the contact for all of them and for yours: it needs bounds of the acceleration on pieces of
-//! time, nothing more. See [`WallMotion`] for an example.
+//! [`first_touch`] finds the contact for all of them and for yours: it needs bounds of the acceleration on
+//! pieces of time, nothing more. See [`WallMotion`] for an example, and [`laws`] for a check of your own
+//! motion.
 
 mod bi_parabolic;
 mod first_touch;
 mod fixed;
+mod forward;
+pub mod laws;
 mod oscillation;
+mod sawtooth;
 mod sinusoidal;
-mod steady;
+mod stroke;
+mod triangular;
 
 pub use bi_parabolic::BiParabolic;
 pub use first_touch::{Approach, first_touch};
 pub use fixed::Fixed;
+pub use sawtooth::Sawtooth;
 pub use sinusoidal::Sinusoidal;
-pub use steady::{Sawtooth, Triangular};
+pub use triangular::Triangular;
 
-/// Where a wall is and how fast it moves, along its normal (which points to the disks).
+use crate::Fingerprint;
+
+/// Place and velocity of a wall along its normal, which points to the disks.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct WallState {
     /// Displacement from the wall's place at rest.
     pub displacement: f64,
@@ -33,44 +42,80 @@ pub struct WallState {
     pub velocity: f64,
 }
 
-/// Bounds of a wall's acceleration on the piece of time from the one asked for to `until`.
+impl WallState {
+    /// Creates a state from its numbers.
+    #[inline]
+    pub const fn new(displacement: f64, velocity: f64) -> Self {
+        Self { displacement, velocity }
+    }
+}
+
+/// Bounds of a wall's acceleration on a piece of time: from the phase asked for to `until`.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct AccelerationBounds {
-    /// End of the piece, later than the time asked for; what it means if it is not, [`first_touch`] says.
+    /// End of the piece: a phase later than the one asked for, or infinite for a piece without an end.
     pub until: f64,
-    /// No acceleration on the piece is below this.
+    /// Lower bound of the acceleration on the piece.
     pub min: f64,
-    /// No acceleration on the piece is above this.
+    /// Upper bound of the acceleration on the piece.
     pub max: f64,
+}
+
+impl AccelerationBounds {
+    /// Creates bounds that hold until this phase.
+    #[inline]
+    pub const fn new(until: f64, min: f64, max: f64) -> Self {
+        Self { until, min, max }
+    }
 }
 
 /// The motion of a wall along its normal.
 ///
+/// # Phases
+/// A motion is asked for *phases*. For a motion without a period, the phase is the absolute time of the run.
+/// For one with a period it is the absolute time less some whole periods, which keeps all digits of late
+/// times. It is then below one period in magnitude when an epoch of the run begins, grows as the epoch goes
+/// on, and is negative only in runs that begin at a negative time. A motion whose smallest and largest
+/// displacement are equal never moves: it is asked for small phases, whatever the time.
+///
 /// # Contract
-/// - Inside a piece ([`Self::acceleration`]) displacement and velocity are continuous. At the end of a piece the
-///   velocity may jump, and the displacement may jump away from the disks; `state` at that time is the one after.
-/// - `reach` bounds the displacement at all times.
-/// - If `period` is given, `state` and `acceleration` repeat after it, and times are passed reduced by whole periods:
-///   that is how late times keep all their digits.
+/// An implementation guarantees, for every phase:
+/// 1. [`state`](Self::state) and [`acceleration`](Self::acceleration) give finite numbers, the same ones each
+///    time they are asked; only `until` may be infinite.
+/// 2. The displacement lies within [`reach`](Self::reach).
+/// 3. A piece ends later than the phase asked for, and its bounds hold for the acceleration up to its end.
+/// 4. Inside a piece, displacement and velocity are continuous, and the one is the integral of the other. At
+///    the end of a piece the velocity may jump, and the displacement may jump away from the disks, never
+///    toward them. The state at that phase is the one after the jump.
+/// 5. If there is a [`period`](Self::period), everything repeats after it.
+///
+/// [`laws::check`] tries all of this on a stretch of phases. A container calls the methods in any order and
+/// from any thread.
+///
+/// # Motions that break it
+/// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion that answers with
+/// numbers that are not finite, at phases from 0 on that it looks at. Whatever a motion answers,
+/// [`first_touch`] ends: see there. Bounds that are too small, a reach that is too small or a jump toward the
+/// disks let disks pass into the wall. Bounds that are too large cost time only.
 ///
 /// ```
-/// use granular_edmd::wall::{AccelerationBounds, Approach, WallMotion, WallState, first_touch};
+/// use granular_edmd::wall::{AccelerationBounds, Approach, WallMotion, WallState, first_touch, laws};
 ///
 /// /// A piston that starts at time 0 and accelerates until it has moved by 1.
 /// struct Piston;
 ///
 /// impl WallMotion for Piston {
-///     fn state(&self, time: f64) -> WallState {
-///         let t = time.clamp(0.0, 1.0);
-///         WallState { displacement: t * t, velocity: if t < 1.0 { 2.0 * t } else { 0.0 } }
+///     fn state(&self, phase: f64) -> WallState {
+///         let t = phase.clamp(0.0, 1.0);
+///         WallState::new(t * t, if t < 1.0 { 2.0 * t } else { 0.0 })
 ///     }
-///     fn acceleration(&self, time: f64) -> AccelerationBounds {
-///         let (until, value) = match time {
-///             t if t < 0.0 => (0.0, 0.0),
-///             t if t < 1.0 => (1.0, 2.0),
-///             _ => (f64::INFINITY, 0.0),
-///         };
-///         AccelerationBounds { until, min: value, max: value }
+///     fn acceleration(&self, phase: f64) -> AccelerationBounds {
+///         match phase {
+///             t if t < 0.0 => AccelerationBounds::new(0.0, 0.0, 0.0),
+///             t if t < 1.0 => AccelerationBounds::new(1.0, 2.0, 2.0),
+///             _ => AccelerationBounds::new(f64::INFINITY, 0.0, 0.0),
+///         }
 ///     }
 ///     fn reach(&self) -> (f64, f64) {
 ///         (0.0, 1.0)
@@ -79,49 +124,36 @@ pub struct AccelerationBounds {
 ///
 /// let resting = Approach::new(0.0, 0.25, 0.0, 0.0);
 /// assert_eq!(first_touch(&Piston, &resting, 10.0), Some(0.5));
+/// assert_eq!(laws::check(&Piston, -2.0, 5.0), Ok(()));
 /// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not the motion of a wall",
+    label = "not a wall motion",
+    note = "take one of `granular_edmd::wall`, such as `BiParabolic` or `Fixed`",
+    note = "or implement `WallMotion`: state, bounds of the acceleration, and reach"
+)]
 pub trait WallMotion {
-    /// Displacement and velocity at `time`.
-    fn state(&self, time: f64) -> WallState;
+    /// Returns displacement and velocity at `phase`.
+    fn state(&self, phase: f64) -> WallState;
 
-    /// Bounds of the acceleration from `time` to the end of the piece that `time` lies in.
-    fn acceleration(&self, time: f64) -> AccelerationBounds;
+    /// Returns bounds of the acceleration from `phase` to the end of the piece that it lies in.
+    fn acceleration(&self, phase: f64) -> AccelerationBounds;
 
-    /// Smallest and largest displacement.
+    /// Returns the smallest and the largest displacement.
+    ///
+    /// They should be narrow: flights above the largest displacement are skipped without a search.
     fn reach(&self) -> (f64, f64);
 
-    /// The period, if the motion has one.
+    /// Returns the period, finite and positive, if the motion has one.
     fn period(&self) -> Option<f64> {
         None
     }
-}
 
-impl<T: WallMotion + ?Sized> WallMotion for &T {
-    fn state(&self, time: f64) -> WallState {
-        (**self).state(time)
-    }
-    fn acceleration(&self, time: f64) -> AccelerationBounds {
-        (**self).acceleration(time)
-    }
-    fn reach(&self) -> (f64, f64) {
-        (**self).reach()
-    }
-    fn period(&self) -> Option<f64> {
-        (**self).period()
-    }
-}
-
-impl<T: WallMotion + ?Sized> WallMotion for Box<T> {
-    fn state(&self, time: f64) -> WallState {
-        (**self).state(time)
-    }
-    fn acceleration(&self, time: f64) -> AccelerationBounds {
-        (**self).acceleration(time)
-    }
-    fn reach(&self) -> (f64, f64) {
-        (**self).reach()
-    }
-    fn period(&self) -> Option<f64> {
-        (**self).period()
+    /// Returns the fingerprint of the motion: its name and all numbers that decide how it moves.
+    ///
+    /// Checkpoints compare it when a run is resumed. Without one, a boundary with this motion has none
+    /// either, and is not compared.
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        None
     }
 }

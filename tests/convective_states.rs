@@ -8,7 +8,7 @@ use std::error::Error;
 use std::f64::consts::TAU;
 
 use granular_edmd::analysis::{
-    Classification, ConvectiveRegime, ConvectiveState, StateCriteria, block_average, thermal_noise,
+    Classification, ConvectiveRegime, ConvectiveState, StateCriteria, thermal_noise,
 };
 use granular_edmd::boundary::{Container, Region, Wall};
 use granular_edmd::collision::Frictional;
@@ -16,6 +16,7 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
     ConvectionOrder, Fields, HeightProfile, OrderParameters, SampleTimes, Series, Temperature, Temperatures,
 };
+use granular_edmd::statistics::block_average;
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{Simulation, initial};
 
@@ -39,7 +40,7 @@ impl Measured {
         let rule = Frictional::new(0.0, friction)?;
         let mut simulation = Simulation::builder(rule, boundary).disks(disks).gravity(0.015_625).build()?;
         let times = SampleTimes::every(20.0 * PERIOD)?.starting_at(0.5 * oscillations * PERIOD)?;
-        let region = Region { min: DVec2::ZERO, max: DVec2::new(60.0, 60.0) };
+        let region = Region::new(DVec2::ZERO, DVec2::new(60.0, 60.0));
         let mut measured = Self {
             orders: Series::new((OrderParameters, Temperatures), times),
             profile: HeightProfile::new(0.0, 150.0, 150, times)?,

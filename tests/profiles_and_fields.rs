@@ -7,7 +7,7 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{DenseLayer, Fields, HeightProfile, Observer, SampleTimes, Snapshot};
 use granular_edmd::{Disk, ParameterError, initial};
 
-const DOMAIN: Domain = Domain { left: 0.0, right: 60.0, bottom: 0.0, top: 150.0, periodic: false };
+const DOMAIN: Domain = Domain::new(0.0, 60.0, 0.0, 150.0);
 
 fn times() -> Result<SampleTimes, ParameterError> {
     SampleTimes::every(1.0)
@@ -70,7 +70,7 @@ fn a_disk_is_cut_at_the_edges_of_bins() -> Result<(), ParameterError> {
 #[test]
 fn the_densest_layer_is_the_lowest_of_equals() {
     let layer = |profile: &[(f64, f64)]| DenseLayer::among(profile.iter().copied());
-    let expected = DenseLayer { height: 1.5, packing_fraction: 0.5, least_below: 0.2 };
+    let expected = DenseLayer::new(1.5, 0.5, 0.2);
     assert_eq!(layer(&[(0.5, 0.2), (1.5, 0.5), (2.5, 0.1), (3.5, 0.5)]), Some(expected));
     assert_eq!(layer(&[]), None);
 }
@@ -106,7 +106,7 @@ fn a_sediment_has_nothing_below() -> Result<(), ParameterError> {
 #[test]
 fn a_swirl_is_flow_and_not_temperature() -> Result<(), Box<dyn std::error::Error>> {
     // Uniform in each cell: two disks with u + c and u - c, spins w + d and w - d.
-    let region = Region { min: DVec2::ZERO, max: DVec2::new(60.0, 150.0) };
+    let region = Region::new(DVec2::ZERO, DVec2::new(60.0, 150.0));
     let mut fields = Fields::new(region, 6, 5, times()?)?;
     let flow = |column: i32, row: i32| DVec2::new(f64::from(row) - 2.0, 2.5 - f64::from(column)) * 1e3;
     let mut disks = Vec::new();
@@ -137,7 +137,7 @@ fn a_swirl_is_flow_and_not_temperature() -> Result<(), Box<dyn std::error::Error
 /// Three disks of different masses in one cell of a grid away from the origin, and what is on its edges.
 #[test]
 fn a_mixture_has_the_flow_and_the_temperatures_of_its_masses() -> Result<(), ParameterError> {
-    let region = Region { min: DVec2::new(10.0, 20.0), max: DVec2::new(16.0, 24.0) };
+    let region = Region::new(DVec2::new(10.0, 20.0), DVec2::new(16.0, 24.0));
     let mut fields = Fields::new(region, 3, 1, times()?)?;
     let kind = |x: f64, mass: f64, factor: f64, vx: f64, vy: f64, spin: f64| {
         let disk =
@@ -173,7 +173,7 @@ fn a_mixture_has_the_flow_and_the_temperatures_of_its_masses() -> Result<(), Par
 
 #[test]
 fn a_gas_at_rest_has_its_temperature_and_no_flow() -> Result<(), Box<dyn std::error::Error>> {
-    let region = Region { min: DVec2::ZERO, max: DVec2::new(60.0, 150.0) };
+    let region = Region::new(DVec2::ZERO, DVec2::new(60.0, 150.0));
     let mut fields = Fields::new(region, 1, 1, times()?)?;
     let disks = gas()?;
     fields.on_sample(&Snapshot::new(1.0, &disks, DOMAIN, 0.0));
@@ -188,7 +188,7 @@ fn a_gas_at_rest_has_its_temperature_and_no_flow() -> Result<(), Box<dyn std::er
 
 #[test]
 fn grids_without_extent_are_refused() -> Result<(), ParameterError> {
-    let region = |x: f64, y: f64| Region { min: DVec2::ZERO, max: DVec2::new(x, y) };
+    let region = |x: f64, y: f64| Region::new(DVec2::ZERO, DVec2::new(x, y));
     let times = times()?;
     for (x, y, columns, rows) in [
         (0.0, 1.0, 1, 1),
@@ -215,6 +215,7 @@ fn energy_change_by_height_sums_up_to_that_of_all_collisions() -> Result<(), Box
     use granular_edmd::kinetic::{Maxwellian, mean_energy_change};
     use granular_edmd::observable::{EnergyChange, EnergyChangeProfile};
     use granular_edmd::prelude::*;
+    use granular_edmd::statistics::BlockedMean;
 
     let rule = Frictional::new(0.001, 0.02)?;
     let container =
@@ -227,9 +228,9 @@ fn energy_change_by_height_sums_up_to_that_of_all_collisions() -> Result<(), Box
     let mut profile = EnergyChangeProfile::new(0.0, 100.0, 4, SampleTimes::every(0.5)?)?;
     simulation.run_until(20.0, &mut (&mut all, &mut profile))?;
 
-    let layers = profile.layers().iter().map(|layer| layer.energy_change);
-    assert_eq!(layers.clone().map(|change| change.count()).sum::<u64>(), all.disks().count());
-    let sum: f64 = layers.map(|change| change.sum()).sum();
+    let layers = profile.layers().iter().map(|layer| &layer.energy_change);
+    assert_eq!(layers.clone().map(BlockedMean::count).sum::<u64>(), all.disks().count());
+    let sum: f64 = layers.map(BlockedMean::sum).sum();
     assert!((sum - all.disks().sum()).abs() < 1e-10 * sum.abs());
 
     // Some ten collisions a disk, each pair losing 4 % of T: the gas cools by a fifth underway. The standard error of 5000

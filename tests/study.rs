@@ -2,7 +2,10 @@
 
 #![cfg(feature = "serde")]
 
-mod support;
+#[path = "support/cases.rs"]
+mod cases;
+#[path = "support/report.rs"]
+mod report;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -16,6 +19,7 @@ use granular_edmd::study::{
     StudyError, System,
 };
 use proptest::prelude::*;
+use report::report;
 
 type AnyError = Box<dyn std::error::Error>;
 
@@ -102,7 +106,7 @@ fn a_study_records_what_it_was_asked_for() {
         // All disks are in the profile: its area is theirs.
         let area: f64 = record.profile().map(|(_, fraction)| fraction * 10.0).sum();
         approx::assert_relative_eq!(area, 30.0 * std::f64::consts::FRAC_PI_4, max_relative = 1e-3);
-        assert!(record.energy_change().mean < 0.0 && record.energy_change().error > 0.0);
+        assert!(record.energy_change().mean() < 0.0 && record.energy_change().standard_error() > 0.0);
     }
     let friction: Vec<_> = records[..5].iter().map(|r| r.system().get(Parameter::Friction)).collect();
     assert_eq!(friction, [0.01, 0.1, 0.3, 0.1, 0.01].map(Some));
@@ -155,7 +159,8 @@ fn a_value_is_the_engine_s_run() -> Result<(), AnyError> {
         1e-4,
     )?;
     let scheduler = granular_edmd::scheduler::TournamentTree::default();
-    let mut run = granular_edmd::Simulation::resume(record.state(), rule, container, scheduler)?;
+    let resumption = granular_edmd::Simulation::resume(record.state(), rule, container);
+    let mut run = resumption.with_another_rule().scheduler(scheduler).build()?;
     let period = std::f64::consts::TAU / 10.0;
     let times = SampleTimes::every(10.0 * period)?.starting_at(95.0 * period)?;
     let mut series = Series::new(OrderParameters, times);
@@ -330,10 +335,36 @@ fn a_damaged_half_done_value_is_started_again() -> Result<(), AnyError> {
     let partial = scratch.0.join("ramps/0000/0000.partial");
     let bytes = fs::read(&partial)?;
     fs::write(&partial, &bytes[..bytes.len() / 2])?;
-    fs::write(scratch.0.join("ramps/0000/0001.record.tmp"), "of a killed process")?;
+    fs::write(scratch.0.join("ramps/0000").join(TEMPORARY), "of a killed process")?;
     let summary = study.run(&Control::default())?;
     assert_eq!(summary.redone, [partial]);
     assert_same(&scratch.0, &expected.0);
+    Ok(())
+}
+
+/// Name of a file that a killed process was writing.
+const TEMPORARY: &str = "granular-edmd-4711-0-0123456789abcdef.tmp";
+
+#[test]
+fn only_temporary_files_of_the_library_are_removed() -> Result<(), AnyError> {
+    let scratch = Scratch::new("temporaries");
+    let study = Study::create(&scratch.0, &small_study())?;
+    fs::create_dir_all(scratch.0.join("ramps/0000"))?;
+    let theirs = ["data.tmp", "granular-edmd.tmp", "ramps/0000/0001.record.tmp", "ramps/0000/notes.tmp"];
+    for name in theirs {
+        fs::write(scratch.0.join(name), name)?;
+    }
+    for folder in ["", "ramps/0000"] {
+        fs::write(scratch.0.join(folder).join(TEMPORARY), "of a killed process")?;
+    }
+    fs::create_dir(scratch.0.join("granular-edmd-4711-1-0123456789abcdef.tmp"))?;
+    assert!(study.run(&Control::default())?.is_complete());
+    for name in theirs {
+        assert_eq!(fs::read_to_string(scratch.0.join(name))?, name);
+    }
+    for folder in ["", "ramps/0000"] {
+        assert!(!scratch.0.join(folder).join(TEMPORARY).exists(), "{folder}");
+    }
     Ok(())
 }
 
@@ -394,7 +425,7 @@ fn a_read_only_folder_is_an_error() -> Result<(), AnyError> {
     let result = study.run(&Control::default());
     fs::set_permissions(&scratch.0, fs::Permissions::from_mode(0o755))?;
     if !superuser {
-        let error = result.unwrap_err().to_string();
+        let error = report(&result.unwrap_err());
         assert!(error.starts_with("cannot write") && error.contains("ermission denied"), "{error}");
     }
     Ok(())
@@ -514,7 +545,7 @@ fn plans_with_errors_are_refused_by_name() {
 }
 
 proptest! {
-    #![proptest_config(support::config(64))]
+    #![proptest_config(cases::config(64))]
 
     /// Every number survives the file, to the last bit.
     #[test]

@@ -42,12 +42,15 @@ pub(crate) fn vibrated_box(gravity: f64) -> System {
     System::new(1000, 60.0, base).with_height(150.0).with_gravity(gravity).with_contact_duration(1e-4)
 }
 
-/// Says in one line what went wrong, if something did.
+/// Says in one line what went wrong, if something did, and why.
 pub(crate) fn end(result: Result<(), Box<dyn Error>>) -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            let sources = std::iter::successors(error.source(), |&source| source.source());
+            let reasons = sources.map(ToString::to_string);
+            let told: Vec<String> = std::iter::once(error.to_string()).chain(reasons).collect();
+            eprintln!("error: {}", told.join(": "));
             ExitCode::FAILURE
         }
     }

@@ -7,9 +7,10 @@ use granular_edmd::boundary::{Boundary, Container, Domain, Thermal, Wall};
 use granular_edmd::collision::{CollisionRule, ContactDuration, Frictional};
 use granular_edmd::initial::{self, PlacementError};
 use granular_edmd::observable::{
-    CenterOfMass, ConvectionOrder, Energies, EnergyChange, EnergyPerDisk, OrderParameters, RunningMean,
+    CenterOfMass, ConvectionOrder, Energies, EnergyChange, EnergyPerDisk, OrderParameters,
 };
 use granular_edmd::simulation::{Counters, RunError};
+use granular_edmd::statistics::Estimate;
 use granular_edmd::wall::{BiParabolic, Sinusoidal, Triangular};
 use granular_edmd::{Disk, Simulation};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -23,8 +24,8 @@ const RADIUS: f64 = 0.5;
 /// What one run gave.
 pub(crate) struct Outcome {
     pub(crate) samples: Vec<Sample>,
-    /// Energy change of disk–disk collisions in the second half.
-    pub(crate) energy_change: RunningMean,
+    /// Energy change of disk–disk collisions in the second half, with the error of correlated collisions.
+    pub(crate) energy_change: Estimate,
     /// Mean flow in the second half.
     pub(crate) flow: Flow,
     pub(crate) disks: Vec<Disk>,
@@ -63,7 +64,7 @@ fn simulate<R: CollisionRule>(rule: R, arguments: &Arguments) -> Result<Outcome,
     let disks = simulation.disks();
     Ok(Outcome {
         samples: record.samples,
-        energy_change: *record.energy_change.disks(),
+        energy_change: record.energy_change.disks().estimate(),
         flow: record.flow,
         counters: *simulation.counters(),
         run_seconds: record.run_seconds,

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use granular_edmd::observable::RunningMean;
+use granular_edmd::statistics::RunningMean;
 use serde_json::{Value, json};
 
 use crate::arguments::{Arguments, Sides};
@@ -73,14 +73,7 @@ pub(crate) fn summary(arguments: &Arguments, outcome: &Outcome) -> String {
     line("center of mass height", figure(&means.center_of_mass_height));
     line("translational energy", format!("{} per disk", figure(&means.translational_energy)));
     line("rotational energy", format!("{} per disk", figure(&means.rotational_energy)));
-    line(
-        "mean energy change",
-        format!(
-            "{:.5} ± {:.5} per disk–disk collision",
-            outcome.energy_change.mean(),
-            outcome.energy_change.standard_error()
-        ),
-    );
+    line("mean energy change", format!("{:.5} per disk–disk collision", outcome.energy_change));
     line(
         "collisions",
         format!(
@@ -116,6 +109,7 @@ pub(crate) fn json(arguments: &Arguments, outcome: &Outcome) -> Value {
         "cell_crossings": counters.cell_crossings,
         "mean_energy_change": outcome.energy_change.mean(),
         "mean_energy_change_std_error": outcome.energy_change.standard_error(),
+        "mean_energy_change_converged": outcome.energy_change.is_converged(),
         "contact_duration_collisions": counters.contact_duration_collisions,
         "max_overlap": counters.max_overlap,
         "run_seconds": outcome.run_seconds,

@@ -1,4 +1,4 @@
-//! From order parameters to states.
+//! The states that order parameters show.
 
 use glam::DVec2;
 
@@ -9,15 +9,17 @@ use crate::ParameterError;
 use crate::observable::{ConvectionOrder, DenseLayer};
 use crate::quantity::{accept, non_negative, positive};
 
-/// Standard deviation of `$\Psi_1$` and of `$\Psi_2$` in a gas at rest,
+/// Returns the standard deviation of `$\Psi_1$` and of `$\Psi_2$` in a gas at rest, a velocity.
+///
+/// It is
 ///
 /// ```math
 /// \sigma = \sqrt{\frac{T_y}{2Nm}},
 /// ```
 ///
-/// for `$N$` disks of mass `$m$` at the vertical temperature `$T_y = m\langle v_y^2\rangle$`, a velocity. It holds for
-/// independent velocities and disks spread evenly over the width: `$\langle\sin^2\rangle = 1/2$`. Below the onset of
-/// convection the slow mode `$\Psi_1$` fluctuates more, by 1.3 to 1.6 times in the paper's system.
+/// for `$N$` disks of mass `$m$` at the vertical temperature `$T_y = m\langle v_y^2\rangle$`. It holds for
+/// independent velocities and disks spread evenly over the width, where `$\langle\sin^2\rangle = 1/2$`. Just
+/// below the onset of convection the slow mode `$\Psi_1$` fluctuates more than that.
 ///
 /// # Errors
 /// If the temperature is negative, the mass is not positive, one is not finite, or there are no disks.
@@ -36,26 +38,28 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 
 /// The criteria by which a state gets its name.
 ///
-/// The samples of `$(\Psi_1, \Psi_2)$` are divided into [distinct clusters](distinct_clusters). With `$\sigma$` the
-/// [`thermal_noise`]:
+/// The samples of `$(\Psi_1, \Psi_2)$` are divided into [distinct clusters](distinct_clusters). With
+/// `$\sigma$` the [`thermal_noise`]:
 ///
-/// 1. **Collapsed** is a whole run whose height profile has a compact layer, of packing fraction above 0.60, on a gas of
-///    less than half of that, and whose two-roll flow has died, `$|\langle\Psi_2\rangle| < 0.03$`.
-/// 2. **Conductive** is a cluster with its centre at most `$3\sigma$` from the origin.
-/// 3. **Two rolls** is one with `$|\Psi_2| > |\Psi_1|$`, up or down in the middle as the sign of `$\Psi_2$` says.
-/// 4. **One roll** is any other, clockwise if `$\Psi_1 > 0$`.
+/// 1. A run is **collapsed**, as a whole, if its height profile has a compact layer, of packing fraction
+///    above 0.60, on a gas of less than half of that, and its two-roll flow has died,
+///    `$|\langle\Psi_2\rangle| < 0.03$`.
+/// 2. A cluster is **conductive** if its centre is at most `$3\sigma$` from the origin.
+/// 3. It is **two rolls** if `$|\Psi_2| > |\Psi_1|$`: up in the middle for a positive `$\Psi_2$`, else down.
+/// 4. It is **one roll** otherwise: clockwise for a positive `$\Psi_1$`.
 ///
-/// The `$3\sigma$` compare the centre of a cluster with *single* samples of a gas at rest, of which
-/// `$e^{-9/2} = 1.1\,\%$` are as far out. That the samples of a run are correlated does not enter, as it would with the
-/// error of the mean. In the paper's system rolls are 5 to 12 `$\sigma$` strong, so that the number matters at the onset
-/// only. One roll is no pure `$\Psi_1$`: with `$\Psi_2 \approx 0.35\,|\Psi_1|$` it stays well off the diagonal.
+/// The `$3\sigma$` compare the centre of a cluster with *single* samples of a gas at rest; a share of
+/// `$e^{-9/2}$`, one in ninety, is as far out. An error of the mean would depend on the correlation of the
+/// samples, and this does not. The rolls of the paper's system are far stronger, so the number matters at
+/// their onset only. One roll is not pure `$\Psi_1$`, but its `$\Psi_2$` is small enough to keep it off the
+/// diagonal.
 ///
-/// A collapsed run keeps a weak, slow `$\Psi_2$` of 2 to 5 `$\sigma$`: its mean needs thousands of oscillations.
+/// A collapsed run keeps a weak, slow `$\Psi_2$`, whose mean needs thousands of oscillations.
 ///
 /// ```
 /// use granular_edmd::analysis::{ConvectiveRegime, StateCriteria};
 /// use granular_edmd::observable::ConvectionOrder;
-/// let at = |one_roll, two_rolls| ConvectionOrder { one_roll, two_rolls };
+/// let at = ConvectionOrder::new;
 /// let samples = [at(0.118, 0.045), at(-0.118, 0.045), at(0.0, 0.122), at(0.001, 0.122)];
 /// let found = StateCriteria::default().classify(&samples, 0.012, None)?;
 /// assert_eq!(found.regime(), ConvectiveRegime::Coexistence);
@@ -84,7 +88,7 @@ impl Default for StateCriteria {
 }
 
 impl StateCriteria {
-    /// Flow counts from this multiple of the thermal noise on; 3 unless given.
+    /// Sets the multiple of the thermal noise above which flow counts; 3 unless given.
     ///
     /// # Errors
     /// If it is negative or not finite.
@@ -92,8 +96,10 @@ impl StateCriteria {
         Ok(Self { noise_multiple: non_negative("multiple of the noise", multiple)?, ..self })
     }
 
-    /// A layer is compact above this packing fraction, 0.60 unless given, and rolls have died below this
-    /// `$|\langle\Psi_2\rangle|$`, 0.03 unless given: a velocity, with `$A\omega = 1$` as in the paper.
+    /// Sets the packing fraction above which a layer is compact, 0.60 unless given, and the
+    /// `$|\langle\Psi_2\rangle|$` below which rolls have died, 0.03 unless given.
+    ///
+    /// The latter is a velocity; 0.03 is for `$A\omega = 1$`, as in the paper.
     ///
     /// # Errors
     /// If one is negative or not finite.
@@ -106,7 +112,7 @@ impl StateCriteria {
         })
     }
 
-    /// One roll and two coexist if each has at least this weight; 0.05 unless given.
+    /// Sets the weight that one roll and two must have at least, each, to coexist; 0.05 unless given.
     ///
     /// # Errors
     /// If it is not in `[0, 0.5]`.
@@ -115,16 +121,19 @@ impl StateCriteria {
         Ok(Self { least_weight: accept(valid, "least weight", "in [0, 0.5]", weight)?, ..self })
     }
 
-    /// Seed of the clustering; 0 unless given. With clusters that are distinct it changes nothing.
+    /// Sets the seed of the clustering, 0 unless given. Clusters that are distinct do not depend on it.
     pub const fn with_seed(self, seed: u64) -> Self {
         Self { seed, ..self }
     }
 
-    /// The states of these samples, with thermal noise `noise`; never collapsed without a `layer`, the
-    /// [densest layer](crate::observable::HeightProfile::densest_layer) of the height profile.
+    /// Finds the states of these samples above the thermal noise `noise`.
+    ///
+    /// `layer` is the [densest layer](crate::observable::HeightProfile::densest_layer) of the height profile.
+    /// Without it no state is collapsed.
     ///
     /// # Errors
-    /// If there is no sample, a sample is not finite or above 1e100 in size, or the noise is negative or not finite.
+    /// If there is no sample, a sample is not finite or above 1e100 in size, or the noise is negative or not
+    /// finite.
     pub fn classify(
         &self,
         samples: &[ConvectionOrder],
@@ -174,7 +183,7 @@ impl Classification {
         &self.clusters
     }
 
-    /// Each cluster with its name. A name may come twice.
+    /// Returns each cluster with its name. A name may come twice.
     pub fn iter(&self) -> impl Iterator<Item = (ConvectiveState, &Cluster)> {
         self.states.iter().copied().zip(self.clusters.iter())
     }
@@ -200,8 +209,8 @@ impl Classification {
         self.iter().filter(|&(state, _)| counts(state)).map(|(_, cluster)| cluster.weight()).sum()
     }
 
-    /// The region of Fig. 5: coexistence if one roll and two both have the least weight, else that of
-    /// the number of rolls with the largest weight.
+    /// The region of Fig. 5: coexistence if one roll and two both have the least weight, otherwise the number
+    /// of rolls with the largest weight.
     pub fn regime(&self) -> ConvectiveRegime {
         let [none, one, two] = [0, 1, 2].map(|rolls| self.weight_of_rolls(rolls));
         if self.state() == ConvectiveState::Collapsed {

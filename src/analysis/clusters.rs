@@ -1,4 +1,4 @@
-//! What a clustering finds.
+//! The result of a clustering.
 
 use glam::DVec2;
 
@@ -29,12 +29,12 @@ impl Cluster {
         self.center
     }
 
-    /// How many points it has.
+    /// Number of its points.
     pub const fn count(&self) -> usize {
         self.count
     }
 
-    /// Fraction of all points that it has.
+    /// Its share of all points.
     pub const fn weight(&self) -> f64 {
         self.weight
     }
@@ -47,11 +47,11 @@ impl Cluster {
     fn variance(&self, direction: DVec2) -> f64 {
         let (xx, yy, xy) = self.covariance;
         let DVec2 { x, y } = direction;
-        // Rounding can leave a line of points with less than nothing across it.
+        // Across a line of points the variance is zero, and rounding can make it negative.
         (xx * x * x + 2.0 * xy * x * y + yy * y * y).max(0.0)
     }
 
-    /// Distance of two centres in units of the spread along it.
+    /// Distance of two centres, in units of the spread along the line between them.
     fn separation(&self, other: &Self, noise: f64) -> f64 {
         let between = other.center - self.center;
         let direction = between.normalize_or_zero();
@@ -60,8 +60,9 @@ impl Cluster {
     }
 }
 
-/// Clusters of points in a plane, in ascending order of their centres (by x, then y); made by
-/// [`KMeans::fit`](super::KMeans::fit) and [`distinct_clusters`](super::distinct_clusters).
+/// Clusters of points in a plane, in ascending order of their centres (by x, then y).
+///
+/// Made by [`KMeans::fit`](super::KMeans::fit) and [`distinct_clusters`](super::distinct_clusters).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clusters {
     clusters: Vec<Cluster>,
@@ -69,7 +70,7 @@ pub struct Clusters {
 }
 
 impl Clusters {
-    /// From labels of the sorted points, and the place of each among the points as given.
+    /// Makes clusters from the label of each sorted point, and its place among the points as given.
     pub(super) fn new(sorted: &[DVec2], labels: &[usize], order: &[usize]) -> Self {
         let most = labels.iter().max().map_or(0, |&label| label + 1);
         let members = |label: usize| -> Vec<DVec2> {
@@ -90,7 +91,7 @@ impl Clusters {
         Self { clusters: found.into_iter().map(|(_, cluster)| cluster).collect(), labels: places }
     }
 
-    /// How many clusters there are; at least one.
+    /// Number of clusters; at least one.
     #[expect(clippy::len_without_is_empty, reason = "there is always a cluster")]
     pub const fn len(&self) -> usize {
         self.clusters.len()
@@ -111,15 +112,17 @@ impl Clusters {
         &self.labels
     }
 
-    /// Least separation of two clusters `$a$`, `$b$`, infinite for a single one:
+    /// Returns the least separation of two clusters, infinite for a single one.
+    ///
+    /// For clusters `$a$` and `$b$` it is
     ///
     /// ```math
     /// D = \min_{a\ne b}\frac{|c_a - c_b|}{\max(s_{ab}, \sigma)},\qquad
     /// s_{ab}^2 = \frac{n_a s_a^2 + n_b s_b^2}{n_a + n_b},
     /// ```
     ///
-    /// with `$s_a$`, `$s_b$` their standard deviations along the line of the centres, and `$\sigma$` the least spread
-    /// that counts, `noise`.
+    /// with the standard deviations `$s_a$`, `$s_b$` along the line of the centres. The `noise` `$\sigma$` is
+    /// the least spread that counts.
     pub fn separation(&self, noise: f64) -> f64 {
         let pairs = self.clusters.iter().enumerate();
         pairs

@@ -1,4 +1,4 @@
-//! How many clusters there are.
+//! The number of clusters.
 
 use glam::DVec2;
 
@@ -13,25 +13,33 @@ const MOST: usize = 4;
 /// Separation above which two clusters are two.
 const DISTINCT: f64 = 4.0;
 
-/// As many clusters as are distinct: of `$k = 1\ldots4$`, the largest whose every pair is separated by
-/// `$D > 4$` ([`Clusters::separation`]).
+/// Finds the clusters of these points that are distinct.
 ///
-/// k-means finds as many clusters as it is asked for. Cutting a single cloud of symmetric, unimodal density in two gives
-/// `$D \le 2\sqrt3 = 3.46$`: in each half the density falls away from the cut, so that its mean is at most `$\sqrt3$` of
-/// its standard deviations away from it (equal for the uniform density; a Gaussian cloud has `$D = 2.65$`). Above 4,
-/// there are two clouds. Neither the width of a cloud nor the correlation of its samples enters, as long as the series
-/// fills the cloud: one of a few correlation times can look like several.
+/// Of `$k = 1\ldots4$` clusters, these are the largest number whose pairs are all separated by `$D > 4$`
+/// ([`Clusters::separation`]).
 ///
-/// `noise` is the standard deviation that a single state has at least, such as
-/// [`thermal_noise`](super::thermal_noise): closer than four of it, clusters are never distinct, however sharp.
+/// k-means finds as many clusters as it is asked for, so it must be told from the result how many there are.
+/// Suppose that a single cloud, of symmetric density with one maximum, is cut in two. In each half the
+/// density falls away from the cut, so its mean is at most `$\sqrt3$` of its standard deviations from the
+/// cut, with equality for the uniform density. So a single cloud has `$D \le 2\sqrt3 = 3.46$` (a Gaussian one
+/// 2.65), and above 4 there are two clouds. Neither the width of a cloud nor the correlation of its samples
+/// enters, as long as the series fills the cloud: a series of a few correlation times can look like several
+/// clouds.
+///
+/// `noise` is the least standard deviation of a single state, such as
+/// [`thermal_noise`](super::thermal_noise). Clusters closer than four of it are never distinct, however sharp
+/// they are.
 ///
 /// # Errors
-/// If there is no point, a coordinate is not finite or above 1e100 in size, or the noise is negative or not finite.
+/// If there is no point, a coordinate is not finite or above 1e100 in size, or the noise is negative or not
+/// finite.
 ///
 /// ```
 /// use granular_edmd::analysis::distinct_clusters;
 /// use granular_edmd::glam::DVec2;
-/// let cloud = |x: f64| (0..50).map(move |k| DVec2::new(x + 0.01 * f64::from(k % 10), 0.01 * f64::from(k / 10)));
+/// let cloud = |x: f64| {
+///     (0..50).map(move |k| DVec2::new(x + 0.01 * f64::from(k % 10), 0.01 * f64::from(k / 10)))
+/// };
 /// let one: Vec<DVec2> = cloud(0.0).collect();
 /// let two: Vec<DVec2> = cloud(0.0).chain(cloud(0.3)).collect();
 /// assert_eq!(distinct_clusters(&one, 0.01, 7)?.len(), 1);

@@ -9,25 +9,26 @@ use crate::ParameterError;
 use crate::quantity::accept;
 use crate::random::uniform;
 
-/// Restarts unless said otherwise: with four clusters or fewer, the best is found again and again.
+/// Restarts unless given: with four clusters or fewer, most of them find the same best result.
 const RESTARTS: usize = 16;
 
-/// Most rounds of one descent; a few tens are usual.
+/// Most rounds of one descent, far above the usual.
 const ROUNDS: usize = 1000;
 
 /// Largest coordinate: its square, summed over all points, stays finite.
 const LARGEST: f64 = 1e100;
 
-/// k-means clustering in a plane (MacQueen 1967, the paper's reference 14), seeded by k-means++ (Arthur &
-/// Vassilvitskii 2007), the best of several restarts.
+/// k-means clustering in a plane, the best of several restarts.
 ///
-/// It looks for the centres `$c_j$` that minimise the scatter `$\sum_i \min_j |r_i - c_j|^2$`. The result depends on the
-/// points and the seed, not on the order of the points: they are sorted first.
+/// It looks for the centres `$c_j$` that minimise the scatter `$\sum_i \min_j |r_i - c_j|^2$` (MacQueen 1967,
+/// the paper's reference 14), from first centres by k-means++ (Arthur & Vassilvitskii 2007). The result
+/// depends on the points and the seed, not on the order of the points: they are sorted first.
 ///
 /// ```
 /// use granular_edmd::analysis::KMeans;
 /// use granular_edmd::glam::DVec2;
-/// let points = [(0.0, 0.1), (5.0, 0.1), (0.0, -0.1), (5.0, -0.1), (5.0, 0.0)].map(|(x, y)| DVec2::new(x, y));
+/// let points = [(0.0, 0.1), (5.0, 0.1), (0.0, -0.1), (5.0, -0.1), (5.0, 0.0)];
+/// let points = points.map(|(x, y)| DVec2::new(x, y));
 /// let clusters = KMeans::new(2, 1)?.fit(&points)?;
 /// assert_eq!(clusters.labels(), [0, 1, 0, 1, 1]);
 /// assert_eq!(clusters.get(1).map(|cluster| cluster.center()), Some(DVec2::new(5.0, 0.0)));
@@ -41,7 +42,7 @@ pub struct KMeans {
 }
 
 impl KMeans {
-    /// A search for this many clusters.
+    /// Makes a search for this number of clusters.
     ///
     /// # Errors
     /// If the number of clusters is zero.
@@ -50,7 +51,7 @@ impl KMeans {
         Ok(Self { clusters, restarts: RESTARTS, seed })
     }
 
-    /// The same with this many restarts; 16 unless given.
+    /// Returns the same search with this number of restarts; 16 unless given.
     ///
     /// # Errors
     /// If it is zero.
@@ -59,7 +60,7 @@ impl KMeans {
         Ok(Self { restarts, ..self })
     }
 
-    /// The clusters of these points; fewer than asked for if fewer points are distinct.
+    /// Finds the clusters of these points; fewer than asked for if fewer of the points differ.
     ///
     /// # Errors
     /// If there are fewer points than clusters, or a coordinate is not finite or above 1e100 in size.
@@ -89,7 +90,8 @@ fn check(points: &[DVec2], clusters: usize) -> Result<(), ParameterError> {
     })
 }
 
-/// First centres: each new one a point, with a probability that grows as its squared distance to the nearest.
+/// Draws the first centres among the points. The probability of each next one is proportional to its squared
+/// distance from the nearest centre so far.
 fn plus_plus(points: &[DVec2], clusters: usize, generator: &mut Xoshiro256PlusPlus) -> Vec<DVec2> {
     let first = (uniform(generator) * points.len() as f64) as usize;
     let mut centers = vec![points[first.min(points.len() - 1)]];
@@ -109,7 +111,7 @@ fn plus_plus(points: &[DVec2], clusters: usize, generator: &mut Xoshiro256PlusPl
     centers
 }
 
-/// The centre nearest to a point, the first of equals, and its squared distance.
+/// Returns the centre nearest to a point, the first of equals, and its squared distance.
 fn nearest(point: DVec2, centers: &[DVec2]) -> (usize, f64) {
     let distances = centers.iter().map(|&center| point.distance_squared(center)).enumerate();
     distances.fold((0, f64::INFINITY), |best, next| if next.1 < best.1 { next } else { best })
@@ -120,7 +122,8 @@ struct Fit {
     scatter: f64,
 }
 
-/// Points to their nearest centres, centres to the means of their points, until nothing changes.
+/// Assigns points to their nearest centres and moves centres to the means of their points, until nothing
+/// changes.
 fn descend(points: &[DVec2], mut centers: Vec<DVec2>) -> Fit {
     let mut fit = assign(points, &centers);
     for _ in 0..ROUNDS {
@@ -141,7 +144,7 @@ fn assign(points: &[DVec2], centers: &[DVec2]) -> Fit {
     Fit { labels, scatter: distances.iter().sum() }
 }
 
-/// A centre that has lost all its points stays where it is.
+/// Moves each centre to the mean of its points; one that has lost all of them stays where it is.
 fn move_to_means(points: &[DVec2], labels: &[usize], centers: &mut [DVec2]) {
     for (label, center) in centers.iter_mut().enumerate() {
         let own = || points.iter().zip(labels).filter(|&(_, &of)| of == label).map(|(&point, _)| point);

@@ -3,8 +3,8 @@
 use crate::ParameterError;
 use crate::collision::Frictional;
 use crate::kinetic::{Maxwellian, effective_inelasticity, mean_energy_change};
-use crate::observable::RunningMean;
 use crate::quantity::accept;
+use crate::statistics::RunningMean;
 
 /// A row of the paper's Table I; made by [`line_average`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,12 +26,13 @@ impl LineAverage {
     }
 }
 
-/// Mean energy change per collision and effective inelasticity along a line of transitions (paper, Table I).
+/// Averages the energy change per collision and the effective inelasticity along a line of transitions.
 ///
-/// Each point is the rule at which a transition was seen. Its `$\langle dE\rangle$` is the
-/// [closed form](mean_energy_change) in a Maxwellian `gas`, its `$q_\text{eff}$` follows by Eq. (9). Both are averaged over
-/// the points, and the table's "±" is their [standard deviation](RunningMean::standard_deviation): the scatter along the
-/// line, which is the test of the paper's hypothesis, and not the error of the mean.
+/// Each point is the rule at which a transition was seen. Its `$\langle dE\rangle$` is the [closed
+/// form](mean_energy_change) in a Maxwellian `gas`, and its `$q_\text{eff}$` follows by the paper's Eq. (9).
+/// Both are averaged over the points, as in the paper's Table I. The table's "±" is their [standard
+/// deviation](RunningMean::standard_deviation) and not the error of the mean: it is the scatter along the
+/// line that tests the paper's hypothesis.
 ///
 /// # Errors
 /// If there is no point, or one loses more than smooth disks can (see [`effective_inelasticity`]).
@@ -40,7 +41,7 @@ impl LineAverage {
 /// use granular_edmd::analysis::line_average;
 /// use granular_edmd::collision::Frictional;
 /// use granular_edmd::kinetic::Maxwellian;
-/// // Both ends of the first line at the larger gravity, from the paper's value: on the axes they lie here.
+/// // Points on the axes of the first line at the larger gravity, for the paper's energy change.
 /// let line = [Frictional::new(0.0119, 0.0)?, Frictional::new(0.0, 0.0143)?, Frictional::new(0.0, 1.792)?];
 /// let average = line_average(&line, &Maxwellian::new(1.0)?)?;
 /// assert!((average.energy_change().mean() + 0.047).abs() < 5e-4);

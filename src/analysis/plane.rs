@@ -1,4 +1,4 @@
-//! Where the state changes in the plane of friction and inelasticity.
+//! The changes of state in the plane of friction and inelasticity.
 
 use super::state::ConvectiveRegime;
 use super::transitions::{Transition, TransitionLine, transitions};
@@ -10,26 +10,27 @@ use crate::quantity::positive;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct PlaneTransition {
-    /// Which line is crossed.
+    /// The line that is crossed.
     pub line: TransitionLine,
-    /// `$\kappa$` of the middle between the neighbours, on a logarithmic axis.
+    /// Friction `$\kappa$` of the middle between the neighbours, on a logarithmic axis.
     pub friction: f64,
-    /// `$q$` of the middle.
+    /// Inelasticity `$q$` of the middle.
     pub inelasticity: f64,
     /// Both neighbours, `$(\kappa, q)$`: the transition lies between them. They share one coordinate.
     pub between: [(f64, f64); 2],
-    /// Whether the regime moves up from the first neighbour to the second.
+    /// True if the regime moves up from the first neighbour to the second.
     pub rising: bool,
 }
 
-/// The transitions in the plane of `$\ln\kappa$` and `$q$` (paper, Fig. 5), from `$(\kappa, q)$` and regime of all runs
-/// on a grid, in any order.
+/// Finds the transitions in the plane of friction and inelasticity (paper, Fig. 5).
 ///
-/// Neighbours of one inelasticity are compared along the friction, as the paper's ramps do, and neighbours of one
-/// friction along the inelasticity: a line that runs flat through the plane is crossed by the latter only. What is said
-/// of hysteresis for [`transitions`] holds for both.
+/// The observations are `$(\kappa, q)$` and regime of all runs on a grid, in any order. Runs of the same
+/// inelasticity are compared along the friction, as the paper's ramps do, and runs of the same friction along
+/// the inelasticity: a line that runs flat through the plane is crossed by the latter only. The middle of two
+/// frictions is that of their logarithms. Hysteresis is treated as by [`transitions`].
 ///
-/// The points come as ordered: those along the friction first, by inelasticity, then the others by friction.
+/// The points along the friction come first, in the order of inelasticity, then the others in the order of
+/// friction.
 ///
 /// # Errors
 /// If a friction is not positive, or one of the numbers is not finite.
@@ -37,8 +38,9 @@ pub struct PlaneTransition {
 /// ```
 /// use granular_edmd::analysis::ConvectiveRegime::{Conductive, OneRoll};
 /// use granular_edmd::analysis::plane_transitions;
-/// let grid = [(0.01, 0.00, Conductive), (0.04, 0.00, OneRoll), (0.01, 0.02, OneRoll), (0.04, 0.02, OneRoll)];
-/// let found = plane_transitions(grid)?;
+/// let smooth = [(0.01, 0.00, Conductive), (0.04, 0.00, OneRoll)];
+/// let inelastic = [(0.01, 0.02, OneRoll), (0.04, 0.02, OneRoll)];
+/// let found = plane_transitions(smooth.into_iter().chain(inelastic))?;
 /// assert_eq!(found.len(), 2);
 /// assert!((found[0].friction - 0.02).abs() < 1e-12 && found[0].inelasticity == 0.0);
 /// assert!(found[1].friction == 0.01 && (found[1].inelasticity - 0.01).abs() < 1e-12);
@@ -63,10 +65,10 @@ pub fn plane_transitions(
     Ok(found)
 }
 
-/// Two coordinates and what was seen there.
+/// Two coordinates and the regime seen there.
 type Observation = (f64, f64, ConvectiveRegime);
 
-/// The observations with the same fixed coordinate, the first that `turned` gives, in its ascending order.
+/// Groups the observations by one coordinate, in ascending order: the first of those that `turned` returns.
 fn scans(
     all: &[Observation],
     turned: impl Fn(&Observation) -> Observation,
@@ -105,7 +107,7 @@ mod tests {
 
     #[test]
     fn lines_of_equal_energy_loss_come_back() -> Result<(), ParameterError> {
-        let frictions = (0..=60).map(|step| 0.005 * (0.1066 * f64::from(step)).exp());
+        let frictions = (0..=60).map(|step| 0.005 * libm::exp(0.1066 * f64::from(step)));
         let grid =
             frictions.flat_map(|friction| (0..=40).map(move |step| (friction, 0.002 * f64::from(step))));
         let seen: Vec<_> = grid

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// What the disks do in one cluster of the plane of `$\Psi_1$` and `$\Psi_2$` (paper, section III).
+/// The motion of the disks in one cluster of the plane of `$\Psi_1$` and `$\Psi_2$` (paper, section III).
 ///
 /// ```
 /// use granular_edmd::analysis::ConvectiveState;
@@ -28,7 +28,7 @@ pub enum ConvectiveState {
 }
 
 impl ConvectiveState {
-    /// How many rolls it has; `None` if it is collapsed.
+    /// Number of its rolls; `None` if it is collapsed.
     pub const fn rolls(self) -> Option<usize> {
         match self {
             Self::Conductive => Some(0),

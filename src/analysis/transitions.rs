@@ -1,4 +1,4 @@
-//! Where the state changes.
+//! The changes of state along a ramp.
 
 use super::state::ConvectiveRegime;
 use crate::ParameterError;
@@ -37,7 +37,8 @@ impl TransitionLine {
         }
     }
 
-    /// On which side of the line a control value lies where all these regimes were seen; `None` if that is open.
+    /// Returns true beyond the line and false before it, for a control value at which all these regimes were
+    /// seen; `None` if they lie on both sides.
     fn side(self, seen: Seen) -> Option<bool> {
         let (least, most) = (seen.least >= self.beyond(), seen.most >= self.beyond());
         match self {
@@ -64,13 +65,15 @@ impl std::fmt::Display for TransitionLine {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Transition {
-    /// Which line is crossed.
+    /// The line that is crossed.
     pub line: TransitionLine,
-    /// Where: the middle between the neighbouring control values on either side.
+    /// The middle between the neighbouring control values on either side.
     pub value: f64,
-    /// Half the distance of those: the transition lies between `value - error` and `value + error`.
+    /// Half the distance of these control values: the transition lies between `value - error` and
+    /// `value + error`.
     pub error: f64,
-    /// Whether the regime moves up with a growing control value; not so where the paper finds re-entrance.
+    /// True if the regime moves up with a growing control value. It moves down where the paper finds
+    /// re-entrance.
     pub rising: bool,
 }
 
@@ -82,15 +85,17 @@ struct Seen {
     most: ConvectiveRegime,
 }
 
-/// The transitions along one control parameter, from all regimes seen at all its values, in any order: an up ramp, a
-/// down ramp, other seeds.
+/// Finds the transitions along one control parameter.
 ///
-/// Hysteresis is where runs at the same control value end in different regimes. Coexistence begins (a) where the
-/// first of them shows two rolls, or both numbers of rolls in turn, and ends (b) where the last shows nothing else. The
-/// other lines have no hysteresis in the paper: where runs disagree about them, the transition lies anywhere between the
-/// values at which they agree, and its error says so. Each ramp alone gives its own points.
+/// The observations are the regimes seen at all its values, in any order: on a ramp up, on a ramp down, with
+/// other seeds. The result is in ascending order of the values, and at equal values in the order of the
+/// lines.
 ///
-/// The transitions come in ascending order of their values, of equal ones by line.
+/// There is hysteresis if runs at the same control value end in different regimes. Coexistence begins (a) at
+/// the first value where a run shows two rolls, or both numbers of rolls in turn, and ends (b) at the last
+/// value where a run shows anything but two rolls. The other lines have no hysteresis in the paper: where
+/// runs disagree about them, the transition lies anywhere between the values at which they agree, and its
+/// error is as large. The observations of a single ramp give the points of that ramp.
 ///
 /// # Errors
 /// If a control value is not finite.
@@ -117,7 +122,7 @@ pub fn transitions(
     Ok(found)
 }
 
-/// One entry a control value, ascending.
+/// Merges the observations to one entry for each control value, ascending.
 fn merge(
     observations: impl IntoIterator<Item = (f64, ConvectiveRegime)>,
 ) -> Result<Vec<Seen>, ParameterError> {
@@ -136,7 +141,8 @@ fn merge(
     Ok(all)
 }
 
-/// Where neighbours that are certain lie on different sides of the line.
+/// Returns the crossings of a line: neighbours on different sides of it, among the values whose side is
+/// certain.
 fn crossings(line: TransitionLine, seen: &[Seen]) -> Vec<Transition> {
     let certain: Vec<(f64, bool)> =
         seen.iter().filter_map(|&seen| Some((seen.value, line.side(seen)?))).collect();

@@ -1,44 +1,25 @@
 //! The rectangular container.
 
+mod wall;
+
+pub use wall::{Wall, WallError};
+
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::DVec2;
-use thiserror::Error;
 
 use super::plane::{Conduct, Plane};
 use super::{Boundary, Domain, Region, Surface, Thermal, Touch};
 use crate::collision::CollisionRule;
 use crate::quantity::positive;
-use crate::wall::WallMotion;
-use crate::{Flight, ParameterError};
-
-/// A wall of a [`Container`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Wall {
-    /// The base, at height 0.
-    Floor,
-    /// The upper end.
-    Lid,
-    /// The left side.
-    Left,
-    /// The right side.
-    Right,
-}
-
-/// The container has no such wall: it is open above, or its sides are periodic.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error("the container has no wall {wall:?}")]
-#[non_exhaustive]
-pub struct MissingWall {
-    /// The wall asked for.
-    pub wall: Wall,
-}
+use crate::wall::{WallMotion, laws};
+use crate::{Fingerprint, Flight, ParameterError};
 
 /// A rectangular container with its lower left corner at the origin: the paper's box and its relatives.
 ///
-/// All walls start fixed, under the rule that the disks have among themselves. Each can be given a motion along its
-/// normal (which points inward), a rule of its own, or a temperature.
+/// All walls start fixed, under the rule that the disks have among themselves. Each can be given a motion
+/// along its normal (which points inward), a rule of its own, or a temperature.
 ///
 /// ```
 /// use granular_edmd::boundary::{Boundary, Container, Thermal, Wall};
@@ -54,8 +35,8 @@ pub struct MissingWall {
 ///     .with_rule(Wall::Left, Smooth::new(0.0)?)?
 ///     .with_rule(Wall::Right, Smooth::new(0.0)?)?;
 /// assert!(smooth_sides.with_motion(Wall::Lid, BiParabolic::new(0.1, 10.0)?).is_err(), "there is no lid");
-/// assert_eq!(vibrated.walls(), ["floor", "left", "right", "lid"]);
-/// assert_eq!(periodic.walls(), ["floor", "lid"]);
+/// assert_eq!((vibrated.wall_count(), vibrated.wall_name(3)), (4, "lid".into()));
+/// assert_eq!((periodic.wall_count(), periodic.wall_name(1)), (2, "lid".into()));
 /// assert_eq!(heated.domain().top, f64::INFINITY);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -64,38 +45,37 @@ pub struct Container {
     width: f64,
     /// Infinite without a lid.
     height: f64,
-    kinds: Vec<Wall>,
-    names: Vec<&'static str>,
+    /// The walls that are there, and a plane for each.
+    walls: Vec<Wall>,
     planes: Vec<Plane>,
 }
 
 impl Container {
-    /// A container with a lid.
+    /// Creates a container with a lid.
     ///
     /// # Errors
     /// If the width or the height is not finite and positive.
     pub fn closed(width: f64, height: f64) -> Result<Self, ParameterError> {
         let mut container = Self::open(width)?;
         container.height = positive("height", height)?;
-        container.add(Wall::Lid, "lid", Plane::new(DVec2::NEG_Y, -height));
+        container.add(Wall::Lid, Plane::new(DVec2::NEG_Y, -height));
         Ok(container)
     }
 
-    /// A container without a lid.
+    /// Creates a container without a lid.
     ///
     /// # Errors
     /// If the width is not finite and positive.
     pub fn open(width: f64) -> Result<Self, ParameterError> {
         let width = positive("width", width)?;
-        let mut container =
-            Self { width, height: f64::INFINITY, kinds: Vec::new(), names: Vec::new(), planes: Vec::new() };
-        container.add(Wall::Floor, "floor", Plane::new(DVec2::Y, 0.0));
-        container.add(Wall::Left, "left", Plane::new(DVec2::X, 0.0));
-        container.add(Wall::Right, "right", Plane::new(DVec2::NEG_X, -width));
+        let mut container = Self { width, height: f64::INFINITY, walls: Vec::new(), planes: Vec::new() };
+        container.add(Wall::Floor, Plane::new(DVec2::Y, 0.0));
+        container.add(Wall::Left, Plane::new(DVec2::X, 0.0));
+        container.add(Wall::Right, Plane::new(DVec2::NEG_X, -width));
         Ok(container)
     }
 
-    /// The same container without side walls: what leaves on one side enters on the other.
+    /// Returns the same container without side walls: what leaves on one side enters on the other.
     pub fn with_periodic_sides(mut self) -> Self {
         for wall in [Wall::Left, Wall::Right] {
             self.remove(wall);
@@ -103,20 +83,23 @@ impl Container {
         self
     }
 
-    /// The same container with a wall that moves along its normal, which points inward.
+    /// Returns the same container with a wall that moves along its normal, which points inward.
     ///
     /// # Errors
-    /// If the container has no such wall.
+    /// If the container has no such wall, or the motion answers with numbers that are not finite at one of
+    /// the phases that [`laws::check_finite`](crate::wall::laws::check_finite) looks at.
     pub fn with_motion(
         mut self,
         wall: Wall,
         motion: impl WallMotion + Send + Sync + 'static,
-    ) -> Result<Self, MissingWall> {
-        self.plane_mut(wall)?.set_motion(Arc::new(motion));
+    ) -> Result<Self, WallError> {
+        let plane = self.plane_mut(wall)?;
+        laws::check_finite(&motion).map_err(|violation| WallError::Motion { wall, violation })?;
+        plane.set_motion(Arc::new(motion));
         Ok(self)
     }
 
-    /// The same container with a wall that has a rule of its own.
+    /// Returns the same container with a wall that has a rule of its own.
     ///
     /// # Errors
     /// If the container has no such wall.
@@ -124,88 +107,95 @@ impl Container {
         mut self,
         wall: Wall,
         rule: impl CollisionRule + Send + Sync + 'static,
-    ) -> Result<Self, MissingWall> {
+    ) -> Result<Self, WallError> {
         self.plane_mut(wall)?.set_conduct(Conduct::Rule(Arc::new(rule)));
         Ok(self)
     }
 
-    /// The same container with a thermal wall.
+    /// Returns the same container with a thermal wall.
     ///
     /// # Errors
     /// If the container has no such wall.
-    pub fn with_temperature(mut self, wall: Wall, thermal: Thermal) -> Result<Self, MissingWall> {
+    pub fn with_temperature(mut self, wall: Wall, thermal: Thermal) -> Result<Self, WallError> {
         self.plane_mut(wall)?.set_conduct(Conduct::Thermal(thermal));
         Ok(self)
     }
 
-    /// Width `$L_x$`.
+    /// Returns the width `$L_x$`.
     pub const fn width(&self) -> f64 {
         self.width
     }
 
-    /// Height `$L_y$` of the lid; infinite without one.
+    /// Returns the height `$L_y$` of the lid; infinite without one.
     pub const fn height(&self) -> f64 {
         self.height
     }
 
-    /// The index of a wall, if it is there.
+    /// Returns the index of a wall, if it is there.
     pub fn index(&self, wall: Wall) -> Option<usize> {
-        self.kinds.iter().position(|&kind| kind == wall)
+        self.walls.iter().position(|&kind| kind == wall)
     }
 
-    fn add(&mut self, wall: Wall, name: &'static str, plane: Plane) {
-        self.kinds.push(wall);
-        self.names.push(name);
+    fn add(&mut self, wall: Wall, plane: Plane) {
+        self.walls.push(wall);
         self.planes.push(plane);
     }
 
     fn remove(&mut self, wall: Wall) {
         if let Some(index) = self.index(wall) {
-            self.kinds.remove(index);
-            self.names.remove(index);
+            self.walls.remove(index);
             self.planes.remove(index);
         }
     }
 
-    fn plane_mut(&mut self, wall: Wall) -> Result<&mut Plane, MissingWall> {
-        let index = self.index(wall).ok_or(MissingWall { wall })?;
+    fn plane_mut(&mut self, wall: Wall) -> Result<&mut Plane, WallError> {
+        let index = self.index(wall).ok_or(WallError::Missing { wall })?;
         Ok(&mut self.planes[index])
     }
 
-    /// How far a wall can move outward.
+    /// Returns how far a wall can move outward.
     fn retreat(&self, wall: Wall) -> f64 {
         self.index(wall).map_or(0.0, |index| -self.planes[index].reach().0.min(0.0))
     }
 
-    /// How far a wall can move inward.
+    /// Returns how far a wall can move inward.
     fn advance(&self, wall: Wall) -> f64 {
         self.index(wall).map_or(0.0, |index| self.planes[index].reach().1.max(0.0))
     }
 }
 
+impl Container {
+    /// Makes the sides of a rectangle periodic if those of the container are.
+    fn with_sides(&self, domain: Domain) -> Domain {
+        if self.index(Wall::Left).is_none() { domain.with_periodic_sides() } else { domain }
+    }
+}
+
 impl Boundary for Container {
     fn domain(&self) -> Domain {
-        Domain {
-            left: -self.retreat(Wall::Left),
-            right: self.width + self.retreat(Wall::Right),
-            bottom: -self.retreat(Wall::Floor),
-            top: self.height + self.retreat(Wall::Lid),
-            periodic: self.index(Wall::Left).is_none(),
-        }
+        self.with_sides(Domain::new(
+            -self.retreat(Wall::Left),
+            self.width + self.retreat(Wall::Right),
+            -self.retreat(Wall::Floor),
+            self.height + self.retreat(Wall::Lid),
+        ))
     }
 
     fn interior(&self) -> Domain {
-        Domain {
-            left: self.advance(Wall::Left),
-            right: self.width - self.advance(Wall::Right),
-            bottom: self.advance(Wall::Floor),
-            top: self.height - self.advance(Wall::Lid),
-            periodic: self.index(Wall::Left).is_none(),
-        }
+        self.with_sides(Domain::new(
+            self.advance(Wall::Left),
+            self.width - self.advance(Wall::Right),
+            self.advance(Wall::Floor),
+            self.height - self.advance(Wall::Lid),
+        ))
     }
 
-    fn walls(&self) -> &[&'static str] {
-        &self.names
+    fn wall_count(&self) -> usize {
+        self.walls.len()
+    }
+
+    fn wall_name(&self, wall: usize) -> Cow<'_, str> {
+        self.walls.get(wall).map_or_else(|| Cow::Owned(format!("wall {wall}")), |wall| wall.name().into())
     }
 
     fn set_time_origin(&mut self, origin: f64) {
@@ -225,7 +215,7 @@ impl Boundary for Container {
             if let Some(time) = plane.first_touch(flight, until)
                 && first.is_none_or(|touch: Touch| time < touch.time)
             {
-                first = Some(Touch { time, wall });
+                first = Some(Touch::new(time, wall));
                 until = time;
             }
         }
@@ -239,5 +229,12 @@ impl Boundary for Container {
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
         let depths = self.planes.iter().map(|plane| plane.depth(position, radius, time)).enumerate();
         depths.filter(|&(_, depth)| depth > 0.0).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let sizes = Fingerprint::of("Container").number(self.width).number(self.height);
+        self.walls.iter().zip(&self.planes).try_fold(sizes, |container, (wall, plane)| {
+            Some(container.text(wall.name()).part(plane.fingerprint()?))
+        })
     }
 }

@@ -2,16 +2,17 @@
 
 use glam::DVec2;
 
-/// The rectangle that holds the centres of all disks, and whether its left and right sides are the same line.
+/// The rectangle that holds the centres of all disks; its left and right sides may be the same line.
 ///
 /// ```
 /// use granular_edmd::boundary::Domain;
-/// let domain = Domain { left: 0.0, right: 60.0, bottom: -0.1, top: f64::INFINITY, periodic: true };
+/// let domain = Domain::new(0.0, 60.0, -0.1, f64::INFINITY).with_periodic_sides();
 /// assert_eq!(domain.width(), 60.0);
 /// assert_eq!(domain.separation(glam::DVec2::new(59.0, 0.0), glam::DVec2::new(1.0, 0.0)).x, 2.0);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub struct Domain {
     /// Left end.
     pub left: f64,
@@ -21,22 +22,34 @@ pub struct Domain {
     pub bottom: f64,
     /// Upper end; infinite without a lid.
     pub top: f64,
-    /// Whether what leaves on one side enters on the other.
+    /// True if what leaves on one side enters on the other.
     pub periodic: bool,
 }
 
 impl Domain {
-    /// Width, `$L_x$`.
+    /// Creates a rectangle with walls at its sides; the top may be infinite.
+    #[inline]
+    pub const fn new(left: f64, right: f64, bottom: f64, top: f64) -> Self {
+        Self { left, right, bottom, top, periodic: false }
+    }
+
+    /// Returns the same rectangle with periodic sides: what leaves on one side enters on the other.
+    #[must_use]
+    pub const fn with_periodic_sides(self) -> Self {
+        Self { periodic: true, ..self }
+    }
+
+    /// Returns the width, `$L_x$`.
     pub fn width(&self) -> f64 {
         self.right - self.left
     }
 
-    /// Height; infinite without a lid.
+    /// Returns the height; infinite without a lid.
     pub fn height(&self) -> f64 {
         self.top - self.bottom
     }
 
-    /// Vector from `from` to `to`, by the shortest way if the sides are periodic.
+    /// Returns the vector from `from` to `to`, by the shortest way if the sides are periodic.
     pub fn separation(&self, from: DVec2, to: DVec2) -> DVec2 {
         let mut separation = to - from;
         if self.periodic {
@@ -48,9 +61,18 @@ impl Domain {
 
 /// A rectangle inside the domain; its edges may be infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Region {
     /// Lower left corner.
     pub min: DVec2,
     /// Upper right corner.
     pub max: DVec2,
+}
+
+impl Region {
+    /// Creates a rectangle from its lower left and upper right corners.
+    #[inline]
+    pub const fn new(min: DVec2, max: DVec2) -> Self {
+        Self { min, max }
+    }
 }

@@ -7,26 +7,26 @@ use glam::DVec2;
 
 use super::Region;
 use super::surface::{Response, Surface, Thermal};
-use crate::Flight;
 use crate::collision::CollisionRule;
 use crate::wall::{Approach, Fixed, WallMotion, first_touch};
+use crate::{Fingerprint, Flight};
 
 /// A half plane that disks stay on one side of.
 #[derive(Clone)]
 pub(super) struct Plane {
     /// Unit vector to the disks.
     normal: DVec2,
-    /// Place of the wall at rest along its normal.
-    offset: f64,
+    /// Place of the wall at rest, along its normal.
+    place: f64,
     motion: Arc<dyn WallMotion + Send + Sync>,
     /// Upper end of its reach.
     highest: f64,
     conduct: Conduct,
-    /// The time origin, reduced by whole periods of the motion.
+    /// Phase of the motion at the time origin.
     phase: f64,
 }
 
-/// What a touch does; [`Response`] lends it out.
+/// The response to a touch, owned; [`Response`] lends it out.
 #[derive(Clone)]
 pub(super) enum Conduct {
     Shared,
@@ -39,15 +39,15 @@ impl fmt::Debug for Plane {
         formatter
             .debug_struct("Plane")
             .field("normal", &self.normal)
-            .field("offset", &self.offset)
+            .field("place", &self.place)
             .field("reach", &self.motion.reach())
             .finish_non_exhaustive()
     }
 }
 
 impl Plane {
-    pub(super) fn new(normal: DVec2, offset: f64) -> Self {
-        Self { normal, offset, motion: Arc::new(Fixed), highest: 0.0, conduct: Conduct::Shared, phase: 0.0 }
+    pub(super) fn new(normal: DVec2, place: f64) -> Self {
+        Self { normal, place, motion: Arc::new(Fixed), highest: 0.0, conduct: Conduct::Shared, phase: 0.0 }
     }
 
     pub(super) fn set_motion(&mut self, motion: Arc<dyn WallMotion + Send + Sync>) {
@@ -60,37 +60,46 @@ impl Plane {
     }
 
     pub(super) fn set_time_origin(&mut self, origin: f64) {
-        // The remainder of two floats is exact: the phase keeps all its digits however late it is.
-        self.phase = self.motion.period().map_or(origin, |period| origin % period);
+        let (low, high) = self.motion.reach();
+        self.phase = match self.motion.period() {
+            // A wall that never leaves its place is the same at all times: phase 0 costs none of their
+            // digits.
+            _ if low == high => 0.0,
+            // The remainder of two floats is exact: the phase keeps all its digits however late the time is.
+            Some(period) => origin % period,
+            None => origin,
+        };
     }
 
     pub(super) fn reach(&self) -> (f64, f64) {
         self.motion.reach()
     }
 
-    /// Whether a disk with its centre in `region` can touch the wall.
+    /// Tells whether a disk with its centre in `region` can touch the wall at any time.
     pub(super) fn may_touch(&self, region: &Region, radius: f64) -> bool {
         let nearest = DVec2::select(self.normal.cmpgt(DVec2::ZERO), region.min, region.max);
-        // A component of the normal that is zero must not meet an infinite edge.
+        // A component of the normal that is zero must not meet an infinite edge: their product is not a
+        // number.
         let along = |component: f64, edge: f64| if component == 0.0 { 0.0 } else { component * edge };
-        let height = along(self.normal.x, nearest.x) + along(self.normal.y, nearest.y) - self.offset;
-        height - radius <= self.motion.reach().1
+        let height = along(self.normal.x, nearest.x) + along(self.normal.y, nearest.y) - self.place;
+        height - radius <= self.highest
     }
 
     pub(super) fn first_touch(&self, flight: &Flight, until: f64) -> Option<f64> {
-        let height = flight.position(flight.time()).dot(self.normal) - self.offset - flight.radius();
+        let height = flight.position(flight.time()).dot(self.normal) - self.place - flight.radius();
         let approach = Approach::new(
             flight.time() + self.phase,
             height,
             flight.velocity(flight.time()).dot(self.normal),
             flight.acceleration().dot(self.normal),
         );
-        // True for all walls but one, or all, of most flights in a cell: it spares them the search.
+        // Most flights end in another cell before they get near this wall: they are spared the search.
         if approach.stays_above(self.highest, until + self.phase) {
             return None;
         }
         let touch = first_touch(&*self.motion, &approach, until + self.phase)?;
-        Some((touch - self.phase).clamp(flight.time(), until))
+        // The sum with the phase was rounded, and its difference is again: the touch stays within the flight.
+        Some((touch - self.phase).max(flight.time()).min(until))
     }
 
     pub(super) fn surface(&self, time: f64) -> Surface<'_> {
@@ -100,12 +109,23 @@ impl Plane {
             Conduct::Thermal(thermal) => Response::Thermal(*thermal),
         };
         let velocity = self.normal * self.motion.state(time + self.phase).velocity;
-        Surface { normal: self.normal, velocity, response }
+        Surface::new(self.normal, velocity).with_response(response)
     }
 
-    /// How far a disk reaches into the wall; negative when it is inside.
+    /// Returns how far a disk reaches into the wall; negative when it is inside.
     pub(super) fn depth(&self, position: DVec2, radius: f64, time: f64) -> f64 {
-        let wall = self.offset + self.motion.state(time + self.phase).displacement;
+        let wall = self.place + self.motion.state(time + self.phase).displacement;
         wall + radius - position.dot(self.normal)
+    }
+
+    /// Returns the fingerprint of motion and response, if both have one; the place is the container's to
+    /// tell.
+    pub(super) fn fingerprint(&self) -> Option<Fingerprint> {
+        let plane = Fingerprint::of("Plane").part(self.motion.fingerprint()?);
+        Some(plane.part(match &self.conduct {
+            Conduct::Shared => Fingerprint::of("Shared"),
+            Conduct::Rule(rule) => Fingerprint::of("Rule").part(rule.fingerprint()?),
+            Conduct::Thermal(thermal) => thermal.fingerprint(),
+        }))
     }
 }

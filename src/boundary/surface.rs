@@ -1,25 +1,51 @@
-//! What a disk meets when it touches a wall.
+//! Surfaces of walls: where they point, how they move and what a touch does.
 
 use std::fmt;
 
 use glam::DVec2;
 
-use crate::ParameterError;
 use crate::collision::CollisionRule;
-use crate::quantity::positive;
+use crate::quantity::{Checked, Quantity, Range};
+use crate::{Fingerprint, ParameterError};
 
 /// The surface of a wall at the point of a touch.
+///
+/// ```
+/// use granular_edmd::boundary::{Response, Surface};
+/// use granular_edmd::collision::Elastic;
+/// use granular_edmd::glam::DVec2;
+///
+/// let belt = Surface::new(DVec2::Y, DVec2::new(0.3, 0.0));
+/// assert!(matches!(belt.response, Response::Shared));
+/// assert!(matches!(belt.with_response(Response::Rule(&Elastic)).response, Response::Rule(_)));
+/// ```
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Surface<'a> {
     /// Unit vector from the wall to the disk.
     pub normal: DVec2,
     /// Velocity of the wall.
     pub velocity: DVec2,
-    /// What the touch does to the disk.
+    /// Response to the touch.
     pub response: Response<'a>,
 }
 
-/// What a touch does to a disk.
+impl<'a> Surface<'a> {
+    /// Creates a surface under the rule of the disks, with this unit normal and this velocity.
+    #[inline]
+    pub const fn new(normal: DVec2, velocity: DVec2) -> Self {
+        Self { normal, velocity, response: Response::Shared }
+    }
+
+    /// Returns the same surface with another response.
+    #[must_use]
+    #[inline]
+    pub const fn with_response(self, response: Response<'a>) -> Self {
+        Self { response, ..self }
+    }
+}
+
+/// Response of a wall to a touch.
 #[derive(Clone, Copy)]
 #[non_exhaustive]
 pub enum Response<'a> {
@@ -41,11 +67,12 @@ impl fmt::Debug for Response<'_> {
     }
 }
 
-/// A stochastic wall: a disk that touches it leaves as if from a gas of this temperature at rest behind the wall.
+/// A stochastic wall: a disk that touches it leaves as if from a gas of this temperature at rest behind the
+/// wall.
 ///
-/// The normal speed has the flux-weighted density `$(m v/T_0)\,e^{-m v^2/2T_0}$`; the tangential velocity and the
-/// angular velocity are normal with variances `$T_0/m$` and `$T_0/I$`. The slip variant redraws the normal speed
-/// only (the base of Ramírez, Risso, Cordero, PRL 85, 1230 (2000)).
+/// The normal speed has the flux-weighted density `$(m v/T_0)\,e^{-m v^2/2T_0}$`; the tangential velocity and
+/// the angular velocity are normal with variances `$T_0/m$` and `$T_0/I$`. The slip variant redraws the
+/// normal speed only (the base of Ramírez, Risso, Cordero, PRL 85, 1230 (2000)).
 ///
 /// ```
 /// use granular_edmd::boundary::Thermal;
@@ -55,50 +82,46 @@ impl fmt::Debug for Response<'_> {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawThermal"))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Thermal {
-    temperature: f64,
+    temperature: Checked<WallTemperature>,
     slip: bool,
 }
 
+/// Kind of number that the temperature of a wall is.
+#[derive(Debug, Clone, Copy)]
+struct WallTemperature;
+
+impl Quantity for WallTemperature {
+    const NAME: &'static str = "wall temperature";
+    const RANGE: Range = Range::POSITIVE;
+}
+
 impl Thermal {
-    /// A wall of the temperature `$T_0$` for translation and rotation.
+    /// Creates a wall of the temperature `$T_0$` for translation and rotation.
     ///
     /// # Errors
     /// If the temperature is not finite and positive.
     pub fn new(temperature: f64) -> Result<Self, ParameterError> {
-        Ok(Self { temperature: positive("wall temperature", temperature)?, slip: false })
+        Ok(Self { temperature: Checked::new(temperature)?, slip: false })
     }
 
-    /// The same wall, leaving tangential and angular velocity as they are.
+    /// Returns the same wall, leaving tangential and angular velocity as they are.
     pub const fn with_slip(self) -> Self {
         Self { slip: true, ..self }
     }
 
-    /// `$T_0$`, in units of energy.
+    /// Returns `$T_0$`, in units of energy.
     pub const fn temperature(&self) -> f64 {
-        self.temperature
+        self.temperature.get()
     }
 
-    /// Whether tangential and angular velocity are left as they are.
+    /// Tells whether tangential and angular velocity are left as they are.
     pub const fn slip(&self) -> bool {
         self.slip
     }
-}
 
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Thermal")]
-struct RawThermal {
-    temperature: f64,
-    slip: bool,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawThermal> for Thermal {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawThermal) -> Result<Self, ParameterError> {
-        Ok(Self { slip: raw.slip, ..Self::new(raw.temperature)? })
+    pub(super) fn fingerprint(&self) -> Fingerprint {
+        Fingerprint::of(if self.slip { "Thermal with slip" } else { "Thermal" }).number(self.temperature())
     }
 }

@@ -1,11 +1,13 @@
-//! What a collision rule is told.
+//! The view of a contact that a rule is given.
+
+use std::fmt;
 
 /// Two surfaces that touch: how fast they close and slip, and the masses that resist.
 ///
-/// With `$\hat n$` from partner 2 to partner 1 and `$\vec v = \vec v_{C2} - \vec v_{C1}$` the relative velocity of
-/// the points in contact, the closing speed is `$v_n = \vec v\cdot\hat n$` and the slip speed
-/// `$v_t = \vec v\cdot\hat t$`. An impulse `$\Delta_n$` changes `$v_n$` by `$-\Delta_n/\mu$`, and `$\Delta_t$` changes
-/// `$v_t$` by `$-\Delta_t/\mu_t$`, where `$1/\mu = \sum 1/m_i$` and
+/// With `$\hat n$` from partner 2 to partner 1 and `$\vec v = \vec v_{C2} - \vec v_{C1}$` the relative
+/// velocity of the points in contact, the closing speed is `$v_n = \vec v\cdot\hat n$` and the slip speed
+/// `$v_t = \vec v\cdot\hat t$`. An impulse `$\Delta_n$` changes `$v_n$` by `$-\Delta_n/\mu$`, and
+/// `$\Delta_t$` changes `$v_t$` by `$-\Delta_t/\mu_t$`, where `$1/\mu = \sum 1/m_i$` and
 /// `$1/\mu_t = \sum (1 + 1/\beta_i)/m_i$` (for homogeneous disks `$\mu_t = \mu/3$`).
 ///
 /// ```
@@ -70,5 +72,32 @@ impl Contact {
     #[inline]
     pub const fn time_since_last_collision(&self) -> f64 {
         self.time_since_last_collision
+    }
+
+    /// Normal impulse of a restitution `$r_n$`: `$\Delta_n = (1 + r_n)\,\mu\,v_n$` (paper, Eqs. (1), (3)).
+    ///
+    /// The restitution is not checked: this is for rules that compute it from the contact, in every
+    /// collision.
+    ///
+    /// ```
+    /// use granular_edmd::collision::Contact;
+    /// let contact = Contact::new(2.0, 0.0, 0.5, 0.5 / 3.0);
+    /// assert_eq!(contact.normal_impulse(0.5), 1.5);
+    /// ```
+    #[inline]
+    pub const fn normal_impulse(&self, restitution: f64) -> f64 {
+        (1.0 + restitution) * self.normal_mass * self.closing_speed
+    }
+}
+
+impl fmt::Display for Contact {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { closing_speed, slip_speed, normal_mass, tangential_mass, time_since_last_collision } =
+            self;
+        write!(
+            formatter,
+            "closing speed {closing_speed:?}, slip speed {slip_speed:?}, normal mass {normal_mass:?}, \
+             tangential mass {tangential_mass:?}, time since the last collision {time_since_last_collision:?}"
+        )
     }
 }

@@ -1,10 +1,10 @@
 //! The remedy against inelastic collapse.
 
 use super::{CollisionRule, Contact, Elastic, Impulse, Regime};
-use crate::ParameterError;
-use crate::quantity::positive;
+use crate::quantity::{Checked, Quantity, Range};
+use crate::{Fingerprint, ParameterError};
 
-/// What becomes of the tangential impulse in a contact that the contact-duration model makes elastic.
+/// The tangential impulse of a contact that the contact-duration model makes elastic.
 ///
 /// Published codes differ here, so it is said and not assumed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -18,12 +18,13 @@ pub enum TangentialResponse {
     Unchanged,
 }
 
-/// The contact-duration (TC) model over any rule: a collision of a body that collided less than `$t_c$` ago loses
-/// no energy (Luding and McNamara 1998).
+/// The contact-duration (TC) model over any rule: a collision of a body that collided less than `$t_c$` ago
+/// loses no energy (Luding and McNamara 1998).
 ///
-/// Without it, dense inelastic states collide infinitely often in finite time, and a run ends with an error. The
-/// simulation counts the collisions changed this way, so that one sees when the model matters: with a collision rate
-/// `$\omega_c$` per disk, a share of about `$2.25\,\omega_c t_c$` of the dissipation is lost to it.
+/// Without it, dense inelastic states collide infinitely often in finite time, and a run ends with an error.
+/// The simulation counts the collisions changed this way, so that one sees when the model matters: with a
+/// collision rate `$\omega_c$` per disk, a share of about `$2.25\,\omega_c t_c$` of the dissipation is lost
+/// to it.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, ContactDuration, Frictional, Regime};
@@ -38,12 +39,19 @@ pub enum TangentialResponse {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawContactDuration<R>"))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ContactDuration<R> {
     rule: R,
-    duration: f64,
+    duration: Checked<Duration>,
     #[cfg_attr(feature = "serde", serde(default))]
     tangential_response: TangentialResponse,
+}
+
+enum Duration {}
+
+impl Quantity for Duration {
+    const NAME: &'static str = "contact duration";
+    const RANGE: Range = Range::POSITIVE;
 }
 
 impl<R> ContactDuration<R> {
@@ -52,7 +60,7 @@ impl<R> ContactDuration<R> {
     /// # Errors
     /// If the duration is not finite and positive; use the rule alone for none.
     pub fn new(rule: R, duration: f64) -> Result<Self, ParameterError> {
-        let duration = positive("contact duration", duration)?;
+        let duration = Checked::new(duration)?;
         Ok(Self { rule, duration, tangential_response: TangentialResponse::default() })
     }
 
@@ -68,7 +76,7 @@ impl<R> ContactDuration<R> {
 
     /// `$t_c$`.
     pub const fn duration(&self) -> f64 {
-        self.duration
+        self.duration.get()
     }
 }
 
@@ -85,29 +93,24 @@ impl<R: CollisionRule> ContactDuration<R> {
 impl<R: CollisionRule> CollisionRule for ContactDuration<R> {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        if contact.time_since_last_collision() < self.duration {
+        if contact.time_since_last_collision() < self.duration.get() {
             self.elastic(contact)
         } else {
             self.rule.impulse(contact)
         }
     }
-}
 
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "ContactDuration")]
-struct RawContactDuration<R> {
-    rule: R,
-    duration: f64,
-    #[serde(default)]
-    tangential_response: TangentialResponse,
-}
+    fn explain(&self, contact: &Contact) -> Option<String> {
+        self.rule.explain(contact)
+    }
 
-#[cfg(feature = "serde")]
-impl<R> TryFrom<RawContactDuration<R>> for ContactDuration<R> {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawContactDuration<R>) -> Result<Self, ParameterError> {
-        Ok(Self::new(raw.rule, raw.duration)?.with_tangential_response(raw.tangential_response))
+    /// None if the rule within has none: two models could not be told apart.
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let response = match self.tangential_response {
+            TangentialResponse::Frictionless => "frictionless",
+            TangentialResponse::Unchanged => "unchanged",
+        };
+        let rule = self.rule.fingerprint()?;
+        Some(Fingerprint::of("ContactDuration").part(rule).number(self.duration.get()).text(response))
     }
 }

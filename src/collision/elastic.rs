@@ -1,6 +1,7 @@
 //! The rule that loses nothing.
 
 use super::{CollisionRule, Contact, Impulse};
+use crate::Fingerprint;
 
 /// Smooth elastic collisions: the closing speed is reversed, the slip is not touched.
 ///
@@ -16,6 +17,10 @@ pub struct Elastic;
 impl CollisionRule for Elastic {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        Impulse::new(2.0 * contact.normal_mass() * contact.closing_speed(), 0.0)
+        Impulse::new(contact.normal_impulse(1.0), 0.0)
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        Some(Fingerprint::of("Elastic"))
     }
 }

@@ -1,102 +1,41 @@
-//! From moving bodies to a contact, and from an impulse back to velocities.
+//! Single collisions of disks, outside a simulation.
 
 use glam::DVec2;
 
+use super::body::{Body, Material, collide_bodies};
 use super::{CollisionRule, Contact, Impulse};
 use crate::Disk;
 
-/// What a collision needs to know of a body at rest: how far its surface is and how it resists.
+/// Two disks after their collision, with what happened between them; made by [`collide`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Material {
-    pub(crate) radius: f64,
-    pub(crate) inverse_mass: f64,
-    /// `$(1 + 1/\beta)/m$`: velocity of the contact point per tangential impulse.
-    tangential_compliance: f64,
-    /// `$1/(\beta m R)$`: angular velocity per tangential impulse.
-    spin_response: f64,
+#[non_exhaustive]
+pub struct Encounter {
+    /// The first disk after the collision.
+    pub first: Disk,
+    /// The second disk after the collision.
+    pub second: Disk,
+    /// The contact that the rule was given.
+    pub contact: Contact,
+    /// The impulse on the first disk; the second received its opposite.
+    pub impulse: Impulse,
 }
 
-impl Material {
-    /// A wall: it takes any impulse and does not move.
-    pub(crate) const WALL: Self =
-        Self { radius: 0.0, inverse_mass: 0.0, tangential_compliance: 0.0, spin_response: 0.0 };
-
-    pub(crate) fn of(disk: &Disk) -> Self {
-        let (mass, factor) = (disk.mass(), disk.inertia_factor());
-        Self {
-            radius: disk.radius(),
-            inverse_mass: 1.0 / mass,
-            tangential_compliance: (1.0 + 1.0 / factor) / mass,
-            spin_response: 1.0 / (factor * mass * disk.radius()),
-        }
-    }
-}
-
-/// The motion that a collision changes.
+/// A disk after its collision with a wall, with what happened between them; made by [`collide_with_wall`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Body {
-    pub(crate) velocity: DVec2,
-    pub(crate) angular_velocity: f64,
+#[non_exhaustive]
+pub struct WallEncounter {
+    /// The disk after the collision.
+    pub disk: Disk,
+    /// The contact that the rule was given.
+    pub contact: Contact,
+    /// The impulse on the disk.
+    pub impulse: Impulse,
 }
 
-impl Body {
-    pub(crate) fn of(disk: &Disk) -> Self {
-        Self { velocity: disk.velocity(), angular_velocity: disk.angular_velocity() }
-    }
-}
-
-/// The contact of two bodies, `normal` pointing from the second to the first.
-#[inline]
-fn contact(normal: DVec2, first: (&Body, &Material), second: (&Body, &Material)) -> Contact {
-    let approach = second.0.velocity - first.0.velocity;
-    let surface = second.1.radius * second.0.angular_velocity + first.1.radius * first.0.angular_velocity;
-    let (normal_mass, tangential_mass) = (
-        1.0 / (first.1.inverse_mass + second.1.inverse_mass),
-        1.0 / (first.1.tangential_compliance + second.1.tangential_compliance),
-    );
-    Contact::new(approach.dot(normal), approach.dot(normal.perp()) + surface, normal_mass, tangential_mass)
-}
-
-/// `body` after an impulse along the normal and its perpendicular; both partners of a collision turn the same way.
-#[inline]
-fn kicked(body: &Body, material: &Material, kick: DVec2, tangential: f64) -> Body {
-    Body {
-        velocity: body.velocity + kick * material.inverse_mass,
-        angular_velocity: body.angular_velocity - tangential * material.spin_response,
-    }
-}
-
-/// The outcome of a meeting: both bodies after it, with what happened between them.
-pub(crate) struct Outcome {
-    pub(crate) first: Body,
-    pub(crate) second: Body,
-    pub(crate) contact: Contact,
-    pub(crate) impulse: Impulse,
-}
-
-/// Two bodies meet, `normal` pointing from the second to the first.
-#[inline(always)]
-pub(crate) fn meet<R: CollisionRule + ?Sized>(
-    rule: &R,
-    normal: DVec2,
-    time_since_last_collision: f64,
-    first: (&Body, &Material),
-    second: (&Body, &Material),
-) -> Outcome {
-    let contact = contact(normal, first, second).with_time_since_last_collision(time_since_last_collision);
-    let impulse = rule.impulse(&contact);
-    let kick = normal * impulse.normal() + normal.perp() * impulse.tangential();
-    Outcome {
-        first: kicked(first.0, first.1, kick, impulse.tangential()),
-        second: kicked(second.0, second.1, -kick, impulse.tangential()),
-        contact,
-        impulse,
-    }
-}
-
-/// Both disks after a collision under `rule`, with the contact and the impulse on the first (paper, Eq. (2)).
+/// Lets two disks collide under `rule` (paper, Eq. (2)), as a simulation does. Useful to test rules.
 ///
-/// The normal is taken from their centres; that they touch and approach is not checked. Useful to test rules.
+/// The normal is taken from their centres; that they touch is not checked. The closing speed of disks that
+/// part is zero.
 ///
 /// ```
 /// use glam::DVec2;
@@ -105,27 +44,34 @@ pub(crate) fn meet<R: CollisionRule + ?Sized>(
 ///
 /// let left = Disk::new(DVec2::ZERO, 0.5)?.with_velocity(DVec2::X)?;
 /// let right = Disk::new(DVec2::X, 0.5)?;
-/// let (left, right, _, _) = collide(&Elastic, &left, &right);
-/// assert_eq!((left.velocity(), right.velocity()), (DVec2::ZERO, DVec2::X));
+/// let encounter = collide(&Elastic, &left, &right);
+/// assert_eq!(encounter.first.velocity(), DVec2::ZERO);
+/// assert_eq!(encounter.second.velocity(), DVec2::X);
+/// assert_eq!(encounter.contact.closing_speed(), 1.0);
+/// assert_eq!(encounter.impulse.normal(), 1.0);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
-pub fn collide<R: CollisionRule + ?Sized>(
-    rule: &R,
-    first: &Disk,
-    second: &Disk,
-) -> (Disk, Disk, Contact, Impulse) {
+pub fn collide<R: CollisionRule + ?Sized>(rule: &R, first: &Disk, second: &Disk) -> Encounter {
     let normal = (first.position() - second.position()).normalize_or(DVec2::Y);
-    let outcome = meet(
+    let outcome = collide_bodies(
         rule,
         normal,
         f64::INFINITY,
         (&Body::of(first), &Material::of(first)),
         (&Body::of(second), &Material::of(second)),
     );
-    (moved(first, outcome.first), moved(second, outcome.second), outcome.contact, outcome.impulse)
+    Encounter {
+        first: moved(first, outcome.first),
+        second: moved(second, outcome.second),
+        contact: outcome.contact,
+        impulse: outcome.impulse,
+    }
 }
 
-/// The disk after a collision with a wall that moves at `wall_velocity`; `normal` points from the wall to the disk.
+/// Lets a disk collide under `rule` with a wall that moves at `wall_velocity`, as a simulation does.
+///
+/// The unit vector `normal` points from the wall to the disk. The closing speed of a disk that leaves is
+/// zero.
 ///
 /// ```
 /// use glam::DVec2;
@@ -133,8 +79,8 @@ pub fn collide<R: CollisionRule + ?Sized>(
 /// use granular_edmd::collision::{Elastic, collide_with_wall};
 ///
 /// let disk = Disk::new(DVec2::ZERO, 0.5)?.with_velocity(-DVec2::Y)?;
-/// let (disk, _, _) = collide_with_wall(&Elastic, &disk, DVec2::Y, DVec2::new(0.0, 0.5));
-/// assert_eq!(disk.velocity(), DVec2::new(0.0, 2.0));
+/// let encounter = collide_with_wall(&Elastic, &disk, DVec2::Y, DVec2::new(0.0, 0.5));
+/// assert_eq!(encounter.disk.velocity(), DVec2::new(0.0, 2.0));
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 pub fn collide_with_wall<R: CollisionRule + ?Sized>(
@@ -142,11 +88,11 @@ pub fn collide_with_wall<R: CollisionRule + ?Sized>(
     disk: &Disk,
     normal: DVec2,
     wall_velocity: DVec2,
-) -> (Disk, Contact, Impulse) {
+) -> WallEncounter {
+    let arriving = (&Body::of(disk), &Material::of(disk));
     let wall = Body { velocity: wall_velocity, angular_velocity: 0.0 };
-    let outcome =
-        meet(rule, normal, f64::INFINITY, (&Body::of(disk), &Material::of(disk)), (&wall, &Material::WALL));
-    (moved(disk, outcome.first), outcome.contact, outcome.impulse)
+    let outcome = collide_bodies(rule, normal, f64::INFINITY, arriving, (&wall, &Material::WALL));
+    WallEncounter { disk: moved(disk, outcome.first), contact: outcome.contact, impulse: outcome.impulse }
 }
 
 fn moved(disk: &Disk, body: Body) -> Disk {

@@ -1,13 +1,11 @@
 //! The paper's rule: inelastic, rotating disks with static and dynamic friction.
 
-use super::{
-    CollisionRule, Contact, Impulse, Regime, from_normal_restitution, from_tangential_restitution,
-    normal_inelasticity, tangential_inelasticity,
-};
-use crate::ParameterError;
-use crate::quantity::{accept, non_negative};
+use super::inelasticity::NormalInelasticity;
+use super::{CollisionRule, Contact, Friction, Impulse};
+use crate::{Fingerprint, ParameterError};
 
-/// Inelastic collisions with Coulomb friction (paper, Eqs. (1)–(5); Jenkins & Zhang 2002), for any two bodies:
+/// Inelastic collisions with Coulomb friction (paper, Eqs. (1)–(5); Jenkins & Zhang 2002), for any two
+/// bodies:
 ///
 /// ```math
 /// \Delta_n = 2(1-q_n)\,\mu\,v_n,\qquad
@@ -30,17 +28,15 @@ use crate::quantity::{accept, non_negative};
 ///
 /// let rule = Frictional::from_restitution(0.8, 0.6)?.with_friction(0.5, 0.4)?;
 /// assert!((rule.tangential_inelasticity() - 0.2).abs() < 1e-15);
-/// assert!(rule.with_friction(0.4, 0.5).is_err(), "dynamic friction above static friction could gain energy");
+/// assert!(rule.with_friction(0.4, 0.5).is_err(), "dynamic above static friction could gain energy");
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawFrictional"))]
+#[cfg_attr(feature = "serde", serde(try_from = "Fields", into = "Fields"))]
 pub struct Frictional {
-    normal_inelasticity: f64,
-    tangential_inelasticity: f64,
-    static_friction: f64,
-    dynamic_friction: f64,
+    normal_inelasticity: NormalInelasticity,
+    friction: Friction,
 }
 
 impl Frictional {
@@ -58,10 +54,8 @@ impl Frictional {
     /// If an inelasticity is out of its range.
     pub fn from_inelasticity(normal: f64, tangential: f64) -> Result<Self, ParameterError> {
         Ok(Self {
-            normal_inelasticity: normal_inelasticity(normal)?,
-            tangential_inelasticity: tangential_inelasticity(tangential)?,
-            static_friction: 0.0,
-            dynamic_friction: 0.0,
+            normal_inelasticity: NormalInelasticity::new(normal)?,
+            friction: Friction::from_inelasticity(tangential)?,
         })
     }
 
@@ -71,61 +65,60 @@ impl Frictional {
     /// # Errors
     /// If a restitution is out of its range.
     pub fn from_restitution(normal: f64, tangential: f64) -> Result<Self, ParameterError> {
-        Self::from_inelasticity(from_normal_restitution(normal)?, from_tangential_restitution(tangential)?)
+        Ok(Self {
+            normal_inelasticity: NormalInelasticity::from_restitution(normal)?,
+            friction: Friction::from_restitution(tangential)?,
+        })
     }
 
     /// The same rule with the friction coefficients `$\kappa_s \ge \kappa_d \ge 0$`.
     ///
     /// # Errors
-    /// If one is negative or not finite, or the dynamic coefficient exceeds the static one: sliding could then
-    /// gain energy.
+    /// If one is negative or not finite, or the dynamic coefficient exceeds the static one: sliding could
+    /// then gain energy.
     pub fn with_friction(self, static_friction: f64, dynamic_friction: f64) -> Result<Self, ParameterError> {
-        non_negative("static friction", static_friction)?;
-        non_negative("dynamic friction", dynamic_friction)?;
-        let ordered = dynamic_friction <= static_friction;
-        accept(ordered, "dynamic friction", "at most the static friction", dynamic_friction)?;
-        Ok(Self { static_friction, dynamic_friction, ..self })
+        Ok(Self { friction: self.friction.with_coefficients(static_friction, dynamic_friction)?, ..self })
     }
 
     /// `$q_n$`.
     pub const fn normal_inelasticity(&self) -> f64 {
-        self.normal_inelasticity
+        self.normal_inelasticity.get()
     }
 
     /// `$q_t$`.
     pub const fn tangential_inelasticity(&self) -> f64 {
-        self.tangential_inelasticity
+        self.friction.tangential_inelasticity()
     }
 
     /// `$\kappa_s$`.
     pub const fn static_friction(&self) -> f64 {
-        self.static_friction
+        self.friction.static_coefficient()
     }
 
     /// `$\kappa_d$`.
     pub const fn dynamic_friction(&self) -> f64 {
-        self.dynamic_friction
+        self.friction.dynamic_coefficient()
     }
 }
 
 impl CollisionRule for Frictional {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        let normal = 2.0 * (1.0 - self.normal_inelasticity) * contact.normal_mass() * contact.closing_speed();
-        let sticking =
-            2.0 * (1.0 - self.tangential_inelasticity) * contact.tangential_mass() * contact.slip_speed();
-        let sliding = (self.dynamic_friction * normal).copysign(sticking);
-        // Selections, not a branch: which of the two it is, is a coin toss.
-        let sticks = sticking.abs() < self.static_friction * normal;
-        let tangential = if sticks { sticking } else { sliding };
-        Impulse::new(normal, tangential).with_regime(if sticks { Regime::Sticking } else { Regime::Sliding })
+        self.friction.impulse(contact, self.normal_inelasticity.impulse(contact))
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let name = Fingerprint::of("Frictional");
+        let inelastic = name.number(self.normal_inelasticity()).number(self.tangential_inelasticity());
+        Some(inelastic.number(self.static_friction()).number(self.dynamic_friction()))
     }
 }
 
+/// The rule in a file: all numbers side by side.
 #[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
+#[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, rename = "Frictional")]
-struct RawFrictional {
+struct Fields {
     normal_inelasticity: f64,
     tangential_inelasticity: f64,
     static_friction: f64,
@@ -133,11 +126,23 @@ struct RawFrictional {
 }
 
 #[cfg(feature = "serde")]
-impl TryFrom<RawFrictional> for Frictional {
+impl TryFrom<Fields> for Frictional {
     type Error = ParameterError;
 
-    fn try_from(raw: RawFrictional) -> Result<Self, ParameterError> {
-        Self::from_inelasticity(raw.normal_inelasticity, raw.tangential_inelasticity)?
-            .with_friction(raw.static_friction, raw.dynamic_friction)
+    fn try_from(fields: Fields) -> Result<Self, ParameterError> {
+        Self::from_inelasticity(fields.normal_inelasticity, fields.tangential_inelasticity)?
+            .with_friction(fields.static_friction, fields.dynamic_friction)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Frictional> for Fields {
+    fn from(rule: Frictional) -> Self {
+        Self {
+            normal_inelasticity: rule.normal_inelasticity(),
+            tangential_inelasticity: rule.tangential_inelasticity(),
+            static_friction: rule.static_friction(),
+            dynamic_friction: rule.dynamic_friction(),
+        }
     }
 }

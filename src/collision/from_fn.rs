@@ -10,7 +10,7 @@ pub struct FromFn<F>(F);
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Impulse, from_fn};
-/// let sticky = from_fn(|contact: &Contact| Impulse::new(contact.normal_mass() * contact.closing_speed(), 0.0));
+/// let sticky = from_fn(|contact: &Contact| Impulse::new(contact.normal_impulse(0.0), 0.0));
 /// let contact = Contact::new(1.0, 0.0, 0.5, 0.2);
 /// assert_eq!(sticky.impulse(&contact).normal(), 0.5);
 /// ```

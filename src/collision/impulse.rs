@@ -1,8 +1,10 @@
-//! What a collision rule answers.
+//! The answer of a collision rule.
+
+use std::fmt;
 
 use super::Contact;
 
-/// How a collision went, for those who count.
+/// The way that a collision went, for those who count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Regime {
@@ -57,7 +59,7 @@ impl Impulse {
         self.tangential
     }
 
-    /// How the collision went.
+    /// Returns the way that the collision went.
     #[inline]
     pub const fn regime(&self) -> Regime {
         self.regime
@@ -69,13 +71,19 @@ impl Impulse {
     /// dE = -\Delta_n\left(v_n - \frac{\Delta_n}{2\mu}\right) - \Delta_t\left(v_t - \frac{\Delta_t}{2\mu_t}\right)
     /// ```
     ///
-    /// Independent of the frame for two disks. With Eqs. (3)–(5) it is Eq. (7) of the paper for sliding, and for
-    /// sticking Eq. (6) with the factor 1/3 that is missing there in print.
+    /// Independent of the frame for two disks. With Eqs. (3)–(5) it is Eq. (7) of the paper for sliding, and
+    /// for sticking Eq. (6) with the factor 1/3 that is missing there in print.
     #[inline]
     pub fn energy_change(&self, contact: &Contact) -> f64 {
         let normal = self.normal * (contact.closing_speed() - 0.5 * self.normal / contact.normal_mass());
         let tangential =
             self.tangential * (contact.slip_speed() - 0.5 * self.tangential / contact.tangential_mass());
         -(normal + tangential)
+    }
+}
+
+impl fmt::Display for Impulse {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "({:?}, {:?})", self.normal, self.tangential)
     }
 }

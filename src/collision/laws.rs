@@ -1,45 +1,43 @@
-//! The laws that a collision rule can break, as a check for rules of your own.
+//! The laws that a collision rule can break, as checks for rules of your own.
 //!
-//! Momentum, angular momentum and Galilean invariance hold by construction: the engine applies any impulse and its
-//! opposite at the contact point. Left to the rule are energy and separation.
+//! Momentum, angular momentum and Galilean invariance hold by construction: the engine applies any impulse
+//! and its opposite at the contact point. Left to the rule are separation, energy and friction.
+//!
+//! [`check_rule`] asks a rule about some ten thousand contacts, always the same ones, and fits into a plain
+//! test:
+//!
+//! ```
+//! use granular_edmd::collision::laws::{self, Promises, Violation};
+//! use granular_edmd::collision::{Contact, Frictional, Impulse, from_fn};
+//!
+//! laws::check_rule(&Frictional::new(0.1, 0.3)?, &Promises::new().with_friction(0.3))?;
+//!
+//! let glue = from_fn(|_: &Contact| Impulse::new(0.0, 0.0));
+//! assert!(matches!(laws::check_rule(&glue, &Promises::new()), Err(Violation::StillClosing { .. })));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! For contacts of your own there are [`check`], [`check_friction_opposes_slip`] and [`check_friction_cone`],
+//! and under the feature `proptest` the module `strategies` makes random ones.
 
-use thiserror::Error;
+mod hostile;
+mod rule;
+mod violation;
+
+pub use hostile::hostile_contacts;
+pub use rule::{Promises, check_rule};
+pub use violation::Violation;
 
 use super::{Contact, Impulse};
-
-/// A law that an impulse breaks.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[non_exhaustive]
-pub enum Violation {
-    /// The impulse has a component that is not a number, or infinite.
-    #[error("the impulse ({normal}, {tangential}) is not finite")]
-    NotFinite {
-        /// Its normal component.
-        normal: f64,
-        /// Its tangential component.
-        tangential: f64,
-    },
-    /// The partners still approach after the collision.
-    #[error("after the collision the surfaces still close, at speed {closing_speed}")]
-    StillClosing {
-        /// Closing speed after the collision.
-        closing_speed: f64,
-    },
-    /// The collision adds kinetic energy.
-    #[error("the collision gains the energy {energy_change}")]
-    EnergyGained {
-        /// Change of kinetic energy.
-        energy_change: f64,
-    },
-}
 
 /// Rounding allowed in each law, relative to the speeds and energies of the contact.
 const ROUNDING: f64 = 1e-12;
 
-/// Speeds and impulses of light disks below this have fewer digits the lower they are.
-const LEAST_SPEED: f64 = 1e-280;
+/// Smaller products than this have the fewer digits the smaller they are, so that no relative bound holds for
+/// them.
+const LEAST: f64 = f64::MIN_POSITIVE;
 
-/// Whether `impulse` is one that `contact` can suffer: finite, separating, not gaining energy.
+/// Checks that `impulse` is one that `contact` can suffer: finite, separating, not gaining energy.
 ///
 /// # Errors
 /// The first law that is broken.
@@ -54,19 +52,79 @@ const LEAST_SPEED: f64 = 1e-280;
 /// ));
 /// ```
 pub fn check(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
-    let (normal, tangential) = (impulse.normal(), impulse.tangential());
-    if !(normal.is_finite() && tangential.is_finite()) {
-        return Err(Violation::NotFinite { normal, tangential });
-    }
-    let closing_speed = closing_speed_after(contact, impulse);
-    if closing_speed > ROUNDING * contact.closing_speed().abs().max(LEAST_SPEED) {
-        return Err(Violation::StillClosing { closing_speed });
-    }
+    check_separation(contact, impulse)?;
     let energy_change = impulse.energy_change(contact);
-    if energy_change > ROUNDING * available_energy(contact) {
-        return Err(Violation::EnergyGained { energy_change });
+    if energy_change > ROUNDING * available_energy(contact) + LEAST {
+        return Err(Violation::EnergyGained { energy_change, contact: *contact, impulse });
     }
     Ok(())
+}
+
+/// Checks all but the energy.
+fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
+    if !(impulse.normal().is_finite() && impulse.tangential().is_finite()) {
+        return Err(Violation::NotFinite { contact: *contact, impulse });
+    }
+    let closing_speed = closing_speed_after(contact, impulse);
+    if closing_speed > rounding_of(contact.closing_speed(), contact.normal_mass()) {
+        return Err(Violation::StillClosing { closing_speed, contact: *contact, impulse });
+    }
+    Ok(())
+}
+
+/// Checks that the tangential impulse is one of friction: it slows the slip, and at most reverses it.
+///
+/// A rule may add to the slip and still lose energy, which it then takes from the normal direction: [`check`]
+/// allows that, friction does not do it.
+///
+/// # Errors
+/// If the slip is faster afterwards.
+///
+/// ```
+/// use granular_edmd::collision::{Contact, Impulse, laws};
+/// let contact = Contact::new(1.0, 0.5, 0.5, 0.5 / 3.0);
+/// assert!(laws::check_friction_opposes_slip(&contact, Impulse::new(0.8, 0.1)).is_ok());
+/// assert!(laws::check_friction_opposes_slip(&contact, Impulse::new(0.8, -0.1)).is_err());
+/// ```
+pub fn check_friction_opposes_slip(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
+    let slip_speed = slip_speed_after(contact, impulse);
+    // The sign is told exactly, however small an impulse is beside the slip.
+    let opposes = impulse.tangential() == 0.0 || impulse.tangential().signum() * contact.slip_speed() > 0.0;
+    let bound = contact.slip_speed().abs() + rounding_of(contact.slip_speed(), contact.tangential_mass());
+    if opposes && slip_speed.abs() <= bound {
+        Ok(())
+    } else {
+        Err(Violation::SlipSpedUp { slip_speed, contact: *contact, impulse })
+    }
+}
+
+/// Checks that the impulse lies in the cone of friction, `$|\Delta_t| \le \kappa_s\Delta_n$`.
+///
+/// # Errors
+/// If it does not.
+///
+/// ```
+/// use granular_edmd::collision::{Contact, Impulse, laws};
+/// let contact = Contact::new(1.0, 0.5, 0.5, 0.5 / 3.0);
+/// assert!(laws::check_friction_cone(&contact, Impulse::new(0.8, 0.2), 0.25).is_ok());
+/// assert!(laws::check_friction_cone(&contact, Impulse::new(0.8, 0.3), 0.25).is_err());
+/// ```
+pub fn check_friction_cone(
+    contact: &Contact,
+    impulse: Impulse,
+    static_friction: f64,
+) -> Result<(), Violation> {
+    let limit = static_friction * impulse.normal();
+    if impulse.tangential().abs() <= limit * (1.0 + ROUNDING) + LEAST {
+        Ok(())
+    } else {
+        Err(Violation::OutsideFrictionCone { limit, contact: *contact, impulse })
+    }
+}
+
+/// Rounding of a speed after an impulse on this mass; the impulse itself is rounded at [`LEAST`].
+fn rounding_of(speed: f64, mass: f64) -> f64 {
+    ROUNDING * speed.abs() + LEAST / mass
 }
 
 /// Closing speed after the collision, `$v_n' = v_n - \Delta_n/\mu$`; negative when the surfaces separate.
@@ -79,9 +137,9 @@ pub fn slip_speed_after(contact: &Contact, impulse: Impulse) -> f64 {
     contact.slip_speed() - impulse.tangential() / contact.tangential_mass()
 }
 
-/// Kinetic energy of the relative motion, `$\tfrac12\mu v_n^2 + \tfrac12\mu_t v_t^2$`: the most that a collision
-/// can lose.
+/// Kinetic energy of the relative motion, `$\tfrac12\mu v_n^2 + \tfrac12\mu_t v_t^2$`: the most that a
+/// collision can lose.
 pub fn available_energy(contact: &Contact) -> f64 {
-    0.5 * contact.normal_mass() * contact.closing_speed().powi(2)
-        + 0.5 * contact.tangential_mass() * contact.slip_speed().powi(2)
+    let (closing, slip) = (contact.closing_speed(), contact.slip_speed());
+    0.5 * contact.normal_mass() * (closing * closing) + 0.5 * contact.tangential_mass() * (slip * slip)
 }

@@ -1,13 +1,11 @@
 //! Rough disks: the surfaces never slide.
 
-use super::{
-    CollisionRule, Contact, Impulse, Regime, from_normal_restitution, from_tangential_restitution,
-    normal_inelasticity, tangential_inelasticity,
-};
-use crate::ParameterError;
+use super::inelasticity::{NormalInelasticity, TangentialInelasticity};
+use super::{CollisionRule, Contact, Impulse, Regime};
+use crate::{Fingerprint, ParameterError};
 
-/// Rough inelastic collisions without a Coulomb limit: every collision sticks,
-/// `$\Delta_n = 2(1-q_n)\mu v_n$` and `$\Delta_t = 2(1-q_t)\mu_t v_t$` (paper, Eqs. (3), (4) with `$\kappa\to\infty$`).
+/// Rough inelastic collisions without a Coulomb limit: every collision sticks, `$\Delta_n = 2(1-q_n)\mu v_n$`
+/// and `$\Delta_t = 2(1-q_t)\mu_t v_t$` (paper, Eqs. (3), (4) with `$\kappa\to\infty$`).
 ///
 /// `$q_t = 0$` is perfectly rough and elastic in the tangential direction, `$q_t = 1$` perfectly smooth.
 ///
@@ -20,10 +18,10 @@ use crate::ParameterError;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawRough"))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Rough {
-    normal_inelasticity: f64,
-    tangential_inelasticity: f64,
+    normal_inelasticity: NormalInelasticity,
+    tangential_inelasticity: TangentialInelasticity,
 }
 
 impl Rough {
@@ -33,8 +31,8 @@ impl Rough {
     /// If one is out of range.
     pub fn new(normal: f64, tangential: f64) -> Result<Self, ParameterError> {
         Ok(Self {
-            normal_inelasticity: normal_inelasticity(normal)?,
-            tangential_inelasticity: tangential_inelasticity(tangential)?,
+            normal_inelasticity: NormalInelasticity::new(normal)?,
+            tangential_inelasticity: TangentialInelasticity::new(tangential)?,
         })
     }
 
@@ -43,43 +41,33 @@ impl Rough {
     /// # Errors
     /// If one is out of range.
     pub fn from_restitution(normal: f64, tangential: f64) -> Result<Self, ParameterError> {
-        Self::new(from_normal_restitution(normal)?, from_tangential_restitution(tangential)?)
+        Ok(Self {
+            normal_inelasticity: NormalInelasticity::from_restitution(normal)?,
+            tangential_inelasticity: TangentialInelasticity::from_restitution(tangential)?,
+        })
     }
 
     /// `$q_n$`.
     pub const fn normal_inelasticity(&self) -> f64 {
-        self.normal_inelasticity
+        self.normal_inelasticity.get()
     }
 
     /// `$q_t$`.
     pub const fn tangential_inelasticity(&self) -> f64 {
-        self.tangential_inelasticity
+        self.tangential_inelasticity.get()
     }
 }
 
 impl CollisionRule for Rough {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        let normal = 2.0 * (1.0 - self.normal_inelasticity) * contact.normal_mass() * contact.closing_speed();
-        let tangential =
-            2.0 * (1.0 - self.tangential_inelasticity) * contact.tangential_mass() * contact.slip_speed();
+        let normal = self.normal_inelasticity.impulse(contact);
+        let tangential = self.tangential_inelasticity.impulse(contact);
         Impulse::new(normal, tangential).with_regime(Regime::Sticking)
     }
-}
 
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Rough")]
-struct RawRough {
-    normal_inelasticity: f64,
-    tangential_inelasticity: f64,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawRough> for Rough {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawRough) -> Result<Self, ParameterError> {
-        Self::new(raw.normal_inelasticity, raw.tangential_inelasticity)
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let name = Fingerprint::of("Rough");
+        Some(name.number(self.normal_inelasticity()).number(self.tangential_inelasticity()))
     }
 }

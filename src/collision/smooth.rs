@@ -1,7 +1,8 @@
 //! Inelastic disks without any tangential force.
 
-use super::{CollisionRule, Contact, Impulse, from_normal_restitution, normal_inelasticity};
-use crate::ParameterError;
+use super::inelasticity::NormalInelasticity;
+use super::{CollisionRule, Contact, Impulse};
+use crate::{Fingerprint, ParameterError};
 
 /// Smooth inelastic collisions: `$\Delta_n = 2(1-q_n)\mu v_n$` (paper, Eq. (3)) and no tangential impulse.
 ///
@@ -15,9 +16,9 @@ use crate::ParameterError;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawSmooth"))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Smooth {
-    normal_inelasticity: f64,
+    normal_inelasticity: NormalInelasticity,
 }
 
 impl Smooth {
@@ -26,7 +27,7 @@ impl Smooth {
     /// # Errors
     /// If it is out of range.
     pub fn new(inelasticity: f64) -> Result<Self, ParameterError> {
-        Ok(Self { normal_inelasticity: normal_inelasticity(inelasticity)? })
+        Ok(Self { normal_inelasticity: NormalInelasticity::new(inelasticity)? })
     }
 
     /// A rule with the normal restitution `$r_n \in [0, 1]$`.
@@ -34,37 +35,22 @@ impl Smooth {
     /// # Errors
     /// If it is out of range.
     pub fn from_restitution(restitution: f64) -> Result<Self, ParameterError> {
-        Self::new(from_normal_restitution(restitution)?)
+        Ok(Self { normal_inelasticity: NormalInelasticity::from_restitution(restitution)? })
     }
 
     /// `$q_n$`.
     pub const fn normal_inelasticity(&self) -> f64 {
-        self.normal_inelasticity
+        self.normal_inelasticity.get()
     }
 }
 
 impl CollisionRule for Smooth {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        Impulse::new(
-            2.0 * (1.0 - self.normal_inelasticity) * contact.normal_mass() * contact.closing_speed(),
-            0.0,
-        )
+        Impulse::new(self.normal_inelasticity.impulse(contact), 0.0)
     }
-}
 
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Smooth")]
-struct RawSmooth {
-    normal_inelasticity: f64,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawSmooth> for Smooth {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawSmooth) -> Result<Self, ParameterError> {
-        Self::new(raw.normal_inelasticity)
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        Some(Fingerprint::of("Smooth").number(self.normal_inelasticity()))
     }
 }

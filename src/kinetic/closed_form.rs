@@ -4,7 +4,7 @@ use super::Maxwellian;
 use super::stick_slip::StickSlip;
 use crate::collision::Frictional;
 
-/// Mean energy change per collision `$\langle dE\rangle$` of the paper's rule in a Maxwellian gas, exact:
+/// Returns the exact mean energy change per collision of the paper's rule in a Maxwellian gas.
 ///
 /// ```math
 /// \frac{\langle dE\rangle}{T} = -4q_n p - \frac2\lambda\,q_t(1-q_t)\,w^2 s^3 - 2\kappa_d p\,w\,k^3
@@ -12,12 +12,12 @@ use crate::collision::Frictional;
 /// ```
 ///
 /// with `$p = 1-q_n$`, `$\lambda = \mu/\mu_t$`, `$w^2 = 1+(\lambda-1)T_r/T$`, and the sticking probability
-/// `$s = \sin\alpha$`, `$k = \cos\alpha$`, `$\tan\alpha = \lambda p\kappa_s/\big((1-q_t)w\big)$`. An energy, in units of
-/// the temperature's. The paper has this average by Monte Carlo only (Fig. 1); at zero friction it is its Eq. (8).
-/// The derivation is in `docs/physics-kinetic.md`.
+/// `$s = \sin\alpha$`, `$k = \cos\alpha$`, `$\tan\alpha = \lambda p\kappa_s/\big((1-q_t)w\big)$`. The result
+/// is an energy, in the units of the temperature. The paper has this average by Monte Carlo only (Fig. 1); at
+/// zero friction it is the paper's Eq. (8). The derivation is in `docs/physics-kinetic.md`.
 ///
-/// Masses enter through `$\lambda$` alone, which is 3 for homogeneous disks of any masses: at equal temperatures
-/// Fig. 1 of the paper holds for any mixture.
+/// Masses enter through `$\lambda$` alone, which is 3 for homogeneous disks of any masses. So Fig. 1 of the
+/// paper holds for any mixture at equal temperatures.
 ///
 /// ```
 /// use granular_edmd::collision::Frictional;
@@ -31,7 +31,8 @@ pub fn mean_energy_change(rule: &Frictional, gas: &Maxwellian) -> f64 {
     let (mass_ratio, slip_ratio_squared) = (gas.mass_ratio(), gas.slip_ratio_squared());
     let (normal, tangential) = (rule.normal_inelasticity(), rule.tangential_inelasticity());
     let sector = sector(rule, gas);
-    // Grouped with one cosine, the friction stays bounded however large it is.
+    // Friction grows without bound and the cosine of the sector falls as its inverse: only their product is
+    // finite.
     let friction = rule.dynamic_friction() * sector.cosine * (1.0 - normal);
     let sticking = tangential * (1.0 - tangential) * slip_ratio_squared / mass_ratio * sector.sticking_slip();
     let sliding = friction
@@ -40,8 +41,10 @@ pub fn mean_energy_change(rule: &Frictional, gas: &Maxwellian) -> f64 {
     -gas.translational_temperature() * (4.0 * normal * (1.0 - normal) + 2.0 * (sticking + sliding))
 }
 
-/// Fraction `$s$` of collisions that stick, under the paper's rule in a Maxwellian gas:
-/// `$s = \sin\alpha$`, `$\tan\alpha = \lambda(1-q_n)\kappa_s/\big((1-q_t)w\big)$` (see [`mean_energy_change`]).
+/// Returns the fraction of collisions that stick, under the paper's rule in a Maxwellian gas.
+///
+/// It is `$s = \sin\alpha$`, `$\tan\alpha = \lambda(1-q_n)\kappa_s/\big((1-q_t)w\big)$` (see
+/// [`mean_energy_change`]).
 ///
 /// ```
 /// use granular_edmd::collision::Frictional;

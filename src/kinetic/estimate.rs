@@ -1,4 +1,4 @@
-//! What a Monte Carlo average answers.
+//! The result of a Monte Carlo average.
 
 /// A mean energy change per collision with its standard error; made by [`MonteCarlo`](super::MonteCarlo).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,8 +30,8 @@ impl Estimate {
         self.samples
     }
 
-    /// Fraction of collisions that the rule calls [`Regime::Sticking`](crate::collision::Regime::Sticking), to about
-    /// `2/sqrt(samples)`.
+    /// Fraction of collisions that the rule calls [`Regime::Sticking`](crate::collision::Regime::Sticking);
+    /// its error is about `2/sqrt(samples)`.
     pub const fn sticking_fraction(&self) -> f64 {
         self.sticking_fraction
     }

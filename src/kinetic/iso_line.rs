@@ -12,14 +12,14 @@ pub type Piece = Vec<(f64, f64)>;
 /// The line `$\langle dE\rangle = \text{const}$` in the plane of `$\kappa = \kappa_s = \kappa_d$` and
 /// `$q = q_n = q_t$` (paper, Fig. 1), for the paper's rule.
 ///
-/// With equal inelasticities the sticking probability does not depend on `$q$`, and `$\langle dE\rangle$` is a
-/// polynomial of second degree in it. So there are at most two `$q$` for each friction, and none is missed.
+/// With equal inelasticities the sticking probability does not depend on `$q$`, and `$\langle dE\rangle$` is
+/// a polynomial of second degree in `$q$`. So each friction has at most two `$q$`, and none is missed.
 ///
 /// ```
 /// use granular_edmd::kinetic::{IsoLine, Maxwellian};
 ///
-/// // The transition from two rolls to collapse at the larger gravity (paper, Table I): without inelasticity it
-/// // is met at two frictions, the paper's re-entrance.
+/// // The transition from two rolls to collapse at the larger gravity (paper, Table I). Without inelasticity
+/// // it lies at two frictions, the paper's re-entrance.
 /// let line = IsoLine::new(-0.290, &Maxwellian::new(1.0)?)?;
 /// assert_eq!(line.inelasticities(0.3)?, []);
 /// assert!((line.inelasticities(0.0)?[0] - 0.0787).abs() < 1e-4);
@@ -40,7 +40,7 @@ pub struct IsoLine {
 }
 
 impl IsoLine {
-    /// The line of this mean energy change per collision.
+    /// Makes the line of this mean energy change per collision.
     ///
     /// # Errors
     /// If the mean energy change is not finite, or positive: no collision gains energy.
@@ -54,7 +54,8 @@ impl IsoLine {
         })
     }
 
-    /// All inelasticities in `[0, 1/2]` with this energy change at this friction: none, one or two, ascending.
+    /// Returns the inelasticities in `[0, 1/2]` with this energy change at this friction: none, one or two,
+    /// ascending.
     ///
     /// # Errors
     /// If the friction is negative or not finite.
@@ -64,15 +65,17 @@ impl IsoLine {
         Ok(lower.into_iter().chain(upper.filter(|_| upper != lower)).collect())
     }
 
-    /// The line as pieces, sampled at these frictions in ascending order, where the inelasticity is at most
+    /// Traces the line at these ascending frictions, as far as the inelasticity is at most
     /// `largest_inelasticity`.
     ///
-    /// Each end that lies between two frictions is added exactly. There the line leaves the plane, or its lower and
-    /// upper inelasticity meet: such pieces share their end. A piece that lies between two frictions is missed.
+    /// The result is the connected pieces of the line. A piece that ends between two of the frictions gets
+    /// its exact end as a last point: the line leaves the plane there, or its lower and its upper
+    /// inelasticity meet, and both pieces have this point. A piece that lies between two of the frictions as
+    /// a whole is missed.
     ///
     /// # Errors
-    /// If a friction is negative or not finite, the frictions do not ascend, or `largest_inelasticity` is not in
-    /// `[0, 1/2]`.
+    /// If a friction is negative or not finite, the frictions do not ascend, or `largest_inelasticity` is not
+    /// in `[0, 1/2]`.
     pub fn trace(&self, frictions: &[f64], largest_inelasticity: f64) -> Result<Vec<Piece>, ParameterError> {
         let valid = (0.0..=0.5).contains(&largest_inelasticity);
         accept(valid, "largest inelasticity", "in [0, 0.5]", largest_inelasticity)?;
@@ -85,9 +88,9 @@ impl IsoLine {
         Ok([pieces(frictions, on(0)), pieces(frictions, on(1))].concat())
     }
 
-    /// The two real `$q$`, ascending, in the plane or not.
+    /// Returns both real `$q$` at a friction, ascending, in the plane or not.
     ///
-    /// `$a q^2 - b q + c = 0$` with `$c = (\langle dE\rangle|_{q=0} - \langle dE\rangle)/T$`.
+    /// They solve `$a q^2 - b q + c = 0$` with `$c = (\langle dE\rangle|_{q=0} - \langle dE\rangle)/T$`.
     fn roots(&self, friction: f64) -> [Option<f64>; 2] {
         let sector = StickSlip::new(friction, self.mass_ratio, self.slip_ratio);
         let squared = self.slip_ratio * self.slip_ratio / self.mass_ratio;
@@ -99,12 +102,14 @@ impl IsoLine {
     }
 }
 
-/// Real roots of `$a x^2 - b x + c$` with `$a > 0$`, ascending, without cancellation.
+/// Returns the real roots of `$a x^2 - b x + c$` with `$a > 0$`, ascending.
 fn roots(a: f64, b: f64, c: f64) -> [Option<f64>; 2] {
     let discriminant = b * b - 4.0 * a * c;
     if discriminant < 0.0 {
         return [None; 2];
     }
+    // The root of larger size adds two numbers of the same sign. The other one would be their difference,
+    // with few digits left; the product of both roots, c/a, gives it in full.
     let larger = 0.5 * (b + discriminant.sqrt().copysign(b));
     if larger == 0.0 {
         return [Some(0.0); 2];
@@ -113,13 +118,13 @@ fn roots(a: f64, b: f64, c: f64) -> [Option<f64>; 2] {
     [Some(pair[0].min(pair[1])), Some(pair[0].max(pair[1]))]
 }
 
-/// The inelasticity if it lies in `[0, largest]`, up to rounding.
+/// Returns the inelasticity if it lies in `[0, largest]`, up to rounding.
 fn within(inelasticity: f64, largest: f64) -> Option<f64> {
     let valid = (-f64::EPSILON..=largest + f64::EPSILON).contains(&inelasticity);
     valid.then(|| inelasticity.clamp(0.0, largest))
 }
 
-/// The graph of `line` where it is defined, cut into pieces with exact ends.
+/// Cuts the graph of `line` into connected pieces with exact ends.
 fn pieces(frictions: &[f64], line: impl Fn(f64) -> Option<f64>) -> Vec<Piece> {
     let point = |friction| line(friction).map(|inelasticity| (friction, inelasticity));
     let end = |inside, outside| point(boundary(inside, outside, |friction| line(friction).is_some()));

@@ -1,24 +1,26 @@
-//! The gas over whose collisions is averaged.
+//! The gas whose collisions are averaged.
 
 use crate::collision::Contact;
 use crate::quantity::accept;
 use crate::{Disk, ParameterError};
 
-/// Largest and smallest temperature: its products with masses of the same range stay finite and normal.
+/// Smallest and largest temperature. Products and quotients with masses of the same range stay finite and
+/// normal.
 const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
 /// A gas of Maxwellian velocities and spins, seen through the collisions of two of its disks.
 ///
-/// Velocities have the translational temperature, `$T = m\langle v_x^2\rangle$`, spins the rotational one,
-/// `$T_r = I\langle\omega^2\rangle$` (Boltzmann's constant is 1: temperatures are energies). Over collisions, the
-/// closing speed then has the flux-weighted density `$(v_n/S)\,e^{-v_n^2/2S}$` and the slip speed is an independent
-/// normal variable of variance `$V$`, with
+/// Velocities have the translational temperature, `$T = m\langle v_x^2\rangle$`, and spins the rotational
+/// one, `$T_r = I\langle\omega^2\rangle$` (Boltzmann's constant is 1: temperatures are energies). Over its
+/// collisions, the closing speed has the flux-weighted density `$(v_n/S)\,e^{-v_n^2/2S}$`, and the slip speed
+/// is an independent normal variable of variance `$V$`, with
 ///
 /// ```math
 /// S = \frac{T}{\mu},\qquad V = \frac{T}{\mu} + T_r\left(\frac1{\mu_t}-\frac1\mu\right),
 /// ```
 ///
-/// since `$1/\mu_t - 1/\mu = R_1^2/I_1 + R_2^2/I_2$`: the radii drop out. `docs/physics-kinetic.md` derives it.
+/// since `$1/\mu_t - 1/\mu = R_1^2/I_1 + R_2^2/I_2$`, where the radii drop out. The derivation is in
+/// `docs/physics-kinetic.md`.
 ///
 /// ```
 /// use glam::DVec2;
@@ -47,7 +49,7 @@ pub struct Maxwellian {
 }
 
 impl Maxwellian {
-    /// Identical homogeneous disks of mass 1, velocities and spins at this temperature.
+    /// Makes a gas of identical homogeneous disks of mass 1, with velocities and spins at this temperature.
     ///
     /// # Errors
     /// If the temperature is not in `[1e-30, 1e30]`.
@@ -58,11 +60,11 @@ impl Maxwellian {
             translational_temperature: temperature,
             rotational_temperature: temperature,
             masses: [1.0; 2],
-            inertia_factors: [crate::HOMOGENEOUS; 2],
+            inertia_factors: [crate::Disk::HOMOGENEOUS_INERTIA_FACTOR; 2],
         })
     }
 
-    /// The same gas with its spins at another temperature, zero for disks that do not rotate before they collide.
+    /// Returns the same gas with its spins at another temperature. Zero: no disk rotates before it collides.
     ///
     /// # Errors
     /// If the temperature is not in `[0, 1e30]`.
@@ -72,7 +74,7 @@ impl Maxwellian {
         Ok(Self { rotational_temperature: temperature, ..self })
     }
 
-    /// The same gas, seen through the collisions of these two kinds of disks.
+    /// Returns the same gas, seen through the collisions of these two kinds of disks.
     ///
     /// Only their masses and inertia factors matter; position and motion are ignored.
     pub fn with_partners(self, first: &Disk, second: &Disk) -> Self {
@@ -83,32 +85,32 @@ impl Maxwellian {
         }
     }
 
-    /// `$T = m\langle v_x^2\rangle$`.
+    /// The translational temperature, `$T = m\langle v_x^2\rangle$`.
     pub const fn translational_temperature(&self) -> f64 {
         self.translational_temperature
     }
 
-    /// `$T_r = I\langle\omega^2\rangle$`.
+    /// The rotational temperature, `$T_r = I\langle\omega^2\rangle$`.
     pub const fn rotational_temperature(&self) -> f64 {
         self.rotational_temperature
     }
 
-    /// `$\mu$`, `$1/\mu = \sum 1/m_i$`.
+    /// The normal effective mass `$\mu$`, with `$1/\mu = \sum 1/m_i$`.
     pub fn normal_mass(&self) -> f64 {
         1.0 / (1.0 / self.masses[0] + 1.0 / self.masses[1])
     }
 
-    /// `$\mu_t$`, `$1/\mu_t = \sum (1 + 1/\beta_i)/m_i$`.
+    /// The tangential effective mass `$\mu_t$`, with `$1/\mu_t = \sum (1 + 1/\beta_i)/m_i$`.
     pub fn tangential_mass(&self) -> f64 {
         1.0 / (self.compliance(0) + self.compliance(1))
     }
 
-    /// `$S$`: half the mean square of the closing speed over collisions.
+    /// Half the mean square of the closing speed over collisions, `$S$`.
     pub fn closing_variance(&self) -> f64 {
         self.translational_temperature / self.normal_mass()
     }
 
-    /// `$V$`: mean square of the slip speed over collisions.
+    /// Mean square of the slip speed over collisions, `$V$`.
     pub fn slip_variance(&self) -> f64 {
         self.closing_variance() * self.slip_ratio_squared()
     }
@@ -117,19 +119,20 @@ impl Maxwellian {
         (1.0 + 1.0 / self.inertia_factors[partner]) / self.masses[partner]
     }
 
-    /// `$\lambda = \mu/\mu_t$`: 3 for homogeneous disks, whatever their masses.
+    /// Ratio of the effective masses, `$\lambda = \mu/\mu_t$`: 3 for homogeneous disks, whatever their
+    /// masses.
     #[inline]
     pub(super) fn mass_ratio(&self) -> f64 {
         self.normal_mass() / self.tangential_mass()
     }
 
-    /// `$w^2 = V/S = 1 + (\lambda - 1)T_r/T$`.
+    /// Ratio of the variances, `$w^2 = V/S = 1 + (\lambda - 1)T_r/T$`.
     #[inline]
     pub(super) fn slip_ratio_squared(&self) -> f64 {
         1.0 + (self.mass_ratio() - 1.0) * (self.rotational_temperature / self.translational_temperature)
     }
 
-    /// The contact with these speeds in units of `$\sqrt S$` and `$\sqrt V$`.
+    /// Returns the contact with these speeds, given in units of `$\sqrt S$` and `$\sqrt V$`.
     #[inline]
     pub(super) fn contact(&self, closing: f64, slip: f64) -> Contact {
         Contact::new(
@@ -141,7 +144,7 @@ impl Maxwellian {
     }
 }
 
-/// What a file holds, before it has passed the constructors.
+/// The contents of a file, before they have passed the constructors.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields, rename = "Maxwellian")]

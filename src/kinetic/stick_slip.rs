@@ -1,10 +1,13 @@
-//! Where in velocity space collisions turn from sticking to sliding.
+//! The border between sticking and sliding in the space of velocities.
 
 /// Sine and cosine of the half angle `$\alpha$` of the sticking sector.
 ///
-/// In the scaled speeds `$x = v_n/\sqrt S$`, `$z = v_t/\sqrt V$` a collision sticks for `$|z| < x\tan\alpha$`. The
-/// vector (x cos φ, x sin φ, z) is isotropic, so `$\sin\alpha$` is the probability to stick. Everything is written in
-/// `$s = \sin\alpha$` and `$k = \cos\alpha$`, which stay accurate for any friction: `$1 - s = k^2/(1 + s)$`.
+/// In the scaled speeds `$x = v_n/\sqrt S$`, `$z = v_t/\sqrt V$`, a collision sticks for
+/// `$|z| < x\tan\alpha$`. The vector (x cos φ, x sin φ, z) is isotropic, so `$\sin\alpha$` is the probability
+/// to stick.
+///
+/// Formulas use `$s = \sin\alpha$` and `$k = \cos\alpha$` side by side. At large friction `$s$` rounds to 1
+/// and `$1 - s$` would have no digits left; `$k^2/(1 + s)$` is the same number with all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StickSlip {
     pub(super) sine: f64,
@@ -12,13 +15,15 @@ pub(super) struct StickSlip {
 }
 
 impl StickSlip {
-    /// The sector with `$\tan\alpha = \kappa\,(\text{opposite}/\text{adjacent})$`; an adjacent of zero always sticks.
+    /// Makes the sector with `$\tan\alpha = \kappa\,(\text{opposite}/\text{adjacent})$`. Where `adjacent` is
+    /// zero, all collisions stick.
     #[inline]
     pub(super) fn new(friction: f64, opposite: f64, adjacent: f64) -> Self {
         if friction == 0.0 {
             return Self { sine: 0.0, cosine: 1.0 };
         }
-        // Neither factor may overflow, whatever finite friction there is.
+        // Only the ratio counts. Friction above 1 divides one side instead of multiplying the other, so that
+        // neither overflows, whatever the friction.
         let (opposite, adjacent) =
             if friction > 1.0 { (opposite, adjacent / friction) } else { (opposite * friction, adjacent) };
         let hypotenuse = libm::hypot(opposite, adjacent);

@@ -1,10 +1,11 @@
-//! The centre of mass.
+//! The center of mass.
 
 use glam::DVec2;
 
 use super::{Observable, Snapshot};
 
-/// Position of the centre of mass, `$\sum m_i\vec r_i/\sum m_i$`; its `y` is the `$Y_{cm}$` of the paper's Fig. 2.
+/// Position of the center of mass, `$\sum m_i\vec r_i/\sum m_i$`; its `y` is the `$Y_{cm}$` of the paper's Fig. 2.
+/// NaN without disks.
 ///
 /// ```
 /// use glam::DVec2;
@@ -17,11 +18,12 @@ use super::{Observable, Snapshot};
 ///     Disk::new(DVec2::new(3.0, 5.0), 0.5)?.with_mass(3.0)?,
 /// ];
 /// let domain = Domain { left: 0.0, right: 4.0, bottom: 0.0, top: 6.0, periodic: false };
-/// let centre = CenterOfMass.measure(&Snapshot::new(0.0, &disks, domain, 0.0));
-/// assert_eq!(centre, DVec2::new(2.5, 4.0));
+/// let center = CenterOfMass.measure(&Snapshot::new(0.0, &disks, domain, 0.0));
+/// assert_eq!(center, DVec2::new(2.5, 4.0));
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CenterOfMass;
 
 impl Observable for CenterOfMass {

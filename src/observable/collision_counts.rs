@@ -1,4 +1,6 @@
-//! How often, with whom, and how.
+//! Counts and rates of collisions.
+
+use std::collections::BTreeMap;
 
 use super::{Collision, Observer, Partner};
 use crate::collision::Regime;
@@ -8,78 +10,101 @@ use crate::collision::Regime;
 /// ```
 /// use granular_edmd::observable::CollisionCounts;
 /// let counts = CollisionCounts::since(0.0);
-/// assert_eq!(counts.disks() + counts.walls(), 0);
+/// assert_eq!(counts.disk_collisions() + counts.wall_collisions(), 0);
+/// assert_eq!(counts.collisions_with_wall(3), 0);
 /// assert_eq!(counts.rate_per_disk(1000, 10.0), 0.0);
 /// ```
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawCollisionCounts"))]
 pub struct CollisionCounts {
     start: f64,
     disks: u64,
-    walls: Vec<u64>,
+    walls: BTreeMap<usize, u64>,
     sticking: u64,
     sliding: u64,
     contact_duration: u64,
 }
 
 impl CollisionCounts {
-    /// Counts that start at this time.
+    /// Makes counts of which rates start at this absolute time.
     pub fn since(start: f64) -> Self {
         Self { start, ..Self::default() }
     }
 
-    /// Collisions of two disks.
-    pub const fn disks(&self) -> u64 {
+    /// Returns the number of collisions of two disks.
+    pub const fn disk_collisions(&self) -> u64 {
         self.disks
     }
 
-    /// Collisions with any wall.
-    pub fn walls(&self) -> u64 {
-        self.walls.iter().sum()
+    /// Returns the number of collisions with any wall.
+    pub fn wall_collisions(&self) -> u64 {
+        self.walls.values().sum()
     }
 
-    /// Collisions with the wall of this index.
-    pub fn wall(&self, wall: usize) -> u64 {
-        self.walls.get(wall).copied().unwrap_or(0)
+    /// Returns the number of collisions with the wall of this index; 0 for a wall that was never touched.
+    pub fn collisions_with_wall(&self, wall: usize) -> u64 {
+        self.walls.get(&wall).copied().unwrap_or(0)
     }
 
-    /// Collisions in this regime, with disks and walls.
+    /// Returns the number of collisions in this regime, with disks and walls.
     pub fn regime(&self, regime: Regime) -> u64 {
         match regime {
             Regime::Sticking => self.sticking,
             Regime::Sliding => self.sliding,
             Regime::ContactDuration => self.contact_duration,
             Regime::Unspecified => {
-                self.disks + self.walls() - self.sticking - self.sliding - self.contact_duration
+                self.disks + self.wall_collisions() - self.sticking - self.sliding - self.contact_duration
             }
         }
     }
 
-    /// Disk–disk collisions per disk and time until `now`: each counts for both partners.
+    /// Returns the disk–disk collisions per disk and time until the absolute time `now`: each counts for both partners.
     pub fn rate_per_disk(&self, disks: usize, now: f64) -> f64 {
         2.0 * self.disks as f64 / (disks as f64 * (now - self.start))
-    }
-
-    fn count_partner(&mut self, partner: Partner) {
-        match partner {
-            Partner::Disk(_) => self.disks += 1,
-            Partner::Wall(wall) => {
-                if wall >= self.walls.len() {
-                    self.walls.resize(wall + 1, 0);
-                }
-                self.walls[wall] += 1;
-            }
-        }
     }
 }
 
 impl Observer for CollisionCounts {
     fn on_collision(&mut self, collision: &Collision) {
-        self.count_partner(collision.partner);
+        match collision.partner {
+            Partner::Disk(_) => self.disks += 1,
+            Partner::Wall(wall) => *self.walls.entry(wall).or_default() += 1,
+        }
         match collision.impulse.regime() {
             Regime::Sticking => self.sticking += 1,
             Regime::Sliding => self.sliding += 1,
             Regime::ContactDuration => self.contact_duration += 1,
             Regime::Unspecified => {}
         }
+    }
+}
+
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "CollisionCounts")]
+struct RawCollisionCounts {
+    start: f64,
+    disks: u64,
+    walls: BTreeMap<usize, u64>,
+    sticking: u64,
+    sliding: u64,
+    contact_duration: u64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawCollisionCounts> for CollisionCounts {
+    type Error = crate::ParameterError;
+
+    fn try_from(raw: RawCollisionCounts) -> Result<Self, Self::Error> {
+        let RawCollisionCounts { start, disks, walls, sticking, sliding, contact_duration } = raw;
+        crate::quantity::finite("start of the counts", start)?;
+        // In 128 bits, where sums of forged counts do not wrap.
+        let sum = |counts: &[u64]| counts.iter().map(|&count| u128::from(count)).sum::<u128>();
+        let all = u128::from(disks) + walls.values().map(|&count| u128::from(count)).sum::<u128>();
+        let regimes = sum(&[sticking, sliding, contact_duration]);
+        let fits = regimes <= all && all <= u128::from(u64::MAX / 2);
+        crate::quantity::accept(fits, "number of collisions", "at least that of all regimes", all as f64)?;
+        Ok(Self { start, disks, walls, sticking, sliding, contact_duration })
     }
 }

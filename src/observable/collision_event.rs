@@ -4,39 +4,67 @@ use glam::DVec2;
 
 use crate::collision::{Contact, Impulse};
 
-/// What a disk collided with.
+/// The thing that a disk collided with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Partner {
     /// Another disk, by its index.
     Disk(usize),
-    /// A wall, by its index into [`Boundary::walls`](crate::boundary::Boundary::walls).
+    /// A wall, by its index in the boundary.
     Wall(usize),
 }
 
 /// A collision that has just happened.
 ///
-/// For a thermal wall the contact is that of the arriving disk, and the impulse is what the disk received in all;
-/// its rotation is redrawn, too, and only [`Self::energy_change`] knows by how much.
+/// At a thermal wall the contact is that of the arriving disk, and the impulse is all that the disk received. The wall draws
+/// its rotation anew, too: only [`Self::energy_change`] contains that.
+///
+/// ```
+/// use granular_edmd::collision::{Contact, Impulse};
+/// use granular_edmd::observable::{Collision, EnergyChange, Observer, Partner};
+///
+/// // What an observer makes of a collision with the floor, without a simulation.
+/// let (contact, impulse) = (Contact::new(2.0, 0.0, 1.0, 1.0 / 3.0), Impulse::new(3.0, 0.0));
+/// let mut energy_change = EnergyChange::default();
+/// energy_change.on_collision(&Collision::new(0.5, 7, Partner::Wall(0), contact, impulse));
+/// assert_eq!(energy_change.wall(0).mean(), -1.5);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Collision {
-    /// When.
+    /// Absolute time of the collision.
     pub time: f64,
-    /// The disk.
+    /// Index of the disk.
     pub disk: usize,
-    /// Its partner.
+    /// Partner of the disk.
     pub partner: Partner,
     /// Unit vector from the partner to the disk.
     pub normal: DVec2,
-    /// Position of the disk's centre.
+    /// Position of the disk's center.
     pub position: DVec2,
-    /// Distance of the centres; for a wall, of the centre and the wall.
+    /// Distance of the centers; for a wall, of the center and the wall.
     pub distance: f64,
-    /// How the surfaces met.
+    /// The surfaces as they met.
     pub contact: Contact,
     /// The impulse on the disk.
     pub impulse: Impulse,
     /// Change of the kinetic energy of the disk and a partner disk. A moving wall gives or takes energy; what is lost
     /// in its frame is [`Impulse::energy_change`].
     pub energy_change: f64,
+}
+
+impl Collision {
+    /// Makes a collision, for tests of observers; the engine fills all fields itself.
+    ///
+    /// The fields that are not given have plain values, to be set where they matter: the normal points up, the position is the
+    /// origin, the disks have radius 1/2 (a `distance` of 1, and of 1/2 to a wall), and the `energy_change` is
+    /// that of the impulse, as of two disks, or at a wall at rest.
+    pub fn new(time: f64, disk: usize, partner: Partner, contact: Contact, impulse: Impulse) -> Self {
+        let distance = match partner {
+            Partner::Disk(_) => 1.0,
+            Partner::Wall(_) => 0.5,
+        };
+        let energy_change = impulse.energy_change(&contact);
+        let (normal, position) = (DVec2::Y, DVec2::ZERO);
+        Self { time, disk, partner, normal, position, distance, contact, impulse, energy_change }
+    }
 }

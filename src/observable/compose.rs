@@ -1,11 +1,19 @@
 //! Observers and observables made of others.
+//!
+//! An observer made of others tells all of them everything, but shows a sample only to those that asked for it. Its verdict is
+//! the first failure, else to stop if one of them says so.
 
-use super::{Collision, Observable, Observer, Snapshot};
+use std::ops::ControlFlow;
+
+use super::{Collision, Moment, Observable, Observer, Snapshot, Verdict};
 
 /// Nobody watches: costs nothing.
 impl Observer for () {}
 
 impl<T: Observer + ?Sized> Observer for &mut T {
+    fn on_start(&mut self, moment: &Moment) {
+        (**self).on_start(moment);
+    }
     #[inline]
     fn on_collision(&mut self, collision: &Collision) {
         (**self).on_collision(collision);
@@ -15,10 +23,20 @@ impl<T: Observer + ?Sized> Observer for &mut T {
     }
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         (**self).on_sample(snapshot);
+    }
+    fn on_end(&mut self, moment: &Moment) {
+        (**self).on_end(moment);
+    }
+    #[inline]
+    fn verdict(&mut self) -> Verdict {
+        (**self).verdict()
     }
 }
 
 impl<T: Observer + ?Sized> Observer for Box<T> {
+    fn on_start(&mut self, moment: &Moment) {
+        (**self).on_start(moment);
+    }
     #[inline]
     fn on_collision(&mut self, collision: &Collision) {
         (**self).on_collision(collision);
@@ -29,26 +47,21 @@ impl<T: Observer + ?Sized> Observer for Box<T> {
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         (**self).on_sample(snapshot);
     }
-}
-
-impl<T: Observer> Observer for Option<T> {
+    fn on_end(&mut self, moment: &Moment) {
+        (**self).on_end(moment);
+    }
     #[inline]
-    fn on_collision(&mut self, collision: &Collision) {
-        if let Some(observer) = self {
-            observer.on_collision(collision);
-        }
-    }
-    fn next_sample(&self) -> f64 {
-        self.as_ref().map_or(f64::INFINITY, Observer::next_sample)
-    }
-    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-        if let Some(observer) = self {
-            observer.on_sample(snapshot);
-        }
+    fn verdict(&mut self) -> Verdict {
+        (**self).verdict()
     }
 }
 
 impl<T: Observer> Observer for [T] {
+    fn on_start(&mut self, moment: &Moment) {
+        for observer in self {
+            observer.on_start(moment);
+        }
+    }
     #[inline]
     fn on_collision(&mut self, collision: &Collision) {
         for observer in self {
@@ -56,16 +69,29 @@ impl<T: Observer> Observer for [T] {
         }
     }
     fn next_sample(&self) -> f64 {
-        self.iter().map(Observer::next_sample).fold(f64::INFINITY, f64::min)
+        self.iter().map(Observer::next_sample).fold(f64::INFINITY, earlier)
     }
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         for observer in self {
             sample_if_due(observer, snapshot);
         }
     }
+    fn on_end(&mut self, moment: &Moment) {
+        for observer in self {
+            observer.on_end(moment);
+        }
+    }
+    #[inline]
+    fn verdict(&mut self) -> Verdict {
+        self.iter_mut()
+            .try_fold(ControlFlow::Continue(()), |before, observer| Ok(either(before, observer.verdict()?)))
+    }
 }
 
 impl<T: Observer> Observer for Vec<T> {
+    fn on_start(&mut self, moment: &Moment) {
+        self.as_mut_slice().on_start(moment);
+    }
     #[inline]
     fn on_collision(&mut self, collision: &Collision) {
         self.as_mut_slice().on_collision(collision);
@@ -76,28 +102,83 @@ impl<T: Observer> Observer for Vec<T> {
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         self.as_mut_slice().on_sample(snapshot);
     }
+    fn on_end(&mut self, moment: &Moment) {
+        self.as_mut_slice().on_end(moment);
+    }
+    #[inline]
+    fn verdict(&mut self) -> Verdict {
+        self.as_mut_slice().verdict()
+    }
 }
 
-/// Shows the snapshot to an observer that asked for it, not to its neighbours who wait for later times.
+/// One observer or none.
+impl<T: Observer> Observer for Option<T> {
+    fn on_start(&mut self, moment: &Moment) {
+        self.as_mut_slice().on_start(moment);
+    }
+    #[inline]
+    fn on_collision(&mut self, collision: &Collision) {
+        self.as_mut_slice().on_collision(collision);
+    }
+    fn next_sample(&self) -> f64 {
+        self.as_slice().next_sample()
+    }
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        self.as_mut_slice().on_sample(snapshot);
+    }
+    fn on_end(&mut self, moment: &Moment) {
+        self.as_mut_slice().on_end(moment);
+    }
+    #[inline]
+    fn verdict(&mut self) -> Verdict {
+        self.as_mut_slice().verdict()
+    }
+}
+
+/// Shows the snapshot to an observer that asked for it, not to its neighbors who wait for later times.
 fn sample_if_due<T: Observer>(observer: &mut T, snapshot: &Snapshot<'_>) {
     if observer.next_sample() <= snapshot.time() {
         observer.on_sample(snapshot);
     }
 }
 
+/// The earlier of two times; NaN if one is, where `f64::min` would hide a broken clock from the engine.
+fn earlier(first: f64, second: f64) -> f64 {
+    if first < second || first.is_nan() { first } else { second }
+}
+
+/// Stops if one of two says so.
+fn either(first: ControlFlow<()>, second: ControlFlow<()>) -> ControlFlow<()> {
+    if first.is_break() { first } else { second }
+}
+
 // A function cannot be generic over the length of a tuple.
 macro_rules! compose_tuple {
     ($($name:ident $index:tt),+) => {
         impl<$($name: Observer),+> Observer for ($($name,)+) {
+            fn on_start(&mut self, moment: &Moment) {
+                $(self.$index.on_start(moment);)+
+            }
             #[inline]
             fn on_collision(&mut self, collision: &Collision) {
                 $(self.$index.on_collision(collision);)+
             }
             fn next_sample(&self) -> f64 {
-                f64::INFINITY$(.min(self.$index.next_sample()))+
+                let next = f64::INFINITY;
+                $(let next = earlier(next, self.$index.next_sample());)+
+                next
             }
             fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
                 $(sample_if_due(&mut self.$index, snapshot);)+
+            }
+            fn on_end(&mut self, moment: &Moment) {
+                $(self.$index.on_end(moment);)+
+            }
+            #[inline]
+            fn verdict(&mut self) -> Verdict {
+                let verdict = ControlFlow::Continue(());
+                $(let verdict = either(verdict, self.$index.verdict()?);)+
+                Ok(verdict)
             }
         }
 

@@ -6,6 +6,7 @@ use crate::Disk;
 /// Energies per disk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub struct EnergyPerDisk {
     /// `$\langle\tfrac12 m v^2\rangle$`.
     pub translational: f64,
@@ -16,13 +17,18 @@ pub struct EnergyPerDisk {
 }
 
 impl EnergyPerDisk {
-    /// All three together.
+    /// Makes energies of these values.
+    pub const fn new(translational: f64, rotational: f64, potential: f64) -> Self {
+        Self { translational, rotational, potential }
+    }
+
+    /// Returns the sum of all three.
     pub fn total(&self) -> f64 {
         self.translational + self.rotational + self.potential
     }
 }
 
-/// Translational, rotational and potential energy, averaged over the disks.
+/// Translational, rotational and potential energy, averaged over the disks; NaN without disks.
 ///
 /// ```
 /// use glam::DVec2;
@@ -37,6 +43,7 @@ impl EnergyPerDisk {
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Energies;
 
 impl Observable for Energies {

@@ -1,11 +1,15 @@
 //! Energy change per collision: the paper's central quantity, measured.
 
-use super::{Collision, Observer, Partner, RunningMean};
+use std::collections::BTreeMap;
 
-/// Mean change of kinetic energy per collision, `$\langle dE\rangle$`, with its standard error: for disk–disk
-/// collisions and for each wall.
+use super::{Collision, Observer, Partner};
+use crate::statistics::BlockedMean;
+
+/// Mean change of kinetic energy per collision, `$\langle dE\rangle$`, for disk–disk collisions and for each wall.
 ///
-/// At a wall that moves, or is thermal, it is the energy that the disk gains or loses, the work of the wall included.
+/// Collisions of one run are correlated, since the gas heats and cools: [`BlockedMean::estimate`] gives a mean with an error
+/// that knows of it. At a wall that moves, or is thermal, the energy change is what the disk gains or loses, the work of the
+/// wall included.
 ///
 /// ```
 /// use granular_edmd::observable::EnergyChange;
@@ -13,21 +17,25 @@ use super::{Collision, Observer, Partner, RunningMean};
 /// assert_eq!(energy_change.disks().count(), 0);
 /// assert_eq!(energy_change.wall(0).count(), 0);
 /// ```
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct EnergyChange {
-    disks: RunningMean,
-    walls: Vec<RunningMean>,
+    disks: BlockedMean,
+    walls: BTreeMap<usize, BlockedMean>,
 }
 
+/// The mean over the collisions with a wall that was never touched.
+static NEVER_TOUCHED: BlockedMean = BlockedMean::new();
+
 impl EnergyChange {
-    /// Collisions of two disks.
-    pub const fn disks(&self) -> &RunningMean {
+    /// Returns the mean over collisions of two disks.
+    pub const fn disks(&self) -> &BlockedMean {
         &self.disks
     }
 
-    /// Collisions with the wall of this index; empty if there were none.
-    pub fn wall(&self, wall: usize) -> RunningMean {
-        self.walls.get(wall).copied().unwrap_or_default()
+    /// Returns the mean over collisions with the wall of this index; empty for a wall that was never touched.
+    pub fn wall(&self, wall: usize) -> &BlockedMean {
+        self.walls.get(&wall).unwrap_or(&NEVER_TOUCHED)
     }
 }
 
@@ -36,12 +44,7 @@ impl Observer for EnergyChange {
     fn on_collision(&mut self, collision: &Collision) {
         let mean = match collision.partner {
             Partner::Disk(_) => &mut self.disks,
-            Partner::Wall(wall) => {
-                if wall >= self.walls.len() {
-                    self.walls.resize(wall + 1, RunningMean::default());
-                }
-                &mut self.walls[wall]
-            }
+            Partner::Wall(wall) => self.walls.entry(wall).or_default(),
         };
         mean.push(collision.energy_change);
     }

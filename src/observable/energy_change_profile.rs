@@ -1,34 +1,37 @@
 //! Energy change per collision beside the temperature where it happens.
 
 use super::height_bins::HeightBins;
-use super::{Collision, Observer, Partner, RunningMean, SampleTimes, Snapshot};
+use super::{Collision, Moment, Observer, Partner, SampleTimes, Snapshot};
 use crate::ParameterError;
+use crate::statistics::BlockedMean;
 
-/// What an [`EnergyChangeProfile`] knows of one layer.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+/// One layer of an [`EnergyChangeProfile`].
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct EnergyChangeLayer {
     /// Height of its middle.
     pub height: f64,
     /// Energy changes of the disk–disk collisions in it.
-    pub energy_change: RunningMean,
+    pub energy_change: BlockedMean,
     /// `$T = \tfrac12 m v^2$` of the disks seen in it, in the frame of the container: its mean is the translational
     /// temperature.
-    pub translational_temperature: RunningMean,
+    pub translational_temperature: BlockedMean,
     /// `$T_{rot} = I\omega^2$` of the disks seen in it: its mean is the rotational temperature.
-    pub rotational_temperature: RunningMean,
+    pub rotational_temperature: BlockedMean,
 }
 
 impl EnergyChangeLayer {
-    /// `$\langle dE\rangle/T$` in this layer; `None` before there are collisions and a temperature.
+    /// Returns `$\langle dE\rangle/T$` in this layer; `None` before there are collisions and a temperature.
     pub fn relative_energy_change(&self) -> Option<f64> {
         let temperature = self.translational_temperature.mean();
         (self.energy_change.count() > 0 && temperature > 0.0).then(|| self.energy_change.mean() / temperature)
     }
 }
 
-/// An observer of the energy change per disk–disk collision by height, with the temperatures there: what the kinetic
-/// theory says of a gas of one temperature can be held against it, layer by layer and on average.
+/// An observer of the energy change per disk–disk collision by height, with the temperatures there.
+///
+/// The kinetic theory of a gas of one temperature can be compared with it, layer by layer and on average.
 ///
 /// ```
 /// use granular_edmd::observable::{EnergyChangeProfile, SampleTimes};
@@ -37,7 +40,9 @@ impl EnergyChangeLayer {
 /// assert_eq!(profile.relative_energy_change(), None);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawEnergyChangeProfile"))]
 pub struct EnergyChangeProfile {
     bins: HeightBins,
     sample_times: SampleTimes,
@@ -45,8 +50,8 @@ pub struct EnergyChangeProfile {
 }
 
 impl EnergyChangeProfile {
-    /// A profile from the height `bottom` to `top` in this many layers, with temperatures sampled at these times; what
-    /// is outside is left out.
+    /// Makes a profile from the height `bottom` to `top` in this many layers, with temperatures sampled at these times.
+    /// Collisions and disks outside are left out.
     ///
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of layers is not in `1..=2^20`.
@@ -56,17 +61,18 @@ impl EnergyChangeProfile {
         Ok(Self { bins, sample_times: times, layers: (0..layers).map(layer).collect() })
     }
 
-    /// The layers, from the bottom up.
+    /// Returns the layers, from the bottom up.
     pub fn layers(&self) -> &[EnergyChangeLayer] {
         &self.layers
     }
 
-    /// `$\langle dE/T(y)\rangle$`: the energy change over the local temperature, averaged over collisions.
+    /// Returns `$\langle dE/T(y)\rangle$`: the energy change over the local temperature, averaged over collisions; `None` before
+    /// there are collisions and a temperature in one layer.
     pub fn relative_energy_change(&self) -> Option<f64> {
         self.over_collisions(EnergyChangeLayer::relative_energy_change)
     }
 
-    /// `$\langle T_{rot}(y)/T(y)\rangle$`: the ratio of the local temperatures, averaged over collisions.
+    /// Returns `$\langle T_{rot}(y)/T(y)\rangle$`: the ratio of the local temperatures, averaged over collisions; `None` as above.
     pub fn rotational_ratio(&self) -> Option<f64> {
         self.over_collisions(|layer| {
             let temperature = layer.translational_temperature.mean();
@@ -90,8 +96,12 @@ impl Observer for EnergyChangeProfile {
         }
     }
 
+    fn on_start(&mut self, moment: &Moment) {
+        self.sample_times.start_at(moment.time());
+    }
+
     fn next_sample(&self) -> f64 {
-        self.sample_times.next()
+        self.sample_times.upcoming()
     }
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
@@ -102,5 +112,29 @@ impl Observer for EnergyChangeProfile {
             }
         }
         self.sample_times.advance_past(snapshot.time());
+    }
+}
+
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "EnergyChangeProfile")]
+struct RawEnergyChangeProfile {
+    bins: HeightBins,
+    sample_times: SampleTimes,
+    layers: Vec<EnergyChangeLayer>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawEnergyChangeProfile> for EnergyChangeProfile {
+    type Error = ParameterError;
+
+    fn try_from(raw: RawEnergyChangeProfile) -> Result<Self, ParameterError> {
+        let RawEnergyChangeProfile { bins, sample_times, layers } = raw;
+        bins.check_count(layers.len())?;
+        for (bin, layer) in layers.iter().enumerate() {
+            let is_there = layer.height == bins.middle(bin);
+            crate::quantity::accept(is_there, "height of a layer", "the middle of its bin", layer.height)?;
+        }
+        Ok(Self { bins, sample_times, layers })
     }
 }

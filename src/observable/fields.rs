@@ -2,9 +2,10 @@
 
 use glam::DVec2;
 
-use super::{Observer, SampleTimes, Snapshot};
+use super::{Moment, Observer, SampleTimes, Snapshot};
 use crate::boundary::Region;
 use crate::quantity::{accept, finite};
+use crate::statistics::Moments;
 use crate::{Disk, ParameterError};
 
 /// Most cells of a grid.
@@ -17,11 +18,11 @@ const MOST_CELLS: usize = 1 << 22;
 pub struct FieldCell {
     /// Middle of the cell.
     pub center: DVec2,
-    /// How many disks were seen here, over all samples.
+    /// Number of disks seen here, over all samples.
     pub count: u64,
     /// Disks per area.
     pub number_density: f64,
-    /// Area of the disks per area, each counted where its centre is.
+    /// Area of the disks per area, each counted where its center is.
     pub packing_fraction: f64,
     /// Velocity of the flow, `$u = \langle mv\rangle/\langle m\rangle$`.
     pub velocity: DVec2,
@@ -33,9 +34,9 @@ pub struct FieldCell {
     pub rotational_temperature: f64,
 }
 
-/// An observer that averages density, flow and temperatures on a grid over samples: the rolls.
+/// An observer that averages density, flow and temperatures on a grid over samples: the convection rolls.
 ///
-/// A disk counts in the cell of its centre. Temperatures are about the mean velocity *of the cell*, over all samples: a
+/// A disk counts in the cell of its center. Temperatures are about the mean velocity *of the cell*, over all samples: a
 /// flow that is not steady over them, such as a roll that changes its sense, counts as temperature. With `$n$` disks seen
 /// in a cell they are too small by a factor `$1 - 1/n$`, for independent samples.
 ///
@@ -56,9 +57,12 @@ pub struct FieldCell {
 /// assert_eq!(fields.cell(1, 0).unwrap().count, 0);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawFields"))]
 pub struct Fields {
-    region: Region,
+    min: DVec2,
+    max: DVec2,
     columns: usize,
     rows: usize,
     sample_times: SampleTimes,
@@ -67,7 +71,7 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// A grid of `columns` times `rows` cells over a region; what is outside is left out.
+    /// Makes a grid of `columns` times `rows` cells over a region; disks outside are left out.
     ///
     /// # Errors
     /// If an edge of the region is not finite, it has no area, or the number of cells is not in `1..=2^22`.
@@ -77,40 +81,41 @@ impl Fields {
         rows: usize,
         times: SampleTimes,
     ) -> Result<Self, ParameterError> {
-        let corners = [region.min.x, region.min.y, region.max.x, region.max.y];
-        corners.into_iter().try_for_each(|edge| finite("edge of the grid", edge).map(|_| ()))?;
-        let cells = columns.saturating_mul(rows);
-        accept((1..=MOST_CELLS).contains(&cells), "number of cells", "in 1..=2^22", cells as f64)?;
-        let cell = cell_size(&region, columns, rows);
-        let area = if cell.min_element() > 0.0 { cell.x * cell.y } else { 0.0 };
-        accept(area.is_normal(), "area of a cell", "finite and positive", area)?;
-        Ok(Self {
-            region,
-            columns,
-            rows,
-            sample_times: times,
-            sums: vec![Sums::default(); cells],
-            samples: 0,
-        })
+        let Region { min, max, .. } = region;
+        let empty = Self { min, max, columns, rows, sample_times: times, sums: Vec::new(), samples: 0 };
+        let cells = empty.checked_count()?;
+        Ok(Self { sums: vec![Sums::default(); cells], ..empty })
     }
 
-    /// How many samples were taken.
+    /// Checks the shape of the grid, and returns the number of its cells.
+    fn checked_count(&self) -> Result<usize, ParameterError> {
+        let corners = [self.min.x, self.min.y, self.max.x, self.max.y];
+        corners.into_iter().try_for_each(|edge| finite("edge of the grid", edge).map(|_| ()))?;
+        let cells = self.columns.saturating_mul(self.rows);
+        accept((1..=MOST_CELLS).contains(&cells), "number of cells", "in 1..=2^22", cells as f64)?;
+        let cell = self.cell_size();
+        let area = if cell.min_element() > 0.0 { cell.x * cell.y } else { 0.0 };
+        accept(area.is_normal(), "area of a cell", "finite and positive", area)?;
+        Ok(cells)
+    }
+
+    /// Returns how many samples were taken.
     pub const fn samples(&self) -> u64 {
         self.samples
     }
 
-    /// Number of columns and rows.
+    /// Returns the number of columns and rows.
     pub const fn shape(&self) -> (usize, usize) {
         (self.columns, self.rows)
     }
 
-    /// The fields in a cell, columns from the left and rows from below; `None` outside the grid.
+    /// Returns the fields in a cell, columns from the left and rows from below; `None` outside the grid.
     pub fn cell(&self, column: usize, row: usize) -> Option<FieldCell> {
         let inside = column < self.columns && row < self.rows;
         inside.then(|| self.averaged(column, row))
     }
 
-    /// The fields in all cells, row by row from below.
+    /// Iterates over the fields in all cells, row by row from below.
     pub fn iter(&self) -> impl Iterator<Item = FieldCell> {
         (0..self.sums.len()).map(|cell| self.averaged(cell % self.columns, cell / self.columns))
     }
@@ -122,31 +127,35 @@ impl Fields {
     }
 
     fn averaged(&self, column: usize, row: usize) -> FieldCell {
-        let size = cell_size(&self.region, self.columns, self.rows);
-        let center = self.region.min + size * DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
+        let size = self.cell_size();
+        let center = self.min + size * DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
         let sums = &self.sums[row * self.columns + column];
         let area = size.x * size.y * self.samples.max(1) as f64;
         FieldCell { center, ..sums.averaged(area) }
     }
 
-    /// The cell that holds this position.
+    /// Returns the cell that holds this position.
     fn index(&self, position: DVec2) -> Option<usize> {
-        let scaled = (position - self.region.min) / cell_size(&self.region, self.columns, self.rows);
+        let scaled = (position - self.min) / self.cell_size();
         let inside = scaled.x >= 0.0
             && scaled.y >= 0.0
             && scaled.x < self.columns as f64
             && scaled.y < self.rows as f64;
         inside.then(|| scaled.y as usize * self.columns + scaled.x as usize)
     }
-}
 
-fn cell_size(region: &Region, columns: usize, rows: usize) -> DVec2 {
-    (region.max - region.min) / DVec2::new(columns as f64, rows as f64)
+    fn cell_size(&self) -> DVec2 {
+        (self.max - self.min) / DVec2::new(self.columns as f64, self.rows as f64)
+    }
 }
 
 impl Observer for Fields {
+    fn on_start(&mut self, moment: &Moment) {
+        self.sample_times.start_at(moment.time());
+    }
+
     fn next_sample(&self) -> f64 {
-        self.sample_times.next()
+        self.sample_times.upcoming()
     }
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
@@ -160,45 +169,82 @@ impl Observer for Fields {
     }
 }
 
-/// Sums over the disks seen in a cell; second moments about the running means, so that no digits cancel (Welford).
-#[derive(Debug, Clone, Copy, Default)]
+/// Sums over the disks seen in a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 struct Sums {
     count: u64,
     area: f64,
-    mass: f64,
-    velocity: DVec2,
-    squares: f64,
-    inertia: f64,
-    angular_velocity: f64,
-    angular_squares: f64,
+    /// Components of the velocity, weighted by mass.
+    velocity: [Moments; 2],
+    /// Angular velocity, weighted by moment of inertia.
+    angular_velocity: Moments,
 }
 
 impl Sums {
     fn add(&mut self, disk: &Disk) {
         self.count += 1;
         self.area += std::f64::consts::PI * disk.radius() * disk.radius();
-        self.mass += disk.mass();
-        let before = disk.velocity() - self.velocity;
-        self.velocity += before * (disk.mass() / self.mass);
-        self.squares += disk.mass() * before.dot(disk.velocity() - self.velocity);
-        self.inertia += disk.moment_of_inertia();
-        let before = disk.angular_velocity() - self.angular_velocity;
-        self.angular_velocity += before * (disk.moment_of_inertia() / self.inertia);
-        self.angular_squares +=
-            disk.moment_of_inertia() * before * (disk.angular_velocity() - self.angular_velocity);
+        self.velocity[0].push(disk.velocity().x, disk.mass());
+        self.velocity[1].push(disk.velocity().y, disk.mass());
+        self.angular_velocity.push(disk.angular_velocity(), disk.moment_of_inertia());
     }
 
     fn averaged(&self, area: f64) -> FieldCell {
         let count = self.count.max(1) as f64;
+        let [x, y] = self.velocity;
         FieldCell {
             center: DVec2::ZERO,
             count: self.count,
             number_density: self.count as f64 / area,
             packing_fraction: self.area / area,
-            velocity: self.velocity,
-            angular_velocity: self.angular_velocity,
-            translational_temperature: 0.5 * self.squares / count,
-            rotational_temperature: self.angular_squares / count,
+            velocity: DVec2::new(x.mean, y.mean),
+            angular_velocity: self.angular_velocity.mean,
+            translational_temperature: 0.5 * (x.squares + y.squares) / count,
+            rotational_temperature: self.angular_velocity.squares / count,
         }
+    }
+
+    /// Checks that sums read from a file can be those of disks.
+    #[cfg(feature = "serde")]
+    fn check(&self) -> Result<(), ParameterError> {
+        crate::quantity::non_negative("area of the disks in a cell", self.area)?;
+        let weights =
+            [self.area, self.velocity[0].weight, self.velocity[1].weight, self.angular_velocity.weight];
+        let sound = weights.into_iter().all(|weight| (weight > 0.0) == (self.count > 0));
+        accept(
+            sound,
+            "number of disks in a cell",
+            "0 if and only if their area and mass are",
+            self.count as f64,
+        )?;
+        Ok(())
+    }
+}
+
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "Fields")]
+struct RawFields {
+    min: DVec2,
+    max: DVec2,
+    columns: usize,
+    rows: usize,
+    sample_times: SampleTimes,
+    sums: Vec<Sums>,
+    samples: u64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawFields> for Fields {
+    type Error = ParameterError;
+
+    fn try_from(raw: RawFields) -> Result<Self, ParameterError> {
+        let RawFields { min, max, columns, rows, sample_times, sums, samples } = raw;
+        let fields = Self { min, max, columns, rows, sample_times, sums, samples };
+        let (cells, given) = (fields.checked_count()?, fields.sums.len());
+        accept(cells == given, "number of sums", "that of the cells", given as f64)?;
+        fields.sums.iter().try_for_each(Sums::check)?;
+        Ok(fields)
     }
 }

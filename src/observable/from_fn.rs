@@ -1,12 +1,48 @@
-//! Closures as observers.
+//! Closures as observables and observers.
 
-use super::{Collision, Observer, SampleTimes, Snapshot};
+use super::{Collision, Moment, Observable, Observer, SampleTimes, Snapshot};
+
+/// A closure that measures a snapshot; made by [`from_fn`].
+#[derive(Debug, Clone, Copy)]
+pub struct FromFn<F>(F);
+
+/// Makes an observable from a closure that measures a snapshot.
+///
+/// ```
+/// use granular_edmd::boundary::{Boundary, Container};
+/// use granular_edmd::glam::DVec2;
+/// use granular_edmd::observable::{Observable, Snapshot, from_fn};
+/// use granular_edmd::Disk;
+///
+/// let fastest = from_fn(|s: &Snapshot<'_>| s.disks().iter().map(|d| d.velocity().length()).fold(0.0, f64::max));
+/// let disks = [Disk::new(DVec2::ONE, 0.5)?.with_velocity(DVec2::new(3.0, 4.0))?];
+/// let domain = Container::closed(4.0, 6.0)?.domain();
+/// assert_eq!(fastest.measure(&Snapshot::new(0.0, &disks, domain, 0.0)), 5.0);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+pub const fn from_fn<F, V>(measure: F) -> FromFn<F>
+where
+    F: Fn(&Snapshot<'_>) -> V,
+{
+    FromFn(measure)
+}
+
+impl<F, V> Observable for FromFn<F>
+where
+    F: Fn(&Snapshot<'_>) -> V,
+{
+    type Value = V;
+
+    fn measure(&self, snapshot: &Snapshot<'_>) -> V {
+        (self.0)(snapshot)
+    }
+}
 
 /// A closure that is told of every collision; made by [`on_collision`].
 #[derive(Debug, Clone)]
 pub struct OnCollision<F>(F);
 
-/// An observer from a closure that is told of every collision.
+/// Makes an observer from a closure that is told of every collision.
 ///
 /// ```
 /// use granular_edmd::observable::{Collision, Observer, on_collision};
@@ -32,7 +68,7 @@ pub struct OnSample<F> {
     watch: F,
 }
 
-/// An observer from a closure that is shown a snapshot at each of these times.
+/// Makes an observer from a closure that is shown a snapshot at each of these times.
 ///
 /// ```
 /// use granular_edmd::observable::{Observer, SampleTimes, Snapshot, on_sample};
@@ -45,8 +81,12 @@ pub const fn on_sample<F: FnMut(&Snapshot<'_>)>(times: SampleTimes, watch: F) ->
 }
 
 impl<F: FnMut(&Snapshot<'_>)> Observer for OnSample<F> {
+    fn on_start(&mut self, moment: &Moment) {
+        self.times.start_at(moment.time());
+    }
+
     fn next_sample(&self) -> f64 {
-        self.times.next()
+        self.times.upcoming()
     }
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {

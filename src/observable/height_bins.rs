@@ -1,13 +1,15 @@
 //! Equal bins of height.
 
 use crate::ParameterError;
-use crate::quantity::{accept, finite};
+use crate::quantity::{accept, finite, positive};
 
 /// Most bins of a profile.
 const MOST_BINS: usize = 1 << 20;
 
-/// Where the bins of a profile are.
-#[derive(Debug, Clone, Copy)]
+/// Equal bins between two heights.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawHeightBins"))]
 pub(super) struct HeightBins {
     bottom: f64,
     height: f64,
@@ -18,22 +20,34 @@ impl HeightBins {
     pub(super) fn new(bottom: f64, top: f64, count: usize) -> Result<Self, ParameterError> {
         finite("bottom of the profile", bottom)?;
         accept(top.is_finite() && top > bottom, "top of the profile", "finite and above its bottom", top)?;
+        Self { bottom, height: (top - bottom) / count as f64, count }.checked()
+    }
+
+    fn checked(self) -> Result<Self, ParameterError> {
+        let Self { bottom, height, count } = self;
+        finite("bottom of the profile", bottom)?;
         accept((1..=MOST_BINS).contains(&count), "number of bins", "in 1..=2^20", count as f64)?;
-        let height = (top - bottom) / count as f64;
-        accept(height.is_finite() && height > 0.0, "height of a bin", "finite and positive", height)?;
-        Ok(Self { bottom, height, count })
+        positive("height of a bin", height)?;
+        finite("top of the profile", self.edge(count))?;
+        Ok(self)
+    }
+
+    /// Checks that there is something for each bin.
+    #[cfg(feature = "serde")]
+    pub(super) fn check_count(&self, count: usize) -> Result<(), ParameterError> {
+        accept(count == self.count, "number of values", "that of the bins", count as f64).map(|_| ())
     }
 
     pub(super) const fn count(&self) -> usize {
         self.count
     }
 
-    /// Height of a bin.
+    /// Returns the height of a bin.
     pub(super) const fn height(&self) -> f64 {
         self.height
     }
 
-    /// Lower edge of a bin.
+    /// Returns the lower edge of a bin.
     pub(super) fn edge(&self, bin: usize) -> f64 {
         self.bottom + bin as f64 * self.height
     }
@@ -42,15 +56,33 @@ impl HeightBins {
         self.edge(bin) + 0.5 * self.height
     }
 
-    /// The bin of a height: the first for what is below, `count` or more for what is above.
+    /// Returns the bin of a height: the first for all heights below it, `count` or more for all above the last.
     pub(super) fn at_or_above(&self, height: f64) -> usize {
-        // Casts saturate.
+        // Casts saturate: a negative number becomes 0.
         ((height - self.bottom) / self.height) as usize
     }
 
-    /// The bin of a height, if it is in one.
+    /// Returns the bin of a height, if it is in one.
     pub(super) fn find(&self, height: f64) -> Option<usize> {
         let bin = self.at_or_above(height);
         (height >= self.bottom && bin < self.count).then_some(bin)
+    }
+}
+
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "HeightBins")]
+struct RawHeightBins {
+    bottom: f64,
+    height: f64,
+    count: usize,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawHeightBins> for HeightBins {
+    type Error = ParameterError;
+
+    fn try_from(RawHeightBins { bottom, height, count }: RawHeightBins) -> Result<Self, ParameterError> {
+        Self { bottom, height, count }.checked()
     }
 }

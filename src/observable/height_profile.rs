@@ -1,13 +1,14 @@
-//! How densely the disks are packed, by height.
+//! Packing fraction by height.
 
 use std::f64::consts::PI;
 
 use super::height_bins::HeightBins;
-use super::{Observer, SampleTimes, Snapshot};
+use super::{Moment, Observer, SampleTimes, Snapshot};
 use crate::{Disk, ParameterError};
 
-/// The bin with the largest packing fraction, and what lies below it; made by [`HeightProfile::densest_layer`].
+/// The bin with the largest packing fraction, and the emptiest below it; made by [`HeightProfile::densest_layer`].
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct DenseLayer {
     /// Height of the middle of the bin.
     pub height: f64,
@@ -18,12 +19,17 @@ pub struct DenseLayer {
 }
 
 impl DenseLayer {
-    /// The densest layer of a profile, given as heights and packing fractions from the bottom up; the lowest of equals.
+    /// Makes a layer at this height with this packing fraction and the least one below it.
+    pub const fn new(height: f64, packing_fraction: f64, least_below: f64) -> Self {
+        Self { height, packing_fraction, least_below }
+    }
+
+    /// Returns the densest layer of a profile, given as heights and packing fractions from the bottom up; the lowest of equals.
     ///
     /// ```
     /// use granular_edmd::observable::DenseLayer;
     /// let layer = DenseLayer::among([(0.5, 0.2), (1.5, 0.1), (2.5, 0.7)]);
-    /// assert_eq!(layer, Some(DenseLayer { height: 2.5, packing_fraction: 0.7, least_below: 0.1 }));
+    /// assert_eq!(layer, Some(DenseLayer::new(2.5, 0.7, 0.1)));
     /// ```
     pub fn among(profile: impl IntoIterator<Item = (f64, f64)>) -> Option<Self> {
         let mut least = f64::INFINITY;
@@ -38,8 +44,9 @@ impl DenseLayer {
     }
 }
 
-/// An observer that averages the packing fraction `$\phi(y)$` by height over samples: the area of the disks between two
-/// heights, over the area there,
+/// An observer that averages the packing fraction by height over samples.
+///
+/// The packing fraction `$\phi(y)$` is the area of the disks between two heights, over the area there,
 ///
 /// ```math
 /// \phi_k = \frac{1}{L_x\,\Delta y}\Big\langle\sum_i A_i(y_k, y_k + \Delta y)\Big\rangle.
@@ -63,7 +70,9 @@ impl DenseLayer {
 /// assert!(profile.iter().zip(expected).all(|((_, packing), expected)| (packing - expected).abs() < 1e-15));
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawHeightProfile"))]
 pub struct HeightProfile {
     bins: HeightBins,
     sample_times: SampleTimes,
@@ -73,7 +82,7 @@ pub struct HeightProfile {
 }
 
 impl HeightProfile {
-    /// A profile from the height `bottom` to `top` in this many bins; what is outside is left out.
+    /// Makes a profile from the height `bottom` to `top` in this many bins; disks outside are left out.
     ///
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of bins is not in `1..=2^20`.
@@ -82,18 +91,18 @@ impl HeightProfile {
         Ok(Self { bins, sample_times: times, sums: vec![0.0; bins.count()], samples: 0 })
     }
 
-    /// How many samples were taken.
+    /// Returns how many samples were taken.
     pub const fn samples(&self) -> u64 {
         self.samples
     }
 
-    /// Heights of the middles of the bins, and mean packing fractions; 0 before the first sample.
+    /// Iterates over the heights of the middles of the bins, and the mean packing fractions; 0 before the first sample.
     pub fn iter(&self) -> impl Iterator<Item = (f64, f64)> {
         let samples = self.samples.max(1) as f64;
         self.sums.iter().enumerate().map(move |(bin, sum)| (self.bins.middle(bin), sum / samples))
     }
 
-    /// The bin with the largest packing fraction, the lowest of equals; `None` before the first sample.
+    /// Returns the bin with the largest packing fraction, the lowest of equals; `None` before the first sample.
     pub fn densest_layer(&self) -> Option<DenseLayer> {
         DenseLayer::among(self.iter().take_while(|_| self.samples > 0))
     }
@@ -106,7 +115,7 @@ impl HeightProfile {
 
     fn add(&mut self, disk: &Disk, width: f64) {
         let (height, radius) = (disk.position().y, disk.radius());
-        // What is far outside lands at an end, with no area there.
+        // A disk outside lands at an end of the profile, with no area in the bin there.
         let first = self.bins.at_or_above(height - radius);
         let last = self.bins.at_or_above(height + radius).min(self.bins.count() - 1);
         let mut below = area_below(self.bins.edge(first) - height, radius);
@@ -118,15 +127,19 @@ impl HeightProfile {
     }
 }
 
-/// Area of a disk below a line at this height above its centre.
+/// Area of a disk below a line at this height above its center.
 fn area_below(height: f64, radius: f64) -> f64 {
     let sine = (height / radius).clamp(-1.0, 1.0);
     radius * radius * (0.5 * PI + libm::asin(sine) + sine * (1.0 - sine * sine).sqrt())
 }
 
 impl Observer for HeightProfile {
+    fn on_start(&mut self, moment: &Moment) {
+        self.sample_times.start_at(moment.time());
+    }
+
     fn next_sample(&self) -> f64 {
-        self.sample_times.next()
+        self.sample_times.upcoming()
     }
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
@@ -134,5 +147,28 @@ impl Observer for HeightProfile {
         snapshot.disks().iter().for_each(|disk| self.add(disk, width));
         self.samples += 1;
         self.sample_times.advance_past(snapshot.time());
+    }
+}
+
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "HeightProfile")]
+struct RawHeightProfile {
+    bins: HeightBins,
+    sample_times: SampleTimes,
+    sums: Vec<f64>,
+    samples: u64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawHeightProfile> for HeightProfile {
+    type Error = ParameterError;
+
+    fn try_from(raw: RawHeightProfile) -> Result<Self, ParameterError> {
+        let RawHeightProfile { bins, sample_times, sums, samples } = raw;
+        bins.check_count(sums.len())?;
+        sums.iter()
+            .try_for_each(|&sum| crate::quantity::finite("sum of packing fractions", sum).map(|_| ()))?;
+        Ok(Self { bins, sample_times, sums, samples })
     }
 }

@@ -4,14 +4,22 @@ use std::f64::consts::TAU;
 
 use super::{Observable, Snapshot};
 
-/// `$\Psi_1$` and `$\Psi_2$`: how strongly the flow is one roll, or two.
+/// Order parameters `$\Psi_1$` and `$\Psi_2$` of a flow of one convection roll, and of two.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub struct ConvectionOrder {
     /// `$\Psi_1$`: one roll; positive if it turns clockwise.
     pub one_roll: f64,
     /// `$\Psi_2$`: two rolls; positive if the flow goes up in the middle.
     pub two_rolls: f64,
+}
+
+impl ConvectionOrder {
+    /// Makes order parameters of these values.
+    pub const fn new(one_roll: f64, two_rolls: f64) -> Self {
+        Self { one_roll, two_rolls }
+    }
 }
 
 /// The order parameters of one and two convection rolls (paper, Eqs. (10), (11)):
@@ -21,7 +29,7 @@ pub struct ConvectionOrder {
 /// \Psi_2 = -\frac1N\sum_i v_{yi}\cos\frac{2\pi x_i}{L_x}.
 /// ```
 ///
-/// In a gas at rest each fluctuates with standard deviation `$\sqrt{T_y/2Nm}$`: a roll is told from noise against that.
+/// In a gas at rest each fluctuates with standard deviation `$\sqrt{T_y/2Nm}$`: a roll stands out if it is larger than that.
 /// Positions count from the left end of the domain; without disks both are 0.
 ///
 /// ```
@@ -40,6 +48,7 @@ pub struct ConvectionOrder {
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OrderParameters;
 
 impl Observable for OrderParameters {

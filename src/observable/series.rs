@@ -1,68 +1,10 @@
 //! Values of an observable at set times.
 
-use super::{Observable, Observer, Snapshot};
-use crate::ParameterError;
-use crate::quantity::{finite, positive};
-
-/// Equally spaced times: a start, and a sample after each interval.
-///
-/// The times are multiples, not sums, of the interval: the thousandth is as exact as the first. To sample at a fixed
-/// phase of a vibrating base take a number of its periods as interval and the phase as start. Compute the end of a run
-/// the same way (`count as f64 * interval`), or its last sample may lie one rounding behind the end.
-///
-/// ```
-/// use granular_edmd::observable::SampleTimes;
-/// let times = SampleTimes::every(2.0)?.starting_at(10.5)?;
-/// assert_eq!(times.next(), 10.5);
-/// # Ok::<(), granular_edmd::ParameterError>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SampleTimes {
-    start: f64,
-    interval: f64,
-    /// Intervals from the start to the next sample.
-    intervals: u64,
-}
-
-impl SampleTimes {
-    /// A sample after each interval, the first at the end of the first one.
-    ///
-    /// # Errors
-    /// If the interval is not finite and positive.
-    pub fn every(interval: f64) -> Result<Self, ParameterError> {
-        let interval = positive("sampling interval", interval)?;
-        Ok(Self { start: 0.0, interval, intervals: 1 })
-    }
-
-    /// The same interval with the first sample at `start`.
-    ///
-    /// # Errors
-    /// If the start is not finite.
-    pub fn starting_at(self, start: f64) -> Result<Self, ParameterError> {
-        Ok(Self { start: finite("first sampling time", start)?, intervals: 0, ..self })
-    }
-
-    /// The time of the next sample; infinite once the interval is lost in rounding.
-    pub fn next(&self) -> f64 {
-        if self.intervals == u64::MAX {
-            return f64::INFINITY;
-        }
-        self.start + self.intervals as f64 * self.interval
-    }
-
-    /// On to the first time after `time`.
-    pub(super) fn advance_past(&mut self, time: f64) {
-        // Twice as many at each further try: soon past, also where single intervals are lost in rounding.
-        let mut more = 1_u64;
-        while self.next() <= time {
-            let skipped = ((time - self.next()) / self.interval).floor().max(0.0);
-            self.intervals = self.intervals.saturating_add(more).saturating_add(skipped as u64);
-            more = more.saturating_mul(2);
-        }
-    }
-}
+use super::{Moment, Observable, Observer, SampleTimes, Snapshot};
 
 /// An observer that keeps the values of an observable at set times.
+///
+/// With the feature `serde` a series can be written and read, if the observable and its values can.
 ///
 /// ```
 /// use granular_edmd::observable::{OrderParameters, SampleTimes, Series};
@@ -71,6 +13,17 @@ impl SampleTimes {
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        try_from = "serial::Raw<Q, Q::Value>",
+        bound(
+            serialize = "Q: serde::Serialize, Q::Value: serde::Serialize",
+            deserialize = "Q: serde::Deserialize<'de>, Q::Value: serde::Deserialize<'de>"
+        )
+    )
+)]
 pub struct Series<Q: Observable> {
     observable: Q,
     sample_times: SampleTimes,
@@ -79,22 +32,22 @@ pub struct Series<Q: Observable> {
 }
 
 impl<Q: Observable> Series<Q> {
-    /// A series of `observable` at these times.
+    /// Makes a series of `observable` at these times.
     pub const fn new(observable: Q, times: SampleTimes) -> Self {
         Self { observable, sample_times: times, times: Vec::new(), values: Vec::new() }
     }
 
-    /// The times of the samples.
+    /// Returns the absolute times of the samples.
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// The values, one a time.
+    /// Returns the values, one for each time.
     pub fn values(&self) -> &[Q::Value] {
         &self.values
     }
 
-    /// Times and values together.
+    /// Iterates over times and values together.
     pub fn iter(&self) -> impl Iterator<Item = (f64, &Q::Value)> {
         self.times.iter().copied().zip(&self.values)
     }
@@ -107,13 +60,45 @@ impl<Q: Observable> Series<Q> {
 }
 
 impl<Q: Observable> Observer for Series<Q> {
+    fn on_start(&mut self, moment: &Moment) {
+        self.sample_times.start_at(moment.time());
+    }
+
     fn next_sample(&self) -> f64 {
-        self.sample_times.next()
+        self.sample_times.upcoming()
     }
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         self.times.push(snapshot.time());
         self.values.push(self.observable.measure(snapshot));
         self.sample_times.advance_past(snapshot.time());
+    }
+}
+
+#[cfg(feature = "serde")]
+mod serial {
+    use super::{Observable, SampleTimes, Series};
+    use crate::ParameterError;
+    use crate::quantity::{accept, finite};
+
+    #[derive(serde::Deserialize)]
+    #[serde(deny_unknown_fields, rename = "Series")]
+    pub(super) struct Raw<Q, V> {
+        observable: Q,
+        sample_times: SampleTimes,
+        times: Vec<f64>,
+        values: Vec<V>,
+    }
+
+    impl<Q: Observable> TryFrom<Raw<Q, Q::Value>> for Series<Q> {
+        type Error = ParameterError;
+
+        fn try_from(raw: Raw<Q, Q::Value>) -> Result<Self, ParameterError> {
+            let Raw { observable, sample_times, times, values } = raw;
+            let count = values.len() as f64;
+            accept(values.len() == times.len(), "number of values", "that of the times", count)?;
+            times.iter().try_for_each(|&time| finite("time of a sample", time).map(|_| ()))?;
+            Ok(Self { observable, sample_times, times, values })
+        }
     }
 }

@@ -3,7 +3,7 @@
 use crate::Disk;
 use crate::boundary::Domain;
 
-/// The disks at one time, as copies: nothing that is done with them reaches the run.
+/// The disks at one time, as copies: nothing that is done to them reaches the run.
 #[derive(Debug, Clone, Copy)]
 pub struct Snapshot<'a> {
     time: f64,
@@ -13,32 +13,32 @@ pub struct Snapshot<'a> {
 }
 
 impl<'a> Snapshot<'a> {
-    /// A snapshot of `disks`; the engine makes them, and so may a test.
+    /// Makes a snapshot of `disks` at an absolute time. The engine makes them, and so may a test.
     pub const fn new(time: f64, disks: &'a [Disk], domain: Domain, gravity: f64) -> Self {
         Self { time, disks, domain, gravity }
     }
 
-    /// When it was taken.
+    /// Returns the absolute time at which it was taken.
     pub const fn time(&self) -> f64 {
         self.time
     }
 
-    /// The disks, in the order in which the simulation got them.
+    /// Returns the disks, in the order in which the simulation got them.
     pub const fn disks(&self) -> &'a [Disk] {
         self.disks
     }
 
-    /// The rectangle that holds their centres.
+    /// Returns the rectangle that holds their centers.
     pub const fn domain(&self) -> Domain {
         self.domain
     }
 
-    /// Gravity, pointing down.
+    /// Returns gravity, pointing down.
     pub const fn gravity(&self) -> f64 {
         self.gravity
     }
 
-    /// Mean of a quantity over the disks; NaN without disks.
+    /// Returns the mean of a quantity over the disks; NaN without disks.
     pub fn mean(&self, quantity: impl Fn(&Disk) -> f64) -> f64 {
         self.disks.iter().map(quantity).sum::<f64>() / self.disks.len() as f64
     }

@@ -6,6 +6,7 @@ use crate::Disk;
 /// Temperatures per degree of freedom, in units of energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub struct Temperature {
     /// `$T_x = \langle m v_x^2\rangle$`.
     pub horizontal: f64,
@@ -16,15 +17,20 @@ pub struct Temperature {
 }
 
 impl Temperature {
-    /// `$T = (T_x + T_y)/2$`.
+    /// Makes temperatures of these values.
+    pub const fn new(horizontal: f64, vertical: f64, rotational: f64) -> Self {
+        Self { horizontal, vertical, rotational }
+    }
+
+    /// Returns `$T = (T_x + T_y)/2$`.
     pub fn translational(&self) -> f64 {
         0.5 * (self.horizontal + self.vertical)
     }
 }
 
-/// Horizontal, vertical and rotational temperature over all disks, about the frame of the container.
+/// Horizontal, vertical and rotational temperature over all disks, in the frame of the container; NaN without disks.
 ///
-/// The flow of convection rolls counts as temperature here; it is a small part (`$\Psi^2\ll T$`).
+/// The flow of convection rolls counts as temperature here: a small part (`$\Psi^2\ll T$`).
 ///
 /// ```
 /// use glam::DVec2;
@@ -39,6 +45,7 @@ impl Temperature {
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Temperatures;
 
 impl Observable for Temperatures {
@@ -46,8 +53,8 @@ impl Observable for Temperatures {
 
     fn measure(&self, snapshot: &Snapshot<'_>) -> Temperature {
         Temperature {
-            horizontal: snapshot.mean(|disk| disk.mass() * disk.velocity().x.powi(2)),
-            vertical: snapshot.mean(|disk| disk.mass() * disk.velocity().y.powi(2)),
+            horizontal: snapshot.mean(|disk| disk.mass() * (disk.velocity().x * disk.velocity().x)),
+            vertical: snapshot.mean(|disk| disk.mass() * (disk.velocity().y * disk.velocity().y)),
             rotational: 2.0 * snapshot.mean(Disk::rotational_energy),
         }
     }

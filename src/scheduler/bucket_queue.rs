@@ -1,4 +1,4 @@
-//! A calendar that is turned page by page: for many disks.
+//! A calendar that is turned page by page, for many disks.
 
 mod piles;
 
@@ -10,51 +10,61 @@ use super::entry::Entry;
 use crate::prefetch::prefetch;
 use piles::Piles;
 
-/// Events that are due in the time of a bucket, so many that what concerns the buckets stays in the caches.
+/// Events due within the time of one bucket. With so many in each there are few buckets, and the ends of all
+/// of them stay in the caches.
 const EVENTS_PER_BUCKET: usize = 512;
 
-/// Events of a page for each disk: turning it costs little then.
+/// Events of a page for each disk: dealing out all disks anew is then shared by twice as many events.
 const EVENTS_PER_DISK: usize = 2;
 
-/// Events for each disk after which a page is turned at the latest: its buckets are too wide.
+/// Events for each disk after which a page is turned at the latest. It was meant to last half as long, so its
+/// buckets are too wide.
 const LONGEST_PAGE: usize = 2 * EVENTS_PER_DISK;
 
-/// Disks by which the density of events is judged at first, and the part of them that are due soon.
+/// Disks in the sample that estimates the density of events at first.
 const SAMPLE: usize = 256;
+
+/// One in this many of the sample is due soon and counts in the estimate.
 const SOON: usize = 8;
 
-/// Events from the present one to those that come into sight.
+/// Events between the present one and those that are named as upcoming.
 const SIGHT: usize = 48;
 
-/// A page of equally wide buckets of time; in each, in no order, the disks that are due in it.
+/// A calendar: a page of equally wide buckets of time, and in each bucket, in no order, the disks due in it.
 ///
-/// A disk is written to the end of the bucket of its time, and nothing is taken out of the one where it was: what is out of
-/// date is left out when the bucket is opened, just before its time, and its disks are put in order. Disks that become due in
-/// a time that is open already wait in a heap, and those off the page are not written down at all: when the page is used up,
-/// all disks are dealt out anew, to buckets as wide as the events of the last page want. So whatever an event writes is in the
-/// caches, however many disks there are, but for the time of its disk.
+/// - A disk that gets a new time is written to the end of the bucket of that time. Its old entry stays where
+///   it is.
+/// - A bucket is opened just before its time comes: old entries are dropped, and the others put in order.
+/// - A disk that becomes due within a bucket that is open already waits in a heap.
+/// - A disk that is due after the page is not written down. When the page is used up, all disks are dealt out
+///   to a new one, whose buckets are as wide as the events of the last page suggest.
+///
+/// So an event writes only to places that are in the caches, however many disks there are. The one exception
+/// is the time of its disk.
 #[derive(Debug, Clone)]
 pub struct BucketQueue {
-    /// When each disk is due.
+    /// The time of each disk.
     due: Vec<f64>,
     /// The disks of each bucket of the page.
     buckets: Piles,
     /// Buckets before this one have been opened.
     opened: usize,
-    /// The events of the open buckets in order, and how many of them are over.
+    /// The events of the open buckets, in order.
     open: Vec<Entry>,
+    /// The number of them that are over.
     over: usize,
-    /// How many of them have come into sight.
-    sighted: usize,
-    /// Events that were set later, in the time of the open buckets.
+    /// The number of them that have been named as upcoming.
+    named: usize,
+    /// Events that were set within the time of the open buckets after these had been opened.
     late: BinaryHeap<Reverse<Entry>>,
+    /// The answer.
     first: Entry,
     page: Page,
     /// Events set since the page was turned.
     set: usize,
 }
 
-/// Which time belongs to which bucket.
+/// The times of a page: its start, and the width of its buckets.
 #[derive(Debug, Clone, Copy)]
 struct Page {
     start: f64,
@@ -63,10 +73,11 @@ struct Page {
 }
 
 impl Page {
-    /// The bucket of a time: they are in the order of their times, without end.
+    /// Returns the bucket of a time. Buckets follow each other without end, also beyond those of the page.
     #[inline]
     fn bucket(self, due: f64) -> usize {
-        // The cast saturates: what is early goes to the first bucket.
+        // The cast saturates: times before the page belong to its first bucket, infinite ones to the last
+        // number.
         ((due - self.start) * self.rate) as usize
     }
 }
@@ -78,7 +89,7 @@ impl Default for BucketQueue {
 }
 
 impl BucketQueue {
-    /// A scheduler of no disks.
+    /// Makes a scheduler of no disks.
     pub const fn new() -> Self {
         Self {
             due: Vec::new(),
@@ -86,7 +97,7 @@ impl BucketQueue {
             opened: 0,
             open: Vec::new(),
             over: 0,
-            sighted: 0,
+            named: 0,
             late: BinaryHeap::new(),
             first: Entry::EMPTY,
             page: Page { start: 0.0, rate: 0.0 },
@@ -99,7 +110,7 @@ impl BucketQueue {
         self.due[entry.disk] == entry.due()
     }
 
-    /// Writes down when a disk is due.
+    /// Writes down the time of a disk.
     #[inline]
     fn place(&mut self, disk: usize, due: f64) {
         let bucket = self.page.bucket(due);
@@ -134,7 +145,7 @@ impl BucketQueue {
         }
     }
 
-    /// Opens buckets until enough events are in sight, or the page ends.
+    /// Opens buckets until enough events are known in order, or the page ends.
     #[cold]
     #[inline(never)]
     fn open_buckets(&mut self) {
@@ -142,7 +153,7 @@ impl BucketQueue {
             return;
         }
         self.open.drain(..self.over);
-        self.sighted = self.sighted.saturating_sub(self.over);
+        self.named = self.named.saturating_sub(self.over);
         self.over = 0;
         while self.opened < self.buckets.len() && self.open.len() < SIGHT {
             self.open_bucket();
@@ -153,13 +164,14 @@ impl BucketQueue {
         let Self { due, open, page, .. } = self;
         let (from, bucket) = (open.len(), self.opened);
         self.buckets.take(bucket, |disks| {
-            // All at once: 3 % of the time of 10⁶ disks.
+            // Their times lie anywhere in memory: asked for all at once, they come at the cost of few.
             for &disk in disks {
                 prefetch(due, disk as usize);
             }
             for &disk in disks {
                 let (disk, due) = (disk as usize, due[disk as usize]);
-                // Another bucket: it is out of date.
+                // An entry is out of date if the time of its disk has moved to another bucket. One that has
+                // moved within this bucket is here twice, with the same time: no harm.
                 if page.bucket(due) == bucket {
                     open.push(Entry::new(disk, due));
                 }
@@ -177,7 +189,7 @@ impl BucketQueue {
         self.first = first.unwrap_or_default();
         let first = self.first.due();
         self.page = Page { start: first, rate: self.events_per_time(first) / EVENTS_PER_BUCKET as f64 };
-        (self.set, self.opened, self.over, self.sighted) = (0, 0, 0, 0);
+        (self.set, self.opened, self.over, self.named) = (0, 0, 0, 0);
         self.buckets.clear((EVENTS_PER_DISK * self.due.len()).div_ceil(EVENTS_PER_BUCKET) + 1);
         self.open.clear();
         self.late.clear();
@@ -187,7 +199,8 @@ impl BucketQueue {
         self.open_buckets();
     }
 
-    /// How dense events are: as on the last page if it was long enough, or else as a sample of the disks has it.
+    /// Estimates the number of events per time: from the last page, or from a sample of the disks if that
+    /// page was short.
     fn events_per_time(&self, first: f64) -> f64 {
         let past = self.set as f64 / (first - self.page.start);
         let sampled = self.sampled_events_per_time(first);
@@ -203,7 +216,7 @@ impl BucketQueue {
             *wait = due - first;
             count += 1;
         }
-        // The earliest of them only: some may have long to wait.
+        // Only the earliest of them tell how dense events are: a disk at rest may wait as good as forever.
         let (_, &mut wait, _) = waits.select_nth_unstable_by(count / SOON, f64::total_cmp);
         (stride * (count / SOON + 1)) as f64 / wait
     }
@@ -234,12 +247,12 @@ impl EventScheduler for BucketQueue {
         self.first.answer()
     }
 
-    fn come_into_sight(&mut self, disks: &mut Vec<usize>) {
+    fn upcoming(&mut self, disks: &mut Vec<usize>) {
         let end = (self.over + SIGHT).min(self.open.len());
-        let from = self.sighted.max(self.over);
+        let from = self.named.max(self.over);
         if from < end {
             disks.extend(self.open[from..end].iter().map(|entry| entry.disk));
         }
-        self.sighted = end;
+        self.named = end;
     }
 }

@@ -1,12 +1,16 @@
-//! The default scheduler: whichever of the others is the fastest for so many disks.
+//! The default scheduler: the faster of the others for the number of disks.
 
 use super::{BucketQueue, EventScheduler, TournamentTree};
 
-/// Disks from which on the bucket queue is faster: at 10⁴ either is, at 10⁵ it takes a third of the time; `cargo bench --bench
-/// scaling`.
-const MANY: usize = 30_000;
+/// Number of disks from which on the processor's caches no longer hold a system.
+///
+/// Above it an event waits for the memory, and work that spares memory pays: an order that is written page by
+/// page ([`BucketQueue`]), and requests for what the next events will need. Below it the same work is a loss.
+/// The place of the change is measured by `cargo bench --bench scaling`; it is flat, so one number serves
+/// both.
+pub(crate) const LARGE_SYSTEM: usize = 30_000;
 
-/// A [`TournamentTree`] for fewer than 30 000 disks, a [`BucketQueue`] for more.
+/// A [`TournamentTree`] for fewer than 30 000 disks, a [`BucketQueue`] from there on.
 ///
 /// ```
 /// use granular_edmd::scheduler::{BySize, EventScheduler};
@@ -20,40 +24,40 @@ const MANY: usize = 30_000;
 pub struct BySize {
     tree: TournamentTree,
     queue: BucketQueue,
-    /// Whether it is the queue that counts; the other is empty.
-    many: bool,
+    /// The queue is in use and the tree is empty, or else the other way round.
+    is_large: bool,
 }
 
 impl BySize {
-    /// A scheduler of no disks.
+    /// Makes a scheduler of no disks.
     pub const fn new() -> Self {
-        Self { tree: TournamentTree::new(), queue: BucketQueue::new(), many: false }
+        Self { tree: TournamentTree::new(), queue: BucketQueue::new(), is_large: false }
     }
 }
 
 impl EventScheduler for BySize {
     fn reset(&mut self, due: &[f64]) {
-        let many = due.len() >= MANY;
-        if many != self.many {
-            *self = Self { many, ..Self::new() };
+        let is_large = due.len() >= LARGE_SYSTEM;
+        if is_large != self.is_large {
+            *self = Self { is_large, ..Self::new() };
         }
-        if many { self.queue.reset(due) } else { self.tree.reset(due) }
+        if is_large { self.queue.reset(due) } else { self.tree.reset(due) }
     }
 
     #[inline]
     fn set(&mut self, disk: usize, due: f64) {
-        if self.many { self.queue.set(disk, due) } else { self.tree.set(disk, due) }
+        if self.is_large { self.queue.set(disk, due) } else { self.tree.set(disk, due) }
     }
 
     #[inline]
     fn earliest(&self) -> (usize, f64) {
-        if self.many { self.queue.earliest() } else { self.tree.earliest() }
+        if self.is_large { self.queue.earliest() } else { self.tree.earliest() }
     }
 
     #[inline]
-    fn come_into_sight(&mut self, disks: &mut Vec<usize>) {
-        if self.many {
-            self.queue.come_into_sight(disks);
+    fn upcoming(&mut self, disks: &mut Vec<usize>) {
+        if self.is_large {
+            self.queue.upcoming(disks);
         }
     }
 }

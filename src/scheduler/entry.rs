@@ -1,9 +1,11 @@
 //! A disk and its time.
 
-/// A disk and when it is due, ordered by time and then by disk.
+use super::NOTHING_DUE;
+
+/// A disk and the time at which it is due, ordered by time and then by disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Entry {
-    /// The time as a number that is in the order of times.
+    /// The time as an integer, in the same order.
     pub(super) order: u64,
     pub(super) disk: usize,
 }
@@ -17,12 +19,14 @@ impl Default for Entry {
 }
 
 impl Entry {
-    /// What stands where no disk is: later than any time.
+    /// The entry of no disk: after all others.
     pub(super) const EMPTY: Self = Self { order: u64::MAX - 1, disk: usize::MAX };
 
     #[inline]
     pub(super) fn new(disk: usize, due: f64) -> Self {
-        // Adding 0 makes the two zeros equal. Negative floats are in the reverse order of their bits.
+        // Adding 0 turns -0 into 0, so that both zeros are the same time. The bits of a positive float grow
+        // with it, those of a negative one with its magnitude: all are flipped there, and only the sign
+        // elsewhere.
         let bits = (due + 0.0).to_bits();
         Self { order: if bits & SIGN == 0 { bits | SIGN } else { !bits }, disk }
     }
@@ -32,9 +36,10 @@ impl Entry {
         f64::from_bits(if self.order & SIGN == 0 { !self.order } else { self.order & !SIGN })
     }
 
-    /// What [`EventScheduler::earliest`](super::EventScheduler::earliest) answers if this is the first.
+    /// Returns the answer of [`EventScheduler::earliest`](super::EventScheduler::earliest) if this is the
+    /// first.
     #[inline]
     pub(super) fn answer(self) -> (usize, f64) {
-        if self == Self::EMPTY { (usize::MAX, f64::INFINITY) } else { (self.disk, self.due()) }
+        if self == Self::EMPTY { NOTHING_DUE } else { (self.disk, self.due()) }
     }
 }

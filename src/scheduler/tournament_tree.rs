@@ -8,25 +8,27 @@ use super::entry::Entry;
 /// Players of a match.
 const PLAYERS: usize = 4;
 
-/// A tournament in matches of four: the earliest of four disks goes on to the next round, until there is one winner.
+/// A tournament in matches of four: the earliest of four disks goes on to the next round, until one is left.
 ///
-/// A change replays the matches from its disk to the last, by selections and not by branches: mispredicted branches, not
-/// arithmetic, are what a tournament costs (branches take 3.5 times as long). Matches of four have half as many rounds
-/// as matches of two, and the best of the three others is known before the winner of the round below is.
+/// A change of one disk replays its matches, round by round. Each replay selects and does not branch, because
+/// no processor can foresee the winner of a match, and a branch that is foreseen wrongly costs more than the
+/// whole match. Matches of four need half as many rounds as matches of two, and the best of the three others
+/// is found while the round below is still being played.
 #[derive(Debug, Clone, Default)]
 pub struct TournamentTree {
     /// The matches of all rounds, one round after the other.
     matches: Vec<[Entry; PLAYERS]>,
-    /// Where the matches of each round start.
+    /// Index of the first match of each round.
     rounds: Vec<usize>,
     winner: Entry,
 }
 
 impl Entry {
-    /// The earlier of two; of equal times the smaller disk.
+    /// Returns the earlier of two; of equal times the smaller disk.
     #[inline]
     fn earlier(self, other: Self) -> Self {
-        // A comparison of both at once would be turned into a branch for some processors.
+        // A comparison of the two as pairs would become a branch on some processors. The sum cannot overflow:
+        // no time has the largest order, which is why EMPTY has the one before it.
         let wins = other.order < self.order + u64::from(other.disk < self.disk);
         Self {
             order: select_unpredictable(wins, other.order, self.order),
@@ -36,12 +38,12 @@ impl Entry {
 }
 
 impl TournamentTree {
-    /// A scheduler of no disks.
+    /// Makes a scheduler of no disks.
     pub const fn new() -> Self {
         Self { matches: Vec::new(), rounds: Vec::new(), winner: Entry::EMPTY }
     }
 
-    /// Seats as many players, and the winners of their matches, and so on, nobody yet.
+    /// Makes room for the matches of this many players, of their winners, and so on; nobody is seated yet.
     fn seat(&mut self, mut players: usize) {
         self.rounds.clear();
         let mut count = 0;

@@ -3,11 +3,13 @@
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::bodies::Bodies;
-use super::cells::Cells;
-use super::engine::Simulation;
+use super::Scratch;
+use super::Simulation;
+use super::cells::{CellSize, Cells};
 use super::errors::BuildError;
-use super::grid::Mesh;
+use super::events::Counters;
+use super::lookahead::Lookahead;
+use super::state::{Bodies, Clock};
 use crate::Disk;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
@@ -110,33 +112,72 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         }
         let mut boundary = self.boundary;
         boundary.set_time_origin(self.start_time);
-        check_inside(&boundary, &self.disks)?;
-        let cells = cells_for(&boundary, &self.disks)?;
-        check_overlaps(&boundary, &self.disks, &cells)?;
-        let generator = Xoshiro256PlusPlus::seed_from_u64(self.seed);
+        let (wall_count, cells) = fit(&boundary, &self.disks, 0.0)?;
         let bodies = Bodies::new(&self.disks, self.gravity);
-        let (rule, scheduler, start) = (self.rule, self.scheduler, self.start_time);
-        let mut simulation = Simulation::idle(rule, boundary, scheduler, bodies, cells, generator, start);
+        let clock = Clock::new(self.start_time, bodies.epoch_length());
+        check_start(&clock, &self.disks)?;
+        let mut simulation = Simulation {
+            rule: self.rule,
+            boundary,
+            wall_count,
+            scheduler: self.scheduler,
+            bodies,
+            cells,
+            clock,
+            generator: Xoshiro256PlusPlus::seed_from_u64(self.seed),
+            counters: Counters::default(),
+            lookahead: Lookahead::default(),
+            scratch: Scratch::default(),
+        };
         simulation.predict_all();
         Ok(simulation)
     }
 }
 
+/// Number of walls, and the neighbor cells, for disks that fit into the boundary at this time offset.
+pub(super) fn fit<B: Boundary + ?Sized>(
+    boundary: &B,
+    disks: &[Disk],
+    offset: f64,
+) -> Result<(usize, Cells), BuildError> {
+    let wall_count = count_walls(boundary)?;
+    check_inside(boundary, disks, offset)?;
+    let cells = cells_for(boundary, disks)?;
+    check_overlaps(boundary, disks, &cells)?;
+    Ok((wall_count, cells))
+}
+
+/// Checks that time does not stand still at the start.
+fn check_start(clock: &Clock, disks: &[Disk]) -> Result<(), BuildError> {
+    match clock.coarseness(0.0) {
+        Some(spacing) if !disks.is_empty() => {
+            Err(BuildError::StartTime { start: clock.origin, spacing, epoch: clock.epoch_length })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The number of walls, if the engine can number them.
+pub(super) fn count_walls<B: Boundary + ?Sized>(boundary: &B) -> Result<usize, BuildError> {
+    let count = boundary.wall_count();
+    if count > MOST_WALLS {
+        return Err(BuildError::TooManyWalls { count, most: MOST_WALLS });
+    }
+    Ok(count)
+}
+
 /// Neighbour cells that suit these disks.
-pub(super) fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells, BuildError> {
+fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells, BuildError> {
     let diameter = 2.0 * disks.iter().map(Disk::radius).fold(0.0, f64::max);
     let domain = boundary.domain();
     // Without disks any cells will do.
     let diameter = if diameter > 0.0 { diameter } else { 0.125 * domain.width() };
     let too_small = BuildError::DomainTooSmall { width: domain.width(), height: domain.height(), diameter };
-    Cells::new(boundary, diameter, Mesh::Medium, disks.iter().map(Disk::position)).ok_or(too_small)
+    Cells::new(boundary, diameter, CellSize::Medium, disks.iter().map(Disk::position)).ok_or(too_small)
 }
 
-/// That the walls can be numbered, all disks are inside the domain and none overlaps a wall.
-pub(super) fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<(), BuildError> {
-    if boundary.walls().len() > MOST_WALLS {
-        return Err(BuildError::TooManyWalls { count: boundary.walls().len(), most: MOST_WALLS });
-    }
+/// Checks that all disks are inside the domain and none overlaps a wall at this time offset.
+fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk], offset: f64) -> Result<(), BuildError> {
     let domain = boundary.domain();
     for (disk, state) in disks.iter().enumerate() {
         let (position, radius) = (state.position(), state.radius());
@@ -147,18 +188,18 @@ pub(super) fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -
         if !inside {
             return Err(BuildError::Outside { disk, x: position.x, y: position.y });
         }
-        if let Some((wall, depth)) = boundary.overlap(position, radius, 0.0)
+        if let Some((wall, depth)) = boundary.overlap(position, radius, offset)
             && depth > TOUCHING * radius
         {
-            let wall = boundary.walls().get(wall).copied().unwrap_or("unnamed").to_owned();
+            let wall = boundary.wall_name(wall).into_owned();
             return Err(BuildError::OverlapsWall { disk, x: position.x, y: position.y, wall, depth });
         }
     }
     Ok(())
 }
 
-/// That no two disks overlap.
-pub(super) fn check_overlaps<B: Boundary + ?Sized>(
+/// Checks that no two disks overlap.
+fn check_overlaps<B: Boundary + ?Sized>(
     boundary: &B,
     disks: &[Disk],
     cells: &Cells,

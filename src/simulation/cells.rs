@@ -1,17 +1,20 @@
 //! Neighbour cells: a disk can only collide with disks in its own cell and the eight around it.
 
 mod block;
+mod cell_size;
 mod contents;
+mod grid;
 
 use glam::DVec2;
 
-use super::event::Exit;
-use super::grid::{Grid, Layout, Mesh, Place};
+use super::state::Exit;
 use crate::boundary::Boundary;
-#[cfg(feature = "serde")]
-use crate::boundary::Domain;
 use crate::prefetch::prefetch;
+pub(super) use cell_size::CellSize;
 use contents::Contents;
+#[cfg(feature = "serde")]
+pub(super) use grid::{CELLS_PER_DISK, SPARE_CELLS};
+pub(super) use grid::{Grid, Layout, Place};
 
 /// The disks in the cells of a grid.
 ///
@@ -21,36 +24,7 @@ pub(super) struct Cells {
     grid: Grid,
     contents: Contents,
     /// Column and row of each disk.
-    places: Vec<Place>,
-}
-
-/// The grid and where the disks are in it: what a checkpoint keeps.
-#[cfg(feature = "serde")]
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub(super) struct GridState {
-    layout: Layout,
-    places: Vec<Place>,
-}
-
-#[cfg(feature = "serde")]
-impl GridState {
-    pub(super) fn len(&self) -> usize {
-        self.places.len()
-    }
-
-    pub(super) fn layout(&self) -> Layout {
-        self.layout
-    }
-
-    pub(super) fn places(&self) -> &[Place] {
-        &self.places
-    }
-
-    /// Whether the grid is one for this domain and disks of at most this diameter, and every disk is in it.
-    pub(super) fn suits(&self, domain: &Domain, diameter: f64) -> bool {
-        self.layout.suits(domain, diameter, self.places.len())
-            && self.places.iter().all(|&place| self.layout.contains(place))
-    }
+    pub(super) places: Vec<Place>,
 }
 
 impl Cells {
@@ -58,34 +32,19 @@ impl Cells {
     pub(super) fn new<B: Boundary + ?Sized>(
         boundary: &B,
         diameter: f64,
-        mesh: Mesh,
+        cell_size: CellSize,
         positions: impl ExactSizeIterator<Item = DVec2> + Clone,
     ) -> Option<Self> {
         let domain = boundary.domain();
         let highest = positions.clone().map(|position| position.y).fold(domain.bottom, f64::max);
-        let layout = Layout::new(&domain, diameter, mesh, positions.len(), highest)?;
+        let layout = Layout::new(&domain, diameter, cell_size, positions.len(), highest)?;
         let grid = Grid::new(&domain, layout, diameter);
         let places = positions.map(|position| grid.place_of(position)).collect();
         Some(Self::filled(boundary, 0.5 * diameter, grid, places))
     }
 
-    /// Disks where they were saved.
-    #[cfg(feature = "serde")]
-    pub(super) fn restored<B: Boundary + ?Sized>(
-        boundary: &B,
-        largest_radius: f64,
-        grid: Grid,
-        places: &[Place],
-    ) -> Self {
-        Self::filled(boundary, largest_radius, grid, places.to_vec())
-    }
-
-    #[cfg(feature = "serde")]
-    pub(super) fn state(&self) -> GridState {
-        GridState { layout: self.grid.layout(), places: self.places.clone() }
-    }
-
-    fn filled<B: Boundary + ?Sized>(
+    /// Cells of this grid with the disks in these places.
+    pub(super) fn filled<B: Boundary + ?Sized>(
         boundary: &B,
         largest_radius: f64,
         grid: Grid,

@@ -1,30 +1,39 @@
 //! Checkpoints: a run as data, to go on with later, bit for bit.
+//!
+//! This file is the format; `validation.rs` says which contents make a state, `resumption.rs` makes a run of them.
 
+mod resumption;
+mod validation;
+
+use std::fmt;
 use std::io;
 use std::path::Path;
 
 use rand_xoshiro::Xoshiro256PlusPlus;
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use thiserror::Error;
 
-use super::bodies::{Bodies, Spin, Trajectory};
-use super::cells::{Cells, GridState};
-use super::engine::Simulation;
-use super::event::{Counters, Exit, Slot};
-use super::grid::{Grid, Place};
-use super::guard::Guard;
-use crate::Disk;
+pub use resumption::Resumption;
+
+use super::Simulation;
+use super::cells::{Layout, Place};
+use super::events::Counters;
+use super::state::{Forecast, Guard, Spin, Tally, Trajectory};
 use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
+use crate::file::{Broken, Seal, write_whole};
 use crate::scheduler::EventScheduler;
-use crate::sealed::{Broken, Seal, write_whole};
+use crate::{Disk, Fingerprint};
 
-/// What marks a checkpoint, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 2 };
+/// The mark of a checkpoint, and the version of the format that this crate writes and reads.
+const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 3 };
 
 /// Everything that the future of a run depends on, except its rule and its walls.
 ///
-/// A resumed run continues bit for bit, also under another scheduler. Written with a version and a checksum: a file that
-/// was cut, changed or made by another version is refused, never read as data.
+/// A resumed run continues bit for bit, also under another scheduler. A checkpoint is kept as bytes with a version and a
+/// checksum, in files of its own and inside any format of serde: what was cut, changed or made by another version is refused,
+/// never read as data. It knows the fingerprints of its rule and its boundary, and refuses others unless told to
+/// take them.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -40,31 +49,38 @@ const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 2 };
 ///
 /// let bytes = first.checkpoint().to_bytes()?;
 /// let checkpoint = Checkpoint::from_bytes(&bytes)?;
-/// let mut second = Simulation::resume(&checkpoint, Elastic, container, LinearScan::default())?;
+/// let mut second = Simulation::resume(&checkpoint, Elastic, container).scheduler(LinearScan::default()).build()?;
 ///
 /// first.run_until(10.0, &mut ())?;
 /// second.run_until(10.0, &mut ())?;
 /// assert_eq!(first.disks(), second.disks());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+pub struct Checkpoint(Saved);
+
+/// The contents of a checkpoint.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Checkpoint {
-    /// One for each disk, or one for all if they are alike.
+struct Saved {
+    rule: Option<Fingerprint>,
+    boundary: Option<Fingerprint>,
+    domain: Domain,
+    /// One for each disk, or one for all if they are alike; at rest at the origin.
     kinds: Vec<Disk>,
     gravity: f64,
     trajectories: Vec<Trajectory>,
     spins: Vec<Spin>,
-    slots: Vec<Slot>,
-    grid: GridState,
-    domain: Domain,
+    forecasts: Vec<Forecast>,
+    layout: Layout,
+    places: Vec<Place>,
     generator: Xoshiro256PlusPlus,
     origin: f64,
     now: f64,
     epoch_length: f64,
-    counters: Counters,
     guard: Guard,
-    tally: (u64, u64),
+    tally: Tally,
+    counters: Counters,
 }
 
 /// A checkpoint cannot be written, read or resumed.
@@ -72,7 +88,7 @@ pub struct Checkpoint {
 #[non_exhaustive]
 pub enum CheckpointError {
     /// The file cannot be read or written.
-    #[error("the checkpoint file: {0}")]
+    #[error("the checkpoint file cannot be read or written")]
     Io(#[from] io::Error),
     /// The file is something else.
     #[error("this is not a checkpoint: it does not begin as one")]
@@ -89,12 +105,15 @@ pub enum CheckpointError {
     #[error("the checkpoint is damaged: its checksum does not match")]
     Damaged,
     /// The contents cannot be decoded or encoded.
-    #[error("the checkpoint's contents: {0}")]
-    Contents(#[from] postcard::Error),
+    #[error("the checkpoint's contents cannot be decoded or encoded")]
+    Contents {
+        /// The cause.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
     /// The contents do not make a state.
     #[error("the checkpoint is inconsistent: {0}")]
     Inconsistent(&'static str),
-    /// The walls are not those of the run that was saved.
+    /// The walls are not where those of the run that was saved were.
     #[error("the checkpoint is of a run in the domain {saved:?}; the boundary's is {given:?}")]
     Domain {
         /// The domain of the run that was saved.
@@ -102,12 +121,33 @@ pub enum CheckpointError {
         /// The domain of the boundary given.
         given: Domain,
     },
+    /// The rule is not the one of the run that was saved.
+    #[error("the checkpoint is of a run with another rule; `with_another_rule` takes this one on purpose")]
+    AnotherRule,
+    /// The boundary is not the one of the run that was saved.
+    #[error(
+        "the checkpoint is of a run with another boundary; `with_another_boundary` takes this one on purpose"
+    )]
+    AnotherBoundary,
+    /// The disks do not fit into the other boundary that was given on purpose.
+    #[error("the disks of the checkpoint do not fit into the boundary")]
+    Boundary(#[from] super::BuildError),
 }
 
 impl Checkpoint {
-    /// The time at which it was taken.
+    /// The absolute time at which it was taken.
     pub fn time(&self) -> f64 {
-        self.origin + self.now
+        self.0.origin + self.0.now
+    }
+
+    /// Number of disks.
+    pub fn len(&self) -> usize {
+        self.0.trajectories.len()
+    }
+
+    /// Whether there are no disks.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
     }
 
     /// The checkpoint as bytes: magic, version, checksum, contents.
@@ -115,25 +155,25 @@ impl Checkpoint {
     /// # Errors
     /// If it cannot be encoded.
     pub fn to_bytes(&self) -> Result<Vec<u8>, CheckpointError> {
-        Ok(SEAL.seal(&postcard::to_stdvec(self)?))
+        Ok(SEAL.seal(&postcard::to_stdvec(&self.0).map_err(contents)?))
     }
 
-    /// A checkpoint from bytes.
+    /// Reads a checkpoint from bytes.
     ///
     /// # Errors
     /// If they are not a checkpoint, of another version, cut, or changed.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
-        let contents = SEAL.open(bytes).map_err(|broken| match broken {
+        let sealed = SEAL.open(bytes).map_err(|broken| match broken {
             Broken::Foreign => CheckpointError::NotACheckpoint,
             Broken::Version(found) => CheckpointError::Version { found, known: SEAL.version },
             Broken::Cut | Broken::Changed => CheckpointError::Damaged,
         })?;
-        let (checkpoint, rest) = postcard::take_from_bytes(contents)?;
-        check(rest.is_empty(), "something follows it")?;
-        Ok(checkpoint)
+        let (saved, rest) = postcard::take_from_bytes(sealed).map_err(contents)?;
+        validation::check(rest.is_empty(), "something follows it")?;
+        Ok(Self(saved))
     }
 
-    /// Writes the checkpoint to a file, whole or not at all: a reader never sees half of it.
+    /// Writes the checkpoint to a file, whole or not at all: a reader never sees half of it, also with other writers beside.
     ///
     /// # Errors
     /// If the file cannot be written; a file of that name is then as it was.
@@ -148,122 +188,70 @@ impl Checkpoint {
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CheckpointError> {
         Self::from_bytes(&std::fs::read(path)?)
     }
+}
 
-    /// That the numbers make a state which the engine can go on with, but for the places of the disks.
-    fn check(&self, walls: usize) -> Result<(), CheckpointError> {
-        let count = self.trajectories.len();
-        let lengths = [self.spins.len(), self.slots.len(), self.grid.len()];
-        check(lengths.iter().all(|&length| length == count), "its parts differ in length")?;
-        check([1, count].contains(&self.kinds.len()), "its disks are of too many kinds, or of none")?;
-        check(self.times().iter().all(|time| time.is_finite()), "a time is not finite")?;
-        check(self.epoch_length > 0.0 && self.now >= 0.0, "its epoch is out of order")?;
-        check(self.trajectories.iter().all(Trajectory::is_finite), "a trajectory is not finite")?;
-        check(self.spins.iter().all(Spin::is_valid), "a rotation is not finite")?;
-        check(self.are_slots_valid(walls), "an event is of nobody, or in the past")?;
-        check(self.counters.are_valid() && self.guard.is_valid(), "its counters are beyond all counting")?;
-        let Counters { cell_crossings, collisions, .. } = self.counters;
-        check(self.tally.0 <= cell_crossings && self.tally.1 <= collisions, "its counters run backwards")
-    }
+fn contents(source: postcard::Error) -> CheckpointError {
+    CheckpointError::Contents { source: Box::new(source) }
+}
 
-    fn are_slots_valid(&self, walls: usize) -> bool {
-        let partner = |disk: usize, slot: &Slot| {
-            let partner = slot.partner as usize;
-            slot.collision_due == f64::INFINITY || (partner < self.slots.len() && partner != disk)
-        };
-        self.slots.iter().enumerate().all(|(disk, slot)| {
-            let wall = slot.exit != Exit::Wall || usize::from(slot.wall) < walls;
-            partner(disk, slot) && wall && slot.collision_due >= self.now && slot.exit_due >= self.now
-        })
-    }
-
-    /// That the grid is one of this boundary, and all disks are in it where they belong, and have where to go.
-    fn check_places(&self, grid: &Grid, domain: &Domain, bodies: &Bodies) -> Result<(), CheckpointError> {
-        let places = self.grid.places();
-        let inside = |(disk, &place): (usize, &Place)| grid.holds(place, bodies.position(disk, self.now));
-        check(places.iter().enumerate().all(inside), "a disk is outside its neighbour cell")?;
-        let radii = (0..self.slots.len()).map(|disk| bodies.material(disk).radius);
-        check(grid.has_room(domain, places.iter().copied().zip(radii)), "the disks of a cell overlap")?;
-        let leads = |(slot, &place): (&Slot, &Place)| {
-            slot.exit_due == f64::INFINITY || grid.contains(grid.neighbour(place, slot.exit.direction()).0)
-        };
-        check(self.slots.iter().zip(places).all(leads), "a disk leaves the neighbour cells")
-    }
-
-    fn times(&self) -> [f64; 4] {
-        [self.origin, self.now, self.epoch_length, self.gravity]
+/// Writes the bytes of [`Checkpoint::to_bytes`]: text formats lose infinities, and any format could be read past its version.
+impl Serialize for Checkpoint {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_bytes(&self.to_bytes().map_err(serde::ser::Error::custom)?)
     }
 }
 
-fn check(valid: bool, what: &'static str) -> Result<(), CheckpointError> {
-    if valid { Ok(()) } else { Err(CheckpointError::Inconsistent(what)) }
+impl<'de> Deserialize<'de> for Checkpoint {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_byte_buf(Sealed)
+    }
+}
+
+/// Takes the bytes of a checkpoint from formats with bytes, and from those that write them as a list of numbers.
+struct Sealed;
+
+impl<'de> de::Visitor<'de> for Sealed {
+    type Value = Checkpoint;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("the bytes of a checkpoint")
+    }
+
+    fn visit_bytes<E: de::Error>(self, bytes: &[u8]) -> Result<Checkpoint, E> {
+        Checkpoint::from_bytes(bytes).map_err(E::custom)
+    }
+
+    fn visit_seq<A: de::SeqAccess<'de>>(self, mut numbers: A) -> Result<Checkpoint, A::Error> {
+        let mut bytes = Vec::new();
+        while let Some(byte) = numbers.next_element()? {
+            bytes.push(byte);
+        }
+        self.visit_bytes(&bytes)
+    }
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// The run as data.
+    /// Takes a checkpoint of the run as it is now.
     pub fn checkpoint(&self) -> Checkpoint {
-        Checkpoint {
+        let particles = &self.bodies.particles;
+        Checkpoint(Saved {
+            rule: self.rule.fingerprint(),
+            boundary: self.boundary.fingerprint(),
+            domain: self.boundary.domain(),
             kinds: self.bodies.kinds(),
             gravity: self.bodies.gravity,
-            trajectories: self.bodies.particles.iter().map(|particle| particle.trajectory).collect(),
+            trajectories: particles.iter().map(|particle| particle.trajectory).collect(),
             spins: self.bodies.spins.clone(),
-            slots: self.bodies.particles.iter().map(|particle| particle.slot).collect(),
-            grid: self.cells.state(),
-            domain: self.boundary.domain(),
+            forecasts: particles.iter().map(|particle| particle.forecast).collect(),
+            layout: self.cells.grid().layout,
+            places: self.cells.places.clone(),
             generator: self.generator.clone(),
-            origin: self.origin,
-            now: self.now,
-            epoch_length: self.epoch_length,
+            origin: self.clock.origin,
+            now: self.clock.now,
+            epoch_length: self.clock.epoch_length,
+            guard: self.clock.guard,
+            tally: self.clock.tally,
             counters: self.counters,
-            guard: self.guard,
-            tally: self.tally,
-        }
-    }
-
-    /// A run that goes on where the checkpoint was taken, with its gravity, generator and counters.
-    ///
-    /// The rule and the boundary are not in it: give the same ones for the same future, or a new rule for a ramp. A boundary
-    /// with other walls that move otherwise is not noticed; use [`Self::set_boundary`] after resuming to change walls.
-    ///
-    /// # Errors
-    /// If the checkpoint is inconsistent, or its domain is not the boundary's.
-    pub fn resume(
-        checkpoint: &Checkpoint,
-        rule: R,
-        boundary: B,
-        scheduler: S,
-    ) -> Result<Self, CheckpointError> {
-        checkpoint.check(boundary.walls().len())?;
-        let (saved, given) = (checkpoint.domain, boundary.domain());
-        if saved != given {
-            return Err(CheckpointError::Domain { saved, given });
-        }
-        let Checkpoint { kinds, gravity, trajectories, slots, spins, .. } = checkpoint;
-        let bodies = Bodies::restored(kinds, *gravity, trajectories, slots, spins.clone());
-        let radius = bodies.largest_radius();
-        let suits = checkpoint.grid.suits(&given, 2.0 * radius);
-        check(suits, "its neighbour cells are not those of the domain")?;
-        let grid = Grid::new(&given, checkpoint.grid.layout(), 2.0 * radius);
-        checkpoint.check_places(&grid, &given, &bodies)?;
-        let cells = Cells::restored(&boundary, radius, grid, checkpoint.grid.places());
-        Ok(Self::restored(rule, boundary, scheduler, bodies, cells, checkpoint))
-    }
-
-    fn restored(
-        rule: R,
-        boundary: B,
-        scheduler: S,
-        bodies: Bodies,
-        cells: Cells,
-        saved: &Checkpoint,
-    ) -> Self {
-        let mut run =
-            Self::idle(rule, boundary, scheduler, bodies, cells, saved.generator.clone(), saved.origin);
-        run.now = saved.now;
-        run.epoch_length = saved.epoch_length;
-        run.counters = saved.counters;
-        run.guard = saved.guard;
-        run.tally = saved.tally;
-        run.shift_epoch(0.0);
-        run
+        })
     }
 }

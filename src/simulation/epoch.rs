@@ -1,12 +1,12 @@
-//! What is done for all disks at once: when the epoch moves, and when all events are predicted anew.
+//! Changes for all disks at once: a new epoch, cells of another size, all events predicted anew.
 
+use super::Simulation;
 use super::cells::Cells;
-use super::engine::Simulation;
-use super::event::Counters;
-use super::lookahead::LARGE;
+use super::errors::{Outcome, RunError};
+use super::state::Tally;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
-use crate::scheduler::EventScheduler;
+use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Predicts every disk's next event from the present state alone.
@@ -19,55 +19,59 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Tells the scheduler the times of all events.
     fn reset_scheduler(&mut self) {
-        let mut due = std::mem::take(&mut self.due);
+        let mut due = std::mem::take(&mut self.scratch.due);
         due.clear();
-        due.extend(self.bodies.particles.iter().map(|particle| particle.slot.due()));
+        due.extend(self.bodies.particles.iter().map(|particle| particle.forecast.due()));
         self.scheduler.reset(&due);
         // Kept, so that nothing is allocated again; in large systems memory counts for more.
-        if due.len() < LARGE {
-            self.due = due;
+        if due.len() < LARGE_SYSTEM {
+            self.scratch.due = due;
         }
     }
 
-    /// Moves the epoch to a little before the offset `due`, and returns the new offset of the same time.
+    /// Moves the epoch to a little before the offset `due`, and the present to `due`.
     #[cold]
     #[inline(never)]
-    pub(super) fn move_epoch(&mut self, due: f64) -> f64 {
-        let by = (due / self.epoch_length).floor() * self.epoch_length;
+    pub(super) fn move_epoch(&mut self, due: f64) -> Outcome<()> {
+        if let Some(spacing) = self.clock.coarseness(due) {
+            let epoch = self.clock.epoch_length;
+            return Err(Box::new(RunError::TimeTooLate { time: self.time(), spacing, epoch }));
+        }
+        let by = self.clock.whole_epochs(due);
+        self.clock.now = due;
         self.shift_epoch(by);
-        self.epoch_length = self.bodies.epoch_length();
-        due - by
+        self.clock.epoch_length = self.bodies.epoch_length();
+        Ok(())
     }
 
-    /// Changes to larger or smaller cells, if those suit what happened since the last epoch; returns whether it did.
+    /// Moves the epoch on by this much.
+    pub(super) fn shift_epoch(&mut self, by: f64) {
+        self.bodies.shift(by);
+        self.clock.shift(by);
+        self.boundary.set_time_origin(self.clock.origin);
+        self.reset_scheduler();
+    }
+
+    /// Changes to larger or smaller cells, if those suit what happened since the last epoch.
     ///
-    /// All events are predicted anew from the present, also the one that was due.
+    /// That depends on the state alone: it is the same on every run. All events are predicted anew from the present then.
     #[cold]
-    pub(super) fn adapt_cells(&mut self) -> bool {
-        let Counters { cell_crossings, collisions, .. } = self.counters;
-        let (last_crossings, last_collisions) =
-            std::mem::replace(&mut self.tally, (cell_crossings, collisions));
-        let mesh = self.cells.grid().mesh();
-        let suitable = mesh.suitable(cell_crossings - last_crossings, collisions - last_collisions);
-        if suitable == mesh {
-            return false;
+    pub(super) fn adapt_cells(&mut self) {
+        let tally =
+            Tally { cell_crossings: self.counters.cell_crossings, collisions: self.counters.collisions };
+        let last = std::mem::replace(&mut self.clock.tally, tally);
+        let crossings = tally.cell_crossings - last.cell_crossings;
+        let size = self.cells.grid().cell_size();
+        let suitable = size.suitable(crossings, tally.collisions - last.collisions);
+        if suitable == size {
+            return;
         }
-        let positions = (0..self.bodies.len()).map(|disk| self.bodies.position(disk, self.now));
+        let positions = (0..self.bodies.len()).map(|disk| self.bodies.position(disk, self.clock.now));
         let diameter = 2.0 * self.bodies.largest_radius();
         if let Some(cells) = Cells::new(&self.boundary, diameter, suitable, positions) {
             self.cells = cells;
+            self.counters.cell_resizes += 1;
             self.predict_all();
-            return true;
         }
-        false
-    }
-
-    pub(super) fn shift_epoch(&mut self, by: f64) {
-        self.bodies.shift(by);
-        self.origin += by;
-        self.now -= by;
-        self.guard.shift(by);
-        self.boundary.set_time_origin(self.origin);
-        self.reset_scheduler();
     }
 }

@@ -1,8 +1,13 @@
-//! What can go wrong when a simulation is built or run.
+//! Errors of building and running a simulation.
 
+use std::fmt;
+
+use glam::DVec2;
 use thiserror::Error;
 
 use crate::ParameterError;
+use crate::collision::{Contact, Impulse};
+use crate::observable::{ObserverError, Partner};
 
 /// The disks, the boundary and the parameters do not fit together.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -11,6 +16,19 @@ pub enum BuildError {
     /// A parameter is out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
+    /// Absolute times at the start are too far apart for disks so fast: time would stand still.
+    #[error(
+        "the run cannot start at time {start}: times there are {spacing} apart, too coarse for disks whose epochs last \
+         {epoch}; start nearer to 0"
+    )]
+    StartTime {
+        /// The start time asked for.
+        start: f64,
+        /// Distance of the next number to it.
+        spacing: f64,
+        /// Time in which a typical disk goes some tens of diameters.
+        epoch: f64,
+    },
     /// There are more disks than the engine can number.
     #[error("{count} disks are too many: at most {most} are possible")]
     TooManyDisks {
@@ -73,8 +91,11 @@ pub enum BuildError {
     },
 }
 
+/// Result of the engine's inner functions: errors in boxes, so that the usual answer comes back in registers.
+pub(super) type Outcome<T> = Result<T, Box<RunError>>;
+
 /// A run cannot go on. The simulation keeps the state that it had when it noticed.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RunError {
     /// The end is before the present, or not finite.
@@ -95,23 +116,130 @@ pub enum RunError {
         time: f64,
         /// The disk whose event was last.
         disk: usize,
-        /// How many events there were without progress.
+        /// Number of events without progress.
         events: u64,
     },
-    /// A rule or a wall answered with a number that is not finite.
-    #[error("the collision of disk {disk} at time {time} gave it a velocity that is not finite")]
-    NotFinite {
-        /// The disk.
+    /// A rule answered with an impulse that is not finite, or leads to a motion beyond 1e60.
+    #[error("the collision of {0}")]
+    NotFinite(Box<FailedCollision>),
+    /// The boundary gave an answer that cannot be.
+    #[error("the boundary's answer for disk {disk} at time {time} cannot be: {fault}")]
+    Boundary {
+        /// The disk that it was asked for.
         disk: usize,
         /// The present.
         time: f64,
+        /// The answer.
+        fault: BoundaryFault,
     },
-    /// After a sample an observer asked for the next one at a time that is not later.
-    #[error("an observer asks for a sample at time {next}, having just had one at {time}")]
+    /// The scheduler named a disk that there is not, or a time that it was not given.
+    #[error(
+        "the scheduler names disk {disk}, due at the offset {due}, at time {time}; {}",
+        .expected.map_or("there is no such disk".to_owned(), |expected| format!("it was set to {expected}"))
+    )]
+    Scheduler {
+        /// The disk that it named.
+        disk: usize,
+        /// The offset that it named.
+        due: f64,
+        /// The offset that it was given for this disk, if there is such a disk.
+        expected: Option<f64>,
+        /// The present.
+        time: f64,
+    },
+    /// Absolute times are too far apart to go on: time would stand still.
+    #[error(
+        "the run cannot go on at time {time}: times there are {spacing} apart, too coarse for disks whose epochs last \
+         {epoch}; start nearer to 0"
+    )]
+    TimeTooLate {
+        /// The present.
+        time: f64,
+        /// Distance of the next number to it.
+        spacing: f64,
+        /// Time in which a typical disk goes some tens of diameters.
+        epoch: f64,
+    },
+    /// An observer asks for a sample at a time that is not a number, or, after a sample, not later.
+    #[error("an observer asks for a sample at time {next}, at time {time}")]
     SampleTime {
         /// The time asked for.
         next: f64,
         /// The present.
         time: f64,
+    },
+    /// An observer failed.
+    #[error("an observer failed at time {time}")]
+    Observer {
+        /// The present.
+        time: f64,
+        /// Its error.
+        source: ObserverError,
+    },
+}
+
+/// A collision whose outcome is no motion that the engine can go on with.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FailedCollision {
+    /// The disk.
+    pub disk: usize,
+    /// Its partner.
+    pub partner: Partner,
+    /// The present.
+    pub time: f64,
+    /// The contact that the rule was asked about.
+    pub contact: Contact,
+    /// The impulse that it answered.
+    pub impulse: Impulse,
+    /// The reason that the rule gives, if it gives one: [`CollisionRule::explain`](crate::collision::CollisionRule::explain).
+    pub explanation: Option<String>,
+}
+
+impl fmt::Display for FailedCollision {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { disk, time, contact, impulse, .. } = self;
+        match self.partner {
+            Partner::Disk(other) => write!(formatter, "disks {disk} and {other}")?,
+            Partner::Wall(wall) => write!(formatter, "disk {disk} with wall {wall}")?,
+        }
+        write!(
+            formatter,
+            " at time {time} leads to no finite motion: closing at {} and slipping at {}, the impulse is ({}, {})",
+            contact.closing_speed(),
+            contact.slip_speed(),
+            impulse.normal(),
+            impulse.tangential()
+        )?;
+        match &self.explanation {
+            Some(explanation) => write!(formatter, "; the rule says: {explanation}"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// An answer of a boundary that cannot be.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum BoundaryFault {
+    /// A touch before the flight, after the end of the search, or with a wall that there is not.
+    #[error("a touch with wall {wall} of {walls}, {early_by} before the flight (after it if negative)")]
+    Touch {
+        /// The wall that it named.
+        wall: usize,
+        /// Number of walls that it has.
+        walls: usize,
+        /// Time from the touch to the start of the flight; negative for a touch after the start.
+        early_by: f64,
+    },
+    /// A surface whose normal is not a unit vector, or whose velocity is not finite.
+    #[error("the surface of wall {wall} has the normal {normal} and the velocity {velocity}")]
+    Surface {
+        /// The wall.
+        wall: usize,
+        /// Its normal.
+        normal: DVec2,
+        /// Its velocity.
+        velocity: DVec2,
     },
 }

@@ -1,23 +1,17 @@
-//! Asking the memory for what the next events will need.
+//! Requests to the memory for what the next events will need.
 
-use super::engine::Simulation;
-use super::event::Exit;
-use crate::boundary::Boundary;
-use crate::collision::CollisionRule;
+use super::cells::Cells;
+use super::state::Bodies;
 use crate::prefetch::prefetch;
 use crate::scheduler::EventScheduler;
 
-/// Disks from which on the caches hold so little of a system that looking ahead pays: it is a quarter of the
-/// instructions.
-pub(super) const LARGE: usize = 30_000;
-
-/// How many disks later what a disk leads to is asked for, and again what that leads to.
+/// Disks named after a disk until what its event leads to is asked for, and as many more until what that leads to is.
 const LATER: usize = 12;
 
-/// The disks that last came into sight: each is asked for, then the cells that its event needs, then its neighbours there.
+/// The disks that last came into sight: each is asked for, then the cells that its event needs, then its neighbors there.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lookahead {
-    /// Where the next disk is written.
+    /// The place where the next disk is written.
     next: usize,
     disks: [u32; 2 * LATER],
     /// Room for the disks that come into sight.
@@ -25,7 +19,30 @@ pub(super) struct Lookahead {
 }
 
 impl Lookahead {
-    /// Takes note of a disk; returns those that came into sight once and twice so many disks before.
+    /// Asks for what the next events will need; `found` is room for the neighbors of a disk.
+    ///
+    /// Worth it only where the caches do not hold the system anyway: it takes a quarter of the instructions.
+    #[inline(never)]
+    pub(super) fn look<S: EventScheduler + ?Sized>(
+        &mut self,
+        scheduler: &mut S,
+        bodies: &Bodies,
+        cells: &Cells,
+        found: &mut [u32],
+    ) {
+        let mut fresh = std::mem::take(&mut self.fresh);
+        scheduler.upcoming(&mut fresh);
+        // A scheduler of somebody else may name disks that there are not.
+        for disk in fresh.drain(..).filter(|&disk| disk < bodies.len()) {
+            let (second, third) = self.note(disk);
+            prefetch_disk(bodies, cells, disk);
+            prefetch_cells(bodies, cells, second);
+            prefetch_neighbors(bodies, cells, third, found);
+        }
+        self.fresh = fresh;
+    }
+
+    /// Takes note of a disk; returns those that were named [`LATER`] and twice as many disks before.
     #[inline]
     fn note(&mut self, disk: usize) -> (usize, usize) {
         let there = self.next % (2 * LATER);
@@ -36,67 +53,43 @@ impl Lookahead {
     }
 }
 
-impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Asks for what the next events will need, where the caches do not hold the system anyway.
-    #[inline]
-    pub(super) fn look_ahead(&mut self) {
-        if self.bodies.len() >= LARGE {
-            self.look_far();
-        }
-    }
+/// Asks for the next event of a disk, and for its place.
+#[inline]
+fn prefetch_disk(bodies: &Bodies, cells: &Cells, disk: usize) {
+    prefetch(&bodies.particles, disk);
+    cells.prefetch_place(disk);
+}
 
-    #[inline(never)]
-    fn look_far(&mut self) {
-        let mut fresh = std::mem::take(&mut self.lookahead.fresh);
-        self.scheduler.come_into_sight(&mut fresh);
-        for disk in fresh.drain(..) {
-            let (second, third) = self.lookahead.note(disk);
-            self.prefetch_disk(disk);
-            self.prefetch_cells(second);
-            self.prefetch_neighbours(third);
-        }
-        self.lookahead.fresh = fresh;
+/// Asks for the partner of a disk, or for the cells ahead of it.
+#[inline]
+fn prefetch_cells(bodies: &Bodies, cells: &Cells, disk: usize) {
+    let forecast = bodies.particles[disk].forecast;
+    if !forecast.is_collision() {
+        return cells.prefetch_ahead(disk, forecast.exit);
     }
+    let partner = forecast.partner as usize;
+    prefetch_disk(bodies, cells, partner);
+    prefetch(&bodies.spins, partner);
+    prefetch(&bodies.spins, disk);
+    cells.prefetch_around(disk);
+}
 
-    /// What its event is, and where.
-    #[inline]
-    fn prefetch_disk(&self, disk: usize) {
-        prefetch(&self.bodies.particles, disk);
-        self.cells.prefetch_place(disk);
-    }
-
-    /// The partner or the cells ahead.
-    #[inline]
-    fn prefetch_cells(&self, disk: usize) {
-        let slot = *self.slot(disk);
-        if slot.exit_due < slot.collision_due {
-            return self.cells.prefetch_ahead(disk, slot.exit);
+/// Asks for the trajectories of the disks that a disk may collide with.
+#[inline]
+fn prefetch_neighbors(bodies: &Bodies, cells: &Cells, disk: usize, found: &mut [u32]) {
+    let forecast = bodies.particles[disk].forecast;
+    let count = if forecast.is_collision() {
+        if (forecast.partner as usize) < bodies.len() {
+            cells.prefetch_around(forecast.partner as usize);
         }
-        let partner = slot.partner as usize;
-        self.prefetch_disk(partner);
-        prefetch(&self.bodies.spins, partner);
-        prefetch(&self.bodies.spins, disk);
-        self.cells.prefetch_around(disk);
-    }
-
-    /// The trajectories of those that it may meet.
-    #[inline]
-    fn prefetch_neighbours(&mut self, disk: usize) {
-        let slot = *self.slot(disk);
-        let count = if slot.exit_due < slot.collision_due {
-            if matches!(slot.exit, Exit::Wall | Exit::Stay) {
-                return;
-            }
-            self.make_room();
-            self.cells.ahead(self.cells.next_place(disk, slot.exit), slot.exit, &mut self.found)
-        } else {
-            if (slot.partner as usize) < self.bodies.len() {
-                self.cells.prefetch_around(slot.partner as usize);
-            }
-            self.find_neighbours(disk)
-        };
-        for &neighbour in &self.found[..count] {
-            prefetch(&self.bodies.particles, neighbour as usize);
+        cells.around(disk, found)
+    } else {
+        if !forecast.exit.is_passage() {
+            return;
         }
+        cells.ahead(cells.next_place(disk, forecast.exit), forecast.exit, found)
+    };
+    for &neighbor in &found[..count] {
+        prefetch(&bodies.particles, neighbor as usize);
     }
 }

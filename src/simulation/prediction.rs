@@ -1,7 +1,6 @@
-//! When a disk meets another, and when it leaves its cell.
+//! Predictions: the time at which two disks collide, and the time at which one leaves its cell.
 
-use super::bodies::Bodies;
-use super::event::{Earliest, Exit};
+use super::state::{Bodies, Earliest, Exit};
 use crate::boundary::Region;
 
 /// Pairs that are predicted side by side.
@@ -21,10 +20,17 @@ struct Pairs {
 }
 
 impl Pairs {
-    /// How long until each pair touches; infinite for never.
+    /// The time until each pair touches; infinite for never.
     ///
-    /// Stable event detection (Bannerman et al. 2014): touching or overlapping by rounding counts at once while the two
-    /// approach, never while they recede. The root is written so that nothing cancels.
+    /// With the separation r, the relative velocity v and the contact distance σ the pair touches at the smaller root of
+    /// v² t² + 2 (r·v) t + (r² - σ²) = 0. The textbook root (-r·v - √d)/v² subtracts two numbers that are nearly equal when
+    /// the disks nearly touch, and divides by zero when they move alike. Multiplied out by its conjugate it is
+    /// (r² - σ²)/(√d - r·v): both terms below the line are positive while the pair approaches, so nothing cancels, and the gap
+    /// above it is as exact as the positions are.
+    ///
+    /// Stable event detection (Bannerman et al. 2014): a pair that touches or overlaps by rounding collides at once while it
+    /// approaches, never while it recedes. Were an overlap of 1e-16 a reason to wait for the other root, the disks would
+    /// pass through each other; were it a collision at any rate, the pair that has just collided would do so for ever.
     #[inline]
     fn wait(&self) -> [f64; LANES] {
         let mut wait = [0.0; LANES];
@@ -87,6 +93,16 @@ pub(super) fn nearest_image(x: f64, period: f64) -> f64 {
     let back = if x > half { period } else { 0.0 };
     let forth = if x < -half { period } else { 0.0 };
     x - back + forth
+}
+
+/// Whether two disks close, in the very arithmetic of [`earliest_collision`]: in another their rounding would differ, and a pair
+/// held for parting would be found to collide.
+#[inline]
+pub(super) fn are_closing(bodies: &Bodies, period: f64, disk: usize, partner: usize, now: f64) -> bool {
+    let (mine, other) = (bodies.particles[disk].trajectory.row(), bodies.particles[partner].trajectory.row());
+    let [x, y, velocity_x, velocity_y]: [f64; 4] = std::array::from_fn(|k| other[k] - mine[k]);
+    let (x, y) = (nearest_image(x + velocity_x * now, period), y + velocity_y * now);
+    x * velocity_x + y * velocity_y < 0.0
 }
 
 /// The earliest collision of `disk` with one of the first `count` of `candidates`, or `known` if that is earlier.
@@ -152,8 +168,7 @@ fn scan(
     best.earliest()
 }
 
-/// When a disk leaves its cell, and through which edge.
-///
+/// The offset at which a disk leaves its cell, and the edge.
 #[inline(always)]
 pub(super) fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64) -> (f64, Exit) {
     let (position, velocity) = (bodies.position(disk, now), bodies.velocity(disk, now));
@@ -167,7 +182,7 @@ pub(super) fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64)
         let (wait, down) = vertical_exit(below, above, -velocity.y, -bodies.gravity);
         (wait, !down)
     };
-    // NaN stands for never: at rest where there is no edge.
+    // A disk at rest where there is no edge gives 0/0 or inf/inf, which stands for never.
     let sideways = if sideways.is_nan() { f64::INFINITY } else { sideways };
     let level = vertical < sideways;
     let wait = if level { vertical } else { sideways }.max(0.0);
@@ -175,9 +190,12 @@ pub(super) fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64)
     (now + wait, exit)
 }
 
-/// When a disk leaves its row, and whether through the edge above, for gravity that pulls down.
+/// The time until a disk leaves its row, and whether it does through the edge above, for gravity that pulls down.
 ///
-/// Up to the edge above, up and down again through the one below, or straight down.
+/// There are three ways: up to the edge above, up and down again through the edge below, or straight down. They are told
+/// apart by selections of numbers and not by branches, for which of them it is, is a toss of a coin, and a wrong guess of the
+/// processor costs more than all three roots. Each root is that form of it in which nothing cancels: a distance over a sum of speeds
+/// where the disk goes straight to the edge, a sum of speeds over gravity where it turns back.
 #[inline(always)]
 fn vertical_exit(above: f64, below: f64, velocity: f64, gravity: f64) -> (f64, bool) {
     let (above, below) = (above.max(0.0), below.max(0.0));

@@ -1,37 +1,63 @@
-//! What a collision does to the disks, and how observers are told.
+//! Collisions worked out: contact, impulse, and the change of each disk's motion. Nothing is changed here.
 
 use glam::DVec2;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::bodies::Bodies;
+use super::errors::{FailedCollision, RunError};
 use super::prediction::nearest_image;
+use super::state::{Bodies, Clock};
 use crate::boundary::{Response, Surface, Thermal};
-use crate::collision::{Body, CollisionRule, Elastic, Impulse, Material, Regime, meet};
+use crate::collision::{Body, CollisionRule, Elastic, Impulse, Material, collide_bodies};
+use crate::disk::LARGEST;
 use crate::observable::{Collision, Partner};
 use crate::random::{normal, rayleigh};
 
-/// Who takes part in a collision, and when, as an offset from the epoch.
+/// The largest difference from 1 of the length of a surface's normal.
+const UNIT: f64 = 1e-9;
+
+/// Speed along the normal in terms of the relative speed, below which its sign may be a matter of rounding: that of the
+/// normal is as much larger than that of 1 as the vessel is than the disks.
+const GRAZING: f64 = 1e-6;
+
+/// The change of a disk's motion by a collision.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Meeting {
-    pub(super) disk: usize,
-    pub(super) offset: f64,
-    /// Absolute time.
-    pub(super) time: f64,
+pub(super) struct Kick {
+    pub(super) velocity: DVec2,
+    pub(super) angular_velocity: f64,
+    /// Motion after it, with the velocity in the free-fall frame.
+    pub(super) after: Body,
 }
 
-/// A rule or a wall answered with a number that is not finite.
-pub(super) struct NotFinite;
+impl Kick {
+    #[inline]
+    fn between(before: &Body, after: &Body) -> Self {
+        Self {
+            velocity: after.velocity - before.velocity,
+            angular_velocity: after.angular_velocity - before.angular_velocity,
+            after: *after,
+        }
+    }
 
-/// Two disks collide. Returns the event and the overlap at which it found them.
-#[inline]
+    /// Whether it leads to a motion that the engine can go on with.
+    pub(super) fn is_possible(&self) -> bool {
+        let velocity = self.after.velocity.abs();
+        velocity.x <= LARGEST && velocity.y <= LARGEST && self.after.angular_velocity.abs() <= LARGEST
+    }
+}
+
+/// Works out the collision of two disks.
+///
+/// Inlined, so that what nobody looks at is not even computed.
+#[inline(always)]
 pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
-    bodies: &mut Bodies,
+    bodies: &Bodies,
     rule: &R,
     period: f64,
-    meeting: Meeting,
+    clock: &Clock,
+    disk: usize,
     partner: usize,
-) -> Result<(Collision, f64), NotFinite> {
-    let Meeting { disk, offset, time } = meeting;
+) -> (Collision, [Kick; 2]) {
+    let offset = clock.now;
     let here = bodies.particles[disk].trajectory.at(offset);
     let mut separation = here - bodies.particles[partner].trajectory.at(offset);
     separation.x = nearest_image(separation.x, period);
@@ -40,12 +66,9 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
     let since = offset - bodies.spins[disk].last_collision.max(bodies.spins[partner].last_collision);
     let (first, second) = (bodies.body(disk), bodies.body(partner));
     let (material, other) = (bodies.material(disk), bodies.material(partner));
-    let outcome = meet(rule, normal, since, (&first, material), (&second, other));
-    let overlap = material.radius + other.radius - distance;
-    apply(bodies, disk, &first, &outcome.first, offset)?;
-    apply(bodies, partner, &second, &outcome.second, offset)?;
+    let outcome = collide_bodies(rule, normal, since, (&first, material), (&second, other));
     let collision = Collision {
-        time,
+        time: clock.time(),
         disk,
         partner: Partner::Disk(partner),
         normal,
@@ -55,69 +78,85 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
         impulse: outcome.impulse,
         energy_change: outcome.impulse.energy_change(&outcome.contact),
     };
-    Ok((collision, overlap))
+    (collision, [Kick::between(&first, &outcome.first), Kick::between(&second, &outcome.second)])
 }
 
-/// A disk collides with a wall.
+/// Works out the collision of a disk with a wall.
 #[inline]
 pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
-    bodies: &mut Bodies,
+    bodies: &Bodies,
     rule: &R,
     generator: &mut Xoshiro256PlusPlus,
     surface: &Surface<'_>,
-    meeting: Meeting,
+    clock: &Clock,
+    disk: usize,
     wall: usize,
-) -> Result<Collision, NotFinite> {
-    let Meeting { disk, offset, time } = meeting;
+) -> (Collision, Kick) {
+    let offset = clock.now;
+    let material = bodies.material(disk);
+    let (mass, inertia) = (1.0 / material.inverse_mass, bodies.moment_of_inertia(disk));
     let arriving = Body { velocity: bodies.velocity(disk, offset), ..bodies.body(disk) };
     let since = offset - bodies.spins[disk].last_collision;
     let partner = Body { velocity: surface.velocity, angular_velocity: 0.0 };
     let against = |rule: &dyn CollisionRule| {
-        meet(rule, surface.normal, since, (&arriving, bodies.material(disk)), (&partner, &Material::WALL))
+        collide_bodies(rule, surface.normal, since, (&arriving, material), (&partner, &Material::WALL))
     };
-    let mass = 1.0 / bodies.material(disk).inverse_mass;
     let (leaving, contact, impulse) = match surface.response {
         Response::Thermal(thermal) => {
-            let inertia = bodies.moment_of_inertia(disk);
             let leaving = emitted(&thermal, &arriving, surface, mass, inertia, generator);
             let kick = (leaving.velocity - arriving.velocity) * mass;
             let impulse = Impulse::new(kick.dot(surface.normal), kick.dot(surface.normal.perp()));
-            let contact = against(&Elastic).contact;
-            (leaving, contact, impulse)
+            (leaving, against(&Elastic).contact, impulse)
         }
         Response::Rule(own) => {
             let outcome = against(own);
             (outcome.first, outcome.contact, outcome.impulse)
         }
         Response::Shared => {
-            let walls = (&partner, &Material::WALL);
-            let outcome = meet(rule, surface.normal, since, (&arriving, bodies.material(disk)), walls);
+            let wall = (&partner, &Material::WALL);
+            let outcome = collide_bodies(rule, surface.normal, since, (&arriving, material), wall);
             (outcome.first, outcome.contact, outcome.impulse)
         }
     };
-    let energy_change = kinetic_energy(&leaving, mass, bodies.moment_of_inertia(disk))
-        - kinetic_energy(&arriving, mass, bodies.moment_of_inertia(disk));
-    apply(bodies, disk, &arriving, &leaving, offset)?;
-    Ok(Collision {
-        time,
+    let collision = Collision {
+        time: clock.time(),
         disk,
         partner: Partner::Wall(wall),
         normal: surface.normal,
         position: bodies.position(disk, offset),
-        distance: bodies.material(disk).radius,
+        distance: material.radius,
         contact,
         impulse,
-        energy_change,
-    })
+        energy_change: kinetic_energy(&leaving, mass, inertia) - kinetic_energy(&arriving, mass, inertia),
+    };
+    let mut kick = Kick::between(&arriving, &leaving);
+    kick.after.velocity = bodies.particles[disk].trajectory.velocity + kick.velocity;
+    (collision, kick)
 }
 
-/// Whether a contact-duration model decided this collision.
+/// Whether two disks part so fast after a collision that no rounding can make it an approach; nearly all do.
 #[inline]
-pub(super) fn by_contact_duration(collision: &Collision) -> bool {
-    collision.impulse.regime() == Regime::ContactDuration
+pub(super) fn is_parting(normal: DVec2, kicks: &[Kick; 2]) -> bool {
+    let velocity = (kicks[0].after.velocity - kicks[1].after.velocity).abs();
+    (kicks[0].after.velocity - kicks[1].after.velocity).dot(normal) > GRAZING * (velocity.x + velocity.y)
 }
 
-/// How a disk leaves a thermal wall.
+/// Whether a surface's normal is a unit vector and its velocity one that a disk may have.
+pub(super) fn is_unit_and_finite(surface: &Surface<'_>) -> bool {
+    let velocity = surface.velocity.abs();
+    (surface.normal.length() - 1.0).abs() <= UNIT && velocity.x <= LARGEST && velocity.y <= LARGEST
+}
+
+/// The error of a collision whose outcome is no motion.
+#[cold]
+pub(super) fn failed<R: CollisionRule + ?Sized>(rule: &R, collision: &Collision) -> Box<RunError> {
+    let Collision { disk, partner, time, contact, impulse, .. } = *collision;
+    let explanation = rule.explain(&contact);
+    let failed = FailedCollision { disk, partner, time, contact, impulse, explanation };
+    Box::new(RunError::NotFinite(Box::new(failed)))
+}
+
+/// The motion in which a disk leaves a thermal wall.
 fn emitted(
     thermal: &Thermal,
     arriving: &Body,
@@ -142,21 +181,4 @@ fn emitted(
 fn kinetic_energy(body: &Body, mass: f64, inertia: f64) -> f64 {
     0.5 * mass * body.velocity.length_squared()
         + 0.5 * inertia * body.angular_velocity * body.angular_velocity
-}
-
-#[inline]
-fn apply(
-    bodies: &mut Bodies,
-    disk: usize,
-    before: &Body,
-    after: &Body,
-    offset: f64,
-) -> Result<(), NotFinite> {
-    let velocity = after.velocity - before.velocity;
-    let angular_velocity = after.angular_velocity - before.angular_velocity;
-    if !(velocity.x + velocity.y + angular_velocity).is_finite() {
-        return Err(NotFinite);
-    }
-    bodies.kick(disk, velocity, angular_velocity, offset);
-    Ok(())
 }

@@ -1,4 +1,4 @@
-//! What can be wrong with a study, its plan and its files.
+//! The errors of a study, its plan and its files.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::Parameter;
 use crate::ParameterError;
-use crate::boundary::MissingWall;
+use crate::boundary::WallError;
 use crate::initial::PlacementError;
 use crate::simulation::{BuildError, CheckpointError};
 
@@ -21,9 +21,9 @@ pub enum SpecificationError {
     /// The disks do not fit.
     #[error(transparent)]
     Placement(#[from] PlacementError),
-    /// A wall that the container lacks.
+    /// A wall of the container cannot be so.
     #[error(transparent)]
-    Wall(#[from] MissingWall),
+    Wall(#[from] WallError),
     /// The text is not a specification.
     #[error("{0}")]
     Toml(String),
@@ -74,14 +74,16 @@ pub enum SpecificationError {
     /// There are more ramps or values than can be numbered.
     #[error("{count} ramps and values are too many: at most {most} are possible")]
     TooMany {
-        /// How many there are.
+        /// The number of them.
         count: u128,
-        /// How many there may be.
+        /// The largest possible number.
         most: usize,
     },
 }
 
 /// A study cannot be made, opened, run or read.
+///
+/// A message does not repeat its [source](std::error::Error::source): report the whole chain.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum StudyError {
@@ -89,13 +91,13 @@ pub enum StudyError {
     #[error(transparent)]
     Specification(#[from] SpecificationError),
     /// A file or folder cannot be read or written.
-    #[error("cannot {action} {}: {source}", path.display())]
+    #[error("cannot {action} {}", path.display())]
     Io {
-        /// What was tried.
+        /// The action that failed: `read`, `write`, `create`, `remove` or `lock`.
         action: &'static str,
         /// The file or folder.
         path: PathBuf,
-        /// What the system says.
+        /// The answer of the system.
         source: io::Error,
     },
     /// There is a study already.
@@ -129,7 +131,7 @@ pub enum StudyError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The damage.
         reason: &'static str,
     },
     /// A record is of another specification: one of the two was changed by hand.
@@ -149,28 +151,33 @@ pub enum StudyError {
         known: &'static str,
     },
     /// A value cannot be started.
-    #[error("value {value} of ramp {ramp} cannot start: {source}")]
+    #[error("value {value} of ramp {ramp} cannot start")]
     Build {
         /// Index of the ramp.
         ramp: usize,
         /// Index of the value in it.
         value: usize,
-        /// Why.
+        /// The reason.
         source: BuildError,
     },
     /// A state cannot be resumed.
-    #[error("value {value} of ramp {ramp} cannot go on: {source}")]
+    #[error("value {value} of ramp {ramp} cannot go on")]
     Checkpoint {
         /// Index of the ramp.
         ramp: usize,
         /// Index of the value in it.
         value: usize,
-        /// Why.
+        /// The reason.
         source: CheckpointError,
     },
-    /// A file's contents cannot be encoded.
-    #[error("a record cannot be encoded: {0}")]
-    Encode(#[from] postcard::Error),
+    /// The contents of a file cannot be encoded.
+    #[error("the contents of {} cannot be encoded", path.display())]
+    Encode {
+        /// The file.
+        path: PathBuf,
+        /// The reason; its type is an affair of this crate.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
 }
 
 impl StudyError {

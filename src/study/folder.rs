@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::Specification;
 use super::errors::StudyError;
-use super::sealed;
+use super::file;
 
 /// What a stranger finds in the folder of a study.
 const ABOUT: &str = "\
@@ -67,8 +67,8 @@ impl Folder {
     /// Makes the folder of a new study.
     pub(super) fn create(&self, specification: &Specification) -> Result<(), StudyError> {
         fs::create_dir_all(&self.root).map_err(StudyError::io("create", &self.root))?;
-        sealed::write(&self.file("README.txt"), ABOUT.as_bytes())?;
-        sealed::write(&self.specification(), specification.to_toml()?.as_bytes())
+        file::write(&self.file("README.txt"), ABOUT.as_bytes())?;
+        file::write(&self.specification(), specification.to_toml()?.as_bytes())
     }
 
     pub(super) fn read_specification(&self) -> Result<Specification, StudyError> {
@@ -77,12 +77,12 @@ impl Folder {
         Ok(Specification::from_toml(&text)?)
     }
 
-    /// Makes the folders of all ramps, and removes what a killed process was writing.
+    /// Makes the folders of all ramps, and removes the temporary files of a killed process.
     pub(super) fn prepare(&self, ramps: usize) -> Result<(), StudyError> {
-        sealed::remove_temporaries(&self.root)?;
+        file::remove_temporaries(&self.root)?;
         (0..ramps).map(|ramp| self.ramp(ramp)).try_for_each(|folder| {
             fs::create_dir_all(&folder).map_err(StudyError::io("create", &folder))?;
-            sealed::remove_temporaries(&folder)
+            file::remove_temporaries(&folder)
         })
     }
 

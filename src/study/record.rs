@@ -1,9 +1,10 @@
 //! What is kept of a finished value.
 
 use super::{Leg, Sample, Specification, System};
-use crate::analysis::{block_average, thermal_noise};
+use crate::analysis::thermal_noise;
 use crate::observable::{ConvectionOrder, DenseLayer};
 use crate::simulation::{Checkpoint, Counters};
+use crate::statistics::{BlockedMean, Estimate};
 
 /// Largest number of bins of a profile: of one diameter each.
 pub(super) const MOST_BINS: usize = 65_536;
@@ -44,16 +45,6 @@ impl Outcome {
             Self::Failed { .. } => "failed",
         }
     }
-}
-
-/// Mean and standard error of a sampled quantity; the error knows that samples are correlated.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct Estimate {
-    /// The mean.
-    pub mean: f64,
-    /// Its standard error; NaN of fewer than two samples.
-    pub error: f64,
 }
 
 /// A finished value: its parameters, samples, counts and last state.
@@ -154,8 +145,7 @@ impl Record {
 
     /// `$(\Psi_1, \Psi_2)$` of each sample.
     pub fn order(&self) -> Vec<ConvectionOrder> {
-        let order =
-            |sample: &Sample| ConvectionOrder { one_roll: sample.one_roll, two_rolls: sample.two_rolls };
+        let order = |sample: &Sample| ConvectionOrder::new(sample.one_roll, sample.two_rolls);
         self.samples.iter().map(order).collect()
     }
 
@@ -170,27 +160,26 @@ impl Record {
         DenseLayer::among(self.profile())
     }
 
-    /// Mean and error of a quantity over the samples.
+    /// Returns the mean of a quantity over the samples, with an error that knows that they are correlated.
     ///
-    /// NaN where it cannot be told: the mean of no samples, the error of one.
+    /// NaN is the mean of no samples, and the error of fewer than two.
     pub fn mean(&self, quantity: impl Fn(&Sample) -> f64) -> Estimate {
-        estimate(&self.samples.iter().map(quantity).collect::<Vec<_>>())
+        self.samples.iter().map(quantity).collect::<BlockedMean>().estimate()
     }
 
-    /// Mean energy change in a collision of two disks, each collision counting alike.
+    /// Returns the mean energy change in a collision of two disks, each collision counting alike.
     pub fn energy_change(&self) -> Estimate {
         let collisions: f64 = self.samples.iter().map(|sample| sample.collisions as f64).sum();
         let total: f64 = self.samples.iter().map(|s| s.collisions as f64 * s.energy_change).sum();
         let mean = total / collisions;
         let per_sample = collisions / self.samples.len() as f64;
         // The error of a ratio is that of the mean residual, over the mean number of collisions.
-        let error = self.mean(|s| s.collisions as f64 * (s.energy_change - mean) / per_sample).error;
-        Estimate { mean, error }
+        self.mean(|s| s.collisions as f64 * (s.energy_change - mean) / per_sample).about(mean)
     }
 
     /// Standard deviation of `$\Psi_1$` and `$\Psi_2$` in a gas at rest of this temperature, `$\sqrt{T_y/2N}$`.
     pub fn thermal_noise(&self) -> f64 {
-        let temperature = self.mean(|sample| sample.vertical_temperature).mean;
+        let temperature = self.mean(|sample| sample.vertical_temperature).mean();
         thermal_noise(temperature, 1.0, self.system.disks()).unwrap_or(f64::NAN)
     }
 }
@@ -211,11 +200,4 @@ pub(super) fn check_samples(samples: &[Sample], profile: &[f64]) -> Result<(), &
     let is_fraction = |fraction: &f64| fraction.is_finite() && *fraction >= 0.0;
     check(profile.iter().all(is_fraction), "a packing fraction is negative or not finite")?;
     check(profile.len() <= MOST_BINS, "its profile is higher than any")
-}
-
-fn estimate(values: &[f64]) -> Estimate {
-    match block_average(values) {
-        Ok(average) => Estimate { mean: average.mean(), error: average.standard_error() },
-        Err(_) => Estimate { mean: values.iter().sum::<f64>() / values.len() as f64, error: f64::NAN },
-    }
 }

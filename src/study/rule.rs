@@ -1,5 +1,6 @@
 //! The collision rule of a study's system.
 
+use crate::Fingerprint;
 use crate::collision::{CollisionRule, Contact, ContactDuration, Frictional, Impulse};
 
 /// The paper's rule, with or without the contact-duration model.
@@ -15,6 +16,13 @@ impl CollisionRule for Rule {
         match self {
             Self::Plain(rule) => rule.impulse(contact),
             Self::Lasting(rule) => rule.impulse(contact),
+        }
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        match self {
+            Self::Plain(rule) => rule.fingerprint(),
+            Self::Lasting(rule) => rule.fingerprint(),
         }
     }
 }

@@ -7,9 +7,9 @@ use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use super::control::{Control, Meter, Summary};
 use super::errors::StudyError;
+use super::file;
 use super::lock::Lock;
 use super::record::{Origin, Record};
-use super::sealed;
 use super::tables::Tables;
 use super::value::{Active, Partial, Value};
 use super::{CRATE_VERSION, Study};
@@ -58,9 +58,9 @@ impl Study {
             tables.add(&record?);
             finished += 1;
         }
-        sealed::write(&self.folder.file("values.csv"), tables.values.as_bytes())?;
-        sealed::write(&self.folder.file("samples.csv"), tables.samples.as_bytes())?;
-        sealed::write(&self.folder.file("profiles.csv"), tables.profiles.as_bytes())?;
+        file::write(&self.folder.file("values.csv"), tables.values.as_bytes())?;
+        file::write(&self.folder.file("samples.csv"), tables.samples.as_bytes())?;
+        file::write(&self.folder.file("profiles.csv"), tables.profiles.as_bytes())?;
         Ok(finished)
     }
 }
@@ -107,7 +107,7 @@ impl Shift<'_> {
             check_version(&record.origin, &self.study.folder.record(ramp, value))?;
             self.meter.advance(ramp, value, self.study.specification.protocol().steps());
             // A process that was killed just after finishing a value has left this behind.
-            sealed::remove(&self.study.folder.partial(ramp, value))?;
+            file::remove(&self.study.folder.partial(ramp, value))?;
         }
         Ok(record)
     }
@@ -143,8 +143,8 @@ impl Shift<'_> {
             Pause::Interrupted => return Ok(None),
             Pause::Failed(error) => active.failed(&error)?,
         };
-        sealed::write_sealed(&study.folder.record(ramp, value), &record)?;
-        sealed::remove(&study.folder.partial(ramp, value))?;
+        file::write_sealed(&study.folder.record(ramp, value), &record)?;
+        file::remove(&study.folder.partial(ramp, value))?;
         self.log(&record, started)?;
         Ok(Some(record))
     }
@@ -153,10 +153,10 @@ impl Shift<'_> {
     fn saved<'v>(&self, plan: &'v Value<'_>) -> Result<Option<Active<'v>>, StudyError> {
         let Origin { ramp, value, .. } = plan.origin;
         let path = self.study.folder.partial(ramp, value);
-        let Some(partial) = sealed::read_sealed::<Partial>(&path)? else { return Ok(None) };
+        let Some(partial) = file::read_sealed::<Partial>(&path)? else { return Ok(None) };
         self.study.check_origin(&partial.origin, ramp, value, &path)?;
         check_version(&partial.origin, &path)?;
-        plan.go_on(partial).map(Some).map_err(|reason| sealed::damaged(&path, reason))
+        plan.go_on(partial).map(Some).map_err(|reason| file::damaged(&path, reason))
     }
 
     /// Does the steps of a value until it is done, saving it now and then.
@@ -165,11 +165,11 @@ impl Shift<'_> {
         let mut saved = Instant::now();
         while !active.is_done() {
             if self.must_stop() {
-                sealed::write_sealed(&path, &active.partial())?;
+                file::write_sealed(&path, &active.partial())?;
                 return Ok(Pause::Interrupted);
             }
             if saved.elapsed() > self.control.save_interval() {
-                sealed::write_sealed(&path, &active.partial())?;
+                file::write_sealed(&path, &active.partial())?;
                 saved = Instant::now();
             }
             if let Err(error) = active.step() {

@@ -2,8 +2,9 @@
 
 use std::fmt::{Debug, Display, Write};
 
-use super::record::{Estimate, Record};
+use super::record::Record;
 use super::{Parameter, Sample};
+use crate::statistics::Estimate;
 
 /// A quantity of a sample, by its name in tables.
 type Quantity = (&'static str, fn(&Sample) -> f64);
@@ -29,6 +30,9 @@ pub(super) struct Tables {
 
 impl Tables {
     /// Tables with a first line and no rows.
+    ///
+    /// The last column of the table of values names the quantities whose error is a lower bound, apart by spaces: they have too
+    /// few samples for their correlations.
     pub(super) fn new(varied: Vec<Parameter>) -> Self {
         let mut place = String::from("ramp,value,leg");
         for parameter in &varied {
@@ -40,7 +44,8 @@ impl Tables {
             append_name(&mut values, &format_args!("{name}_error"));
         }
         values.push_str(",energy_change,energy_change_error,thermal_noise,densest_packing,densest_height");
-        values.push_str(",collisions,wall_collisions,contact_duration_collisions,max_overlap\n");
+        values
+            .push_str(",collisions,wall_collisions,contact_duration_collisions,max_overlap,not_converged\n");
         let samples = format!(
             "{place},time,one_roll,two_rolls,height,translational_energy,rotational_energy,vertical_temperature,\
              collisions,energy_change\n"
@@ -74,10 +79,12 @@ impl Tables {
     fn add_value(&mut self, record: &Record, place: &str) {
         let mut line =
             format!("{place},{},{},{}", record.seed(), record.outcome().name(), record.samples().len());
-        for (_, quantity) in QUANTITIES {
-            append_estimate(&mut line, record.mean(quantity));
+        let mut not_converged = Vec::new();
+        let means = QUANTITIES.into_iter().map(|(name, quantity)| (name, record.mean(quantity)));
+        for (name, estimate) in means.chain([("energy_change", record.energy_change())]) {
+            append_estimate(&mut line, estimate);
+            not_converged.extend((!estimate.is_converged()).then_some(name));
         }
-        append_estimate(&mut line, record.energy_change());
         append(&mut line, &record.thermal_noise());
         let densest = record.densest_layer();
         append(&mut line, &densest.map_or(f64::NAN, |layer| layer.packing_fraction));
@@ -87,6 +94,7 @@ impl Tables {
             append(&mut line, &count);
         }
         append(&mut line, &counters.max_overlap);
+        append_name(&mut line, &not_converged.join(" "));
         row(&mut self.values, &line, &[]);
     }
 }
@@ -120,8 +128,8 @@ fn row(table: &mut String, place: &str, cells: &[&dyn Debug]) {
 }
 
 fn append_estimate(line: &mut String, estimate: Estimate) {
-    append(line, &estimate.mean);
-    append(line, &estimate.error);
+    append(line, &estimate.mean());
+    append(line, &estimate.standard_error());
 }
 
 fn append(line: &mut String, cell: &(impl Debug + ?Sized)) {

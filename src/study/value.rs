@@ -91,7 +91,7 @@ impl<'a> Value<'a> {
         }
         let gravity = self.parameter(self.system.gravity())?;
         if gravity != run.gravity() {
-            run.set_gravity(gravity).map_err(|source| self.cannot_start(source))?;
+            self.parameter(run.set_gravity(gravity))?;
         }
         Ok(run)
     }
@@ -109,7 +109,9 @@ impl<'a> Value<'a> {
     /// A saved state under the rule of this value, in the walls that it was saved in.
     fn resume(&self, state: &Checkpoint, saved: &System) -> Result<Run, StudyError> {
         let rule = self.parameter(self.system.rule())?;
-        let run = Simulation::resume(state, rule, saved.container()?, BySize::default())
+        let run = Simulation::resume(state, rule, saved.container()?)
+            .with_another_rule()
+            .build()
             .map_err(|source| self.cannot_go_on(source))?;
         if run.len() == saved.disks() {
             return Ok(run);
@@ -220,7 +222,7 @@ impl Active<'_> {
             cycles,
             profile: work.profile.iter().map(|sum| sum / samples).collect(),
             samples: work.samples,
-            counters: since(&work.counters, run.counters()),
+            counters: run.counters().since(&work.counters),
             state,
         }
     }
@@ -238,19 +240,5 @@ impl Work {
     fn add_profile(&mut self, profile: &[f64]) {
         self.profile.resize(profile.len(), 0.0);
         self.profile.iter_mut().zip(profile).for_each(|(sum, fraction)| *sum += fraction);
-    }
-}
-
-/// What happened between two counts.
-fn since(before: &Counters, now: &Counters) -> Counters {
-    Counters {
-        collisions: now.collisions.saturating_sub(before.collisions),
-        wall_collisions: now.wall_collisions.saturating_sub(before.wall_collisions),
-        contact_duration_collisions: now
-            .contact_duration_collisions
-            .saturating_sub(before.contact_duration_collisions),
-        cell_crossings: now.cell_crossings.saturating_sub(before.cell_crossings),
-        repredictions: now.repredictions.saturating_sub(before.repredictions),
-        max_overlap: now.max_overlap,
     }
 }

@@ -2,9 +2,10 @@
 
 use super::oscillation::{Oscillation, is_even, piece};
 use super::{AccelerationBounds, WallMotion, WallState};
-use crate::ParameterError;
+use crate::{Fingerprint, ParameterError};
 
-/// Piecewise constant acceleration that mimics `$A\sin\omega t$` (paper, Sec. III): two parabolic arcs a period.
+/// Piecewise constant acceleration that mimics `$A\sin\omega t$` (paper, Sec. III): two parabolic arcs a
+/// period.
 ///
 /// With the half period `$H=\pi/\omega$` and `$s = t/H$`,
 ///
@@ -12,8 +13,8 @@ use crate::ParameterError;
 /// z(t) = 4A\,s(1-s)\quad (0\le s<1),\qquad z(t+H) = -z(t),
 /// ```
 ///
-/// so amplitude and period are those of the sine; the peak speed is `$4A/H = 4A\omega/\pi$` and the acceleration
-/// `$\mp 8A/H^2$`. Every contact is the root of a parabola: exact, no iteration.
+/// so amplitude and period are those of the sine; the peak speed is `$4A/H = 4A\omega/\pi$` and the
+/// acceleration `$\mp 8A/H^2$`. Every contact is the root of a parabola: exact, no iteration.
 ///
 /// ```
 /// use granular_edmd::wall::{BiParabolic, WallMotion};
@@ -31,7 +32,7 @@ pub struct BiParabolic {
 }
 
 impl BiParabolic {
-    /// A motion of this amplitude `$A$` and angular frequency `$\omega$`.
+    /// Creates a motion of this amplitude `$A$` and angular frequency `$\omega$`.
     ///
     /// # Errors
     /// If one is not finite and positive; use [`Fixed`](super::Fixed) for no motion.
@@ -39,19 +40,19 @@ impl BiParabolic {
         Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
     }
 
-    /// `$A$`.
+    /// Returns `$A$`.
     pub const fn amplitude(&self) -> f64 {
         self.oscillation.amplitude()
     }
 
-    /// `$\omega$`.
+    /// Returns `$\omega$`.
     pub const fn angular_frequency(&self) -> f64 {
         self.oscillation.angular_frequency()
     }
 
-    fn arc(&self, time: f64) -> Arc {
+    fn arc(&self, phase: f64) -> Arc {
         let length = 0.5 * self.oscillation.period();
-        let (number, end) = piece(time, length);
+        let (number, end) = piece(phase, length);
         let height = if is_even(number) { self.amplitude() } else { -self.amplitude() };
         Arc { start: number * length, end, length, height }
     }
@@ -66,19 +67,17 @@ struct Arc {
 }
 
 impl WallMotion for BiParabolic {
-    fn state(&self, time: f64) -> WallState {
-        let arc = self.arc(time);
-        let share = (time - arc.start) / arc.length;
-        WallState {
-            displacement: 4.0 * arc.height * share * (1.0 - share),
-            velocity: 4.0 * arc.height * (1.0 - 2.0 * share) / arc.length,
-        }
+    fn state(&self, phase: f64) -> WallState {
+        let arc = self.arc(phase);
+        let share = (phase - arc.start) / arc.length;
+        let displacement = 4.0 * arc.height * share * (1.0 - share);
+        WallState::new(displacement, 4.0 * arc.height * (1.0 - 2.0 * share) / arc.length)
     }
 
-    fn acceleration(&self, time: f64) -> AccelerationBounds {
-        let arc = self.arc(time);
+    fn acceleration(&self, phase: f64) -> AccelerationBounds {
+        let arc = self.arc(phase);
         let value = -8.0 * arc.height / (arc.length * arc.length);
-        AccelerationBounds { until: arc.end, min: value, max: value }
+        AccelerationBounds::new(arc.end, value, value)
     }
 
     fn reach(&self) -> (f64, f64) {
@@ -87,5 +86,8 @@ impl WallMotion for BiParabolic {
 
     fn period(&self) -> Option<f64> {
         Some(self.oscillation.period())
+    }
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        Some(self.oscillation.fingerprint("BiParabolic"))
     }
 }

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::ParameterError;
 use crate::quantity::positive;
+use crate::{Fingerprint, ParameterError};
 
 /// Amplitude and period of a motion, cut into equal pieces of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,21 +36,26 @@ impl Oscillation {
     pub(super) fn period(&self) -> f64 {
         TAU / self.angular_frequency
     }
+
+    /// Returns the fingerprint of the motion of this name.
+    pub(super) fn fingerprint(&self, name: &str) -> Fingerprint {
+        Fingerprint::of(name).number(self.amplitude).number(self.angular_frequency)
+    }
 }
 
-/// The piece of length `length` that `time` lies in: its number, and the time where it ends.
-///
-/// The end of a piece belongs to the next one, also where `time / length` rounds down to the piece before.
+/// Returns the number of the piece of length `length` that `phase` lies in, and the phase at which it ends.
 #[inline]
-pub(super) fn piece(time: f64, length: f64) -> (f64, f64) {
-    let mut number = (time / length).floor();
-    if time >= (number + 1.0) * length {
+pub(super) fn piece(phase: f64, length: f64) -> (f64, f64) {
+    let mut number = (phase / length).floor();
+    // The end of a piece belongs to the next one. The quotient can round down to the piece before, which
+    // would end at the phase asked for: a search would make no step.
+    if phase >= (number + 1.0) * length {
         number += 1.0;
     }
     (number, (number + 1.0) * length)
 }
 
-/// Whether a piece number is even.
+/// Tells whether a piece number is even.
 #[inline]
 pub(super) fn is_even(number: f64) -> bool {
     (0.5 * number).floor() * 2.0 == number

@@ -2,9 +2,10 @@
 
 use super::oscillation::{Oscillation, piece};
 use super::{AccelerationBounds, WallMotion, WallState};
-use crate::ParameterError;
+use crate::{Fingerprint, ParameterError};
 
-/// Pieces a period on which the acceleration is bounded; a multiple of four, so that it is monotone on each.
+/// Pieces of a period on which the acceleration is bounded: a multiple of four, so that it is monotonic on
+/// each and the values at its ends are the bounds.
 const PIECES: f64 = 16.0;
 
 /// Harmonic motion `$z(t) = A\sin\omega t$`.
@@ -24,7 +25,7 @@ pub struct Sinusoidal {
 }
 
 impl Sinusoidal {
-    /// A motion of this amplitude `$A$` and angular frequency `$\omega$`.
+    /// Creates a motion of this amplitude `$A$` and angular frequency `$\omega$`.
     ///
     /// # Errors
     /// If one is not finite and positive.
@@ -32,34 +33,34 @@ impl Sinusoidal {
         Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
     }
 
-    /// `$A$`.
+    /// Returns `$A$`.
     pub const fn amplitude(&self) -> f64 {
         self.oscillation.amplitude()
     }
 
-    /// `$\omega$`.
+    /// Returns `$\omega$`.
     pub const fn angular_frequency(&self) -> f64 {
         self.oscillation.angular_frequency()
     }
 
-    fn acceleration_at(&self, time: f64) -> f64 {
+    fn acceleration_at(&self, phase: f64) -> f64 {
         let frequency = self.angular_frequency();
-        -self.amplitude() * frequency * frequency * libm::sin(frequency * time)
+        -self.amplitude() * frequency * frequency * libm::sin(frequency * phase)
     }
 }
 
 impl WallMotion for Sinusoidal {
-    fn state(&self, time: f64) -> WallState {
+    fn state(&self, phase: f64) -> WallState {
         let frequency = self.angular_frequency();
-        let (sine, cosine) = libm::sincos(frequency * time);
-        WallState { displacement: self.amplitude() * sine, velocity: self.amplitude() * frequency * cosine }
+        let (sine, cosine) = libm::sincos(frequency * phase);
+        WallState::new(self.amplitude() * sine, self.amplitude() * frequency * cosine)
     }
 
-    fn acceleration(&self, time: f64) -> AccelerationBounds {
+    fn acceleration(&self, phase: f64) -> AccelerationBounds {
         let length = self.oscillation.period() / PIECES;
-        let (number, until) = piece(time, length);
+        let (number, until) = piece(phase, length);
         let (start, end) = (self.acceleration_at(number * length), self.acceleration_at(until));
-        AccelerationBounds { until, min: start.min(end), max: start.max(end) }
+        AccelerationBounds::new(until, start.min(end), start.max(end))
     }
 
     fn reach(&self) -> (f64, f64) {
@@ -68,5 +69,8 @@ impl WallMotion for Sinusoidal {
 
     fn period(&self) -> Option<f64> {
         Some(self.oscillation.period())
+    }
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        Some(self.oscillation.fingerprint("Sinusoidal"))
     }
 }

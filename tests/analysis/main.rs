@@ -5,11 +5,11 @@ mod states;
 
 use granular_edmd::ParameterError;
 use granular_edmd::analysis::ConvectiveRegime::{Coexistence, Collapsed, Conductive, OneRoll, TwoRolls};
-use granular_edmd::analysis::{TransitionLine, block_average, line_average, transitions};
+use granular_edmd::analysis::{TransitionLine, line_average, transitions};
 use granular_edmd::collision::Frictional;
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::{IsoLine, Maxwellian};
-use granular_edmd::observable::RunningMean;
+use granular_edmd::statistics::{RunningMean, block_average};
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 

@@ -11,7 +11,7 @@ use granular_edmd::observable::{ConvectionOrder, DenseLayer};
 use crate::{FIGURE_4, NOISE, Outcome, Random, figure_4};
 
 fn orders(points: &[DVec2]) -> Vec<ConvectionOrder> {
-    points.iter().map(|point| ConvectionOrder { one_roll: point.x, two_rolls: point.y }).collect()
+    points.iter().map(|point| ConvectionOrder::new(point.x, point.y)).collect()
 }
 
 #[test]
@@ -94,9 +94,9 @@ fn states_regimes_and_lines_have_the_names_of_the_paper() {
 
 #[test]
 fn collapse_needs_a_compact_layer_on_a_gas_without_rolls() -> Outcome {
-    let layer = |packing_fraction, least_below| DenseLayer { height: 19.0, packing_fraction, least_below };
+    let layer = |packing_fraction, least_below| DenseLayer::new(19.0, packing_fraction, least_below);
     let regime = |two_rolls: f64, layer| -> Result<ConvectiveRegime, ParameterError> {
-        let samples = [ConvectionOrder { one_roll: 0.0, two_rolls }];
+        let samples = [ConvectionOrder::new(0.0, two_rolls)];
         Ok(StateCriteria::default().classify(&samples, 0.0067, layer)?.regime())
     };
     assert_eq!(regime(0.02, Some(layer(0.67, 0.13)))?, Collapsed);

@@ -3,10 +3,11 @@
 use granular_edmd::collision::{
     CollisionRule, ContactDuration, Elastic, Regime, TangentialResponse, collide, collide_with_wall, laws,
 };
+use granular_edmd::strategies::{contact, decades, disk_closing_on_wall, touching_pair};
 use proptest::prelude::*;
 
-use crate::hostile::{Law, config, contact, decades, law, pair, wall_meeting};
 use crate::kinematics::EPSILON;
+use crate::rules::{Law, config, law};
 
 fn model(law: &Law, duration: f64) -> ContactDuration<Box<dyn CollisionRule>> {
     ContactDuration::new(law.rule(), duration).unwrap()
@@ -31,7 +32,8 @@ proptest! {
         prop_assert_eq!(impulse.regime(), Regime::ContactDuration);
     }
 
-    /// Only the normal loss goes: the rule's own tangential impulse and its loss stay, and stay within the laws.
+    /// Only the normal loss goes: the rule's own tangential impulse and its loss stay, and stay within the
+    /// laws.
     #[test]
     fn the_tangential_response_can_stay(law in law(), contact in contact(), duration in decades(-9.0, 3.0)) {
         let contact = contact.with_time_since_last_collision(0.5 * duration);
@@ -40,7 +42,8 @@ proptest! {
         prop_assert_eq!(impulse.normal(), Elastic.impulse(&contact).normal());
         prop_assert_eq!(impulse.tangential(), own.tangential());
         prop_assert_eq!(impulse.regime(), Regime::ContactDuration);
-        prop_assert!(impulse.tangential().abs() <= law.static_friction * impulse.normal() * (1.0 + 4.0 * EPSILON));
+        let cone = law.static_friction * impulse.normal() * (1.0 + 4.0 * EPSILON);
+        prop_assert!(impulse.tangential().abs() <= cone);
         prop_assert!(impulse.energy_change(&contact) <= 4.0 * EPSILON * laws::available_energy(&contact));
         prop_assert_eq!(laws::check(&contact, impulse), Ok(()));
     }
@@ -60,7 +63,11 @@ proptest! {
 
     /// Two disks, or a disk and a wall, outside a simulation have never collided before.
     #[test]
-    fn a_first_meeting_is_the_rules(law in law(), (first, second) in pair(), (disk, normal, wall) in wall_meeting()) {
+    fn a_first_collision_is_the_rules(
+        law in law(),
+        (first, second) in touching_pair(),
+        (disk, normal, wall) in disk_closing_on_wall(),
+    ) {
         let model = model(&law, f64::MAX);
         prop_assert_eq!(collide(&model, &first, &second), collide(&law.rule(), &first, &second));
         prop_assert_eq!(

@@ -1,11 +1,14 @@
 //! Rules in files: what is written can be read, and what a constructor refuses a file cannot bring in.
 
-use granular_edmd::collision::{ContactDuration, Elastic, Frictional, Rough, Smooth, TangentialResponse};
+use granular_edmd::collision::{
+    ContactDuration, Elastic, Friction, Frictional, Rough, Smooth, TangentialResponse,
+};
+use granular_edmd::strategies::decades;
 use proptest::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::hostile::{config, decades};
+use crate::rules::config;
 
 fn returns<T: Serialize + DeserializeOwned + PartialEq>(value: &T) -> bool {
     let text = serde_json::to_string(value).unwrap();
@@ -35,6 +38,8 @@ proptest! {
         let unchanged = TangentialResponse::Unchanged;
         prop_assert!(returns(&Elastic) && returns(&smooth) && returns(&rough) && returns(&frictional));
         prop_assert!(returns(&ContactDuration::new(Elastic, duration).unwrap()));
+        let friction = Friction::new(tangential, friction).unwrap();
+        prop_assert!(returns(&friction));
         prop_assert!(returns(&ContactDuration::new(frictional, duration).unwrap()));
         let nested = ContactDuration::new(rough, duration).unwrap().with_tangential_response(unchanged);
         prop_assert!(returns(&ContactDuration::new(nested, duration).unwrap()));
@@ -49,6 +54,8 @@ fn the_names_in_a_file_are_stable() {
         r#""dynamic_friction":0.5},"duration":0.125,"tangential_response":"Frictionless"}"#
     );
     assert_eq!(serde_json::to_string(&rule).unwrap(), text);
+    let friction = r#"{"tangential_inelasticity":0.25,"static_coefficient":0.5,"dynamic_coefficient":0.5}"#;
+    assert_eq!(serde_json::to_string(&Friction::new(0.25, 0.5).unwrap()).unwrap(), friction);
     let short = text.replace(r#","tangential_response":"Frictionless""#, "");
     assert_eq!(serde_json::from_str::<ContactDuration<Frictional>>(&short).unwrap(), rule);
 }
@@ -62,6 +69,8 @@ fn a_file_passes_the_constructors() {
     let frictional = r#"{"normal_inelasticity":0,"tangential_inelasticity":0,"static_friction":0.1,"dynamic_friction":0.2}"#;
     let error = Frictional::new(0.0, 0.0).and_then(|rule| rule.with_friction(0.1, 0.2)).unwrap_err();
     assert!(refusal::<Frictional>(frictional).contains(&error.to_string()));
+    let friction = r#"{"tangential_inelasticity":0,"static_coefficient":0.1,"dynamic_coefficient":0.2}"#;
+    assert!(refusal::<Friction>(friction).contains(&error.to_string()));
     let model = r#"{"rule":null,"duration":0}"#;
     let error = ContactDuration::new(Elastic, 0.0).unwrap_err();
     assert!(refusal::<ContactDuration<Elastic>>(model).contains(&error.to_string()));

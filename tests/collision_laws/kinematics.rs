@@ -3,7 +3,8 @@
 use glam::DVec2;
 use granular_edmd::Disk;
 
-/// Rounding of one operation; each bound below is a number of operations times the magnitudes that enter them.
+/// Rounding of one operation; each bound below is a number of operations times the magnitudes that enter
+/// them.
 pub(crate) const EPSILON: f64 = f64::EPSILON;
 
 /// Unit vector from the second disk to the first.
@@ -17,7 +18,8 @@ pub(crate) fn surface_velocity(disk: &Disk, arm: DVec2) -> DVec2 {
     disk.velocity() + disk.angular_velocity() * DVec2::new(-arm.y, arm.x)
 }
 
-/// Relative velocity of the points in contact, `$\vec v_{C2} - \vec v_{C1}$`, along the normal and the tangent.
+/// Relative velocity of the points in contact, `$\vec v_{C2} - \vec v_{C1}$`, along the normal and the
+/// tangent.
 pub(crate) fn contact_velocity(normal: DVec2, first: &Disk, second: &Disk) -> (f64, f64) {
     let velocity = surface_velocity(second, normal * second.radius())
         - surface_velocity(first, -normal * first.radius());
@@ -33,7 +35,8 @@ pub(crate) fn angular_momentum(disk: &Disk, point: DVec2) -> f64 {
     (disk.position() - point).perp_dot(momentum(disk)) + disk.moment_of_inertia() * disk.angular_velocity()
 }
 
-/// Size of the terms of [`angular_momentum`]: the arm is a difference of positions, and rounded at their size.
+/// Size of the terms of [`angular_momentum`]: the arm is a difference of positions, and rounded at their
+/// size.
 pub(crate) fn angular_magnitude(disk: &Disk, point: DVec2) -> f64 {
     (disk.position().length() + point.length()) * momentum(disk).length()
         + disk.moment_of_inertia() * disk.angular_velocity().abs()

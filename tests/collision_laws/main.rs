@@ -1,14 +1,20 @@
-//! The laws of a collision, for every rule of the library: conservation, energy, friction, separation and symmetry
-//! over hostile inputs; worked collisions; the contact-duration model; refused parameters and files.
+//! The laws of a collision, for every rule of the library: conservation, energy, friction, separation and
+//! symmetry over hostile inputs; worked collisions; the checks for rules of one's own, against planted
+//! faults; the contact-duration model; refused parameters and files.
 
+#[path = "../support/cases.rs"]
+mod cases;
 mod conservation;
 mod contact_duration;
 mod energy;
 #[cfg(feature = "serde")]
 mod files;
-mod hostile;
+mod friction;
+mod identity;
 mod kinematics;
 mod parameters;
+mod planted;
+mod rules;
 mod separation;
 mod stick_slip;
 mod symmetry;

@@ -1,9 +1,10 @@
 //! Parameters outside their range: each constructor refuses them and names the value.
 
 use granular_edmd::ParameterError;
-use granular_edmd::collision::{ContactDuration, Elastic, Frictional, Rough, Smooth};
+use granular_edmd::collision::{ContactDuration, Elastic, Friction, Frictional, Rough, Smooth};
 
-/// A constructor of one parameter, that parameter's name, and values that it must refuse beside the usual ones.
+/// A constructor of one parameter, that parameter's name, and values that it must refuse beside the usual
+/// ones.
 type Case = (&'static str, fn(f64) -> Result<(), ParameterError>, &'static [f64]);
 
 const NOT_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
@@ -39,6 +40,15 @@ fn cases() -> Vec<Case> {
         (
             "dynamic friction",
             |value| frictional().with_friction(0.5, value).map(drop),
+            &[-1e-300, 0.500_000_1],
+        ),
+        ("tangential inelasticity", |value| Friction::from_inelasticity(value).map(drop), tangential),
+        ("tangential inelasticity", |value| Friction::new(value, 0.1).map(drop), tangential),
+        ("tangential restitution", |value| Friction::from_restitution(value).map(drop), rough_restitution),
+        ("static friction", |value| Friction::new(0.1, value).map(drop), friction),
+        (
+            "dynamic friction",
+            |value| Friction::new(0.1, 0.0).and_then(|rule| rule.with_coefficients(0.5, value)).map(drop),
             &[-1e-300, 0.500_000_1],
         ),
         ("contact duration", |value| ContactDuration::new(Elastic, value).map(drop), &[0.0, -0.0, -1e-4]),

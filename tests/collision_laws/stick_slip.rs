@@ -1,9 +1,10 @@
 //! The boundary between sticking and sliding.
 
 use granular_edmd::collision::{CollisionRule, Contact, Frictional, Regime, laws};
+use granular_edmd::strategies::decades;
 use proptest::prelude::*;
 
-use crate::hostile::{config, decades};
+use crate::rules::config;
 
 /// Far above rounding, far below anything else.
 const STEP: f64 = 1e-9;
@@ -25,8 +26,8 @@ fn both_sides(rule: &Frictional, mass: f64, share: f64) -> (Contact, Contact) {
 proptest! {
     #![proptest_config(config())]
 
-    /// With one friction coefficient the impulse and the loss are continuous: a step of `STEP` in the slip changes
-    /// them by a few `STEP` of what there is.
+    /// With one friction coefficient the impulse and the loss are continuous: a step of `STEP` in the slip
+    /// changes them by a few `STEP` of what there is.
     #[test]
     fn one_coefficient_joins_the_branches(
         normal in 0.0..=0.5,
@@ -44,7 +45,8 @@ proptest! {
         prop_assert!(jump.abs() <= 8.0 * STEP * laws::available_energy(&within), "{jump}");
     }
 
-    /// With less dynamic than static friction the impulse drops by their ratio, and neither side gains energy.
+    /// With less dynamic than static friction the impulse drops by their ratio, and neither side gains
+    /// energy.
     #[test]
     fn two_coefficients_drop(
         normal in 0.0..=0.5,
@@ -74,8 +76,8 @@ fn the_threshold_of_homogeneous_disks() {
     assert_eq!(regime(-STEP - limit), Regime::Sliding);
 }
 
-/// With Eq. (6) as printed, without the factor 1/3, the loss would jump by `$6\kappa^2 q_t(1-q_n)^2/(1-q_t)$` there:
-/// one of the reasons to read it as a misprint.
+/// With Eq. (6) as printed, without the factor 1/3, the loss would jump by `$6\kappa^2 q_t(1-q_n)^2/(1-q_t)$`
+/// there: one of the reasons to read it as a misprint.
 #[test]
 fn the_printed_loss_would_jump() {
     let (normal, tangential, friction) = (0.1, 0.2, 0.5);

@@ -1,14 +1,17 @@
 //! The check for rules of one's own: it names each broken law, and passes everything that breaks none.
 
 use granular_edmd::collision::laws::{
-    Violation, available_energy, check, closing_speed_after, slip_speed_after,
+    Violation, available_energy, check, check_friction_cone, check_friction_opposes_slip,
+    closing_speed_after, slip_speed_after,
 };
 use granular_edmd::collision::{Contact, Impulse};
+use granular_edmd::strategies::{contact, decades};
 use proptest::prelude::*;
 
-use crate::hostile::{config, contact};
+use crate::rules::config;
 
-/// Impulses in units of those that would stop the closing and the slip: 0 does nothing, 2 reverses elastically.
+/// Impulses in units of those that would stop the closing and the slip: 0 does nothing, 2 reverses
+/// elastically.
 fn impulse(contact: &Contact, normal: f64, tangential: f64) -> Impulse {
     Impulse::new(
         normal * contact.normal_mass() * contact.closing_speed(),
@@ -30,7 +33,8 @@ proptest! {
         let impulse = impulse(&contact, normal, tangential);
         let closing_speed = closing_speed_after(&contact, impulse);
         prop_assert!(closing_speed > 0.0);
-        prop_assert_eq!(check(&contact, impulse), Err(Violation::StillClosing { closing_speed }));
+        let violation = Violation::StillClosing { closing_speed, contact, impulse };
+        prop_assert_eq!(check(&contact, impulse), Err(violation));
     }
 
     #[test]
@@ -38,8 +42,31 @@ proptest! {
         let impulse = impulse(&contact, normal, 0.0);
         let energy_change = impulse.energy_change(&contact);
         let available = available_energy(&contact);
-        prop_assume!(energy_change > 1e-9 * available, "a gain too small beside the slip to be told from rounding");
-        prop_assert_eq!(check(&contact, impulse), Err(Violation::EnergyGained { energy_change }));
+        prop_assume!(energy_change > 1e-9 * available, "the gain is lost in the rounding of the slip");
+        let violation = Violation::EnergyGained { energy_change, contact, impulse };
+        prop_assert_eq!(check(&contact, impulse), Err(violation));
+    }
+
+    /// From nothing to the full reversal, in the cone that just holds it.
+    #[test]
+    fn friction_passes(contact in contact(), normal in 1.0..=2.0, tangential in 0.0..=2.0) {
+        let impulse = impulse(&contact, normal, tangential);
+        let needed = impulse.tangential().abs() / impulse.normal();
+        prop_assert_eq!(check_friction_opposes_slip(&contact, impulse), Ok(()));
+        prop_assert_eq!(check_friction_cone(&contact, impulse, needed), Ok(()));
+        if contact.slip_speed() != 0.0 && tangential > 0.0 {
+            prop_assert!(check_friction_cone(&contact, impulse, needed * (1.0 - 1e-11)).is_err());
+        }
+    }
+
+    /// However small it is.
+    #[test]
+    fn a_push_along_the_slip_is_not_friction(contact in contact(), share in decades(-30.0, 0.0)) {
+        let with = impulse(&contact, 1.0, -share);
+        prop_assume!(with.tangential() != 0.0);
+        let slip_speed = slip_speed_after(&contact, with);
+        let violation = Violation::SlipSpedUp { slip_speed, contact, impulse: with };
+        prop_assert_eq!(check_friction_opposes_slip(&contact, with), Err(violation));
     }
 
     /// A tangential impulse that speeds the slip up, or reverses it faster than it was, gains energy.
@@ -48,28 +75,50 @@ proptest! {
         let impulse = impulse(&contact, 2.0, twist);
         let energy_change = impulse.energy_change(&contact);
         let available = available_energy(&contact);
-        prop_assume!(energy_change > 1e-9 * available, "a gain too small beside the approach to be told from rounding");
+        prop_assume!(energy_change > 1e-9 * available, "the gain is lost in the rounding of the approach");
         prop_assert!(slip_speed_after(&contact, impulse).abs() > contact.slip_speed().abs());
-        prop_assert_eq!(check(&contact, impulse), Err(Violation::EnergyGained { energy_change }));
+        let violation = Violation::EnergyGained { energy_change, contact, impulse };
+        prop_assert_eq!(check(&contact, impulse), Err(violation));
     }
 }
 
+/// The end of each message: a contact of closing speed 1 and this slip speed.
+fn of_contact(slip: &str) -> String {
+    let masses = "normal mass 0.5, tangential mass 0.125";
+    format!("(closing speed 1.0, slip speed {slip}, {masses}, time since the last collision inf)")
+}
+
 #[test]
-fn what_is_not_finite_is_named() {
-    let contact = Contact::new(1.0, 0.5, 0.5, 0.5 / 3.0);
+fn numbers_that_are_not_finite_are_named() {
+    let contact = Contact::new(1.0, 0.5, 0.5, 0.125);
     for (normal, tangential) in [(f64::INFINITY, 0.0), (1.0, f64::NEG_INFINITY), (1.0, f64::NAN)] {
         let violation = check(&contact, Impulse::new(normal, tangential)).unwrap_err();
         assert!(matches!(violation, Violation::NotFinite { .. }));
-        assert_eq!(violation.to_string(), format!("the impulse ({normal}, {tangential}) is not finite"));
+        let impulse = format!("({normal:?}, {tangential:?})");
+        assert_eq!(
+            violation.to_string(),
+            format!("the impulse {impulse} is not finite {}", of_contact("0.5"))
+        );
     }
 }
 
 #[test]
-fn messages_carry_the_number() {
-    let contact = Contact::new(1.0, 0.0, 0.5, 0.5 / 3.0);
+fn messages_carry_the_numbers() {
+    let contact = Contact::new(1.0, 0.0, 0.5, 0.125);
     let text = |normal| check(&contact, Impulse::new(normal, 0.0)).unwrap_err().to_string();
-    assert_eq!(text(0.25), "after the collision the surfaces still close, at speed 0.5");
-    assert_eq!(text(1.5), "the collision gains the energy 0.75");
+    let weak = "after the impulse (0.25, 0.0) the surfaces still close, at speed 0.5";
+    assert_eq!(text(0.25), format!("{weak} {}", of_contact("0.0")));
+    assert_eq!(text(1.5), format!("the impulse (1.5, 0.0) gains the energy 0.75 {}", of_contact("0.0")));
+    let slipping = Contact::new(1.0, 2.0, 0.5, 0.125);
+    let violation = check_friction_cone(&slipping, Impulse::new(0.5, 0.25), 0.25).unwrap_err();
+    let cone = "the impulse (0.5, 0.25) leaves the friction cone: 0.125 is the most along the tangent";
+    assert_eq!(violation.to_string(), format!("{cone} {}", of_contact("2.0")));
+    let violation = check_friction_opposes_slip(&slipping, Impulse::new(0.5, -0.25)).unwrap_err();
+    assert_eq!(
+        violation.to_string(),
+        format!("the impulse (0.5, -0.25) speeds the slip up, to 4.0 {}", of_contact("2.0"))
+    );
+    assert_eq!((*violation.contact(), violation.impulse()), (slipping, Impulse::new(0.5, -0.25)));
 }
 
 /// Equality breaks no law: nothing that happens to nothing.

@@ -2,15 +2,16 @@
 
 use glam::DVec2;
 use granular_edmd::Disk;
-use granular_edmd::collision::{collide, collide_with_wall};
+use granular_edmd::collision::{WallEncounter, collide, collide_with_wall};
+use granular_edmd::strategies::disk_closing_on_wall;
 use proptest::prelude::*;
 
-use crate::hostile::{config, law, wall_meeting};
 use crate::kinematics::{
     EPSILON, angular_magnitude, angular_momentum, kinetic_energy, momentum, speed_magnitude, surface_velocity,
 };
+use crate::rules::{config, law};
 
-/// How much heavier and larger than the disk the body is that stands for a wall.
+/// Mass and size of the body that stands for a wall, in units of the disk's.
 const HEAVY: f64 = 1e13;
 
 fn giant(disk: &Disk, velocity: DVec2) -> Disk {
@@ -23,28 +24,29 @@ fn giant(disk: &Disk, velocity: DVec2) -> Disk {
 proptest! {
     #![proptest_config(config())]
 
-    /// A partner `HEAVY` times heavier changes the effective masses, hence the impulse, by a few parts in `HEAVY`;
-    /// the impulse changes speeds by at most twice the speeds of the contact.
+    /// A partner `HEAVY` times heavier changes the effective masses, hence the impulse, by a few parts in
+    /// `HEAVY`; the impulse changes speeds by at most twice the speeds of the contact.
     #[test]
-    fn a_heavy_partner_is_a_wall(law in law(), (disk, normal, velocity) in wall_meeting()) {
+    fn a_heavy_partner_is_a_wall(law in law(), (disk, normal, velocity) in disk_closing_on_wall()) {
         let giant = giant(&disk, velocity);
         let near = disk.with_position(normal * (disk.radius() + giant.radius())).unwrap();
-        let (limit, new_giant, limit_contact, _) = collide(&law.rule(), &near, &giant);
-        let (bounced, contact, _) = collide_with_wall(&law.rule(), &disk, near.position().normalize(), velocity);
-        prop_assert_eq!(limit_contact.closing_speed(), contact.closing_speed());
-        prop_assert_eq!(limit_contact.slip_speed(), contact.slip_speed());
+        let limit = collide(&law.rule(), &near, &giant);
+        let wall = collide_with_wall(&law.rule(), &disk, near.position().normalize(), velocity);
+        let (contact, bounced) = (wall.contact, wall.disk);
+        prop_assert_eq!(limit.contact.closing_speed(), contact.closing_speed());
+        prop_assert_eq!(limit.contact.slip_speed(), contact.slip_speed());
         let speeds = contact.closing_speed() + contact.slip_speed().abs();
         let tolerance = 16.0 * speeds / HEAVY + 8.0 * EPSILON * (speed_magnitude(&disk) + velocity.length());
-        let spin = disk.radius() * (limit.angular_velocity() - bounced.angular_velocity());
-        prop_assert!((limit.velocity() - bounced.velocity()).length() <= tolerance);
+        let spin = disk.radius() * (limit.first.angular_velocity() - bounced.angular_velocity());
+        prop_assert!((limit.first.velocity() - bounced.velocity()).length() <= tolerance);
         prop_assert!(spin.abs() <= tolerance);
-        prop_assert!((new_giant.velocity() - velocity).length() <= tolerance);
-        prop_assert!(new_giant.angular_velocity().abs() * giant.radius() <= tolerance);
+        prop_assert!((limit.second.velocity() - velocity).length() <= tolerance);
+        prop_assert!(limit.second.angular_velocity().abs() * giant.radius() <= tolerance);
     }
 
     #[test]
-    fn the_masses_are_those_of_the_disk(law in law(), (disk, normal, velocity) in wall_meeting()) {
-        let (_, contact, _) = collide_with_wall(&law.rule(), &disk, normal, velocity);
+    fn the_masses_are_those_of_the_disk(law in law(), (disk, normal, velocity) in disk_closing_on_wall()) {
+        let contact = collide_with_wall(&law.rule(), &disk, normal, velocity).contact;
         let tangential = disk.mass() / (1.0 + 1.0 / disk.inertia_factor());
         prop_assert!((contact.normal_mass() / disk.mass() - 1.0).abs() <= 2.0 * EPSILON);
         prop_assert!((contact.tangential_mass() / tangential - 1.0).abs() <= 4.0 * EPSILON);
@@ -52,8 +54,9 @@ proptest! {
 
     /// The surface leaves the wall, in the wall's frame, as from any other partner.
     #[test]
-    fn the_surface_parts_from_the_wall(law in law(), (disk, normal, velocity) in wall_meeting()) {
-        let (bounced, contact, _) = collide_with_wall(&law.rule(), &disk, normal, velocity);
+    fn the_surface_parts_from_the_wall(law in law(), (disk, normal, velocity) in disk_closing_on_wall()) {
+        let encounter = collide_with_wall(&law.rule(), &disk, normal, velocity);
+        let WallEncounter { disk: bounced, contact, .. } = encounter;
         let relative = velocity - surface_velocity(&bounced, -normal * disk.radius());
         let speeds = speed_magnitude(&disk) + speed_magnitude(&bounced) + velocity.length();
         let tolerance = 16.0 * EPSILON * speeds;
@@ -67,13 +70,15 @@ proptest! {
 
     /// The disk's momentum changes by the impulse; its angular momentum about the contact point does not.
     #[test]
-    fn the_wall_gives_the_impulse(law in law(), (disk, normal, velocity) in wall_meeting()) {
-        let (bounced, _, impulse) = collide_with_wall(&law.rule(), &disk, normal, velocity);
+    fn the_wall_gives_the_impulse(law in law(), (disk, normal, velocity) in disk_closing_on_wall()) {
+        let encounter = collide_with_wall(&law.rule(), &disk, normal, velocity);
+        let WallEncounter { disk: bounced, impulse, .. } = encounter;
         let kick = normal * impulse.normal() + normal.perp() * impulse.tangential();
         let size = momentum(&disk).length() + momentum(&bounced).length();
         prop_assert!((momentum(&bounced) - momentum(&disk) - kick).length() <= 8.0 * EPSILON * size);
         // The arm is taken from the centre: the position of the disk is another matter.
-        let (disk, bounced) = (disk.with_position(DVec2::ZERO).unwrap(), bounced.with_position(DVec2::ZERO).unwrap());
+        let centred = |disk: &Disk| disk.with_position(DVec2::ZERO).unwrap();
+        let (disk, bounced) = (centred(&disk), centred(&bounced));
         let touch = -normal * disk.radius();
         let change = angular_momentum(&bounced, touch) - angular_momentum(&disk, touch);
         let size = angular_magnitude(&bounced, touch) + angular_magnitude(&disk, touch);
@@ -82,8 +87,9 @@ proptest! {
 
     /// In the laboratory the wall's motion does the work `$\vec\Delta\cdot\vec V$` on top of the loss.
     #[test]
-    fn a_moving_wall_does_work(law in law(), (disk, normal, velocity) in wall_meeting()) {
-        let (bounced, contact, impulse) = collide_with_wall(&law.rule(), &disk, normal, velocity);
+    fn a_moving_wall_does_work(law in law(), (disk, normal, velocity) in disk_closing_on_wall()) {
+        let encounter = collide_with_wall(&law.rule(), &disk, normal, velocity);
+        let WallEncounter { disk: bounced, contact, impulse, .. } = encounter;
         let work = (normal * impulse.normal() + normal.perp() * impulse.tangential()).dot(velocity);
         let (before, after) = (kinetic_energy(&disk), kinetic_energy(&bounced));
         let wall = 0.5 * disk.mass() * velocity.length_squared();

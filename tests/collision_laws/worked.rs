@@ -4,7 +4,7 @@
 
 use glam::DVec2;
 use granular_edmd::Disk;
-use granular_edmd::collision::{Frictional, Regime, collide, collide_with_wall};
+use granular_edmd::collision::{Encounter, Frictional, Regime, WallEncounter, collide, collide_with_wall};
 
 /// The figures carry ten decimals.
 const TOLERANCE: f64 = 1e-10;
@@ -42,7 +42,8 @@ type Expected = (Regime, (f64, f64), (f64, f64), f64);
 type Motion = ((f64, f64), f64);
 
 fn pair(rule: &Frictional, first: &Disk, second: &Disk, expected: Expected, after: [Motion; 2]) {
-    let (new_first, new_second, contact, impulse) = collide(rule, first, second);
+    let Encounter { first: new_first, second: new_second, contact, impulse, .. } =
+        collide(rule, first, second);
     let (regime, speeds, impulses, change) = expected;
     assert_eq!(impulse.regime(), regime);
     close(contact.closing_speed(), speeds.0, "closing speed");
@@ -60,7 +61,8 @@ fn pair(rule: &Frictional, first: &Disk, second: &Disk, expected: Expected, afte
 }
 
 fn floor(rule: &Frictional, disk: &Disk, floor_speed: f64, expected: Expected, after: Motion) {
-    let (bounced, contact, impulse) = collide_with_wall(rule, disk, DVec2::Y, DVec2::Y * floor_speed);
+    let WallEncounter { disk: bounced, contact, impulse, .. } =
+        collide_with_wall(rule, disk, DVec2::Y, DVec2::Y * floor_speed);
     let (regime, speeds, impulses, change) = expected;
     assert_eq!(impulse.regime(), regime);
     close(contact.closing_speed(), speeds.0, "closing speed");

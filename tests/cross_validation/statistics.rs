@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use granular_edmd::observable::RunningMean;
+use granular_edmd::statistics::RunningMean;
 
 use crate::means::Means;
 

@@ -35,8 +35,8 @@ proptest! {
         prop_assert_eq!(alone.counters(), watched.counters());
         let samples = (0..).map_while(|k| Some(setup.start + f64::from(k) * interval).filter(|&t| t <= end));
         prop_assert_eq!(series.times(), samples.collect::<Vec<_>>());
-        prop_assert_eq!(others.1.disks(), watched.counters().collisions);
-        prop_assert_eq!(others.1.walls(), watched.counters().wall_collisions);
+        prop_assert_eq!(others.1.disk_collisions(), watched.counters().collisions);
+        prop_assert_eq!(others.1.wall_collisions(), watched.counters().wall_collisions);
     }
 
     #[test]
@@ -62,7 +62,7 @@ proptest! {
 mod resumed {
     use granular_edmd::boundary::Container;
     use granular_edmd::collision::Elastic;
-    use granular_edmd::scheduler::{BySize, TournamentTree};
+    use granular_edmd::scheduler::TournamentTree;
     use granular_edmd::{Simulation, initial};
 
     /// So many disks that the engine chooses the other scheduler, and looks ahead for what comes next.
@@ -75,8 +75,11 @@ mod resumed {
             Simulation::builder(Elastic, container.clone()).disks(disks).gravity(0.1).build().unwrap();
         run.run_until(0.2, &mut ()).unwrap();
         let saved = run.checkpoint();
-        let mut same = Simulation::resume(&saved, Elastic, container.clone(), BySize::default()).unwrap();
-        let mut tree = Simulation::resume(&saved, Elastic, container, TournamentTree::default()).unwrap();
+        let mut same = Simulation::resume(&saved, Elastic, container.clone()).build().unwrap();
+        let mut tree = Simulation::resume(&saved, Elastic, container)
+            .scheduler(TournamentTree::default())
+            .build()
+            .unwrap();
         run.run_until(0.6, &mut ()).unwrap();
         same.run_until(0.6, &mut ()).unwrap();
         tree.run_until(0.6, &mut ()).unwrap();

@@ -114,7 +114,7 @@ fn zeno_ends_the_run_and_contact_duration_saves_it() {
     let mut simulation =
         Simulation::builder(rule(1e-300), open()).disks([ball(1.0)]).gravity(1.0).build().unwrap();
     assert!(stalled(simulation.run_until(10.0, &mut ()).unwrap_err()));
-    assert!((simulation.disk(0).position().y - 0.5).abs() < 1e-9);
+    assert!((simulation.disks()[0].position().y - 0.5).abs() < 1e-9);
 
     // Bounces lower than the rounding of a position are bounces still.
     let mut low = Simulation::builder(rule(1e-6), open()).disks([ball(1.0)]).gravity(1.0).build().unwrap();
@@ -124,7 +124,7 @@ fn zeno_ends_the_run_and_contact_duration_saves_it() {
     let mut saved = Simulation::builder(rule(1e-3), open()).disks([ball(1.0)]).gravity(1.0).build().unwrap();
     saved.run_until(20.0, &mut ()).unwrap();
     assert!(saved.counters().contact_duration_collisions > 1000);
-    let height = saved.disk(0).position().y - 0.5;
+    let height = saved.disks()[0].position().y - 0.5;
     assert!((-1e-9..1e-6).contains(&height), "{height}");
 }
 
@@ -138,7 +138,7 @@ fn a_run_that_stalled_goes_on_once_the_cause_is_gone() {
     assert!(matches!(simulation.run_until(10.0, &mut ()), Err(RunError::Stalled { .. })));
     simulation.set_gravity(-1.0).unwrap();
     simulation.run_until(10.0, &mut ()).unwrap();
-    assert!(simulation.disk(0).position().y > 10.0);
+    assert!(simulation.disks()[0].position().y > 10.0);
 }
 
 #[test]
@@ -182,7 +182,7 @@ fn a_lossy_ball_does_not_sink_into_a_floor_of_varying_acceleration() {
         assert!(matches!(error, RunError::Stalled { disk: 0, .. }), "{restitution}: {error}");
         let mut floor = simulation.boundary().clone();
         floor.set_time_origin(simulation.time());
-        let overlap = floor.overlap(simulation.disk(0).position(), 0.5, 0.0);
+        let overlap = floor.overlap(simulation.disks()[0].position(), 0.5, 0.0);
         assert!(overlap.is_none_or(|(_, depth)| depth < 1e-9), "{restitution}: {overlap:?}");
     }
 }

@@ -96,7 +96,7 @@ fn disks_that_a_collision_makes_fast_keep_their_digits() {
     let disks = [disk(3.1, 1e-6), disk(7.3, -1.3e-6)];
     let mut simulation = Simulation::builder(burst, walls.clone()).disks(disks).build().unwrap();
     while simulation.counters().wall_collisions < 1000 {
-        simulation.step(&mut ()).unwrap().unwrap();
+        simulation.step_until(simulation.time() + 1.0, &mut ()).unwrap();
         for disk in simulation.disks() {
             let overlap = walls.overlap(disk.position(), 0.5, simulation.time());
             assert!(overlap.is_none_or(|(_, depth)| depth < 1e-12), "{overlap:?} at {}", simulation.time());

@@ -4,12 +4,12 @@
 mod agreement;
 mod balances;
 mod bouncing;
+#[path = "../support/cases.rs"]
+mod cases;
 mod changes;
 mod inputs;
 mod long_runs;
 mod oracle;
 mod setups;
 mod steps;
-#[path = "../support/mod.rs"]
-mod support;
 mod thermal;

@@ -1,7 +1,7 @@
 //! An independent simulation that has no cells, no slots and no frames: it tries all pairs and all walls at each event.
 
 use granular_edmd::boundary::Container;
-use granular_edmd::collision::{Elastic, collide, collide_with_wall};
+use granular_edmd::collision::{Elastic, Encounter, collide, collide_with_wall};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, Partner};
 use granular_edmd::{Disk, Simulation, initial};
@@ -110,14 +110,14 @@ impl Naive {
                 let mut shift = b.position().x - a.position().x;
                 shift = if self.periodic { WIDTH * (shift / WIDTH).round() } else { 0.0 };
                 let near = b.with_position(b.position() - DVec2::new(shift, 0.0)).unwrap();
-                let (a, near, ..) = collide(&Elastic, &a, &near);
+                let Encounter { first: a, second: near, .. } = collide(&Elastic, &a, &near);
                 self.disks[i] = a;
                 self.disks[j] = near.with_position(b.position()).unwrap();
                 (self.time, j, i)
             }
             Err(k) => {
                 let (normal, _) = self.walls()[k];
-                self.disks[i] = collide_with_wall(&Elastic, &self.disks[i], normal, DVec2::ZERO).0;
+                self.disks[i] = collide_with_wall(&Elastic, &self.disks[i], normal, DVec2::ZERO).disk;
                 (self.time, i, 1000)
             }
         }
@@ -153,7 +153,7 @@ proptest! {
         let mut log = Log(Vec::new());
         // Short: a difference of rounding grows tenfold and more with each collision of a disk.
         while log.0.len() < 60 {
-            simulation.step(&mut log).unwrap();
+            simulation.step_until(simulation.time() + 1.0, &mut log).unwrap();
         }
         for collision in &log.0[..60] {
             let (time, first, second) = naive.step();

@@ -10,7 +10,7 @@ use granular_edmd::wall::{BiParabolic, Sinusoidal};
 use granular_edmd::{Disk, Simulation, initial};
 use proptest::prelude::*;
 
-pub(crate) use crate::support::config;
+pub(crate) use crate::cases::config;
 
 pub(crate) type Rule = ContactDuration<Frictional>;
 

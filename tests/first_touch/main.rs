@@ -1,5 +1,6 @@
 //! The first touch of a disk with a moving wall, against fine sampling of the gap: none missed, none early.
 
+mod endless;
 mod low_bounces;
 mod motions;
 
@@ -21,7 +22,7 @@ impl WallMotion for Loose {
     }
     fn acceleration(&self, _time: f64) -> AccelerationBounds {
         let most = 3.0 * self.0.amplitude() * self.0.angular_frequency().powi(2);
-        AccelerationBounds { until: f64::INFINITY, min: -most, max: most }
+        AccelerationBounds::new(f64::INFINITY, -most, most)
     }
     fn reach(&self) -> (f64, f64) {
         (-2.0 * self.0.amplitude(), 2.0 * self.0.amplitude())
@@ -142,7 +143,7 @@ fn a_touching_start_counts_only_while_it_closes() {
 
 #[test]
 fn a_touch_does_not_repeat_itself() {
-    // What the engine does: turn the disk round where it touches, and ask again.
+    // As the engine does: turn the disk round where it touches, and ask again.
     for (name, motion) in motions() {
         let mut generator = Xoshiro256PlusPlus::seed_from_u64(5);
         for case in 0..300 {
@@ -232,8 +233,8 @@ fn hostile_flights_end() {
                 for velocity in hostile {
                     for acceleration in [0.0, -1.0, 1.0, -1e140, 1e140, 1e-300, -1e-300, f64::NAN] {
                         let approach = Approach::new(start, height, velocity, acceleration);
-                        // What outruns the wall from far below, or hovers in a reach that is too large, is followed
-                        // for as long as it takes.
+                        // A surface that outruns the wall from far below, or hovers in a reach that is too large, is
+                        // followed for as long as it takes.
                         let is_followed = height < -1.0 || name == "loose";
                         let end = if is_followed { start + 1e3 } else { f64::INFINITY };
                         for end in [start + 10.0, end] {
@@ -257,10 +258,10 @@ fn motions_that_break_their_contract_do_not_hang_the_search() {
     struct Backward(f64);
     impl WallMotion for Backward {
         fn state(&self, _: f64) -> WallState {
-            WallState { displacement: 0.0, velocity: 0.0 }
+            WallState::new(0.0, 0.0)
         }
         fn acceleration(&self, time: f64) -> AccelerationBounds {
-            AccelerationBounds { until: self.0 * time, min: -1.0, max: 1.0 }
+            AccelerationBounds::new(self.0 * time, -1.0, 1.0)
         }
         fn reach(&self) -> (f64, f64) {
             (-1.0, 1.0)
@@ -272,8 +273,9 @@ fn motions_that_break_their_contract_do_not_hang_the_search() {
                 for end in [100.0, f64::INFINITY] {
                     let approach = Approach::new(1.0, height, velocity, -1.0);
                     let touch = first_touch(&Backward(backward), &approach, end);
-                    // Wherever the wall is, the surface is within its reach from the start.
-                    assert_eq!(touch, (!height.is_nan()).then_some(1.0), "{backward} {height} {velocity}");
+                    // Wherever the wall is, the surface is within its reach from the start, or nobody knows
+                    // where.
+                    assert_eq!(touch, Some(1.0), "{backward} {height} {velocity}");
                 }
             }
         }

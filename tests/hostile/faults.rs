@@ -12,6 +12,7 @@ use granular_edmd::simulation::Checkpoint;
 use granular_edmd::study::{Axis, Base, Control, Parameter, Protocol, Specification, Study, System};
 
 use crate::limits::{Limits, in_child};
+use crate::report::report;
 use crate::specimens::{Scratch, checkpoint};
 
 const FOLDER: &str = "GRANULAR_EDMD_HOSTILE_FOLDER";
@@ -48,9 +49,9 @@ fn expected(name: &str) -> BTreeMap<PathBuf, Vec<u8>> {
 
 /// Runs the study in a folder, saving at every step.
 fn run(folder: &Path) -> Result<bool, String> {
-    let study = Study::open_or_create(folder, &specification()).map_err(|error| error.to_string())?;
+    let study = Study::open_or_create(folder, &specification()).map_err(|error| report(&error))?;
     let control = Control::default().with_save_interval(Duration::ZERO);
-    study.run(&control).map(|summary| summary.is_complete()).map_err(|error| error.to_string())
+    study.run(&control).map(|summary| summary.is_complete()).map_err(|error| report(&error))
 }
 
 #[test]
@@ -143,7 +144,7 @@ fn a_checkpoint_survives_a_full_disk() {
     let [old, new] = two_states();
     old.write(&path).unwrap();
     let _ = fs::write(disk.folder().join("filler"), vec![0; 1 << 16]);
-    let error = new.write(&path).unwrap_err().to_string();
+    let error = report(&new.write(&path).unwrap_err());
     assert!(error.contains("No space left"), "{error}");
     assert_eq!(Checkpoint::read(&path).unwrap(), old);
     assert_eq!(fs::read_dir(disk.folder()).unwrap().count(), 2, "nothing is left of the attempt");
@@ -165,7 +166,7 @@ fn a_disk_that_turns_read_only_keeps_what_it_has() {
     let error = run(&folder).unwrap_err();
     assert!(error.starts_with("cannot write") && error.contains("Read-only"), "{error}");
     assert_eq!(Study::open(&folder).unwrap().records().map(Result::unwrap).count(), 2);
-    assert!(new.write(&path).unwrap_err().to_string().contains("Read-only"));
+    assert!(report(&new.write(&path).unwrap_err()).contains("Read-only"));
     assert_eq!(Checkpoint::read(&path).unwrap(), old);
     disk.remount("rw");
     assert_eq!(run(&folder), Ok(true));

@@ -1,11 +1,11 @@
 //! None, one and two of everything, and extreme numbers where they are not checked by name: an answer or an error, at once.
 
 use granular_edmd::analysis::{
-    ConvectiveRegime, KMeans, StateCriteria, block_average, distinct_clusters, line_average,
-    plane_transitions, thermal_noise, transitions,
+    ConvectiveRegime, KMeans, StateCriteria, distinct_clusters, line_average, plane_transitions,
+    thermal_noise, transitions,
 };
 use granular_edmd::boundary::{Boundary, Container, Region, Wall};
-use granular_edmd::collision::{Elastic, Frictional, collide};
+use granular_edmd::collision::{Elastic, Encounter, Frictional, collide};
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::{
     IsoLine, Maxwellian, MonteCarlo, effective_inelasticity, friction_of_largest_loss,
@@ -15,6 +15,7 @@ use granular_edmd::observable::{
     CenterOfMass, ConvectionOrder, DenseLayer, Energies, EnergyChangeProfile, Fields, HeightProfile,
     OrderParameters, SampleTimes, Temperatures,
 };
+use granular_edmd::statistics::block_average;
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{Disk, Simulation, initial};
 
@@ -50,7 +51,7 @@ fn a_run_of_none_one_or_two_is_measured_under_each_scheduler() {
 }
 
 fn grid(columns: usize, rows: usize) -> Result<Fields, granular_edmd::ParameterError> {
-    Fields::new(Region { min: DVec2::ZERO, max: DVec2::splat(5.0) }, columns, rows, times())
+    Fields::new(Region::new(DVec2::ZERO, DVec2::splat(5.0)), columns, rows, times())
 }
 
 #[test]
@@ -91,7 +92,7 @@ fn analysis_of_none_one_or_two_is_an_answer_or_an_error() {
         let samples: Vec<f64> = points[..count].iter().map(|point| point.x).collect();
         assert_eq!(block_average(&samples).is_ok(), count == 2);
         assert_eq!(distinct_clusters(&points[..count], 0.1, 1).is_ok(), count > 0);
-        let order: Vec<_> = samples.iter().map(|&x| ConvectionOrder { one_roll: x, two_rolls: x }).collect();
+        let order: Vec<_> = samples.iter().map(|&x| ConvectionOrder::new(x, x)).collect();
         assert_eq!(StateCriteria::default().classify(&order, 0.1, None).is_ok(), count > 0);
         let seen = samples.iter().map(|&x| (x, ConvectiveRegime::OneRoll));
         assert!(transitions(seen).unwrap().is_empty());
@@ -156,7 +157,7 @@ fn collisions_of_extreme_disks_have_finite_ends() {
         for speed in SIZES {
             let (Ok(first), Ok(second)) = (disk(one, speed, -1.0), disk(other, speed, 1.0)) else { continue };
             let rule = Frictional::new(0.05, 0.1).unwrap();
-            let (first, second, _, _) = collide(&rule, &first, &second);
+            let Encounter { first, second, .. } = collide(&rule, &first, &second);
             assert!(
                 first.velocity().is_finite() && second.velocity().is_finite(),
                 "{one:e} {other:e} {speed:e}"

@@ -6,8 +6,8 @@ use granular_edmd::simulation::{Checkpoint, CheckpointError};
 use granular_edmd::study::{Specification, StudyError};
 use proptest::prelude::*;
 
+use crate::cases::config;
 use crate::specimens::{CONTENTS_AT, Scratch, VERSION_AT, checkpoint, done_study, sealed, specification};
-use crate::support::config;
 
 #[test]
 fn a_sealed_file_is_resealed_as_the_library_does() {

@@ -1,14 +1,11 @@
 //! What is seen of a run, and what ends it in the middle.
 
-use std::panic::resume_unwind;
+use std::ops::ControlFlow;
 
-use granular_edmd::observable::{Collision, Observer, Snapshot};
+use granular_edmd::observable::{Collision, Observer, Snapshot, Verdict};
 
 /// Collisions of one step, and some more.
 pub(crate) const KEPT: usize = 4;
-
-/// What unwinds a run that has spent its budget: no observer can end it otherwise.
-pub(crate) struct Spent;
 
 /// Counts the collisions, up to a budget, keeps the first ones, and takes one sample.
 pub(crate) struct Log {
@@ -31,9 +28,9 @@ impl Observer for Log {
         if self.collisions.len() < KEPT {
             self.collisions.push(*collision);
         }
-        if self.count > self.budget {
-            resume_unwind(Box::new(Spent));
-        }
+    }
+    fn verdict(&mut self) -> Verdict {
+        Ok(if self.count > self.budget { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     }
     fn next_sample(&self) -> f64 {
         if self.taken.is_empty() { self.sample } else { f64::INFINITY }

@@ -4,6 +4,8 @@
 //! The seeds are fixed. `PROPTEST_CASES` sets the number of cases, `PROPTEST_RNG_SEED` another seed: that is how these tests
 //! become runs of hours (docs/validation.md, “Hostile runs”).
 
+#[path = "../support/cases.rs"]
+mod cases;
 mod constructors;
 #[cfg(all(feature = "serde", unix))]
 mod faults;
@@ -21,12 +23,14 @@ mod random_runs;
 #[cfg(feature = "serde")]
 mod records;
 mod regressions;
+#[cfg(feature = "serde")]
+#[path = "../support/report.rs"]
+mod report;
+#[path = "../support/schedulers.rs"]
 mod schedulers;
 mod script;
 #[cfg(feature = "serde")]
 mod specimens;
-#[path = "../support/mod.rs"]
-mod support;
 mod systems;
 #[cfg(feature = "serde")]
 mod unknown_fields;

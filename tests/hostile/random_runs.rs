@@ -3,9 +3,9 @@
 
 use proptest::prelude::*;
 
+use crate::cases::config;
 use crate::schedulers::SCHEDULERS;
 use crate::script::{Actor, script};
-use crate::support::config;
 use crate::systems::system;
 
 proptest! {

@@ -1,15 +1,13 @@
 //! Random operations on a run, with all invariants checked after each event, and the trace that they leave.
 
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-
 use granular_edmd::Disk;
 use granular_edmd::observable::Collision;
-use granular_edmd::simulation::{BuildError, Event, RunError};
+use granular_edmd::simulation::{BuildError, Event, RunEnd, RunError};
 use proptest::prelude::*;
 
 use crate::invariants::{Change, check_state, farthest};
 use crate::laws::{Law, law};
-use crate::log::{KEPT, Log, Spent};
+use crate::log::{KEPT, Log};
 use crate::schedulers::SCHEDULERS;
 use crate::systems::{Run, System, gravity};
 use crate::walls::{Walls, walls};
@@ -20,6 +18,9 @@ const ENOUGH: usize = 10_000;
 /// Collisions of a case, after which it ends in the middle of a run: a disk at rest bounces up to 1e15 times in the time of
 /// one run. Twice as many as the guard lets pass without progress, so that it is the guard that ends what it should.
 const BUDGET: usize = 400_000;
+
+/// Longest time of a step.
+const STEP: f64 = 0.5;
 
 /// How deep one bounce may put a disk into a wall: the rounding of its height, which a disk at rest sums up.
 const SINKING: f64 = 16.0 * f64::EPSILON;
@@ -69,9 +70,24 @@ fn bits(disk: &Disk) -> [u64; 6] {
 /// Why a case ended before its script.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum End {
-    Error(RunError),
+    /// Events piled up.
+    Stalled(String),
+    /// Absolute times became too coarse for a disk that a hot wall had made fast.
+    TooLate(String),
     /// It had as many collisions as it may.
     Spent,
+    /// Nothing that may happen.
+    Other(String),
+}
+
+impl From<RunError> for End {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Stalled { .. } => Self::Stalled(error.to_string()),
+            RunError::TimeTooLate { .. } => Self::TooLate(error.to_string()),
+            _ => Self::Other(error.to_string()),
+        }
+    }
 }
 
 /// A run under a script.
@@ -149,21 +165,20 @@ impl Actor {
         for _ in 0..count {
             let (time, before) = (self.run.time(), self.run.disks());
             let mut log = Log::new(f64::INFINITY, KEPT);
-            let event = match self.run.step(&mut log) {
-                Ok(Some(event)) => event,
-                Ok(None) => return Ok(()),
-                Err(error) => return self.fail(End::Error(error)),
+            let event = match self.run.step_until(time + STEP, &mut log) {
+                Ok(event) => event,
+                Err(error) => return self.fail(error.into()),
             };
             prop_assert!(self.run.time() >= time, "time goes back from {time} to {}", self.run.time());
             self.check(event, &before, self.run.time() - time, &log.collisions)?;
-            self.film(Some(event), log.collisions.len());
+            self.film(event, log.collisions.len());
         }
         Ok(())
     }
 
     fn check(
         &mut self,
-        event: Event,
+        event: Option<Event>,
         before: &[Disk],
         elapsed: f64,
         collisions: &[Collision],
@@ -171,8 +186,8 @@ impl Actor {
         let Self { run, walls, law, .. } = self;
         let change = Change { run, walls, law: *law, before, after: &run.disks(), elapsed };
         let (collides, involved) = match event {
-            Event::Collision { disk, partner } => (true, [disk, partner]),
-            Event::WallCollision { disk, .. } => (true, [disk, disk]),
+            Some(Event::Collision { disk, partner }) => (true, [disk, partner]),
+            Some(Event::WallCollision { disk, .. }) => (true, [disk, disk]),
             _ => (false, [usize::MAX; 2]),
         };
         prop_assert_eq!(collisions.len(), usize::from(collides), "{:?}", event);
@@ -209,12 +224,11 @@ impl Actor {
         Ok(())
     }
 
-    /// Runs until a time, or until the log leaves the run.
+    /// Runs until a time, or until the log stops the run.
     fn run_until(&mut self, time: f64, log: &mut Log) -> Result<(), End> {
-        match catch_unwind(AssertUnwindSafe(|| self.run.run_until(time, log))) {
-            Ok(result) => result.map_err(End::Error),
-            Err(left) if left.is::<Spent>() => Err(End::Spent),
-            Err(panic) => resume_unwind(panic),
+        match self.run.run_until(time, log)? {
+            RunEnd::Observer => Err(End::Spent),
+            _ => Ok(()),
         }
     }
 
@@ -229,7 +243,7 @@ impl Actor {
 
     /// Events may pile up where a rule is lossy; nothing else may end a run.
     fn fail(&mut self, end: End) -> Result<(), TestCaseError> {
-        prop_assert!(matches!(end, End::Spent | End::Error(RunError::Stalled { .. })), "{end:?}");
+        prop_assert!(!matches!(end, End::Other(_)), "{end:?}");
         self.film(None, 0);
         self.end = Some(end);
         self.check_state()
@@ -272,8 +286,9 @@ impl Actor {
         if self.resumes {
             self.resumed = (self.resumed + 1) % SCHEDULERS.len();
             let (rule, walls) = (self.law.rule(), self.walls.container());
-            let run = Simulation::resume(&checkpoint, rule, walls, SCHEDULERS[self.resumed]());
-            self.run = run.map_err(|error| TestCaseError::fail(error.to_string()))?;
+            let resumption =
+                Simulation::resume(&checkpoint, rule, walls).scheduler(SCHEDULERS[self.resumed]());
+            self.run = resumption.build().map_err(|error| TestCaseError::fail(error.to_string()))?;
         }
         Ok(())
     }

@@ -43,7 +43,7 @@ pub(crate) fn checkpoint() -> Checkpoint {
 }
 
 pub(crate) fn resume(checkpoint: &Checkpoint) -> Result<SmallRun, CheckpointError> {
-    Simulation::resume(checkpoint, rule(), container(), LinearScan::default())
+    Simulation::resume(checkpoint, rule(), container()).scheduler(LinearScan::default()).build()
 }
 
 /// Contents behind the seal of `like`.

@@ -7,9 +7,9 @@ use proptest::prelude::*;
 
 use granular_edmd::boundary::Container;
 
+use crate::cases::decades;
 use crate::laws::{Law, Rule, law};
 use crate::schedulers::Scheduler;
-use crate::support::decades;
 use crate::walls::{Walls, walls};
 
 pub(crate) type Run = Simulation<Rule, Container, Scheduler>;

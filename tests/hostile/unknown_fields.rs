@@ -80,12 +80,12 @@ fn parameters_with_a_field_too_many_are_refused() {
 
 #[test]
 fn what_was_measured_with_a_field_too_many_is_refused() {
-    let mut run = resume(&checkpoint()).unwrap();
+    let run = resume(&checkpoint()).unwrap();
     refuses(&run.boundary().domain());
     refuses(&run.measure(&OrderParameters));
     refuses(&run.measure(&Energies));
     refuses(&run.measure(&Temperatures));
-    let region = granular_edmd::boundary::Region { min: DVec2::ZERO, max: DVec2::ONE };
+    let region = granular_edmd::boundary::Region::new(DVec2::ZERO, DVec2::ONE);
     let fields = Fields::new(region, 1, 1, SampleTimes::every(1.0).unwrap()).unwrap();
     refuses(&fields.cell(0, 0).unwrap());
     let transition = json!({ "line": "ZeroOne", "value": 0.1, "error": 0.01, "rising": true });

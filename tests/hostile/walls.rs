@@ -1,11 +1,11 @@
 //! Every container: each wall with any motion, rule or temperature.
 
-use granular_edmd::boundary::{Container, MissingWall, Thermal, Wall};
+use granular_edmd::boundary::{Container, Thermal, Wall, WallError};
 use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
 use proptest::prelude::*;
 
+use crate::cases::decades;
 use crate::laws::{Law, law};
-use crate::support::decades;
 
 #[derive(Debug, Clone, Copy)]
 enum Shape {
@@ -74,7 +74,7 @@ impl Walls {
 }
 
 impl Plan {
-    fn apply(&self, container: Container, wall: Wall) -> Result<Container, MissingWall> {
+    fn apply(&self, container: Container, wall: Wall) -> Result<Container, WallError> {
         let &Self { amplitude, frequency, .. } = self;
         let container = match self.shape {
             Shape::Fixed => container,

@@ -2,13 +2,13 @@
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
-use granular_edmd::analysis::block_average;
 use granular_edmd::boundary::{Container, Thermal, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
     CenterOfMass, Collision, Partner, SampleTimes, Series, Temperature, Temperatures, on_collision,
 };
+use granular_edmd::statistics::block_average;
 use granular_edmd::{Simulation, initial};
 
 use crate::{Outcome, agrees};

@@ -7,7 +7,8 @@ use std::f64::consts::PI;
 
 use granular_edmd::collision::{CollisionRule, Frictional, Rough, Smooth};
 use granular_edmd::kinetic::{Maxwellian, mean_energy_change};
-use granular_edmd::observable::{RunningMean, Temperatures};
+use granular_edmd::observable::Temperatures;
+use granular_edmd::statistics::RunningMean;
 
 use crate::gas::{Gas, run_for};
 use crate::{Outcome, agrees};

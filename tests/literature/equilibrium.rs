@@ -6,9 +6,9 @@ use granular_edmd::Disk;
 use granular_edmd::collision::{Elastic, Frictional, Rough};
 use granular_edmd::kinetic::{Maxwellian, sticking_fraction};
 use granular_edmd::observable::{
-    Collision, Energies, HeightProfile, Partner, RunningMean, SampleTimes, Snapshot, Temperatures,
-    on_collision, on_sample,
+    Collision, Energies, HeightProfile, Partner, SampleTimes, Snapshot, Temperatures, on_collision, on_sample,
 };
+use granular_edmd::statistics::RunningMean;
 
 use crate::gas::{Gas, run_for};
 use crate::{Outcome, agrees};

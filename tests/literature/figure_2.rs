@@ -1,9 +1,9 @@
 //! The set-up of the paper's Fig. 2, with both kinds of thermal base.
 
-use granular_edmd::analysis::block_average;
 use granular_edmd::boundary::{Container, Thermal, Wall};
 use granular_edmd::collision::{ContactDuration, Frictional};
 use granular_edmd::observable::{CenterOfMass, SampleTimes, Series};
+use granular_edmd::statistics::block_average;
 use granular_edmd::{Simulation, initial};
 
 use crate::Outcome;

@@ -78,7 +78,7 @@ pub(crate) fn run_for<R: CollisionRule, B: Boundary, O: Observer + ?Sized>(
     let wanted = (0.5 * collisions_per_disk * simulation.len() as f64) as u64;
     let last = simulation.counters().collisions + wanted;
     while simulation.counters().collisions < last {
-        simulation.step(observer)?;
+        simulation.step_until(simulation.time() + 1.0, observer)?;
     }
     Ok(())
 }

@@ -4,7 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use granular_edmd::boundary::{Boundary, Domain};
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{ConvectionOrder, Observable, OrderParameters, RunningMean, Snapshot};
+use granular_edmd::observable::{ConvectionOrder, Observable, OrderParameters, Snapshot};
+use granular_edmd::statistics::RunningMean;
 use granular_edmd::{Disk, ParameterError, initial};
 
 use crate::Outcome;
@@ -19,7 +20,7 @@ fn order(flow: impl Fn(f64) -> f64) -> Result<ConvectionOrder, ParameterError> {
         Disk::new(DVec2::new(x, 5.0), 0.5)?.with_velocity(DVec2::new(0.0, flow(x)))
     };
     let disks = (0..10_000).map(disk).collect::<Result<Vec<_>, _>>()?;
-    let domain = Domain { left: 0.0, right: WIDTH, bottom: 0.0, top: 150.0, periodic: false };
+    let domain = Domain::new(0.0, WIDTH, 0.0, 150.0);
     Ok(OrderParameters.measure(&Snapshot::new(0.0, &disks, domain, 0.0)))
 }
 

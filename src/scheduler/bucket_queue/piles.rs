@@ -1,20 +1,21 @@
 //! Piles of disks: written at their ends only, and read as a whole.
 
-/// Disks of a block: with what is known about it, four cache lines.
+/// Disks in a block: with the link to another block they fill four cache lines.
 const ROOM: usize = 63;
 
+/// Link to no block.
 const NOWHERE: u32 = u32::MAX;
 
-/// Piles of disks in blocks that they share: a block that one has been read from serves another.
+/// Piles of disks, in blocks from a common store: a block that has been read serves another pile.
 #[derive(Debug, Clone)]
 pub(super) struct Piles {
     ends: Vec<Pile>,
     blocks: Vec<Block>,
-    /// The first block of no pile.
+    /// The first of the blocks that are in no pile.
     free: u32,
 }
 
-/// The last block of a pile, and how many disks are in that.
+/// The last block of a pile, and the number of disks in that block.
 #[derive(Debug, Clone, Copy)]
 struct Pile {
     last: u32,
@@ -22,6 +23,7 @@ struct Pile {
 }
 
 impl Pile {
+    /// A pile without a block counts as one whose last block is full: the first disk asks for a block.
     const EMPTY: Self = Self { last: NOWHERE, count: ROOM as u32 };
 }
 
@@ -36,7 +38,7 @@ struct Block {
 impl Piles {
     pub(super) const NONE: Self = Self { ends: Vec::new(), blocks: Vec::new(), free: NOWHERE };
 
-    /// So many piles, all empty.
+    /// Empties everything, and makes this number of piles.
     pub(super) fn clear(&mut self, piles: usize) {
         self.ends.clear();
         self.ends.resize(piles, Pile::EMPTY);
@@ -44,7 +46,7 @@ impl Piles {
         self.free = NOWHERE;
     }
 
-    /// How many piles there are.
+    /// Returns the number of piles.
     #[inline]
     pub(super) fn len(&self) -> usize {
         self.ends.len()
@@ -73,7 +75,7 @@ impl Piles {
         }
     }
 
-    /// Shows all disks of a pile, block by block; it is empty then.
+    /// Shows all disks of a pile, block by block, and empties it.
     pub(super) fn take(&mut self, pile: usize, mut show: impl FnMut(&[u32])) {
         let Pile { mut last, count } = std::mem::replace(&mut self.ends[pile], Pile::EMPTY);
         let mut count = count as usize;

@@ -1,10 +1,13 @@
 //! A boundary.
 
-use granular_edmd::Flight;
-use granular_edmd::boundary::{Boundary, Domain, Region, Response, Surface, Touch};
-use granular_edmd::glam::DVec2;
+use std::borrow::Cow;
 
-use crate::polynomial::first_descent;
+use granular_edmd::boundary::{Boundary, Domain, Region, Response, Surface, Touch};
+use granular_edmd::collision::CollisionRule;
+use granular_edmd::glam::DVec2;
+use granular_edmd::roots::first_descent_of_quartic;
+use granular_edmd::{Fingerprint, Flight};
+
 use crate::viscoelastic::Viscoelastic;
 
 /// A circular drum about the origin that turns about its axis.
@@ -32,11 +35,15 @@ impl Drum {
 impl Boundary for Drum {
     fn domain(&self) -> Domain {
         let radius = self.radius;
-        Domain { left: -radius, right: radius, bottom: -radius, top: radius, periodic: false }
+        Domain::new(-radius, radius, -radius, radius)
     }
 
-    fn walls(&self) -> &[&'static str] {
-        &["drum"]
+    fn wall_count(&self) -> usize {
+        1
+    }
+
+    fn wall_name(&self, _wall: usize) -> Cow<'_, str> {
+        Cow::Borrowed("drum")
     }
 
     fn set_time_origin(&mut self, _: f64) {}
@@ -58,19 +65,27 @@ impl Boundary for Drum {
             -v.dot(a),
             -0.25 * a.length_squared(),
         ];
-        let wait = first_descent(&gap, until - start)?;
-        Some(Touch { time: start + wait, wall: 0 })
+        let wait = first_descent_of_quartic(&gap, until - start)?;
+        Some(Touch::new((start + wait).min(until), 0))
     }
 
     fn surface(&self, _wall: usize, position: DVec2, _time: f64) -> Surface<'_> {
         let outward = position.normalize_or(DVec2::Y);
         let velocity = self.angular_velocity * self.radius * outward.perp();
         let response = self.rule.as_ref().map_or(Response::Shared, |rule| Response::Rule(rule));
-        Surface { normal: -outward, velocity, response }
+        Surface::new(-outward, velocity).with_response(response)
     }
 
     fn overlap(&self, position: DVec2, radius: f64, _time: f64) -> Option<(usize, f64)> {
         let depth = position.length() + radius - self.radius;
         (depth > 0.0).then_some((0, depth))
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let drum = Fingerprint::of("Drum").number(self.radius).number(self.angular_velocity);
+        match self.rule {
+            None => Some(drum),
+            Some(rule) => Some(drum.part(rule.fingerprint()?)),
+        }
     }
 }

@@ -3,7 +3,7 @@
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
-use granular_edmd::scheduler::EventScheduler;
+use granular_edmd::scheduler::{EventScheduler, NOTHING_DUE};
 
 /// A binary heap that forgets old entries when they come up.
 #[derive(Debug, Clone, Default)]
@@ -35,7 +35,7 @@ impl PartialOrd for Entry {
 }
 
 impl LazyHeap {
-    /// `earliest` only looks: what is out of date must be gone before.
+    /// Removes old entries from the top, because `earliest` only looks.
     fn drop_outdated(&mut self) {
         while let Some(Reverse(first)) = self.heap.peek() {
             if self.due[first.disk] == first.due {
@@ -59,6 +59,17 @@ impl EventScheduler for LazyHeap {
     }
 
     fn earliest(&self) -> (usize, f64) {
-        self.heap.peek().map_or((usize::MAX, f64::INFINITY), |Reverse(first)| (first.disk, first.due))
+        self.heap.peek().map_or(NOTHING_DUE, |Reverse(first)| (first.disk, first.due))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::LazyHeap;
+    use granular_edmd::scheduler::laws;
+
+    #[test]
+    fn it_keeps_the_laws() -> Result<(), laws::Violation> {
+        laws::check(LazyHeap::default)
     }
 }

@@ -5,6 +5,5 @@ pub mod angular_momentum;
 pub mod drum;
 pub mod hardest_impacts;
 pub mod lazy_heap;
-pub mod polynomial;
 pub mod two_sines;
 pub mod viscoelastic;

@@ -1,5 +1,6 @@
 //! A wall motion.
 
+use granular_edmd::Fingerprint;
 use granular_edmd::wall::{AccelerationBounds, WallMotion, WallState};
 
 /// The sum of two sines whose frequencies need not fit together: it has no period, and all that it says of its
@@ -17,20 +18,25 @@ impl TwoSines {
 }
 
 impl WallMotion for TwoSines {
-    fn state(&self, time: f64) -> WallState {
-        WallState {
-            displacement: self.sum(|a, w| a * (w * time).sin()),
-            velocity: self.sum(|a, w| a * w * (w * time).cos()),
-        }
+    fn state(&self, phase: f64) -> WallState {
+        WallState::new(
+            self.sum(|a, w| a * libm::sin(w * phase)),
+            self.sum(|a, w| a * w * libm::cos(w * phase)),
+        )
     }
 
-    fn acceleration(&self, _time: f64) -> AccelerationBounds {
+    fn acceleration(&self, _phase: f64) -> AccelerationBounds {
         let most = self.sum(|a, w| a.abs() * w * w);
-        AccelerationBounds { until: f64::INFINITY, min: -most, max: most }
+        AccelerationBounds::new(f64::INFINITY, -most, most)
     }
 
     fn reach(&self) -> (f64, f64) {
         let most = self.sum(|a, _| a.abs());
         (-most, most)
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let numbers = self.amplitudes.iter().chain(&self.frequencies);
+        Some(numbers.fold(Fingerprint::of("TwoSines"), |print, &number| print.number(number)))
     }
 }

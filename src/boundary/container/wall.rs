@@ -1,0 +1,67 @@
+//! Walls of a container by their names, and errors about them.
+
+use std::fmt;
+
+use thiserror::Error;
+
+use crate::wall::laws::Violation;
+
+/// A wall of a [`Container`](super::Container).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Wall {
+    /// The base, at height 0.
+    Floor,
+    /// The upper end.
+    Lid,
+    /// The left side.
+    Left,
+    /// The right side.
+    Right,
+}
+
+impl Wall {
+    /// Returns the name of the wall: "floor", "lid", "left" or "right".
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Floor => "floor",
+            Self::Lid => "lid",
+            Self::Left => "left",
+            Self::Right => "right",
+        }
+    }
+}
+
+impl fmt::Display for Wall {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.name())
+    }
+}
+
+/// A wall cannot be changed in this way.
+///
+/// ```
+/// use granular_edmd::boundary::{Container, Wall};
+/// use granular_edmd::wall::Fixed;
+/// let error = Container::open(20.0)?.with_motion(Wall::Lid, Fixed).unwrap_err();
+/// assert_eq!(error.to_string(), "the container has no wall \"lid\"");
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum WallError {
+    /// The container has no such wall: it is open above, or its sides are periodic.
+    #[error("the container has no wall \"{wall}\"")]
+    Missing {
+        /// The wall asked for.
+        wall: Wall,
+    },
+    /// The motion answers with numbers that no run can do without.
+    #[error("the motion of the wall \"{wall}\" cannot be used: {violation}")]
+    Motion {
+        /// The wall.
+        wall: Wall,
+        /// The answer of the motion.
+        violation: Violation,
+    },
+}

@@ -1,0 +1,233 @@
+//! One flight under trial, from its begin to its touch.
+
+use glam::DVec2;
+
+use super::Violation;
+use super::trial::Trial;
+use crate::Flight;
+use crate::boundary::{Boundary, Surface, Touch};
+
+/// Samples along a flight.
+const SAMPLES: u32 = 200;
+
+/// Longest flight, in times that a disk takes across the domain.
+const LONGEST: f64 = 3.0;
+
+/// Part of the relative speed below which a touch is grazing: rounding decides when it comes, or whether.
+const GRAZING: f64 = 1e-2;
+
+/// Part of the radius by which a disk is moved to see where a wall is.
+const STEP: f64 = 1e-3;
+
+/// Error of a normal's length, and of its direction as told by the depths of disks that are moved along it.
+const UNIT: f64 = 1e-9;
+const SLOPE: f64 = 0.2;
+
+/// A touch that has been found, and how it meets the wall.
+struct Meeting {
+    touch: Touch,
+    place: DVec2,
+    /// Velocity of the disk.
+    velocity: DVec2,
+    /// Speed at which the gap opens; negative while it closes.
+    rate: f64,
+    /// True if the gap closes so slowly that rounding decides.
+    is_grazing: bool,
+}
+
+/// Checks a flight, and returns the next one, which begins where this one was turned back at a wall.
+pub(super) fn check_flight<B: Boundary + ?Sized>(
+    trial: &mut Trial<'_, B>,
+    flight: &Flight,
+) -> Result<Option<Flight>, Violation> {
+    let until = flight.time() + longest(trial, flight);
+    let found = trial.boundary.first_touch(flight, until);
+    if let Some(touch) = found {
+        check_touch(trial, flight, touch, until)?;
+    }
+    check_way(trial, flight, found.map_or(until, |touch| touch.time), found)?;
+    let meeting = found.map(|touch| check_place(trial, flight, touch)).transpose()?;
+    check_origin(trial, flight, until, meeting.as_ref())?;
+    let Some(meeting) = meeting else { return Ok(None) };
+    check_limits(trial, flight, &meeting)?;
+    trial.check_regions(meeting.place)?;
+    Ok(Some(turned_back(trial, flight, &meeting)))
+}
+
+/// Returns how long a flight may last: until a periodic side at most, as flights of the engine do.
+fn longest<B: Boundary + ?Sized>(trial: &Trial<'_, B>, flight: &Flight) -> f64 {
+    let longest = LONGEST * trial.length() / trial.speed();
+    let (domain, start) = (trial.domain(), flight.time());
+    if !domain.periodic {
+        return longest;
+    }
+    let (x, speed) = (flight.position(start).x, flight.velocity(start).x);
+    let side = if speed > 0.0 { domain.right - x } else { x - domain.left };
+    longest.min((side / speed.abs()).max(0.0))
+}
+
+fn check_touch<B: Boundary + ?Sized>(
+    trial: &Trial<'_, B>,
+    flight: &Flight,
+    touch: Touch,
+    until: f64,
+) -> Result<(), Violation> {
+    if !(touch.time >= flight.time() && touch.time <= until) {
+        return Err(Violation::TouchTime { time: touch.time, until, flight: *flight });
+    }
+    let count = trial.wall_count();
+    if touch.wall >= count {
+        return Err(Violation::TouchWall { wall: touch.wall, count, flight: *flight });
+    }
+    Ok(())
+}
+
+/// Checks that a disk overlaps no wall, and is in the domain, on its way.
+fn check_way<B: Boundary + ?Sized>(
+    trial: &Trial<'_, B>,
+    flight: &Flight,
+    end: f64,
+    found: Option<Touch>,
+) -> Result<(), Violation> {
+    let (domain, rounding) = (trial.domain(), trial.rounding());
+    for k in 0..=SAMPLES {
+        let time = (flight.time() + (end - flight.time()) * f64::from(k) / f64::from(SAMPLES)).min(end);
+        let place = flight.position(time);
+        if let Some((wall, depth)) = trial.depth(place, -rounding, time) {
+            let (found, flight) = (found.map(|touch| touch.time), *flight);
+            return Err(Violation::LetThrough { wall, depth, time, found, flight });
+        }
+        let is_inside = (domain.left - rounding..=domain.right + rounding).contains(&place.x)
+            && (domain.bottom - rounding..=domain.top + rounding).contains(&place.y);
+        if !is_inside {
+            return Err(Violation::LeftDomain { place, time, flight: *flight });
+        }
+    }
+    Ok(())
+}
+
+/// Checks that the gap is closed at the touch, and that the surface there points out of the wall.
+fn check_place<B: Boundary + ?Sized>(
+    trial: &Trial<'_, B>,
+    flight: &Flight,
+    touch: Touch,
+) -> Result<Meeting, Violation> {
+    let place = flight.position(touch.time);
+    if trial.depth(place, trial.rounding(), touch.time).is_none() {
+        return Err(Violation::EarlyTouch { wall: touch.wall, time: touch.time, flight: *flight });
+    }
+    let surface = trial.boundary.surface(touch.wall, place, touch.time);
+    check_surface(trial, touch, place, &surface)?;
+    let velocity = flight.velocity(touch.time);
+    let relative = velocity - surface.velocity;
+    let rate = relative.dot(surface.normal);
+    let speed = velocity.length() + surface.velocity.length();
+    if rate > GRAZING * speed {
+        return Err(Violation::Leaving { wall: touch.wall, rate, time: touch.time, flight: *flight });
+    }
+    Ok(Meeting { touch, place, velocity, rate, is_grazing: rate > -GRAZING * speed })
+}
+
+/// Checks that the normal is a unit vector, that a disk moved along it comes out of the wall, and that the
+/// wall has a velocity.
+fn check_surface<B: Boundary + ?Sized>(
+    trial: &Trial<'_, B>,
+    touch: Touch,
+    place: DVec2,
+    surface: &Surface<'_>,
+) -> Result<(), Violation> {
+    let Touch { wall, time, .. } = touch;
+    let normal = surface.normal;
+    if !normal.is_finite() || (normal.length_squared() - 1.0).abs() > UNIT {
+        return Err(Violation::NormalLength { wall, normal, place, time });
+    }
+    if !surface.velocity.is_finite() {
+        return Err(Violation::Velocity { wall, velocity: surface.velocity, time });
+    }
+    let step = STEP * trial.radius();
+    let depth = |place: DVec2| trial.depth(place, 2.0 * step, time).map_or((wall, 0.0), |deepest| deepest);
+    let (here, inward, outward) = (depth(place), depth(place - step * normal), depth(place + step * normal));
+    // In a corner another wall may be the deepest, and stay so.
+    let is_alone = here.0 == wall && outward.0 == wall;
+    let comes_out = (here.1 - outward.1 - step).abs() <= SLOPE * step;
+    let goes_in = inward.1 - here.1 >= (1.0 - SLOPE) * step;
+    if goes_in && (comes_out || !is_alone) {
+        Ok(())
+    } else {
+        Err(Violation::Normal { wall, normal, place, time })
+    }
+}
+
+/// Checks that there is no touch when the flight ends before it, and one at once when it goes on from it.
+fn check_limits<B: Boundary + ?Sized>(
+    trial: &Trial<'_, B>,
+    flight: &Flight,
+    meeting: &Meeting,
+) -> Result<(), Violation> {
+    let time = meeting.touch.time;
+    let half = flight.time() + 0.5 * (time - flight.time());
+    if let Some(early) = trial.boundary.first_touch(flight, half)
+        && time > half
+    {
+        return Err(Violation::TouchTime { time: early.time, until: half, flight: *flight });
+    }
+    if meeting.is_grazing {
+        return Ok(());
+    }
+    let going_on = Flight::new(time, meeting.place, meeting.velocity, flight.acceleration(), flight.radius());
+    // The time in which the gap closes that rounding may have left open.
+    let soon = time + 4.0 * trial.rounding() / meeting.rate.abs();
+    match trial.boundary.first_touch(&going_on, soon) {
+        Some(again) if again.time >= time && again.time <= soon => Ok(()),
+        _ => Err(Violation::Missed { wall: meeting.touch.wall, flight: going_on }),
+    }
+}
+
+/// Checks that the same flight, told from another time origin, touches at the same absolute time.
+///
+/// A grazing touch, or one at the very end, may be there or not by rounding.
+fn check_origin<B: Boundary + ?Sized>(
+    trial: &mut Trial<'_, B>,
+    flight: &Flight,
+    until: f64,
+    meeting: Option<&Meeting>,
+) -> Result<(), Violation> {
+    let (origin, start) = (trial.origin(), flight.time());
+    // Earlier, so that no offset is negative.
+    let shift = 0.37 * origin;
+    let (position, velocity) = (flight.position(start), flight.velocity(start));
+    let shifted = Flight::new(start + shift, position, velocity, flight.acceleration(), flight.radius());
+    trial.set_origin(origin - shift);
+    let found = trial.boundary.first_touch(&shifted, until + shift);
+    let other = found.map(|touch| check_place(trial, &shifted, touch)).transpose();
+    trial.set_origin(origin);
+    // As told from the first origin.
+    let other = other?
+        .map(|other| Meeting { touch: Touch::new(other.touch.time - shift, other.touch.wall), ..other });
+    let agree = match (meeting, &other) {
+        (None, None) => true,
+        (Some(one), None) | (None, Some(one)) => {
+            one.is_grazing || until - one.touch.time < 2.0 * slack(trial, one)
+        }
+        (Some(one), Some(other)) => {
+            let apart = (one.touch.time - other.touch.time).abs();
+            one.is_grazing || other.is_grazing || apart <= slack(trial, one)
+        }
+    };
+    let time = |meeting: &Meeting| meeting.touch.time;
+    let (before, after) = (meeting.map(time), other.as_ref().map(time));
+    if agree { Ok(()) } else { Err(Violation::TimeOrigin { origin, shift, before, after, flight: *flight }) }
+}
+
+/// Returns how far apart two answers to the same touch may be: as long as the gap takes through its rounding.
+fn slack<B: Boundary + ?Sized>(trial: &Trial<'_, B>, meeting: &Meeting) -> f64 {
+    4.0 * trial.rounding() / meeting.rate.abs()
+}
+
+/// Returns the flight after the touch, as if wall and disk were elastic and smooth.
+fn turned_back<B: Boundary + ?Sized>(trial: &Trial<'_, B>, flight: &Flight, meeting: &Meeting) -> Flight {
+    let time = meeting.touch.time;
+    let surface = trial.boundary.surface(meeting.touch.wall, meeting.place, time);
+    let velocity = meeting.velocity - 2.0 * meeting.rate.min(0.0) * surface.normal;
+    Flight::new(time, meeting.place, velocity, flight.acceleration(), flight.radius())
+}

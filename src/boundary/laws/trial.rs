@@ -1,0 +1,139 @@
+//! One boundary under trial: places, sizes and the rounding that is allowed.
+
+use glam::DVec2;
+
+use super::Violation;
+use super::flight::check_flight;
+use crate::Flight;
+use crate::boundary::{Boundary, Domain, Region};
+
+/// Rounding allowed, relative to the size of the domain.
+const ROUNDING: f64 = 1e-9;
+
+/// Sizes of the regions around a touch, relative to the radius; the smallest holds the rounding of its place.
+const REGIONS: [f64; 3] = [0.0, 0.5, 5.0];
+
+/// A boundary, and what is tried with it.
+pub(super) struct Trial<'a, B: ?Sized> {
+    pub(super) boundary: &'a mut B,
+    domain: Domain,
+    wall_count: usize,
+    radius: f64,
+    speed: f64,
+    origin: f64,
+}
+
+impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
+    pub(super) fn new(boundary: &'a mut B, domain: Domain, radius: f64, speed: f64) -> Self {
+        let wall_count = boundary.wall_count();
+        Self { boundary, domain, wall_count, radius, speed, origin: 0.0 }
+    }
+
+    pub(super) fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    pub(super) fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    pub(super) fn origin(&self) -> f64 {
+        self.origin
+    }
+
+    pub(super) fn wall_count(&self) -> usize {
+        self.wall_count
+    }
+
+    pub(super) fn domain(&self) -> &Domain {
+        &self.domain
+    }
+
+    /// Size of the domain: of a square of its width, if it is open above.
+    pub(super) fn length(&self) -> f64 {
+        let height = self.domain.height();
+        if height.is_finite() { self.domain.width().max(height) } else { self.domain.width() }
+    }
+
+    /// Depth of an overlap that is rounding: of places, and of times at the speed of disks and walls.
+    pub(super) fn rounding(&self) -> f64 {
+        let Domain { left, right, bottom, .. } = self.domain;
+        ROUNDING * (self.length() + left.abs().max(right.abs()).max(bottom.abs()) + self.radius)
+    }
+
+    /// Corners of the rectangle in which flights begin.
+    pub(super) fn rectangle(&self) -> (DVec2, DVec2) {
+        let Domain { left, right, bottom, top, .. } = self.domain;
+        (DVec2::new(left, bottom), DVec2::new(right, top.min(bottom + self.length())))
+    }
+
+    pub(super) fn set_origin(&mut self, origin: f64) {
+        self.boundary.set_time_origin(origin);
+        self.origin = origin;
+    }
+
+    /// Returns the wall that a disk larger by `more` overlaps at this place, and how deep.
+    pub(super) fn depth(&self, place: DVec2, more: f64, time: f64) -> Option<(usize, f64)> {
+        self.boundary.overlap(place, self.radius + more, time)
+    }
+
+    /// Checks some flights in a row of a disk, turned back at each wall that it touches.
+    pub(super) fn run(&mut self, origin: f64, first: Flight, flights: usize) -> Result<(), Violation> {
+        self.set_origin(origin);
+        let mut flight = first;
+        for _ in 0..flights {
+            let touched = check_flight(self, &flight)?;
+            self.check_constants()?;
+            match touched {
+                Some(next) => flight = next,
+                None => return Ok(()),
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that the domain and the count of walls are still what they were.
+    fn check_constants(&self) -> Result<(), Violation> {
+        let (now, walls) = (self.boundary.domain(), self.boundary.wall_count());
+        if now != self.domain {
+            return Err(Violation::DomainChanged { before: self.domain, now });
+        }
+        if walls != self.wall_count {
+            return Err(Violation::WallsChanged { before: self.wall_count, now: walls });
+        }
+        Ok(())
+    }
+
+    /// Checks that every region that holds this place of a touch may be touched.
+    pub(super) fn check_regions(&self, place: DVec2) -> Result<(), Violation> {
+        for size in REGIONS.map(|size| DVec2::splat(size * self.radius + self.rounding())) {
+            let around = Region::new(place - size, place + size);
+            for region in [around, self.open_at_edges(around)] {
+                for radius in [self.radius, 1.5 * self.radius] {
+                    if !self.boundary.may_touch(&region, radius) {
+                        return Err(Violation::MayTouch { region, radius, place });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns a region like those of the engine: without an end where it comes near an edge of the domain.
+    fn open_at_edges(&self, region: Region) -> Region {
+        let Domain { left, right, bottom, top, periodic } = self.domain;
+        let near = 2.0 * self.radius;
+        let open = |is_near: bool, edge: f64, end: f64| if is_near { end } else { edge };
+        let Region { min, max } = region;
+        Region::new(
+            DVec2::new(
+                open(!periodic && min.x < left + near, min.x, f64::NEG_INFINITY),
+                open(min.y < bottom + near, min.y, f64::NEG_INFINITY),
+            ),
+            DVec2::new(
+                open(!periodic && max.x > right - near, max.x, f64::INFINITY),
+                open(max.y > top - near, max.y, f64::INFINITY),
+            ),
+        )
+    }
+}

@@ -1,0 +1,192 @@
+//! Ways in which a boundary breaks its contract.
+
+use glam::DVec2;
+use thiserror::Error;
+
+use crate::Flight;
+use crate::boundary::{Domain, Region};
+
+/// Part of the contract that a boundary breaks. Times are offsets from the time origin.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Violation {
+    /// The domain is no rectangle that is open above at most.
+    #[error("the domain {domain:?} is not a rectangle with finite sides and a finite bottom")]
+    Domain {
+        /// The domain.
+        domain: Domain,
+    },
+    /// The interior is not inside the domain.
+    #[error("the interior {interior:?} is not inside the domain {domain:?}")]
+    Interior {
+        /// The interior.
+        interior: Domain,
+        /// The domain.
+        domain: Domain,
+    },
+    /// The domain changes.
+    #[error("the domain was {before:?} and is now {now:?}")]
+    DomainChanged {
+        /// The domain at first.
+        before: Domain,
+        /// The domain now.
+        now: Domain,
+    },
+    /// The count of walls changes.
+    #[error("there were {before} walls and are now {now}")]
+    WallsChanged {
+        /// The count at first.
+        before: usize,
+        /// The count now.
+        now: usize,
+    },
+    /// No free place was found for a disk.
+    #[error(
+        "no place was found in the domain where a disk of radius {radius} overlaps no wall at time {time}"
+    )]
+    NoRoom {
+        /// The radius.
+        radius: f64,
+        /// The time.
+        time: f64,
+    },
+    /// A disk is let into a wall.
+    #[error(
+        "a disk is {depth} deep in wall {wall} at time {time}, before a touch at {found:?}, on {flight:?}"
+    )]
+    LetThrough {
+        /// The wall.
+        wall: usize,
+        /// Depth of the overlap.
+        depth: f64,
+        /// Time of the overlap.
+        time: f64,
+        /// Time of the touch that was found, if there was one.
+        found: Option<f64>,
+        /// The flight.
+        flight: Flight,
+    },
+    /// A disk leaves the domain without a touch.
+    #[error("a disk leaves the domain without a touch: at time {time} it is at {place}, on {flight:?}")]
+    LeftDomain {
+        /// Centre of the disk.
+        place: DVec2,
+        /// The time.
+        time: f64,
+        /// The flight.
+        flight: Flight,
+    },
+    /// A touch is before the flight, after its limit, or not a number.
+    #[error("a touch at time {time} is outside of the flight, which ends at {until}: {flight:?}")]
+    TouchTime {
+        /// Time of the touch.
+        time: f64,
+        /// Limit of the search.
+        until: f64,
+        /// The flight.
+        flight: Flight,
+    },
+    /// A touch is of a wall that there is not.
+    #[error("a touch is of wall {wall}, but there are {count}, on {flight:?}")]
+    TouchWall {
+        /// Index of the wall.
+        wall: usize,
+        /// Count of walls.
+        count: usize,
+        /// The flight.
+        flight: Flight,
+    },
+    /// A touch is found where the gap is still open.
+    #[error("wall {wall} is touched at time {time} where the gap is still open, on {flight:?}")]
+    EarlyTouch {
+        /// The wall.
+        wall: usize,
+        /// Time of the touch.
+        time: f64,
+        /// The flight.
+        flight: Flight,
+    },
+    /// A touch is found while the disk leaves the wall.
+    #[error("wall {wall} is touched at time {time} while the disk leaves it at speed {rate}, on {flight:?}")]
+    Leaving {
+        /// The wall.
+        wall: usize,
+        /// Speed at which the gap opens.
+        rate: f64,
+        /// Time of the touch.
+        time: f64,
+        /// The flight.
+        flight: Flight,
+    },
+    /// A disk that touches a wall and approaches it is not found to touch it.
+    #[error("wall {wall} is touched and approached, but no touch is found at once, on {flight:?}")]
+    Missed {
+        /// The wall.
+        wall: usize,
+        /// A flight that begins at the touch.
+        flight: Flight,
+    },
+    /// A normal is not a unit vector.
+    #[error("the normal {normal} of wall {wall} is not a unit vector, for a disk at {place} at time {time}")]
+    NormalLength {
+        /// The wall.
+        wall: usize,
+        /// The normal.
+        normal: DVec2,
+        /// Centre of the disk.
+        place: DVec2,
+        /// The time.
+        time: f64,
+    },
+    /// A disk that is moved along the normal does not come out of the wall.
+    #[error(
+        "the normal {normal} of wall {wall} does not lead out of it, for a disk at {place} at time {time}"
+    )]
+    Normal {
+        /// The wall.
+        wall: usize,
+        /// The normal.
+        normal: DVec2,
+        /// Centre of the disk.
+        place: DVec2,
+        /// The time.
+        time: f64,
+    },
+    /// The velocity of a wall is not finite.
+    #[error("the velocity {velocity} of wall {wall} is not finite, at time {time}")]
+    Velocity {
+        /// The wall.
+        wall: usize,
+        /// Its velocity.
+        velocity: DVec2,
+        /// The time.
+        time: f64,
+    },
+    /// A region that holds a touch is said not to be touched.
+    #[error("a disk of radius {radius} touches at {place}, but `may_touch` denies it for {region:?}")]
+    MayTouch {
+        /// The region.
+        region: Region,
+        /// Radius of the disk.
+        radius: f64,
+        /// Centre of the disk at the touch.
+        place: DVec2,
+    },
+    /// The same flight told from another time origin touches at another time.
+    #[error(
+        "with a time origin earlier than {origin} by {shift}, the touch is at time {after:?} and not \
+         {before:?}, on {flight:?}"
+    )]
+    TimeOrigin {
+        /// The time origin.
+        origin: f64,
+        /// Time by which the other origin is earlier.
+        shift: f64,
+        /// Time of the touch from the one origin.
+        before: Option<f64>,
+        /// Time of the touch from the other origin, as an offset from the first.
+        after: Option<f64>,
+        /// The flight.
+        flight: Flight,
+    },
+}

@@ -1,0 +1,101 @@
+//! From moving bodies to a contact, and from an impulse back to velocities.
+
+use glam::DVec2;
+
+use super::{CollisionRule, Contact, Impulse};
+use crate::Disk;
+
+/// A body at rest, as a collision sees it: how far its surface is, and how it resists.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Material {
+    pub(crate) radius: f64,
+    pub(crate) inverse_mass: f64,
+    /// `$(1 + 1/\beta)/m$`: velocity of the contact point per tangential impulse.
+    tangential_compliance: f64,
+    /// `$1/(\beta m R)$`: angular velocity per tangential impulse.
+    spin_response: f64,
+}
+
+impl Material {
+    /// A wall: it takes any impulse and does not move.
+    pub(crate) const WALL: Self =
+        Self { radius: 0.0, inverse_mass: 0.0, tangential_compliance: 0.0, spin_response: 0.0 };
+
+    pub(crate) fn of(disk: &Disk) -> Self {
+        let (mass, factor) = (disk.mass(), disk.inertia_factor());
+        Self {
+            radius: disk.radius(),
+            inverse_mass: 1.0 / mass,
+            tangential_compliance: (1.0 + 1.0 / factor) / mass,
+            spin_response: 1.0 / (factor * mass * disk.radius()),
+        }
+    }
+}
+
+/// The motion that a collision changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Body {
+    pub(crate) velocity: DVec2,
+    pub(crate) angular_velocity: f64,
+}
+
+impl Body {
+    pub(crate) fn of(disk: &Disk) -> Self {
+        Self { velocity: disk.velocity(), angular_velocity: disk.angular_velocity() }
+    }
+}
+
+/// The contact of two bodies, `normal` pointing from the second to the first.
+#[inline]
+fn contact(normal: DVec2, first: (&Body, &Material), second: (&Body, &Material)) -> Contact {
+    let approach = second.0.velocity - first.0.velocity;
+    let closing = approach.dot(normal);
+    // Bodies that touch may part, by rounding or because the caller did not ask: no rule should take roots of
+    // that. A comparison is false for NaN, too, and gives one kind of zero; `f64::max` may give either, as
+    // the processor does.
+    let closing = if closing > 0.0 { closing } else { 0.0 };
+    let surface = second.1.radius * second.0.angular_velocity + first.1.radius * first.0.angular_velocity;
+    let (normal_mass, tangential_mass) = (
+        1.0 / (first.1.inverse_mass + second.1.inverse_mass),
+        1.0 / (first.1.tangential_compliance + second.1.tangential_compliance),
+    );
+    Contact::new(closing, approach.dot(normal.perp()) + surface, normal_mass, tangential_mass)
+}
+
+/// `body` after an impulse along the normal and its perpendicular; both partners of a collision turn the same
+/// way.
+#[inline]
+fn kicked(body: &Body, material: &Material, kick: DVec2, tangential: f64) -> Body {
+    Body {
+        velocity: body.velocity + kick * material.inverse_mass,
+        angular_velocity: body.angular_velocity - tangential * material.spin_response,
+    }
+}
+
+/// Two bodies after a collision, with what happened between them.
+pub(crate) struct Outcome {
+    pub(crate) first: Body,
+    pub(crate) second: Body,
+    pub(crate) contact: Contact,
+    pub(crate) impulse: Impulse,
+}
+
+/// Lets two bodies collide under `rule`, `normal` pointing from the second to the first.
+#[inline(always)]
+pub(crate) fn collide_bodies<R: CollisionRule + ?Sized>(
+    rule: &R,
+    normal: DVec2,
+    time_since_last_collision: f64,
+    first: (&Body, &Material),
+    second: (&Body, &Material),
+) -> Outcome {
+    let contact = contact(normal, first, second).with_time_since_last_collision(time_since_last_collision);
+    let impulse = rule.impulse(&contact);
+    let kick = normal * impulse.normal() + normal.perp() * impulse.tangential();
+    Outcome {
+        first: kicked(first.0, first.1, kick, impulse.tangential()),
+        second: kicked(second.0, second.1, -kick, impulse.tangential()),
+        contact,
+        impulse,
+    }
+}

@@ -1,0 +1,144 @@
+//! Coulomb friction in a contact, whatever the normal direction does.
+
+use super::inelasticity::TangentialInelasticity;
+use super::{Contact, Impulse, Regime};
+use crate::ParameterError;
+use crate::quantity::{accept, non_negative};
+
+/// Coulomb friction that sticks or slides: the tangential part of a rule, for any normal impulse.
+///
+/// ```math
+/// \Delta_t = \begin{cases}
+/// 2(1-q_t)\,\mu_t\,v_t & \text{if } |2(1-q_t)\,\mu_t\,v_t| < \kappa_s\Delta_n \quad\text{(sticking)}\\
+/// \operatorname{sgn}(v_t)\,\kappa_d\,\Delta_n & \text{else} \quad\text{(sliding)}
+/// \end{cases}
+/// ```
+///
+/// (paper, Eqs. (4), (5)). A rule of your own decides the normal impulse, and leaves the rest to this:
+///
+/// ```
+/// use granular_edmd::collision::{CollisionRule, Contact, Friction, Impulse, Regime};
+///
+/// /// Restitution that falls with the speed of the impact.
+/// struct Viscoelastic {
+///     loss: f64,
+///     friction: Friction,
+/// }
+///
+/// impl CollisionRule for Viscoelastic {
+///     fn impulse(&self, contact: &Contact) -> Impulse {
+///         let restitution = 1.0 / (1.0 + self.loss * contact.closing_speed().sqrt());
+///         self.friction.impulse(contact, contact.normal_impulse(restitution))
+///     }
+/// }
+///
+/// let rule = Viscoelastic { loss: 0.5, friction: Friction::new(0.1, 0.25)? };
+/// let impulse = rule.impulse(&Contact::new(4.0, 9.0, 0.5, 0.5 / 3.0));
+/// assert_eq!((impulse.normal(), impulse.tangential()), (3.0, 0.75));
+/// assert_eq!(impulse.regime(), Regime::Sliding);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawFriction"))]
+pub struct Friction {
+    tangential_inelasticity: TangentialInelasticity,
+    static_coefficient: f64,
+    dynamic_coefficient: f64,
+}
+
+impl Friction {
+    /// Friction with one coefficient, `$\kappa = \kappa_s = \kappa_d$`.
+    ///
+    /// # Errors
+    /// If `tangential_inelasticity` is not in `[0, 1]`, or `coefficient` is negative or not finite.
+    pub fn new(tangential_inelasticity: f64, coefficient: f64) -> Result<Self, ParameterError> {
+        Self::from_inelasticity(tangential_inelasticity)?.with_coefficients(coefficient, coefficient)
+    }
+
+    /// The tangential inelasticity `$q_t \in [0, 1]$`, still without friction; see
+    /// [`Self::with_coefficients`].
+    ///
+    /// # Errors
+    /// If the inelasticity is out of its range.
+    pub fn from_inelasticity(tangential: f64) -> Result<Self, ParameterError> {
+        TangentialInelasticity::new(tangential).map(Self::without_coefficients)
+    }
+
+    /// The tangential restitution `$r_t \in [-1, 1]$`, still without friction; see
+    /// [`Self::with_coefficients`].
+    ///
+    /// # Errors
+    /// If the restitution is out of its range.
+    pub fn from_restitution(tangential: f64) -> Result<Self, ParameterError> {
+        TangentialInelasticity::from_restitution(tangential).map(Self::without_coefficients)
+    }
+
+    fn without_coefficients(tangential_inelasticity: TangentialInelasticity) -> Self {
+        Self { tangential_inelasticity, static_coefficient: 0.0, dynamic_coefficient: 0.0 }
+    }
+
+    /// The same inelasticity with the friction coefficients `$\kappa_s \ge \kappa_d \ge 0$`.
+    ///
+    /// # Errors
+    /// If one is negative or not finite, or the dynamic coefficient exceeds the static one: sliding could
+    /// then gain energy.
+    pub fn with_coefficients(
+        self,
+        static_coefficient: f64,
+        dynamic_coefficient: f64,
+    ) -> Result<Self, ParameterError> {
+        non_negative("static friction", static_coefficient)?;
+        non_negative("dynamic friction", dynamic_coefficient)?;
+        let ordered = dynamic_coefficient <= static_coefficient;
+        accept(ordered, "dynamic friction", "at most the static friction", dynamic_coefficient)?;
+        Ok(Self { static_coefficient, dynamic_coefficient, ..self })
+    }
+
+    /// Returns the whole impulse of a contact: the `normal` one as given, with the tangential one that it
+    /// allows.
+    #[inline]
+    pub fn impulse(&self, contact: &Contact, normal: f64) -> Impulse {
+        let sticking = self.tangential_inelasticity.impulse(contact);
+        let sliding = (self.dynamic_coefficient * normal).copysign(sticking);
+        // Selections, not a branch: which of the two it is, is a coin toss that no predictor learns.
+        let sticks = sticking.abs() < self.static_coefficient * normal;
+        let tangential = if sticks { sticking } else { sliding };
+        Impulse::new(normal, tangential).with_regime(if sticks { Regime::Sticking } else { Regime::Sliding })
+    }
+
+    /// `$q_t$`.
+    pub const fn tangential_inelasticity(&self) -> f64 {
+        self.tangential_inelasticity.get()
+    }
+
+    /// `$\kappa_s$`.
+    pub const fn static_coefficient(&self) -> f64 {
+        self.static_coefficient
+    }
+
+    /// `$\kappa_d$`.
+    pub const fn dynamic_coefficient(&self) -> f64 {
+        self.dynamic_coefficient
+    }
+}
+
+/// The fields of a file, before they are checked against each other.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "Friction")]
+struct RawFriction {
+    tangential_inelasticity: f64,
+    static_coefficient: f64,
+    dynamic_coefficient: f64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawFriction> for Friction {
+    type Error = ParameterError;
+
+    fn try_from(raw: RawFriction) -> Result<Self, ParameterError> {
+        Self::from_inelasticity(raw.tangential_inelasticity)?
+            .with_coefficients(raw.static_coefficient, raw.dynamic_coefficient)
+    }
+}

@@ -1,0 +1,53 @@
+//! Contacts at the edges of what a rule can meet.
+
+use crate::collision::Contact;
+
+/// Closing speeds: none, nearly none, and decades up to the largest speed that a disk may have.
+const CLOSING_SPEEDS: [f64; 14] =
+    [0.0, 1e-300, 1e-60, 1e-30, 1e-12, 1e-6, 1e-3, 0.1, 1.0, 3.0, 1e3, 1e6, 1e12, 1e60];
+
+/// Slip speeds beside closing speeds: none, central, about where friction lets go, grazing.
+const SLIP_RATIOS: [f64; 12] = [0.0, 1e-15, 1e-9, 1e-3, 0.1, 0.3, 1.0, 3.0, 10.0, 1e3, 1e9, 1e15];
+
+/// Slip speeds that do not know of the closing speed.
+const SLIP_SPEEDS: [f64; 4] = [1e-30, 1e-6, 1.0, 1e60];
+
+/// Reduced masses, of the lightest and the heaviest disks and between.
+const MASSES: [f64; 5] = [1e-30, 1e-3, 0.5, 1e3, 1e30];
+
+/// Tangential mass beside the normal one: all mass near the centre, homogeneous, a ring, and the bound.
+const MASS_RATIOS: [f64; 4] = [1e-6, 1.0 / 3.0, 0.5, 1.0];
+
+/// Times since the last collision: now, just before, before, never.
+const TIMES: [f64; 4] = [0.0, 1e-9, 1e-3, f64::INFINITY];
+
+/// Contacts that rules tend to forget, the same ones in the same order every time.
+///
+/// Closing and slip speeds, masses and their ratio, over all decades that the engine accepts; slip of both
+/// signs and none, central and grazing, no closing speed, and partners that have just collided.
+///
+/// ```
+/// use granular_edmd::collision::laws::hostile_contacts;
+/// assert!(hostile_contacts().any(|contact| contact.closing_speed() == 0.0));
+/// assert!(hostile_contacts().any(|contact| contact.slip_speed().abs() > 1e9 * contact.closing_speed()));
+/// assert!(hostile_contacts().all(|contact| contact.tangential_mass() <= contact.normal_mass()));
+/// ```
+pub fn hostile_contacts() -> impl Iterator<Item = Contact> {
+    speeds().flat_map(|(closing, slip)| {
+        masses().flat_map(move |(normal, tangential)| {
+            let contact = Contact::new(closing, slip, normal, tangential);
+            TIMES.into_iter().map(move |time| contact.with_time_since_last_collision(time))
+        })
+    })
+}
+
+fn speeds() -> impl Iterator<Item = (f64, f64)> {
+    CLOSING_SPEEDS.into_iter().flat_map(|closing| {
+        let slips = SLIP_RATIOS.into_iter().map(move |ratio| ratio * closing).chain(SLIP_SPEEDS);
+        slips.flat_map(move |slip| [(closing, slip), (closing, -slip)])
+    })
+}
+
+fn masses() -> impl Iterator<Item = (f64, f64)> {
+    MASSES.into_iter().flat_map(|mass| MASS_RATIOS.into_iter().map(move |ratio| (mass, mass * ratio)))
+}

@@ -1,0 +1,87 @@
+//! A rule against all laws at once.
+
+use super::violation::same;
+use super::{
+    Violation, check, check_friction_cone, check_friction_opposes_slip, check_separation, hostile_contacts,
+};
+use crate::collision::{CollisionRule, Contact, Impulse};
+
+/// Promises of a rule, beyond finite impulses that separate and repeat.
+///
+/// ```
+/// use granular_edmd::collision::laws::{Promises, check_rule};
+/// use granular_edmd::collision::{Rough, Smooth};
+///
+/// check_rule(&Smooth::new(0.2)?, &Promises::new().with_friction(0.0))?;
+/// check_rule(&Rough::new(0.2, 0.1)?, &Promises::new().with_opposed_slip())?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Promises {
+    energy_gain: bool,
+    opposed_slip: bool,
+    static_friction: Option<f64>,
+}
+
+impl Promises {
+    /// Energy is not gained; nothing is said of the tangential direction.
+    pub const fn new() -> Self {
+        Self { energy_gain: false, opposed_slip: false, static_friction: None }
+    }
+
+    /// The same, with Coulomb friction: the impulse stays in the cone of this coefficient `$\kappa_s$`, and
+    /// opposes the slip.
+    pub const fn with_friction(self, static_friction: f64) -> Self {
+        Self { opposed_slip: true, static_friction: Some(static_friction), ..self }
+    }
+
+    /// The same, with a tangential impulse that opposes the slip, in a cone or not.
+    pub const fn with_opposed_slip(self) -> Self {
+        Self { opposed_slip: true, ..self }
+    }
+
+    /// The same for a rule that drives: energy may be gained.
+    pub const fn with_energy_gain(self) -> Self {
+        Self { energy_gain: true, ..self }
+    }
+
+    /// Checks that `impulse` keeps these promises.
+    ///
+    /// # Errors
+    /// The first that is broken.
+    pub fn check(&self, contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
+        if self.energy_gain { check_separation(contact, impulse) } else { check(contact, impulse) }?;
+        if let Some(static_friction) = self.static_friction {
+            check_friction_cone(contact, impulse, static_friction)?;
+        }
+        if self.opposed_slip { check_friction_opposes_slip(contact, impulse) } else { Ok(()) }
+    }
+}
+
+impl Default for Promises {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Checks that `rule` keeps its promises for all [`hostile_contacts`], and gives the same answers when it is
+/// asked again, in another order.
+///
+/// # Errors
+/// The first promise that is broken, with the contact and the impulse that break it.
+pub fn check_rule<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result<(), Violation> {
+    let mut answers = Vec::new();
+    for contact in hostile_contacts() {
+        let impulse = rule.impulse(&contact);
+        promises.check(&contact, impulse)?;
+        answers.push((contact, impulse));
+    }
+    // Backward: a rule that remembers is asked for each contact with other ones in its memory.
+    for (contact, impulse) in answers.into_iter().rev() {
+        let later = rule.impulse(&contact);
+        if !same(impulse, later) {
+            return Err(Violation::NotRepeatable { later, contact, impulse });
+        }
+    }
+    Ok(())
+}

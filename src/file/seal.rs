@@ -1,0 +1,51 @@
+//! Bytes behind a name, a version and a checksum.
+
+/// Name and version of a format. They come first in a file, then a checksum of the contents, then these.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seal {
+    pub(crate) magic: [u8; 8],
+    pub(crate) version: u32,
+}
+
+/// A reason not to trust contents.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Broken {
+    /// They are of another format.
+    Foreign,
+    /// They are of another version of the format.
+    Version(u32),
+    /// They were cut.
+    Cut,
+    /// Their checksum does not match.
+    Changed,
+}
+
+/// Bytes of name, version and checksum.
+const HEADER: usize = 8 + 4 + blake3::OUT_LEN;
+
+impl Seal {
+    /// Returns the contents behind this seal.
+    pub(crate) fn seal(self, contents: &[u8]) -> Vec<u8> {
+        let mut bytes = Vec::with_capacity(HEADER + contents.len());
+        bytes.extend_from_slice(&self.magic);
+        bytes.extend_from_slice(&self.version.to_le_bytes());
+        bytes.extend_from_slice(blake3::hash(contents).as_bytes());
+        bytes.extend_from_slice(contents);
+        bytes
+    }
+
+    /// Returns the contents behind a seal that is whole.
+    pub(crate) fn open(self, bytes: &[u8]) -> Result<&[u8], Broken> {
+        let rest = bytes.strip_prefix(&self.magic).ok_or(Broken::Foreign)?;
+        let (version, rest) = rest.split_first_chunk::<4>().ok_or(Broken::Cut)?;
+        let version = u32::from_le_bytes(*version);
+        if version != self.version {
+            return Err(Broken::Version(version));
+        }
+        let (checksum, contents) = rest.split_first_chunk::<32>().ok_or(Broken::Cut)?;
+        if blake3::hash(contents) != blake3::Hash::from_bytes(*checksum) {
+            return Err(Broken::Changed);
+        }
+        Ok(contents)
+    }
+}

@@ -1,0 +1,206 @@
+//! Writing a file whole or not at all.
+
+use std::ffi::OsStr;
+use std::fs::{self, File};
+use std::hash::{BuildHasher, Hasher, RandomState};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Beginning and ending of the names of files that are being written.
+const TEMPORARY: (&str, &str) = ("granular-edmd-", ".tmp");
+
+/// Number of names that are tried before giving up. The second is needed only if two random numbers are the
+/// same.
+const NAMES: usize = 8;
+
+/// Writes a file, whole or not at all: a reader never sees half of it, and a file of that name stays if this
+/// fails.
+///
+/// The bytes go to a temporary file beside it, which then takes its name. Any number of threads, processes
+/// and hosts may write the same file at a time: each has a temporary file of its own, and the last one to
+/// rename wins.
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if path.file_name().is_none() {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "the path does not end in the name of a file",
+        ));
+    }
+    let (temporary, file) = create_temporary(path)?;
+    let written = write_synced(file, bytes).and_then(|()| fs::rename(&temporary, path));
+    if written.is_err() {
+        // The rest of the attempt helps nobody; the first error is the one to tell.
+        let _ = fs::remove_file(&temporary);
+        return written;
+    }
+    sync_folder(path);
+    Ok(())
+}
+
+/// Tells whether a name is that of a file which [`write_whole`] was writing: its pattern, in every part.
+pub(crate) fn is_temporary(name: &OsStr) -> bool {
+    let unique = name.to_str().and_then(|name| name.strip_prefix(TEMPORARY.0)?.strip_suffix(TEMPORARY.1));
+    let Some(unique) = unique else { return false };
+    let is_decimal = |part: &str| !part.is_empty() && part.bytes().all(|digit| digit.is_ascii_digit());
+    let is_hexadecimal = |part: &str| part.len() == 16 && part.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let parts: Vec<&str> = unique.split('-').collect();
+    matches!(parts[..], [process, count, random]
+        if is_decimal(process) && is_decimal(count) && is_hexadecimal(random))
+}
+
+/// Makes a temporary file beside `path`. It is a new one: a file that is there already is never touched.
+fn create_temporary(path: &Path) -> io::Result<(PathBuf, File)> {
+    let mut attempt = create_new(path);
+    for _ in 1..NAMES {
+        match attempt {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => attempt = create_new(path),
+            other => return other,
+        }
+    }
+    attempt
+}
+
+fn create_new(path: &Path) -> io::Result<(PathBuf, File)> {
+    let temporary = path.with_file_name(unique_name());
+    let file = File::options().write(true).create_new(true).open(&temporary)?;
+    Ok((temporary, file))
+}
+
+/// Returns a name that no other writer has.
+///
+/// The process tells programs on this host apart, the count the writers in this process, and the random
+/// number the hosts that share a disk. The file's own name is not in it, so that it cannot become too long.
+fn unique_name() -> String {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    // The standard library seeds its hash tables from the system: the random number that needs no dependency.
+    let random = RandomState::new().build_hasher().finish();
+    format!("{}{}-{count}-{random:016x}{}", TEMPORARY.0, std::process::id(), TEMPORARY.1)
+}
+
+fn write_synced(mut file: File, bytes: &[u8]) -> io::Result<()> {
+    file.write_all(bytes)?;
+    file.sync_all()
+}
+
+/// Asks the system to keep the new name through a loss of power, too.
+///
+/// Best effort: the file is in its place, and there are file systems on which folders cannot be opened or
+/// synced.
+fn sync_folder(path: &Path) {
+    if cfg!(unix) {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+    use std::thread;
+
+    use super::*;
+
+    /// A folder of a test's own, removed with it.
+    struct Scratch(PathBuf);
+
+    impl Scratch {
+        fn new(name: &str) -> Self {
+            let folder = std::env::temp_dir().join(format!("granular-edmd-{name}-{}", std::process::id()));
+            let _ = fs::remove_dir_all(&folder);
+            fs::create_dir_all(&folder).unwrap();
+            Self(folder)
+        }
+
+        fn names(&self) -> Vec<std::ffi::OsString> {
+            fs::read_dir(&self.0).unwrap().map(|entry| entry.unwrap().file_name()).collect()
+        }
+    }
+
+    impl Drop for Scratch {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    #[test]
+    fn names_are_unique_and_recognised() {
+        let names: HashSet<String> = (0..1000).map(|_| unique_name()).collect();
+        assert_eq!(names.len(), 1000);
+        assert!(names.iter().all(|name| is_temporary(OsStr::new(name))));
+    }
+
+    #[test]
+    fn names_of_others_are_not_ours() {
+        let ours = "granular-edmd-12-0-0123456789abcdef.tmp";
+        assert!(is_temporary(OsStr::new(ours)));
+        let others = [
+            "data.tmp",
+            "0001.record.4711.tmp",
+            "granular-edmd-.tmp",
+            "granular-edmd-12-0-0123456789abcdef.tmp.bak",
+            "granular-edmd-12-0-0123456789abcdef",
+            "granular-edmd-12-0-0123456789abcde.tmp",
+            "granular-edmd-12-0-0123456789abcdeg.tmp",
+            "granular-edmd-12--0123456789abcdef.tmp",
+            "granular-edmd-x-0-0123456789abcdef.tmp",
+            "granular-edmd-1-2-0-0123456789abcdef.tmp",
+            "my granular-edmd-12-0-0123456789abcdef.tmp",
+        ];
+        assert!(others.iter().all(|name| !is_temporary(OsStr::new(name))));
+    }
+
+    #[test]
+    fn a_failure_leaves_nothing_and_takes_nothing() {
+        let scratch = Scratch::new("failure");
+        let folder = scratch.0.join("folder");
+        fs::create_dir(&folder).unwrap();
+        assert!(write_whole(&folder, b"a file cannot take the place of a folder").is_err());
+        for path in ["", "..", "/"] {
+            let error = write_whole(Path::new(path), b"").unwrap_err();
+            assert_eq!(error.kind(), io::ErrorKind::InvalidInput, "{path:?}");
+        }
+        assert_eq!(scratch.names(), ["folder"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_name_of_the_greatest_length_is_written() {
+        let scratch = Scratch::new("length");
+        let path = scratch.0.join("n".repeat(255));
+        write_whole(&path, b"whole").unwrap();
+        assert_eq!(fs::read(path).unwrap(), b"whole");
+    }
+
+    /// Contents in which every part tells of every other: a file of two halves is noticed.
+    fn contents(writer: u8, count: u32) -> Vec<u8> {
+        [vec![writer; 1], count.to_le_bytes().to_vec()].concat().repeat(3000)
+    }
+
+    fn is_whole(bytes: &[u8]) -> bool {
+        bytes.len() == 15_000 && bytes.chunks(5).all(|chunk| chunk == &bytes[..5])
+    }
+
+    #[test]
+    fn two_writers_of_one_file_do_not_disturb_each_other_nor_a_reader() {
+        const WRITES: u32 = 1500;
+        let scratch = Scratch::new("writers");
+        let path = &scratch.0.join("file");
+        write_whole(path, &contents(0, 0)).unwrap();
+        let write =
+            |writer: u8| (0..WRITES).try_for_each(|count| write_whole(path, &contents(writer, count)));
+        thread::scope(|scope| {
+            let writers = [1, 2].map(|writer| scope.spawn(move || write(writer)));
+            let mut reads = 0;
+            while writers.iter().any(|writer| !writer.is_finished()) {
+                assert!(is_whole(&fs::read(path).unwrap()), "read {reads} is torn");
+                reads += 1;
+            }
+            for writer in writers {
+                writer.join().unwrap().unwrap();
+            }
+        });
+        assert_eq!(scratch.names(), ["file"], "nothing is left");
+    }
+}

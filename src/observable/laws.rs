@@ -1,0 +1,194 @@
+//! The contract of an observer, as a check for observers of one's own.
+//!
+//! Watching cannot change a trajectory, whatever an observer does: the engine shows copies. Left to the observer is its clock,
+//! which can hang a run or ask for samples that never come.
+
+use glam::DVec2;
+use thiserror::Error;
+
+use super::{Collision, Moment, Observer, Partner, Snapshot};
+use crate::boundary::Domain;
+use crate::collision::{Contact, Impulse, Regime};
+use crate::{Disk, ParameterError};
+
+/// A promise of the [contract](Observer) that an observer breaks.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Violation {
+    /// The time of the next sample is NaN.
+    #[error("after the time {after} the next sample is at NaN")]
+    NotANumber {
+        /// Absolute time of the start or the sample before.
+        after: f64,
+    },
+    /// The run starts, and the next sample was before.
+    #[error("the run starts at {start}, and the next sample is before, at {next}")]
+    BeforeStart {
+        /// Absolute time of the start.
+        start: f64,
+        /// Absolute time of the next sample.
+        next: f64,
+    },
+    /// After a sample, the next one is not later.
+    #[error("after the sample at {sample} the next one is not later, at {next}")]
+    NotLater {
+        /// Absolute time of the sample.
+        sample: f64,
+        /// Absolute time of the next one.
+        next: f64,
+    },
+    /// The time of the next sample changed without a start or a sample, and the engine did not see it.
+    #[error("between two samples the next one moved from {before} to {next}")]
+    Moved {
+        /// Absolute time of the next sample after the start or the sample before.
+        before: f64,
+        /// Absolute time of the next sample after a collision, a verdict or the end of a run.
+        next: f64,
+    },
+}
+
+/// Most samples in one run of the script.
+const SAMPLES: usize = 50;
+
+/// The system of the script.
+const DISKS: usize = 3;
+const WALLS: usize = 4;
+const DOMAIN: Domain = Domain { left: 0.0, right: 10.0, bottom: 0.0, top: 10.0, periodic: false };
+const GRAVITY: f64 = 1.0;
+
+/// The rounding of a start, relative to it.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Checks that an observer keeps its contract in a few runs of a made-up system.
+///
+/// The runs have three disks and four walls, collisions of each partner and regime, and up to fifty samples each, at the times
+/// that the observer asks for. The first starts at time 0, the second goes on where it ended, the third starts later and off the
+/// beat, and the last is another run from a time before 0. A run ends where the observer stops it, or fails it. The checked
+/// observer has seen all of this: make a new one for a measurement.
+///
+/// # Errors
+/// The first promise that is broken.
+///
+/// ```
+/// use granular_edmd::observable::laws::{Violation, check};
+/// use granular_edmd::observable::{Observer, OrderParameters, SampleTimes, Series};
+///
+/// check(&mut Series::new(OrderParameters, SampleTimes::every(0.1)?))?;
+///
+/// /// Wants a sample at time 1, again and again.
+/// struct Stuck;
+/// impl Observer for Stuck {
+///     fn next_sample(&self) -> f64 {
+///         1.0
+///     }
+/// }
+/// assert_eq!(check(&mut Stuck), Err(Violation::NotLater { sample: 1.0, next: 1.0 }));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn check<O: Observer + ?Sized>(observer: &mut O) -> Result<(), Violation> {
+    let first_end = Script::new(observer, 0.0).run()?;
+    let second_end = Script::new(observer, first_end).run()?;
+    Script::new(observer, second_end + 0.37 * (1.0 + second_end)).run()?;
+    Script::new(observer, -0.73 * (1.0 + first_end)).run().map(|_| ())
+}
+
+/// A run that follows the wishes of an observer, as the engine does.
+struct Script<'a, O: ?Sized> {
+    observer: &'a mut O,
+    now: f64,
+    /// Time of the next sample, as the engine knows it.
+    wanted: f64,
+    collisions: usize,
+}
+
+impl<'a, O: Observer + ?Sized> Script<'a, O> {
+    fn new(observer: &'a mut O, start: f64) -> Self {
+        Self { observer, now: start, wanted: f64::INFINITY, collisions: 0 }
+    }
+
+    /// Runs, and returns the time at the end.
+    fn run(mut self) -> Result<f64, Violation> {
+        self.observer.on_start(&self.moment());
+        self.wanted = self.next_sample()?;
+        if self.wanted < self.now - ROUNDING * self.now.abs() {
+            return Err(Violation::BeforeStart { start: self.now, next: self.wanted });
+        }
+        let mut goes_on = self.goes_on()?;
+        for _ in 0..SAMPLES {
+            goes_on = goes_on && self.collide()? && self.sample()?;
+        }
+        self.observer.on_end(&self.moment());
+        self.goes_on()?;
+        Ok(self.now)
+    }
+
+    /// Lets disks collide until the next sample, or for a while if none is wanted.
+    fn collide(&mut self) -> Result<bool, Violation> {
+        let wait = if self.wanted.is_finite() { (self.wanted - self.now).max(0.0) } else { 1.0 };
+        for _ in 0..3 {
+            self.now += 0.25 * wait;
+            self.collisions += 1;
+            let collision = collision(self.now, self.collisions);
+            self.observer.on_collision(&collision);
+            if !self.goes_on()? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Takes the sample that is wanted, if there is one.
+    fn sample(&mut self) -> Result<bool, Violation> {
+        if !self.wanted.is_finite() {
+            return Ok(true);
+        }
+        // As the engine does: a time that is past by rounding is sampled now.
+        self.now = self.wanted.max(self.now);
+        let disks: Vec<Disk> = (0..DISKS).filter_map(|index| disk(index, self.collisions).ok()).collect();
+        self.observer.on_sample(&Snapshot::new(self.now, &disks, DOMAIN, GRAVITY));
+        let next = self.next_sample()?;
+        if next <= self.now {
+            return Err(Violation::NotLater { sample: self.now, next });
+        }
+        self.wanted = next;
+        self.goes_on()
+    }
+
+    fn next_sample(&self) -> Result<f64, Violation> {
+        let next = self.observer.next_sample();
+        if next.is_nan() { Err(Violation::NotANumber { after: self.now }) } else { Ok(next) }
+    }
+
+    /// Asks for the verdict, and checks that the clock stands as the engine knows it.
+    fn goes_on(&mut self) -> Result<bool, Violation> {
+        let goes_on = self.observer.verdict().is_ok_and(|verdict| verdict.is_continue());
+        let next = self.next_sample()?;
+        if next == self.wanted { Ok(goes_on) } else { Err(Violation::Moved { before: self.wanted, next }) }
+    }
+
+    fn moment(&self) -> Moment {
+        Moment::new(self.now, DISKS, WALLS, DOMAIN, GRAVITY)
+    }
+}
+
+/// One of three disks, at one of a few places.
+fn disk(index: usize, round: usize) -> Result<Disk, ParameterError> {
+    let (place, turn) = ((1 + 3 * index) as f64, (round % 7) as f64);
+    Disk::new(DVec2::new(place, 1.0 + turn), 0.5)?
+        .with_velocity(DVec2::new(turn - 3.0, place - 4.0))?
+        .with_angular_velocity(turn - 2.0)
+}
+
+/// A collision with each partner in turn.
+fn collision(time: f64, number: usize) -> Collision {
+    const REGIMES: [Regime; 4] =
+        [Regime::Sticking, Regime::Sliding, Regime::ContactDuration, Regime::Unspecified];
+    let disk = number % DISKS;
+    let partner = match number % (WALLS + 2) {
+        wall if wall < WALLS => Partner::Wall(wall),
+        _ => Partner::Disk((disk + 1) % DISKS),
+    };
+    let contact = Contact::new(1.0, 0.5, 0.5, 0.5 / 3.0);
+    let impulse = Impulse::new(0.9, 0.05).with_regime(REGIMES[number % REGIMES.len()]);
+    Collision::new(time, disk, partner, contact, impulse)
+}

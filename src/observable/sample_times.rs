@@ -1,0 +1,148 @@
+//! The clock of observers.
+
+use crate::ParameterError;
+use crate::quantity::{finite, positive};
+
+/// Rounding of a time that was run to, and of a beat, relative to them: both are sums of an offset and an origin, each rounded
+/// a few times.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Equally spaced times of samples: a clock for observers.
+///
+/// Its beats are the multiples of the interval, counted from time 0 ([`Self::every`]) or from a first time
+/// ([`Self::starting_at`]). They are multiples, not sums: the thousandth is as exact as the first.
+///
+/// # When a run starts
+/// An observer hands the start of each run to [`Self::start_at`]. Beats that the start has passed, or falls on within
+/// rounding, are left out, so that a run of `$n$` intervals gives `$n$` samples, the first after one interval: from time 0, from
+/// another start, resumed from a checkpoint, or after a run to settle. Two exceptions:
+/// - The first time of `starting_at` is a sample of a run that starts exactly there.
+/// - A clock that has run goes on: if the next run starts on its upcoming beat, the sample is taken, since the run before ended
+///   too early for it by a rounding. A run in pieces has the samples of a run in one.
+///
+/// A run that starts before the last beat is another run, for which the clock begins anew.
+///
+/// To sample at a fixed phase of a vibrating base take a number of its periods as interval and the phase as first time.
+/// Compute the end of a run as a multiple, too (`count as f64 * interval`), or its last sample may lie one rounding behind it.
+///
+/// ```
+/// use granular_edmd::observable::SampleTimes;
+/// let mut times = SampleTimes::every(2.0)?;
+/// assert_eq!(times.upcoming(), 2.0);
+/// times.start_at(11.5);
+/// assert_eq!(times.upcoming(), 12.0);
+/// times.advance_past(12.0);
+/// assert_eq!(times.upcoming(), 14.0);
+///
+/// let mut times = SampleTimes::every(2.0)?.starting_at(10.5)?;
+/// times.start_at(0.0);
+/// assert_eq!(times.upcoming(), 10.5);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawSampleTimes"))]
+pub struct SampleTimes {
+    interval: f64,
+    /// The first beat; without one, beats are counted from time 0 both ways.
+    first: Option<f64>,
+    /// Number of the upcoming beat.
+    beat: i64,
+    /// A run has started.
+    started: bool,
+}
+
+impl SampleTimes {
+    /// Makes a clock that beats after each interval.
+    ///
+    /// # Errors
+    /// If the interval is not finite and positive.
+    pub fn every(interval: f64) -> Result<Self, ParameterError> {
+        let interval = positive("sampling interval", interval)?;
+        Ok(Self { interval, first: None, beat: 1, started: false })
+    }
+
+    /// Returns the same clock with its first beat at this absolute time.
+    ///
+    /// # Errors
+    /// If the time is not finite.
+    pub fn starting_at(self, first: f64) -> Result<Self, ParameterError> {
+        let first = Some(finite("first sampling time", first)?);
+        Ok(Self { first, beat: 0, started: false, ..self })
+    }
+
+    /// Returns the upcoming beat; infinite once the interval is lost in rounding.
+    pub fn upcoming(&self) -> f64 {
+        self.time_of(self.beat)
+    }
+
+    /// Goes on to the first beat after this absolute time: to be called with the time of each sample.
+    pub fn advance_past(&mut self, time: f64) {
+        // Twice as many at each further try: soon past, also where single intervals are lost in rounding.
+        let mut more = 1_i64;
+        while self.beat < i64::MAX && self.upcoming() <= time {
+            let skipped = ((time - self.upcoming()) / self.interval).floor().max(0.0);
+            self.beat = self.beat.saturating_add(more).saturating_add(skipped as i64);
+            more = more.saturating_mul(2);
+        }
+    }
+
+    /// Takes note that a run starts at this absolute time: to be called from
+    /// [`Observer::on_start`](super::Observer::on_start).
+    pub fn start_at(&mut self, time: f64) {
+        if !time.is_finite() {
+            return;
+        }
+        let rounding = ROUNDING * (time.abs() + self.interval);
+        if !self.started || time < self.time_of(self.beat.saturating_sub(1)) - rounding {
+            self.begin_anew(time, rounding);
+        } else if (self.upcoming() - time).abs() > rounding {
+            self.advance_past(time + rounding);
+        }
+        self.started = true;
+    }
+
+    /// Goes to the first beat of a run that no sample was taken of.
+    fn begin_anew(&mut self, time: f64, rounding: f64) {
+        let Some(first) = self.first else {
+            // The cast saturates. It may miss by one of many beats, which the rounding makes up for.
+            self.beat = (time / self.interval).floor() as i64;
+            return self.advance_past(time + rounding);
+        };
+        self.beat = 0;
+        if (first - time).abs() > rounding {
+            self.advance_past(time + rounding);
+        }
+    }
+
+    fn time_of(&self, beat: i64) -> f64 {
+        if beat == i64::MAX {
+            return f64::INFINITY;
+        }
+        self.first.unwrap_or(0.0) + beat as f64 * self.interval
+    }
+}
+
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "SampleTimes")]
+struct RawSampleTimes {
+    interval: f64,
+    first: Option<f64>,
+    beat: i64,
+    started: bool,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawSampleTimes> for SampleTimes {
+    type Error = ParameterError;
+
+    fn try_from(raw: RawSampleTimes) -> Result<Self, ParameterError> {
+        let RawSampleTimes { interval, first, beat, started } = raw;
+        positive("sampling interval", interval)?;
+        finite("first sampling time", first.unwrap_or(0.0))?;
+        let counted = first.is_none() || beat >= 0;
+        crate::quantity::accept(counted, "number of the next sample", "not negative", beat as f64)?;
+        Ok(Self { interval, first, beat, started })
+    }
+}

@@ -1,0 +1,89 @@
+//! The first descent of a parabola.
+
+/// Returns the first time at which the gap `f(t) = value + rate·t + ½·acceleration·t²` is closed and closes
+/// further.
+///
+/// `$t \ge 0$` is counted from the moment at which value and rate are given; the result is infinite only if
+/// it overflows.
+/// - An open gap counts at its first zero at which it falls, and there may be none. A gap that closes for an
+///   instant and opens again, as a double root does, may count or not: rounding decides.
+/// - A gap that is closed and closes further counts at once, at time 0.
+/// - A gap that is closed and opens counts when it closes next. If it never gets as far as zero, it counts
+///   when it is back at its first value.
+///
+/// The numbers should be finite. The search uses `+ - * /` and the square root only, so its bits are the same
+/// on every platform.
+///
+/// ```
+/// use granular_edmd::roots::first_descent;
+/// assert_eq!(first_descent(2.0, 0.0, -1.0), Some(2.0), "it falls from rest");
+/// assert_eq!(first_descent(2.0, -1.0, 1.0), None, "it turns before it gets to zero");
+/// assert_eq!(first_descent(-1e-16, -1.0, 0.0), Some(0.0), "closed, and closing");
+/// assert_eq!(first_descent(-1e-16, 1.0, 0.0), None, "closed, but opening");
+/// assert_eq!(first_descent(0.0, 1.0, -1.0), Some(2.0), "it opens, and comes back");
+/// ```
+#[inline]
+pub fn first_descent(value: f64, rate: f64, acceleration: f64) -> Option<f64> {
+    // A touch that was just resolved leaves the gap closed by rounding, but opening: it must not be found
+    // again.
+    if value <= 0.0 && rate < 0.0 {
+        return Some(0.0);
+    }
+    if acceleration < 0.0 {
+        return Some(descent_under_pull(value, rate, acceleration));
+    }
+    let discriminant = rate * rate - 2.0 * acceleration * value;
+    // Of the two zeros the first is (-rate - root) / acceleration. For a small acceleration, its numerator is
+    // the difference of two nearly equal numbers, and for none it is 0 / 0. Multiplied by the conjugate it is
+    // a sum of two positive numbers in the denominator, exact for straight flights too.
+    (rate < 0.0 && discriminant >= 0.0).then(|| 2.0 * value / (discriminant.sqrt() - rate))
+}
+
+/// Returns the descent of a parabola that opens downward: there always is one.
+#[inline]
+fn descent_under_pull(value: f64, rate: f64, acceleration: f64) -> f64 {
+    let discriminant = rate * rate - 2.0 * acceleration * value;
+    if discriminant <= 0.0 {
+        // It is closed at its top still. Had it begun closed exactly, it would close as fast as it opened, at
+        // twice the time of its top. At the top itself the rate is zero, and a disk that bounces lower than
+        // rounding would stop there, with no rule that took its speed.
+        return (-2.0 * rate / acceleration).max(0.0);
+    }
+    let root = discriminant.sqrt();
+    // One form of the zero for either sign of the rate: numbers of equal sign are added in both, so nothing
+    // cancels.
+    if rate > 0.0 { (rate + root) / -acceleration } else { (2.0 * value / (root - rate)).max(0.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::first_descent;
+    use proptest::prelude::*;
+
+    #[test]
+    fn closed_gaps_count_only_while_they_close() {
+        assert_eq!(first_descent(-1e-16, -1.0, 0.0), Some(0.0));
+        assert_eq!(first_descent(-1e-16, 1.0, 0.0), None);
+        assert_eq!(first_descent(0.0, 0.0, 1.0), None);
+        assert_eq!(first_descent(0.0, 0.0, -1.0), Some(0.0));
+        assert_eq!(first_descent(0.0, 1.0, -1.0), Some(2.0));
+        assert_eq!(first_descent(-1.0, 1.0, -1.0), Some(2.0), "it never opens: it counts when it is back");
+        assert_eq!(first_descent(-1.0, 1.0, -2.0), Some(1.0), "and that is sooner the stronger the pull");
+    }
+
+    proptest! {
+        #[test]
+        fn the_root_is_the_first(value in 0.0..100.0f64, rate in -10.0..10.0f64, acceleration in -5.0..5.0f64) {
+            let f = |t: f64| value + rate * t + 0.5 * acceleration * t * t;
+            let end = first_descent(value, rate, acceleration).unwrap_or(1e3);
+            for k in 0..1000 {
+                let t = end * f64::from(k) / 1000.0;
+                prop_assert!(f(t) >= -1e-9 * (value + rate.abs() * t + acceleration.abs() * t * t));
+            }
+            if let Some(t) = first_descent(value, rate, acceleration) {
+                prop_assert!(f(t).abs() <= 1e-12 * (value + rate.abs() * t + acceleration.abs() * t * t));
+                prop_assert!(rate + acceleration * t <= 1e-6);
+            }
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! The first descent of a polynomial of degree up to four.
+
+use super::first_descent;
+
+/// Coefficients of a polynomial, from the constant term up.
+type Coefficients = [f64; 5];
+
+/// Largest coefficient that needs no scaling: its multiples in the derivatives stay finite.
+const LARGEST: f64 = 1e300;
+
+/// Exact scale of larger coefficients, a power of two: 2⁻⁶⁰.
+const SMALLER: f64 = 1.0 / (1u64 << 60) as f64;
+
+/// Returns the first time, not later than `end`, at which the gap `c₀ + c₁t + c₂t² + c₃t³ + c₄t⁴` is closed
+/// and closes further.
+///
+/// The meaning is that of [`first_descent`], to which polynomials of degree two and less are passed on:
+/// - An open gap counts at its first zero at which it falls.
+/// - A gap that is closed and closes further counts at once, at time 0.
+/// - A gap that is closed and opens counts when it closes next. As long as it has not been open, it counts
+///   when it falls back to its first value.
+///
+/// If a coefficient is not finite, there is no answer. `end` may be infinite. The search uses `+ - * /` and,
+/// for degree two, the square root only, so its bits are the same on every platform.
+///
+/// ```
+/// use granular_edmd::roots::first_descent_of_quartic;
+/// // (1 - t)(2 - t)(3 - t)(4 - t): it falls through zero at 1 and 3, and rises through it at 2 and 4.
+/// let gap = [24.0, -50.0, 35.0, -10.0, 1.0];
+/// let first = first_descent_of_quartic(&gap, f64::INFINITY).unwrap();
+/// assert!((first - 1.0).abs() < 1e-15);
+/// assert_eq!(first_descent_of_quartic(&gap, 0.5), None);
+/// // A disk flies across a circle of radius 2 from its middle, at speed 1: what is left is 4 - t².
+/// assert_eq!(first_descent_of_quartic(&[4.0, 0.0, -1.0, 0.0, 0.0], 10.0), Some(2.0));
+/// ```
+pub fn first_descent_of_quartic(coefficients: &[f64; 5], end: f64) -> Option<f64> {
+    let largest = coefficients.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
+    if !coefficients.iter().all(|c| c.is_finite()) {
+        return None;
+    }
+    let scale = if largest > LARGEST { SMALLER } else { 1.0 };
+    let gap = coefficients.map(|c| scale * c);
+    if gap[3] == 0.0 && gap[4] == 0.0 {
+        return first_descent(gap[0], gap[1], 2.0 * gap[2]).filter(|&time| time <= end);
+    }
+    if end.is_nan() || end < 0.0 {
+        return None;
+    }
+    if gap[0] <= 0.0 && falls_from_the_start(&gap) {
+        return Some(0.0);
+    }
+    search(&gap, end.min(bound_of_zeros(&gap)))
+}
+
+/// Looks for the descent on one stretch after the other between which the gap turns.
+fn search(gap: &Coefficients, end: f64) -> Option<f64> {
+    let slope = derivative(gap);
+    // A gap that begins closed is measured from its first value, with a constant term that is zero exactly: a
+    // bounce lower than rounding then ends as fast as it began. From the first opening on, zero is zero.
+    let mut measured = *gap;
+    measured[0] = measured[0].max(0.0);
+    let turns = turns(gap, end);
+    turns.stretches().find_map(|(from, to)| {
+        if value(gap, from) > 0.0 {
+            measured = *gap;
+        }
+        // The slope between two turns has one sign; the difference of the values at its ends may be lost to
+        // rounding.
+        let falls = value(&slope, middle(from, to)) < 0.0;
+        if !falls || value(&measured, to) > 0.0 {
+            return None;
+        }
+        let is_closed = value(&measured, from) <= 0.0;
+        Some(if is_closed { from } else { change_of_sign(&measured, from, to) })
+    })
+}
+
+/// Tells whether the lowest power that there is falls.
+fn falls_from_the_start(gap: &Coefficients) -> bool {
+    gap[1..].iter().find(|&&c| c != 0.0).is_some_and(|&c| c < 0.0)
+}
+
+/// Returns a time beyond all zeros of a polynomial and of its derivatives (Cauchy's bound, and the theorem of
+/// Gauss and Lucas: derivatives have theirs among those of the polynomial).
+fn bound_of_zeros(polynomial: &Coefficients) -> f64 {
+    let leading = polynomial.iter().rposition(|&c| c != 0.0).unwrap_or(0);
+    let largest = polynomial[..leading].iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
+    // Finite, where a tiny leading coefficient puts a zero beyond all numbers: values out there may overflow,
+    // but at a finite time an infinite partial sum keeps its sign.
+    (1.0 + largest / polynomial[leading].abs()).min(f64::MAX)
+}
+
+/// Evaluates by Horner's scheme.
+fn value(polynomial: &Coefficients, time: f64) -> f64 {
+    polynomial.iter().rev().fold(0.0, |sum, c| sum * time + c)
+}
+
+fn derivative(&[_, c1, c2, c3, c4]: &Coefficients) -> Coefficients {
+    [c1, 2.0 * c2, 3.0 * c3, 4.0 * c4, 0.0]
+}
+
+fn middle(low: f64, high: f64) -> f64 {
+    // Not half of the sum, which may overflow.
+    low + 0.5 * (high - low)
+}
+
+/// Some times in order; those between the first and the last are where a polynomial changes its sign.
+#[derive(Clone, Copy)]
+struct Marks {
+    times: [f64; 5],
+    count: usize,
+}
+
+impl Marks {
+    fn push(&mut self, time: f64) {
+        self.times[self.count] = time;
+        self.count += 1;
+    }
+
+    /// The stretches of time between two marks.
+    fn stretches(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.times[..self.count].windows(2).map(|pair| (pair[0], pair[1]))
+    }
+
+    /// Returns the changes of sign of a polynomial whose derivative changes its own at these marks.
+    ///
+    /// Between two of them it is monotonic, and changes its sign once at most: none can be missed, however
+    /// close two are.
+    fn refined(&self, polynomial: &Coefficients) -> Self {
+        let (start, end) = (self.times[0], self.times[self.count - 1]);
+        let mut marks = Self { times: [start; 5], count: 1 };
+        for (from, to) in self.stretches() {
+            if (value(polynomial, from) > 0.0) != (value(polynomial, to) > 0.0) {
+                marks.push(change_of_sign(polynomial, from, to));
+            }
+        }
+        marks.push(end);
+        marks
+    }
+}
+
+/// Returns the times between 0 and `end` at which the polynomial turns: the zeros of its slope, from those of
+/// the slope's derivatives.
+fn turns(polynomial: &Coefficients, end: f64) -> Marks {
+    let first = derivative(polynomial);
+    let second = derivative(&first);
+    let third = derivative(&second);
+    let ends = Marks { times: [0.0, end, end, end, end], count: 2 };
+    ends.refined(&third).refined(&second).refined(&first)
+}
+
+/// Returns the first number beyond a change of sign between `low` and `high`.
+///
+/// By bisection. Newton's method would be faster, but at a double zero its slope is nothing but rounding, and
+/// it would leave the stretch. Here each step decides one bit. The far side of the change is returned, so
+/// that a search that ends there finds it again.
+fn change_of_sign(polynomial: &Coefficients, mut low: f64, mut high: f64) -> f64 {
+    let positive = value(polynomial, low) > 0.0;
+    loop {
+        let middle = middle(low, high);
+        if middle <= low || middle >= high {
+            return high;
+        }
+        if (value(polynomial, middle) > 0.0) == positive {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

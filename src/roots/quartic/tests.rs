@@ -1,0 +1,198 @@
+use proptest::prelude::*;
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::{derivative, first_descent_of_quartic, value};
+use crate::random::uniform;
+use crate::roots::first_descent;
+
+/// `scale` times the product of `(t - zero)`, or of `(t - zero)² + width²` for a pair that is not real.
+fn product(scale: f64, zeros: &[f64], pairs: &[(f64, f64)]) -> [f64; 5] {
+    let mut coefficients = [scale, 0.0, 0.0, 0.0, 0.0];
+    let mut multiply = |factor: [f64; 3]| {
+        let old = coefficients;
+        for (k, c) in coefficients.iter_mut().enumerate() {
+            *c = (0..=k.min(2)).map(|j| factor[j] * old[k - j]).sum();
+        }
+    };
+    for &zero in zeros {
+        multiply([-zero, 1.0, 0.0]);
+    }
+    for &(middle, width) in pairs {
+        multiply([middle * middle + width * width, -2.0 * middle, 1.0]);
+    }
+    coefficients
+}
+
+/// Sizes of all terms at this time: rounding of the value is a part of it.
+fn size(coefficients: &[f64; 5], time: f64) -> f64 {
+    value(&coefficients.map(f64::abs), time)
+}
+
+/// Steps along the gap and says what the search may not say: no answer where the gap falls through, or one
+/// where it is open.
+fn compare(coefficients: &[f64; 5], end: f64) -> Option<f64> {
+    let found = first_descent_of_quartic(coefficients, end);
+    let rounding = |time: f64| 1e-12 * size(coefficients, time);
+    let level = coefficients[0].min(0.0);
+    let (mut has_opened, last) = (false, found.unwrap_or(end));
+    for k in 1..4000 {
+        let time = last * f64::from(k) / 4000.0;
+        let gap = value(coefficients, time);
+        has_opened |= gap > rounding(time);
+        let least = if has_opened { 0.0 } else { level };
+        assert!(
+            gap > least - 2.0 * rounding(time),
+            "{coefficients:?}: missed before {time}, found {found:?}"
+        );
+    }
+    if let Some(time) = found {
+        let least = if has_opened { 0.0 } else { level };
+        assert!((0.0..=end).contains(&time), "{coefficients:?}: {time}");
+        assert!(
+            (value(coefficients, time) - least).abs() <= rounding(time),
+            "{coefficients:?}: open at {time}"
+        );
+        // At a double zero the slope is lost to the rounding of the place.
+        let rate = value(&derivative(coefficients), time);
+        let steep = size(&derivative(coefficients), time);
+        assert!(rate <= 1e-6 * steep, "{coefficients:?}: it rises at {time}, by {rate}");
+    }
+    found
+}
+
+fn between(generator: &mut Xoshiro256PlusPlus, low: f64, high: f64) -> f64 {
+    low + (high - low) * uniform(generator)
+}
+
+#[test]
+fn polynomials_of_any_coefficients_descend_where_steps_along_them_find_it() {
+    let mut generator = Xoshiro256PlusPlus::seed_from_u64(1);
+    let mut found = 0;
+    for _ in 0..6000 {
+        let spread = between(&mut generator, 0.1, 3.0);
+        let coefficients: [f64; 5] = std::array::from_fn(|_| {
+            let x = between(&mut generator, -1.0, 1.0);
+            spread * x * x * x
+        });
+        found += usize::from(compare(&coefficients, between(&mut generator, 0.5, 6.0)).is_some());
+    }
+    assert!((2000..5500).contains(&found), "{found}");
+}
+
+#[test]
+fn known_zeros_are_found_in_order() {
+    let mut generator = Xoshiro256PlusPlus::seed_from_u64(2);
+    for case in 0..6000 {
+        let mut zeros: Vec<f64> =
+            (0..=generator_index(&mut generator, 4)).map(|_| between(&mut generator, -1.0, 5.0)).collect();
+        zeros.sort_by(f64::total_cmp);
+        if zeros.windows(2).any(|pair| pair[1] - pair[0] < 1e-3) || zeros.iter().any(|zero| zero.abs() < 1e-3)
+        {
+            continue;
+        }
+        let pairs = if zeros.len() < 3 { vec![(between(&mut generator, 0.0, 5.0), 0.3)] } else { Vec::new() };
+        for scale in [1.0, -1.0, 1e-200, -1e200] {
+            let coefficients = product(scale, &zeros, &pairs);
+            // The gap falls through every other zero; behind the last it has the sign of the scale.
+            let falling = (0..zeros.len()).filter(|k| (zeros.len() - k).is_multiple_of(2) == (scale > 0.0));
+            let expected = falling.map(|k| zeros[k]).find(|&zero| zero > 0.0);
+            let is_closing = coefficients[0] <= 0.0 && coefficients[1] < 0.0;
+            let found = first_descent_of_quartic(&coefficients, f64::INFINITY);
+            if is_closing {
+                assert_eq!(found, Some(0.0), "{case} {zeros:?}");
+            } else if coefficients[0] > 0.0 {
+                let (found, expected) = (found.unwrap_or(-1.0), expected.unwrap_or(-1.0));
+                assert!((found - expected).abs() < 1e-7, "{case} {scale} {zeros:?}: {found}, not {expected}");
+            }
+            compare(&coefficients, 7.0);
+        }
+    }
+}
+
+fn generator_index(generator: &mut Xoshiro256PlusPlus, count: u32) -> u32 {
+    (uniform(generator) * f64::from(count)) as u32
+}
+
+/// Disks inside a circle, pulled down: the gap that is left at the touch is rounding.
+#[test]
+fn flights_in_a_circle_end_at_its_wall() {
+    let mut generator = Xoshiro256PlusPlus::seed_from_u64(3);
+    let mut draw = |size: f64| {
+        glam::DVec2::new(between(&mut generator, -size, size), between(&mut generator, -size, size))
+    };
+    for case in 0..5000 {
+        let (r, v, a) = (draw(0.7), draw(3.0), glam::DVec2::new(0.0, draw(1.0).x));
+        let gap = [
+            1.0 - r.length_squared(),
+            -2.0 * r.dot(v),
+            -(v.length_squared() + r.dot(a)),
+            -v.dot(a),
+            -0.25 * a.length_squared(),
+        ];
+        let time = compare(&gap, 1e3).unwrap();
+        let place = r + (v + 0.5 * time * a) * time;
+        assert!((place.length() - 1.0).abs() < 1e-13, "{case}: {}", place.length());
+        // An end at the descent still holds it, up to the rounding of the gap.
+        let again = first_descent_of_quartic(&gap, time).unwrap();
+        assert!(again <= time && time - again < 1e-13 * (1.0 + time), "{case}: {time} {again}");
+        assert_eq!(first_descent_of_quartic(&gap, time * (1.0 - 1e-9)), None);
+    }
+}
+
+#[test]
+fn closed_gaps_count_only_while_they_close() {
+    let descent = |c: [f64; 5]| first_descent_of_quartic(&c, f64::INFINITY);
+    assert_eq!(descent([-1e-16, -1.0, 0.0, 0.0, 1.0]), Some(0.0));
+    assert_eq!(descent([0.0, 0.0, 0.0, 0.0, -1.0]), Some(0.0));
+    assert_eq!(descent([0.0, 0.0, 0.0, 1.0, 1.0]), None);
+    assert_eq!(descent([0.0, 0.0, 0.0, 0.0, 0.0]), None);
+    assert_eq!(descent([0.0, 1.0, 0.0, -1.0, 0.0]), Some(1.0));
+    // Closed at its top still: it counts when it is back at its first value, not at the top.
+    let (low, exact) = (descent([-1.0, 1.0, 0.0, -1.0, 0.0]).unwrap(), 1.0);
+    assert!((low - exact).abs() < 1e-15, "{low}");
+    // A little more, and it opens.
+    assert!((descent([-0.3, 1.0, 0.0, -1.0, 0.0]).unwrap() - 0.786_4).abs() < 1e-4);
+}
+
+#[test]
+fn hostile_numbers_end() {
+    let hostile = [
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        1e-300,
+        -1e-300,
+        5e-324,
+        1e300,
+        -1e300,
+        f64::MAX,
+        f64::MIN,
+        f64::INFINITY,
+        f64::NAN,
+    ];
+    for [a, b] in hostile.map(|a| hostile.map(|b| [a, b])).concat() {
+        for [c, d] in hostile.map(|c| hostile.map(|d| [c, d])).concat() {
+            for e in hostile {
+                for end in [0.0, 1.0, 1e300, f64::INFINITY, f64::NAN, -1.0] {
+                    if let Some(time) = first_descent_of_quartic(&[a, b, c, d, e], end) {
+                        assert!((0.0..=end).contains(&time), "{:?} {end}: {time}", [a, b, c, d, e]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+proptest! {
+    /// Degree two in disguise: a tiny quartic term must not move the descent of a parabola.
+    #[test]
+    fn tiny_terms_do_not_matter(value in -1.0..10.0f64, rate in -3.0..3.0f64, acceleration in -3.0..-0.1f64) {
+        let plain = first_descent(value, rate, acceleration).unwrap();
+        let disguised = first_descent_of_quartic(&[value, rate, 0.5 * acceleration, 0.0, -1e-250], 1e3).unwrap();
+        prop_assume!(rate * rate - 2.0 * acceleration * value != 0.0);
+        let turn = (rate * rate - 2.0 * acceleration * value).abs().sqrt();
+        prop_assert!((plain - disguised).abs() < 1e-13 * (1.0 + 1.0 / turn), "{plain} {disguised}");
+    }
+}

@@ -1,0 +1,243 @@
+//! The scripts by which schedulers are checked.
+
+use std::fmt;
+
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use crate::random::uniform;
+use crate::scheduler::LARGE_SYSTEM;
+
+/// One call of a scheduler.
+#[derive(Debug, Clone)]
+pub(super) enum Operation {
+    Reset(Vec<f64>),
+    Set(usize, f64),
+}
+
+impl fmt::Display for Operation {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Reset(due) => write!(formatter, "a reset to {} disks", due.len()),
+            Self::Set(disk, due) => write!(formatter, "disk {disk} was set to {due:?}"),
+        }
+    }
+}
+
+/// A kind of operations.
+pub(super) struct Script {
+    pub(super) name: &'static str,
+    /// The numbers of disks to start with.
+    pub(super) disks: &'static [usize],
+    pub(super) steps: usize,
+    /// The first operation, for a number of disks.
+    pub(super) start: fn(&mut Stage, usize) -> Operation,
+    /// The next operation, given the earliest disk and its time; there are disks.
+    next: fn(&mut Stage, usize, f64) -> Operation,
+}
+
+/// None, few, powers of two and of four and their neighbours.
+const FEW: &[usize] = &[0, 1, 2, 3, 4, 5, 15, 16, 17, 63, 64, 65, 130];
+
+/// So many that a scheduler which works in batches goes through several of them within the steps of a script.
+const SOME: &[usize] = &[600];
+
+/// More than a scheduler that chooses by size treats as few, and more than 16 bits count.
+const MANY: &[usize] = &[LARGE_SYSTEM + 40_000];
+
+pub(super) const SCRIPTS: [Script; 9] = [
+    Script { name: "a run", disks: FEW, steps: 300, start: spread, next: run },
+    Script { name: "to and fro", disks: FEW, steps: 300, start: spread, next: to_and_fro },
+    Script { name: "ties", disks: FEW, steps: 300, start: tied, next: tie },
+    Script { name: "extremes", disks: FEW, steps: 300, start: extreme, next: to_extremes },
+    Script { name: "one busy disk", disks: FEW, steps: 300, start: idle, next: one_busy },
+    Script { name: "resets", disks: FEW, steps: 300, start: spread, next: reset_often },
+    Script { name: "a long run", disks: SOME, steps: 8000, start: spread, next: run },
+    Script { name: "a large run", disks: MANY, steps: 200, start: spread, next: run },
+    Script { name: "large and small", disks: MANY, steps: 12, start: spread, next: reset_to_few },
+];
+
+/// Random numbers, and the times of the disks as they are and as they were.
+pub(super) struct Stage {
+    generator: Xoshiro256PlusPlus,
+    due: Vec<f64>,
+    before: Vec<f64>,
+}
+
+impl Stage {
+    pub(super) fn new(seed: u64) -> Self {
+        let generator = Xoshiro256PlusPlus::seed_from_u64(seed);
+        Self { generator, due: Vec::new(), before: Vec::new() }
+    }
+
+    /// Takes note of an operation.
+    pub(super) fn note(&mut self, operation: &Operation) {
+        match operation {
+            Operation::Reset(due) => (self.due, self.before) = (due.clone(), due.clone()),
+            Operation::Set(disk, due) => self.before[*disk] = std::mem::replace(&mut self.due[*disk], *due),
+        }
+    }
+
+    /// Returns the next operation of a script; without disks there is only a reset.
+    pub(super) fn next(&mut self, script: &Script, (first, now): (usize, f64)) -> Operation {
+        if self.due.is_empty() { few(self) } else { (script.next)(self, first, now) }
+    }
+
+    pub(super) fn is_time_to_look(&mut self) -> bool {
+        self.below(4) == 0
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        (uniform(&mut self.generator) * count as f64) as usize
+    }
+
+    fn any_disk(&mut self) -> usize {
+        self.below(self.due.len())
+    }
+
+    /// Returns a time from here on: soon mostly, at once, in a while, or never.
+    fn wait(&mut self) -> f64 {
+        match self.below(40) {
+            0 => f64::INFINITY,
+            1..=3 => 0.0,
+            4..=8 => 1e-3 * uniform(&mut self.generator),
+            _ => 3.0 * uniform(&mut self.generator),
+        }
+    }
+
+    fn spread_time(&mut self) -> f64 {
+        200.0 * uniform(&mut self.generator) - 100.0
+    }
+
+    /// Returns one of few times, both zeros among them.
+    fn tied_time(&mut self) -> f64 {
+        [-2.0, -1.0, -0.0, 0.0, 1.0, 2.0, f64::INFINITY][self.below(7)]
+    }
+
+    fn extreme_time(&mut self) -> f64 {
+        const EXTREMES: [f64; 10] = [
+            f64::NEG_INFINITY,
+            f64::MIN,
+            -f64::MIN_POSITIVE,
+            -5e-324,
+            -0.0,
+            0.0,
+            5e-324,
+            f64::MIN_POSITIVE,
+            f64::MAX,
+            f64::INFINITY,
+        ];
+        match self.below(12) {
+            choice if choice < EXTREMES.len() => EXTREMES[choice],
+            _ => self.spread_time(),
+        }
+    }
+}
+
+fn reset(stage: &mut Stage, disks: usize, time: fn(&mut Stage) -> f64) -> Operation {
+    Operation::Reset((0..disks).map(|_| time(stage)).collect())
+}
+
+fn spread(stage: &mut Stage, disks: usize) -> Operation {
+    reset(stage, disks, Stage::spread_time)
+}
+
+fn tied(stage: &mut Stage, disks: usize) -> Operation {
+    reset(stage, disks, Stage::tied_time)
+}
+
+fn extreme(stage: &mut Stage, disks: usize) -> Operation {
+    reset(stage, disks, Stage::extreme_time)
+}
+
+fn idle(stage: &mut Stage, disks: usize) -> Operation {
+    reset(stage, disks, |_| f64::INFINITY)
+}
+
+fn few(stage: &mut Stage) -> Operation {
+    let disks = stage.below(70);
+    extreme(stage, disks)
+}
+
+/// As in a run: the first disk gets a later time, now and then another one does, or has its time of before
+/// again.
+fn run(stage: &mut Stage, first: usize, now: f64) -> Operation {
+    if !now.is_finite() {
+        return to_and_fro(stage, first, now);
+    }
+    let wait = stage.wait();
+    let other = stage.any_disk();
+    match stage.below(10) {
+        0..=6 => Operation::Set(first, now + wait),
+        7 | 8 => Operation::Set(other, now + wait),
+        _ => Operation::Set(other, stage.before[other]),
+    }
+}
+
+/// Any disk, or the first, to any time.
+fn to_and_fro(stage: &mut Stage, first: usize, _: f64) -> Operation {
+    let other = stage.any_disk();
+    Operation::Set([first, other][stage.below(2)], stage.spread_time())
+}
+
+fn tie(stage: &mut Stage, first: usize, _: f64) -> Operation {
+    let other = stage.any_disk();
+    Operation::Set([first, other][stage.below(2)], stage.tied_time())
+}
+
+fn to_extremes(stage: &mut Stage, first: usize, _: f64) -> Operation {
+    let other = stage.any_disk();
+    Operation::Set([first, other][stage.below(2)], stage.extreme_time())
+}
+
+/// One disk is due again and again, in long steps, and all others never.
+fn one_busy(stage: &mut Stage, first: usize, now: f64) -> Operation {
+    if now < f64::INFINITY {
+        Operation::Set(first, now + 1e6)
+    } else {
+        Operation::Set(stage.due.len() / 2, 0.0)
+    }
+}
+
+fn reset_often(stage: &mut Stage, first: usize, now: f64) -> Operation {
+    if stage.below(4) == 0 { few(stage) } else { run(stage, first, now) }
+}
+
+/// Few disks after many, and many again.
+fn reset_to_few(stage: &mut Stage, first: usize, now: f64) -> Operation {
+    match stage.below(4) {
+        0 => few(stage),
+        1 => spread(stage, MANY[0]),
+        _ => run(stage, first, now),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scheduler::{EventScheduler, LinearScan};
+
+    /// The contract promises as much.
+    #[test]
+    fn no_script_sets_nan_or_a_disk_that_is_not_there() {
+        for script in &SCRIPTS {
+            let mut stage = Stage::new(1);
+            let mut oracle = LinearScan::new();
+            let mut operation = (script.start)(&mut stage, script.disks[script.disks.len() - 1]);
+            for _ in 0..script.steps {
+                match &operation {
+                    Operation::Reset(due) => {
+                        assert!(!due.iter().any(|due| due.is_nan()), "{}", script.name);
+                        oracle.reset(due);
+                    }
+                    &Operation::Set(disk, due) => {
+                        assert!(disk < stage.due.len() && !due.is_nan(), "{}: {operation}", script.name);
+                        oracle.set(disk, due);
+                    }
+                }
+                stage.note(&operation);
+                operation = stage.next(script, oracle.earliest());
+            }
+        }
+    }
+}

@@ -1,0 +1,233 @@
+//! The grid of neighbour cells: how large they are and where each is.
+
+use glam::DVec2;
+
+use crate::boundary::{Domain, Region};
+use crate::prefetch::prefetch;
+
+use super::cell_size::CellSize;
+
+/// Cells per disk at most; more would cost memory and save nothing.
+pub(in crate::simulation) const CELLS_PER_DISK: f64 = 8.0;
+
+/// Cells that are always allowed.
+pub(in crate::simulation) const SPARE_CELLS: f64 = 4096.0;
+
+/// Least size of a cell in diameters: above 1 by more than rounding.
+const LEAST_PITCH: f64 = 1.000_001;
+
+/// Columns and rows of cells, and around them a ring of ghosts, so that every cell has eight neighbours.
+///
+/// Cells of one column are next to each other in memory: a wide, low box is the usual large system, and what is near in it
+/// is then near in memory, too.
+#[derive(Debug, Clone)]
+pub(in crate::simulation) struct Grid {
+    pub(in crate::simulation) layout: Layout,
+    /// Cells in a column, ring included.
+    stride: u32,
+    /// `column_edges[c - 1]` and `column_edges[c]` bound column `c`; infinite at walls.
+    column_edges: Vec<f64>,
+    row_edges: Vec<f64>,
+    /// How far beyond its edges a cell keeps its disks, so that fewer pass from one to another.
+    margin: DVec2,
+    /// Width of the domain if its sides are periodic, else 0.
+    period: f64,
+}
+
+/// A cell by its column and row, ring included: the first real ones are 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(in crate::simulation) struct Place {
+    pub(in crate::simulation) column: u32,
+    pub(in crate::simulation) row: u32,
+}
+
+/// The size of the grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(in crate::simulation) struct Layout {
+    pub(in crate::simulation) cell_size: CellSize,
+    pub(in crate::simulation) columns: u32,
+    pub(in crate::simulation) rows: u32,
+    /// Size of a cell; in an open container the rows grow from some height on.
+    pub(in crate::simulation) pitch: DVec2,
+}
+
+impl Layout {
+    /// The grid for `count` disks of at most this diameter; `None` if the domain is too small.
+    pub(in crate::simulation) fn new(
+        domain: &Domain,
+        diameter: f64,
+        cell_size: CellSize,
+        count: usize,
+        highest: f64,
+    ) -> Option<Self> {
+        let width = domain.width();
+        let height = if domain.top.is_finite() {
+            domain.height()
+        } else {
+            2.0 * open_height(domain, highest, diameter)
+        };
+        let most = CELLS_PER_DISK * count as f64 + SPARE_CELLS;
+        let pitch = (cell_size.pitch() * diameter).max((width * height / most).sqrt());
+        let along = |length: f64, pitch: f64| (length / pitch).floor().max(1.0);
+        let mut columns = along(width, pitch).min(most.floor());
+        if domain.periodic && columns < 4.0 {
+            // With fewer columns a disk could meet a neighbour on both sides.
+            columns = 4.0;
+            if width < columns * LEAST_PITCH * diameter {
+                return None;
+            }
+        }
+        let rows = along(height, pitch).min((most / columns).max(1.0).floor());
+        let valid = width > 0.0 && height > 0.0 && width.is_finite() && height.is_finite();
+        let pitch = DVec2::new(width / columns, height / rows);
+        valid.then_some(Self { cell_size, columns: columns as u32, rows: rows as u32, pitch })
+    }
+}
+
+/// How high the even part of the grid of an open container reaches.
+fn open_height(domain: &Domain, highest: f64, diameter: f64) -> f64 {
+    2.0 * (highest - domain.bottom).max(0.0) + 64.0 * diameter
+}
+
+impl Grid {
+    /// The grid of this layout.
+    pub(in crate::simulation) fn new(domain: &Domain, layout: Layout, diameter: f64) -> Self {
+        let margin = margin(domain, &layout, diameter);
+        let mut column_edges = edges(domain.left, layout.pitch.x, layout.columns, !domain.periodic);
+        if domain.periodic {
+            // Beyond its sides there is no margin: disks stay in the domain.
+            column_edges[0] += margin.x;
+            column_edges[layout.columns as usize] -= margin.x;
+        }
+        Self {
+            stride: layout.rows + 2,
+            column_edges,
+            row_edges: row_edges(domain, &layout),
+            margin,
+            period: if domain.periodic { domain.width() } else { 0.0 },
+            layout,
+        }
+    }
+
+    /// All cells but those of the ring.
+    pub(in crate::simulation) fn places(&self) -> impl Iterator<Item = Place> + use<> {
+        let Layout { columns, rows, .. } = self.layout;
+        (1..=columns).flat_map(move |column| (1..=rows).map(move |row| Place { column, row }))
+    }
+
+    /// How many cells there are, ring included.
+    pub(in crate::simulation) fn len(&self) -> usize {
+        self.stride() * (self.layout.columns as usize + 2)
+    }
+
+    pub(in crate::simulation) fn cell_size(&self) -> CellSize {
+        self.layout.cell_size
+    }
+
+    /// Cells in a column, ring included: how far apart in memory neighbours in a row are.
+    #[inline]
+    pub(in crate::simulation) fn stride(&self) -> usize {
+        self.stride as usize
+    }
+
+    pub(in crate::simulation) fn place_of(&self, position: DVec2) -> Place {
+        let along = |edges: &[f64], x: f64| {
+            let inner = &edges[1..edges.len() - 1];
+            1 + inner.partition_point(|&edge| edge <= x) as u32
+        };
+        Place { column: along(&self.column_edges, position.x), row: along(&self.row_edges, position.y) }
+    }
+
+    #[inline]
+    pub(in crate::simulation) fn index(&self, place: Place) -> usize {
+        place.column as usize * self.stride as usize + place.row as usize
+    }
+
+    /// The rectangle in which a cell keeps its disks; infinite beyond the walls.
+    #[inline]
+    pub(in crate::simulation) fn region(&self, place: Place) -> Region {
+        let (column, row) = (place.column as usize, place.row as usize);
+        Region {
+            min: DVec2::new(self.column_edges[column - 1], self.row_edges[row - 1]) - self.margin,
+            max: DVec2::new(self.column_edges[column], self.row_edges[row]) + self.margin,
+        }
+    }
+
+    /// Asks for what [`Self::region`] needs: wide systems have many columns.
+    #[inline]
+    pub(in crate::simulation) fn prefetch_region(&self, place: Place) {
+        prefetch(&self.column_edges, place.column as usize);
+    }
+
+    /// The width of the domain if its sides are periodic, else 0.
+    #[inline]
+    pub(in crate::simulation) fn period(&self) -> f64 {
+        self.period
+    }
+
+    /// The ghost that mirrors a cell at a periodic side, if it has one.
+    #[inline]
+    pub(in crate::simulation) fn mirror(&self, place: Place) -> Option<Place> {
+        let columns = self.layout.columns;
+        match place.column {
+            _ if self.period == 0.0 => None,
+            1 => Some(Place { column: columns + 1, ..place }),
+            column if column == columns => Some(Place { column: 0, ..place }),
+            _ => None,
+        }
+    }
+
+    /// The neighbour so many columns to the right and rows up, and what going there adds to `x`.
+    #[inline]
+    pub(in crate::simulation) fn neighbour(&self, place: Place, (right, up): (i32, i32)) -> (Place, f64) {
+        let mut to =
+            Place { column: place.column.wrapping_add_signed(right), row: place.row.wrapping_add_signed(up) };
+        let mut shift = 0.0;
+        if self.period > 0.0 {
+            if to.column == 0 {
+                (to.column, shift) = (self.layout.columns, self.period);
+            } else if to.column > self.layout.columns {
+                (to.column, shift) = (1, -self.period);
+            }
+        }
+        (to, shift)
+    }
+}
+
+/// How far beyond its edges a cell can keep disks that meet no others than those in the cells around it.
+///
+/// So a disk that is turned back soon, or moves to and fro at an edge, passes no cell: a quarter fewer passages.
+fn margin(domain: &Domain, layout: &Layout, diameter: f64) -> DVec2 {
+    let mut margin = (0.5 * (layout.pitch - LEAST_PITCH * diameter)).max(DVec2::ZERO);
+    if domain.periodic && layout.columns < 6 {
+        // Neighbours could be more than half of a period apart.
+        margin.x = 0.0;
+    }
+    margin
+}
+
+fn edges(start: f64, pitch: f64, count: u32, walls: bool) -> Vec<f64> {
+    let mut edges: Vec<f64> = (0..=count).map(|k| start + f64::from(k) * pitch).collect();
+    if walls {
+        edges[0] = f64::NEG_INFINITY;
+        edges[count as usize] = f64::INFINITY;
+    }
+    edges
+}
+
+/// Edges of the rows. In an open container the upper half of them grows in proportion to the height: however high a disk
+/// flies, it does not share its cell with all others that are high.
+fn row_edges(domain: &Domain, layout: &Layout) -> Vec<f64> {
+    const GROWTH: f64 = 1.1;
+    let mut edges = edges(domain.bottom, layout.pitch.y, layout.rows, true);
+    if domain.top.is_infinite() {
+        let even = (layout.rows as usize / 2).max(1);
+        for row in even + 1..edges.len() - 1 {
+            let height = edges[row - 1] - domain.bottom.min(edges[row - 1]);
+            edges[row] = edges[row - 1] + (height * (GROWTH - 1.0)).max(layout.pitch.y);
+        }
+    }
+    edges
+}

@@ -1,0 +1,132 @@
+//! From a checkpoint to a run.
+
+use super::validation::{check, check_numbers, check_places, suits};
+use super::{Checkpoint, CheckpointError, Saved};
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::scheduler::{BySize, EventScheduler};
+use crate::simulation::builder::count_walls;
+use crate::simulation::cells::{Cells, Grid};
+use crate::simulation::lookahead::Lookahead;
+use crate::simulation::state::{Bodies, Clock};
+use crate::simulation::{Scratch, Simulation};
+
+/// A run that is about to go on; see [`Simulation::resume`].
+#[derive(Debug, Clone)]
+#[must_use]
+pub struct Resumption<'a, R, B, S = BySize> {
+    checkpoint: &'a Checkpoint,
+    rule: R,
+    boundary: B,
+    scheduler: S,
+    another_rule: bool,
+    another_boundary: bool,
+}
+
+impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
+    /// Begins to describe a run that goes on where the checkpoint was taken, with its gravity, random numbers and counters.
+    ///
+    /// Rule and boundary are code, so they are given again: the same ones for the same future. [`Checkpoint`] has an example.
+    pub const fn resume(checkpoint: &Checkpoint, rule: R, boundary: B) -> Resumption<'_, R, B> {
+        let scheduler = BySize::new();
+        Resumption { checkpoint, rule, boundary, scheduler, another_rule: false, another_boundary: false }
+    }
+}
+
+impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, S> {
+    /// Takes another scheduler: the future is the same, bit for bit.
+    pub fn scheduler<T: EventScheduler>(self, scheduler: T) -> Resumption<'a, R, B, T> {
+        let Self { checkpoint, rule, boundary, another_rule, another_boundary, scheduler: _ } = self;
+        Resumption { checkpoint, rule, boundary, scheduler, another_rule, another_boundary }
+    }
+
+    /// Takes the rule on purpose, also if it is not that of the checkpoint: the next value of a ramp, for example.
+    pub const fn with_another_rule(mut self) -> Self {
+        self.another_rule = true;
+        self
+    }
+
+    /// Takes the boundary on purpose, also if it is not that of the checkpoint.
+    ///
+    /// All events are then predicted anew, as [`Simulation::set_boundary`] does.
+    pub const fn with_another_boundary(mut self) -> Self {
+        self.another_boundary = true;
+        self
+    }
+
+    /// Makes the run.
+    ///
+    /// # Errors
+    /// If the checkpoint does not make a state, is of another rule or boundary that was not given on purpose, or
+    /// its disks do not fit into the one that was.
+    pub fn build(self) -> Result<Simulation<R, B, S>, CheckpointError> {
+        let saved = &self.checkpoint.0;
+        let differ = |saved, given| matches!((saved, given), (Some(a), Some(b)) if a != b);
+        if !self.another_rule && differ(saved.rule, self.rule.fingerprint()) {
+            return Err(CheckpointError::AnotherRule);
+        }
+        if self.another_boundary {
+            return self.build_anew();
+        }
+        if differ(saved.boundary, self.boundary.fingerprint()) {
+            return Err(CheckpointError::AnotherBoundary);
+        }
+        let given = self.boundary.domain();
+        if saved.domain != given {
+            return Err(CheckpointError::Domain { saved: saved.domain, given });
+        }
+        let wall_count = count_walls(&self.boundary)?;
+        check_numbers(saved, wall_count)?;
+        let bodies = bodies_of(saved);
+        let radius = bodies.largest_radius();
+        check(suits(saved, 2.0 * radius), "its neighbor cells are not those of the domain")?;
+        let grid = Grid::new(&given, saved.layout, 2.0 * radius);
+        check_places(saved, &grid, &bodies)?;
+        let cells = Cells::filled(&self.boundary, radius, grid, saved.places.clone());
+        let mut run = self.run(bodies, cells, wall_count);
+        // Tells the boundary its origin and the scheduler its times.
+        run.shift_epoch(0.0);
+        Ok(run)
+    }
+
+    /// A run in another boundary: the disks are taken as they are, and everything about the walls is found anew.
+    fn build_anew(mut self) -> Result<Simulation<R, B, S>, CheckpointError> {
+        let saved = &self.checkpoint.0;
+        check_numbers(saved, usize::MAX)?;
+        let bodies = bodies_of(saved);
+        self.boundary.set_time_origin(saved.origin);
+        let (wall_count, cells) =
+            crate::simulation::builder::fit(&self.boundary, &bodies.disks(saved.now), saved.now)?;
+        let mut run = self.run(bodies, cells, wall_count);
+        run.predict_all();
+        Ok(run)
+    }
+
+    fn run(self, bodies: Bodies, cells: Cells, wall_count: usize) -> Simulation<R, B, S> {
+        let saved = &self.checkpoint.0;
+        Simulation {
+            rule: self.rule,
+            boundary: self.boundary,
+            wall_count,
+            scheduler: self.scheduler,
+            bodies,
+            cells,
+            clock: Clock {
+                origin: saved.origin,
+                now: saved.now,
+                epoch_length: saved.epoch_length,
+                guard: saved.guard,
+                tally: saved.tally,
+            },
+            generator: saved.generator.clone(),
+            counters: saved.counters,
+            lookahead: Lookahead::default(),
+            scratch: Scratch::default(),
+        }
+    }
+}
+
+fn bodies_of(saved: &Saved) -> Bodies {
+    let Saved { kinds, gravity, trajectories, forecasts, spins, .. } = saved;
+    Bodies::restored(kinds, *gravity, trajectories, forecasts, spins.clone())
+}

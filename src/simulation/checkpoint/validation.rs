@@ -1,0 +1,193 @@
+//! Checks that the contents of a checkpoint are a state that the engine can go on with.
+//!
+//! A checksum tells accidents, not intent: whoever computes it anew can write any numbers. So all of them pass the bounds of the
+//! constructors, and all events are where and when they can be; a run from here may be unphysical, but does not panic and
+//! does not hang.
+
+use super::{CheckpointError, Saved};
+use crate::disk::LARGEST;
+use crate::simulation::cells::{CELLS_PER_DISK, Grid, Layout, Place, SPARE_CELLS};
+use crate::simulation::events::Counters;
+use crate::simulation::state::{Bodies, Exit, Forecast, Guard, Spin, Trajectory};
+use glam::DVec2;
+
+/// More events than any run has.
+const MOST_COUNTED: u64 = 1 << 60;
+
+/// The room that rounding has, in sizes of a cell, of the grid or of a disk: much more than it needs.
+const SLACK: f64 = 1e-3;
+
+/// Epochs ahead within which a wall, or the horizon of its search, must lie: a collision may since have made epochs shorter.
+const MOST_EPOCHS: f64 = 1e6;
+
+pub(super) fn check(valid: bool, what: &'static str) -> Result<(), CheckpointError> {
+    if valid { Ok(()) } else { Err(CheckpointError::Inconsistent(what)) }
+}
+
+/// Checks all that does not need to know the cells.
+pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), CheckpointError> {
+    let count = saved.trajectories.len();
+    let lengths = [saved.spins.len(), saved.forecasts.len(), saved.places.len()];
+    check(lengths.iter().all(|&length| length == count), "its parts differ in length")?;
+    check([1, count].contains(&saved.kinds.len()), "its disks are of too many kinds, or of none")?;
+    let times = [saved.origin, saved.now, saved.epoch_length, saved.gravity];
+    check(times.iter().all(|time| time.is_finite()), "a time is not finite")?;
+    check(is_epoch_length(saved.epoch_length) && saved.now >= 0.0, "its epoch is out of order")?;
+    check(saved.trajectories.iter().all(is_trajectory), "a trajectory is beyond all bounds")?;
+    check(saved.spins.iter().all(|spin| is_spin(spin, saved.now)), "a rotation is beyond all bounds")?;
+    check(are_forecasts(saved, walls), "an event is of nobody, or in the past")?;
+    check(are_counted(&saved.counters) && is_guard(&saved.guard), "its counters are beyond all counting")?;
+    let Counters { cell_crossings, collisions, .. } = saved.counters;
+    let forward = saved.tally.cell_crossings <= cell_crossings && saved.tally.collisions <= collisions;
+    check(forward, "its counters run backwards")
+}
+
+/// Checks that all disks are where they belong, and their events where they can be.
+pub(super) fn check_places(saved: &Saved, grid: &Grid, bodies: &Bodies) -> Result<(), CheckpointError> {
+    let disks = || saved.forecasts.iter().zip(&saved.places).enumerate();
+    let inside = |(disk, (_, &place))| holds(grid, place, bodies.position(disk, saved.now));
+    check(disks().all(inside), "a disk is outside its neighbor cell")?;
+    check(has_room(saved, grid, bodies), "the disks of a cell overlap")?;
+    let ends = |(disk, (forecast, &place))| ends_where_it_can(saved, grid, bodies, disk, forecast, place);
+    check(disks().all(ends), "a disk leaves its neighbor cell where it is not")?;
+    let meets = |(disk, (forecast, _))| meets_its_partner(saved, bodies, disk, forecast);
+    check(disks().all(meets), "a disk collides with one that it does not touch")
+}
+
+/// Whether the grid is one for the domain and disks of at most this diameter, and every disk is in it.
+pub(super) fn suits(saved: &Saved, diameter: f64) -> bool {
+    let Layout { columns, rows, pitch, .. } = saved.layout;
+    let most = 2.0 * (CELLS_PER_DISK * saved.places.len() as f64 + SPARE_CELLS);
+    let covers = |count: u32, pitch: f64, length: f64| {
+        length.is_infinite() || (f64::from(count) * pitch / length - 1.0).abs() < SLACK
+    };
+    let wide = |count: u32, pitch: f64| count == 1 || pitch > diameter;
+    columns.min(rows) > 0
+        && f64::from(columns) * f64::from(rows) <= most
+        && (columns >= 4 || !saved.domain.periodic)
+        && covers(columns, pitch.x, saved.domain.width())
+        && covers(rows, pitch.y, saved.domain.height())
+        && wide(columns, pitch.x)
+        && wide(rows, pitch.y)
+        && pitch.is_finite()
+        && saved.places.iter().all(|&place| is_cell(&saved.layout, place))
+}
+
+/// Whether a place is one of the cells, not of the ring.
+fn is_cell(layout: &Layout, place: Place) -> bool {
+    (1..=layout.columns).contains(&place.column) && (1..=layout.rows).contains(&place.row)
+}
+
+/// Whether it is a power of two: others would not add up without rounding.
+fn is_epoch_length(length: f64) -> bool {
+    const FRACTION: u64 = (1 << 52) - 1;
+    length.is_normal() && length > 0.0 && length.to_bits() & FRACTION == 0
+}
+
+fn is_bounded(vector: DVec2) -> bool {
+    vector.x.abs() <= LARGEST && vector.y.abs() <= LARGEST
+}
+
+fn is_trajectory(trajectory: &Trajectory) -> bool {
+    is_bounded(trajectory.position) && is_bounded(trajectory.velocity)
+}
+
+/// Whether a rotation is bounded, and its last collision past or never.
+fn is_spin(spin: &Spin, now: f64) -> bool {
+    spin.angle.is_finite() && spin.angular_velocity.abs() <= LARGEST && spin.last_collision <= now
+}
+
+fn is_guard(guard: &Guard) -> bool {
+    guard.since.is_finite() && guard.events <= MOST_COUNTED
+}
+
+fn are_counted(counters: &Counters) -> bool {
+    let Counters { collisions, wall_collisions, contact_duration_collisions, .. } = *counters;
+    let Counters { cell_crossings, repredictions, horizons, cell_resizes, .. } = *counters;
+    let physics = [collisions, wall_collisions, contact_duration_collisions];
+    let bookkeeping = [cell_crossings, repredictions, horizons, cell_resizes];
+    physics.iter().chain(&bookkeeping).all(|&count| count <= MOST_COUNTED)
+        && counters.max_overlap >= 0.0
+        && counters.max_wall_overlap >= 0.0
+}
+
+fn are_forecasts(saved: &Saved, walls: usize) -> bool {
+    let count = saved.forecasts.len();
+    saved.forecasts.iter().enumerate().all(|(disk, forecast)| {
+        let Forecast { collision_due, exit_due, partner, exit, wall, .. } = *forecast;
+        let is_alone = collision_due == f64::INFINITY;
+        (is_alone || ((partner as usize) < count && partner as usize != disk))
+            && (exit != Exit::Wall || usize::from(wall) < walls)
+            && collision_due >= saved.now
+            && exit_due >= saved.now
+    })
+}
+
+/// Whether a disk at this position belongs into this cell.
+fn holds(grid: &Grid, place: Place, position: DVec2) -> bool {
+    let (region, slack) = (grid.region(place), SLACK * grid.layout.pitch);
+    position.is_finite()
+        && position.cmpge(region.min - slack).all()
+        && position.cmple(region.max + slack).all()
+}
+
+/// Whether the disks can be in their cells without overlaps.
+fn has_room(saved: &Saved, grid: &Grid, bodies: &Bodies) -> bool {
+    let domain = &saved.domain;
+    let mut cells = vec![(0.0, 0.0); grid.len()];
+    saved.places.iter().enumerate().all(|(disk, &place)| {
+        let radius = bodies.material(disk).radius;
+        let (area, largest): &mut (f64, f64) = &mut cells[grid.index(place)];
+        *area += std::f64::consts::PI * radius * radius;
+        *largest = largest.max(radius);
+        let region = grid.region(place);
+        let low = region.min.max(DVec2::new(domain.left, domain.bottom)) - *largest;
+        let size = region.max.min(DVec2::new(domain.right, domain.top)) + *largest - low;
+        // The densest packing has an area fraction of 0.91; this is more than the slack of the cells.
+        *area <= size.x * size.y
+    })
+}
+
+/// Whether the flight of a disk in its cell ends at the edge that it names, or at a wall that is not too far.
+fn ends_where_it_can(
+    saved: &Saved,
+    grid: &Grid,
+    bodies: &Bodies,
+    disk: usize,
+    forecast: &Forecast,
+    place: Place,
+) -> bool {
+    let Forecast { exit, exit_due, .. } = *forecast;
+    if !exit.is_passage() {
+        return exit_due == f64::INFINITY || exit_due - saved.now <= MOST_EPOCHS * saved.epoch_length;
+    }
+    if exit_due == f64::INFINITY {
+        return true;
+    }
+    let (region, pitch) = (grid.region(place), grid.layout.pitch);
+    let position = bodies.position(disk, exit_due);
+    let (gap, size) = match exit {
+        Exit::Left => (position.x - region.min.x, pitch.x),
+        Exit::Right => (position.x - region.max.x, pitch.x),
+        Exit::Down => (position.y - region.min.y, pitch.y),
+        _ => (position.y - region.max.y, pitch.y),
+    };
+    // Open containers have rows that grow with the height.
+    let size = size.max(SLACK * position.y.abs());
+    gap.abs() <= SLACK * size && is_cell(&grid.layout, grid.neighbour(place, exit.direction()).0)
+}
+
+/// Whether a disk touches its partner when it collides with it; a prediction out of date is made anew when it comes up.
+fn meets_its_partner(saved: &Saved, bodies: &Bodies, disk: usize, forecast: &Forecast) -> bool {
+    let Forecast { collision_due, partner, partner_collisions, .. } = *forecast;
+    let is_soon = collision_due - saved.now <= MOST_EPOCHS * saved.epoch_length;
+    let partner = partner as usize;
+    let is_current = saved.forecasts.get(partner).is_some_and(|other| other.collisions == partner_collisions);
+    if !(is_soon && is_current) {
+        return true;
+    }
+    let here = bodies.position(disk, collision_due);
+    let distance = saved.domain.separation(bodies.position(partner, collision_due), here).length();
+    let touching = bodies.material(disk).radius + bodies.material(partner).radius;
+    (distance - touching).abs() <= SLACK * touching
+}

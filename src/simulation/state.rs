@@ -1,0 +1,14 @@
+//! The state of a run: the disks on their flights, what each does next, and the time.
+
+mod bodies;
+mod clock;
+mod forecast;
+mod guard;
+
+pub(super) use bodies::Bodies;
+#[cfg(feature = "serde")]
+pub(super) use bodies::{Spin, Trajectory};
+pub(super) use clock::{Clock, Tally};
+pub(super) use forecast::{Earliest, Exit, Forecast};
+#[cfg(feature = "serde")]
+pub(super) use guard::Guard;

@@ -1,0 +1,368 @@
+//! The moving disks, as the hot loop wants them.
+//!
+//! Trajectories are kept in the free-fall frame of a common epoch: the position that a disk would have had at the epoch
+//! (time offset 0) on its present flight, and its velocity there, gravity left out. All disks fall alike, so the
+//! relative motion of a pair is a straight line with no clock of its own: predicting a pair costs a subtraction and a
+//! root, and passing a cell changes nothing. The epoch moves on now and then ([`Bodies::shift`]), so that extrapolation
+//! stays short and times keep their digits.
+
+use glam::DVec2;
+
+use super::forecast::Forecast;
+use crate::Disk;
+use crate::collision::{Body, Material};
+
+/// Diameters that a typical disk goes, or falls, in an epoch.
+const DIAMETERS: f64 = 64.0;
+
+/// The factor by which a disk may be faster than a typical one before it decides how often the epoch moves.
+const FASTER: f64 = 16.0;
+
+/// A straight trajectory in the free-fall frame; one row is one 32-byte load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(32))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(in crate::simulation) struct Trajectory {
+    pub(in crate::simulation) position: DVec2,
+    pub(in crate::simulation) velocity: DVec2,
+}
+
+impl Trajectory {
+    /// Position in the free-fall frame at a time offset.
+    #[inline]
+    pub(in crate::simulation) fn at(&self, offset: f64) -> DVec2 {
+        self.position + self.velocity * offset
+    }
+
+    /// Position and velocity, for arithmetic on all four at once.
+    #[inline]
+    pub(in crate::simulation) fn row(&self) -> [f64; 4] {
+        [self.position.x, self.position.y, self.velocity.x, self.velocity.y]
+    }
+}
+
+/// The rotation of a disk, which only collisions touch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(in crate::simulation) struct Spin {
+    /// Angle at the epoch, on the present rotation.
+    pub(in crate::simulation) angle: f64,
+    pub(in crate::simulation) angular_velocity: f64,
+    /// Time offset of the last collision with anything.
+    pub(in crate::simulation) last_collision: f64,
+}
+
+impl Spin {
+    fn of(disk: &Disk) -> Self {
+        Self {
+            angle: disk.angle(),
+            angular_velocity: disk.angular_velocity(),
+            last_collision: f64::NEG_INFINITY,
+        }
+    }
+}
+
+/// All that predictions look at, one cache line for a disk: large systems are slow for the lines that an event touches.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+pub(in crate::simulation) struct Particle {
+    pub(in crate::simulation) trajectory: Trajectory,
+    pub(in crate::simulation) forecast: Forecast,
+}
+
+impl Particle {
+    /// A particle with this trajectory whose next event is not known.
+    fn new(trajectory: Trajectory) -> Self {
+        Self { trajectory, forecast: Forecast::NEW }
+    }
+}
+
+#[derive(Debug, Clone)]
+pub(in crate::simulation) struct Bodies {
+    pub(in crate::simulation) particles: Vec<Particle>,
+    pub(in crate::simulation) spins: Vec<Spin>,
+    pub(in crate::simulation) gravity: f64,
+    kinds: Kinds,
+    /// The diameter in which the length of an epoch is measured.
+    typical_diameter: f64,
+}
+
+/// Radius, mass and inertia of a disk: all that does not change.
+#[derive(Debug, Clone, Copy)]
+struct Kind {
+    /// A disk of this kind at rest at the origin.
+    disk: Disk,
+    material: Material,
+}
+
+impl Kind {
+    fn of(disk: &Disk) -> Self {
+        let disk = disk.with_motion(DVec2::ZERO, DVec2::ZERO, 0.0, 0.0);
+        Self { disk, material: Material::of(&disk) }
+    }
+}
+
+/// One kind for all disks where they are equal, so that it stays in cache.
+#[derive(Debug, Clone)]
+enum Kinds {
+    Same(Kind),
+    Each(Vec<Kind>),
+}
+
+impl Kinds {
+    fn of(disks: &[Disk]) -> Self {
+        match disks.split_first() {
+            Some((first, rest)) if rest.iter().all(|disk| is_alike(disk, first)) => {
+                Self::Same(Kind::of(first))
+            }
+            _ => Self::Each(disks.iter().map(Kind::of).collect()),
+        }
+    }
+
+    /// The median diameter, which does not depend on the order of the disks; 0 without disks.
+    fn typical_diameter(&self) -> f64 {
+        match self {
+            Self::Same(kind) => 2.0 * kind.material.radius,
+            Self::Each(each) if each.is_empty() => 0.0,
+            Self::Each(each) => {
+                let mut radii: Vec<f64> = each.iter().map(|kind| kind.material.radius).collect();
+                let middle = radii.len() / 2;
+                2.0 * *radii.select_nth_unstable_by(middle, f64::total_cmp).1
+            }
+        }
+    }
+
+    #[inline]
+    fn get(&self, disk: usize) -> &Kind {
+        match self {
+            Self::Same(kind) => kind,
+            Self::Each(each) => &each[disk],
+        }
+    }
+}
+
+fn is_alike(disk: &Disk, other: &Disk) -> bool {
+    let properties = |disk: &Disk| [disk.radius(), disk.mass(), disk.inertia_factor()];
+    properties(disk) == properties(other)
+}
+
+impl Bodies {
+    pub(in crate::simulation) fn new(disks: &[Disk], gravity: f64) -> Self {
+        let trajectory = |disk: &Disk| Trajectory { position: disk.position(), velocity: disk.velocity() };
+        let particles = disks.iter().map(trajectory).map(Particle::new).collect();
+        let spins = disks.iter().map(Spin::of).collect();
+        Self::of_kinds(Kinds::of(disks), gravity, particles, spins)
+    }
+
+    fn of_kinds(kinds: Kinds, gravity: f64, particles: Vec<Particle>, spins: Vec<Spin>) -> Self {
+        Self { particles, spins, gravity, typical_diameter: kinds.typical_diameter(), kinds }
+    }
+
+    /// Bodies that go on where they were saved; disks that are all alike are one.
+    #[cfg(feature = "serde")]
+    pub(in crate::simulation) fn restored(
+        kinds: &[Disk],
+        gravity: f64,
+        trajectories: &[Trajectory],
+        forecasts: &[Forecast],
+        spins: Vec<Spin>,
+    ) -> Self {
+        let particle = |(&trajectory, &forecast)| Particle { trajectory, forecast };
+        let particles = trajectories.iter().zip(forecasts).map(particle).collect();
+        Self::of_kinds(Kinds::of(kinds), gravity, particles, spins)
+    }
+
+    /// What [`Self::restored`] takes.
+    #[cfg(feature = "serde")]
+    pub(in crate::simulation) fn kinds(&self) -> Vec<Disk> {
+        match &self.kinds {
+            Kinds::Same(kind) => vec![kind.disk],
+            Kinds::Each(each) => each.iter().map(|kind| kind.disk).collect(),
+        }
+    }
+
+    pub(in crate::simulation) fn largest_radius(&self) -> f64 {
+        match &self.kinds {
+            Kinds::Same(kind) => kind.disk.radius(),
+            Kinds::Each(each) => each.iter().map(|kind| kind.disk.radius()).fold(0.0, f64::max),
+        }
+    }
+
+    pub(in crate::simulation) fn len(&self) -> usize {
+        self.particles.len()
+    }
+
+    /// The next event of a disk, if there is such a disk.
+    #[inline]
+    pub(in crate::simulation) fn forecast(&self, disk: usize) -> Option<&Forecast> {
+        self.particles.get(disk).map(|particle| &particle.forecast)
+    }
+
+    /// Speed in the free-fall frame: the scale of the rounding of a velocity.
+    pub(in crate::simulation) fn speed(&self, disk: usize) -> f64 {
+        self.particles[disk].trajectory.velocity.length()
+    }
+
+    #[inline]
+    pub(in crate::simulation) fn material(&self, disk: usize) -> &Material {
+        &self.kinds.get(disk).material
+    }
+
+    /// The diameter, if all disks have the same.
+    #[inline]
+    pub(in crate::simulation) fn common_diameter(&self) -> Option<f64> {
+        match &self.kinds {
+            Kinds::Same(kind) => Some(2.0 * kind.material.radius),
+            Kinds::Each(_) => None,
+        }
+    }
+
+    /// Displacement and velocity that gravity has added by this time offset.
+    #[inline]
+    pub(in crate::simulation) fn fall(&self, offset: f64) -> (DVec2, DVec2) {
+        let velocity = -self.gravity * offset;
+        (DVec2::new(0.0, 0.5 * velocity * offset), DVec2::new(0.0, velocity))
+    }
+
+    /// Position in the frame of the container.
+    #[inline]
+    pub(in crate::simulation) fn position(&self, disk: usize, offset: f64) -> DVec2 {
+        self.particles[disk].trajectory.at(offset) + self.fall(offset).0
+    }
+
+    /// Velocity in the frame of the container.
+    #[inline]
+    pub(in crate::simulation) fn velocity(&self, disk: usize, offset: f64) -> DVec2 {
+        self.particles[disk].trajectory.velocity + self.fall(offset).1
+    }
+
+    /// Motion as a collision of two disks sees it: velocities in the free-fall frame.
+    #[inline]
+    pub(in crate::simulation) fn body(&self, disk: usize) -> Body {
+        Body {
+            velocity: self.particles[disk].trajectory.velocity,
+            angular_velocity: self.spins[disk].angular_velocity,
+        }
+    }
+
+    /// A collision at this time offset changes the motion of `disk`; where it is stays as it was.
+    #[inline]
+    pub(in crate::simulation) fn kick(
+        &mut self,
+        disk: usize,
+        velocity: DVec2,
+        angular_velocity: f64,
+        offset: f64,
+    ) {
+        self.push(disk, velocity, offset);
+        let spin = &mut self.spins[disk];
+        spin.angular_velocity += angular_velocity;
+        spin.angle -= angular_velocity * offset;
+        spin.last_collision = offset;
+    }
+
+    /// Changes the velocity of `disk` at this time offset; where it is stays as it was.
+    #[inline]
+    pub(in crate::simulation) fn push(&mut self, disk: usize, velocity: DVec2, offset: f64) {
+        let trajectory = &mut self.particles[disk].trajectory;
+        let before = trajectory.velocity;
+        trajectory.velocity += velocity;
+        // By the change that is left after rounding, or the disk would jump.
+        trajectory.position -= (trajectory.velocity - before) * offset;
+    }
+
+    #[inline]
+    pub(in crate::simulation) fn moment_of_inertia(&self, disk: usize) -> f64 {
+        self.kinds.get(disk).disk.moment_of_inertia()
+    }
+
+    /// The disk as the outside world knows it.
+    pub(in crate::simulation) fn disk(&self, disk: usize, offset: f64) -> Disk {
+        let spin = &self.spins[disk];
+        self.kinds.get(disk).disk.with_motion(
+            self.position(disk, offset),
+            self.velocity(disk, offset),
+            spin.angle + spin.angular_velocity * offset,
+            spin.angular_velocity,
+        )
+    }
+
+    /// All disks as the outside world knows them.
+    pub(in crate::simulation) fn disks(&self, offset: f64) -> Vec<Disk> {
+        (0..self.len()).map(|disk| self.disk(disk, offset)).collect()
+    }
+
+    /// Moves the epoch by this much.
+    pub(in crate::simulation) fn shift(&mut self, by: f64) {
+        let (fallen, gained) = self.fall(by);
+        for Particle { trajectory, forecast } in &mut self.particles {
+            forecast.shift(by);
+            trajectory.position = trajectory.at(by) + fallen;
+            trajectory.velocity += gained;
+        }
+        for spin in &mut self.spins {
+            spin.angle += spin.angular_velocity * by;
+            spin.last_collision -= by;
+        }
+    }
+
+    /// Gravity has another value from this offset on; motion at that time stays as it is.
+    pub(in crate::simulation) fn set_gravity(&mut self, gravity: f64, offset: f64) {
+        let gained = (gravity - self.gravity) * offset;
+        // The flight that leads to the same place and velocity under the other gravity.
+        for particle in &mut self.particles {
+            particle.trajectory.velocity.y += gained;
+            particle.trajectory.position.y -= 0.5 * gained * offset;
+        }
+        self.gravity = gravity;
+    }
+
+    /// The length of an epoch: a typical disk goes, or falls, some tens of diameters in it, and none [`FASTER`] times as far.
+    pub(in crate::simulation) fn epoch_length(&self) -> f64 {
+        let squares = || self.particles.iter().map(|particle| particle.trajectory.velocity.length_squared());
+        let typical = (squares().sum::<f64>() / self.len() as f64).sqrt();
+        self.epoch_length_at(typical.max(squares().fold(0.0, f64::max).sqrt() / FASTER))
+    }
+
+    /// Whether a disk of this velocity goes no further in an epoch of this length than any should. A collision can make a
+    /// disk faster than all were; its place at the epoch, so far away, would lack digits.
+    #[inline]
+    pub(in crate::simulation) fn keeps_pace(&self, velocity: DVec2, epoch_length: f64) -> bool {
+        let most = FASTER * DIAMETERS * self.typical_diameter;
+        (velocity * epoch_length).length_squared() <= most * most
+    }
+
+    /// The length of an epoch that suits a disk of this velocity, too.
+    pub(in crate::simulation) fn epoch_length_for(&self, velocity: DVec2) -> f64 {
+        self.epoch_length_at(velocity.length() / FASTER)
+    }
+
+    /// A power of two, so that epochs add up without rounding.
+    fn epoch_length_at(&self, speed: f64) -> f64 {
+        let way = DIAMETERS * self.typical_diameter;
+        let length = way / (speed + (self.gravity.abs() * way).sqrt());
+        if length.is_finite() && length > 0.0 { power_of_two_below(length) } else { 1.0 }
+    }
+}
+
+/// The largest power of two that is not above a positive number, and not so small or large that its square is none.
+fn power_of_two_below(number: f64) -> f64 {
+    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
+    let number = number.clamp(f64::from_bits((1023 - 900) << 52), f64::from_bits((1023 + 900) << 52));
+    // Without its fraction a float is its power of two: exact, where a logarithm would be rounded.
+    f64::from_bits(number.to_bits() & EXPONENT)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::power_of_two_below;
+
+    #[test]
+    fn powers_of_two_are_exact() {
+        let next_below_8 = 8.0_f64.next_down();
+        let cases = [(1.0, 1.0), (next_below_8, 4.0), (8.0, 8.0), (0.3, 0.25), (1e-300, 2.0_f64.powi(-900))];
+        for (number, power) in cases {
+            assert_eq!(power_of_two_below(number), power, "{number}");
+        }
+    }
+}

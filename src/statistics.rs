@@ -1,0 +1,34 @@
+//! Statistics: means of numbers that come one by one, and how far each mean can be trusted.
+//!
+//! | question | answer |
+//! |---|---|
+//! | mean and variance of independent numbers | [`RunningMean`] |
+//! | mean of correlated numbers with its error, in a few hundred bytes | [`BlockedMean`] |
+//! | the same of a series that is at hand | [`block_average`] |
+//! | a mean, its error, and what the error rests on | [`Estimate`] |
+//!
+//! Collisions and samples of one run are correlated: a standard error that takes them as independent is too small, often by a
+//! factor of ten. An error over them comes from blocks, and says when the run was too short for it.
+//!
+//! ```
+//! use granular_edmd::statistics::BlockedMean;
+//! // An uncorrelated sequence (the logistic map), each value held for 16 samples: 16 are worth one.
+//! let chaos = std::iter::successors(Some(0.3), |x| Some(4.0 * x * (1.0 - x)));
+//! let mean: BlockedMean = chaos.take(512).flat_map(|x| [x; 16]).collect();
+//! let estimate = mean.estimate();
+//! assert!(estimate.is_converged());
+//! assert!((estimate.mean() - 0.5).abs() < 3.0 * estimate.standard_error());
+//! assert!(estimate.standard_error() > 3.0 * mean.ungrouped().standard_error());
+//! ```
+
+mod blocked_mean;
+mod blocking;
+mod estimate;
+mod moments;
+mod running_mean;
+
+pub use blocked_mean::BlockedMean;
+pub use blocking::block_average;
+pub use estimate::Estimate;
+pub(crate) use moments::Moments;
+pub use running_mean::RunningMean;

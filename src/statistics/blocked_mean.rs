@@ -1,0 +1,145 @@
+//! Mean of correlated numbers with its error, without keeping the numbers.
+
+use super::blocking::is_long_enough;
+use super::{Estimate, RunningMean};
+
+/// Mean of correlated numbers that come one by one, with an error that knows of their correlation.
+///
+/// It keeps the scatter of blocks of 1, 2, 4, … numbers: memory grows with the logarithm of their count, and a number costs
+/// constant time on average. [`Self::estimate`] takes the error from the smallest blocks that are long enough, as
+/// [`block_average`](super::block_average) does of a series that is at hand: to the bit the same.
+///
+/// ```
+/// use granular_edmd::statistics::{BlockedMean, block_average};
+/// let series: Vec<f64> = (0..1000).map(|k| f64::from(k / 10 % 7)).collect();
+/// let mean: BlockedMean = series.iter().copied().collect();
+/// assert_eq!(mean.estimate(), block_average(&series)?);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(into = "Vec<Level>", try_from = "Vec<Level>"))]
+pub struct BlockedMean {
+    /// Blocks of one number, of two, of four, …: as far as there is one of them.
+    levels: Vec<Level>,
+}
+
+/// Blocks of one size.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+struct Level {
+    blocks: RunningMean,
+    /// The last block, if it waits for the one with which it makes a larger block.
+    waiting: Option<f64>,
+}
+
+impl BlockedMean {
+    /// Makes a mean of no numbers yet.
+    pub const fn new() -> Self {
+        Self { levels: Vec::new() }
+    }
+
+    /// Takes one more number.
+    #[inline]
+    pub fn push(&mut self, value: f64) {
+        let mut block = value;
+        for level in &mut self.levels {
+            level.blocks.push(block);
+            let Some(before) = level.waiting.take() else {
+                level.waiting = Some(block);
+                return;
+            };
+            block = 0.5 * (before + block);
+        }
+        self.levels.push(Level { blocks: RunningMean::from_iter([block]), waiting: Some(block) });
+    }
+
+    /// Returns how many numbers there were.
+    pub fn count(&self) -> u64 {
+        self.ungrouped().count()
+    }
+
+    /// Returns their mean; 0 if there were none.
+    pub fn mean(&self) -> f64 {
+        self.ungrouped().mean()
+    }
+
+    /// Returns their sum.
+    pub fn sum(&self) -> f64 {
+        self.ungrouped().sum()
+    }
+
+    /// Returns mean and variance of the numbers themselves, which know nothing of correlation.
+    pub fn ungrouped(&self) -> RunningMean {
+        self.levels.first().map_or_else(RunningMean::default, |level| level.blocks)
+    }
+
+    /// Returns the mean with an error from blocks, for numbers of at most 1e100 in size.
+    pub fn estimate(&self) -> Estimate {
+        let whole = self.ungrouped();
+        let naive = whole.standard_error();
+        let plateau = self.errors().find(|&(size, error)| is_long_enough(size, whole.count(), error / naive));
+        let error = match plateau {
+            // Of equal numbers.
+            _ if naive == 0.0 => 0.0,
+            Some((_, error)) => error,
+            None => self.errors().map(|(_, error)| error).fold(naive, f64::max),
+        };
+        let growth = if naive > 0.0 { error / naive } else { 1.0 };
+        let converged = plateau.is_some() || naive == 0.0;
+        Estimate::blocked(whole.mean(), error, whole.count(), growth * growth, converged)
+    }
+
+    /// Sizes of blocks and the errors that these seem to have, as long as there are two of them.
+    fn errors(&self) -> impl Iterator<Item = (f64, f64)> {
+        let several = self.levels.iter().take_while(|level| level.blocks.count() >= 2);
+        several
+            .enumerate()
+            .map(|(level, Level { blocks, .. })| ((1_u64 << level) as f64, blocks.standard_error()))
+    }
+}
+
+impl Extend<f64> for BlockedMean {
+    fn extend<T: IntoIterator<Item = f64>>(&mut self, values: T) {
+        values.into_iter().for_each(|value| self.push(value));
+    }
+}
+
+impl FromIterator<f64> for BlockedMean {
+    fn from_iter<T: IntoIterator<Item = f64>>(values: T) -> Self {
+        let mut mean = Self::default();
+        mean.extend(values);
+        mean
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<BlockedMean> for Vec<Level> {
+    fn from(mean: BlockedMean) -> Self {
+        mean.levels
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Vec<Level>> for BlockedMean {
+    type Error = crate::ParameterError;
+
+    fn try_from(levels: Vec<Level>) -> Result<Self, Self::Error> {
+        use crate::quantity::{accept, finite};
+        let mut expected = levels.first().map_or(0, |level| level.blocks.count());
+        for Level { blocks, waiting } in &levels {
+            let count = blocks.count();
+            accept(
+                count == expected && count > 0,
+                "number of blocks",
+                "half of the smaller ones",
+                count as f64,
+            )?;
+            accept(waiting.is_some() == (count % 2 == 1), "odd block", "waiting for the next", count as f64)?;
+            finite("block", waiting.unwrap_or(0.0))?;
+            expected = count / 2;
+        }
+        accept(expected == 0, "number of blocks", "half of the smaller ones", 0.0)?;
+        Ok(Self { levels })
+    }
+}

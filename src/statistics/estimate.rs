@@ -1,0 +1,196 @@
+//! A mean with its error, and what the error rests on.
+
+use std::fmt;
+
+/// Mean of samples with its standard error, and how far that error can be trusted.
+///
+/// The error of correlated samples is taken from blocks ([`BlockedMean`](super::BlockedMean),
+/// [`block_average`](super::block_average)). A series that is too short for that gives an estimate that is not converged: its
+/// error is then a lower bound. Samples that are independent, or are taken to be, give an estimate that says so.
+///
+/// Printed with a precision, the mean and the error have that many digits behind the point; without one, the error has two
+/// significant digits. What limits the error follows in words.
+///
+/// ```
+/// use granular_edmd::statistics::{RunningMean, block_average};
+/// let alternating: Vec<f64> = (0..1000).map(|k| f64::from(k % 2)).collect();
+/// assert_eq!(block_average(&alternating)?.to_string(), "0.50000 ± 0.00000");
+/// // A single jump: no series of this length tells how often there will be one.
+/// let jump: Vec<f64> = (0..64).map(|k| f64::from(k / 32)).collect();
+/// let estimate = block_average(&jump)?;
+/// assert!(!estimate.is_converged());
+/// assert_eq!(format!("{estimate:.2}"), "0.50 ± 0.50 (not converged: a lower bound)");
+/// let independent: RunningMean = [1.0, 2.0, 3.0].into_iter().collect();
+/// assert_eq!(independent.estimate().to_string(), "2.00 ± 0.58 (independent samples)");
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(into = "serial::Raw", try_from = "serial::Raw"))]
+pub struct Estimate {
+    mean: f64,
+    standard_error: f64,
+    samples: u64,
+    correlated_samples: f64,
+    basis: Basis,
+}
+
+/// Origin of an error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+enum Basis {
+    /// The scatter of samples that are taken as independent.
+    Independent,
+    /// The scatter of blocks that are long enough.
+    Blocks,
+    /// The largest scatter of blocks of which none is long enough.
+    ShortBlocks,
+}
+
+impl Estimate {
+    /// Mean and error of independent samples.
+    pub(crate) fn independent(mean: f64, standard_error: f64, samples: u64) -> Self {
+        Self::of(mean, standard_error, samples, 1.0, Basis::Independent)
+    }
+
+    /// Mean and error of correlated samples, from blocks.
+    pub(super) fn blocked(
+        mean: f64,
+        standard_error: f64,
+        samples: u64,
+        correlated_samples: f64,
+        converged: bool,
+    ) -> Self {
+        let basis = if converged { Basis::Blocks } else { Basis::ShortBlocks };
+        Self::of(mean, standard_error, samples, correlated_samples, basis)
+    }
+
+    fn of(mean: f64, standard_error: f64, samples: u64, correlated_samples: f64, basis: Basis) -> Self {
+        let mean = if samples == 0 { f64::NAN } else { mean };
+        let standard_error = if samples < 2 { f64::NAN } else { standard_error };
+        Self { mean, standard_error, samples, correlated_samples, basis }
+    }
+
+    /// The same error about another mean: of a ratio, whose error is that of its residuals.
+    #[cfg(feature = "serde")]
+    pub(crate) fn about(self, mean: f64) -> Self {
+        Self { mean, ..self }
+    }
+
+    /// Returns the mean; NaN without samples.
+    pub const fn mean(&self) -> f64 {
+        self.mean
+    }
+
+    /// Returns the standard error of the mean; NaN of fewer than two samples.
+    pub const fn standard_error(&self) -> f64 {
+        self.standard_error
+    }
+
+    /// Returns how many samples there were.
+    pub const fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// Returns how many consecutive samples tell as much as one independent sample, `$1 + 2\sum_k\rho_k$` for
+    /// autocorrelations `$\rho_k$`; 1 if the samples are taken as independent, or all are equal.
+    pub const fn correlated_samples(&self) -> f64 {
+        self.correlated_samples
+    }
+
+    /// Returns true if the error can be taken at its word, and false if it is only a lower bound: a series too short for its
+    /// correlations, or fewer than two samples.
+    pub const fn is_converged(&self) -> bool {
+        self.samples >= 2 && !matches!(self.basis, Basis::ShortBlocks)
+    }
+
+    /// Returns true if the error takes the samples as independent.
+    pub const fn assumes_independence(&self) -> bool {
+        matches!(self.basis, Basis::Independent)
+    }
+
+    /// Decimals that show two digits of the error.
+    fn decimals(&self) -> usize {
+        const MOST: usize = 17;
+        let mut shown = self.standard_error;
+        if shown == 0.0 || !shown.is_finite() {
+            return 5;
+        }
+        let mut decimals = 0;
+        // An error that prints as 9.95 or more has its two digits.
+        while shown < 9.95 && decimals < MOST {
+            shown *= 10.0;
+            decimals += 1;
+        }
+        decimals
+    }
+}
+
+impl fmt::Display for Estimate {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let digits = formatter.precision().unwrap_or_else(|| self.decimals());
+        write!(formatter, "{:.digits$} ± {:.digits$}", self.mean, self.standard_error)?;
+        match (self.samples, self.basis) {
+            (0 | 1, _) => formatter.write_str(" (too few samples for an error)"),
+            (_, Basis::Independent) => formatter.write_str(" (independent samples)"),
+            (_, Basis::Blocks) => Ok(()),
+            (_, Basis::ShortBlocks) => formatter.write_str(" (not converged: a lower bound)"),
+        }
+    }
+}
+
+/// An estimate in files: numbers that cannot be told are absent, since not all formats know NaN.
+#[cfg(feature = "serde")]
+mod serial {
+    use super::{Basis, Estimate};
+    use crate::ParameterError;
+    use crate::quantity::{accept, finite, non_negative};
+
+    #[derive(serde::Serialize, serde::Deserialize)]
+    #[serde(deny_unknown_fields, rename = "Estimate")]
+    pub(super) struct Raw {
+        mean: Option<f64>,
+        standard_error: Option<f64>,
+        samples: u64,
+        correlated_samples: f64,
+        basis: Basis,
+    }
+
+    impl From<Estimate> for Raw {
+        fn from(estimate: Estimate) -> Self {
+            let Estimate { mean, standard_error, samples, correlated_samples, basis } = estimate;
+            Self {
+                mean: (samples > 0).then_some(mean),
+                standard_error: (samples > 1).then_some(standard_error),
+                samples,
+                correlated_samples,
+                basis,
+            }
+        }
+    }
+
+    impl TryFrom<Raw> for Estimate {
+        type Error = ParameterError;
+
+        fn try_from(raw: Raw) -> Result<Self, ParameterError> {
+            let Raw { mean, standard_error, samples, correlated_samples, basis } = raw;
+            let count = samples as f64;
+            accept(
+                mean.is_some() == (samples > 0),
+                "samples of an estimate",
+                "as many as it tells of",
+                count,
+            )?;
+            let has_error = standard_error.is_some();
+            accept(has_error == (samples > 1), "samples of an estimate", "as many as it tells of", count)?;
+            finite("mean", mean.unwrap_or(0.0))?;
+            non_negative("standard error", standard_error.unwrap_or(0.0))?;
+            non_negative("number of correlated samples", correlated_samples)?;
+            let independent = basis == Basis::Independent;
+            let alone = !independent || correlated_samples == 1.0;
+            accept(alone, "number of correlated samples, if independent,", "1", correlated_samples)?;
+            let (mean, standard_error) = (mean.unwrap_or(f64::NAN), standard_error.unwrap_or(f64::NAN));
+            Ok(Self { mean, standard_error, samples, correlated_samples, basis })
+        }
+    }
+}

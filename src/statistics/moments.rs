@@ -1,0 +1,49 @@
+//! The one place where means and squared deviations are accumulated.
+
+/// Weighted mean of numbers, and the weighted sum of their squared deviations from it (Welford 1962, West 1979).
+///
+/// The deviations are taken from the mean so far: the difference of a sum of squares and a squared sum would cancel the
+/// digits of a small variance about a large mean.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawMoments"))]
+pub(crate) struct Moments {
+    pub(crate) weight: f64,
+    pub(crate) mean: f64,
+    pub(crate) squares: f64,
+}
+
+impl Moments {
+    /// Takes one more number, of a weight above zero.
+    #[inline]
+    pub(crate) fn push(&mut self, value: f64, weight: f64) {
+        self.weight += weight;
+        let before = value - self.mean;
+        self.mean += before * weight / self.weight;
+        self.squares += weight * before * (value - self.mean);
+    }
+}
+
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "Moments")]
+pub(super) struct RawMoments {
+    pub(super) weight: f64,
+    pub(super) mean: f64,
+    pub(super) squares: f64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawMoments> for Moments {
+    type Error = crate::ParameterError;
+
+    fn try_from(RawMoments { weight, mean, squares }: RawMoments) -> Result<Self, Self::Error> {
+        use crate::quantity::{accept, finite, non_negative};
+        non_negative("weight of a mean", weight)?;
+        finite("mean", mean)?;
+        non_negative("sum of squared deviations", squares)?;
+        accept(weight > 0.0 || mean == 0.0, "mean of no numbers", "0", mean)?;
+        accept(weight > 0.0 || squares == 0.0, "sum of squared deviations of no numbers", "0", squares)?;
+        Ok(Self { weight, mean, squares })
+    }
+}

@@ -1,0 +1,107 @@
+//! Mean and variance, without keeping the numbers.
+
+use super::{Estimate, Moments};
+
+/// Mean, variance and standard error of numbers that come one by one (Welford 1962).
+///
+/// The standard error is that of independent numbers; for correlated ones, as the samples or collisions of one run, it is too
+/// small: see [`BlockedMean`](super::BlockedMean).
+///
+/// ```
+/// use granular_edmd::statistics::RunningMean;
+/// let mean: RunningMean = [1.0, 2.0, 3.0].into_iter().collect();
+/// assert_eq!(mean.mean(), 2.0);
+/// assert_eq!(mean.variance(), 1.0);
+/// assert!((mean.standard_error() - (1.0_f64 / 3.0).sqrt()).abs() < 1e-15);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(into = "RawRunningMean", try_from = "RawRunningMean"))]
+pub struct RunningMean(Moments);
+
+impl RunningMean {
+    /// Takes one more number.
+    #[inline]
+    pub fn push(&mut self, value: f64) {
+        self.0.push(value, 1.0);
+    }
+
+    /// Returns how many numbers there were.
+    pub const fn count(&self) -> u64 {
+        self.0.weight as u64
+    }
+
+    /// Returns their mean; 0 if there were none.
+    pub const fn mean(&self) -> f64 {
+        self.0.mean
+    }
+
+    /// Returns their sum.
+    pub fn sum(&self) -> f64 {
+        self.0.mean * self.0.weight
+    }
+
+    /// Returns their unbiased variance; 0 of fewer than two.
+    pub fn variance(&self) -> f64 {
+        if self.0.weight < 2.0 { 0.0 } else { self.0.squares / (self.0.weight - 1.0) }
+    }
+
+    /// Returns their standard deviation, `$\sqrt{\mathrm{variance}}$`.
+    pub fn standard_deviation(&self) -> f64 {
+        self.variance().sqrt()
+    }
+
+    /// Returns the standard error of the mean of independent numbers, `$\sqrt{\mathrm{variance}/n}$`; 0 of fewer than two.
+    pub fn standard_error(&self) -> f64 {
+        if self.0.weight < 2.0 { 0.0 } else { (self.variance() / self.0.weight).sqrt() }
+    }
+
+    /// Returns the mean with the error of independent numbers.
+    pub fn estimate(&self) -> Estimate {
+        Estimate::independent(self.mean(), self.standard_error(), self.count())
+    }
+}
+
+impl Extend<f64> for RunningMean {
+    fn extend<T: IntoIterator<Item = f64>>(&mut self, values: T) {
+        values.into_iter().for_each(|value| self.push(value));
+    }
+}
+
+impl FromIterator<f64> for RunningMean {
+    fn from_iter<T: IntoIterator<Item = f64>>(values: T) -> Self {
+        let mut mean = Self::default();
+        mean.extend(values);
+        mean
+    }
+}
+
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "RunningMean")]
+struct RawRunningMean {
+    count: u64,
+    mean: f64,
+    squares: f64,
+}
+
+#[cfg(feature = "serde")]
+impl From<RunningMean> for RawRunningMean {
+    fn from(running: RunningMean) -> Self {
+        Self { count: running.count(), mean: running.0.mean, squares: running.0.squares }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawRunningMean> for RunningMean {
+    type Error = crate::ParameterError;
+
+    fn try_from(RawRunningMean { count, mean, squares }: RawRunningMean) -> Result<Self, Self::Error> {
+        use super::moments::RawMoments;
+        use crate::quantity::accept;
+        // Counts are kept as floating-point numbers, which are whole up to here.
+        accept(count <= 1 << 53, "number of samples", "at most 2^53", count as f64)?;
+        accept(count != 1 || squares == 0.0, "sum of squared deviations of one number", "0", squares)?;
+        Moments::try_from(RawMoments { weight: count as f64, mean, squares }).map(Self)
+    }
+}

@@ -1,0 +1,301 @@
+//! The contract of a wall motion, as a check for motions of your own.
+//!
+//! [`check`] tries all of it on a stretch of phases, [`check_finite`] only that all answers are finite: the
+//! container asks the latter of every motion that it is given.
+
+mod violation;
+
+pub use violation::Violation;
+
+use super::{AccelerationBounds, WallMotion, WallState};
+
+/// Samples in a piece.
+const SAMPLES: u32 = 512;
+
+/// Most pieces that are followed.
+const MOST_PIECES: u32 = 10_000;
+
+/// Rounding allowed, relative to the lengths and speeds that a number is made of.
+const ROUNDING: f64 = 256.0 * f64::EPSILON;
+
+/// Part of a piece between its last sample and its end, where the state may jump.
+const LAST: f64 = 1.0 / (1u64 << 20) as f64;
+
+/// Length of a piece that is nothing but rounding, relative to its phase.
+const SHORT: f64 = 1e-9;
+
+/// Pieces in a row that must get further than rounding.
+const PIECES_IN_A_ROW: u32 = 8;
+
+/// Phases at which a motion without a period is looked at.
+const PROBES: [f64; 9] = [0.0, 1e-3, 0.1, 1.0, 10.0, 1e2, 1e3, 1e4, 1e6];
+
+/// Checks that a motion keeps its contract between two phases.
+///
+/// It samples each piece that begins between them: state finite and within reach, bounds that hold for the
+/// change of the velocity between samples, a displacement that is the integral of the velocity, pieces that
+/// go on, jumps only at their ends and only away from the disks, and a period that is one. A fault narrower
+/// than a five-hundredth of a piece can be missed: check a motion with one long piece on several short
+/// stretches. A stretch of more than ten thousand pieces is refused.
+///
+/// # Errors
+/// The first violation that it finds.
+///
+/// ```
+/// use granular_edmd::wall::{AccelerationBounds, Sinusoidal, WallMotion, WallState, laws};
+///
+/// /// A sine with a mistake in its velocity.
+/// struct Mistaken(Sinusoidal);
+///
+/// impl WallMotion for Mistaken {
+///     fn state(&self, phase: f64) -> WallState {
+///         let state = self.0.state(phase);
+///         WallState::new(state.displacement, 0.9 * state.velocity)
+///     }
+///     fn acceleration(&self, phase: f64) -> AccelerationBounds {
+///         self.0.acceleration(phase)
+///     }
+///     fn reach(&self) -> (f64, f64) {
+///         self.0.reach()
+///     }
+/// }
+///
+/// let sine = Sinusoidal::new(0.1, 10.0)?;
+/// assert_eq!(laws::check(&sine, -1.0, 3.0), Ok(()));
+/// assert!(laws::check(&Mistaken(sine), -1.0, 3.0).is_err());
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(), Violation> {
+    let (low, high) = check_constants(motion)?;
+    row_of_pieces(motion, from)?;
+    let check = Check { motion, low, high };
+    let mut phase = from;
+    for _ in 0..MOST_PIECES {
+        let until = check.piece(phase, to)?;
+        if until >= to {
+            return Ok(());
+        }
+        check.end(phase, until)?;
+        phase = until;
+    }
+    Err(Violation::ShortPieces { phase: from, until: phase, pieces: MOST_PIECES })
+}
+
+/// Checks that a motion gives finite numbers, and pieces that go on: what no run can do without.
+///
+/// It looks at phases in the first period, or some between 0 and a million for a motion without a period.
+///
+/// # Errors
+/// The first violation that it finds.
+///
+/// ```
+/// use granular_edmd::wall::{AccelerationBounds, Fixed, WallMotion, WallState, laws};
+///
+/// /// A motion that divides zero by zero.
+/// struct Torn;
+///
+/// impl WallMotion for Torn {
+///     fn state(&self, phase: f64) -> WallState {
+///         WallState::new(phase.sin() / phase, 0.0)
+///     }
+///     fn acceleration(&self, _: f64) -> AccelerationBounds {
+///         AccelerationBounds::new(f64::INFINITY, -1.0, 1.0)
+///     }
+///     fn reach(&self) -> (f64, f64) {
+///         (-1.0, 1.0)
+///     }
+/// }
+///
+/// assert_eq!(laws::check_finite(&Fixed), Ok(()));
+/// assert_eq!(laws::check_finite(&Torn).unwrap_err().to_string(), "at phase 0 its displacement is NaN");
+/// ```
+pub fn check_finite<M: WallMotion + ?Sized>(motion: &M) -> Result<(), Violation> {
+    check_constants(motion)?;
+    match motion.period() {
+        Some(period) => (0..64).try_for_each(|k| row_of_pieces(motion, period * f64::from(k) / 64.0)),
+        None => PROBES.iter().try_for_each(|&phase| row_of_pieces(motion, phase)),
+    }
+}
+
+/// Checks the reach and the period, and returns the reach.
+fn check_constants<M: WallMotion + ?Sized>(motion: &M) -> Result<(f64, f64), Violation> {
+    let (low, high) = motion.reach();
+    if !(low.is_finite() && high.is_finite() && low <= high) {
+        return Err(Violation::Reach { low, high });
+    }
+    match motion.period() {
+        Some(period) if !(period.is_finite() && period > 0.0) => Err(Violation::PeriodValue { period }),
+        _ => Ok((low, high)),
+    }
+}
+
+/// Follows some pieces from this phase on, and looks at the middle of each, too.
+fn row_of_pieces<M: WallMotion + ?Sized>(motion: &M, start: f64) -> Result<(), Violation> {
+    let mut phase = start;
+    for _ in 0..PIECES_IN_A_ROW {
+        finite_state(motion, phase)?;
+        let until = finite_bounds(motion, phase)?.until;
+        if until == f64::INFINITY {
+            return Ok(());
+        }
+        finite_state(motion, phase + 0.5 * (until - phase))?;
+        phase = until;
+    }
+    // Two numbers for each piece: as short as these nobody can follow them.
+    let least = (0..2 * PIECES_IN_A_ROW).fold(start, |phase, _| phase.next_up());
+    if phase <= least {
+        return Err(Violation::ShortPieces { phase: start, until: phase, pieces: PIECES_IN_A_ROW });
+    }
+    Ok(())
+}
+
+fn finite_state<M: WallMotion + ?Sized>(motion: &M, phase: f64) -> Result<WallState, Violation> {
+    let state = motion.state(phase);
+    finite("displacement", state.displacement, phase)?;
+    finite("velocity", state.velocity, phase)?;
+    Ok(state)
+}
+
+/// Returns the bounds at this phase, if they are finite, in order, and hold for a while.
+fn finite_bounds<M: WallMotion + ?Sized>(motion: &M, phase: f64) -> Result<AccelerationBounds, Violation> {
+    let bounds = motion.acceleration(phase);
+    finite("lower bound of the acceleration", bounds.min, phase)?;
+    finite("upper bound of the acceleration", bounds.max, phase)?;
+    if bounds.min > bounds.max {
+        return Err(Violation::Bounds { phase, min: bounds.min, max: bounds.max });
+    }
+    if bounds.until > phase { Ok(bounds) } else { Err(Violation::PieceEnd { phase, until: bounds.until }) }
+}
+
+fn finite(quantity: &'static str, value: f64, phase: f64) -> Result<(), Violation> {
+    if value.is_finite() { Ok(()) } else { Err(Violation::NotFinite { quantity, phase, value }) }
+}
+
+/// A motion and its reach.
+struct Check<'a, M: ?Sized> {
+    motion: &'a M,
+    low: f64,
+    high: f64,
+}
+
+/// A phase and the state at it.
+#[derive(Clone, Copy)]
+struct Sample {
+    phase: f64,
+    state: WallState,
+}
+
+impl<M: WallMotion + ?Sized> Check<'_, M> {
+    /// Checks the piece that begins here, up to `to` at most, and returns its end.
+    fn piece(&self, start: f64, to: f64) -> Result<f64, Violation> {
+        let whole = finite_bounds(self.motion, start)?;
+        let length = whole.until.min(to) - start;
+        let mut last = self.sample(start)?;
+        for k in 1..=SAMPLES {
+            let share = if k == SAMPLES { 1.0 - LAST } else { f64::from(k) / f64::from(SAMPLES) };
+            let next = self.sample(start + share * length)?;
+            let bounds = finite_bounds(self.motion, last.phase)?;
+            self.change(last, next, &whole)?;
+            if next.phase <= bounds.until {
+                self.change(last, next, &bounds)?;
+            }
+            self.repeats(last.phase + 0.37 * (next.phase - last.phase), length)?;
+            last = next;
+        }
+        Ok(whole.until)
+    }
+
+    fn sample(&self, phase: f64) -> Result<Sample, Violation> {
+        let state = finite_state(self.motion, phase)?;
+        let (displacement, low, high) = (state.displacement, self.low, self.high);
+        let slack = ROUNDING * self.length();
+        if displacement < low - slack || displacement > high + slack {
+            return Err(Violation::OutOfReach { phase, displacement, low, high });
+        }
+        Ok(Sample { phase, state })
+    }
+
+    /// Checks that an acceleration within the bounds leads from one state to the other.
+    fn change(&self, from: Sample, to: Sample, bounds: &AccelerationBounds) -> Result<(), Violation> {
+        let wait = to.phase - from.phase;
+        let gain = to.state.velocity - from.state.velocity;
+        let (least, most) = (bounds.min * wait, bounds.max * wait);
+        let slack = self.speed_rounding(from, bounds);
+        if gain < least - slack || gain > most + slack {
+            return Err(Violation::Velocity { from: from.phase, to: to.phase, gain, least, most });
+        }
+        let rise = to.state.displacement - from.state.displacement;
+        let expected = 0.5 * (from.state.velocity + to.state.velocity) * wait;
+        // Between given velocities, the least and the most displacement belong to all of one bound first and
+        // then all of the other: triangles over the mean of the velocities, of this height at most.
+        let spread = 0.125 * (bounds.max - bounds.min) * wait * wait;
+        if (rise - expected).abs() > spread + self.length_rounding(from, bounds) + slack * wait {
+            return Err(Violation::Displacement { from: from.phase, to: to.phase, rise, expected });
+        }
+        Ok(())
+    }
+
+    /// Checks that the wall does not jump toward the disks where a piece ends.
+    fn end(&self, start: f64, until: f64) -> Result<(), Violation> {
+        let bounds = finite_bounds(self.motion, start)?;
+        let before = self.sample(until - LAST * (until - start))?;
+        let after = self.sample(until)?;
+        let wait = until - before.phase;
+        let jump = after.state.displacement - before.state.displacement - before.state.velocity * wait;
+        let slack = bounds.min.abs().max(bounds.max.abs()) * wait * wait
+            + self.length_rounding(before, &bounds)
+            + self.speed_rounding(before, &bounds) * wait;
+        if jump > slack { Err(Violation::Jump { phase: until, jump }) } else { Ok(()) }
+    }
+
+    /// Checks that all is the same some periods later, at a phase inside a piece of this length.
+    fn repeats(&self, phase: f64, length: f64) -> Result<(), Violation> {
+        let Some(period) = self.motion.period() else { return Ok(()) };
+        // A piece that is nothing but the rounding of its ends may be elsewhere, or missing, in the next
+        // period.
+        if length < SHORT * (phase.abs() + period) {
+            return Ok(());
+        }
+        let (now, bounds) = (self.sample(phase)?, finite_bounds(self.motion, phase)?);
+        for later in [phase + period, phase + 3.0 * period] {
+            let (then, then_bounds) = (self.sample(later)?, finite_bounds(self.motion, later)?);
+            let moved = (then.state.displacement - now.state.displacement).abs();
+            let gained = (then.state.velocity - now.state.velocity).abs();
+            let strength = bounds.min.abs().max(bounds.max.abs());
+            let changed = (then_bounds.min - bounds.min).abs().max((then_bounds.max - bounds.max).abs());
+            let differs = moved > self.length_rounding(then, &bounds)
+                || gained > self.speed_rounding(then, &bounds)
+                // The ends of pieces are rounded, and bounds at them change with the third derivative, which
+                // nobody tells.
+                || changed > 1e-6 * strength;
+            if differs {
+                return Err(Violation::Period { phase, period, later });
+            }
+        }
+        Ok(())
+    }
+
+    /// Size of the motion.
+    fn length(&self) -> f64 {
+        self.low.abs().max(self.high.abs())
+    }
+
+    /// Returns the rounding of a displacement: of its terms, and of the phase at this speed.
+    fn length_rounding(&self, sample: Sample, bounds: &AccelerationBounds) -> f64 {
+        let speed = sample.state.velocity.abs() + self.speed_scale(bounds);
+        ROUNDING * (self.length() + speed * sample.phase.abs())
+    }
+
+    /// Returns the rounding of a velocity: of its terms, and of the phase at this acceleration.
+    fn speed_rounding(&self, sample: Sample, bounds: &AccelerationBounds) -> f64 {
+        let acceleration = bounds.min.abs().max(bounds.max.abs());
+        let speed = sample.state.velocity.abs() + self.speed_scale(bounds);
+        ROUNDING * (speed + acceleration * sample.phase.abs())
+    }
+
+    /// Returns the speed that the acceleration gives over the length of the motion: the terms of a velocity
+    /// that passes zero are no smaller.
+    fn speed_scale(&self, bounds: &AccelerationBounds) -> f64 {
+        (bounds.min.abs().max(bounds.max.abs()) * (self.high - self.low)).sqrt()
+    }
+}

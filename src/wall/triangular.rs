@@ -1,0 +1,70 @@
+//! The wall that moves up and down at constant speed.
+
+use super::oscillation::{Oscillation, is_even, piece};
+use super::stroke::{steady, stroke};
+use super::{AccelerationBounds, WallMotion, WallState};
+use crate::{Fingerprint, ParameterError};
+
+/// Triangular motion: from `$-A$` to `$A$` in half a period at constant speed, and back at the same speed.
+///
+/// The speed is `$2A\omega/\pi$`; at time 0 the wall is at its lowest and starts to rise.
+///
+/// ```
+/// use granular_edmd::wall::{Triangular, WallMotion};
+/// let base = Triangular::new(0.5, std::f64::consts::TAU)?;
+/// assert_eq!(base.state(0.25).displacement, 0.0);
+/// assert_eq!(base.state(0.25).velocity, 2.0);
+/// assert_eq!(base.state(0.75).velocity, -2.0);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(transparent))]
+pub struct Triangular {
+    oscillation: Oscillation,
+}
+
+impl Triangular {
+    /// Creates a motion of this amplitude `$A$` and angular frequency `$\omega$`.
+    ///
+    /// # Errors
+    /// If one is not finite and positive.
+    pub fn new(amplitude: f64, angular_frequency: f64) -> Result<Self, ParameterError> {
+        Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
+    }
+
+    /// Returns `$A$`.
+    pub const fn amplitude(&self) -> f64 {
+        self.oscillation.amplitude()
+    }
+
+    /// Returns `$\omega$`.
+    pub const fn angular_frequency(&self) -> f64 {
+        self.oscillation.angular_frequency()
+    }
+}
+
+impl WallMotion for Triangular {
+    fn state(&self, phase: f64) -> WallState {
+        let length = 0.5 * self.oscillation.period();
+        let is_rising = is_even(piece(phase, length).0);
+        let amplitude = self.amplitude();
+        stroke(phase, length, if is_rising { amplitude } else { -amplitude })
+    }
+
+    fn acceleration(&self, phase: f64) -> AccelerationBounds {
+        steady(phase, 0.5 * self.oscillation.period())
+    }
+
+    fn reach(&self) -> (f64, f64) {
+        (-self.amplitude(), self.amplitude())
+    }
+
+    fn period(&self) -> Option<f64> {
+        Some(self.oscillation.period())
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        Some(self.oscillation.fingerprint("Triangular"))
+    }
+}

@@ -1,0 +1,182 @@
+//! The check of a whole rule: it passes every rule of the library, and catches every fault planted here.
+
+use std::cell::Cell;
+
+use granular_edmd::collision::laws::{Promises, Violation, check_rule, hostile_contacts};
+use granular_edmd::collision::{
+    CollisionRule, Contact, ContactDuration, Elastic, Friction, Frictional, Impulse, Rough, Smooth,
+    TangentialResponse, from_fn,
+};
+
+fn caught(rule: impl Fn(&Contact) -> Impulse, promises: Promises) -> Violation {
+    check_rule(&from_fn(rule), &promises).expect_err("the fault was not caught")
+}
+
+/// A rule with this normal impulse, in units of the one that stops, and no other.
+fn pushing(push: impl Fn(&Contact) -> f64) -> impl Fn(&Contact) -> Impulse {
+    move |contact| Impulse::new(push(contact) * contact.normal_mass() * contact.closing_speed(), 0.0)
+}
+
+/// A rule of restitution 1/2 with this tangential impulse for the contact and the normal impulse.
+fn rubbing(friction: impl Fn(&Contact, f64) -> f64) -> impl Fn(&Contact) -> Impulse {
+    move |contact| {
+        let normal = contact.normal_impulse(0.5);
+        Impulse::new(normal, friction(contact, normal))
+    }
+}
+
+#[test]
+fn the_rules_of_the_library_pass() {
+    let frictionless = Promises::new().with_friction(0.0);
+    check_rule(&Elastic, &frictionless).unwrap();
+    for inelasticity in [0.0, 1e-15, 0.1, 0.5] {
+        check_rule(&Smooth::new(inelasticity).unwrap(), &frictionless).unwrap();
+        for tangential in [0.0, 0.3, 1.0] {
+            let rough = Rough::new(inelasticity, tangential).unwrap();
+            check_rule(&rough, &Promises::new().with_opposed_slip()).unwrap();
+            for (held, slid) in [(0.0, 0.0), (0.3, 0.3), (0.5, 0.1), (1e9, 0.0), (f64::MAX, f64::MAX)] {
+                let rule = Frictional::from_inelasticity(inelasticity, tangential).unwrap();
+                let rule = rule.with_friction(held, slid).unwrap();
+                let promises = Promises::new().with_friction(held);
+                check_rule(&rule, &promises).unwrap();
+                let model = ContactDuration::new(rule, 1e-6).unwrap();
+                check_rule(&model, &promises).unwrap();
+                check_rule(&model.with_tangential_response(TangentialResponse::Unchanged), &promises)
+                    .unwrap();
+            }
+        }
+    }
+}
+
+#[test]
+fn a_pull_or_a_weak_push() {
+    for push in [-0.1, 0.0, 0.5, 1.0 - 1e-9] {
+        assert!(matches!(caught(pushing(move |_| push), Promises::new()), Violation::StillClosing { .. }));
+    }
+    let fast_only = pushing(|contact| if contact.closing_speed() > 1e11 { 0.9 } else { 1.5 });
+    let violation = caught(fast_only, Promises::new().with_energy_gain());
+    assert!(matches!(violation, Violation::StillClosing { .. }));
+    assert_eq!(violation.contact().closing_speed(), 1e12);
+}
+
+#[test]
+fn a_gain_of_energy() {
+    assert!(matches!(caught(pushing(|_| 2.0 + 1e-9), Promises::new()), Violation::EnergyGained { .. }));
+    let after_a_collision =
+        pushing(|contact| if contact.time_since_last_collision() < 1e-6 { 2.5 } else { 2.0 });
+    let violation = caught(after_a_collision, Promises::new());
+    assert!(matches!(violation, Violation::EnergyGained { .. }));
+    assert_eq!(violation.contact().time_since_last_collision(), 0.0);
+    let heavy = pushing(|contact| if contact.normal_mass() > 1e20 { 2.5 } else { 2.0 });
+    assert_eq!(caught(heavy, Promises::new()).contact().normal_mass(), 1e30);
+}
+
+/// A kick of a given size is a gain where there was nothing.
+#[test]
+fn a_kick_at_no_closing_speed() {
+    let kick = |contact: &Contact| Impulse::new(contact.normal_impulse(1.0) + 1e-3, 0.0);
+    let violation = caught(kick, Promises::new());
+    assert!(matches!(violation, Violation::EnergyGained { .. }));
+    assert_eq!(violation.contact().closing_speed(), 0.0);
+    assert_eq!(check_rule(&from_fn(kick), &Promises::new().with_energy_gain()), Ok(()));
+}
+
+#[test]
+fn more_friction_than_promised() {
+    let cone = Promises::new().with_friction(0.5);
+    let violation = check_rule(&Rough::new(0.1, 0.0).unwrap(), &cone).unwrap_err();
+    assert!(matches!(violation, Violation::OutsideFrictionCone { .. }));
+    let slightly = Friction::new(0.1, 0.5 + 1e-9).unwrap();
+    let rule = rubbing(move |contact, normal| slightly.impulse(contact, normal).tangential());
+    assert!(matches!(caught(rule, cone), Violation::OutsideFrictionCone { .. }));
+}
+
+/// Wrong by so little that the loss of the normal direction hides it from the balance of energy.
+#[test]
+fn friction_of_the_wrong_sign() {
+    let rule = || {
+        rubbing(|contact, normal| {
+            let most = 1e-3 * contact.tangential_mass() * contact.slip_speed();
+            let limit = 1e-3 * normal * (contact.closing_speed() / contact.slip_speed().abs()).min(1.0);
+            if contact.slip_speed() == 0.0 { 0.0 } else { -most.clamp(-limit, limit) }
+        })
+    };
+    let violation = caught(rule(), Promises::new().with_opposed_slip());
+    assert!(matches!(violation, Violation::SlipSpedUp { .. }));
+    assert_eq!(check_rule(&from_fn(rule()), &Promises::new()), Ok(()), "no other law is broken");
+}
+
+/// The sign of a number that is zero is one.
+#[test]
+fn friction_of_surfaces_that_do_not_slip() {
+    let signum = rubbing(|contact, normal| 0.1 * normal * contact.slip_speed().signum());
+    let violation = caught(signum, Promises::new().with_friction(0.1).with_energy_gain());
+    assert!(matches!(violation, Violation::SlipSpedUp { .. }));
+    assert_eq!(violation.contact().slip_speed(), 0.0);
+}
+
+#[test]
+fn friction_that_reverses_too_much() {
+    let rule = rubbing(|contact, _| 2.001 * contact.tangential_mass() * contact.slip_speed());
+    let violation = caught(rule, Promises::new().with_opposed_slip().with_energy_gain());
+    assert!(matches!(violation, Violation::SlipSpedUp { .. }));
+}
+
+#[test]
+fn numbers_that_are_not_finite() {
+    let root = pushing(|contact| 1.5 + (contact.closing_speed() - 1e-20).sqrt());
+    assert!(matches!(caught(root, Promises::new()), Violation::NotFinite { .. }));
+    let angle =
+        rubbing(|contact, normal| 0.1 * normal * (contact.slip_speed() / contact.closing_speed()).cos());
+    let violation = caught(angle, Promises::new());
+    assert!(matches!(violation, Violation::NotFinite { .. }));
+    assert_eq!(violation.contact().closing_speed(), 0.0);
+    let inverse = |contact: &Contact| Impulse::new(1.0 / contact.closing_speed(), 0.0);
+    let violation = caught(inverse, Promises::new());
+    assert!(matches!(violation, Violation::NotFinite { .. }) && violation.impulse().normal().is_infinite());
+}
+
+#[test]
+fn an_answer_that_depends_on_the_past() {
+    let calls = Cell::new(0_u64);
+    let alternating = pushing(|_| {
+        calls.set(calls.get() + 1);
+        if calls.get().is_multiple_of(2) { 1.5 } else { 1.6 }
+    });
+    assert!(matches!(caught(alternating, Promises::new()), Violation::NotRepeatable { .. }));
+
+    let fastest = Cell::new(0.0_f64);
+    let remembering = pushing(|contact| {
+        fastest.set(fastest.get().max(contact.closing_speed()));
+        if contact.closing_speed() < 0.5 * fastest.get() { 1.5 } else { 1.6 }
+    });
+    let violation = caught(remembering, Promises::new());
+    let Violation::NotRepeatable { later, contact, impulse } = violation else { panic!("{violation}") };
+    assert_ne!(later, impulse);
+    let text = violation.to_string();
+    assert!(
+        text.starts_with("the same contact had the impulse") && text.contains(&contact.to_string()),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_rule_that_drives_may_say_so() {
+    let driven = pushing(|_| 2.5);
+    assert_eq!(check_rule(&from_fn(driven), &Promises::new().with_energy_gain()), Ok(()));
+    assert_eq!(Promises::default(), Promises::new());
+}
+
+/// The contacts are what the engine guarantees, and no two are the same.
+#[test]
+fn hostile_contacts_are_possible() {
+    let contacts: Vec<_> = hostile_contacts().collect();
+    assert!(contacts.len() > 10_000, "{}", contacts.len());
+    for contact in &contacts {
+        assert!(contact.closing_speed() >= 0.0 && contact.closing_speed().is_finite());
+        assert!(contact.slip_speed().is_finite() && contact.time_since_last_collision() >= 0.0);
+        assert!(contact.tangential_mass() > 0.0 && contact.tangential_mass() <= contact.normal_mass());
+    }
+    let boxed: Box<dyn CollisionRule> = Box::new(Elastic);
+    assert_eq!(check_rule(&*boxed, &Promises::new()), Ok(()), "also a rule of unknown type");
+}

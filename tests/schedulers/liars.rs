@@ -1,0 +1,201 @@
+//! Schedulers that break their contract: the check must notice each of them.
+
+use granular_edmd::boundary::Container;
+use granular_edmd::collision::Elastic;
+use granular_edmd::scheduler::laws::{Violation, check};
+use granular_edmd::scheduler::{BucketQueue, EventScheduler, LinearScan, NOTHING_DUE};
+use granular_edmd::{Simulation, initial};
+
+/// A scheduler with one fault.
+#[derive(Default)]
+struct Liar {
+    honest: LinearScan,
+    due: Vec<f64>,
+    sets: usize,
+    asked: bool,
+    fault: Fault,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+enum Fault {
+    #[default]
+    None,
+    TiesToTheLargerIndex,
+    OneSetForgotten,
+    DeafToEarlierTimes,
+    DeafToTimesBeforeTheAnswer,
+    NotANumber,
+    KeepsDisksAfterAReset,
+    SingleNumbers,
+    ZerosOfTwoKinds,
+    NobodyAtInfinity,
+    SomebodyWithoutDisks,
+    IndicesOf16Bits,
+    ConfusedByLookingAhead,
+    TakesWhatWasNamed,
+}
+
+const FAULTS: [Fault; 13] = [
+    Fault::TiesToTheLargerIndex,
+    Fault::OneSetForgotten,
+    Fault::DeafToEarlierTimes,
+    Fault::DeafToTimesBeforeTheAnswer,
+    Fault::NotANumber,
+    Fault::KeepsDisksAfterAReset,
+    Fault::SingleNumbers,
+    Fault::ZerosOfTwoKinds,
+    Fault::NobodyAtInfinity,
+    Fault::SomebodyWithoutDisks,
+    Fault::IndicesOf16Bits,
+    Fault::ConfusedByLookingAhead,
+    Fault::TakesWhatWasNamed,
+];
+
+impl Liar {
+    fn with(fault: Fault) -> Self {
+        Self { fault, ..Self::default() }
+    }
+
+    fn is_deaf_to(&self, disk: usize, due: f64) -> bool {
+        match self.fault {
+            Fault::OneSetForgotten => self.sets == 150,
+            Fault::DeafToEarlierTimes => due < self.due[disk],
+            Fault::DeafToTimesBeforeTheAnswer => due < self.honest.earliest().1,
+            _ => false,
+        }
+    }
+
+    /// The last of those disks for which nothing is before it.
+    fn last_by(&self, is_before: impl Fn(f64, f64) -> bool) -> (usize, f64) {
+        let all = self.due.iter().copied().enumerate();
+        all.reduce(|first, next| if is_before(first.1, next.1) { first } else { next }).unwrap_or(NOTHING_DUE)
+    }
+}
+
+impl EventScheduler for Liar {
+    fn reset(&mut self, due: &[f64]) {
+        let kept = if self.fault == Fault::KeepsDisksAfterAReset { self.due.get(due.len()..) } else { None };
+        self.due = [due, kept.unwrap_or_default()].concat();
+        self.honest.reset(&self.due);
+        self.asked = false;
+    }
+
+    fn set(&mut self, disk: usize, due: f64) {
+        self.sets += 1;
+        if !self.is_deaf_to(disk, due) {
+            self.due[disk] = due;
+            self.honest.set(disk, due);
+        }
+        self.asked = false;
+    }
+
+    fn earliest(&self) -> (usize, f64) {
+        let (disk, due) = self.honest.earliest();
+        match self.fault {
+            Fault::TiesToTheLargerIndex => self.last_by(|first, next| first < next),
+            Fault::ZerosOfTwoKinds => self.last_by(|first, next| {
+                first < next || (first == next && first.is_sign_negative() >= next.is_sign_negative())
+            }),
+            Fault::NotANumber if self.sets > 100 => (disk, f64::NAN),
+            Fault::SingleNumbers => (disk, f64::from(due as f32)),
+            Fault::NobodyAtInfinity if due == f64::INFINITY => NOTHING_DUE,
+            Fault::SomebodyWithoutDisks if self.due.is_empty() => (0, f64::INFINITY),
+            Fault::IndicesOf16Bits => (usize::from(disk as u16), due),
+            Fault::ConfusedByLookingAhead if self.asked => (disk, due + 1.0),
+            _ => (disk, due),
+        }
+    }
+
+    fn upcoming(&mut self, disks: &mut Vec<usize>) {
+        self.asked = true;
+        if self.fault == Fault::TakesWhatWasNamed {
+            disks.clear();
+        }
+        // Nobody needs to exist, and anybody may be named twice.
+        disks.extend([usize::MAX, 3, 3]);
+    }
+}
+
+#[test]
+fn each_fault_is_noticed() {
+    for fault in FAULTS {
+        let violation = check(|| Liar::with(fault));
+        assert!(violation.is_err(), "{fault:?} is not noticed");
+    }
+}
+
+#[test]
+fn the_same_scheduler_without_a_fault_passes() {
+    assert_eq!(check(Liar::default), Ok(()));
+}
+
+#[test]
+fn a_violation_names_the_step_and_both_answers() {
+    let violation = check(|| Liar::with(Fault::NotANumber)).unwrap_err();
+    let Violation::NotEarliest { step, expected, given, .. } = &violation else { panic!("{violation}") };
+    assert!(*step > 100, "{violation}");
+    assert_eq!(expected.0, given.0);
+    let (disk, due) = expected;
+    let said = violation.to_string();
+    let answers = format!("the earliest is disk {disk} at {due}, but disk {disk} at NaN is named");
+    assert!(said.contains(&format!("step {step}, after ")) && said.ends_with(&answers), "{said}");
+
+    let violation = check(|| Liar::with(Fault::SomebodyWithoutDisks)).unwrap_err().to_string();
+    assert!(
+        violation.ends_with("before the first reset: the earliest is nothing, but disk 0 at inf is named")
+    );
+}
+
+#[test]
+fn the_check_is_the_same_at_each_call() {
+    for fault in [Fault::TiesToTheLargerIndex, Fault::SingleNumbers, Fault::TakesWhatWasNamed] {
+        assert_eq!(check(|| Liar::with(fault)), check(|| Liar::with(fault)));
+    }
+}
+
+#[test]
+fn only_looking_ahead_is_blamed_for_what_it_does() {
+    let removed = check(|| Liar::with(Fault::TakesWhatWasNamed)).unwrap_err();
+    assert!(matches!(removed, Violation::Removed { .. }), "{removed}");
+    let confused = check(|| Liar::with(Fault::ConfusedByLookingAhead)).unwrap_err().to_string();
+    assert!(confused.contains("after a look at upcoming disks"), "{confused}");
+}
+
+/// Names disks that are not there, besides the right ones.
+#[derive(Default)]
+struct Ghosts(BucketQueue);
+
+impl EventScheduler for Ghosts {
+    fn reset(&mut self, due: &[f64]) {
+        self.0.reset(due);
+    }
+
+    fn set(&mut self, disk: usize, due: f64) {
+        self.0.set(disk, due);
+    }
+
+    fn earliest(&self) -> (usize, f64) {
+        self.0.earliest()
+    }
+
+    fn upcoming(&mut self, disks: &mut Vec<usize>) {
+        self.0.upcoming(disks);
+        disks.extend([usize::MAX, 1 << 40, 1 << 32, u32::MAX as usize, 40_000]);
+    }
+}
+
+/// The engine asks for upcoming disks from 30 000 on.
+#[test]
+fn upcoming_disks_that_do_not_exist_are_ignored_by_the_engine() {
+    assert_eq!(check(Ghosts::default), Ok(()), "it is a hint, and no law is broken");
+    let container = Container::closed(400.0, 400.0).unwrap();
+    let disks = initial::lattice(&container, 40_000, 0.5).unwrap();
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
+    let builder = || Simulation::builder(Elastic, container.clone()).disks(disks.clone());
+    let mut misled = builder().scheduler(Ghosts::default()).build().unwrap();
+    let mut plain = builder().build().unwrap();
+    misled.run_until(0.2, &mut ()).unwrap();
+    plain.run_until(0.2, &mut ()).unwrap();
+    assert!(plain.counters().collisions > 1000, "{:?}", plain.counters());
+    assert_eq!(misled.disks(), plain.disks());
+}

@@ -1,0 +1,212 @@
+//! Faults planted in a container: the check names each.
+
+use granular_edmd::Flight;
+use granular_edmd::boundary::laws::{Violation, check};
+use granular_edmd::boundary::{Boundary, Container, Domain, Region, Surface, Touch, Wall};
+use granular_edmd::glam::DVec2;
+use granular_edmd::wall::Sinusoidal;
+
+/// A way to spoil a container.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Fault {
+    None,
+    /// The floor is not found between these places.
+    Hole,
+    /// The hole is unknown to `overlap`, too.
+    OpenHole,
+    LateTouch,
+    EarlyTouch,
+    TouchInThePast,
+    TouchAfterTheEnd,
+    TouchNaN,
+    WallTooLarge,
+    TouchWhileLeaving,
+    MissesWhatItTouches,
+    BlindRegions,
+    BlindEndlessRegions,
+    BlindLargeDisks,
+    DriftingDomain,
+    DomainNaN,
+    DomainTooSmall,
+    InteriorOutside,
+    MoreWalls,
+    OutwardNormal,
+    SlantedNormal,
+    LongNormal,
+    VelocityNaN,
+    IgnoresTheOrigin,
+    Full,
+}
+
+struct Spoilt {
+    container: Container,
+    fault: Fault,
+    origin: f64,
+}
+
+fn spoilt(fault: Fault) -> Spoilt {
+    let motion = Sinusoidal::new(0.2, 3.0).unwrap();
+    let container = Container::closed(8.0, 6.0).unwrap().with_motion(Wall::Floor, motion).unwrap();
+    Spoilt { container, fault, origin: 0.0 }
+}
+
+fn is_over_hole(position: DVec2) -> bool {
+    (3.0..5.0).contains(&position.x)
+}
+
+impl Boundary for Spoilt {
+    fn domain(&self) -> Domain {
+        let domain = self.container.domain();
+        match self.fault {
+            Fault::DriftingDomain => {
+                Domain::new(-1e-3 * self.origin, domain.right, domain.bottom, domain.top)
+            }
+            Fault::DomainNaN => Domain::new(0.0, f64::NAN, 0.0, 6.0),
+            Fault::DomainTooSmall => Domain::new(0.0, 8.0, 0.9, 6.0),
+            _ => domain,
+        }
+    }
+
+    fn interior(&self) -> Domain {
+        match self.fault {
+            Fault::InteriorOutside => Domain::new(-1.0, 8.0, 0.0, 6.0),
+            Fault::DomainTooSmall => self.domain(),
+            _ => self.container.interior(),
+        }
+    }
+
+    fn wall_count(&self) -> usize {
+        self.container.wall_count() + usize::from(self.fault == Fault::MoreWalls && self.origin > 0.0)
+    }
+
+    fn set_time_origin(&mut self, origin: f64) {
+        self.origin = origin;
+        if self.fault != Fault::IgnoresTheOrigin {
+            self.container.set_time_origin(origin);
+        }
+    }
+
+    fn may_touch(&self, region: &Region, radius: f64) -> bool {
+        let is_endless = !region.min.is_finite() || !region.max.is_finite();
+        match self.fault {
+            Fault::BlindRegions => region.min.y > 3.0,
+            Fault::BlindEndlessRegions => !is_endless && self.container.may_touch(region, radius),
+            Fault::BlindLargeDisks => radius < 0.6 && self.container.may_touch(region, radius),
+            _ => self.container.may_touch(region, radius),
+        }
+    }
+
+    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+        let touch = self.container.first_touch(flight, until);
+        let start = flight.time();
+        let is_at_wall = self.container.overlap(flight.position(start), 1.000_001 * flight.radius(), start);
+        match self.fault {
+            Fault::Hole | Fault::OpenHole => {
+                touch.filter(|touch| touch.wall != 0 || !is_over_hole(flight.position(touch.time)))
+            }
+            Fault::LateTouch => touch.map(|touch| Touch::new((touch.time + 0.01).min(until), touch.wall)),
+            Fault::EarlyTouch => touch.map(|touch| Touch::new(0.5 * (start + touch.time), touch.wall)),
+            Fault::TouchInThePast => touch.map(|touch| Touch::new(start - 1e-9, touch.wall)),
+            Fault::TouchAfterTheEnd => Some(Touch::new(until + 1.0, 0)),
+            Fault::TouchNaN => Some(Touch::new(f64::NAN, 0)),
+            Fault::WallTooLarge => touch.map(|touch| Touch::new(touch.time, 4 + touch.wall)),
+            Fault::TouchWhileLeaving => {
+                is_at_wall.map(|(wall, _)| Touch::new(start, wall)).filter(|_| start <= until).or(touch)
+            }
+            Fault::MissesWhatItTouches => touch.filter(|touch| touch.time > start + 1e-6),
+            _ => touch,
+        }
+    }
+
+    fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
+        let Surface { normal, velocity, response, .. } = self.container.surface(wall, position, time);
+        let (normal, velocity) = match self.fault {
+            Fault::OutwardNormal => (-normal, velocity),
+            Fault::SlantedNormal => (DVec2::new(0.6, 0.8).rotate(normal), velocity),
+            Fault::LongNormal => (1.001 * normal, velocity),
+            Fault::VelocityNaN => (normal, DVec2::splat(f64::NAN)),
+            _ => (normal, velocity),
+        };
+        Surface::new(normal, velocity).with_response(response)
+    }
+
+    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+        match self.fault {
+            Fault::OpenHole if is_over_hole(position) => {
+                self.container.overlap(position, radius, time).filter(|&(wall, _)| wall != 0)
+            }
+            Fault::Full => Some((0, 1.0)),
+            _ => self.container.overlap(position, radius, time),
+        }
+    }
+}
+
+fn verdict(fault: Fault) -> Violation {
+    check(&mut spoilt(fault), 0.5, 1.0, 1).expect_err(&format!("{fault:?}"))
+}
+
+#[test]
+fn a_sound_boundary_passes() {
+    assert_eq!(check(&mut spoilt(Fault::None), 0.5, 1.0, 1), Ok(()));
+}
+
+#[test]
+fn holes_are_caught() {
+    assert!(matches!(verdict(Fault::Hole), Violation::LetThrough { wall: 0, .. }));
+    assert!(matches!(verdict(Fault::OpenHole), Violation::LeftDomain { .. }));
+    assert!(matches!(verdict(Fault::DomainTooSmall), Violation::LeftDomain { .. }));
+}
+
+#[test]
+fn touches_at_the_wrong_time_are_caught() {
+    assert!(matches!(verdict(Fault::LateTouch), Violation::LetThrough { .. }));
+    assert!(matches!(verdict(Fault::EarlyTouch), Violation::EarlyTouch { .. }));
+    for fault in [Fault::TouchInThePast, Fault::TouchAfterTheEnd, Fault::TouchNaN] {
+        assert!(matches!(verdict(fault), Violation::TouchTime { .. }), "{fault:?}");
+    }
+    assert!(matches!(verdict(Fault::TouchWhileLeaving), Violation::Leaving { .. }));
+    assert!(matches!(verdict(Fault::MissesWhatItTouches), Violation::Missed { .. }));
+}
+
+#[test]
+fn walls_that_there_are_not_are_caught() {
+    assert!(matches!(verdict(Fault::WallTooLarge), Violation::TouchWall { count: 4, wall: 4.., .. }));
+    assert!(matches!(verdict(Fault::MoreWalls), Violation::WallsChanged { before: 4, now: 5 }));
+}
+
+#[test]
+fn blind_regions_are_caught() {
+    for fault in [Fault::BlindRegions, Fault::BlindEndlessRegions, Fault::BlindLargeDisks] {
+        assert!(matches!(verdict(fault), Violation::MayTouch { .. }), "{fault:?}");
+    }
+}
+
+#[test]
+fn wrong_rectangles_are_caught() {
+    assert!(matches!(verdict(Fault::DriftingDomain), Violation::DomainChanged { .. }));
+    assert!(matches!(verdict(Fault::DomainNaN), Violation::Domain { .. }));
+    assert!(matches!(verdict(Fault::InteriorOutside), Violation::Interior { .. }));
+    assert!(matches!(verdict(Fault::Full), Violation::NoRoom { .. }));
+}
+
+#[test]
+fn wrong_surfaces_are_caught() {
+    assert!(matches!(verdict(Fault::OutwardNormal), Violation::Normal { .. }));
+    assert!(matches!(verdict(Fault::SlantedNormal), Violation::Normal { .. }));
+    assert!(matches!(verdict(Fault::LongNormal), Violation::NormalLength { .. }));
+    assert!(matches!(verdict(Fault::VelocityNaN), Violation::Velocity { .. }));
+}
+
+#[test]
+fn a_boundary_that_ignores_the_time_origin_is_caught() {
+    // It is always where it is at time zero: the same flight finds it at the same offset, whatever the
+    // origin.
+    assert!(matches!(verdict(Fault::IgnoresTheOrigin), Violation::TimeOrigin { .. }));
+}
+
+/// A violation says what to look at: the numbers, and the flight.
+#[test]
+fn violations_name_their_numbers() {
+    let text = verdict(Fault::WallTooLarge).to_string();
+    assert!(text.starts_with("a touch is of wall ") && text.contains("but there are 4, on Flight"), "{text}");
+}

@@ -1,0 +1,217 @@
+//! Faults planted in a motion: the check names each, and the container refuses those that no run can do
+//! without.
+
+use std::error::Error;
+
+use granular_edmd::boundary::{Container, Wall, WallError};
+use granular_edmd::wall::laws::{Violation, check, check_finite};
+use granular_edmd::wall::{AccelerationBounds, Sinusoidal, WallMotion, WallState};
+
+const AMPLITUDE: f64 = 0.1;
+const FREQUENCY: f64 = 10.0;
+
+/// A way to spoil a sine.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Fault {
+    None,
+    /// Bounds of the acceleration, as a part of the right ones.
+    Bounds(f64),
+    SwappedBounds,
+    /// The displacement jumps by this in the middle of a piece.
+    JumpInside(f64),
+    /// The displacement jumps by this at the end of the first piece.
+    JumpAtEnd(f64),
+    /// The velocity jumps in the middle of a piece.
+    VelocityJumps,
+    /// The velocity has the wrong size.
+    Velocity(f64),
+    /// The period, as a part of the right one.
+    Period(f64),
+    PeriodValue(f64),
+    Reach(f64, f64),
+    /// Late in the period, the displacement is this.
+    Displacement(f64),
+    /// Late in the period, the velocity is this.
+    VelocityValue(f64),
+    /// Late in the period, the upper bound is this.
+    UpperBound(f64),
+    /// Late in the period, the lower bound is this.
+    LowerBound(f64),
+    /// Pieces end where they begin.
+    StandingPieces,
+    UntilNaN,
+    /// Pieces end one digit after they begin.
+    TinyPieces,
+}
+
+struct Spoilt(Sinusoidal, Fault);
+
+fn spoilt(fault: Fault) -> Spoilt {
+    Spoilt(Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap(), fault)
+}
+
+impl Spoilt {
+    fn right_period(&self) -> f64 {
+        self.0.period().unwrap()
+    }
+
+    /// Phase in the period, from 0 to 1.
+    fn share(&self, phase: f64) -> f64 {
+        (phase / self.right_period()).rem_euclid(1.0)
+    }
+
+    fn is_late(&self, phase: f64) -> bool {
+        self.share(phase) > 0.7
+    }
+}
+
+impl WallMotion for Spoilt {
+    fn state(&self, phase: f64) -> WallState {
+        let WallState { displacement, velocity, .. } = self.0.state(phase);
+        match self.1 {
+            Fault::JumpInside(by) if self.share(phase) > 0.53 => WallState::new(displacement + by, velocity),
+            Fault::JumpAtEnd(by) if self.share(phase) >= 0.5 => WallState::new(displacement + by, velocity),
+            Fault::VelocityJumps if self.share(phase) > 0.53 => WallState::new(displacement, velocity + 0.02),
+            Fault::Velocity(part) => WallState::new(displacement, part * velocity),
+            Fault::Displacement(value) if self.is_late(phase) => WallState::new(value, velocity),
+            Fault::VelocityValue(value) if self.is_late(phase) => WallState::new(displacement, value),
+            _ => WallState::new(displacement, velocity),
+        }
+    }
+
+    fn acceleration(&self, phase: f64) -> AccelerationBounds {
+        let AccelerationBounds { until, min, max, .. } = self.0.acceleration(phase);
+        match self.1 {
+            Fault::Bounds(part) => AccelerationBounds::new(until, part * min, part * max),
+            Fault::SwappedBounds => AccelerationBounds::new(until, max, min),
+            Fault::UpperBound(value) if self.is_late(phase) => AccelerationBounds::new(until, min, value),
+            Fault::LowerBound(value) if self.is_late(phase) => AccelerationBounds::new(until, value, max),
+            Fault::StandingPieces => AccelerationBounds::new(phase, min, max),
+            Fault::UntilNaN => AccelerationBounds::new(f64::NAN, min, max),
+            Fault::TinyPieces => AccelerationBounds::new(phase.next_up(), min, max),
+            _ => AccelerationBounds::new(until, min, max),
+        }
+    }
+
+    fn reach(&self) -> (f64, f64) {
+        if let Fault::Reach(low, high) = self.1 { (low, high) } else { (-2.0 * AMPLITUDE, 2.0 * AMPLITUDE) }
+    }
+
+    fn period(&self) -> Option<f64> {
+        match self.1 {
+            Fault::Period(part) => Some(part * self.right_period()),
+            Fault::PeriodValue(value) => Some(value),
+            _ => self.0.period(),
+        }
+    }
+}
+
+fn verdict(fault: Fault) -> Result<(), Violation> {
+    check(&spoilt(fault), 0.0, 2.0)
+}
+
+#[test]
+fn a_sound_motion_passes() {
+    assert_eq!(verdict(Fault::None), Ok(()));
+    assert_eq!(check_finite(&spoilt(Fault::None)), Ok(()));
+    // Bounds may be loose, and a wall may jump away from the disks where a piece ends, if it comes back
+    // slowly.
+    assert_eq!(verdict(Fault::Bounds(1.0)), Ok(()));
+}
+
+#[test]
+fn wrong_bounds_are_caught() {
+    assert!(matches!(verdict(Fault::Bounds(0.9)), Err(Violation::Velocity { .. })));
+    assert!(matches!(verdict(Fault::SwappedBounds), Err(Violation::Bounds { .. })));
+}
+
+#[test]
+fn jumps_are_caught() {
+    for by in [1e-3, -1e-3] {
+        assert!(matches!(verdict(Fault::JumpInside(by)), Err(Violation::Displacement { .. })), "{by}");
+    }
+    assert!(
+        matches!(verdict(Fault::JumpAtEnd(1e-3)), Err(Violation::Jump { jump, .. }) if (jump - 1e-3).abs() < 1e-6)
+    );
+    // Down is away from the disks; but then it is up again at the end of the period.
+    assert!(matches!(verdict(Fault::JumpAtEnd(-1e-3)), Err(Violation::Jump { phase, .. }) if phase > 0.6));
+    assert!(matches!(verdict(Fault::VelocityJumps), Err(Violation::Velocity { .. })));
+}
+
+#[test]
+fn a_velocity_that_is_not_that_of_the_displacement_is_caught() {
+    assert!(matches!(verdict(Fault::Velocity(0.99)), Err(Violation::Displacement { .. })));
+}
+
+#[test]
+fn a_wrong_period_is_caught() {
+    for part in [0.5, 0.999, 1.01] {
+        assert!(matches!(verdict(Fault::Period(part)), Err(Violation::Period { .. })), "{part}");
+    }
+    for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(verdict(Fault::PeriodValue(value)), Err(Violation::PeriodValue { .. })), "{value}");
+    }
+}
+
+#[test]
+fn a_reach_that_is_too_small_is_caught() {
+    assert!(matches!(verdict(Fault::Reach(-0.1, 0.099)), Err(Violation::OutOfReach { .. })));
+    assert!(matches!(verdict(Fault::Reach(-0.09, 0.1)), Err(Violation::OutOfReach { .. })));
+}
+
+#[test]
+fn pieces_that_do_not_go_on_are_caught() {
+    assert!(matches!(verdict(Fault::StandingPieces), Err(Violation::PieceEnd { .. })));
+    assert!(matches!(verdict(Fault::UntilNaN), Err(Violation::PieceEnd { .. })));
+    assert!(matches!(verdict(Fault::TinyPieces), Err(Violation::ShortPieces { .. })));
+}
+
+/// Each of these would let disks fall through the floor, or hang the search for a touch.
+fn unusable() -> Vec<Fault> {
+    let not_finite = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(|value| {
+        [
+            Fault::Displacement(value),
+            Fault::VelocityValue(value),
+            Fault::UpperBound(value),
+            Fault::LowerBound(value),
+            Fault::Reach(-0.1, value),
+            Fault::Reach(value, 0.1),
+            Fault::PeriodValue(value),
+        ]
+    });
+    let others = [
+        Fault::Reach(0.1, -0.1),
+        Fault::PeriodValue(0.0),
+        Fault::SwappedBounds,
+        Fault::StandingPieces,
+        Fault::UntilNaN,
+        Fault::TinyPieces,
+    ];
+    not_finite.concat().into_iter().chain(others).collect()
+}
+
+#[test]
+fn numbers_that_are_not_finite_are_refused_by_the_container() {
+    for fault in unusable() {
+        let violation = check_finite(&spoilt(fault)).unwrap_err();
+        assert!(verdict(fault).is_err(), "{fault:?}");
+        let error = Container::closed(8.0, 9.0).unwrap().with_motion(Wall::Floor, spoilt(fault)).unwrap_err();
+        // As text: a violation by NaN is not equal to itself.
+        let WallError::Motion { wall: Wall::Floor, violation: told } = error else {
+            panic!("{fault:?}: {error}")
+        };
+        assert_eq!(told.to_string(), violation.to_string());
+        assert_eq!(
+            error.to_string(),
+            format!("the motion of the wall \"floor\" cannot be used: {violation}")
+        );
+        assert!(error.source().is_none(), "the message has it already");
+    }
+}
+
+#[test]
+fn a_missing_wall_is_named() {
+    let error = Container::open(8.0).unwrap().with_motion(Wall::Lid, spoilt(Fault::None)).unwrap_err();
+    assert_eq!(error, WallError::Missing { wall: Wall::Lid });
+    assert_eq!(error.to_string(), "the container has no wall \"lid\"");
+}
