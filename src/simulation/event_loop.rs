@@ -49,7 +49,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ) -> Outcome<Option<Event>> {
         let Some(&forecast) = self.bodies.forecast(disk) else { return Err(self.scheduler_fault(disk, due)) };
         // A scheduler that names an old time would take the run back, or past an event.
-        if (forecast.due() != due) | (due < self.clock.now) {
+        if forecast.due() != due || due < self.clock.now {
             return Err(self.scheduler_fault(disk, due));
         }
         if due > self.clock.epoch_length {
@@ -292,7 +292,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Finds the next collision of a disk among all its neighbors.
     #[inline(always)]
     fn find_partner(&mut self, disk: usize) {
-        self.make_room();
         let count = self.cells.around(disk, &mut self.scratch.found);
         let earliest = self.earliest_collision(disk, count, Earliest::NONE);
         let partner_collisions =
@@ -325,9 +324,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.scheduler.set(disk, self.forecast(disk).due());
     }
 
-    /// Keeps the room for neighbors in step with the cells, which may have grown.
+    /// Keeps the room for neighbors in step with the cells, which grow when one gets crowded: asked for wherever disks come into
+    /// cells.
     #[inline]
-    fn make_room(&mut self) {
+    pub(super) fn make_room(&mut self) {
         let room = self.cells.room() + LANES;
         if self.scratch.found.len() < room {
             self.scratch.found.resize(room, 0);
