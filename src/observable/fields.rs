@@ -46,11 +46,11 @@ pub struct FieldCell {
 /// use granular_edmd::observable::{Fields, Observer, SampleTimes, Snapshot};
 /// use granular_edmd::Disk;
 ///
-/// let region = Region { min: DVec2::ZERO, max: DVec2::new(4.0, 2.0) };
+/// let region = Region::new(DVec2::ZERO, DVec2::new(4.0, 2.0));
 /// let mut fields = Fields::new(region, 2, 1, SampleTimes::every(1.0)?)?;
 /// let disk = |x, vx| Disk::new(DVec2::new(x, 1.0), 0.4)?.with_velocity(DVec2::new(vx, 0.0));
 /// let disks = [disk(0.5, 1.0)?, disk(1.5, 3.0)?];
-/// let domain = Domain { left: 0.0, right: 4.0, bottom: 0.0, top: 2.0, periodic: false };
+/// let domain = Domain::new(0.0, 4.0, 0.0, 2.0);
 /// fields.on_sample(&Snapshot::new(1.0, &disks, domain, 0.0));
 /// let left = fields.cell(0, 0).unwrap();
 /// assert_eq!((left.number_density, left.velocity.x, left.translational_temperature), (0.5, 2.0, 0.5));

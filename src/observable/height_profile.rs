@@ -63,7 +63,7 @@ impl DenseLayer {
 ///
 /// let mut profile = HeightProfile::new(0.0, 4.0, 4, SampleTimes::every(1.0)?)?;
 /// let disks = [Disk::new(DVec2::new(1.0, 1.5), 0.5)?, Disk::new(DVec2::new(3.0, 2.0), 0.5)?];
-/// let domain = Domain { left: 0.0, right: 4.0, bottom: 0.0, top: 6.0, periodic: false };
+/// let domain = Domain::new(0.0, 4.0, 0.0, 6.0);
 /// profile.on_sample(&Snapshot::new(1.0, &disks, domain, 0.0));
 /// let disk = std::f64::consts::PI / 4.0;
 /// let expected = [0.0, 1.5 * disk / 4.0, 0.5 * disk / 4.0, 0.0];

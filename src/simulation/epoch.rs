@@ -11,6 +11,7 @@ use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Predicts every disk's next event from the present state alone.
     pub(super) fn predict_all(&mut self) {
+        self.make_room();
         for disk in 0..self.bodies.len() {
             self.find_next(disk);
         }

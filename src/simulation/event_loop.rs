@@ -49,7 +49,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ) -> Outcome<Option<Event>> {
         let Some(&forecast) = self.bodies.forecast(disk) else { return Err(self.scheduler_fault(disk, due)) };
         // A scheduler that names an old time would take the run back, or past an event.
-        if (forecast.due() != due) | (due < self.clock.now) {
+        if forecast.due() != due || due < self.clock.now {
             return Err(self.scheduler_fault(disk, due));
         }
         if due > self.clock.epoch_length {
@@ -133,6 +133,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             let (normal, velocity) = (surface.normal, surface.velocity);
             return Err(self.boundary_fault(disk, BoundaryFault::Surface { wall, normal, velocity }));
         }
+        let parts = (self.bodies.velocity(disk, now) - surface.velocity).dot(surface.normal) > 0.0;
         let (collision, kick) =
             resolve_wall(&self.bodies, &self.rule, &mut self.generator, &surface, &self.clock, disk, wall);
         if !kick.is_possible() {
@@ -152,7 +153,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.kick(disk, &kick);
         observer.on_collision(&collision);
         self.find_next(disk);
-        self.leave_wall(disk, wall, &collision);
+        if parts {
+            self.leave_wall(disk, wall, &collision);
+        }
         self.schedule(disk);
         Ok(Event::WallCollision { disk, wall })
     }
@@ -230,8 +233,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Makes a disk leave the wall that it has just collided with, if it would touch it again at once for a rounding of its speed.
-    #[inline]
+    /// Makes a disk leave a wall that it parts from, but which the boundary takes it to approach, by a rounding of its speed: they
+    /// compute it in different ways. A disk that rests on a wall does not part from it.
+    #[cold]
+    #[inline(never)]
     fn leave_wall(&mut self, disk: usize, wall: usize, collision: &Collision) {
         for doubling in 0..MOST_NUDGES {
             let Forecast { exit, exit_due, wall: next, .. } = *self.forecast(disk);
@@ -287,7 +292,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Finds the next collision of a disk among all its neighbors.
     #[inline(always)]
     fn find_partner(&mut self, disk: usize) {
-        self.make_room();
         let count = self.cells.around(disk, &mut self.scratch.found);
         let earliest = self.earliest_collision(disk, count, Earliest::NONE);
         let partner_collisions =
@@ -320,9 +324,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.scheduler.set(disk, self.forecast(disk).due());
     }
 
-    /// Keeps the room for neighbors in step with the cells, which may have grown.
+    /// Keeps the room for neighbors in step with the cells, which grow when one gets crowded: asked for wherever disks come into
+    /// cells.
     #[inline]
-    fn make_room(&mut self) {
+    pub(super) fn make_room(&mut self) {
         let room = self.cells.room() + LANES;
         if self.scratch.found.len() < room {
             self.scratch.found.resize(room, 0);

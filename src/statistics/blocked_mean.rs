@@ -24,6 +24,9 @@ pub struct BlockedMean {
     levels: Vec<Level>,
 }
 
+/// Levels that there is room for from the first number on.
+const MOST_LEVELS: usize = 48;
+
 /// Blocks of one size.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
@@ -50,6 +53,10 @@ impl BlockedMean {
                 return;
             };
             block = 0.5 * (before + block);
+        }
+        if self.levels.is_empty() {
+            // Room for more numbers than any run has: nothing is allocated in the middle of one.
+            self.levels.reserve_exact(MOST_LEVELS);
         }
         self.levels.push(Level { blocks: RunningMean::from_iter([block]), waiting: Some(block) });
     }
