@@ -17,8 +17,8 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// rounding, are left out, so that a run of `$n$` intervals gives `$n$` samples, the first after one interval: from time 0, from
 /// another start, resumed from a checkpoint, or after a run to settle. Two exceptions:
 /// - The first time of `starting_at` is a sample of a run that starts exactly there.
-/// - A clock that has run goes on: if the next run starts on its upcoming beat, the sample is taken, since the run before ended
-///   too early for it by a rounding. A run in pieces has the samples of a run in one.
+/// - A clock that has run goes on: if the next run starts on its upcoming beat, within rounding, the sample is taken, since
+///   the run before ended too early for it. A run in pieces has the samples of a run in one.
 ///
 /// A run that starts before the last beat is another run, for which the clock begins anew.
 ///
@@ -96,7 +96,7 @@ impl SampleTimes {
         let rounding = ROUNDING * (time.abs() + self.interval);
         if !self.started || time < self.time_of(self.beat.saturating_sub(1)) - rounding {
             self.begin_anew(time, rounding);
-        } else if (self.upcoming() - time).abs() > rounding {
+        } else if self.upcoming() < time - rounding {
             self.advance_past(time + rounding);
         }
         self.started = true;
@@ -110,7 +110,7 @@ impl SampleTimes {
             return self.advance_past(time + rounding);
         };
         self.beat = 0;
-        if (first - time).abs() > rounding {
+        if first < time - rounding {
             self.advance_past(time + rounding);
         }
     }
