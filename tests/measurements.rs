@@ -105,7 +105,7 @@ fn a_measurement_goes_on_with_the_same_bits() -> Outcome {
 fn means_and_estimates_survive_files() -> Outcome {
     for count in [0_u32, 1, 2, 3, 100, 1023] {
         let series = || (0..count).map(|k| f64::from(k * k % 17) / 7.0);
-        let (running, blocked) = (RunningMean::from_iter(series()), BlockedMean::from_iter(series()));
+        let (running, blocked) = (series().collect::<RunningMean>(), series().collect::<BlockedMean>());
         assert_eq!((json(&running)?, json(&blocked)?), (running, blocked.clone()));
         assert_eq!((binary(&running)?, binary(&blocked)?), (running, blocked.clone()));
         for estimate in [running.estimate(), blocked.estimate()] {

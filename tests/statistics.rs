@@ -71,7 +71,8 @@ fn the_printed_error_covers_the_scatter_over_seeds() {
     }
 }
 
-/// Collisions of a gas that slowly warms and cools: strong noise of each, and a long correlation of small variance.
+/// Collisions of a gas that slowly warms and cools: strong noise of each, and a long correlation of small
+/// variance.
 #[test]
 fn a_slow_part_of_small_variance_is_seen() {
     let slow = |seed, correlation: f64| {
@@ -105,7 +106,23 @@ fn streamed_blocks_are_those_of_the_whole_series() {
     assert_eq!((streamed.mean(), streamed.sum()), (whole.mean(), whole.sum()));
 }
 
-/// The error is that of one size of blocks, by the textbook.
+/// Records of studies keep the bits of means.
+#[test]
+fn a_running_mean_is_that_of_welford_to_the_bit() {
+    let (mut count, mut mean, mut squares) = (0.0, 0.0, 0.0);
+    let mut running = RunningMean::default();
+    for number in Autoregressive::new(5, 0.3).take(1000) {
+        running.push(number);
+        count += 1.0;
+        let before = number - mean;
+        mean += before / count;
+        squares += before * (number - mean);
+        assert_eq!(running.mean(), mean);
+        assert_eq!(running.variance(), if count < 2.0 { 0.0 } else { squares / (count - 1.0) });
+    }
+}
+
+/// The error is that of blocks of one size, by the textbook.
 #[test]
 fn the_error_is_that_of_blocks_of_one_size() {
     let series: Vec<f64> = Autoregressive::new(3, 0.5).take(4000).collect();

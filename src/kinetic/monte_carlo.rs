@@ -21,15 +21,15 @@ const FIRST_ROUND: u64 = 16;
 
 /// Monte Carlo average of the energy change per collision, for any rule.
 ///
-/// Scaled by `$\sqrt S$` and `$\sqrt V$` (see [`Maxwellian`]) the closing and the slip speed are the radius and the
-/// height of an isotropic vector of length `$R$` and polar angle `$\theta$`. The angle is drawn uniformly in 64 strata,
-/// which puts more samples on grazing collisions. `$R^2$` is drawn from its own density times `$R^2$`: no lawful rule
-/// loses more than the energy of the relative motion, which is proportional to it. A weight makes up for both. Under a
-/// rule without a speed scale, like the paper's, the only scatter left is that of the angle within a stratum. The
-/// estimate is unbiased for every rule.
+/// Scaled by `$\sqrt S$` and `$\sqrt V$` (see [`Maxwellian`]) the closing and the slip speed are the radius
+/// and the height of an isotropic vector of length `$R$` and polar angle `$\theta$`. The angle is drawn
+/// uniformly in 64 strata, which puts more samples on grazing collisions. `$R^2$` is drawn from its own
+/// density times `$R^2$`: no lawful rule loses more than the energy of the relative motion, which is
+/// proportional to it. A weight makes up for both. Under a rule without a speed scale, like the paper's, the
+/// only scatter left is that of the angle within a stratum. The estimate is unbiased for every rule.
 ///
-/// Collisions come in chunks of 4096, each with a stream of its own cut from one generator, added in order: the
-/// result is the same bits on any number of threads, with and without the feature `rayon`.
+/// Collisions come in chunks of 4096, each with a stream of its own cut from one generator, added in order:
+/// the result is the same bits on any number of threads, with and without the feature `rayon`.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse, from_fn};
@@ -67,8 +67,8 @@ impl MonteCarlo {
 
     /// The same, but stopping early at this standard error.
     ///
-    /// The error is looked at after 2¹⁶ collisions and at each doubling. If the number of collisions runs out before,
-    /// [`Estimate::standard_error`] says how far it came.
+    /// The error is looked at after 2¹⁶ collisions and at each doubling. If the number of collisions runs out
+    /// before, [`Estimate::standard_error`] says how far it came.
     ///
     /// # Errors
     /// If the error is not finite and positive.
@@ -87,7 +87,8 @@ impl MonteCarlo {
         self.average(rule, gas).energy_change()
     }
 
-    /// Returns averages over the collisions of `rule` in `gas`: the energy change, and the fraction that sticks.
+    /// Returns averages over the collisions of `rule` in `gas`: the energy change, and the fraction that
+    /// sticks.
     pub fn average<R>(&self, rule: &R, gas: &Maxwellian) -> CollisionAverage
     where
         R: CollisionRule + Sync + ?Sized,

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use super::{Collision, Observer, Partner};
 use crate::statistics::BlockedMean;
 
-/// Mean change of kinetic energy per collision, `$\langle dE\rangle$`, for disk–disk collisions and for each wall.
+/// Mean change of kinetic energy per collision, `$\langle dE\rangle$`, for disk–disk collisions and for each
+/// wall.
 ///
-/// Collisions of one run are correlated, since the gas heats and cools: [`BlockedMean::estimate`] gives a mean with an error
-/// that knows of it. At a wall that moves, or is thermal, the energy change is what the disk gains or loses, the work of the
-/// wall included.
+/// Collisions of one run are correlated, since the gas heats and cools: [`BlockedMean::estimate`] gives a
+/// mean with an error that knows of it. At a wall that moves, or is thermal, the energy change is what the
+/// disk gains or loses, the work of the wall included.
 ///
 /// ```
 /// use granular_edmd::observable::EnergyChange;

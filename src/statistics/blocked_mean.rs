@@ -5,9 +5,10 @@ use super::{Estimate, RunningMean};
 
 /// Mean of correlated numbers that come one by one, with an error that knows of their correlation.
 ///
-/// It keeps the scatter of blocks of 1, 2, 4, … numbers: memory grows with the logarithm of their count, and a number costs
-/// constant time on average. [`Self::estimate`] takes the error from the smallest blocks that are long enough, as
-/// [`block_average`](super::block_average) does of a series that is at hand: to the bit the same.
+/// It keeps the scatter of blocks of 1, 2, 4, … numbers: memory grows with the logarithm of their count, and
+/// a number costs constant time on average. [`Self::estimate`] takes the error from the smallest blocks that
+/// are long enough, as [`block_average`](super::block_average) does of a series that is at hand: to the bit
+/// the same.
 ///
 /// ```
 /// use granular_edmd::statistics::{BlockedMean, block_average};

@@ -10,7 +10,8 @@ const LARGEST: f64 = 1e100;
 /// Fewest blocks whose scatter tells something: their error is uncertain by a quarter.
 const FEWEST_BLOCKS: u64 = 8;
 
-/// Returns the mean of a time series, with an error that knows of its autocorrelation (Flyvbjerg & Petersen 1989).
+/// Returns the mean of a time series, with an error that knows of its autocorrelation (Flyvbjerg & Petersen
+/// 1989).
 ///
 /// Neighbors are replaced by their mean again and again. The naive error of the blocked series,
 ///
@@ -18,17 +19,18 @@ const FEWEST_BLOCKS: u64 = 8;
 /// \epsilon_B^2 = \frac{1}{n_B(n_B-1)}\sum_i (x_i^{(B)}-\bar x)^2,
 /// ```
 ///
-/// grows with the block size `$B$` until blocks are independent. The error is that of the smallest blocks for which
-/// 1. `$B^3 > 2n(\epsilon_B/\epsilon_1)^4$`: shorter blocks leave a bias that is larger than the scatter of `$\epsilon_B$`
-///    itself, longer ones scatter more (Lee et al. 2011, Phys. Rev. E 83, 066706);
-/// 2. `$\epsilon_B$` has grown by no more than its own uncertainty since blocks of half the size, and by no more than one and a
-///    half of it since a quarter;
+/// grows with the block size `$B$` until blocks are independent. The error is that of the smallest blocks for
+/// which
+/// 1. `$B^3 > 2n(\epsilon_B/\epsilon_1)^4$`: shorter blocks leave a bias that is larger than the scatter of
+///    `$\epsilon_B$` itself, longer ones scatter more (Lee et al. 2011, Phys. Rev. E 83, 066706);
+/// 2. `$\epsilon_B$` has grown by no more than its own uncertainty since blocks of half the size, and by no
+///    more than one and a half of it since a quarter;
 /// 3. no larger blocks have an error that is larger by more than two of its uncertainties.
 ///
-/// The first is right for one time of correlation. The others see a second, longer one, whose share of the variance is small:
-/// heat that comes and goes in a gas whose collisions are otherwise independent. Fewer than eight blocks are not asked, so
-/// that a series below some hundred [`Estimate::correlated_samples`] has no such blocks: the estimate is then not converged,
-/// and its error the largest found.
+/// The first is right for one time of correlation. The others see a second, longer one, whose share of the
+/// variance is small: heat that comes and goes in a gas whose collisions are otherwise independent. Fewer
+/// than eight blocks are not asked, so that a series below some hundred [`Estimate::correlated_samples`] has
+/// no such blocks: the estimate is then not converged, and its error the largest found.
 ///
 /// # Errors
 /// If there are fewer than two samples, or one is not finite or above 1e100 in size.
@@ -71,12 +73,13 @@ impl BlockError {
     }
 }
 
-/// Returns the error where it no longer grows with the size of the blocks, given for sizes 1, 2, 4, …; `None` if there is no
-/// such size.
+/// Returns the error where it no longer grows with the size of the blocks, given for sizes 1, 2, 4, …; `None`
+/// if there is no such size.
 pub(super) fn plateau(levels: &[BlockError], samples: u64) -> Option<f64> {
     let known = levels.iter().take_while(|level| level.blocks >= FEWEST_BLOCKS).count();
     let levels = &levels[..known];
-    // Against blocks of half and of a quarter of the size: of two times of correlation the longer shows as a slow rise.
+    // Against blocks of half and of a quarter of the size: of two times of correlation the longer shows as a
+    // slow rise.
     let is_flat = |at: usize| {
         let here = levels[at];
         let tolerances = [1.0, 1.5].map(|factor| 1.0 + factor * here.uncertainty);
@@ -94,8 +97,8 @@ pub(super) fn plateau(levels: &[BlockError], samples: u64) -> Option<f64> {
     (1..known).find(is_plateau).map(|at| levels[at].error)
 }
 
-/// Decides that blocks of this size are long enough for a series with one time of correlation, if its error has grown to
-/// `growth` times that of independent samples.
+/// Decides that blocks of this size are long enough for a series with one time of correlation, if its error
+/// has grown to `growth` times that of independent samples.
 fn is_long_enough(size: f64, samples: u64, growth: f64) -> bool {
     let squared = growth * growth;
     // Products of powers of two are exact, and the cube of 2^63 is far from overflow.
