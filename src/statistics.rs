@@ -3,7 +3,7 @@
 //! | question | answer |
 //! |---|---|
 //! | mean and variance of independent numbers | [`RunningMean`] |
-//! | mean of correlated numbers with its error, in a few hundred bytes | [`BlockedMean`] |
+//! | mean of correlated numbers with its error, without keeping the numbers | [`BlockedMean`] |
 //! | the same of a series that is at hand | [`block_average`] |
 //! | a mean, its error, and what the error rests on | [`Estimate`] |
 //!

@@ -18,11 +18,17 @@ use crate::statistics::BlockedMean;
 /// assert_eq!(energy_change.disks().count(), 0);
 /// assert_eq!(energy_change.wall(0).count(), 0);
 /// ```
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct EnergyChange {
     disks: BlockedMean,
     walls: BTreeMap<usize, BlockedMean>,
+}
+
+impl Default for EnergyChange {
+    fn default() -> Self {
+        Self { disks: BlockedMean::with_room(), walls: BTreeMap::new() }
+    }
 }
 
 /// The mean over the collisions with a wall that was never touched.
@@ -45,7 +51,7 @@ impl Observer for EnergyChange {
     fn on_collision(&mut self, collision: &Collision) {
         let mean = match collision.partner {
             Partner::Disk(_) => &mut self.disks,
-            Partner::Wall(wall) => self.walls.entry(wall).or_default(),
+            Partner::Wall(wall) => self.walls.entry(wall).or_insert_with(BlockedMean::with_room),
         };
         mean.push(collision.energy_change);
     }

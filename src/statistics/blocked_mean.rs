@@ -40,6 +40,11 @@ impl BlockedMean {
         Self { levels: Vec::new() }
     }
 
+    /// Makes a mean of no numbers yet with room for all that a run can have, so that a collision never allocates.
+    pub(crate) fn with_room() -> Self {
+        Self { levels: Vec::with_capacity(u64::BITS as usize) }
+    }
+
     /// Takes one more number.
     #[inline]
     pub fn push(&mut self, value: f64) {
