@@ -2,6 +2,8 @@
 
 #![cfg(feature = "serde")]
 
+#[path = "support/cases.rs"]
+mod cases;
 #[path = "support/report.rs"]
 mod report;
 
@@ -551,7 +553,7 @@ fn plans_with_errors_are_refused_by_name() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(cases::config(64))]
 
     /// Every number survives the file, to the last bit.
     #[test]
