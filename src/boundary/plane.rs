@@ -112,6 +112,12 @@ impl Plane {
         Surface::new(self.normal, velocity).with_response(response)
     }
 
+    /// Tells whether a disk is so near that it overlaps the wall at some time.
+    #[inline]
+    pub(super) fn is_within_reach(&self, position: DVec2, radius: f64) -> bool {
+        position.dot(self.normal) - self.place - radius <= self.highest
+    }
+
     /// Returns how far a disk reaches into the wall; negative when it is inside.
     pub(super) fn depth(&self, position: DVec2, radius: f64, time: f64) -> f64 {
         let wall = self.place + self.motion.state(time + self.phase).displacement;

@@ -11,7 +11,8 @@ use crate::{Disk, ParameterError};
 /// Most cells of a grid.
 const MOST_CELLS: usize = 1 << 22;
 
-/// The fields in one cell of a grid, averaged over all samples; made by [`Fields`]. All are 0 where no disk was seen.
+/// The fields in one cell of a grid, averaged over all samples; made by [`Fields`]. All are 0 where no disk
+/// was seen.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
@@ -36,9 +37,10 @@ pub struct FieldCell {
 
 /// An observer that averages density, flow and temperatures on a grid over samples: the convection rolls.
 ///
-/// A disk counts in the cell of its center. Temperatures are about the mean velocity *of the cell*, over all samples: a
-/// flow that is not steady over them, such as a roll that changes its sense, counts as temperature. With `$n$` disks seen
-/// in a cell they are too small by a factor `$1 - 1/n$`, for independent samples.
+/// A disk counts in the cell of its center. Temperatures are about the mean velocity *of the cell*, over all
+/// samples: a flow that is not steady over them, such as a roll that changes its sense, counts as
+/// temperature. With `$n$` disks seen in a cell they are too small by a factor `$1 - 1/n$`, for independent
+/// samples.
 ///
 /// ```
 /// use granular_edmd::boundary::{Domain, Region};

@@ -29,8 +29,8 @@ impl ConvectionOrder {
 /// \Psi_2 = -\frac1N\sum_i v_{yi}\cos\frac{2\pi x_i}{L_x}.
 /// ```
 ///
-/// In a gas at rest each fluctuates with standard deviation `$\sqrt{T_y/2Nm}$`: a roll stands out if it is larger than that.
-/// Positions count from the left end of the domain; without disks both are 0.
+/// In a gas at rest each fluctuates with standard deviation `$\sqrt{T_y/2Nm}$`: a roll stands out if it is
+/// larger than that. Positions count from the left end of the domain; without disks both are 0.
 ///
 /// ```
 /// use glam::DVec2;

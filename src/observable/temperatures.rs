@@ -28,7 +28,8 @@ impl Temperature {
     }
 }
 
-/// Horizontal, vertical and rotational temperature over all disks, in the frame of the container; NaN without disks.
+/// Horizontal, vertical and rotational temperature over all disks, in the frame of the container; NaN without
+/// disks.
 ///
 /// The flow of convection rolls counts as temperature here: a small part (`$\Psi^2\ll T$`).
 ///

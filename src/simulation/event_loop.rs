@@ -47,10 +47,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         due: f64,
         observer: &mut O,
     ) -> Outcome<Option<Event>> {
-        let Some(&forecast) = self.bodies.forecast(disk) else { return Err(self.scheduler_fault(disk, due)) };
+        let Some(&forecast) = self.bodies.forecast(disk) else {
+            return Err(self.scheduler_fault(disk, due).into());
+        };
         // A scheduler that names an old time would take the run back, or past an event.
         if forecast.due() != due || due < self.clock.now {
-            return Err(self.scheduler_fault(disk, due));
+            return Err(self.scheduler_fault(disk, due).into());
         }
         if due > self.clock.epoch_length {
             // The event is due all the same, at another offset: it comes up again.
@@ -80,7 +82,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 self.counters.horizons += 1;
                 self.predict(disk);
             }
-            Exit::Impossible => return Err(self.impossible_touch(disk)),
+            Exit::Impossible => return Err(self.impossible_touch(disk).into()),
             exit => self.cross(disk, exit),
         }
         Ok(None)
@@ -131,16 +133,17 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let surface = self.boundary.surface(wall, position, now);
         if !is_unit_and_finite(&surface) {
             let (normal, velocity) = (surface.normal, surface.velocity);
-            return Err(self.boundary_fault(disk, BoundaryFault::Surface { wall, normal, velocity }));
+            return Err(self.boundary_fault(disk, BoundaryFault::Surface { wall, normal, velocity }).into());
         }
         let parts = (self.bodies.velocity(disk, now) - surface.velocity).dot(surface.normal) > 0.0;
         let (collision, kick) =
             resolve_wall(&self.bodies, &self.rule, &mut self.generator, &surface, &self.clock, disk, wall);
         if !kick.is_possible() {
-            return Err(match surface.response {
+            let error = match surface.response {
                 Response::Rule(own) => failed(own, &collision),
                 _ => failed(&self.rule, &collision),
-            });
+            };
+            return Err(error.into());
         }
         if let Some((_, depth)) = self.boundary.overlap(position, self.bodies.material(disk).radius, now) {
             self.counters.max_wall_overlap = self.counters.max_wall_overlap.max(depth);
@@ -181,7 +184,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let period = self.cells.grid().period();
         let (collision, kicks) = resolve_pair(&self.bodies, &self.rule, period, &self.clock, disk, partner);
         if !kicks.iter().all(Kick::is_possible) {
-            return Err(failed(&self.rule, &collision));
+            return Err(failed(&self.rule, &collision).into());
         }
         self.begin_epoch_for(&kicks);
         Ok(())
@@ -391,19 +394,19 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     #[cold]
-    fn scheduler_fault(&self, disk: usize, due: f64) -> Box<RunError> {
+    fn scheduler_fault(&self, disk: usize, due: f64) -> RunError {
         let expected = self.bodies.forecast(disk).map(Forecast::due);
-        Box::new(RunError::Scheduler { disk, due, expected, time: self.time() })
+        RunError::Scheduler { disk, due, expected, time: self.time() }
     }
 
     #[cold]
-    fn boundary_fault(&self, disk: usize, fault: BoundaryFault) -> Box<RunError> {
-        Box::new(RunError::Boundary { disk, time: self.time(), fault })
+    fn boundary_fault(&self, disk: usize, fault: BoundaryFault) -> RunError {
+        RunError::Boundary { disk, time: self.time(), fault }
     }
 
     /// Asks the boundary once more for a touch that cannot be, to tell which it was.
     #[cold]
-    fn impossible_touch(&self, disk: usize) -> Box<RunError> {
+    fn impossible_touch(&self, disk: usize) -> RunError {
         let (now, forecast) = (self.clock.now, self.forecast(disk));
         let until = now + HORIZON * self.clock.epoch_length;
         let touch = self.boundary.first_touch(&self.flight(disk), until);

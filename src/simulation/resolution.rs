@@ -149,11 +149,10 @@ pub(super) fn is_unit_and_finite(surface: &Surface<'_>) -> bool {
 
 /// The error of a collision whose outcome is no motion.
 #[cold]
-pub(super) fn failed<R: CollisionRule + ?Sized>(rule: &R, collision: &Collision) -> Box<RunError> {
+pub(super) fn failed<R: CollisionRule + ?Sized>(rule: &R, collision: &Collision) -> RunError {
     let Collision { disk, partner, time, contact, impulse, .. } = *collision;
     let explanation = rule.explain(&contact);
-    let failed = FailedCollision { disk, partner, time, contact, impulse, explanation };
-    Box::new(RunError::NotFinite(Box::new(failed)))
+    RunError::NotFinite(Box::new(FailedCollision { disk, partner, time, contact, impulse, explanation }))
 }
 
 /// The motion in which a disk leaves a thermal wall.

@@ -14,6 +14,8 @@ mod few;
 mod files;
 #[cfg(all(feature = "serde", unix))]
 mod forged;
+#[cfg(all(feature = "serde", unix))]
+mod forged_systems;
 mod invariants;
 mod laws;
 #[cfg(all(feature = "serde", unix))]

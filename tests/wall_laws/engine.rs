@@ -3,7 +3,7 @@
 use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::Smooth;
 use granular_edmd::glam::DVec2;
-use granular_edmd::simulation::RunError;
+use granular_edmd::simulation::{RunEnd, RunError};
 use granular_edmd::wall::{AccelerationBounds, WallMotion, WallState, laws};
 use granular_edmd::{Disk, Simulation};
 
@@ -42,7 +42,7 @@ impl WallMotion for Late {
 }
 
 /// Three disks that bounce on the floor until time 40, and where the lowest is then.
-fn outcome(motion: Late) -> (Result<(), RunError>, f64) {
+fn outcome(motion: Late) -> (Result<RunEnd, RunError>, f64) {
     let container = Container::closed(8.0, 9.0).unwrap().with_motion(Wall::Floor, motion).unwrap();
     let disks = [1.0, 3.0, 6.0].map(|x| Disk::new(DVec2::new(x, 2.0), 0.5).unwrap());
     let rule = Smooth::new(0.0).unwrap();
