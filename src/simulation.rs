@@ -251,7 +251,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.bodies.len()
     }
 
-    /// Whether there are no disks.
+    /// Tells whether there are no disks.
     pub fn is_empty(&self) -> bool {
         self.bodies.len() == 0
     }

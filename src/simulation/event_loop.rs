@@ -122,7 +122,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.counters.contact_duration_collisions += u64::from(by_contact_duration);
     }
 
-    /// Whether a disk can be kicked in this epoch; so are nearly all.
+    /// Tells whether a disk can be kicked in this epoch; so are nearly all.
     #[inline]
     pub(super) fn is_tame(&self, kick: &Kick) -> bool {
         // Not so for a velocity that is no number; rotation cannot go wrong alone, since its impulse moves the disk, too.

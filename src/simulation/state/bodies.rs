@@ -108,7 +108,7 @@ impl Bodies {
         Self::of_kinds(Kinds::of(kinds), gravity, particles, spins)
     }
 
-    /// What [`Self::restored`] takes.
+    /// The kinds that [`Self::restored`] takes.
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn kinds(&self) -> Vec<Disk> {
         self.kinds.disks()

@@ -18,7 +18,7 @@ impl Bodies {
         self.epoch_length_at(typical.max(squares().fold(0.0, f64::max).sqrt() / FASTER))
     }
 
-    /// Whether a disk of this velocity goes no further in an epoch of this length than any should. A collision can make a
+    /// Tells whether a disk of this velocity goes no further in an epoch of this length than any should. A collision can make a
     /// disk faster than all were; its place at the epoch, so far away, would lack digits.
     #[inline]
     pub(in crate::simulation) fn keeps_pace(&self, velocity: DVec2, epoch_length: f64) -> bool {
