@@ -75,7 +75,7 @@ impl Plane {
         self.motion.reach()
     }
 
-    /// Tells whether a disk with its centre in `region` can touch the wall at any time.
+    /// Tells whether a disk with its center in `region` can touch the wall at any time.
     pub(super) fn may_touch(&self, region: &Region, radius: f64) -> bool {
         let nearest = DVec2::select(self.normal.cmpgt(DVec2::ZERO), region.min, region.max);
         // A component of the normal that is zero must not meet an infinite edge: their product is not a

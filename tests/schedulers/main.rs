@@ -59,7 +59,7 @@ fn time() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// None, few, powers of two and their neighbours, many.
+/// None, few, powers of two and their neighbors, many.
 fn times() -> impl Strategy<Value = Vec<f64>> {
     let count =
         prop_oneof![Just(0usize), Just(1), Just(2), 3..10usize, 15..18usize, 31..34usize, 60..200usize];
