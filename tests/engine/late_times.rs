@@ -11,13 +11,17 @@ use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal};
 use granular_edmd::{Disk, Simulation, initial};
 
 fn pair(speed: f64) -> [Disk; 2] {
-    let disk = |x: f64, velocity: DVec2| Disk::new(DVec2::new(x, 5.0), 0.5).unwrap().with_velocity(velocity).unwrap();
+    let disk = |x: f64, velocity: DVec2| {
+        Disk::new(DVec2::new(x, 5.0), 0.5).unwrap().with_velocity(velocity).unwrap()
+    };
     [disk(3.0, speed * DVec2::new(0.6, 0.8)), disk(7.0, speed * DVec2::new(-0.8, 0.6))]
 }
 
 #[test]
 fn times_too_far_apart_are_refused_at_once() {
-    for (start, speed) in [(1e18, 1.0), (1e15, 700.0), (1e12, 1.1e6), (1e9, 3e9), (-1e18, 1.0), (f64::MAX, 1e-9)] {
+    for (start, speed) in
+        [(1e18, 1.0), (1e15, 700.0), (1e12, 1.1e6), (1e9, 3e9), (-1e18, 1.0), (f64::MAX, 1e-9)]
+    {
         let began = Instant::now();
         let builder = Simulation::builder(Elastic, Container::closed(10.0, 10.0).unwrap()).disks(pair(speed));
         match builder.start_time(start).build() {
@@ -50,7 +54,11 @@ fn disks_that_become_too_fast_for_their_time_end_the_run() {
         let error = loop {
             let end = run.time() + 1.0;
             match run.step_until(end, &mut ()) {
-                Ok(_) => assert!(began.elapsed() < Duration::from_secs(2), "{start:e} {temperature:e}: {}", run.time()),
+                Ok(_) => assert!(
+                    began.elapsed() < Duration::from_secs(2),
+                    "{start:e} {temperature:e}: {}",
+                    run.time()
+                ),
                 Err(error) => break error,
             }
         };
@@ -109,7 +117,8 @@ fn disks_stay_in_the_box_at_all_times_that_are_allowed() {
             let disks = initial::lattice(&walls, 12, 0.5).unwrap();
             let disks = initial::with_maxwellian_velocities(disks, 1.0, 7).unwrap();
             let rule = Smooth::new(0.05).unwrap();
-            let builder = Simulation::builder(rule, walls.clone()).disks(disks).gravity(gravity).start_time(start);
+            let builder =
+                Simulation::builder(rule, walls.clone()).disks(disks).gravity(gravity).start_time(start);
             let mut run = match builder.build() {
                 Ok(run) => run,
                 Err(BuildError::StartTime { .. }) => continue,
@@ -169,8 +178,8 @@ fn a_kick_late_in_a_long_epoch_moves_no_disk() {
 /// A wall that is not where it said shows in the counters.
 #[test]
 fn overlaps_with_walls_are_counted() {
-    use granular_edmd::boundary::{Domain, Region, Surface, Touch};
     use granular_edmd::Flight;
+    use granular_edmd::boundary::{Domain, Region, Surface, Touch};
 
     /// A floor that answers a touch when a disk is as deep in it as this.
     struct Late(Container, f64);

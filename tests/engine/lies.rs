@@ -82,7 +82,9 @@ impl Boundary for Liar {
         let touch = self.honest.first_touch(flight, until);
         match self.lie {
             Lie::Time(wait) if self.lies() => Some(Touch::new(flight.time() + wait, 0)),
-            Lie::Beyond if self.lies() => Some(Touch::new(if until == f64::INFINITY { until } else { until.next_up() }, 0)),
+            Lie::Beyond if self.lies() => {
+                Some(Touch::new(if until == f64::INFINITY { until } else { until.next_up() }, 0))
+            }
             Lie::Wall(wall) if self.lies() => Some(Touch::new(flight.time(), wall)),
             _ => touch,
         }
@@ -133,12 +135,14 @@ fn touches_that_cannot_be_are_named() {
     ];
     for (lie, truths) in lies.into_iter().flat_map(|lie| [0, 1, 57, 300].map(|truths| (lie, truths))) {
         let (run, end) = run_among_liars(lie, truths);
-        // A wait too short to change the time is no lie.
-        let Err(error) = end else {
-            assert!(matches!(lie, Lie::Time(wait) if wait.abs() < 1e-70), "{lie:?} {truths}");
+        let error = end.unwrap_err();
+        if matches!(lie, Lie::Time(wait) if wait.abs() < 1e-70) && matches!(error, RunError::Stalled { .. }) {
+            // So short a time changes none: this is a touch at once, again and again.
             continue;
-        };
-        let RunError::Boundary { fault: BoundaryFault::Touch { wall, walls, early_by, .. }, time, .. } = error else {
+        }
+        let RunError::Boundary { fault: BoundaryFault::Touch { wall, walls, early_by, .. }, time, .. } =
+            error
+        else {
             panic!("{lie:?} {truths}: {error}")
         };
         assert_eq!(walls, 4);
@@ -155,8 +159,20 @@ fn touches_that_cannot_be_are_named() {
 
 #[test]
 fn surfaces_that_cannot_be_are_named() {
-    let normals = [DVec2::ZERO, DVec2::NAN, DVec2::new(0.0, 1.1), DVec2::new(f64::INFINITY, 0.0), DVec2::new(1e-3, 0.0), DVec2::splat(1e200)];
-    let velocities = [DVec2::NAN, DVec2::new(f64::INFINITY, 0.0), DVec2::new(0.0, f64::NEG_INFINITY), DVec2::new(1e200, 0.0)];
+    let normals = [
+        DVec2::ZERO,
+        DVec2::NAN,
+        DVec2::new(0.0, 1.1),
+        DVec2::new(f64::INFINITY, 0.0),
+        DVec2::new(1e-3, 0.0),
+        DVec2::splat(1e200),
+    ];
+    let velocities = [
+        DVec2::NAN,
+        DVec2::new(f64::INFINITY, 0.0),
+        DVec2::new(0.0, f64::NEG_INFINITY),
+        DVec2::new(1e200, 0.0),
+    ];
     let lies = normals.map(Lie::Normal).into_iter().chain(velocities.map(Lie::Velocity));
     for (lie, truths) in lies.flat_map(|lie| [0, 13].map(|truths| (lie, truths))) {
         let (run, end) = run_among_liars(lie, truths);
@@ -441,7 +457,10 @@ fn an_outcome_that_is_no_motion_names_both_partners_the_contact_and_the_reason()
             assert!(closing >= 0.0 && closing.is_finite());
             let asked = impulse(&failed.contact);
             let same = |a: f64, b: f64| a.to_bits() == b.to_bits();
-            assert!(same(failed.impulse.normal(), asked.normal()) && same(failed.impulse.tangential(), asked.tangential()));
+            assert!(
+                same(failed.impulse.normal(), asked.normal())
+                    && same(failed.impulse.tangential(), asked.tangential())
+            );
             assert_eq!(failed.explanation, Some(format!("closing at {closing} is too much")));
             let names = match failed.partner {
                 Partner::Disk(partner) => {
@@ -452,7 +471,6 @@ fn an_outcome_that_is_no_motion_names_both_partners_the_contact_and_the_reason()
                     walls_named += 1;
                     format!("disk {} with wall {wall}", failed.disk)
                 }
-                other => panic!("{other:?}"),
             };
             assert!(said.contains(&names) && said.contains("is too much"), "{said}");
             assert_whole(&run);
@@ -544,13 +562,27 @@ impl Boundary for Drum {
     }
 }
 
+/// Does so many collisions, or as many as there are: disks at rest on a wall have no end of them.
+fn take_steps<R: CollisionRule, B: Boundary>(run: &mut Simulation<R, B>, steps: usize) {
+    for _ in 0..steps {
+        if !matches!(run.step_until(200.0, &mut ()), Ok(Some(_))) {
+            break;
+        }
+    }
+}
+
 #[test]
 fn no_rule_is_given_a_closing_speed_below_zero() {
     use granular_edmd::boundary::{Thermal, Wall};
     use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
     let rules = || {
-        [Frictional::new(0.0, 0.2), Frictional::new(0.1, 0.0), Frictional::new(0.3, 0.5), Frictional::new(0.5, 0.1)]
-            .map(Result::unwrap)
+        [
+            Frictional::new(0.0, 0.2),
+            Frictional::new(0.1, 0.0),
+            Frictional::new(0.3, 0.5),
+            Frictional::new(0.5, 0.1),
+        ]
+        .map(Result::unwrap)
     };
     let containers = [
         Ok(walls()),
@@ -561,21 +593,27 @@ fn no_rule_is_given_a_closing_speed_below_zero() {
         walls().with_temperature(Wall::Floor, Thermal::new(2.0).unwrap()),
         Ok(walls().with_periodic_sides()),
     ];
-    for (container, rule) in containers.into_iter().map(Result::unwrap).flat_map(|c| rules().map(|r| (c.clone(), r))) {
+    for (container, rule) in
+        containers.into_iter().map(Result::unwrap).flat_map(|c| rules().map(|r| (c.clone(), r)))
+    {
         for gravity in [0.0, 0.3] {
-            let builder = Simulation::builder(Strict(rule), container.clone()).disks(disks()).gravity(gravity);
-            let _ = builder.build().unwrap().run_until(100.0, &mut ());
+            let builder =
+                Simulation::builder(Strict(rule), container.clone()).disks(disks()).gravity(gravity);
+            let mut run = builder.build().unwrap();
+            take_steps(&mut run, 5000);
         }
     }
     for (speed, rule) in [0.0, 0.3, -7.0].into_iter().flat_map(|speed| rules().map(|rule| (speed, rule))) {
         let drum = Drum { radius: 4.0, speed };
-        let places = (-2..=2).flat_map(|x| (-2..=2).map(move |y| 1.1 * DVec2::new(f64::from(x), f64::from(y))));
+        let places =
+            (-2..=2).flat_map(|x| (-2..=2).map(move |y| 1.1 * DVec2::new(f64::from(x), f64::from(y))));
         let disks = places.map(|place| Disk::new(place, 0.45).unwrap()).collect();
         let disks = initial::with_maxwellian_velocities(disks, 1.0, 9).unwrap();
         for gravity in [0.0, 0.5] {
-            let builder = Simulation::builder(Strict(rule), drum.clone()).disks(disks.clone()).gravity(gravity);
+            let builder =
+                Simulation::builder(Strict(rule), drum.clone()).disks(disks.clone()).gravity(gravity);
             let mut run = builder.build().unwrap();
-            let _ = run.run_until(60.0, &mut ());
+            take_steps(&mut run, 5000);
             assert!(run.counters().wall_collisions > 20, "{speed} {rule:?}: {:?}", run.counters());
             assert!(run.counters().max_wall_overlap < 1e-9, "{speed} {rule:?}: {:?}", run.counters());
         }

@@ -44,9 +44,9 @@ fn smooth_box(width: f64) -> Container {
     use granular_edmd::boundary::Wall;
     let walls = [Wall::Floor, Wall::Lid, Wall::Left, Wall::Right];
     let closed = Container::closed(width, width).unwrap();
-    walls.into_iter().fold(closed, |walls, wall| {
-        walls.with_rule(wall, granular_edmd::collision::Elastic).unwrap()
-    })
+    walls
+        .into_iter()
+        .fold(closed, |walls, wall| walls.with_rule(wall, granular_edmd::collision::Elastic).unwrap())
 }
 
 #[test]
@@ -148,7 +148,10 @@ fn what_makes_disks_part_changes_neither_momentum_nor_energy() {
         let expected = balance(&disks).1 - 0.5 * reduced * closing * closing;
         let (momentum, energy) = balance(&after);
         let scale: f64 = after.iter().map(|disk| disk.mass() * disk.velocity().length()).sum();
-        assert!((momentum - before).length() <= 8.0 * f64::EPSILON * scale, "case {case}: {momentum} {before}");
+        assert!(
+            (momentum - before).length() <= 8.0 * f64::EPSILON * scale,
+            "case {case}: {momentum} {before}"
+        );
         assert!((energy / expected - 1.0).abs() < 1e-12, "case {case}: {energy:e} {expected:e}");
     }
 }
