@@ -27,6 +27,7 @@ mod lookahead;
 mod prediction;
 mod resolution;
 mod state;
+mod walls;
 
 pub use builder::SimulationBuilder;
 #[cfg(feature = "serde")]
@@ -96,6 +97,16 @@ pub type BoxedSimulation = Simulation<
     Box<dyn Boundary + Send + Sync>,
     Box<dyn EventScheduler + Send + Sync>,
 >;
+
+// A run can go to another thread, and be looked at from several: a private field could end that unseen.
+const _: () = {
+    const fn is_sent_and_shared<T: Send + Sync>() {}
+    is_sent_and_shared::<Simulation>();
+    is_sent_and_shared::<BoxedSimulation>();
+    is_sent_and_shared::<SimulationBuilder<Frictional, Container>>();
+    is_sent_and_shared::<RunError>();
+    is_sent_and_shared::<BuildError>();
+};
 
 /// Room that is used again and again.
 #[derive(Debug, Clone, Default)]
@@ -240,7 +251,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.bodies.len()
     }
 
-    /// Whether there are no disks.
+    /// Tells whether there are no disks.
     pub fn is_empty(&self) -> bool {
         self.bodies.len() == 0
     }

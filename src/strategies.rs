@@ -115,7 +115,7 @@ fn closing_speed() -> impl Strategy<Value = f64> {
     prop_oneof![0.1..3.0, decades(-12.0, 12.0)]
 }
 
-/// Disks at the origin with their centres at rest, of any size, mass and inertia, that rotate or not.
+/// Disks at the origin with their centers at rest, of any size, mass and inertia, that rotate or not.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;

@@ -2,6 +2,8 @@
 
 #![cfg(feature = "serde")]
 
+#[path = "support/cases.rs"]
+mod cases;
 #[path = "support/report.rs"]
 mod report;
 
@@ -105,6 +107,9 @@ fn a_study_records_what_it_was_asked_for() {
         let area: f64 = record.profile().map(|(_, fraction)| fraction * 10.0).sum();
         approx::assert_relative_eq!(area, 30.0 * std::f64::consts::FRAC_PI_4, max_relative = 1e-3);
         assert!(record.energy_change().mean() < 0.0 && record.energy_change().standard_error() > 0.0);
+        assert!(
+            !record.energy_change().is_converged() && !record.mean(|sample| sample.height).is_converged()
+        );
     }
     let friction: Vec<_> = records[..5].iter().map(|r| r.system().get(Parameter::Friction)).collect();
     assert_eq!(friction, [0.01, 0.1, 0.3, 0.1, 0.01].map(Some));
@@ -130,6 +135,11 @@ fn tables_have_a_row_for_each_thing() {
         ["ramp", "value", "leg", "inelasticity", "friction"]
     );
     assert_eq!(values[7].iter().take(5).collect::<Vec<_>>(), ["1", "2", "up", "0.02", "0.3"]);
+    // Six samples tell no error: the last column names all that are lower bounds.
+    assert_eq!(header.iter().next_back(), Some("not_converged"));
+    let all = "one_roll one_roll_magnitude two_rolls height translational_energy rotational_energy \
+               vertical_temperature energy_change";
+    assert_eq!(values[7].iter().next_back(), Some(all));
     assert_eq!(rows("samples.csv").1.len(), 60);
     assert_eq!(rows("profiles.csv").1.len(), 300);
 }
@@ -543,7 +553,7 @@ fn plans_with_errors_are_refused_by_name() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(cases::config(64))]
 
     /// Every number survives the file, to the last bit.
     #[test]

@@ -1,8 +1,8 @@
-//! Rectangles: where the centres of disks can be.
+//! Rectangles: where the centers of disks can be.
 
 use glam::DVec2;
 
-/// The rectangle that holds the centres of all disks; its left and right sides may be the same line.
+/// The rectangle that holds the centers of all disks; its left and right sides may be the same line.
 ///
 /// ```
 /// use granular_edmd::boundary::Domain;

@@ -34,7 +34,7 @@ pub struct WallEncounter {
 
 /// Lets two disks collide under `rule` (paper, Eq. (2)), as a simulation does. Useful to test rules.
 ///
-/// The normal is taken from their centres; that they touch is not checked. The closing speed of disks that
+/// The normal is taken from their centers; that they touch is not checked. The closing speed of disks that
 /// part is zero.
 ///
 /// ```

@@ -23,7 +23,7 @@ const MOST_WALLS: usize = 1 << 16;
 /// Overlap, relative to the diameter, that counts as touching: rounding of positions.
 const TOUCHING: f64 = 1e-10;
 
-/// What a simulation is made of; see [`Simulation::builder`].
+/// Parts of a simulation that is about to be made; see [`Simulation::builder`].
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct SimulationBuilder<R, B, S = BySize> {
@@ -166,7 +166,7 @@ pub(super) fn count_walls<B: Boundary + ?Sized>(boundary: &B) -> Result<usize, B
     Ok(count)
 }
 
-/// Neighbour cells that suit these disks.
+/// Neighbor cells that suit these disks.
 fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells, BuildError> {
     let diameter = 2.0 * disks.iter().map(Disk::radius).fold(0.0, f64::max);
     let domain = boundary.domain();

@@ -145,7 +145,7 @@ impl Checkpoint {
         self.0.trajectories.len()
     }
 
-    /// Whether there are no disks.
+    /// Tells whether there are no disks.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

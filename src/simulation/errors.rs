@@ -32,17 +32,17 @@ pub enum BuildError {
     /// There are more disks than the engine can number.
     #[error("{count} disks are too many: at most {most} are possible")]
     TooManyDisks {
-        /// How many there are.
+        /// Number of them.
         count: usize,
-        /// How many there may be.
+        /// Largest number possible.
         most: usize,
     },
     /// The boundary has more walls than the engine can number.
     #[error("{count} walls are too many: at most {most} are possible")]
     TooManyWalls {
-        /// How many there are.
+        /// Number of them.
         count: usize,
-        /// How many there may be.
+        /// Largest number possible.
         most: usize,
     },
     /// A disk is outside the boundary's domain.

@@ -9,23 +9,19 @@ use std::hint::select_unpredictable;
 use glam::DVec2;
 
 use super::Simulation;
-use super::errors::{BoundaryFault, Outcome, RunError};
+use super::errors::{Outcome, RunError};
 use super::events::Event;
 use super::prediction::{LANES, are_closing, cell_exit, earliest_collision};
-use super::resolution::{Kick, failed, is_parting, is_unit_and_finite, resolve_pair, resolve_wall};
+use super::resolution::{Kick, failed, is_parting, resolve_pair};
 use super::state::{Earliest, Exit, Forecast};
-use crate::Flight;
-use crate::boundary::{Boundary, Response};
+use crate::boundary::Boundary;
 use crate::collision::laws::closing_speed_after;
 use crate::collision::{CollisionRule, Regime};
 use crate::observable::{Collision, Observer};
 use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
 
-/// Epochs that a wall is searched for ahead: no search is endless.
-const HORIZON: f64 = 2.0;
-
 /// Doublings after which two surfaces that a collision has left within rounding of each other are let be.
-const MOST_NUDGES: u32 = 24;
+pub(super) const MOST_NUDGES: u32 = 24;
 
 /// Closing speed after a collision, in terms of the speeds of the disks, that is more than rounding: the rule wants it so.
 const WANTED: f64 = 1e-9;
@@ -47,10 +43,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         due: f64,
         observer: &mut O,
     ) -> Outcome<Option<Event>> {
-        let Some(&forecast) = self.bodies.forecast(disk) else { return Err(self.scheduler_fault(disk, due)) };
+        let Some(&forecast) = self.bodies.forecast(disk) else {
+            return Err(self.scheduler_fault(disk, due).into());
+        };
         // A scheduler that names an old time would take the run back, or past an event.
-        if (forecast.due() != due) | (due < self.clock.now) {
-            return Err(self.scheduler_fault(disk, due));
+        if forecast.due() != due || due < self.clock.now {
+            return Err(self.scheduler_fault(disk, due).into());
         }
         if due > self.clock.epoch_length {
             // The event is due all the same, at another offset: it comes up again.
@@ -80,7 +78,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 self.counters.horizons += 1;
                 self.predict(disk);
             }
-            Exit::Impossible => return Err(self.impossible_touch(disk)),
+            Exit::Impossible => return Err(self.impossible_touch(disk).into()),
             exit => self.cross(disk, exit),
         }
         Ok(None)
@@ -119,52 +117,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(Event::Collision { disk, partner })
     }
 
-    /// A disk collides with a wall.
-    fn collide_with_wall<O: Observer + ?Sized>(
-        &mut self,
-        disk: usize,
-        wall: usize,
-        observer: &mut O,
-    ) -> Outcome<Event> {
-        let now = self.clock.now;
-        let position = self.bodies.position(disk, now);
-        let surface = self.boundary.surface(wall, position, now);
-        if !is_unit_and_finite(&surface) {
-            let (normal, velocity) = (surface.normal, surface.velocity);
-            return Err(self.boundary_fault(disk, BoundaryFault::Surface { wall, normal, velocity }));
-        }
-        let (collision, kick) =
-            resolve_wall(&self.bodies, &self.rule, &mut self.generator, &surface, &self.clock, disk, wall);
-        if !kick.is_possible() {
-            return Err(match surface.response {
-                Response::Rule(own) => failed(own, &collision),
-                _ => failed(&self.rule, &collision),
-            });
-        }
-        if let Some((_, depth)) = self.boundary.overlap(position, self.bodies.material(disk).radius, now) {
-            self.counters.max_wall_overlap = self.counters.max_wall_overlap.max(depth);
-        }
-        if !self.is_tame(&kick) {
-            self.begin_epoch_for(&[kick]);
-        }
-        self.counters.wall_collisions += 1;
-        self.count_regime(&collision);
-        self.kick(disk, &kick);
-        observer.on_collision(&collision);
-        self.find_next(disk);
-        self.leave_wall(disk, wall, &collision);
-        self.schedule(disk);
-        Ok(Event::WallCollision { disk, wall })
-    }
-
-    fn count_regime(&mut self, collision: &Collision) {
+    pub(super) fn count_regime(&mut self, collision: &Collision) {
         let by_contact_duration = collision.impulse.regime() == Regime::ContactDuration;
         self.counters.contact_duration_collisions += u64::from(by_contact_duration);
     }
 
-    /// Whether a disk can be kicked in this epoch; so are nearly all.
+    /// Tells whether a disk can be kicked in this epoch; so are nearly all.
     #[inline]
-    fn is_tame(&self, kick: &Kick) -> bool {
+    pub(super) fn is_tame(&self, kick: &Kick) -> bool {
         // Not so for a velocity that is no number; rotation cannot go wrong alone, since its impulse moves the disk, too.
         self.bodies.keeps_pace(kick.after.velocity, self.clock.epoch_length)
     }
@@ -178,7 +138,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let period = self.cells.grid().period();
         let (collision, kicks) = resolve_pair(&self.bodies, &self.rule, period, &self.clock, disk, partner);
         if !kicks.iter().all(Kick::is_possible) {
-            return Err(failed(&self.rule, &collision));
+            return Err(failed(&self.rule, &collision).into());
         }
         self.begin_epoch_for(&kicks);
         Ok(())
@@ -189,7 +149,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// The place of a disk at the epoch would be so far away that it lacked digits. So the epoch moves before the kick, not after.
     #[cold]
     #[inline(never)]
-    fn begin_epoch_for(&mut self, kicks: &[Kick]) {
+    pub(super) fn begin_epoch_for(&mut self, kicks: &[Kick]) {
         self.shift_epoch(self.clock.exact_offset());
         for kick in kicks {
             let length = self.bodies.epoch_length_for(kick.after.velocity);
@@ -199,7 +159,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Changes the motion of a disk, as all collisions do: predictions with it are out of date.
     #[inline]
-    fn kick(&mut self, disk: usize, kick: &Kick) {
+    pub(super) fn kick(&mut self, disk: usize, kick: &Kick) {
         self.bodies.kick(disk, kick.velocity, kick.angular_velocity, self.clock.now);
         self.forecast_mut(disk).count_collision();
     }
@@ -227,22 +187,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             let total = masses[0] + masses[1];
             self.bodies.push(disk, push * (masses[0] / total), now);
             self.bodies.push(partner, -push * (masses[1] / total), now);
-        }
-    }
-
-    /// Makes a disk leave the wall that it has just collided with, if it would touch it again at once for a rounding of its speed.
-    #[inline]
-    fn leave_wall(&mut self, disk: usize, wall: usize, collision: &Collision) {
-        for doubling in 0..MOST_NUDGES {
-            let Forecast { exit, exit_due, wall: next, .. } = *self.forecast(disk);
-            if exit != Exit::Wall || exit_due > self.clock.now || usize::from(next) != wall {
-                return;
-            }
-            // The speed relative to the wall has the rounding of what it is the difference of.
-            let fallen = self.bodies.fall(self.clock.now).1.length();
-            let scale = f64::EPSILON * (self.bodies.speed(disk) + fallen);
-            self.bodies.push(disk, collision.normal * (f64::from(1_u32 << doubling) * scale), self.clock.now);
-            self.find_next(disk);
         }
     }
 
@@ -287,7 +231,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Finds the next collision of a disk among all its neighbors.
     #[inline(always)]
     fn find_partner(&mut self, disk: usize) {
-        self.make_room();
         let count = self.cells.around(disk, &mut self.scratch.found);
         let earliest = self.earliest_collision(disk, count, Earliest::NONE);
         let partner_collisions =
@@ -316,13 +259,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Tells the scheduler when the next event of a disk is due.
     #[inline]
-    fn schedule(&mut self, disk: usize) {
+    pub(super) fn schedule(&mut self, disk: usize) {
         self.scheduler.set(disk, self.forecast(disk).due());
     }
 
-    /// Keeps the room for neighbors in step with the cells, which may have grown.
+    /// Keeps the room for neighbors in step with the cells, which grow when one gets crowded: asked for wherever disks come into
+    /// cells.
     #[inline]
-    fn make_room(&mut self) {
+    pub(super) fn make_room(&mut self) {
         let room = self.cells.room() + LANES;
         if self.scratch.found.len() < room {
             self.scratch.found.resize(room, 0);
@@ -342,31 +286,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Ends the flight at a wall, if the disk touches one before it leaves its cell.
-    fn end_at_wall(&mut self, disk: usize) {
-        let now = self.clock.now;
-        let horizon = now + HORIZON * self.clock.epoch_length;
-        let flight = self.flight(disk);
-        let forecast = &mut self.bodies.particles[disk].forecast;
-        let until = forecast.exit_due.min(horizon);
-        if let Some(touch) = self.boundary.first_touch(&flight, until) {
-            let is_possible = touch.time >= now && touch.time <= until && touch.wall < self.wall_count;
-            (forecast.exit_due, forecast.exit) =
-                if is_possible { (touch.time, Exit::Wall) } else { (now, Exit::Impossible) };
-            forecast.wall = touch.wall as u16;
-        } else if forecast.exit_due > horizon {
-            (forecast.exit_due, forecast.exit) = (horizon, Exit::Horizon);
-        }
-    }
-
-    #[inline]
-    fn flight(&self, disk: usize) -> Flight {
-        let now = self.clock.now;
-        let acceleration = DVec2::new(0.0, -self.bodies.gravity);
-        let (position, velocity) = (self.bodies.position(disk, now), self.bodies.velocity(disk, now));
-        Flight::new(now, position, velocity, acceleration, self.bodies.material(disk).radius)
-    }
-
     #[inline]
     fn look_ahead(&mut self) {
         if self.bodies.len() >= LARGE_SYSTEM {
@@ -376,34 +295,18 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     #[inline]
-    fn forecast(&self, disk: usize) -> &Forecast {
+    pub(super) fn forecast(&self, disk: usize) -> &Forecast {
         &self.bodies.particles[disk].forecast
     }
 
     #[inline]
-    fn forecast_mut(&mut self, disk: usize) -> &mut Forecast {
+    pub(super) fn forecast_mut(&mut self, disk: usize) -> &mut Forecast {
         &mut self.bodies.particles[disk].forecast
     }
 
     #[cold]
-    fn scheduler_fault(&self, disk: usize, due: f64) -> Box<RunError> {
+    fn scheduler_fault(&self, disk: usize, due: f64) -> RunError {
         let expected = self.bodies.forecast(disk).map(Forecast::due);
-        Box::new(RunError::Scheduler { disk, due, expected, time: self.time() })
-    }
-
-    #[cold]
-    fn boundary_fault(&self, disk: usize, fault: BoundaryFault) -> Box<RunError> {
-        Box::new(RunError::Boundary { disk, time: self.time(), fault })
-    }
-
-    /// Asks the boundary once more for a touch that cannot be, to tell which it was.
-    #[cold]
-    fn impossible_touch(&self, disk: usize) -> Box<RunError> {
-        let (now, forecast) = (self.clock.now, self.forecast(disk));
-        let until = now + HORIZON * self.clock.epoch_length;
-        let touch = self.boundary.first_touch(&self.flight(disk), until);
-        let wall = touch.map_or(usize::from(forecast.wall), |touch| touch.wall);
-        let early_by = now - touch.map_or(now, |touch| touch.time);
-        self.boundary_fault(disk, BoundaryFault::Touch { wall, early_by, walls: self.wall_count })
+        RunError::Scheduler { disk, due, expected, time: self.time() }
     }
 }

@@ -19,8 +19,8 @@ const TIME_ROUNDING: f64 = 1e-12;
 pub enum Outcome {
     /// All samples were taken.
     Completed,
-    /// Events piled up in vanishing time, as in an inelastic collapse: there are only the samples until then. The next
-    /// value of the ramp starts from the state in which this one did.
+    /// Events piled up in vanishing time, as in an inelastic collapse: there are only the samples until then.
+    /// The next value of the ramp starts from the state in which this one did.
     Stalled {
         /// When, since the start of the ramp.
         time: f64,
@@ -149,8 +149,8 @@ impl Record {
         self.samples.iter().map(order).collect()
     }
 
-    /// Packing fraction by height, averaged over the samples: heights of the middles of bins of one diameter, and
-    /// fractions.
+    /// Packing fraction by height, averaged over the samples: heights of the middles of bins of one diameter,
+    /// and fractions.
     pub fn profile(&self) -> impl Iterator<Item = (f64, f64)> {
         self.profile.iter().enumerate().map(|(bin, &fraction)| (bin as f64 + 0.5, fraction))
     }
@@ -177,7 +177,8 @@ impl Record {
         self.mean(|s| s.collisions as f64 * (s.energy_change - mean) / per_sample).about(mean)
     }
 
-    /// Standard deviation of `$\Psi_1$` and `$\Psi_2$` in a gas at rest of this temperature, `$\sqrt{T_y/2N}$`.
+    /// Standard deviation of `$\Psi_1$` and `$\Psi_2$` in a gas at rest of this temperature,
+    /// `$\sqrt{T_y/2N}$`.
     pub fn thermal_noise(&self) -> f64 {
         let temperature = self.mean(|sample| sample.vertical_temperature).mean();
         thermal_noise(temperature, 1.0, self.system.disks()).unwrap_or(f64::NAN)

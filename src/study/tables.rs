@@ -31,8 +31,8 @@ pub(super) struct Tables {
 impl Tables {
     /// Tables with a first line and no rows.
     ///
-    /// The last column of the table of values names the quantities whose error is a lower bound, apart by spaces: they have too
-    /// few samples for their correlations.
+    /// The last column of the table of values names the quantities whose error is a lower bound, apart by
+    /// spaces: they have too few samples for their correlations.
     pub(super) fn new(varied: Vec<Parameter>) -> Self {
         let mut place = String::from("ramp,value,leg");
         for parameter in &varied {

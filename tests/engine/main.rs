@@ -4,6 +4,8 @@
 mod agreement;
 mod balances;
 mod bouncing;
+#[path = "../support/cases.rs"]
+mod cases;
 mod changes;
 mod counting;
 mod inputs;

@@ -6,7 +6,7 @@ use granular_edmd::simulation::{Checkpoint, CheckpointError};
 use granular_edmd::study::{Specification, StudyError};
 use proptest::prelude::*;
 
-use crate::config::config;
+use crate::cases::config;
 use crate::specimens::{CONTENTS_AT, Scratch, VERSION_AT, checkpoint, done_study, sealed, specification};
 
 #[test]

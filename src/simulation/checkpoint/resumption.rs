@@ -84,6 +84,7 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         check_places(saved, &grid, &bodies)?;
         let cells = Cells::filled(&self.boundary, radius, grid, saved.places.clone());
         let mut run = self.run(bodies, cells, wall_count);
+        run.make_room();
         // Tells the boundary its origin and the scheduler its times.
         run.shift_epoch(0.0);
         Ok(run)
