@@ -135,11 +135,11 @@ fn touches_that_cannot_be_are_named() {
     ];
     for (lie, truths) in lies.into_iter().flat_map(|lie| [0, 1, 57, 300].map(|truths| (lie, truths))) {
         let (run, end) = run_among_liars(lie, truths);
-        // A wait too short to change the time is no lie.
-        let Err(error) = end else {
-            assert!(matches!(lie, Lie::Time(wait) if wait.abs() < 1e-70), "{lie:?} {truths}");
+        let error = end.unwrap_err();
+        if matches!(lie, Lie::Time(wait) if wait.abs() < 1e-70) && matches!(error, RunError::Stalled { .. }) {
+            // So short a time changes none: this is a touch at once, again and again.
             continue;
-        };
+        }
         let RunError::Boundary { fault: BoundaryFault::Touch { wall, walls, early_by, .. }, time, .. } =
             error
         else {
@@ -471,7 +471,6 @@ fn an_outcome_that_is_no_motion_names_both_partners_the_contact_and_the_reason()
                     walls_named += 1;
                     format!("disk {} with wall {wall}", failed.disk)
                 }
-                other => panic!("{other:?}"),
             };
             assert!(said.contains(&names) && said.contains("is too much"), "{said}");
             assert_whole(&run);
@@ -563,6 +562,15 @@ impl Boundary for Drum {
     }
 }
 
+/// Does so many collisions, or as many as there are: disks at rest on a wall have no end of them.
+fn take_steps<R: CollisionRule, B: Boundary>(run: &mut Simulation<R, B>, steps: usize) {
+    for _ in 0..steps {
+        if !matches!(run.step_until(200.0, &mut ()), Ok(Some(_))) {
+            break;
+        }
+    }
+}
+
 #[test]
 fn no_rule_is_given_a_closing_speed_below_zero() {
     use granular_edmd::boundary::{Thermal, Wall};
@@ -591,7 +599,8 @@ fn no_rule_is_given_a_closing_speed_below_zero() {
         for gravity in [0.0, 0.3] {
             let builder =
                 Simulation::builder(Strict(rule), container.clone()).disks(disks()).gravity(gravity);
-            let _ = builder.build().unwrap().run_until(100.0, &mut ());
+            let mut run = builder.build().unwrap();
+            take_steps(&mut run, 5000);
         }
     }
     for (speed, rule) in [0.0, 0.3, -7.0].into_iter().flat_map(|speed| rules().map(|rule| (speed, rule))) {
@@ -604,7 +613,7 @@ fn no_rule_is_given_a_closing_speed_below_zero() {
             let builder =
                 Simulation::builder(Strict(rule), drum.clone()).disks(disks.clone()).gravity(gravity);
             let mut run = builder.build().unwrap();
-            let _ = run.run_until(60.0, &mut ());
+            take_steps(&mut run, 5000);
             assert!(run.counters().wall_collisions > 20, "{speed} {rule:?}: {:?}", run.counters());
             assert!(run.counters().max_wall_overlap < 1e-9, "{speed} {rule:?}: {:?}", run.counters());
         }

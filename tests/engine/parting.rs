@@ -134,7 +134,7 @@ fn what_makes_disks_part_changes_neither_momentum_nor_energy() {
         let disks = pair(&mut random, 1e3, masses);
         let mut run = Simulation::builder(sticky(), smooth_box(1e3)).disks(disks).build().unwrap();
         let (before, _) = balance(&disks);
-        while run.counters().collisions == 0 {
+        while run.counters().collisions + run.counters().wall_collisions == 0 {
             run.step_until(run.time() + 10.0, &mut ()).unwrap();
         }
         if run.counters().wall_collisions > 0 {
