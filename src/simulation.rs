@@ -23,11 +23,11 @@ mod epoch;
 mod errors;
 mod event_loop;
 mod events;
+mod forecasting;
 mod lookahead;
 mod prediction;
 mod resolution;
 mod state;
-mod walls;
 
 pub use builder::SimulationBuilder;
 #[cfg(feature = "serde")]

@@ -1,27 +1,26 @@
 //! The event loop: which disk is next, what happens to it, and what follows.
 //!
 //! One collision, read from top to bottom: [`Simulation::next_due`] asks the scheduler, [`Simulation::advance`] goes there,
-//! [`Simulation::collide`] has the rule decide (`resolution.rs`) and kicks both disks, [`Simulation::find_next`] finds what each does
-//! next (`prediction.rs`), [`Simulation::schedule`] tells the scheduler.
-
-use std::hint::select_unpredictable;
+//! [`Simulation::collide`] has the rule decide (`resolution.rs`) and kicks both disks, then finds what each does next and tells the
+//! scheduler (`forecasting.rs`). The arithmetic of meetings is in `prediction.rs`, epochs are in `epoch.rs`; none of these calls back.
 
 use glam::DVec2;
 
 use super::Simulation;
-use super::errors::{Outcome, RunError};
+use super::errors::{BoundaryFault, Outcome, RunError};
 use super::events::Event;
-use super::prediction::{LANES, are_closing, cell_exit, earliest_collision};
-use super::resolution::{Kick, failed, is_parting, resolve_pair};
+use super::forecasting::HORIZON;
+use super::prediction::are_closing;
+use super::resolution::{Kick, failed, is_parting, is_unit_and_finite, resolve_pair, resolve_wall};
 use super::state::{Earliest, Exit, Forecast};
-use crate::boundary::Boundary;
+use crate::boundary::{Boundary, Response};
 use crate::collision::laws::closing_speed_after;
 use crate::collision::{CollisionRule, Regime};
 use crate::observable::{Collision, Observer};
 use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
 
 /// Doublings after which two surfaces that a collision has left within rounding of each other are let be.
-pub(super) const MOST_NUDGES: u32 = 24;
+const MOST_NUDGES: u32 = 24;
 
 /// Closing speed after a collision, in terms of the speeds of the disks, that is more than rounding: the rule wants it so.
 const WANTED: f64 = 1e-9;
@@ -117,14 +116,56 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(Event::Collision { disk, partner })
     }
 
-    pub(super) fn count_regime(&mut self, collision: &Collision) {
+    /// A disk collides with a wall.
+    fn collide_with_wall<O: Observer + ?Sized>(
+        &mut self,
+        disk: usize,
+        wall: usize,
+        observer: &mut O,
+    ) -> Outcome<Event> {
+        let now = self.clock.now;
+        let position = self.bodies.position(disk, now);
+        let surface = self.boundary.surface(wall, position, now);
+        if !is_unit_and_finite(&surface) {
+            let (normal, velocity) = (surface.normal, surface.velocity);
+            return Err(self.boundary_fault(disk, BoundaryFault::Surface { wall, normal, velocity }).into());
+        }
+        let parts = (self.bodies.velocity(disk, now) - surface.velocity).dot(surface.normal) > 0.0;
+        let (collision, kick) =
+            resolve_wall(&self.bodies, &self.rule, &mut self.generator, &surface, &self.clock, disk, wall);
+        if !kick.is_possible() {
+            let error = match surface.response {
+                Response::Rule(own) => failed(own, &collision),
+                _ => failed(&self.rule, &collision),
+            };
+            return Err(error.into());
+        }
+        if let Some((_, depth)) = self.boundary.overlap(position, self.bodies.material(disk).radius, now) {
+            self.counters.max_wall_overlap = self.counters.max_wall_overlap.max(depth);
+        }
+        if !self.is_tame(&kick) {
+            self.begin_epoch_for(&[kick]);
+        }
+        self.counters.wall_collisions += 1;
+        self.count_regime(&collision);
+        self.kick(disk, &kick);
+        observer.on_collision(&collision);
+        self.find_next(disk);
+        if parts {
+            self.leave_wall(disk, wall, &collision);
+        }
+        self.schedule(disk);
+        Ok(Event::WallCollision { disk, wall })
+    }
+
+    fn count_regime(&mut self, collision: &Collision) {
         let by_contact_duration = collision.impulse.regime() == Regime::ContactDuration;
         self.counters.contact_duration_collisions += u64::from(by_contact_duration);
     }
 
     /// Tells whether a disk can be kicked in this epoch; so are nearly all.
     #[inline]
-    pub(super) fn is_tame(&self, kick: &Kick) -> bool {
+    fn is_tame(&self, kick: &Kick) -> bool {
         // Not so for a velocity that is no number; rotation cannot go wrong alone, since its impulse moves the disk, too.
         self.bodies.keeps_pace(kick.after.velocity, self.clock.epoch_length)
     }
@@ -149,7 +190,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// The place of a disk at the epoch would be so far away that it lacked digits. So the epoch moves before the kick, not after.
     #[cold]
     #[inline(never)]
-    pub(super) fn begin_epoch_for(&mut self, kicks: &[Kick]) {
+    fn begin_epoch_for(&mut self, kicks: &[Kick]) {
         self.shift_epoch(self.clock.exact_offset());
         for kick in kicks {
             let length = self.bodies.epoch_length_for(kick.after.velocity);
@@ -159,7 +200,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Changes the motion of a disk, as all collisions do: predictions with it are out of date.
     #[inline]
-    pub(super) fn kick(&mut self, disk: usize, kick: &Kick) {
+    fn kick(&mut self, disk: usize, kick: &Kick) {
         self.bodies.kick(disk, kick.velocity, kick.angular_velocity, self.clock.now);
         self.forecast_mut(disk).count_collision();
     }
@@ -190,6 +231,24 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
+    /// Makes a disk leave a wall that it parts from, but which the boundary takes it to approach, by a rounding of its speed: they
+    /// compute it in different ways. A disk that rests on a wall does not part from it.
+    #[cold]
+    #[inline(never)]
+    fn leave_wall(&mut self, disk: usize, wall: usize, collision: &Collision) {
+        for doubling in 0..MOST_NUDGES {
+            let Forecast { exit, exit_due, wall: next, .. } = *self.forecast(disk);
+            if exit != Exit::Wall || exit_due > self.clock.now || usize::from(next) != wall {
+                return;
+            }
+            // The speed relative to the wall has the rounding of what it is the difference of.
+            let fallen = self.bodies.fall(self.clock.now).1.length();
+            let scale = f64::EPSILON * (self.bodies.speed(disk) + fallen);
+            self.bodies.push(disk, collision.normal * (f64::from(1_u32 << doubling) * scale), self.clock.now);
+            self.find_next(disk);
+        }
+    }
+
     /// Takes a disk to its next cell. Its trajectory does not change: only the cells ahead can hold an earlier partner.
     #[inline]
     fn cross(&mut self, disk: usize, exit: Exit) {
@@ -206,86 +265,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.schedule(disk);
     }
 
-    /// Finds the next event of a disk among all its neighbors, and tells the scheduler.
-    fn predict(&mut self, disk: usize) {
-        self.find_next(disk);
-        self.schedule(disk);
-    }
-
-    /// Finds the next event of a disk among all its neighbors.
-    ///
-    /// One copy for all callers: the whole search is inlined into it.
-    #[inline(never)]
-    pub(super) fn find_next(&mut self, disk: usize) {
-        self.find_partner(disk);
-        self.end_flight(disk);
-    }
-
-    /// Finds another partner for a disk whose partner has collided meanwhile: its own flight in its cell ends as it did.
-    #[inline(never)]
-    fn predict_partner(&mut self, disk: usize) {
-        self.find_partner(disk);
-        self.schedule(disk);
-    }
-
-    /// Finds the next collision of a disk among all its neighbors.
-    #[inline(always)]
-    fn find_partner(&mut self, disk: usize) {
-        let count = self.cells.around(disk, &mut self.scratch.found);
-        let earliest = self.earliest_collision(disk, count, Earliest::NONE);
-        let partner_collisions =
-            self.bodies.forecast(earliest.partner as usize).map_or(0, |partner| partner.collisions);
-        self.forecast_mut(disk).expect(earliest, partner_collisions);
-    }
-
-    #[inline]
-    fn earliest_collision(&mut self, disk: usize, count: usize, known: Earliest) -> Earliest {
-        let period = self.cells.grid().period();
-        let found = &mut self.scratch.found;
-        earliest_collision(&self.bodies, period, disk, found, count, self.clock.now, known)
-    }
-
-    /// Takes `earliest` as the next collision of a disk whose next was `known` before.
-    ///
-    /// No branch on whether they are the same: that is known last of all, and a wrong guess would undo much.
-    #[inline]
-    fn expect_next(&mut self, disk: usize, earliest: Earliest, known: Earliest) {
-        let nobody = earliest.partner as usize >= self.bodies.len();
-        let partner = select_unpredictable(nobody, disk, earliest.partner as usize);
-        let counted = self.forecast(disk).partner_collisions;
-        let collisions = select_unpredictable(earliest == known, counted, self.forecast(partner).collisions);
-        self.forecast_mut(disk).expect(earliest, collisions);
-    }
-
-    /// Tells the scheduler when the next event of a disk is due.
-    #[inline]
-    pub(super) fn schedule(&mut self, disk: usize) {
-        self.scheduler.set(disk, self.forecast(disk).due());
-    }
-
-    /// Keeps the room for neighbors in step with the cells, which grow when one gets crowded: asked for wherever disks come into
-    /// cells.
-    #[inline]
-    pub(super) fn make_room(&mut self) {
-        let room = self.cells.room() + LANES;
-        if self.scratch.found.len() < room {
-            self.scratch.found.resize(room, 0);
-        }
-    }
-
-    /// Finds when the flight of a disk in its cell ends, and how.
-    #[inline]
-    fn end_flight(&mut self, disk: usize) {
-        let (place, grid) = (self.cells.place(disk), self.cells.grid());
-        let (exit_due, exit) = cell_exit(&self.bodies, disk, &grid.region(place), self.clock.now);
-        let at_wall = self.cells.is_at_wall(place);
-        let forecast = self.forecast_mut(disk);
-        (forecast.exit_due, forecast.exit) = (exit_due, exit);
-        if at_wall {
-            self.end_at_wall(disk);
-        }
-    }
-
     #[inline]
     fn look_ahead(&mut self) {
         if self.bodies.len() >= LARGE_SYSTEM {
@@ -294,19 +273,25 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    #[inline]
-    pub(super) fn forecast(&self, disk: usize) -> &Forecast {
-        &self.bodies.particles[disk].forecast
-    }
-
-    #[inline]
-    pub(super) fn forecast_mut(&mut self, disk: usize) -> &mut Forecast {
-        &mut self.bodies.particles[disk].forecast
-    }
-
     #[cold]
     fn scheduler_fault(&self, disk: usize, due: f64) -> RunError {
         let expected = self.bodies.forecast(disk).map(Forecast::due);
         RunError::Scheduler { disk, due, expected, time: self.time() }
+    }
+
+    #[cold]
+    fn boundary_fault(&self, disk: usize, fault: BoundaryFault) -> RunError {
+        RunError::Boundary { disk, time: self.time(), fault }
+    }
+
+    /// Asks the boundary once more for a touch that cannot be, to tell which it was.
+    #[cold]
+    fn impossible_touch(&self, disk: usize) -> RunError {
+        let (now, forecast) = (self.clock.now, self.forecast(disk));
+        let until = now + HORIZON * self.clock.epoch_length;
+        let touch = self.boundary.first_touch(&self.flight(disk), until);
+        let wall = touch.map_or(usize::from(forecast.wall), |touch| touch.wall);
+        let early_by = now - touch.map_or(now, |touch| touch.time);
+        self.boundary_fault(disk, BoundaryFault::Touch { wall, early_by, walls: self.wall_count })
     }
 }

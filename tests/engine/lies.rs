@@ -227,6 +227,9 @@ fn too_many_walls_are_refused() {
 }
 
 /// A scheduler that is wrong from some answer on.
+/// What a scheduler answers in place of the truth.
+type Lie = fn((usize, f64)) -> (usize, f64);
+
 struct Misled {
     honest: LinearScan,
     sets: u32,
@@ -253,7 +256,7 @@ impl EventScheduler for Misled {
 
 #[test]
 fn schedulers_that_name_what_is_not_so_are_named() {
-    let lies: [fn((usize, f64)) -> (usize, f64); 8] = [
+    let lies: [Lie; 8] = [
         |(_, due)| (20, due),
         |(_, due)| (usize::MAX, due),
         |(disk, _)| (disk, f64::NAN),

@@ -25,8 +25,11 @@ fn container() -> Container {
     Container::closed(14.0, 14.0).unwrap().with_motion(Wall::Floor, base).unwrap()
 }
 
+/// The bits of a collision's time, its partners, and the bits of its impulse.
+type Told = (u64, [usize; 2], u64);
+
 /// Every collision by the names that the disks had at first, and the disks after it in their first order.
-fn history(disks: &[Disk], order: &[usize], end: f64) -> (Vec<(u64, [usize; 2], u64)>, Vec<Disk>) {
+fn history(disks: &[Disk], order: &[usize], end: f64) -> (Vec<Told>, Vec<Disk>) {
     let rule = ContactDuration::new(Frictional::new(0.05, 0.2).unwrap(), 1e-5).unwrap();
     let listed = order.iter().map(|&disk| disks[disk]);
     let builder = Simulation::builder(rule, container()).disks(listed).gravity(0.1);
