@@ -226,10 +226,10 @@ fn too_many_walls_are_refused() {
     assert!(named.iter().all(|&wall| wall >= (1 << 16) - 4) && named.contains(&((1 << 16) - 1)));
 }
 
-/// A scheduler that is wrong from some answer on.
 /// What a scheduler answers in place of the truth.
-type Lie = fn((usize, f64)) -> (usize, f64);
+type Answer = fn((usize, f64)) -> (usize, f64);
 
+/// A scheduler that is wrong from some answer on.
 struct Misled {
     honest: LinearScan,
     sets: u32,
@@ -256,7 +256,7 @@ impl EventScheduler for Misled {
 
 #[test]
 fn schedulers_that_name_what_is_not_so_are_named() {
-    let lies: [Lie; 8] = [
+    let lies: [Answer; 8] = [
         |(_, due)| (20, due),
         |(_, due)| (usize::MAX, due),
         |(disk, _)| (disk, f64::NAN),
