@@ -8,6 +8,7 @@ mod bouncing;
 mod cases;
 mod changes;
 mod counting;
+mod extremes;
 mod inputs;
 mod late_times;
 mod lies;
