@@ -43,7 +43,8 @@ impl Bodies {
     fn epoch_length_at(&self, speed: f64) -> f64 {
         let way = DIAMETERS * self.typical_diameter;
         let length = way / (speed + (self.gravity.abs() * way).sqrt());
-        if length.is_finite() && length > 0.0 { power_of_two_below(length) } else { 1.0 }
+        // Without disks it is no number. Where all are at rest it is endless: nothing that a horizon would have to be looked past.
+        if length > 0.0 { power_of_two_below(length) } else { 1.0 }
     }
 }
 
