@@ -42,7 +42,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::boundary::{Boundary, Container};
 use crate::collision::{CollisionRule, Frictional};
 use crate::observable::{Moment, Observable, Observer, Snapshot};
-use crate::quantity::finite;
+use crate::quantity::{accept, finite};
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, ParameterError};
 use builder::fit;
@@ -313,9 +313,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Sets gravity from now on.
     ///
     /// # Errors
-    /// If it is not finite; the simulation is as before.
+    /// If it is not finite, or disks would fall so fast that times as late as the present are too far apart; the simulation is
+    /// as before.
     pub fn set_gravity(&mut self, gravity: f64) -> Result<(), ParameterError> {
         finite("gravity", gravity)?;
+        let epoch_length = self.bodies.epoch_length_under(gravity);
+        let is_coarse = Clock { epoch_length, ..self.clock }.coarseness(self.clock.now).is_some();
+        let requirement = "so small that the run can still tell times apart";
+        accept(self.is_empty() || !is_coarse, "gravity", requirement, gravity)?;
         self.shift_epoch(self.clock.exact_offset());
         self.bodies.set_gravity(gravity, self.clock.now);
         self.clock.epoch_length = self.bodies.epoch_length();

@@ -185,6 +185,22 @@ fn a_kick_late_in_a_long_epoch_moves_no_disk() {
     }
 }
 
+/// Gravity that is too strong for the present time: the next number after it is far below the floor.
+#[test]
+fn gravity_too_strong_for_the_time_is_refused() {
+    for (start, gravity) in [(1e7, 1e20), (1e12, 1e10), (1e12, -1e10), (1.0, 1e40)] {
+        let builder = Simulation::builder(Elastic, Container::closed(10.0, 10.0).unwrap()).disks(pair(1.0));
+        let mut run = builder.start_time(start).build().unwrap();
+        run.run_until(start + 0.3, &mut ()).unwrap();
+        let before = run.disks();
+        let error = run.set_gravity(gravity).unwrap_err();
+        assert!(error.to_string().contains("tell times apart"), "{error}");
+        assert_eq!((run.gravity(), run.disks()), (0.0, before));
+        run.set_gravity(1.0).unwrap();
+        run.run_until(start + 5.0, &mut ()).unwrap();
+    }
+}
+
 /// A wall that is not where it said shows in the counters.
 #[test]
 fn overlaps_with_walls_are_counted() {
