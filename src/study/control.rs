@@ -35,12 +35,13 @@ pub struct Control<'a> {
     progress: Option<&'a (dyn Fn(&Progress) + Sync)>,
     interrupt: Option<&'a AtomicBool>,
     save_interval: Duration,
+    waits: bool,
 }
 
 impl Default for Control<'_> {
-    /// Nobody watches, nothing stops it, and values half done are saved every minute.
+    /// Nobody watches, nothing stops it, values half done are saved every minute, and ramps that other processes do are waited for.
     fn default() -> Self {
-        Self { progress: None, interrupt: None, save_interval: Duration::from_secs(60) }
+        Self { progress: None, interrupt: None, save_interval: Duration::from_secs(60), waits: true }
     }
 }
 
@@ -60,6 +61,15 @@ impl<'a> Control<'a> {
         Self { save_interval: interval, ..self }
     }
 
+    /// Returns at once when all that is left is done by other processes, which may yet be killed; [`Summary::elsewhere`] names it.
+    pub fn without_waiting(self) -> Self {
+        Self { waits: false, ..self }
+    }
+
+    pub(super) const fn waits(&self) -> bool {
+        self.waits
+    }
+
     pub(super) const fn save_interval(&self) -> Duration {
         self.save_interval
     }
@@ -77,20 +87,22 @@ impl fmt::Debug for Control<'_> {
     }
 }
 
-/// What a run of a study did.
+/// The outcome of a run of a study.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Summary {
     /// Values that have a record now.
     pub finished: usize,
-    /// Values of the study.
+    /// Values of the study, or of the ramps that were to be run.
     pub total: usize,
+    /// Ramps that other processes are doing.
+    pub elsewhere: Vec<usize>,
     /// Files that were damaged and have been replaced.
     pub redone: Vec<PathBuf>,
 }
 
 impl Summary {
-    /// Whether the study is complete.
+    /// Returns whether all that was to be run is complete.
     pub const fn is_complete(&self) -> bool {
         self.finished == self.total
     }

@@ -8,7 +8,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use granular_edmd::simulation::Checkpoint;
-use granular_edmd::study::{Control, Sample, Study};
+use granular_edmd::study::vibrated_box::{Convection, Sample, VibratedBox};
+use granular_edmd::study::{Control, Study};
 
 use crate::limits::{Limits, in_child};
 use crate::specimens::{CONTENTS_AT, checkpoint, done_study, resume, run_steps, sealed, stopped_study};
@@ -135,7 +136,7 @@ fn forged_records() {
         let _ = (record.densest_layer(), record.profile().count(), record.state().time());
         let _ = resume(record.state());
         // All values have records: this reads them and writes tables.
-        let _ = Study::open(&scratch.0).unwrap().run(&Control::default());
+        let _ = Study::<VibratedBox>::open(&scratch.0).unwrap().run(&Control::default());
     });
 }
 

@@ -1,0 +1,15 @@
+//! Studies: the plan as data, the same bytes however they come about, and damage that is noticed.
+
+#![cfg(feature = "serde")]
+
+mod damage;
+mod folders;
+mod interruption;
+mod own;
+mod plans;
+mod processes;
+#[path = "../support/report.rs"]
+mod report;
+mod support;
+mod tables;
+mod values;
