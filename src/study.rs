@@ -54,6 +54,7 @@ mod plan;
 mod protocol;
 mod ramp;
 mod record;
+mod refinement;
 mod runner;
 mod scalar;
 mod tables;
@@ -70,10 +71,12 @@ pub use plan::Plan;
 pub use protocol::Protocol;
 pub use ramp::{Axis, Course, Leg, Ramp};
 pub use record::{Outcome, Record};
+pub use refinement::Bracket;
 pub use scalar::Scalar;
 
 use folder::Folder;
 use record::{Contents, Origin};
+use refinement::Seen;
 use tables::Tables;
 
 /// Version of this crate: another one may have other results.
@@ -174,14 +177,40 @@ impl<E: Experiment> Study<E> {
         let path = self.folder.record(ramp, value);
         let Some(contents) = file::read_sealed::<Contents<_, _>>(&path)? else { return Ok(None) };
         self.check_origin(&contents.origin, ramp, value, &path)?;
-        let record = Record { experiment: self.plan.experiment(ramp, value)?, contents };
+        let spans = |at| self.plan.ramp().is_some_and(|ramp| ramp.spans(at));
+        if contents.at.is_some_and(|at| !spans(at)) {
+            return Err(file::damaged(&path, "it is outside the ramp"));
+        }
+        let record = Record { experiment: self.plan.experiment_at(ramp, contents.at)?, contents };
         record.check(&self.plan).map_err(|reason| file::damaged(&path, reason))?;
         Ok(Some(record))
     }
 
     /// Returns all finished records, ramp by ramp, read one by one.
     pub fn records(&self) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
-        self.places().filter_map(|(ramp, value)| self.record(ramp, value).transpose())
+        (0..self.plan.ramps()).flat_map(|ramp| self.ramp_records(ramp))
+    }
+
+    /// Returns all finished records of a ramp, read one by one.
+    pub fn ramp_records(&self, ramp: usize) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
+        let values = self.plan.values();
+        let own = (0..values).filter_map(move |value| self.record(ramp, value).transpose());
+        // Those of a refinement have no gaps, and their number is known at the end only.
+        let is_refined = self.plan.ramp().is_some_and(|ramp| ramp.refine().is_some());
+        let more = (values..)
+            .take_while(move |_| is_refined)
+            .map_while(move |value| self.record(ramp, value).transpose());
+        own.chain(more)
+    }
+
+    /// Returns the transitions that a refined ramp has bracketed; none before all of them are.
+    ///
+    /// # Errors
+    /// If a record is damaged, of another study, or cannot be read.
+    pub fn transitions(&self, ramp: usize) -> Result<Vec<Bracket>, StudyError> {
+        let seen: Vec<Seen> =
+            self.ramp_records(ramp).map(|record| Ok(record?.seen())).collect::<Result<_, StudyError>>()?;
+        Ok(self.plan.ramp().map_or_else(Vec::new, |ramp| ramp.brackets(&seen)))
     }
 
     /// Writes the tables of all records that there are; returns how many.
@@ -193,9 +222,16 @@ impl<E: Experiment> Study<E> {
     pub fn write_tables(&self) -> Result<usize, StudyError> {
         let mut tables = Tables::new(&self.plan);
         let mut finished = 0;
-        for record in self.records() {
-            tables.add(&record?);
-            finished += 1;
+        for ramp in 0..self.plan.ramps() {
+            let mut seen = Vec::new();
+            for record in self.ramp_records(ramp) {
+                let record = record?;
+                tables.add(&record);
+                seen.push(record.seen());
+                finished += 1;
+            }
+            tables
+                .add_transitions(ramp, &self.plan.ramp().map_or_else(Vec::new, |ramp| ramp.brackets(&seen)));
         }
         let tables = tables.finish();
         self.folder.write_tables(tables.iter().map(|(name, text)| (name.as_str(), text.as_str())))?;
@@ -213,12 +249,6 @@ impl<E: Experiment> Study<E> {
         } else {
             RampStatus::Waiting
         }
-    }
-
-    /// Returns the indices of all ramps and values.
-    fn places(&self) -> impl Iterator<Item = (usize, usize)> + use<E> {
-        let values = self.plan.values();
-        (0..self.plan.ramps()).flat_map(move |ramp| (0..values).map(move |value| (ramp, value)))
     }
 
     fn origin(&self, ramp: usize, value: usize) -> Origin {

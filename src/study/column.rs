@@ -164,7 +164,7 @@ impl<E: Experiment> fmt::Debug for Table<E> {
 }
 
 /// Names of the tables that each study has, and of columns that each table has.
-const TABLES: [&str; 4] = ["values", "samples", "points", "columns"];
+const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
 const PLACE: [&str; 8] = ["ramp", "value", "leg", "repeat", "seed", "outcome", "samples", "not_converged"];
 
 /// Checks that all names of an experiment's columns and tables can be told apart, and be names.

@@ -112,19 +112,24 @@ impl Summary {
 pub(super) struct Meter<'a> {
     control: &'a Control<'a>,
     done: AtomicU64,
-    total: u64,
+    total: AtomicU64,
 }
 
 impl<'a> Meter<'a> {
     pub(super) const fn new(control: &'a Control<'a>, total: u64) -> Self {
-        Self { control, done: AtomicU64::new(0), total }
+        Self { control, done: AtomicU64::new(0), total: AtomicU64::new(total) }
+    }
+
+    /// Takes note of steps that are to be done, too.
+    pub(super) fn extend(&self, steps: u64) {
+        self.total.fetch_add(steps, Ordering::Relaxed);
     }
 
     /// Takes note of steps that were done.
     pub(super) fn advance(&self, ramp: usize, value: usize, steps: u64) {
         let done = self.done.fetch_add(steps, Ordering::Relaxed) + steps;
         if let Some(progress) = self.control.progress {
-            progress(&Progress { ramp, value, done, total: self.total });
+            progress(&Progress { ramp, value, done, total: self.total.load(Ordering::Relaxed) });
         }
     }
 }

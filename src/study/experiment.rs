@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::plan::derived_seed;
-use super::{Column, Table};
+use super::{Column, Record, Table};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::observable::{Observer, Snapshot};
@@ -209,5 +209,12 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     ) -> Result<(), &'static str> {
         let _ = (samples, observer, state);
         Ok(())
+    }
+
+    /// Returns the name of the state that a record shows, for a ramp that is refined
+    /// ([`Ramp::with_refinement`](super::Ramp::with_refinement)); `None` if it shows none.
+    fn state(record: &Record<Self>) -> Option<String> {
+        let _ = record;
+        None
     }
 }

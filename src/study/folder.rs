@@ -20,6 +20,7 @@ plan.toml             what is simulated: experiment, protocol, ramp, sweep, repe
 values.csv            a row for each value: parameters, means, standard errors, counts
 samples.csv           a row for each sample
 points.csv            a row for each value, all repeats of it together
+transitions.csv       a row for each transition that a refined ramp brackets
 columns.csv           the names and units of all columns of all tables
 ramps/R/V.record      value V of ramp R: samples, counts and last state, with a checksum; read by the library
 ramps/R/V.partial     a value half done

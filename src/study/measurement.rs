@@ -3,6 +3,7 @@
 use super::errors::StudyError;
 use super::experiment::{Experiment, ExperimentError, Run};
 use super::record::{Contents, Cycles, Measured, Origin, Outcome, Record, check, check_state};
+use super::refinement::Step;
 use super::{Plan, Protocol};
 use crate::Simulation;
 use crate::simulation::{Checkpoint, CheckpointError, Counters, RunEnd, RunError};
@@ -12,6 +13,7 @@ pub(super) struct Value<'a, E: Experiment> {
     pub(super) plan: &'a Plan<E>,
     pub(super) origin: Origin,
     pub(super) experiment: E,
+    pub(super) step: Step,
     /// The record of the value before, if there is one.
     pub(super) before: Option<&'a Record<E>>,
 }
@@ -176,7 +178,8 @@ impl<E: Experiment> Active<'_, E> {
         let Self { value, work, run } = self;
         let contents = Contents {
             origin: value.origin.clone(),
-            leg: value.plan.leg(value.origin.value),
+            leg: value.step.leg,
+            at: value.step.at,
             outcome,
             end,
             measured: work.measured,

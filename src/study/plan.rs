@@ -7,6 +7,7 @@ use toml::Table;
 
 use super::errors::PlanError;
 use super::parameters::{self, place, probe, whole_name};
+use super::refinement::{Seen, Step};
 use super::{Axis, Experiment, Leg, Protocol, Ramp, Scalar, column};
 use crate::quantity::accept;
 
@@ -150,7 +151,7 @@ impl<E: Experiment> Plan<E> {
         self.sweep.iter().map(|axis| axis.values().len()).product()
     }
 
-    /// Returns the number of values of each ramp.
+    /// Returns the number of values of each ramp, without those that a refinement adds.
     pub fn values(&self) -> usize {
         self.ramp.as_ref().map_or(1, Ramp::len)
     }
@@ -176,6 +177,11 @@ impl<E: Experiment> Plan<E> {
         if ramp >= self.ramps() || value >= self.values() {
             return Vec::new();
         }
+        self.parameters_at(ramp, self.step(value).map(|(_, at)| at))
+    }
+
+    /// Returns the parameters that vary, and what they are where the ramped one is `at`.
+    pub(super) fn parameters_at(&self, ramp: usize, at: Option<f64>) -> Vec<(&str, Scalar)> {
         let mut rest = ramp / self.repeats;
         let mut found: Vec<(&str, Scalar)> = Vec::with_capacity(self.varied.len());
         for axis in self.sweep.iter().rev() {
@@ -183,8 +189,8 @@ impl<E: Experiment> Plan<E> {
             rest /= axis.values().len();
         }
         found.reverse();
-        let ramped = self.ramp.as_ref().zip(self.step(value));
-        found.extend(ramped.map(|(ramp, (_, at))| (ramp.parameter(), at.into())));
+        let ramped = self.ramp.as_ref().zip(at);
+        found.extend(ramped.map(|(ramp, at)| (ramp.parameter(), at.into())));
         found
     }
 
@@ -196,6 +202,24 @@ impl<E: Experiment> Plan<E> {
         accept(ramp < self.ramps(), "index of a ramp", "below the number of ramps", ramp as f64)?;
         accept(value < self.values(), "index of a value", "below the number of values", value as f64)?;
         self.experiment_of(&self.parameters(ramp, value))
+    }
+
+    /// Returns the experiment where the ramped parameter is `at`.
+    pub(super) fn experiment_at(&self, ramp: usize, at: Option<f64>) -> Result<E, PlanError> {
+        self.experiment_of(&self.parameters_at(ramp, at))
+    }
+
+    /// Returns the ramp of each point, if there is one.
+    pub const fn ramp(&self) -> Option<&Ramp> {
+        self.ramp.as_ref()
+    }
+
+    /// Returns the next value of a ramp after those that are done; `None` if there is none.
+    pub(super) fn next(&self, seen: &[Seen]) -> Option<Step> {
+        match &self.ramp {
+            Some(ramp) => ramp.next(seen),
+            None => seen.is_empty().then_some(Step { leg: None, at: None, before: None }),
+        }
     }
 
     fn experiment_of(&self, varied: &[(&str, Scalar)]) -> Result<E, PlanError> {
@@ -214,7 +238,7 @@ impl<E: Experiment> Plan<E> {
         PlanError::Experiment { place: place(&varied), source }
     }
 
-    fn step(&self, value: usize) -> Option<(Leg, f64)> {
+    pub(super) fn step(&self, value: usize) -> Option<(Leg, f64)> {
         self.ramp.as_ref().and_then(|ramp| ramp.at(value))
     }
 

@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::Scalar;
 use super::errors::PlanError;
+use crate::quantity::positive;
 
 /// The way through the values of a [`Ramp`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -53,12 +54,34 @@ pub struct Ramp {
     values: Vec<f64>,
     #[serde(default)]
     course: Course,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    refine: Option<f64>,
 }
 
 impl Ramp {
     /// Makes a ramp of the parameter of this name through these values, which increase.
     pub fn new(parameter: impl Into<String>, values: impl Into<Vec<f64>>, course: Course) -> Self {
-        Self { parameter: parameter.into(), values: values.into(), course }
+        Self { parameter: parameter.into(), values: values.into(), course, refine: None }
+    }
+
+    /// Returns the same ramp with each transition between two of its values bisected until it is known to this width.
+    ///
+    /// Transitions are changes of [`Experiment::state`](super::Experiment::state), of which two neighbours hold one. A ramp up
+    /// brackets them from below, one down from above. The values of a bisection come after those of the ramp, each from the
+    /// last state on the near side.
+    pub fn with_refinement(self, width: f64) -> Self {
+        Self { refine: Some(width), ..self }
+    }
+
+    /// Returns the width to which transitions are bisected.
+    pub const fn refine(&self) -> Option<f64> {
+        self.refine
+    }
+
+    /// Returns whether a value is between the first and the last.
+    pub(super) fn spans(&self, at: f64) -> bool {
+        self.values.first().is_some_and(|low| *low <= at)
+            && self.values.last().is_some_and(|high| at <= *high)
     }
 
     /// Returns the name of the parameter.
@@ -104,6 +127,9 @@ impl Ramp {
         }
         if let Some(&value) = self.values.iter().find(|value| !value.is_finite()) {
             return Err(PlanError::NotFinite { parameter: parameter(), value });
+        }
+        if let Some(width) = self.refine {
+            positive("width of a transition", width)?;
         }
         match self.values.windows(2).find(|pair| pair[0] >= pair[1]) {
             Some(pair) => {

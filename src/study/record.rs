@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::refinement::Seen;
 use super::{Experiment, Leg, Plan, Scalar, column::Column, parameters};
 use crate::simulation::{Checkpoint, Counters};
 use crate::statistics::{BlockedMean, Estimate};
@@ -63,6 +64,8 @@ pub struct Record<E: Experiment> {
 pub(super) struct Contents<S, O> {
     pub(super) origin: Origin,
     pub(super) leg: Option<Leg>,
+    /// Value of the ramped parameter.
+    pub(super) at: Option<f64>,
     pub(super) outcome: Outcome,
     pub(super) end: Cycles,
     pub(super) measured: Measured<S, O>,
@@ -111,7 +114,7 @@ impl Cycles {
 impl<E: Experiment> Record<E> {
     /// Checks that it is what its place in this study can hold; else says why not.
     pub(super) fn check(&self, plan: &Plan<E>) -> Result<(), &'static str> {
-        let Contents { origin, leg, outcome, end, measured, state, .. } = &self.contents;
+        let Contents { origin, leg, at, outcome, end, measured, state, .. } = &self.contents;
         let protocol = plan.protocol();
         let (most, samples) =
             (protocol.cycles().saturating_mul(origin.value as u64 + 1), measured.samples.len());
@@ -119,7 +122,11 @@ impl<E: Experiment> Record<E> {
         check(end.count <= most, "it is longer than the protocol")?;
         let is_full = protocol.samples() == samples as u64;
         check(is_full || is_short, "its samples are not as many as in the protocol")?;
-        check(plan.leg(origin.value) == *leg, "it is on another way through the ramp")?;
+        let is_placed = match plan.step(origin.value) {
+            Some((way, value)) => *leg == Some(way) && *at == Some(value),
+            None => plan.ramp().is_some_and(|ramp| ramp.refine().is_some()) || at.is_none(),
+        };
+        check(is_placed, "it is on another way through the ramp")?;
         check_state(state, end.time(0.0, self.experiment.cycle()))?;
         measured.check(&self.experiment, state)
     }
@@ -147,6 +154,16 @@ impl<E: Experiment> Record<E> {
     /// Returns the way on which it was come to; `None` without a ramp.
     pub const fn leg(&self) -> Option<Leg> {
         self.contents.leg
+    }
+
+    /// Returns the value of the ramped parameter; `None` without a ramp.
+    pub const fn at(&self) -> Option<f64> {
+        self.contents.at
+    }
+
+    /// Returns the record as the way through the ramp depends on it.
+    pub(super) fn seen(&self) -> Seen {
+        Seen { leg: self.leg(), at: self.at(), state: E::state(self) }
     }
 
     /// Returns the experiment, with the parameters of this value.

@@ -11,6 +11,7 @@ use super::experiment::Experiment;
 use super::file;
 use super::measurement::{Active, Partial, Value};
 use super::record::{Contents, Origin, Record};
+use super::refinement::Step;
 use super::{CRATE_VERSION, Study};
 use crate::simulation::{RunEnd, RunError};
 
@@ -23,6 +24,8 @@ struct Shift<'a, E: Experiment> {
     control: &'a Control<'a>,
     meter: Meter<'a>,
     finished: AtomicUsize,
+    /// Values that refinements have added.
+    more: AtomicUsize,
     redone: Mutex<Vec<PathBuf>>,
     /// Ramps that others do.
     elsewhere: Mutex<Vec<usize>>,
@@ -68,6 +71,7 @@ impl<E: Experiment> Study<E> {
         }
         let mut redone = shift.redone.into_inner().unwrap_or_else(PoisonError::into_inner);
         redone.sort();
+        let total = total + shift.more.into_inner();
         Ok(Summary { finished: shift.finished.into_inner(), total, elsewhere, redone })
     }
 
@@ -100,6 +104,7 @@ impl<'a, E: Experiment> Shift<'a, E> {
             control,
             meter: Meter::new(control, steps),
             finished: AtomicUsize::new(0),
+            more: AtomicUsize::new(0),
             redone: Mutex::default(),
             elsewhere: Mutex::default(),
             broken: AtomicBool::new(false),
@@ -131,19 +136,39 @@ impl<'a, E: Experiment> Shift<'a, E> {
             self.elsewhere.lock().unwrap_or_else(PoisonError::into_inner).push(ramp);
             return Ok(());
         };
-        let mut before = None;
-        for value in 0..self.study.plan().values() {
-            before = match self.known(ramp, value)? {
+        let (mut seen, mut last) = (Vec::new(), None);
+        while let Some(step) = self.study.plan.next(&seen) {
+            let value = seen.len();
+            if value >= self.study.plan.values() {
+                self.more.fetch_add(1, Ordering::Relaxed);
+                self.meter.extend(self.study.plan.protocol().steps());
+            }
+            let found = match self.known(ramp, value, step)? {
                 Some(record) => Some(record),
                 None if self.must_stop() => None,
-                None => self.value(ramp, value, before.as_ref())?,
+                None => self.next(ramp, value, step, last)?,
             };
-            if before.is_none() {
-                return Ok(());
-            }
+            let Some(record) = found else { return Ok(()) };
+            seen.push(record.seen());
+            last = Some(record);
             self.finished.fetch_add(1, Ordering::Relaxed);
         }
         folder.mark_done(ramp)
+    }
+
+    /// Does a value, after that which it comes from: the last one, or one that a bisection goes back to.
+    fn next(
+        &self,
+        ramp: usize,
+        value: usize,
+        step: Step,
+        last: Option<Record<E>>,
+    ) -> Result<Option<Record<E>>, StudyError> {
+        let before = match step.before {
+            Some(before) if before + 1 < value => self.study.record(ramp, before)?,
+            _ => last,
+        };
+        self.value(ramp, value, step, before.as_ref())
     }
 
     fn must_stop(&self) -> bool {
@@ -151,8 +176,9 @@ impl<'a, E: Experiment> Shift<'a, E> {
     }
 
     /// Returns the record of a value that is finished.
-    fn known(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
-        let record = self.if_sound(ramp, self.study.record(ramp, value))?;
+    fn known(&self, ramp: usize, value: usize, step: Step) -> Result<Option<Record<E>>, StudyError> {
+        let read = self.study.record(ramp, value).and_then(|record| self.on_the_way(record, step));
+        let record = self.if_sound(ramp, read)?;
         if let Some(record) = &record {
             check_version(&record.contents.origin, &self.study.folder.record(ramp, value))?;
             self.meter.advance(ramp, value, self.study.plan().protocol().steps());
@@ -160,6 +186,17 @@ impl<'a, E: Experiment> Shift<'a, E> {
             file::remove(&self.study.folder.partial(ramp, value))?;
         }
         Ok(record)
+    }
+
+    /// Returns a record that is of this step; a record before it may have been done again since.
+    fn on_the_way(&self, record: Option<Record<E>>, step: Step) -> Result<Option<Record<E>>, StudyError> {
+        match record {
+            Some(record) if (record.leg(), record.at()) != (step.leg, step.at) => {
+                let path = self.study.folder.record(record.ramp(), record.value());
+                Err(file::damaged(&path, "it is of another value"))
+            }
+            record => Ok(record),
+        }
     }
 
     /// Returns what a file holds; nothing, if it is damaged.
@@ -181,13 +218,14 @@ impl<'a, E: Experiment> Shift<'a, E> {
         &self,
         ramp: usize,
         value: usize,
+        step: Step,
         before: Option<&Record<E>>,
     ) -> Result<Option<Record<E>>, StudyError> {
         let study = self.study;
         let started = Instant::now();
-        let experiment = study.plan.experiment(ramp, value)?;
+        let experiment = study.plan.experiment_at(ramp, step.at)?;
         let origin = study.origin(ramp, value);
-        let task = Value { plan: &study.plan, origin, experiment, before };
+        let task = Value { plan: &study.plan, origin, experiment, step, before };
         let mut active = self.if_sound(ramp, self.saved(&task))?.map_or_else(|| task.begin(), Ok)?;
         self.meter.advance(ramp, value, active.steps());
         let record = match self.steps(&mut active, ramp, value)? {

@@ -3,7 +3,7 @@
 use std::fmt::{Display, Write};
 
 use super::column::{Column, Kind};
-use super::{Experiment, Plan, Record, Scalar, Table};
+use super::{Bracket, Experiment, Plan, Record, Scalar, Table};
 use crate::statistics::{Estimate, RunningMean};
 
 /// The tables of a study, as they grow.
@@ -13,6 +13,7 @@ pub(super) struct Tables<'a, E: Experiment> {
     more: Vec<(Table<E>, String)>,
     values: String,
     samples: String,
+    transitions: String,
     points: String,
     /// The estimates of the values of a point, repeat after repeat, each by value and column.
     repeats: Vec<Vec<Vec<Estimate>>>,
@@ -35,6 +36,7 @@ impl<'a, E: Experiment> Tables<'a, E> {
             more: more.collect(),
             values: names(describe_values(plan, &columns)),
             samples: names(describe_samples(plan, &columns)),
+            transitions: names(describe_transitions(plan)),
             points: names(describe_points(plan, &columns)),
             repeats: Vec::new(),
             columns,
@@ -60,13 +62,42 @@ impl<'a, E: Experiment> Tables<'a, E> {
     /// Returns the tables, by their names.
     pub(super) fn finish(self) -> Vec<(String, String)> {
         let described = self.describe();
+        let is_refined = self.is_refined();
         let mut tables = vec![("values".to_owned(), self.values), ("samples".to_owned(), self.samples)];
         if self.plan.repeats() > 1 {
             tables.push(("points".to_owned(), self.points));
         }
+        if is_refined {
+            tables.push(("transitions".to_owned(), self.transitions));
+        }
         tables.extend(self.more.into_iter().map(|(table, text)| (table.name().to_owned(), text)));
         tables.push(("columns".to_owned(), described));
         tables
+    }
+
+    fn is_refined(&self) -> bool {
+        self.plan.ramp().is_some_and(|ramp| ramp.refine().is_some())
+    }
+
+    /// Adds the transitions of a ramp.
+    pub(super) fn add_transitions(&mut self, ramp: usize, brackets: &[Bracket]) {
+        for Bracket { leg, near, far, from, to } in brackets {
+            let mut line = format!("{ramp},");
+            if let Some(leg) = leg {
+                line.push_str(&leg.to_string());
+            }
+            if self.plan.repeats() > 1 {
+                append(&mut line, &(ramp % self.plan.repeats()));
+            }
+            for (_, value) in self.plan.parameters_at(ramp, None) {
+                append(&mut line, &value);
+            }
+            for cell in [Scalar::from(*near), (*far).into(), from.as_str().into(), to.as_str().into()] {
+                append(&mut line, &cell);
+            }
+            self.transitions.push_str(&line);
+            self.transitions.push('\n');
+        }
     }
 
     /// Returns the first columns of all rows of a record.
@@ -78,7 +109,7 @@ impl<'a, E: Experiment> Tables<'a, E> {
         if self.plan.repeats() > 1 {
             append(&mut place, &(record.ramp() % self.plan.repeats()));
         }
-        let parameters = self.plan.parameters(record.ramp(), record.value());
+        let parameters = self.plan.parameters_at(record.ramp(), record.at());
         for (_, value) in &parameters {
             append(&mut place, value);
         }
@@ -118,7 +149,8 @@ impl<'a, E: Experiment> Tables<'a, E> {
     /// Keeps the estimates of a record, and adds the rows of its point after the last value of the last repeat.
     fn add_repeat(&mut self, record: &Record<E>) {
         let repeats = self.plan.repeats();
-        if repeats < 2 {
+        // The values of a refinement are others in each repeat.
+        if repeats < 2 || record.value() >= self.plan.values() {
             return;
         }
         let in_values = self.columns.iter().filter(|column| column.is_in_values());
@@ -165,6 +197,9 @@ impl<'a, E: Experiment> Tables<'a, E> {
         ];
         if self.plan.repeats() > 1 {
             tables.push(("points", describe_points(self.plan, &self.columns)));
+        }
+        if self.is_refined() {
+            tables.push(("transitions", describe_transitions(self.plan)));
         }
         tables.extend(self.more.iter().map(|(table, _)| (table.name(), describe_more(self.plan, table))));
         let mut text = String::from("table,column,unit\n");
@@ -231,6 +266,16 @@ fn describe_points<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -> Vec<
         all.push(described(column.name(), column.unit()));
         all.push(described(format!("{}_error", column.name()), column.unit()));
     }
+    all
+}
+
+/// Describes the columns of the table of transitions: the values of the ramped parameter and the states on both sides.
+fn describe_transitions<E: Experiment>(plan: &Plan<E>) -> Vec<Described> {
+    let mut all: Vec<_> = ["ramp", "leg"].map(|name| described(name, "")).into();
+    all.extend((plan.repeats() > 1).then(|| described("repeat", "")));
+    let swept = plan.varied().count() - usize::from(plan.ramp().is_some());
+    all.extend(plan.varied().take(swept).map(|name| described(name, "")));
+    all.extend(["near", "far", "from_state", "to_state"].map(|name| described(name, "")));
     all
 }
 

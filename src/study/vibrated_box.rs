@@ -13,7 +13,8 @@ pub use convection::Convection;
 pub use rule::BoxRule;
 pub use sample::{Measurement, Sample};
 
-use super::{Column, Experiment, ExperimentError, Table};
+use super::{Column, Experiment, ExperimentError, Record, Table};
+use crate::analysis::StateCriteria;
 use crate::boundary::{Container, Wall};
 use crate::collision::{ContactDuration, Elastic, Frictional};
 use crate::observable::Snapshot;
@@ -209,6 +210,13 @@ impl Experiment for VibratedBox {
 
     fn tables() -> Vec<Table<Self>> {
         convection::tables()
+    }
+
+    /// Returns the name of the convective regime; `None` without samples.
+    fn state(record: &Record<Self>) -> Option<String> {
+        let (noise, layer) = (record.thermal_noise(), record.densest_layer());
+        let found = StateCriteria::default().classify(&record.order(), noise, layer);
+        found.ok().map(|found| found.regime().to_string())
     }
 
     /// The size of the box cannot change with the disks in place, and another frequency would make the base jump.

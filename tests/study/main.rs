@@ -8,6 +8,7 @@ mod interruption;
 mod own;
 mod plans;
 mod processes;
+mod refinement;
 #[path = "../support/report.rs"]
 mod report;
 mod support;

@@ -20,7 +20,7 @@ use crate::support::{AnyError, Scratch, assert_same, contents};
 
 /// Loses the more the faster: no fingerprint, as a closure has none.
 #[derive(Debug, Clone, Copy)]
-struct Sticky {
+pub(crate) struct Sticky {
     loss: f64,
 }
 
@@ -33,7 +33,7 @@ impl CollisionRule for Sticky {
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Mixture {
+pub(crate) struct Mixture {
     loss: f64,
     disks: Counts,
     /// Strength of the drive, with gravity: the cycle follows from both.
@@ -51,7 +51,7 @@ struct Counts {
 
 /// The heights of the large disks that are above the small ones: a list of any length.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Risen {
+pub(crate) struct Risen {
     heights: Vec<f64>,
     angular_momentum: f64,
     collisions: u64,
@@ -106,6 +106,11 @@ impl Experiment for Mixture {
         ]
     }
 
+    /// Heavy or light: known beforehand, so that a test can say where the transition is.
+    fn state(record: &Record<Self>) -> Option<String> {
+        Some(if record.experiment().weight > 0.137 { "heavy" } else { "light" }.to_owned())
+    }
+
     fn tables() -> Vec<Table<Self>> {
         vec![Table::new("heights", &[("sample", "1"), ("height", "diameter")], |record| {
             let heights = |(index, sample): (usize, &Risen)| -> Vec<Vec<f64>> {
@@ -116,7 +121,7 @@ impl Experiment for Mixture {
     }
 }
 
-fn mixture() -> Mixture {
+pub(crate) fn mixture() -> Mixture {
     Mixture { loss: 0.05, disks: Counts { small: 12, large: 4 }, weight: 0.1, note: None }
 }
 
