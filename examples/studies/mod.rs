@@ -118,6 +118,6 @@ pub(crate) fn write_png<E: Experiment>(
 ) -> Result<(), Box<dyn Error>> {
     let path = study.folder().join(name);
     std::fs::write(&path, PngBackend::new().render_scene(&figure.render())?)?;
-    println!("wrote {}; the tables beside it are values.csv, samples.csv and profiles.csv", path.display());
+    println!("wrote {}; the tables are beside it", path.display());
     Ok(())
 }
