@@ -102,7 +102,7 @@ impl Panel {
         (across, inelasticity / self.largest_inelasticity)
     }
 
-    /// The point of a line that carries its label: neighbouring lines have theirs at different heights.
+    /// The point of a line that carries its label: neighboring lines have theirs at different heights.
     fn label_place(&self, index: usize, piece: &Piece) -> (f64, f64) {
         let lowest = piece.iter().map(|&point| self.fraction(point).1).fold(1.0, f64::min);
         let height = (0.45 + 0.1 * f64::from(u8::from(index.is_multiple_of(2)))).max(lowest + 0.15);

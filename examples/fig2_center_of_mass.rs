@@ -1,4 +1,4 @@
-//! The paper's Fig. 2: height of the centre of mass over a thermal base, against friction.
+//! The paper's Fig. 2: height of the center of mass over a thermal base, against friction.
 //!
 //! 500 disks in a narrow open box, `q = 0.025`, `g = 0.002`. The column is lowest where a collision loses most energy, at a
 //! friction of about 0.3. The paper does not say what its base does to tangential and angular velocity: a full thermal
@@ -26,7 +26,7 @@ use kuva::render::figure::Figure;
 use kuva::render::layout::{Layout, TickFormat};
 use kuva::render::plots::Plot;
 
-/// Height of the centre of mass against friction (paper, Fig. 2).
+/// Height of the center of mass against friction (paper, Fig. 2).
 #[derive(Parser)]
 struct Arguments {
     #[command(flatten)]
@@ -122,7 +122,7 @@ fn figure(points: &[Point], slip: bool) -> Figure {
     let layout = Layout::auto_from_plots(&plots)
         .with_title(format!("N = 500, Lx = 25, g = 0.002, q = 0.025, {base}"))
         .with_x_label("friction κ")
-        .with_y_label("height of the centre of mass, in diameters")
+        .with_y_label("height of the center of mass, in diameters")
         .with_log_x()
         .with_x_tick_format(TickFormat::Custom(Arc::new(|value| value.to_string())))
         .with_x_axis_min(0.007)

@@ -35,7 +35,7 @@ use crate::{Fingerprint, Flight};
 /// # Contract
 /// An implementation guarantees:
 /// 1. [`domain`](Self::domain), [`interior`](Self::interior) and [`wall_count`](Self::wall_count) never
-///    change. A disk that has not passed a wall has its centre in the domain at all times.
+///    change. A disk that has not passed a wall has its center in the domain at all times.
 /// 2. [`may_touch`](Self::may_touch) holds for all times: it is false only for a region in which no disk of
 ///    this radius, or a smaller one, can touch a wall at any time. A region that contains another may be
 ///    touched where the other may.
@@ -127,7 +127,7 @@ use crate::{Fingerprint, Flight};
     note = "take a `granular_edmd::boundary::Container`, or implement `Boundary` for a geometry of your own"
 )]
 pub trait Boundary {
-    /// Returns the rectangle that holds the centres of all disks at all times.
+    /// Returns the rectangle that holds the centers of all disks at all times.
     fn domain(&self) -> Domain;
 
     /// Returns a rectangle in the domain in which initial states are placed: without the reach of walls that
@@ -147,7 +147,7 @@ pub trait Boundary {
     /// Measures all times from this absolute time on.
     fn set_time_origin(&mut self, origin: f64);
 
-    /// Tells whether a disk with its centre in `region` can touch a wall at any time.
+    /// Tells whether a disk with its center in `region` can touch a wall at any time.
     ///
     /// The engine asks [`first_touch`](Self::first_touch) only there. Regions at the edge of the domain reach
     /// to infinity beyond it.

@@ -20,7 +20,7 @@ pub(crate) const LARGEST: f64 = 1e60;
 /// and masses are in any consistent units; the paper takes the diameter and the mass of a disk as units.
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Disk;
 ///
 /// let disk = Disk::new(DVec2::new(3.0, 4.0), 0.5)?.with_velocity(DVec2::X)?.with_angular_velocity(2.0)?;
@@ -71,7 +71,7 @@ impl Disk {
         Ok(Self { position: bounded_vector("position", position)?, ..self })
     }
 
-    /// The same disk with this velocity of its centre.
+    /// The same disk with this velocity of its center.
     ///
     /// # Errors
     /// If a component is not finite, or above 1e60 in magnitude.
@@ -114,12 +114,12 @@ impl Disk {
         Ok(Self { inertia_factor, ..self })
     }
 
-    /// Position of the centre.
+    /// Position of the center.
     pub const fn position(&self) -> DVec2 {
         self.position
     }
 
-    /// Velocity of the centre.
+    /// Velocity of the center.
     pub const fn velocity(&self) -> DVec2 {
         self.velocity
     }
@@ -149,12 +149,12 @@ impl Disk {
         self.inertia_factor
     }
 
-    /// Moment of inertia about the centre, `$I = \beta m R^2$`.
+    /// Moment of inertia about the center, `$I = \beta m R^2$`.
     pub fn moment_of_inertia(&self) -> f64 {
         self.inertia_factor * self.mass * self.radius * self.radius
     }
 
-    /// Kinetic energy of the centre, `$\tfrac12 m v^2$`.
+    /// Kinetic energy of the center, `$\tfrac12 m v^2$`.
     pub fn translational_energy(&self) -> f64 {
         0.5 * self.mass * self.velocity.length_squared()
     }

@@ -4,11 +4,11 @@ use glam::DVec2;
 
 /// A disk's free flight at constant acceleration, from one time on.
 ///
-/// The centre moves as `$\vec r(t) = \vec r_0 + \vec v_0 (t-t_0) + \tfrac12\vec a (t-t_0)^2$`. Times are
+/// The center moves as `$\vec r(t) = \vec r_0 + \vec v_0 (t-t_0) + \tfrac12\vec a (t-t_0)^2$`. Times are
 /// offsets from the origin that a [`Boundary`](crate::boundary::Boundary) was given last.
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Flight;
 /// let flight = Flight::new(1.0, DVec2::ZERO, DVec2::new(1.0, 2.0), DVec2::new(0.0, -1.0), 0.5);
 /// assert_eq!(flight.position(3.0), DVec2::new(2.0, 2.0));
@@ -24,7 +24,7 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// Creates a flight that starts at `time` with this position and velocity of the centre.
+    /// Creates a flight that starts at `time` with this position and velocity of the center.
     #[inline]
     pub const fn new(time: f64, position: DVec2, velocity: DVec2, acceleration: DVec2, radius: f64) -> Self {
         Self { time, position, velocity, acceleration, radius }
@@ -48,14 +48,14 @@ impl Flight {
         self.acceleration
     }
 
-    /// Returns the position of the centre at `time`.
+    /// Returns the position of the center at `time`.
     #[inline]
     pub fn position(&self, time: f64) -> DVec2 {
         let elapsed = time - self.time;
         self.position + (self.velocity + 0.5 * elapsed * self.acceleration) * elapsed
     }
 
-    /// Returns the velocity of the centre at `time`.
+    /// Returns the velocity of the center at `time`.
     #[inline]
     pub fn velocity(&self, time: f64) -> DVec2 {
         self.velocity + (time - self.time) * self.acceleration

@@ -44,7 +44,7 @@ fn countable(count: usize) -> Result<(), ParameterError> {
     accept(count <= MOST_DISKS, "number of disks", "at most 2^28", count as f64).map(|_| ())
 }
 
-/// Returns the rectangle in which a centre may be; an open top stays open.
+/// Returns the rectangle in which a center may be; an open top stays open.
 fn room(interior: &Domain, radius: f64) -> Domain {
     let side = if interior.periodic { 0.0 } else { radius };
     let room = Domain::new(

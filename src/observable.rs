@@ -1,8 +1,9 @@
 //! Observables and observers: quantities of a state, and watchers of a run.
 //!
-//! An [`Observable`] is a pure function of a [`Snapshot`]. An [`Observer`] is told when a run begins and ends and of every
-//! [`Collision`], is shown a snapshot at the times that it asks for, and may stop the run. Both are lent to a run and read
-//! afterwards; several compose as a tuple, a slice, a `Vec`, an `Option` or a `Box`. Watching never changes a trajectory.
+//! An [`Observable`] is a pure function of a [`Snapshot`]. An [`Observer`] is told when a run begins and ends
+//! and of every [`Collision`], is shown a snapshot at the times that it asks for, and may stop the run. Both
+//! are lent to a run and read afterwards; several compose as a tuple, a slice, a `Vec`, an `Option` or a
+//! `Box`. Watching never changes a trajectory.
 //!
 //! | observable | value |
 //! |---|---|
@@ -24,8 +25,8 @@
 //! | [`stop_when`], [`stop_when_sampled`] | nothing: they stop the run when a closure says so |
 //!
 //! # An observer of one's own
-//! [`SampleTimes`] is the clock of all observers here, and of one's own: [`laws::check`] tells in a plain test whether an
-//! observer keeps its contract.
+//! [`SampleTimes`] is the clock of all observers here, and of one's own: [`laws::check`] tells in a plain
+//! test whether an observer keeps its contract.
 //!
 //! ```
 //! use granular_edmd::observable::{Collision, Moment, Observer, SampleTimes, Snapshot, laws};
@@ -58,9 +59,9 @@
 //! ```
 //!
 //! # A measurement that goes on later
-//! With the feature `serde` the observers of this module, but for closures, can be written to a file beside the checkpoint
-//! of the run. Read back and lent to the resumed run, they end with the same bits as in a run without interruption. JSON keeps
-//! them if its reader rounds correctly (serde_json's `float_roundtrip`).
+//! With the feature `serde` the observers of this module, but for closures, can be written to a file beside
+//! the checkpoint of the run. Read back and lent to the resumed run, they end with the same bits as in a run
+//! without interruption. JSON keeps them if its reader rounds correctly (serde_json's `float_roundtrip`).
 
 mod center_of_mass;
 mod collision_counts;

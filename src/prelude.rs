@@ -1,16 +1,25 @@
-//! What most programs need, in one line: `use granular_edmd::prelude::*;`.
+//! The names of most programs, in one line: `use granular_edmd::prelude::*;`.
+//!
+//! Everything that a run needs, and everything that a rule, a wall motion, a boundary, a scheduler, an observable or an
+//! observer of one's own is made of.
 
-pub use crate::boundary::{Boundary, Container, Thermal, Wall};
+pub use crate::boundary::{Boundary, Container, Domain, Region, Response, Surface, Thermal, Touch, Wall};
 pub use crate::collision::{
-    CollisionRule, Contact, ContactDuration, Elastic, Frictional, Impulse, Rough, Smooth,
+    CollisionRule, Contact, ContactDuration, Elastic, Friction, Frictional, Impulse, Regime, Rough, Smooth,
 };
 pub use crate::glam::DVec2;
 pub use crate::initial;
 pub use crate::observable::{
-    CenterOfMass, Collision, CollisionCounts, Energies, EnergyChange, Observable, Observer, OrderParameters,
-    Partner, SampleTimes, Series, Snapshot, Temperatures,
+    CenterOfMass, Collision, CollisionCounts, Energies, EnergyChange, Moment, Observable, Observer,
+    OrderParameters, Partner, SampleTimes, Series, Snapshot, Temperatures, Verdict, on_collision, on_sample,
+    stop_when,
 };
 pub use crate::scheduler::EventScheduler;
-pub use crate::simulation::{Event, RunError, Simulation};
-pub use crate::wall::{BiParabolic, Fixed, Sawtooth, Sinusoidal, Triangular, WallMotion};
-pub use crate::{Disk, ParameterError};
+pub use crate::simulation::{
+    BoxedBoundary, BoxedRule, BoxedScheduler, BoxedSimulation, Event, RunEnd, RunError, Simulation,
+};
+pub use crate::statistics::Estimate;
+pub use crate::wall::{
+    AccelerationBounds, BiParabolic, Fixed, Sawtooth, Sinusoidal, Triangular, WallMotion, WallState,
+};
+pub use crate::{Disk, Fingerprint, Flight, ParameterError};

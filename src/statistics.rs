@@ -3,12 +3,13 @@
 //! | question | answer |
 //! |---|---|
 //! | mean and variance of independent numbers | [`RunningMean`] |
-//! | mean of correlated numbers with its error, in a few hundred bytes | [`BlockedMean`] |
+//! | mean of correlated numbers with its error, without keeping the numbers | [`BlockedMean`] |
 //! | the same of a series that is at hand | [`block_average`] |
 //! | a mean, its error, and what the error rests on | [`Estimate`] |
 //!
-//! Collisions and samples of one run are correlated: a standard error that takes them as independent is too small, often by a
-//! factor of ten. An error over them comes from blocks, and says when the run was too short for it.
+//! Collisions and samples of one run are correlated: a standard error that takes them as independent is too
+//! small, often by a factor of ten. An error over them comes from blocks, and says when the run was too short
+//! for it.
 //!
 //! ```
 //! use granular_edmd::statistics::BlockedMean;

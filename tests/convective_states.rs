@@ -110,7 +110,7 @@ fn one_roll_and_two_coexist_as_in_figure_4() -> Result<(), Box<dyn Error>> {
     assert_eq!(found.regime(), ConvectiveRegime::Coexistence);
     for (state, cluster) in found.iter() {
         println!("{state}: weight {:.3} at {:.4}", cluster.weight(), cluster.center());
-        // The study's centres; those of runs of this length scatter by a hundredth.
+        // The study's centers; those of runs of this length scatter by a hundredth.
         let center = DVec2::new(cluster.center().x.abs(), cluster.center().y);
         let expected =
             if state.rolls() == Some(1) { DVec2::new(0.118, 0.045) } else { DVec2::new(0.0, 0.122) };

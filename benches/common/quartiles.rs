@@ -20,7 +20,7 @@ impl Quartiles {
     }
 }
 
-/// Linear between neighbours.
+/// Linear between neighbors.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let place = share * last as f64;

@@ -53,7 +53,7 @@ impl fmt::Display for Measurement {
     }
 }
 
-/// Oscillations that do not count: until the epoch has moved, and the neighbour cells have found their size.
+/// Oscillations that do not count: until the epoch has moved, and the neighbor cells have found their size.
 const WARM_UP: u32 = 30;
 
 /// Builds the system and runs it for so many oscillations, after [`WARM_UP`].

@@ -14,10 +14,10 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::common::Outcome;
 use crate::common::state::{Run, State, WIDTH, oscillate};
 
-/// How disks are numbered, which decides how far apart neighbours are in memory.
+/// How disks are numbered, which decides how far apart neighbors are in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Numbering {
-    /// By narrow columns from left to right: neighbours in space have near numbers.
+    /// By narrow columns from left to right: neighbors in space have near numbers.
     ByPlace,
     /// At random, as after a long time in which the disks have mixed.
     Mixed,

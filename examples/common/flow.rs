@@ -21,7 +21,7 @@ struct Cell {
     velocities: DVec2,
 }
 
-/// The mean velocity at the centre of a cell.
+/// The mean velocity at the center of a cell.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Arrow {
     pub(crate) position: DVec2,
@@ -64,13 +64,13 @@ impl Flow {
         let enough = (share * most as f64).max(1.0);
         let seen = self.cells.iter().enumerate().filter(|(_, cell)| cell.count as f64 >= enough);
         seen.map(|(index, cell)| Arrow {
-            position: self.centre(index),
+            position: self.center(index),
             velocity: cell.velocities / cell.count as f64,
         })
         .collect()
     }
 
-    fn centre(&self, index: usize) -> DVec2 {
+    fn center(&self, index: usize) -> DVec2 {
         let (row, column) = (index / self.columns, index % self.columns);
         let corner = DVec2::new(self.domain.left, self.domain.bottom);
         corner + self.pitch() * DVec2::new(column as f64 + 0.5, row as f64 + 0.5)

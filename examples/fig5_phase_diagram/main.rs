@@ -2,7 +2,7 @@
 //!
 //! 1000 disks in the vibrated box. For each inelasticity, friction goes up step by step, each value from the last state
 //! of the one before, and for some comes down again from the other end. Each point gets the name of its state; the
-//! transitions lie between neighbours of different states.
+//! transitions lie between neighbors of different states.
 //!
 //! ```text
 //! cargo run --release --features serde,rayon --example fig5_phase_diagram -- --size quick

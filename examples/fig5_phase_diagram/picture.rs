@@ -144,7 +144,7 @@ fn branches(of: &[&PlaneTransition]) -> Vec<Piece> {
 /// The points in the order of their frictions; those of equal friction as their mean.
 fn means(mut points: Piece) -> Piece {
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // Middles of the same neighbours may differ in their last digits.
+    // Middles of the same neighbors may differ in their last digits.
     let equal = points.chunk_by(|a, b| b.0 < a.0 * (1.0 + 1e-9));
     equal.map(|at| (at[0].0, at.iter().map(|point| point.1).sum::<f64>() / at.len() as f64)).collect()
 }
@@ -153,7 +153,7 @@ fn path(points: Piece, color: &str, width: f64) -> Plot {
     LinePlot::new().with_data(points).with_color(color).with_stroke_width(width).into()
 }
 
-/// The points of a line, with bars to the neighbours between which they lie.
+/// The points of a line, with bars to the neighbors between which they lie.
 fn diamonds(of: &[&PlaneTransition], color: &str, size: f64) -> [Plot; 2] {
     let (across, up): (Vec<_>, Vec<_>) = of.iter().partition(|at| at.between[0].1 == at.between[1].1);
     let plot = |of: &[&PlaneTransition]| {

@@ -65,7 +65,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
     /// Writes the results as one JSON object to this file, or to standard output for `-`. Means are over the second
-    /// half of the samples, `mean_energy_change` over all disk–disk collisions of that time; counts, the largest
+    /// half of the samples, `mean_energy_change` over all disk–disk collisions of that time; its standard error knows
+    /// that they are correlated, and is a lower bound unless `mean_energy_change_converged`. Counts, the largest
     /// overlap, `run_seconds` and `collisions_per_second` (disk–disk) are those of the whole run.
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,

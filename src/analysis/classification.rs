@@ -44,11 +44,11 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 /// 1. A run is **collapsed**, as a whole, if its height profile has a compact layer, of packing fraction
 ///    above 0.60, on a gas of less than half of that, and its two-roll flow has died,
 ///    `$|\langle\Psi_2\rangle| < 0.03$`.
-/// 2. A cluster is **conductive** if its centre is at most `$3\sigma$` from the origin.
+/// 2. A cluster is **conductive** if its center is at most `$3\sigma$` from the origin.
 /// 3. It is **two rolls** if `$|\Psi_2| > |\Psi_1|$`: up in the middle for a positive `$\Psi_2$`, else down.
 /// 4. It is **one roll** otherwise: clockwise for a positive `$\Psi_1$`.
 ///
-/// The `$3\sigma$` compare the centre of a cluster with *single* samples of a gas at rest; a share of
+/// The `$3\sigma$` compare the center of a cluster with *single* samples of a gas at rest; a share of
 /// `$e^{-9/2}$`, one in ninety, is as far out. An error of the mean would depend on the correlation of the
 /// samples, and this does not. The rolls of the paper's system are far stronger, so the number matters at
 /// their onset only. One roll is not pure `$\Psi_1$`, but its `$\Psi_2$` is small enough to keep it off the

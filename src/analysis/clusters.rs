@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-/// One cluster: its centre, its size and its spread.
+/// One cluster: its center, its size and its spread.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Cluster {
@@ -51,7 +51,7 @@ impl Cluster {
         (xx * x * x + 2.0 * xy * x * y + yy * y * y).max(0.0)
     }
 
-    /// Distance of two centres, in units of the spread along the line between them.
+    /// Distance of two centers, in units of the spread along the line between them.
     fn separation(&self, other: &Self, noise: f64) -> f64 {
         let between = other.center - self.center;
         let direction = between.normalize_or_zero();
@@ -60,7 +60,7 @@ impl Cluster {
     }
 }
 
-/// Clusters of points in a plane, in ascending order of their centres (by x, then y).
+/// Clusters of points in a plane, in ascending order of their centers (by x, then y).
 ///
 /// Made by [`KMeans::fit`](super::KMeans::fit) and [`distinct_clusters`](super::distinct_clusters).
 #[derive(Debug, Clone, PartialEq)]
@@ -121,7 +121,7 @@ impl Clusters {
     /// s_{ab}^2 = \frac{n_a s_a^2 + n_b s_b^2}{n_a + n_b},
     /// ```
     ///
-    /// with the standard deviations `$s_a$`, `$s_b$` along the line of the centres. The `noise` `$\sigma$` is
+    /// with the standard deviations `$s_a$`, `$s_b$` along the line of the centers. The `noise` `$\sigma$` is
     /// the least spread that counts.
     pub fn separation(&self, noise: f64) -> f64 {
         let pairs = self.clusters.iter().enumerate();

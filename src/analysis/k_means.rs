@@ -20,8 +20,8 @@ const LARGEST: f64 = 1e100;
 
 /// k-means clustering in a plane, the best of several restarts.
 ///
-/// It looks for the centres `$c_j$` that minimise the scatter `$\sum_i \min_j |r_i - c_j|^2$` (MacQueen 1967,
-/// the paper's reference 14), from first centres by k-means++ (Arthur & Vassilvitskii 2007). The result
+/// It looks for the centers `$c_j$` that minimise the scatter `$\sum_i \min_j |r_i - c_j|^2$` (MacQueen 1967,
+/// the paper's reference 14), from first centers by k-means++ (Arthur & Vassilvitskii 2007). The result
 /// depends on the points and the seed, not on the order of the points: they are sorted first.
 ///
 /// ```
@@ -90,8 +90,8 @@ fn check(points: &[DVec2], clusters: usize) -> Result<(), ParameterError> {
     })
 }
 
-/// Draws the first centres among the points. The probability of each next one is proportional to its squared
-/// distance from the nearest centre so far.
+/// Draws the first centers among the points. The probability of each next one is proportional to its squared
+/// distance from the nearest center so far.
 fn plus_plus(points: &[DVec2], clusters: usize, generator: &mut Xoshiro256PlusPlus) -> Vec<DVec2> {
     let first = (uniform(generator) * points.len() as f64) as usize;
     let mut centers = vec![points[first.min(points.len() - 1)]];
@@ -111,7 +111,7 @@ fn plus_plus(points: &[DVec2], clusters: usize, generator: &mut Xoshiro256PlusPl
     centers
 }
 
-/// Returns the centre nearest to a point, the first of equals, and its squared distance.
+/// Returns the center nearest to a point, the first of equals, and its squared distance.
 fn nearest(point: DVec2, centers: &[DVec2]) -> (usize, f64) {
     let distances = centers.iter().map(|&center| point.distance_squared(center)).enumerate();
     distances.fold((0, f64::INFINITY), |best, next| if next.1 < best.1 { next } else { best })
@@ -122,7 +122,7 @@ struct Fit {
     scatter: f64,
 }
 
-/// Assigns points to their nearest centres and moves centres to the means of their points, until nothing
+/// Assigns points to their nearest centers and moves centers to the means of their points, until nothing
 /// changes.
 fn descend(points: &[DVec2], mut centers: Vec<DVec2>) -> Fit {
     let mut fit = assign(points, &centers);
@@ -144,7 +144,7 @@ fn assign(points: &[DVec2], centers: &[DVec2]) -> Fit {
     Fit { labels, scatter: distances.iter().sum() }
 }
 
-/// Moves each centre to the mean of its points; one that has lost all of them stays where it is.
+/// Moves each center to the mean of its points; one that has lost all of them stays where it is.
 fn move_to_means(points: &[DVec2], labels: &[usize], centers: &mut [DVec2]) {
     for (label, center) in centers.iter_mut().enumerate() {
         let own = || points.iter().zip(labels).filter(|&(_, &of)| of == label).map(|(&point, _)| point);

@@ -12,13 +12,13 @@ use crate::quantity::positive;
 pub struct PlaneTransition {
     /// The line that is crossed.
     pub line: TransitionLine,
-    /// Friction `$\kappa$` of the middle between the neighbours, on a logarithmic axis.
+    /// Friction `$\kappa$` of the middle between the neighbors, on a logarithmic axis.
     pub friction: f64,
     /// Inelasticity `$q$` of the middle.
     pub inelasticity: f64,
-    /// Both neighbours, `$(\kappa, q)$`: the transition lies between them. They share one coordinate.
+    /// Both neighbors, `$(\kappa, q)$`: the transition lies between them. They share one coordinate.
     pub between: [(f64, f64); 2],
-    /// True if the regime moves up from the first neighbour to the second.
+    /// True if the regime moves up from the first neighbor to the second.
     pub rising: bool,
 }
 

@@ -67,7 +67,7 @@ impl std::fmt::Display for TransitionLine {
 pub struct Transition {
     /// The line that is crossed.
     pub line: TransitionLine,
-    /// The middle between the neighbouring control values on either side.
+    /// The middle between the neighboring control values on either side.
     pub value: f64,
     /// Half the distance of these control values: the transition lies between `value - error` and
     /// `value + error`.
@@ -141,7 +141,7 @@ fn merge(
     Ok(all)
 }
 
-/// Returns the crossings of a line: neighbours on different sides of it, among the values whose side is
+/// Returns the crossings of a line: neighbors on different sides of it, among the values whose side is
 /// certain.
 fn crossings(line: TransitionLine, seen: &[Seen]) -> Vec<Transition> {
     let certain: Vec<(f64, bool)> =

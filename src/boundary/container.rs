@@ -227,7 +227,10 @@ impl Boundary for Container {
     }
 
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
-        let depths = self.planes.iter().map(|plane| plane.depth(position, radius, time)).enumerate();
+        // Most walls are far away: there is no need to ask where they are.
+        let near =
+            self.planes.iter().enumerate().filter(|(_, plane)| plane.is_within_reach(position, radius));
+        let depths = near.map(|(wall, plane)| (wall, plane.depth(position, radius, time)));
         depths.filter(|&(_, depth)| depth > 0.0).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 

@@ -1,14 +1,14 @@
-//! Rectangles: where the centres of disks can be.
+//! Rectangles: where the centers of disks can be.
 
 use glam::DVec2;
 
-/// The rectangle that holds the centres of all disks; its left and right sides may be the same line.
+/// The rectangle that holds the centers of all disks; its left and right sides may be the same line.
 ///
 /// ```
 /// use granular_edmd::boundary::Domain;
 /// let domain = Domain::new(0.0, 60.0, -0.1, f64::INFINITY).with_periodic_sides();
 /// assert_eq!(domain.width(), 60.0);
-/// assert_eq!(domain.separation(glam::DVec2::new(59.0, 0.0), glam::DVec2::new(1.0, 0.0)).x, 2.0);
+/// assert_eq!(domain.separation(granular_edmd::glam::DVec2::new(59.0, 0.0), granular_edmd::glam::DVec2::new(1.0, 0.0)).x, 2.0);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]

@@ -25,7 +25,7 @@ const DISKS: usize = 400;
 const FLIGHTS: usize = 4;
 
 /// Trials to find a free place for a disk.
-const PLACES: usize = 1000;
+const PLACES: usize = 10_000;
 
 /// Largest absolute time at which a flight begins, in times that a disk takes across the domain.
 const LATEST: f64 = 100.0;

@@ -75,7 +75,7 @@ impl Plane {
         self.motion.reach()
     }
 
-    /// Tells whether a disk with its centre in `region` can touch the wall at any time.
+    /// Tells whether a disk with its center in `region` can touch the wall at any time.
     pub(super) fn may_touch(&self, region: &Region, radius: f64) -> bool {
         let nearest = DVec2::select(self.normal.cmpgt(DVec2::ZERO), region.min, region.max);
         // A component of the normal that is zero must not meet an infinite edge: their product is not a
@@ -110,6 +110,12 @@ impl Plane {
         };
         let velocity = self.normal * self.motion.state(time + self.phase).velocity;
         Surface::new(self.normal, velocity).with_response(response)
+    }
+
+    /// Tells whether a disk is so near that it overlaps the wall at some time.
+    #[inline]
+    pub(super) fn is_within_reach(&self, position: DVec2, radius: f64) -> bool {
+        position.dot(self.normal) - self.place - radius <= self.highest
     }
 
     /// Returns how far a disk reaches into the wall; negative when it is inside.

@@ -34,11 +34,11 @@ pub struct WallEncounter {
 
 /// Lets two disks collide under `rule` (paper, Eq. (2)), as a simulation does. Useful to test rules.
 ///
-/// The normal is taken from their centres; that they touch is not checked. The closing speed of disks that
+/// The normal is taken from their centers; that they touch is not checked. The closing speed of disks that
 /// part is zero.
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Disk;
 /// use granular_edmd::collision::{Elastic, collide};
 ///
@@ -74,7 +74,7 @@ pub fn collide<R: CollisionRule + ?Sized>(rule: &R, first: &Disk, second: &Disk)
 /// zero.
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Disk;
 /// use granular_edmd::collision::{Elastic, collide_with_wall};
 ///

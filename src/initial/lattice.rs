@@ -7,16 +7,16 @@ use crate::boundary::{Boundary, Domain};
 use crate::quantity::positive;
 use crate::{Disk, ParameterError};
 
-/// Least distance of neighbours, in diameters.
+/// Least distance of neighbors, in diameters.
 const CLOSE: f64 = 1.000_1;
 
-/// Largest distance of neighbours, in diameters.
+/// Largest distance of neighbors, in diameters.
 const LOOSE: f64 = 1.4;
 
 /// Returns `count` equal disks at rest on a square lattice in the lower part of the boundary, from the left
 /// to the right in rows from the floor up.
 ///
-/// Neighbours are up to 1.4 diameters apart, closer if the boundary is not high enough for that. Sites that
+/// Neighbors are up to 1.4 diameters apart, closer if the boundary is not high enough for that. Sites that
 /// overlap a wall ([`Boundary::overlap`]) are left out.
 ///
 /// # Errors

@@ -8,7 +8,7 @@ use crate::quantity::non_negative;
 use crate::random::normal;
 use crate::{Disk, ParameterError};
 
-/// Returns the same disks with Maxwellian velocities of this temperature, about a centre of mass at rest, and
+/// Returns the same disks with Maxwellian velocities of this temperature, about a center of mass at rest, and
 /// not rotating.
 ///
 /// Each component is normal with variance `$T/m$`; then the momentum is taken out in proportion to the

@@ -2,7 +2,8 @@
 
 use crate::statistics::Estimate;
 
-/// Averages over the collisions of a gas under a rule; made by [`MonteCarlo::average`](super::MonteCarlo::average).
+/// Averages over the collisions of a gas under a rule; made by
+/// [`MonteCarlo::average`](super::MonteCarlo::average).
 ///
 /// ```
 /// use granular_edmd::collision::Frictional;
@@ -24,14 +25,14 @@ impl CollisionAverage {
         Self { energy_change, sticking_fraction }
     }
 
-    /// Returns `$\langle dE\rangle$`, negative when energy is lost. Its error is that of independent collisions, from the scatter
-    /// within each stratum.
+    /// Returns `$\langle dE\rangle$`, negative when energy is lost. Its error is that of independent
+    /// collisions, from the scatter within each stratum.
     pub const fn energy_change(&self) -> Estimate {
         self.energy_change
     }
 
-    /// Returns the fraction of collisions that the rule calls [`Regime::Sticking`](crate::collision::Regime::Sticking), to
-    /// about `2/sqrt(samples)`.
+    /// Returns the fraction of collisions that the rule calls
+    /// [`Regime::Sticking`](crate::collision::Regime::Sticking), to about `2/sqrt(samples)`.
     pub const fn sticking_fraction(&self) -> f64 {
         self.sticking_fraction
     }

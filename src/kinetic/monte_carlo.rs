@@ -93,7 +93,8 @@ impl MonteCarlo {
         self.average(rule, gas).energy_change()
     }
 
-    /// Returns averages over the collisions of `rule` in `gas`: the energy change, and the fraction that sticks.
+    /// Returns averages over the collisions of `rule` in `gas`: the energy change, and the fraction that
+    /// sticks.
     pub fn average<R>(&self, rule: &R, gas: &Maxwellian) -> CollisionAverage
     where
         R: CollisionRule + Sync + ?Sized,

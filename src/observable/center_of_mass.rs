@@ -4,11 +4,11 @@ use glam::DVec2;
 
 use super::{Observable, Snapshot};
 
-/// Position of the center of mass, `$\sum m_i\vec r_i/\sum m_i$`; its `y` is the `$Y_{cm}$` of the paper's Fig. 2.
-/// NaN without disks.
+/// Position of the center of mass, `$\sum m_i\vec r_i/\sum m_i$`; its `y` is the `$Y_{cm}$` of the paper's
+/// Fig. 2. NaN without disks.
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Disk;
 /// use granular_edmd::boundary::Domain;
 /// use granular_edmd::observable::{CenterOfMass, Observable, Snapshot};
@@ -17,7 +17,7 @@ use super::{Observable, Snapshot};
 ///     Disk::new(DVec2::new(1.0, 1.0), 0.5)?,
 ///     Disk::new(DVec2::new(3.0, 5.0), 0.5)?.with_mass(3.0)?,
 /// ];
-/// let domain = Domain { left: 0.0, right: 4.0, bottom: 0.0, top: 6.0, periodic: false };
+/// let domain = Domain::new(0.0, 4.0, 0.0, 6.0);
 /// let center = CenterOfMass.measure(&Snapshot::new(0.0, &disks, domain, 0.0));
 /// assert_eq!(center, DVec2::new(2.5, 4.0));
 /// # Ok::<(), granular_edmd::ParameterError>(())

@@ -59,7 +59,8 @@ impl CollisionCounts {
         }
     }
 
-    /// Returns the disk–disk collisions per disk and time until the absolute time `now`: each counts for both partners.
+    /// Returns the disk–disk collisions per disk and time until the absolute time `now`: each counts for both
+    /// partners.
     pub fn rate_per_disk(&self, disks: usize, now: f64) -> f64 {
         2.0 * self.disks as f64 / (disks as f64 * (now - self.start))
     }

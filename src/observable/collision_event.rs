@@ -15,8 +15,8 @@ pub enum Partner {
 
 /// A collision that has just happened.
 ///
-/// At a thermal wall the contact is that of the arriving disk, and the impulse is all that the disk received. The wall draws
-/// its rotation anew, too: only [`Self::energy_change`] contains that.
+/// At a thermal wall the contact is that of the arriving disk, and the impulse is all that the disk received.
+/// The wall draws its rotation anew, too: only [`Self::energy_change`] contains that.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse};
@@ -47,17 +47,17 @@ pub struct Collision {
     pub contact: Contact,
     /// The impulse on the disk.
     pub impulse: Impulse,
-    /// Change of the kinetic energy of the disk and a partner disk. A moving wall gives or takes energy; what is lost
-    /// in its frame is [`Impulse::energy_change`].
+    /// Change of the kinetic energy of the disk and a partner disk. A moving wall gives or takes energy; what
+    /// is lost in its frame is [`Impulse::energy_change`].
     pub energy_change: f64,
 }
 
 impl Collision {
     /// Makes a collision, for tests of observers; the engine fills all fields itself.
     ///
-    /// The fields that are not given have plain values, to be set where they matter: the normal points up, the position is the
-    /// origin, the disks have radius 1/2 (a `distance` of 1, and of 1/2 to a wall), and the `energy_change` is
-    /// that of the impulse, as of two disks, or at a wall at rest.
+    /// The fields that are not given have plain values, to be set where they matter: the normal points up,
+    /// the position is the origin, the disks have radius 1/2 (a `distance` of 1, and of 1/2 to a wall), and
+    /// the `energy_change` is that of the impulse, as of two disks, or at a wall at rest.
     pub fn new(time: f64, disk: usize, partner: Partner, contact: Contact, impulse: Impulse) -> Self {
         let distance = match partner {
             Partner::Disk(_) => 1.0,

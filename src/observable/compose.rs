@@ -1,7 +1,7 @@
 //! Observers and observables made of others.
 //!
-//! An observer made of others tells all of them everything, but shows a sample only to those that asked for it. Its verdict is
-//! the first failure, else to stop if one of them says so.
+//! An observer made of others tells all of them everything, but shows a sample only to those that asked for
+//! it. Its verdict is the first failure, else to stop if one of them says so.
 
 use std::ops::ControlFlow;
 

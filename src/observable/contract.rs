@@ -7,8 +7,9 @@ use super::{Collision, Moment, Snapshot};
 /// A quantity that a snapshot determines.
 ///
 /// # Contract
-/// `measure` depends on the snapshot alone: measured twice, the same snapshot gives the same value. It must not panic for a
-/// snapshot without disks, or of a domain without a lid, whose height is infinite. A value that cannot be told is NaN.
+/// `measure` depends on the snapshot alone: measured twice, the same snapshot gives the same value. It must
+/// not panic for a snapshot without disks, or of a domain without a lid, whose height is infinite. A value
+/// that cannot be told is NaN.
 ///
 /// The engine measures on copies: nothing that is done here reaches the run.
 #[diagnostic::on_unimplemented(
@@ -33,36 +34,40 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 
 /// A watcher of a run, told of what happens and shown samples at the times that it asks for.
 ///
-/// All methods have a default, which does nothing. All times are absolute: since time 0 of the run.
+/// All methods have a default, which does nothing. All times are absolute, as in [`Simulation::time`](crate::Simulation::time).
 ///
 /// # What the engine guarantees
-/// 1. Each call of `run_until` begins with `on_start` and ends with `on_end`, in whichever way it ends: at its end, stopped,
-///    or with an error.
-/// 2. `on_collision` comes once for each collision, in the order of their times, after the disks have changed.
-/// 3. `on_sample` comes at the time that `next_sample` asked for, if that is not after the end of the run. The sample has
-///    seen all events up to and at its time. A time before the start of the run is sampled at the start.
-/// 4. `verdict` is asked after `on_start`, and after each collision, each sample and `on_end`. A run that is told to stop, or
-///    that a verdict fails, does no further event.
+/// 1. Each call of `run_until` begins with `on_start` and ends with `on_end`, in whichever way it ends: at
+///    its end, stopped, or with an error.
+/// 2. `on_collision` comes once for each collision, in the order of their times, after the disks have
+///    changed.
+/// 3. `on_sample` comes at the time that `next_sample` asked for, if that is not after the end of the run.
+///    The sample has seen all events up to and at its time. A time before the start of the run is sampled at
+///    the start.
+/// 4. `verdict` is asked after `on_start`, and after each collision, each sample and `on_end`. A run that is
+///    told to stop, or that a verdict fails, does no further event.
 /// 5. Whatever an observer does, the trajectory has the same bits as without it, as far as it goes.
 ///
-/// Single steps ([`Simulation::step`](crate::Simulation::step)) tell of collisions only.
+/// [`Simulation::step_until`](crate::Simulation::step_until) tells of collisions only: no start, samples or end. A verdict that
+/// fails ends it with an error; one that stops has no effect, since the caller takes each step.
 ///
 /// # What an observer guarantees
 /// 1. `next_sample` is never NaN. It is infinite if no sample is wanted.
 /// 2. After a sample, it names a later time than that of the sample.
-/// 3. After `on_start`, it names no time before the start.
-/// 4. It changes in `on_start` and `on_sample` only: the engine asks after these, and does not see another change in time.
+/// 3. After `on_start`, it names no time before the start, but for rounding.
+/// 4. It changes in `on_start` and `on_sample` only: the engine asks after these, and does not see another
+///    change in time.
 ///
-/// An observer that breaks the first or the second promise ends the run with an error, since the run would sample forever; one
-/// that breaks the third or the fourth gets samples at other times than it meant. [`SampleTimes`](super::SampleTimes) keeps all
-/// four, and [`laws::check`](super::laws::check) tests them.
+/// An observer that breaks the first or the second promise ends the run with an error, since the run would
+/// sample forever; one that breaks the third or the fourth gets samples at other times than it meant.
+/// [`SampleTimes`](super::SampleTimes) keeps all four, and [`laws::check`](super::laws::check) tests them.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observer",
     label = "an `Observer` is expected here",
-    note = "wrap a closure that takes a `&Collision` in `observable::on_collision`, and one that takes a `&Snapshot` in \
-            `observable::on_sample`",
+    note = "wrap a closure that takes a `&Collision` in `observable::on_collision`",
+    note = "wrap a closure that takes a `&Snapshot` in `observable::on_sample`",
     note = "an observable is sampled by `Series::new(observable, times)`",
-    note = "lend an observer to a run as `&mut observer`, several as `&mut (&mut first, &mut second)`, and none as `&mut ()`"
+    note = "lend an observer to a run as `&mut observer`, two as `&mut (&mut first, &mut second)`, none as `&mut ()`"
 )]
 pub trait Observer {
     /// Is told that a run begins, or goes on.
@@ -93,7 +98,8 @@ pub trait Observer {
     /// Decides whether the run goes on: go on, stop it here, or fail.
     ///
     /// # Errors
-    /// If the observer cannot go on: a file that it writes is full, a quantity has left its range. The run then fails, too.
+    /// If the observer cannot go on: a file that it writes is full, a quantity has left its range. The run
+    /// then fails, too.
     fn verdict(&mut self) -> Verdict {
         Ok(ControlFlow::Continue(()))
     }

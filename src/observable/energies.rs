@@ -31,13 +31,13 @@ impl EnergyPerDisk {
 /// Translational, rotational and potential energy, averaged over the disks; NaN without disks.
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Disk;
 /// use granular_edmd::boundary::Domain;
 /// use granular_edmd::observable::{Energies, Observable, Snapshot};
 ///
 /// let disks = [Disk::new(DVec2::new(1.0, 3.0), 0.5)?.with_velocity(DVec2::X)?];
-/// let domain = Domain { left: 0.0, right: 4.0, bottom: 0.0, top: 6.0, periodic: false };
+/// let domain = Domain::new(0.0, 4.0, 0.0, 6.0);
 /// let energies = Energies.measure(&Snapshot::new(0.0, &disks, domain, 2.0));
 /// assert_eq!((energies.translational, energies.potential), (0.5, 6.0));
 /// # Ok::<(), granular_edmd::ParameterError>(())

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use super::{Collision, Observer, Partner};
 use crate::statistics::BlockedMean;
 
-/// Mean change of kinetic energy per collision, `$\langle dE\rangle$`, for disk–disk collisions and for each wall.
+/// Mean change of kinetic energy per collision, `$\langle dE\rangle$`, for disk–disk collisions and for each
+/// wall.
 ///
-/// Collisions of one run are correlated, since the gas heats and cools: [`BlockedMean::estimate`] gives a mean with an error
-/// that knows of it. At a wall that moves, or is thermal, the energy change is what the disk gains or loses, the work of the
-/// wall included.
+/// Collisions of one run are correlated, since the gas heats and cools: [`BlockedMean::estimate`] gives a
+/// mean with an error that knows of it. At a wall that moves, or is thermal, the energy change is what the
+/// disk gains or loses, the work of the wall included.
 ///
 /// ```
 /// use granular_edmd::observable::EnergyChange;
@@ -17,11 +18,17 @@ use crate::statistics::BlockedMean;
 /// assert_eq!(energy_change.disks().count(), 0);
 /// assert_eq!(energy_change.wall(0).count(), 0);
 /// ```
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct EnergyChange {
     disks: BlockedMean,
     walls: BTreeMap<usize, BlockedMean>,
+}
+
+impl Default for EnergyChange {
+    fn default() -> Self {
+        Self { disks: BlockedMean::with_room(), walls: BTreeMap::new() }
+    }
 }
 
 /// The mean over the collisions with a wall that was never touched.
@@ -44,7 +51,7 @@ impl Observer for EnergyChange {
     fn on_collision(&mut self, collision: &Collision) {
         let mean = match collision.partner {
             Partner::Disk(_) => &mut self.disks,
-            Partner::Wall(wall) => self.walls.entry(wall).or_default(),
+            Partner::Wall(wall) => self.walls.entry(wall).or_insert_with(BlockedMean::with_room),
         };
         mean.push(collision.energy_change);
     }

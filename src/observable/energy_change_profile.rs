@@ -14,8 +14,8 @@ pub struct EnergyChangeLayer {
     pub height: f64,
     /// Energy changes of the disk–disk collisions in it.
     pub energy_change: BlockedMean,
-    /// `$T = \tfrac12 m v^2$` of the disks seen in it, in the frame of the container: its mean is the translational
-    /// temperature.
+    /// `$T = \tfrac12 m v^2$` of the disks seen in it, in the frame of the container: its mean is the
+    /// translational temperature.
     pub translational_temperature: BlockedMean,
     /// `$T_{rot} = I\omega^2$` of the disks seen in it: its mean is the rotational temperature.
     pub rotational_temperature: BlockedMean,
@@ -50,8 +50,8 @@ pub struct EnergyChangeProfile {
 }
 
 impl EnergyChangeProfile {
-    /// Makes a profile from the height `bottom` to `top` in this many layers, with temperatures sampled at these times.
-    /// Collisions and disks outside are left out.
+    /// Makes a profile from the height `bottom` to `top` in this many layers, with temperatures sampled at
+    /// these times. Collisions and disks outside are left out.
     ///
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of layers is not in `1..=2^20`.
@@ -66,13 +66,14 @@ impl EnergyChangeProfile {
         &self.layers
     }
 
-    /// Returns `$\langle dE/T(y)\rangle$`: the energy change over the local temperature, averaged over collisions; `None` before
-    /// there are collisions and a temperature in one layer.
+    /// Returns `$\langle dE/T(y)\rangle$`: the energy change over the local temperature, averaged over
+    /// collisions; `None` before there are collisions and a temperature in one layer.
     pub fn relative_energy_change(&self) -> Option<f64> {
         self.over_collisions(EnergyChangeLayer::relative_energy_change)
     }
 
-    /// Returns `$\langle T_{rot}(y)/T(y)\rangle$`: the ratio of the local temperatures, averaged over collisions; `None` as above.
+    /// Returns `$\langle T_{rot}(y)/T(y)\rangle$`: the ratio of the local temperatures, averaged over
+    /// collisions; `None` as above.
     pub fn rotational_ratio(&self) -> Option<f64> {
         self.over_collisions(|layer| {
             let temperature = layer.translational_temperature.mean();

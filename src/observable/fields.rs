@@ -11,7 +11,8 @@ use crate::{Disk, ParameterError};
 /// Most cells of a grid.
 const MOST_CELLS: usize = 1 << 22;
 
-/// The fields in one cell of a grid, averaged over all samples; made by [`Fields`]. All are 0 where no disk was seen.
+/// The fields in one cell of a grid, averaged over all samples; made by [`Fields`]. All are 0 where no disk
+/// was seen.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
@@ -36,9 +37,10 @@ pub struct FieldCell {
 
 /// An observer that averages density, flow and temperatures on a grid over samples: the convection rolls.
 ///
-/// A disk counts in the cell of its center. Temperatures are about the mean velocity *of the cell*, over all samples: a
-/// flow that is not steady over them, such as a roll that changes its sense, counts as temperature. With `$n$` disks seen
-/// in a cell they are too small by a factor `$1 - 1/n$`, for independent samples.
+/// A disk counts in the cell of its center. Temperatures are about the mean velocity *of the cell*, over all
+/// samples: a flow that is not steady over them, such as a roll that changes its sense, counts as
+/// temperature. With `$n$` disks seen in a cell they are too small by a factor `$1 - 1/n$`, for independent
+/// samples.
 ///
 /// ```
 /// use granular_edmd::boundary::{Domain, Region};
@@ -46,11 +48,11 @@ pub struct FieldCell {
 /// use granular_edmd::observable::{Fields, Observer, SampleTimes, Snapshot};
 /// use granular_edmd::Disk;
 ///
-/// let region = Region { min: DVec2::ZERO, max: DVec2::new(4.0, 2.0) };
+/// let region = Region::new(DVec2::ZERO, DVec2::new(4.0, 2.0));
 /// let mut fields = Fields::new(region, 2, 1, SampleTimes::every(1.0)?)?;
 /// let disk = |x, vx| Disk::new(DVec2::new(x, 1.0), 0.4)?.with_velocity(DVec2::new(vx, 0.0));
 /// let disks = [disk(0.5, 1.0)?, disk(1.5, 3.0)?];
-/// let domain = Domain { left: 0.0, right: 4.0, bottom: 0.0, top: 2.0, periodic: false };
+/// let domain = Domain::new(0.0, 4.0, 0.0, 2.0);
 /// fields.on_sample(&Snapshot::new(1.0, &disks, domain, 0.0));
 /// let left = fields.cell(0, 0).unwrap();
 /// assert_eq!((left.number_density, left.velocity.x, left.translational_temperature), (0.5, 2.0, 0.5));

@@ -14,10 +14,12 @@ pub struct FromFn<F>(F);
 /// use granular_edmd::observable::{Observable, Snapshot, from_fn};
 /// use granular_edmd::Disk;
 ///
-/// let fastest = from_fn(|s: &Snapshot<'_>| s.disks().iter().map(|d| d.velocity().length()).fold(0.0, f64::max));
+/// let fastest = |snapshot: &Snapshot<'_>| {
+///     snapshot.disks().iter().map(|disk| disk.velocity().length()).fold(0.0, f64::max)
+/// };
 /// let disks = [Disk::new(DVec2::ONE, 0.5)?.with_velocity(DVec2::new(3.0, 4.0))?];
 /// let domain = Container::closed(4.0, 6.0)?.domain();
-/// assert_eq!(fastest.measure(&Snapshot::new(0.0, &disks, domain, 0.0)), 5.0);
+/// assert_eq!(from_fn(fastest).measure(&Snapshot::new(0.0, &disks, domain, 0.0)), 5.0);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 pub const fn from_fn<F, V>(measure: F) -> FromFn<F>

@@ -56,7 +56,8 @@ impl HeightBins {
         self.edge(bin) + 0.5 * self.height
     }
 
-    /// Returns the bin of a height: the first for all heights below it, `count` or more for all above the last.
+    /// Returns the bin of a height: the first for all heights below it, `count` or more for all above the
+    /// last.
     pub(super) fn at_or_above(&self, height: f64) -> usize {
         // Casts saturate: a negative number becomes 0.
         ((height - self.bottom) / self.height) as usize

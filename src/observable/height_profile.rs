@@ -6,7 +6,8 @@ use super::height_bins::HeightBins;
 use super::{Moment, Observer, SampleTimes, Snapshot};
 use crate::{Disk, ParameterError};
 
-/// The bin with the largest packing fraction, and the emptiest below it; made by [`HeightProfile::densest_layer`].
+/// The bin with the largest packing fraction, and the emptiest below it; made by
+/// [`HeightProfile::densest_layer`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct DenseLayer {
@@ -24,7 +25,8 @@ impl DenseLayer {
         Self { height, packing_fraction, least_below }
     }
 
-    /// Returns the densest layer of a profile, given as heights and packing fractions from the bottom up; the lowest of equals.
+    /// Returns the densest layer of a profile, given as heights and packing fractions from the bottom up; the
+    /// lowest of equals.
     ///
     /// ```
     /// use granular_edmd::observable::DenseLayer;
@@ -52,8 +54,8 @@ impl DenseLayer {
 /// \phi_k = \frac{1}{L_x\,\Delta y}\Big\langle\sum_i A_i(y_k, y_k + \Delta y)\Big\rangle.
 /// ```
 ///
-/// Disks are cut exactly at the edges of bins, so that a profile is smooth even with bins below a diameter. In the
-/// paper's box take bins of one diameter: they resolve a compact layer and average over its rows.
+/// Disks are cut exactly at the edges of bins, so that a profile is smooth even with bins below a diameter.
+/// In the paper's box take bins of one diameter: they resolve a compact layer and average over its rows.
 ///
 /// ```
 /// use granular_edmd::boundary::Domain;
@@ -63,7 +65,7 @@ impl DenseLayer {
 ///
 /// let mut profile = HeightProfile::new(0.0, 4.0, 4, SampleTimes::every(1.0)?)?;
 /// let disks = [Disk::new(DVec2::new(1.0, 1.5), 0.5)?, Disk::new(DVec2::new(3.0, 2.0), 0.5)?];
-/// let domain = Domain { left: 0.0, right: 4.0, bottom: 0.0, top: 6.0, periodic: false };
+/// let domain = Domain::new(0.0, 4.0, 0.0, 6.0);
 /// profile.on_sample(&Snapshot::new(1.0, &disks, domain, 0.0));
 /// let disk = std::f64::consts::PI / 4.0;
 /// let expected = [0.0, 1.5 * disk / 4.0, 0.5 * disk / 4.0, 0.0];
@@ -96,13 +98,15 @@ impl HeightProfile {
         self.samples
     }
 
-    /// Iterates over the heights of the middles of the bins, and the mean packing fractions; 0 before the first sample.
+    /// Iterates over the heights of the middles of the bins, and the mean packing fractions; 0 before the
+    /// first sample.
     pub fn iter(&self) -> impl Iterator<Item = (f64, f64)> {
         let samples = self.samples.max(1) as f64;
         self.sums.iter().enumerate().map(move |(bin, sum)| (self.bins.middle(bin), sum / samples))
     }
 
-    /// Returns the bin with the largest packing fraction, the lowest of equals; `None` before the first sample.
+    /// Returns the bin with the largest packing fraction, the lowest of equals; `None` before the first
+    /// sample.
     pub fn densest_layer(&self) -> Option<DenseLayer> {
         DenseLayer::among(self.iter().take_while(|_| self.samples > 0))
     }

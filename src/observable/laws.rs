@@ -1,7 +1,7 @@
 //! The contract of an observer, as a check for observers of one's own.
 //!
-//! Watching cannot change a trajectory, whatever an observer does: the engine shows copies. Left to the observer is its clock,
-//! which can hang a run or ask for samples that never come.
+//! Watching cannot change a trajectory, whatever an observer does: the engine shows copies. Left to the
+//! observer is its clock, which can hang a run or ask for samples that never come.
 
 use glam::DVec2;
 use thiserror::Error;
@@ -61,10 +61,11 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Checks that an observer keeps its contract in a few runs of a made-up system.
 ///
-/// The runs have three disks and four walls, collisions of each partner and regime, and up to fifty samples each, at the times
-/// that the observer asks for. The first starts at time 0, the second goes on where it ended, the third starts later and off the
-/// beat, and the last is another run from a time before 0. A run ends where the observer stops it, or fails it. The checked
-/// observer has seen all of this: make a new one for a measurement.
+/// The runs have three disks and four walls, collisions of each partner and regime, and up to fifty samples
+/// each, at the times that the observer asks for. The first starts at time 0, the second goes on where it
+/// ended, the third starts later and off the beat, and the last is another run from a time before 0. A run
+/// ends where the observer stops it, or fails it. The checked observer has seen all of this: make a new one
+/// for a measurement.
 ///
 /// # Errors
 /// The first promise that is broken.

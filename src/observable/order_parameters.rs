@@ -29,11 +29,11 @@ impl ConvectionOrder {
 /// \Psi_2 = -\frac1N\sum_i v_{yi}\cos\frac{2\pi x_i}{L_x}.
 /// ```
 ///
-/// In a gas at rest each fluctuates with standard deviation `$\sqrt{T_y/2Nm}$`: a roll stands out if it is larger than that.
-/// Positions count from the left end of the domain; without disks both are 0.
+/// In a gas at rest each fluctuates with standard deviation `$\sqrt{T_y/2Nm}$`: a roll stands out if it is
+/// larger than that. Positions count from the left end of the domain; without disks both are 0.
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Disk;
 /// use granular_edmd::boundary::Domain;
 /// use granular_edmd::observable::{Observable, OrderParameters, Snapshot};
@@ -41,7 +41,7 @@ impl ConvectionOrder {
 /// // Up on the left, down on the right: clockwise.
 /// let up = Disk::new(DVec2::new(15.0, 5.0), 0.5)?.with_velocity(DVec2::Y)?;
 /// let down = Disk::new(DVec2::new(45.0, 5.0), 0.5)?.with_velocity(-DVec2::Y)?;
-/// let domain = Domain { left: 0.0, right: 60.0, bottom: 0.0, top: 150.0, periodic: false };
+/// let domain = Domain::new(0.0, 60.0, 0.0, 150.0);
 /// let disks = [up, down];
 /// let order = OrderParameters.measure(&Snapshot::new(0.0, &disks, domain, 0.0));
 /// assert!((order.one_roll - 1.0).abs() < 1e-12 && order.two_rolls.abs() < 1e-12);

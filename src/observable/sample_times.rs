@@ -3,8 +3,8 @@
 use crate::ParameterError;
 use crate::quantity::{finite, positive};
 
-/// Rounding of a time that was run to, and of a beat, relative to them: both are sums of an offset and an origin, each rounded
-/// a few times.
+/// Rounding of a time that was run to, and of a beat, relative to them: both are sums of an offset and an
+/// origin, each rounded a few times.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Equally spaced times of samples: a clock for observers.
@@ -13,17 +13,19 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// ([`Self::starting_at`]). They are multiples, not sums: the thousandth is as exact as the first.
 ///
 /// # When a run starts
-/// An observer hands the start of each run to [`Self::start_at`]. Beats that the start has passed, or falls on within
-/// rounding, are left out, so that a run of `$n$` intervals gives `$n$` samples, the first after one interval: from time 0, from
-/// another start, resumed from a checkpoint, or after a run to settle. Two exceptions:
+/// An observer hands the start of each run to [`Self::start_at`]. Beats that the start has passed, or falls
+/// on within rounding, are left out, so that a run of `$n$` intervals gives `$n$` samples, the first after
+/// one interval: from time 0, from another start, resumed from a checkpoint, or after a run to settle. Two
+/// exceptions:
 /// - The first time of `starting_at` is a sample of a run that starts exactly there.
-/// - A clock that has run goes on: if the next run starts on its upcoming beat, the sample is taken, since the run before ended
-///   too early for it by a rounding. A run in pieces has the samples of a run in one.
+/// - A clock that has run goes on: if the next run starts on its upcoming beat, within rounding, the sample
+///   is taken, since the run before ended too early for it. A run in pieces has the samples of a run in one.
 ///
 /// A run that starts before the last beat is another run, for which the clock begins anew.
 ///
-/// To sample at a fixed phase of a vibrating base take a number of its periods as interval and the phase as first time.
-/// Compute the end of a run as a multiple, too (`count as f64 * interval`), or its last sample may lie one rounding behind it.
+/// To sample at a fixed phase of a vibrating base take a number of its periods as interval and the phase as
+/// first time. Compute the end of a run as a multiple, too (`count as f64 * interval`), or its last sample
+/// may lie one rounding behind it.
 ///
 /// ```
 /// use granular_edmd::observable::SampleTimes;
@@ -96,7 +98,7 @@ impl SampleTimes {
         let rounding = ROUNDING * (time.abs() + self.interval);
         if !self.started || time < self.time_of(self.beat.saturating_sub(1)) - rounding {
             self.begin_anew(time, rounding);
-        } else if (self.upcoming() - time).abs() > rounding {
+        } else if self.upcoming() < time - rounding {
             self.advance_past(time + rounding);
         }
         self.started = true;
@@ -110,7 +112,7 @@ impl SampleTimes {
             return self.advance_past(time + rounding);
         };
         self.beat = 0;
-        if (first - time).abs() > rounding {
+        if first < time - rounding {
             self.advance_past(time + rounding);
         }
     }

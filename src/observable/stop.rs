@@ -20,10 +20,10 @@ pub struct StopWhen<F> {
 /// use granular_edmd::observable::{Collision, Observer, Partner, stop_when};
 ///
 /// let mut observer = stop_when(|collision: &Collision| collision.impulse.normal() > 1.0);
-/// let (contact, mild, hard) = (Contact::new(2.0, 0.0, 0.5, 0.5 / 3.0), Impulse::new(1.0, 0.0), Impulse::new(1.5, 0.0));
-/// observer.on_collision(&Collision::new(0.5, 0, Partner::Disk(1), contact, mild));
+/// let contact = Contact::new(2.0, 0.0, 0.5, 0.5 / 3.0);
+/// observer.on_collision(&Collision::new(0.5, 0, Partner::Disk(1), contact, Impulse::new(1.0, 0.0)));
 /// assert!(observer.verdict()?.is_continue());
-/// observer.on_collision(&Collision::new(0.7, 0, Partner::Disk(1), contact, hard));
+/// observer.on_collision(&Collision::new(0.7, 0, Partner::Disk(1), contact, Impulse::new(1.5, 0.0)));
 /// assert!(observer.verdict()?.is_break());
 /// # Ok::<(), granular_edmd::observable::ObserverError>(())
 /// ```
@@ -60,7 +60,8 @@ pub struct StopWhenSampled<F> {
 /// A later run with the same observer goes on until a further sample meets the condition.
 ///
 /// ```
-/// use granular_edmd::observable::{CenterOfMass, Observable, Observer, SampleTimes, Snapshot, stop_when_sampled};
+/// use granular_edmd::observable::{CenterOfMass, Observable, Observer, SampleTimes, Snapshot};
+/// use granular_edmd::observable::stop_when_sampled;
 ///
 /// // Until the center of mass has risen to 10.
 /// let risen = |snapshot: &Snapshot<'_>| CenterOfMass.measure(snapshot).y > 10.0;

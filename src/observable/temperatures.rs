@@ -28,18 +28,19 @@ impl Temperature {
     }
 }
 
-/// Horizontal, vertical and rotational temperature over all disks, in the frame of the container; NaN without disks.
+/// Horizontal, vertical and rotational temperature over all disks, in the frame of the container; NaN without
+/// disks.
 ///
 /// The flow of convection rolls counts as temperature here: a small part (`$\Psi^2\ll T$`).
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Disk;
 /// use granular_edmd::boundary::Domain;
 /// use granular_edmd::observable::{Observable, Snapshot, Temperatures};
 ///
 /// let disks = [Disk::new(DVec2::ONE, 0.5)?.with_velocity(DVec2::new(1.0, 2.0))?.with_angular_velocity(4.0)?];
-/// let domain = Domain { left: 0.0, right: 4.0, bottom: 0.0, top: 6.0, periodic: false };
+/// let domain = Domain::new(0.0, 4.0, 0.0, 6.0);
 /// let temperature = Temperatures.measure(&Snapshot::new(0.0, &disks, domain, 2.0));
 /// assert_eq!((temperature.horizontal, temperature.vertical, temperature.rotational), (1.0, 4.0, 2.0));
 /// # Ok::<(), granular_edmd::ParameterError>(())

@@ -1,4 +1,4 @@
-//! Neighbour cells: a disk can only collide with disks in its own cell and the eight around it.
+//! Neighbor cells: a disk can only collide with disks in its own cell and the eight around it.
 
 mod block;
 mod cell_size;
@@ -77,7 +77,7 @@ impl Cells {
         self.places[disk]
     }
 
-    /// Whether disks in this cell can touch a wall.
+    /// Tells whether disks in this cell can touch a wall.
     #[inline]
     pub(super) fn is_at_wall(&self, place: Place) -> bool {
         self.contents.is_at_wall(self.grid.index(place))
@@ -107,7 +107,7 @@ impl Cells {
     #[inline]
     pub(super) fn cross(&mut self, disk: usize, exit: Exit) -> f64 {
         self.leave(disk);
-        let (place, shift) = self.grid.neighbour(self.places[disk], exit.direction());
+        let (place, shift) = self.grid.neighbor(self.places[disk], exit.direction());
         self.places[disk] = place;
         self.enter(disk);
         shift
@@ -121,8 +121,8 @@ impl Cells {
     /// Asks for the nine cells around a disk.
     #[inline]
     pub(super) fn prefetch_around(&self, disk: usize) {
-        let (centre, stride) = (self.grid.index(self.places[disk]), self.grid.stride());
-        for middle in [centre - stride, centre, centre + stride] {
+        let (center, stride) = (self.grid.index(self.places[disk]), self.grid.stride());
+        for middle in [center - stride, center, center + stride] {
             self.contents.prefetch(middle - 1);
             self.contents.prefetch(middle + 1);
         }
@@ -148,10 +148,10 @@ impl Cells {
     /// Writes the disks in the nine cells around `disk` (itself included) to `found`; returns how many.
     #[inline]
     pub(super) fn around(&self, disk: usize, found: &mut [u32]) -> usize {
-        let centre = self.grid.index(self.places[disk]);
+        let center = self.grid.index(self.places[disk]);
         let stride = self.grid.stride();
         let mut count = 0;
-        for first in [centre - stride - 1, centre - 1, centre + stride - 1] {
+        for first in [center - stride - 1, center - 1, center + stride - 1] {
             count = self.contents.gather(first, 1, found, count);
         }
         count
@@ -178,6 +178,6 @@ impl Cells {
     /// The place that a disk is at when it has left its cell by `exit`.
     #[inline]
     pub(super) fn next_place(&self, disk: usize, exit: Exit) -> Place {
-        self.grid.neighbour(self.places[disk], exit.direction()).0
+        self.grid.neighbor(self.places[disk], exit.direction()).0
     }
 }

@@ -11,6 +11,7 @@ use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Predicts every disk's next event from the present state alone.
     pub(super) fn predict_all(&mut self) {
+        self.make_room();
         for disk in 0..self.bodies.len() {
             self.find_next(disk);
         }
@@ -54,7 +55,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Changes to larger or smaller cells, if those suit what happened since the last epoch.
     ///
-    /// That depends on the state alone: it is the same on every run. All events are predicted anew from the present then.
+    /// The choice depends on the state alone: it is the same on every run. All events are predicted anew from the present then.
     #[cold]
     pub(super) fn adapt_cells(&mut self) {
         let tally =

@@ -1,28 +1,23 @@
 //! The event loop: which disk is next, what happens to it, and what follows.
 //!
 //! One collision, read from top to bottom: [`Simulation::next_due`] asks the scheduler, [`Simulation::advance`] goes there,
-//! [`Simulation::collide`] has the rule decide (`resolution.rs`) and kicks both disks, [`Simulation::find_next`] finds what each does
-//! next (`prediction.rs`), [`Simulation::schedule`] tells the scheduler.
-
-use std::hint::select_unpredictable;
+//! [`Simulation::collide`] has the rule decide (`resolution.rs`) and kicks both disks, then finds what each does next and tells the
+//! scheduler (`forecasting.rs`). The arithmetic of meetings is in `prediction.rs`, epochs are in `epoch.rs`; none of these calls back.
 
 use glam::DVec2;
 
 use super::Simulation;
 use super::errors::{BoundaryFault, Outcome, RunError};
 use super::events::Event;
-use super::prediction::{LANES, are_closing, cell_exit, earliest_collision};
+use super::forecasting::HORIZON;
+use super::prediction::are_closing;
 use super::resolution::{Kick, failed, is_parting, is_unit_and_finite, resolve_pair, resolve_wall};
 use super::state::{Earliest, Exit, Forecast};
-use crate::Flight;
 use crate::boundary::{Boundary, Response};
 use crate::collision::laws::closing_speed_after;
 use crate::collision::{CollisionRule, Regime};
 use crate::observable::{Collision, Observer};
 use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
-
-/// Epochs that a wall is searched for ahead: no search is endless.
-const HORIZON: f64 = 2.0;
 
 /// Doublings after which two surfaces that a collision has left within rounding of each other are let be.
 const MOST_NUDGES: u32 = 24;
@@ -47,10 +42,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         due: f64,
         observer: &mut O,
     ) -> Outcome<Option<Event>> {
-        let Some(&forecast) = self.bodies.forecast(disk) else { return Err(self.scheduler_fault(disk, due)) };
+        let Some(&forecast) = self.bodies.forecast(disk) else {
+            return Err(self.scheduler_fault(disk, due).into());
+        };
         // A scheduler that names an old time would take the run back, or past an event.
-        if (forecast.due() != due) | (due < self.clock.now) {
-            return Err(self.scheduler_fault(disk, due));
+        if forecast.due() != due || due < self.clock.now {
+            return Err(self.scheduler_fault(disk, due).into());
         }
         if due > self.clock.epoch_length {
             // The event is due all the same, at another offset: it comes up again.
@@ -80,7 +77,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 self.counters.horizons += 1;
                 self.predict(disk);
             }
-            Exit::Impossible => return Err(self.impossible_touch(disk)),
+            Exit::Impossible => return Err(self.impossible_touch(disk).into()),
             exit => self.cross(disk, exit),
         }
         Ok(None)
@@ -131,15 +128,17 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let surface = self.boundary.surface(wall, position, now);
         if !is_unit_and_finite(&surface) {
             let (normal, velocity) = (surface.normal, surface.velocity);
-            return Err(self.boundary_fault(disk, BoundaryFault::Surface { wall, normal, velocity }));
+            return Err(self.boundary_fault(disk, BoundaryFault::Surface { wall, normal, velocity }).into());
         }
+        let parts = (self.bodies.velocity(disk, now) - surface.velocity).dot(surface.normal) > 0.0;
         let (collision, kick) =
             resolve_wall(&self.bodies, &self.rule, &mut self.generator, &surface, &self.clock, disk, wall);
         if !kick.is_possible() {
-            return Err(match surface.response {
+            let error = match surface.response {
                 Response::Rule(own) => failed(own, &collision),
                 _ => failed(&self.rule, &collision),
-            });
+            };
+            return Err(error.into());
         }
         if let Some((_, depth)) = self.boundary.overlap(position, self.bodies.material(disk).radius, now) {
             self.counters.max_wall_overlap = self.counters.max_wall_overlap.max(depth);
@@ -152,7 +151,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.kick(disk, &kick);
         observer.on_collision(&collision);
         self.find_next(disk);
-        self.leave_wall(disk, wall, &collision);
+        if parts {
+            self.leave_wall(disk, wall, &collision);
+        }
         self.schedule(disk);
         Ok(Event::WallCollision { disk, wall })
     }
@@ -162,7 +163,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.counters.contact_duration_collisions += u64::from(by_contact_duration);
     }
 
-    /// Whether a disk can be kicked in this epoch; so are nearly all.
+    /// Tells whether a disk can be kicked in this epoch; so are nearly all.
     #[inline]
     fn is_tame(&self, kick: &Kick) -> bool {
         // Not so for a velocity that is no number; rotation cannot go wrong alone, since its impulse moves the disk, too.
@@ -178,7 +179,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let period = self.cells.grid().period();
         let (collision, kicks) = resolve_pair(&self.bodies, &self.rule, period, &self.clock, disk, partner);
         if !kicks.iter().all(Kick::is_possible) {
-            return Err(failed(&self.rule, &collision));
+            return Err(failed(&self.rule, &collision).into());
         }
         self.begin_epoch_for(&kicks);
         Ok(())
@@ -230,8 +231,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Makes a disk leave the wall that it has just collided with, if it would touch it again at once for a rounding of its speed.
-    #[inline]
+    /// Makes a disk leave a wall that it parts from, but which the boundary takes it to approach, by a rounding of its speed: they
+    /// compute it in different ways. A disk that rests on a wall does not part from it.
+    #[cold]
+    #[inline(never)]
     fn leave_wall(&mut self, disk: usize, wall: usize, collision: &Collision) {
         for doubling in 0..MOST_NUDGES {
             let Forecast { exit, exit_due, wall: next, .. } = *self.forecast(disk);
@@ -262,111 +265,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.schedule(disk);
     }
 
-    /// Finds the next event of a disk among all its neighbors, and tells the scheduler.
-    fn predict(&mut self, disk: usize) {
-        self.find_next(disk);
-        self.schedule(disk);
-    }
-
-    /// Finds the next event of a disk among all its neighbors.
-    ///
-    /// One copy for all callers: the whole search is inlined into it.
-    #[inline(never)]
-    pub(super) fn find_next(&mut self, disk: usize) {
-        self.find_partner(disk);
-        self.end_flight(disk);
-    }
-
-    /// Finds another partner for a disk whose partner has collided meanwhile: its own flight in its cell ends as it did.
-    #[inline(never)]
-    fn predict_partner(&mut self, disk: usize) {
-        self.find_partner(disk);
-        self.schedule(disk);
-    }
-
-    /// Finds the next collision of a disk among all its neighbors.
-    #[inline(always)]
-    fn find_partner(&mut self, disk: usize) {
-        self.make_room();
-        let count = self.cells.around(disk, &mut self.scratch.found);
-        let earliest = self.earliest_collision(disk, count, Earliest::NONE);
-        let partner_collisions =
-            self.bodies.forecast(earliest.partner as usize).map_or(0, |partner| partner.collisions);
-        self.forecast_mut(disk).expect(earliest, partner_collisions);
-    }
-
-    #[inline]
-    fn earliest_collision(&mut self, disk: usize, count: usize, known: Earliest) -> Earliest {
-        let period = self.cells.grid().period();
-        let found = &mut self.scratch.found;
-        earliest_collision(&self.bodies, period, disk, found, count, self.clock.now, known)
-    }
-
-    /// Takes `earliest` as the next collision of a disk whose next was `known` before.
-    ///
-    /// No branch on whether they are the same: that is known last of all, and a wrong guess would undo much.
-    #[inline]
-    fn expect_next(&mut self, disk: usize, earliest: Earliest, known: Earliest) {
-        let nobody = earliest.partner as usize >= self.bodies.len();
-        let partner = select_unpredictable(nobody, disk, earliest.partner as usize);
-        let counted = self.forecast(disk).partner_collisions;
-        let collisions = select_unpredictable(earliest == known, counted, self.forecast(partner).collisions);
-        self.forecast_mut(disk).expect(earliest, collisions);
-    }
-
-    /// Tells the scheduler when the next event of a disk is due.
-    #[inline]
-    fn schedule(&mut self, disk: usize) {
-        self.scheduler.set(disk, self.forecast(disk).due());
-    }
-
-    /// Keeps the room for neighbors in step with the cells, which may have grown.
-    #[inline]
-    fn make_room(&mut self) {
-        let room = self.cells.room() + LANES;
-        if self.scratch.found.len() < room {
-            self.scratch.found.resize(room, 0);
-        }
-    }
-
-    /// Finds when the flight of a disk in its cell ends, and how.
-    #[inline]
-    fn end_flight(&mut self, disk: usize) {
-        let (place, grid) = (self.cells.place(disk), self.cells.grid());
-        let (exit_due, exit) = cell_exit(&self.bodies, disk, &grid.region(place), self.clock.now);
-        let at_wall = self.cells.is_at_wall(place);
-        let forecast = self.forecast_mut(disk);
-        (forecast.exit_due, forecast.exit) = (exit_due, exit);
-        if at_wall {
-            self.end_at_wall(disk);
-        }
-    }
-
-    /// Ends the flight at a wall, if the disk touches one before it leaves its cell.
-    fn end_at_wall(&mut self, disk: usize) {
-        let now = self.clock.now;
-        let horizon = now + HORIZON * self.clock.epoch_length;
-        let flight = self.flight(disk);
-        let forecast = &mut self.bodies.particles[disk].forecast;
-        let until = forecast.exit_due.min(horizon);
-        if let Some(touch) = self.boundary.first_touch(&flight, until) {
-            let is_possible = touch.time >= now && touch.time <= until && touch.wall < self.wall_count;
-            (forecast.exit_due, forecast.exit) =
-                if is_possible { (touch.time, Exit::Wall) } else { (now, Exit::Impossible) };
-            forecast.wall = touch.wall as u16;
-        } else if forecast.exit_due > horizon {
-            (forecast.exit_due, forecast.exit) = (horizon, Exit::Horizon);
-        }
-    }
-
-    #[inline]
-    fn flight(&self, disk: usize) -> Flight {
-        let now = self.clock.now;
-        let acceleration = DVec2::new(0.0, -self.bodies.gravity);
-        let (position, velocity) = (self.bodies.position(disk, now), self.bodies.velocity(disk, now));
-        Flight::new(now, position, velocity, acceleration, self.bodies.material(disk).radius)
-    }
-
     #[inline]
     fn look_ahead(&mut self) {
         if self.bodies.len() >= LARGE_SYSTEM {
@@ -375,30 +273,20 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    #[inline]
-    fn forecast(&self, disk: usize) -> &Forecast {
-        &self.bodies.particles[disk].forecast
-    }
-
-    #[inline]
-    fn forecast_mut(&mut self, disk: usize) -> &mut Forecast {
-        &mut self.bodies.particles[disk].forecast
-    }
-
     #[cold]
-    fn scheduler_fault(&self, disk: usize, due: f64) -> Box<RunError> {
+    fn scheduler_fault(&self, disk: usize, due: f64) -> RunError {
         let expected = self.bodies.forecast(disk).map(Forecast::due);
-        Box::new(RunError::Scheduler { disk, due, expected, time: self.time() })
+        RunError::Scheduler { disk, due, expected, time: self.time() }
     }
 
     #[cold]
-    fn boundary_fault(&self, disk: usize, fault: BoundaryFault) -> Box<RunError> {
-        Box::new(RunError::Boundary { disk, time: self.time(), fault })
+    fn boundary_fault(&self, disk: usize, fault: BoundaryFault) -> RunError {
+        RunError::Boundary { disk, time: self.time(), fault }
     }
 
     /// Asks the boundary once more for a touch that cannot be, to tell which it was.
     #[cold]
-    fn impossible_touch(&self, disk: usize) -> Box<RunError> {
+    fn impossible_touch(&self, disk: usize) -> RunError {
         let (now, forecast) = (self.clock.now, self.forecast(disk));
         let until = now + HORIZON * self.clock.epoch_length;
         let touch = self.boundary.first_touch(&self.flight(disk), until);

@@ -60,7 +60,7 @@ pub struct Counters {
 }
 
 impl Counters {
-    /// What was counted since `earlier`; the largest overlaps are those of the whole run.
+    /// Counts since `earlier`; the largest overlaps are those of the whole run.
     #[must_use]
     pub const fn since(&self, earlier: &Self) -> Self {
         Self {

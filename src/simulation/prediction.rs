@@ -95,7 +95,7 @@ pub(super) fn nearest_image(x: f64, period: f64) -> f64 {
     x - back + forth
 }
 
-/// Whether two disks close, in the very arithmetic of [`earliest_collision`]: in another their rounding would differ, and a pair
+/// Tells whether two disks close, in the very arithmetic of [`earliest_collision`]: in another their rounding would differ, and a pair
 /// held for parting would be found to collide.
 #[inline]
 pub(super) fn are_closing(bodies: &Bodies, period: f64, disk: usize, partner: usize, now: f64) -> bool {

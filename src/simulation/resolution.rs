@@ -38,7 +38,7 @@ impl Kick {
         }
     }
 
-    /// Whether it leads to a motion that the engine can go on with.
+    /// Tells whether it leads to a motion that the engine can go on with.
     pub(super) fn is_possible(&self) -> bool {
         let velocity = self.after.velocity.abs();
         velocity.x <= LARGEST && velocity.y <= LARGEST && self.after.angular_velocity.abs() <= LARGEST
@@ -134,14 +134,14 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     (collision, kick)
 }
 
-/// Whether two disks part so fast after a collision that no rounding can make it an approach; nearly all do.
+/// Tells whether two disks part so fast after a collision that no rounding can make it an approach; nearly all do.
 #[inline]
 pub(super) fn is_parting(normal: DVec2, kicks: &[Kick; 2]) -> bool {
     let velocity = (kicks[0].after.velocity - kicks[1].after.velocity).abs();
     (kicks[0].after.velocity - kicks[1].after.velocity).dot(normal) > GRAZING * (velocity.x + velocity.y)
 }
 
-/// Whether a surface's normal is a unit vector and its velocity one that a disk may have.
+/// Tells whether a surface's normal is a unit vector and its velocity one that a disk may have.
 pub(super) fn is_unit_and_finite(surface: &Surface<'_>) -> bool {
     let velocity = surface.velocity.abs();
     (surface.normal.length() - 1.0).abs() <= UNIT && velocity.x <= LARGEST && velocity.y <= LARGEST
@@ -149,11 +149,10 @@ pub(super) fn is_unit_and_finite(surface: &Surface<'_>) -> bool {
 
 /// The error of a collision whose outcome is no motion.
 #[cold]
-pub(super) fn failed<R: CollisionRule + ?Sized>(rule: &R, collision: &Collision) -> Box<RunError> {
+pub(super) fn failed<R: CollisionRule + ?Sized>(rule: &R, collision: &Collision) -> RunError {
     let Collision { disk, partner, time, contact, impulse, .. } = *collision;
     let explanation = rule.explain(&contact);
-    let failed = FailedCollision { disk, partner, time, contact, impulse, explanation };
-    Box::new(RunError::NotFinite(Box::new(failed)))
+    RunError::NotFinite(Box::new(FailedCollision { disk, partner, time, contact, impulse, explanation }))
 }
 
 /// The motion in which a disk leaves a thermal wall.

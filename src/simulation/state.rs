@@ -4,6 +4,8 @@ mod bodies;
 mod clock;
 mod forecast;
 mod guard;
+mod kinds;
+mod pace;
 
 pub(super) use bodies::Bodies;
 #[cfg(feature = "serde")]

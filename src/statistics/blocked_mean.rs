@@ -1,13 +1,14 @@
 //! Mean of correlated numbers with its error, without keeping the numbers.
 
-use super::blocking::is_long_enough;
+use super::blocking::{BlockError, plateau};
 use super::{Estimate, RunningMean};
 
 /// Mean of correlated numbers that come one by one, with an error that knows of their correlation.
 ///
-/// It keeps the scatter of blocks of 1, 2, 4, … numbers: memory grows with the logarithm of their count, and a number costs
-/// constant time on average. [`Self::estimate`] takes the error from the smallest blocks that are long enough, as
-/// [`block_average`](super::block_average) does of a series that is at hand: to the bit the same.
+/// It keeps the scatter of blocks of 1, 2, 4, … numbers: memory grows with the logarithm of their count, and
+/// a number costs constant time on average. [`Self::estimate`] takes the error from the smallest blocks that
+/// are long enough, as [`block_average`](super::block_average) does of a series that is at hand: to the bit
+/// the same.
 ///
 /// ```
 /// use granular_edmd::statistics::{BlockedMean, block_average};
@@ -37,6 +38,11 @@ impl BlockedMean {
     /// Makes a mean of no numbers yet.
     pub const fn new() -> Self {
         Self { levels: Vec::new() }
+    }
+
+    /// Makes a mean of no numbers yet with room for all that a run can have, so that a collision never allocates.
+    pub(crate) fn with_room() -> Self {
+        Self { levels: Vec::with_capacity(u64::BITS as usize) }
     }
 
     /// Takes one more number.
@@ -78,24 +84,16 @@ impl BlockedMean {
     pub fn estimate(&self) -> Estimate {
         let whole = self.ungrouped();
         let naive = whole.standard_error();
-        let plateau = self.errors().find(|&(size, error)| is_long_enough(size, whole.count(), error / naive));
-        let error = match plateau {
-            // Of equal numbers.
-            _ if naive == 0.0 => 0.0,
-            Some((_, error)) => error,
-            None => self.errors().map(|(_, error)| error).fold(naive, f64::max),
-        };
-        let growth = if naive > 0.0 { error / naive } else { 1.0 };
-        let converged = plateau.is_some() || naive == 0.0;
-        Estimate::blocked(whole.mean(), error, whole.count(), growth * growth, converged)
-    }
-
-    /// Sizes of blocks and the errors that these seem to have, as long as there are two of them.
-    fn errors(&self) -> impl Iterator<Item = (f64, f64)> {
-        let several = self.levels.iter().take_while(|level| level.blocks.count() >= 2);
-        several
-            .enumerate()
-            .map(|(level, Level { blocks, .. })| ((1_u64 << level) as f64, blocks.standard_error()))
+        if naive == 0.0 {
+            return Estimate::blocked(whole.mean(), 0.0, whole.count(), 1.0, true);
+        }
+        let several = self.levels.iter().map(|level| level.blocks).take_while(|blocks| blocks.count() >= 2);
+        let errors: Vec<BlockError> = several.map(|blocks| BlockError::of(&blocks)).collect();
+        let plateau = plateau(&errors, whole.count());
+        let largest = || errors.iter().map(|level| level.error).fold(naive, f64::max);
+        let error = plateau.unwrap_or_else(largest);
+        let growth = error / naive;
+        Estimate::blocked(whole.mean(), error, whole.count(), growth * growth, plateau.is_some())
     }
 }
 

@@ -1,13 +1,17 @@
 //! Means of correlated samples.
 
-use super::{BlockedMean, Estimate};
+use super::{BlockedMean, Estimate, RunningMean};
 use crate::ParameterError;
 use crate::quantity::accept;
 
 /// Largest sample: its square, summed over a series, stays finite.
 const LARGEST: f64 = 1e100;
 
-/// Returns the mean of a time series, with an error that knows of its autocorrelation (Flyvbjerg & Petersen 1989).
+/// Fewest blocks whose scatter tells something: their error is uncertain by a quarter.
+const FEWEST_BLOCKS: u64 = 8;
+
+/// Returns the mean of a time series, with an error that knows of its autocorrelation (Flyvbjerg & Petersen
+/// 1989).
 ///
 /// Neighbors are replaced by their mean again and again. The naive error of the blocked series,
 ///
@@ -15,10 +19,18 @@ const LARGEST: f64 = 1e100;
 /// \epsilon_B^2 = \frac{1}{n_B(n_B-1)}\sum_i (x_i^{(B)}-\bar x)^2,
 /// ```
 ///
-/// grows with the block size `$B$` until blocks are independent. The error is that of the smallest blocks with
-/// `$B^3 > 2n(\epsilon_B/\epsilon_1)^4$`: shorter blocks leave a bias that is larger than the scatter of `$\epsilon_B$` itself,
-/// longer ones scatter more (Lee et al. 2011, Phys. Rev. E 83, 066706). A series of less than some ten times
-/// [`Estimate::correlated_samples`] has no such block: the estimate is then not converged, and its error the largest found.
+/// grows with the block size `$B$` until blocks are independent. The error is that of the smallest blocks for
+/// which
+/// 1. `$B^3 > 2n(\epsilon_B/\epsilon_1)^4$`: shorter blocks leave a bias that is larger than the scatter of
+///    `$\epsilon_B$` itself, longer ones scatter more (Lee et al. 2011, Phys. Rev. E 83, 066706);
+/// 2. `$\epsilon_B$` has grown by no more than its own uncertainty since blocks of half the size, and by no
+///    more than one and a half of it since a quarter;
+/// 3. no larger blocks have an error that is larger by more than two of its uncertainties.
+///
+/// The first is right for one time of correlation. The others see a second, longer one, whose share of the
+/// variance is small: heat that comes and goes in a gas whose collisions are otherwise independent. Fewer
+/// than eight blocks are not asked, so that a series below some hundred [`Estimate::correlated_samples`] has
+/// no such blocks: the estimate is then not converged, and its error the largest found.
 ///
 /// # Errors
 /// If there are fewer than two samples, or one is not finite or above 1e100 in size.
@@ -42,10 +54,53 @@ pub fn block_average(samples: &[f64]) -> Result<Estimate, ParameterError> {
     Ok(samples.iter().copied().collect::<BlockedMean>().estimate())
 }
 
-/// Decides that blocks of this size are long enough for a series of `count` samples, if the error of the blocked series is
-/// `growth` times that of the samples.
-pub(super) fn is_long_enough(size: f64, count: u64, growth: f64) -> bool {
+/// The standard error that blocks of one size seem to have.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BlockError {
+    pub(super) error: f64,
+    /// Uncertainty of the error itself, relative to it.
+    uncertainty: f64,
+    blocks: u64,
+}
+
+impl BlockError {
+    /// Takes the error of two blocks or more, as if they were independent.
+    pub(super) fn of(blocks: &RunningMean) -> Self {
+        let count = blocks.count();
+        // That of a standard deviation of normal numbers.
+        let uncertainty = 1.0 / (2.0 * (count - 1) as f64).sqrt();
+        Self { error: blocks.standard_error(), uncertainty, blocks: count }
+    }
+}
+
+/// Returns the error where it no longer grows with the size of the blocks, given for sizes 1, 2, 4, …; `None`
+/// if there is no such size.
+pub(super) fn plateau(levels: &[BlockError], samples: u64) -> Option<f64> {
+    let known = levels.iter().take_while(|level| level.blocks >= FEWEST_BLOCKS).count();
+    let levels = &levels[..known];
+    // Against blocks of half and of a quarter of the size: of two times of correlation the longer shows as a
+    // slow rise.
+    let is_flat = |at: usize| {
+        let here = levels[at];
+        let tolerances = [1.0, 1.5].map(|factor| 1.0 + factor * here.uncertainty);
+        let smaller = levels[..at].iter().rev();
+        smaller.zip(tolerances).all(|(before, tolerance)| here.error <= before.error * tolerance)
+    };
+    let is_the_last_rise = |at: usize| {
+        let least = |level: &BlockError| level.error * (1.0 - 2.0 * level.uncertainty);
+        levels[at + 1..].iter().all(|larger| least(larger) <= levels[at].error)
+    };
+    let is_plateau = |&at: &usize| {
+        let growth = levels[at].error / levels[0].error;
+        is_long_enough((1_u64 << at) as f64, samples, growth) && is_flat(at) && is_the_last_rise(at)
+    };
+    (1..known).find(is_plateau).map(|at| levels[at].error)
+}
+
+/// Decides that blocks of this size are long enough for a series with one time of correlation, if its error
+/// has grown to `growth` times that of independent samples.
+fn is_long_enough(size: f64, samples: u64, growth: f64) -> bool {
     let squared = growth * growth;
-    // Products of powers of two are exact, and a cube of 2^63 is far from overflow.
-    size * size * size > 2.0 * count as f64 * (squared * squared)
+    // Products of powers of two are exact, and the cube of 2^63 is far from overflow.
+    size * size * size > 2.0 * samples as f64 * (squared * squared)
 }

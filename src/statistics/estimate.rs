@@ -5,11 +5,12 @@ use std::fmt;
 /// Mean of samples with its standard error, and how far that error can be trusted.
 ///
 /// The error of correlated samples is taken from blocks ([`BlockedMean`](super::BlockedMean),
-/// [`block_average`](super::block_average)). A series that is too short for that gives an estimate that is not converged: its
-/// error is then a lower bound. Samples that are independent, or are taken to be, give an estimate that says so.
+/// [`block_average`](super::block_average)). A series that is too short for that gives an estimate that is
+/// not converged: its error is then a lower bound. Samples that are independent, or are taken to be, give an
+/// estimate that says so.
 ///
-/// Printed with a precision, the mean and the error have that many digits behind the point; without one, the error has two
-/// significant digits. What limits the error follows in words.
+/// Printed with a precision, the mean and the error have that many digits behind the point; without one, the
+/// error has two significant digits. What limits the error follows in words.
 ///
 /// ```
 /// use granular_edmd::statistics::{RunningMean, block_average};
@@ -98,8 +99,8 @@ impl Estimate {
         self.correlated_samples
     }
 
-    /// Returns true if the error can be taken at its word, and false if it is only a lower bound: a series too short for its
-    /// correlations, or fewer than two samples.
+    /// Returns true if the error can be taken at its word, and false if it is only a lower bound: a series
+    /// too short for its correlations, or fewer than two samples.
     pub const fn is_converged(&self) -> bool {
         self.samples >= 2 && !matches!(self.basis, Basis::ShortBlocks)
     }

@@ -4,8 +4,8 @@ use super::{Estimate, Moments};
 
 /// Mean, variance and standard error of numbers that come one by one (Welford 1962).
 ///
-/// The standard error is that of independent numbers; for correlated ones, as the samples or collisions of one run, it is too
-/// small: see [`BlockedMean`](super::BlockedMean).
+/// The standard error is that of independent numbers; for correlated ones, as the samples or collisions of
+/// one run, it is too small: see [`BlockedMean`](super::BlockedMean).
 ///
 /// ```
 /// use granular_edmd::statistics::RunningMean;
@@ -51,7 +51,8 @@ impl RunningMean {
         self.variance().sqrt()
     }
 
-    /// Returns the standard error of the mean of independent numbers, `$\sqrt{\mathrm{variance}/n}$`; 0 of fewer than two.
+    /// Returns the standard error of the mean of independent numbers, `$\sqrt{\mathrm{variance}/n}$`; 0 of
+    /// fewer than two.
     pub fn standard_error(&self) -> f64 {
         if self.0.weight < 2.0 { 0.0 } else { (self.variance() / self.0.weight).sqrt() }
     }

@@ -43,7 +43,7 @@ fn clusters_know_their_places_sizes_and_spreads() -> Outcome {
     assert!(near(first.spread(DVec2::X), 2_f64.sqrt()) && near(first.spread(DVec2::Y), 0.5_f64.sqrt()));
     assert!(near(second.spread(slant), 2.0) && near(second.spread(slant.perp()), 0.0));
     assert!(near(second.spread(DVec2::new(0.6, 0.8)), 1.4 * 2_f64.sqrt()));
-    // Along the line of the centres: variances 2 of four points and 2 of five.
+    // Along the line of the centers: variances 2 of four points and 2 of five.
     assert!(near(found.separation(0.0), 10.0 / 2_f64.sqrt()) && near(found.separation(4.0), 2.5));
     assert_eq!(KMeans::new(1, 1)?.fit(&cross)?.separation(0.0), f64::INFINITY);
     let pairs = [-1.0, 1.0, 9.0, 11.0, 29.0, 31.0].map(|x| at(x, 0.0));
@@ -100,7 +100,7 @@ fn k_means_reaches_the_best_partition_of_few_points() -> Outcome {
     Ok(())
 }
 
-/// One descent ends where every point is nearest to the centre of its own cluster, and more of them end no worse.
+/// One descent ends where every point is nearest to the center of its own cluster, and more of them end no worse.
 #[test]
 fn one_descent_ends_at_rest_and_more_end_no_worse() -> Outcome {
     let points = Random::new(1).cloud((0.0, 0.0), 1.0, 100);
@@ -123,7 +123,7 @@ fn one_descent_ends_at_rest_and_more_end_no_worse() -> Outcome {
     Ok(())
 }
 
-/// The first centres are far from each other: of four distant groups none is left without.
+/// The first centers are far from each other: of four distant groups none is left without.
 #[test]
 fn one_descent_finds_groups_that_are_far_apart() -> Outcome {
     let corners = [(0.0, 0.0), (1e6, 0.0), (0.0, 1e6), (1e6, 1e6)];

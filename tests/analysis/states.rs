@@ -20,7 +20,7 @@ fn clusters_of_figure_4_are_found_and_named() -> Outcome {
         let points = figure_4(seed, [100, 150, 250]);
         let found = StateCriteria::default().classify(&orders(&points), NOISE, None)?;
         assert_eq!(found.clusters().len(), 3);
-        // A point of one cloud nearer to another's centre is 4.9 spreads out.
+        // A point of one cloud nearer to another's center is 4.9 spreads out.
         for (state, weight) in [
             (ConvectiveState::ClockwiseRoll, 0.2),
             (ConvectiveState::CounterclockwiseRoll, 0.3),

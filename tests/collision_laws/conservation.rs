@@ -18,7 +18,7 @@ fn momentum_is_conserved(before: (&Disk, &Disk), after: (&Disk, &Disk)) -> Resul
     Ok(())
 }
 
-/// The same about `point`, with the arms of the centres as further factors.
+/// The same about `point`, with the arms of the centers as further factors.
 fn angular_momentum_is_conserved(
     point: DVec2,
     before: &[&Disk],

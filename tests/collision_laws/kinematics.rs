@@ -13,7 +13,7 @@ pub(crate) fn normal(first: &Disk, second: &Disk) -> DVec2 {
     line / line.x.hypot(line.y)
 }
 
-/// Velocity of the point of `disk` at `arm` from its centre, `$\vec v + \vec\omega\times\vec r$`.
+/// Velocity of the point of `disk` at `arm` from its center, `$\vec v + \vec\omega\times\vec r$`.
 pub(crate) fn surface_velocity(disk: &Disk, arm: DVec2) -> DVec2 {
     disk.velocity() + disk.angular_velocity() * DVec2::new(-arm.y, arm.x)
 }

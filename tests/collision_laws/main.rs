@@ -2,6 +2,8 @@
 //! symmetry over hostile inputs; worked collisions; the checks for rules of one's own, against planted
 //! faults; the contact-duration model; refused parameters and files.
 
+#[path = "../support/cases.rs"]
+mod cases;
 mod conservation;
 mod contact_duration;
 mod energy;

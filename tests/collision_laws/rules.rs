@@ -5,17 +5,12 @@ use granular_edmd::collision::{
 };
 use granular_edmd::strategies::decades;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
+
+use crate::cases;
 
 /// The same cases on every run and machine.
 pub(crate) fn config() -> ProptestConfig {
-    ProptestConfig {
-        cases: 500,
-        rng_seed: RngSeed::Fixed(72_011_305),
-        failure_persistence: None,
-        max_global_rejects: 1_000_000,
-        ..ProptestConfig::default()
-    }
+    ProptestConfig { max_global_rejects: 1_000_000, ..cases::config(500) }
 }
 
 fn inelasticity(top: f64) -> impl Strategy<Value = f64> {

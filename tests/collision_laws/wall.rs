@@ -76,7 +76,7 @@ proptest! {
         let kick = normal * impulse.normal() + normal.perp() * impulse.tangential();
         let size = momentum(&disk).length() + momentum(&bounced).length();
         prop_assert!((momentum(&bounced) - momentum(&disk) - kick).length() <= 8.0 * EPSILON * size);
-        // The arm is taken from the centre: the position of the disk is another matter.
+        // The arm is taken from the center: the position of the disk is another matter.
         let centred = |disk: &Disk| disk.with_position(DVec2::ZERO).unwrap();
         let (disk, bounced) = (centred(&disk), centred(&bounced));
         let touch = -normal * disk.radius();

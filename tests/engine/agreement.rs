@@ -1,10 +1,7 @@
 //! The same inputs give the same bits: under every scheduler, whoever watches, and however a run is cut.
 
-use granular_edmd::boundary::Container;
-use granular_edmd::collision::Elastic;
 use granular_edmd::observable::{CollisionCounts, EnergyChange, OrderParameters, SampleTimes, Series};
 use granular_edmd::scheduler::{EventScheduler, LinearScan, TournamentTree};
-use granular_edmd::{Simulation, initial};
 use proptest::prelude::*;
 
 use crate::setups::{config, history, setup};
@@ -61,23 +58,33 @@ proptest! {
     }
 }
 
-/// So many disks that the engine chooses the other scheduler, and looks ahead for what comes next.
 #[cfg(feature = "serde")]
-#[test]
-fn many_disks_resume_to_the_same_bits() {
-    let container = Container::closed(3600.0, 60.0).unwrap();
-    let disks = initial::lattice(&container, 60_000, 0.5).unwrap();
-    let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
-    let mut run = Simulation::builder(Elastic, container.clone()).disks(disks).gravity(0.1).build().unwrap();
-    run.run_until(0.2, &mut ()).unwrap();
-    let saved = run.checkpoint();
-    let mut same = Simulation::resume(&saved, Elastic, container.clone()).build().unwrap();
-    let mut tree =
-        Simulation::resume(&saved, Elastic, container).scheduler(TournamentTree::default()).build().unwrap();
-    run.run_until(0.6, &mut ()).unwrap();
-    same.run_until(0.6, &mut ()).unwrap();
-    tree.run_until(0.6, &mut ()).unwrap();
-    assert!(run.counters().collisions > 1000, "{:?}", run.counters());
-    assert_eq!(run.disks(), same.disks());
-    assert_eq!(run.disks(), tree.disks());
+mod resumed {
+    use granular_edmd::boundary::Container;
+    use granular_edmd::collision::Elastic;
+    use granular_edmd::scheduler::TournamentTree;
+    use granular_edmd::{Simulation, initial};
+
+    /// So many disks that the engine chooses the other scheduler, and looks ahead for what comes next.
+    #[test]
+    fn many_disks_resume_to_the_same_bits() {
+        let container = Container::closed(3600.0, 60.0).unwrap();
+        let disks = initial::lattice(&container, 60_000, 0.5).unwrap();
+        let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
+        let mut run =
+            Simulation::builder(Elastic, container.clone()).disks(disks).gravity(0.1).build().unwrap();
+        run.run_until(0.2, &mut ()).unwrap();
+        let saved = run.checkpoint();
+        let mut same = Simulation::resume(&saved, Elastic, container.clone()).build().unwrap();
+        let mut tree = Simulation::resume(&saved, Elastic, container)
+            .scheduler(TournamentTree::default())
+            .build()
+            .unwrap();
+        run.run_until(0.6, &mut ()).unwrap();
+        same.run_until(0.6, &mut ()).unwrap();
+        tree.run_until(0.6, &mut ()).unwrap();
+        assert!(run.counters().collisions > 1000, "{:?}", run.counters());
+        assert_eq!(run.disks(), same.disks());
+        assert_eq!(run.disks(), tree.disks());
+    }
 }

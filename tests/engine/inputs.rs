@@ -36,7 +36,7 @@ fn containers_refuse_sizes_that_are_none() {
         .unwrap()
         .with_motion(Wall::Lid, BiParabolic::new(0.1, 1.0).unwrap())
         .unwrap_err();
-    assert!(error.to_string().contains("Lid"));
+    assert!(error.to_string().contains("lid"));
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn initial_states_are_accepted_by_the_builder() {
                 initial::random(&boundary, 12, 0.5, 6.0, 3).unwrap(),
             ] {
                 let builder = Simulation::builder(Elastic, boundary.clone()).disks(disks).start_time(start);
-                assert!(builder.build().is_ok(), "{:?}", boundary);
+                assert!(builder.build().is_ok(), "{boundary:?}");
             }
         }
     }

@@ -4,10 +4,23 @@
 mod agreement;
 mod balances;
 mod bouncing;
+#[path = "../support/cases.rs"]
+mod cases;
 mod changes;
+mod counting;
+mod extremes;
 mod inputs;
+mod late_times;
+mod lies;
 mod long_runs;
 mod oracle;
+mod order;
+mod parting;
+#[cfg(feature = "serde")]
+mod resuming;
+#[path = "../support/schedulers.rs"]
+mod schedulers;
 mod setups;
 mod steps;
+mod stopping;
 mod thermal;

@@ -9,20 +9,10 @@ use granular_edmd::simulation::SimulationBuilder;
 use granular_edmd::wall::{BiParabolic, Sinusoidal};
 use granular_edmd::{Disk, Simulation, initial};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
+
+pub(crate) use crate::cases::config;
 
 pub(crate) type Rule = ContactDuration<Frictional>;
-
-/// The same cases on every run and machine.
-pub(crate) fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        rng_seed: RngSeed::Fixed(72_011_305),
-        failure_persistence: None,
-        max_shrink_iters: 20,
-        ..ProptestConfig::default()
-    }
-}
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Base {

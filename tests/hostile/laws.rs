@@ -8,7 +8,7 @@ use granular_edmd::collision::{
 };
 use proptest::prelude::*;
 
-use crate::config::decades;
+use crate::cases::decades;
 
 pub(crate) type Rule = Arc<dyn CollisionRule + Send + Sync>;
 

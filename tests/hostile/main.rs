@@ -4,7 +4,8 @@
 //! The seeds are fixed. `PROPTEST_CASES` sets the number of cases, `PROPTEST_RNG_SEED` another seed: that is how these tests
 //! become runs of hours (docs/validation.md, “Hostile runs”).
 
-mod config;
+#[path = "../support/cases.rs"]
+mod cases;
 mod constructors;
 #[cfg(all(feature = "serde", unix))]
 mod faults;
@@ -13,6 +14,8 @@ mod few;
 mod files;
 #[cfg(all(feature = "serde", unix))]
 mod forged;
+#[cfg(all(feature = "serde", unix))]
+mod forged_systems;
 mod invariants;
 mod laws;
 #[cfg(all(feature = "serde", unix))]

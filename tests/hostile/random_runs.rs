@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 
-use crate::config::config;
+use crate::cases::config;
 use crate::schedulers::SCHEDULERS;
 use crate::script::{Actor, script};
 use crate::systems::system;

@@ -294,6 +294,7 @@ impl Actor {
     }
 
     #[cfg(not(feature = "serde"))]
+    #[allow(clippy::unnecessary_wraps, reason = "as the other one")]
     fn save(&mut self) -> Result<(), TestCaseError> {
         let _ = (self.resumes, self.resumed);
         Ok(())

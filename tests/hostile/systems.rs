@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use granular_edmd::boundary::Container;
 
-use crate::config::decades;
+use crate::cases::decades;
 use crate::laws::{Law, Rule, law};
 use crate::schedulers::Scheduler;
 use crate::walls::{Walls, walls};

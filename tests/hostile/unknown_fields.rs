@@ -7,7 +7,12 @@ use granular_edmd::boundary::{Boundary, Thermal};
 use granular_edmd::collision::{ContactDuration, Frictional, Rough, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::Maxwellian;
-use granular_edmd::observable::{Energies, Fields, OrderParameters, SampleTimes, Temperatures};
+use granular_edmd::observable::{
+    CenterOfMass, CollisionCounts, Energies, EnergyChange, EnergyChangeProfile, Fields, HeightProfile,
+    Observer, OrderParameters, SampleTimes, Series, Temperatures,
+};
+use granular_edmd::simulation::Checkpoint;
+use granular_edmd::statistics::BlockedMean;
 use granular_edmd::study::vibrated_box::{Base, Measurement, Sample, VibratedBox};
 use granular_edmd::study::{Axis, Course, Outcome, Plan, Protocol, Ramp};
 use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
@@ -59,8 +64,9 @@ fn refuses_intruders<T: DeserializeOwned>(value: &Value) {
     for changed in intruders {
         let error = serde_json::from_value::<T>(changed.clone()).err().map(|error| error.to_string());
         let error = error.unwrap_or_else(|| panic!("{changed}"));
-        // Beside the name of a choice, a field is a second choice.
-        assert!(error.contains("intruder") || error.contains("single key"), "{error}: {changed}");
+        // Beside the name of a choice, a field is a second choice; beside the numbers of walls, it is no number.
+        let reasons = ["intruder", "single key", "key to be a number"];
+        assert!(reasons.iter().any(|reason| error.contains(reason)), "{error}: {changed}");
     }
 }
 
@@ -98,6 +104,36 @@ fn what_was_measured_with_a_field_too_many_is_refused() {
 }
 
 #[test]
+fn measurements_with_a_field_too_many_are_refused() {
+    let mut run = resume(&checkpoint()).unwrap();
+    let domain = run.boundary().domain();
+    let times = SampleTimes::every(0.1).unwrap();
+    let region = granular_edmd::boundary::Region::new(DVec2::ZERO, DVec2::new(domain.width(), 10.0));
+    let mut series = Series::new((CenterOfMass, Energies), times);
+    let mut change = EnergyChange::default();
+    let mut counts = CollisionCounts::since(0.0);
+    let mut layers = EnergyChangeProfile::new(0.0, 10.0, 1, times.starting_at(0.3).unwrap()).unwrap();
+    let mut heights = HeightProfile::new(0.0, 10.0, 2, times).unwrap();
+    let mut fields = Fields::new(region, 1, 1, times).unwrap();
+    let end = run.time() + 5.0;
+    let mut all = (&mut series, &mut change, (&mut counts, &mut layers), &mut heights, &mut fields);
+    let all: &mut dyn Observer = &mut all;
+    run.run_until(end, all).unwrap();
+    assert!(change.disks().count() > 2);
+    refuses(&times);
+    refuses(&change);
+    refuses(&counts);
+    refuses(&layers);
+    refuses(&heights);
+    refuses(&fields);
+    refuses_intruders::<Series<(CenterOfMass, Energies)>>(&serde_json::to_value(&series).unwrap());
+    let blocked = BlockedMean::from_iter([1.0, 2.0, 3.0]);
+    refuses(&blocked);
+    refuses(&blocked.ungrouped());
+    refuses(&blocked.estimate());
+}
+
+#[test]
 fn plans_and_records_with_a_field_too_many_are_refused() {
     refuses(&plan());
     refuses(&Ramp::new("friction", [0.1], Course::Down));
@@ -117,6 +153,11 @@ fn plans_and_records_with_a_field_too_many_are_refused() {
     measurement["intruder"] = json!(1);
     assert!(serde_json::from_value::<Measurement>(measurement).unwrap_err().to_string().contains("intruder"));
     refuses(&Outcome::Stopped { time: 1.0 });
+    // A checkpoint is bytes in any format, so that nothing gets past its version and checksum.
+    let mut state = serde_json::to_value(checkpoint()).unwrap();
+    state.as_array_mut().unwrap().push(json!(1));
+    let error = serde_json::from_value::<Checkpoint>(state).unwrap_err();
+    assert!(error.to_string().contains("damaged"), "{error}");
 }
 
 /// The same in TOML, at each place of a plan.

@@ -4,7 +4,7 @@ use granular_edmd::boundary::{Container, Thermal, Wall, WallError};
 use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
 use proptest::prelude::*;
 
-use crate::config::decades;
+use crate::cases::decades;
 use crate::laws::{Law, law};
 
 #[derive(Debug, Clone, Copy)]

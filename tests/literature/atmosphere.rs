@@ -33,7 +33,7 @@ fn packing_at(pressure: f64) -> f64 {
     low
 }
 
-/// Height of the centre of mass at temperature 1 if the pressure were that of the local density: the weight above a height
+/// Height of the center of mass at temperature 1 if the pressure were that of the local density: the weight above a height
 /// is the pressure there, and so is nTZ; a layer of ds disks per width is ds/n high.
 fn local_height() -> f64 {
     let (layers, column) = (1000, DISKS as f64 / WIDTH);
@@ -73,19 +73,19 @@ fn an_isothermal_atmosphere_has_its_height_temperature_and_virial() -> Outcome {
     let average = |value: fn(&(Temperature, DVec2)) -> f64| {
         block_average(&series.values().iter().map(value).collect::<Vec<_>>())
     };
-    let centre = average(|(_, centre)| centre.y)?;
+    let center = average(|(_, center)| center.y)?;
     let vertical = average(|(temperature, _)| temperature.vertical)?;
     let translational = average(|(temperature, _)| temperature.translational())?;
     let rotational = average(|(temperature, _)| temperature.rotational)?;
-    println!("standard errors: Y {:.4}, T {:.4}", centre.standard_error(), translational.standard_error());
+    println!("standard errors: Y {:.4}, T {:.4}", center.standard_error(), translational.standard_error());
     // Standard errors 0.25 % of Y and 0.3 % of T; layers at the base are known to first order in density, the next is
     // some 0.1 of 2 %.
-    assert!(agrees("Y", centre.mean(), local_height() - layering(), 0.013));
+    assert!(agrees("Y", center.mean(), local_height() - layering(), 0.013));
     assert!(agrees("T", translational.mean(), 1.0, 0.015));
     assert!(agrees("T_rot", rotational.mean(), 1.0, 0.03));
     // The virial theorem holds for the very run: N<m v_y^2> and the pairs balance N m g (<y> - radius).
     let virial = DISKS as f64 * vertical.mean() + pairs / (end - start);
-    let weight = DISKS as f64 * GRAVITY * (centre.mean() - 0.5);
+    let weight = DISKS as f64 * GRAVITY * (center.mean() - 0.5);
     // Samples of v_y^2 and y between events: sqrt(2/(40 * 120 000)) = 0.1 % at most.
     assert!(agrees("virial", virial, weight, 0.005));
     Ok(())

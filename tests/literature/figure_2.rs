@@ -8,7 +8,7 @@ use granular_edmd::{Simulation, initial};
 
 use crate::Outcome;
 
-/// Height of the centre of mass and its standard error.
+/// Height of the center of mass and its standard error.
 fn height(friction: f64, base: Thermal) -> Result<(f64, f64), Box<dyn std::error::Error>> {
     let container = Container::open(25.0)?.with_temperature(Wall::Floor, base)?;
     let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 500, 0.5)?, 1.0, 1)?;
@@ -16,7 +16,7 @@ fn height(friction: f64, base: Thermal) -> Result<(f64, f64), Box<dyn std::error
     let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.002).seed(1).build()?;
     let mut series = Series::new(CenterOfMass, SampleTimes::every(50.0)?.starting_at(10_000.0)?);
     simulation.run_until(40_000.0, &mut series)?;
-    let heights: Vec<f64> = series.values().iter().map(|centre| centre.y).collect();
+    let heights: Vec<f64> = series.values().iter().map(|center| center.y).collect();
     let average = block_average(&heights)?;
     Ok((average.mean(), average.standard_error()))
 }

@@ -20,18 +20,18 @@ pub(crate) struct Gas {
 }
 
 impl Gas {
-    /// A gas of this packing fraction (of the height that centres can have), `aspect` times as wide as high.
+    /// A gas of this packing fraction (of the height that centers can have), `aspect` times as wide as high.
     pub(crate) fn of(count: usize, packing_fraction: f64, aspect: f64, seed: u64) -> Self {
         let clear = (0.25 * PI * count as f64 / packing_fraction / aspect).sqrt();
         Self { count, width: aspect * clear, height: clear + 1.0, seed }
     }
 
-    /// Area that centres can have.
+    /// Area that centers can have.
     pub(crate) fn area(&self) -> f64 {
         self.width * (self.height - 1.0)
     }
 
-    /// Disks per area that centres can have.
+    /// Disks per area that centers can have.
     pub(crate) fn density(&self) -> f64 {
         self.count as f64 / self.area()
     }

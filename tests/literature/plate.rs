@@ -89,7 +89,7 @@ fn shaken(restitution: f64, amplitude: f64, duration: f64) -> Result<Shaken, Box
     simulation.run_until(duration, &mut (&mut series, &mut energy))?;
     let values = series.values();
     let temperature = block_average(&values.iter().map(|(t, _)| t.translational()).collect::<Vec<_>>())?;
-    let height = block_average(&values.iter().map(|(_, centre)| centre.y).collect::<Vec<_>>())?;
+    let height = block_average(&values.iter().map(|(_, center)| center.y).collect::<Vec<_>>())?;
     Ok(Shaken {
         temperature: temperature.mean(),
         temperature_error: temperature.standard_error(),

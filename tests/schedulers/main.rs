@@ -1,5 +1,7 @@
 //! Every scheduler against the obvious one: by the public check, and over scripts that are shrunk when they fail.
 
+#[path = "../support/cases.rs"]
+mod cases;
 mod liars;
 #[path = "../support/schedulers.rs"]
 mod schedulers;
@@ -8,8 +10,8 @@ use granular_edmd::scheduler::{
     BucketQueue, BySize, EventScheduler, LinearScan, NOTHING_DUE, TournamentTree, laws,
 };
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
+use cases::config;
 use schedulers::SCHEDULERS;
 
 #[test]
@@ -36,16 +38,6 @@ fn a_borrowed_or_boxed_scheduler_is_the_same() {
     assert_eq!(laws::check(|| Box::new(Box::new(TournamentTree::new()))), Ok(()));
 }
 
-/// The same scripts on every run and machine.
-fn config() -> ProptestConfig {
-    ProptestConfig {
-        cases: 200,
-        rng_seed: RngSeed::Fixed(72_011_305),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
-}
-
 #[derive(Debug, Clone)]
 enum Operation {
     Reset(Vec<f64>),
@@ -67,7 +59,7 @@ fn time() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// None, few, powers of two and their neighbours, many.
+/// None, few, powers of two and their neighbors, many.
 fn times() -> impl Strategy<Value = Vec<f64>> {
     let count =
         prop_oneof![Just(0usize), Just(1), Just(2), 3..10usize, 15..18usize, 31..34usize, 60..200usize];
@@ -130,7 +122,7 @@ fn order(scheduler: &mut dyn EventScheduler, due: &[f64]) -> Vec<usize> {
 }
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(config(200))]
 
     #[test]
     fn each_scheduler_is_the_linear_scan(script in prop::collection::vec(operation(), 0..300)) {
@@ -168,7 +160,7 @@ fn change(disks: usize) -> impl Strategy<Value = Change> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 12, ..config() })]
+    #![proptest_config(config(12))]
 
     /// So many disks that they fill many buckets: old entries are left out, those that come back are found again,
     /// those set within the time of an open bucket are not missed, and looking ahead changes nothing.

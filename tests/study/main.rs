@@ -2,6 +2,8 @@
 
 #![cfg(feature = "serde")]
 
+#[path = "../support/cases.rs"]
+mod cases;
 mod damage;
 mod folders;
 mod interruption;

@@ -4,6 +4,7 @@ use granular_edmd::study::vibrated_box::VibratedBox;
 use granular_edmd::study::{Axis, Course, Plan, Protocol, Ramp};
 use proptest::prelude::*;
 
+use crate::cases::config;
 use crate::report::report;
 use crate::support::{AnyError, BASE, small_box};
 
@@ -106,7 +107,7 @@ fn plans_with_errors_are_refused_by_name() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(config(64))]
 
     /// Every number survives the file, to the last bit.
     #[test]

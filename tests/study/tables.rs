@@ -17,6 +17,11 @@ fn tables_have_a_row_for_each_thing() {
         ["ramp", "value", "leg", "inelasticity", "friction"]
     );
     assert_eq!(values[7].iter().take(5).collect::<Vec<_>>(), ["1", "2", "up", "0.02", "0.3"]);
+    // Six samples tell no error: the last column names all that are lower bounds.
+    assert_eq!(header.iter().next_back(), Some("not_converged"));
+    let all = "one_roll one_roll_magnitude two_rolls height translational_energy rotational_energy \
+               vertical_temperature energy_change";
+    assert_eq!(values[7].iter().next_back(), Some(all));
     assert_eq!(rows("samples.csv").1.len(), 60);
     assert_eq!(rows("profiles.csv").1.len(), 300);
 }

@@ -20,6 +20,9 @@ fn a_study_records_what_it_was_asked_for() {
         let area: f64 = record.profile().map(|(_, fraction)| fraction * 10.0).sum();
         approx::assert_relative_eq!(area, 30.0 * std::f64::consts::FRAC_PI_4, max_relative = 1e-3);
         assert!(record.energy_change().mean() < 0.0 && record.energy_change().standard_error() > 0.0);
+        assert!(
+            !record.energy_change().is_converged() && !record.mean(|sample| sample.height).is_converged()
+        );
     }
     let friction: Vec<_> = records[..5].iter().map(|r| r.experiment().friction).collect();
     assert_eq!(friction, [0.01, 0.1, 0.3, 0.1, 0.01]);

@@ -2,6 +2,7 @@
 
 mod boundaries;
 mod containers;
+mod engine;
 mod fingerprints;
 mod motions;
 mod names;

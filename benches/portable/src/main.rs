@@ -71,8 +71,8 @@ fn run(
         .build()?;
     first.run_until(start + 0.5 * duration, &mut ())?;
     let bytes = first.checkpoint().to_bytes()?;
-    let mut second =
-        Simulation::resume(&Checkpoint::from_bytes(&bytes)?, rule, container()?, BucketQueue::new())?;
+    let saved = Checkpoint::from_bytes(&bytes)?;
+    let mut second = Simulation::resume(&saved, rule, container()?).scheduler(BucketQueue::new()).build()?;
     second.set_rule(self::rule(0.05, 0.5)?);
     second.set_gravity(1.5 * gravity)?;
     second.run_until(start + duration, &mut ())?;

@@ -184,6 +184,8 @@ fn check_limits<B: Boundary + ?Sized>(
 }
 
 /// Checks that the same flight, told from another time origin, touches at the same absolute time.
+///
+/// A grazing touch, or one at the very end, may be there or not by rounding.
 fn check_origin<B: Boundary + ?Sized>(
     trial: &mut Trial<'_, B>,
     flight: &Flight,
@@ -199,22 +201,21 @@ fn check_origin<B: Boundary + ?Sized>(
     let found = trial.boundary.first_touch(&shifted, until + shift);
     let other = found.map(|touch| check_place(trial, &shifted, touch)).transpose();
     trial.set_origin(origin);
-    let other = other?;
-    let met = [meeting, other.as_ref()];
-    // A grazing touch, or one at the very end, may be there or not by rounding.
-    let is_close = |meeting: &Meeting, time: f64| until - time < 2.0 * slack(trial, meeting);
-    let is_certain = |meeting: &Meeting, time: f64| !meeting.is_grazing && !is_close(meeting, time);
-    let agree = match met {
-        [None, None] => true,
-        [Some(one), None] => !is_certain(one, one.touch.time),
-        [None, Some(other)] => !is_certain(other, other.touch.time - shift),
-        [Some(one), Some(other)] => {
-            let apart = (one.touch.time - (other.touch.time - shift)).abs();
+    // As told from the first origin.
+    let other = other?
+        .map(|other| Meeting { touch: Touch::new(other.touch.time - shift, other.touch.wall), ..other });
+    let agree = match (meeting, &other) {
+        (None, None) => true,
+        (Some(one), None) | (None, Some(one)) => {
+            one.is_grazing || until - one.touch.time < 2.0 * slack(trial, one)
+        }
+        (Some(one), Some(other)) => {
+            let apart = (one.touch.time - other.touch.time).abs();
             one.is_grazing || other.is_grazing || apart <= slack(trial, one)
         }
     };
-    let time = |meeting: Option<&Meeting>, shift: f64| meeting.map(|meeting| meeting.touch.time - shift);
-    let (before, after) = (time(met[0], 0.0), time(met[1], shift));
+    let time = |meeting: &Meeting| meeting.touch.time;
+    let (before, after) = (meeting.map(time), other.as_ref().map(time));
     if agree { Ok(()) } else { Err(Violation::TimeOrigin { origin, shift, before, after, flight: *flight }) }
 }
 

@@ -10,7 +10,7 @@ use crate::boundary::{Domain, Region};
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Violation {
-    /// The domain is no rectangle that is open above at most.
+    /// The domain is not a rectangle with finite sides and a finite bottom; its top may be infinite.
     #[error("the domain {domain:?} is not a rectangle with finite sides and a finite bottom")]
     Domain {
         /// The domain.
@@ -69,7 +69,7 @@ pub enum Violation {
     /// A disk leaves the domain without a touch.
     #[error("a disk leaves the domain without a touch: at time {time} it is at {place}, on {flight:?}")]
     LeftDomain {
-        /// Centre of the disk.
+        /// Center of the disk.
         place: DVec2,
         /// The time.
         time: f64,
@@ -133,7 +133,7 @@ pub enum Violation {
         wall: usize,
         /// The normal.
         normal: DVec2,
-        /// Centre of the disk.
+        /// Center of the disk.
         place: DVec2,
         /// The time.
         time: f64,
@@ -147,7 +147,7 @@ pub enum Violation {
         wall: usize,
         /// The normal.
         normal: DVec2,
-        /// Centre of the disk.
+        /// Center of the disk.
         place: DVec2,
         /// The time.
         time: f64,
@@ -169,7 +169,7 @@ pub enum Violation {
         region: Region,
         /// Radius of the disk.
         radius: f64,
-        /// Centre of the disk at the touch.
+        /// Center of the disk at the touch.
         place: DVec2,
     },
     /// The same flight told from another time origin touches at another time.

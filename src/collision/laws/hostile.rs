@@ -15,7 +15,7 @@ const SLIP_SPEEDS: [f64; 4] = [1e-30, 1e-6, 1.0, 1e60];
 /// Reduced masses, of the lightest and the heaviest disks and between.
 const MASSES: [f64; 5] = [1e-30, 1e-3, 0.5, 1e3, 1e30];
 
-/// Tangential mass beside the normal one: all mass near the centre, homogeneous, a ring, and the bound.
+/// Tangential mass beside the normal one: all mass near the center, homogeneous, a ring, and the bound.
 const MASS_RATIOS: [f64; 4] = [1e-6, 1.0 / 3.0, 0.5, 1.0];
 
 /// Times since the last collision: now, just before, before, never.

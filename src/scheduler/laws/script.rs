@@ -36,7 +36,7 @@ pub(super) struct Script {
     next: fn(&mut Stage, usize, f64) -> Operation,
 }
 
-/// None, few, powers of two and of four and their neighbours.
+/// None, few, powers of two and of four and their neighbors.
 const FEW: &[usize] = &[0, 1, 2, 3, 4, 5, 15, 16, 17, 63, 64, 65, 130];
 
 /// So many that a scheduler which works in batches goes through several of them within the steps of a script.

@@ -26,7 +26,7 @@ pub(super) struct Block([u32; SLOTS]);
 impl Block {
     pub(super) const EMPTY: Self = Self([0; SLOTS]);
 
-    /// How many slots are taken, or [`CROWDED`].
+    /// Number of slots taken, or [`CROWDED`].
     #[inline]
     pub(super) fn count(&self) -> usize {
         ((self.0[0] & !AT_WALL) / ONE) as usize
@@ -87,7 +87,7 @@ impl Block {
         self.0[self.count().wrapping_sub(1) % SLOTS] & DISK
     }
 
-    /// What is above the disk in the first slot.
+    /// Bits above the disk in the first slot.
     #[inline]
     fn above(&self) -> u32 {
         self.0[0] & !DISK

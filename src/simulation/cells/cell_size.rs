@@ -1,8 +1,8 @@
-//! How large neighbour cells are.
+//! Sizes of neighbor cells.
 
-/// How large the cells are: small ones hold fewer neighbours, large ones are passed less often.
+/// Size of the cells: small ones hold fewer neighbors, large ones are passed less often.
 ///
-/// Where disks crowd, the smallest gain 15 % over the next; in a dilute gas the largest do.
+/// Where disks crowd, the smallest are the fastest; in a dilute gas, the largest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) enum CellSize {

@@ -1,20 +1,22 @@
-//! Which disks are in which cell.
+//! The disks of each cell.
 
 use super::block::{Block, CROWDED, SLOTS};
 use crate::prefetch::prefetch;
 
-/// Disks without room in their cell, and one for so many cells, from which on every cell gets more room.
+/// Disks that may lie outside the blocks of their cells before all cells get more blocks: this many ...
 const FEW: usize = 16;
+
+/// ... and one more for each group of this many cells.
 const CELLS: usize = 1024;
 
 /// The disks of each cell, by the index of the cell.
 ///
-/// Every cell has the same number of blocks, filled from the first on. The few disks for which their cell has no room are kept
-/// in a list, which is searched: nearly always it is short, and a cell says whether it has some there.
+/// Every cell has the same number of blocks, filled from the first on. A disk for which its cell has no room goes to a list. The
+/// list is searched from end to end, but it is short, and only for cells that are marked to have disks there.
 #[derive(Debug, Clone)]
 pub(super) struct Contents {
     blocks: Vec<Block>,
-    /// How many blocks there are in each cell.
+    /// Number of blocks in each cell.
     depth: usize,
     /// Disks that do not fit into the blocks of their cell, in no order.
     outside: Vec<Outside>,
@@ -28,13 +30,13 @@ struct Outside {
 }
 
 impl Contents {
-    /// So many empty cells of so many blocks.
+    /// Makes this many empty cells of this many blocks.
     pub(super) fn empty(cells: usize, depth: usize) -> Self {
         let outside = Vec::with_capacity(FEW + cells / CELLS);
         Self { blocks: vec![Block::EMPTY; cells * depth], depth, outside }
     }
 
-    /// How many cells there are.
+    /// Number of cells.
     fn cells(&self) -> usize {
         self.blocks.len() / self.depth
     }
@@ -43,7 +45,7 @@ impl Contents {
         self.blocks[cell * self.depth].mark_wall();
     }
 
-    /// Whether disks in this cell can touch a wall.
+    /// Tells whether disks in this cell can touch a wall.
     #[inline]
     pub(super) fn is_at_wall(&self, cell: usize) -> bool {
         self.blocks[cell * self.depth].is_at_wall()

@@ -1,4 +1,4 @@
-//! The grid of neighbour cells: how large they are and where each is.
+//! The grid of neighbor cells: how large they are and where each is.
 
 use glam::DVec2;
 
@@ -16,7 +16,7 @@ pub(in crate::simulation) const SPARE_CELLS: f64 = 4096.0;
 /// Least size of a cell in diameters: above 1 by more than rounding.
 const LEAST_PITCH: f64 = 1.000_001;
 
-/// Columns and rows of cells, and around them a ring of ghosts, so that every cell has eight neighbours.
+/// Columns and rows of cells, and around them a ring of ghosts, so that every cell has eight neighbors.
 ///
 /// Cells of one column are next to each other in memory: a wide, low box is the usual large system, and what is near in it
 /// is then near in memory, too.
@@ -28,7 +28,7 @@ pub(in crate::simulation) struct Grid {
     /// `column_edges[c - 1]` and `column_edges[c]` bound column `c`; infinite at walls.
     column_edges: Vec<f64>,
     row_edges: Vec<f64>,
-    /// How far beyond its edges a cell keeps its disks, so that fewer pass from one to another.
+    /// Distance beyond its edges up to which a cell keeps its disks, so that fewer pass from one to another.
     margin: DVec2,
     /// Width of the domain if its sides are periodic, else 0.
     period: f64,
@@ -73,7 +73,7 @@ impl Layout {
         let along = |length: f64, pitch: f64| (length / pitch).floor().max(1.0);
         let mut columns = along(width, pitch).min(most.floor());
         if domain.periodic && columns < 4.0 {
-            // With fewer columns a disk could meet a neighbour on both sides.
+            // With fewer columns a disk could meet a neighbor on both sides.
             columns = 4.0;
             if width < columns * LEAST_PITCH * diameter {
                 return None;
@@ -86,7 +86,7 @@ impl Layout {
     }
 }
 
-/// How high the even part of the grid of an open container reaches.
+/// Height of the even part of the grid of an open container.
 fn open_height(domain: &Domain, highest: f64, diameter: f64) -> f64 {
     2.0 * (highest - domain.bottom).max(0.0) + 64.0 * diameter
 }
@@ -117,7 +117,7 @@ impl Grid {
         (1..=columns).flat_map(move |column| (1..=rows).map(move |row| Place { column, row }))
     }
 
-    /// How many cells there are, ring included.
+    /// Number of cells, ring included.
     pub(in crate::simulation) fn len(&self) -> usize {
         self.stride() * (self.layout.columns as usize + 2)
     }
@@ -126,7 +126,7 @@ impl Grid {
         self.layout.cell_size
     }
 
-    /// Cells in a column, ring included: how far apart in memory neighbours in a row are.
+    /// Cells in a column, ring included: how far apart in memory neighbors in a row are.
     #[inline]
     pub(in crate::simulation) fn stride(&self) -> usize {
         self.stride as usize
@@ -179,9 +179,9 @@ impl Grid {
         }
     }
 
-    /// The neighbour so many columns to the right and rows up, and what going there adds to `x`.
+    /// The neighbor so many columns to the right and rows up, and what going there adds to `x`.
     #[inline]
-    pub(in crate::simulation) fn neighbour(&self, place: Place, (right, up): (i32, i32)) -> (Place, f64) {
+    pub(in crate::simulation) fn neighbor(&self, place: Place, (right, up): (i32, i32)) -> (Place, f64) {
         let mut to =
             Place { column: place.column.wrapping_add_signed(right), row: place.row.wrapping_add_signed(up) };
         let mut shift = 0.0;
@@ -196,13 +196,13 @@ impl Grid {
     }
 }
 
-/// How far beyond its edges a cell can keep disks that meet no others than those in the cells around it.
+/// Distance beyond its edges up to which a cell can keep disks that collide only with those in the cells around it.
 ///
-/// So a disk that is turned back soon, or moves to and fro at an edge, passes no cell: a quarter fewer passages.
+/// A disk that turns back soon, or moves to and fro at an edge, then stays in its cell.
 fn margin(domain: &Domain, layout: &Layout, diameter: f64) -> DVec2 {
     let mut margin = (0.5 * (layout.pitch - LEAST_PITCH * diameter)).max(DVec2::ZERO);
     if domain.periodic && layout.columns < 6 {
-        // Neighbours could be more than half of a period apart.
+        // Neighbors could be more than half of a period apart.
         margin.x = 0.0;
     }
     margin

@@ -54,7 +54,7 @@ pub(super) fn check_places(saved: &Saved, grid: &Grid, bodies: &Bodies) -> Resul
     check(disks().all(meets), "a disk collides with one that it does not touch")
 }
 
-/// Whether the grid is one for the domain and disks of at most this diameter, and every disk is in it.
+/// Tells whether the grid is one for the domain and disks of at most this diameter, and every disk is in it.
 pub(super) fn suits(saved: &Saved, diameter: f64) -> bool {
     let Layout { columns, rows, pitch, .. } = saved.layout;
     let most = 2.0 * (CELLS_PER_DISK * saved.places.len() as f64 + SPARE_CELLS);
@@ -73,12 +73,12 @@ pub(super) fn suits(saved: &Saved, diameter: f64) -> bool {
         && saved.places.iter().all(|&place| is_cell(&saved.layout, place))
 }
 
-/// Whether a place is one of the cells, not of the ring.
+/// Tells whether a place is one of the cells, not of the ring.
 fn is_cell(layout: &Layout, place: Place) -> bool {
     (1..=layout.columns).contains(&place.column) && (1..=layout.rows).contains(&place.row)
 }
 
-/// Whether it is a power of two: others would not add up without rounding.
+/// Tells whether it is a power of two: others would not add up without rounding.
 fn is_epoch_length(length: f64) -> bool {
     const FRACTION: u64 = (1 << 52) - 1;
     length.is_normal() && length > 0.0 && length.to_bits() & FRACTION == 0
@@ -92,7 +92,7 @@ fn is_trajectory(trajectory: &Trajectory) -> bool {
     is_bounded(trajectory.position) && is_bounded(trajectory.velocity)
 }
 
-/// Whether a rotation is bounded, and its last collision past or never.
+/// Tells whether a rotation is bounded, and its last collision past or never.
 fn is_spin(spin: &Spin, now: f64) -> bool {
     spin.angle.is_finite() && spin.angular_velocity.abs() <= LARGEST && spin.last_collision <= now
 }
@@ -123,7 +123,7 @@ fn are_forecasts(saved: &Saved, walls: usize) -> bool {
     })
 }
 
-/// Whether a disk at this position belongs into this cell.
+/// Tells whether a disk at this position belongs into this cell.
 fn holds(grid: &Grid, place: Place, position: DVec2) -> bool {
     let (region, slack) = (grid.region(place), SLACK * grid.layout.pitch);
     position.is_finite()
@@ -131,7 +131,7 @@ fn holds(grid: &Grid, place: Place, position: DVec2) -> bool {
         && position.cmple(region.max + slack).all()
 }
 
-/// Whether the disks can be in their cells without overlaps.
+/// Tells whether the disks can be in their cells without overlaps.
 fn has_room(saved: &Saved, grid: &Grid, bodies: &Bodies) -> bool {
     let domain = &saved.domain;
     let mut cells = vec![(0.0, 0.0); grid.len()];
@@ -148,7 +148,7 @@ fn has_room(saved: &Saved, grid: &Grid, bodies: &Bodies) -> bool {
     })
 }
 
-/// Whether the flight of a disk in its cell ends at the edge that it names, or at a wall that is not too far.
+/// Tells whether the flight of a disk in its cell ends at the edge that it names, or at a wall that is not too far.
 fn ends_where_it_can(
     saved: &Saved,
     grid: &Grid,
@@ -174,10 +174,10 @@ fn ends_where_it_can(
     };
     // Open containers have rows that grow with the height.
     let size = size.max(SLACK * position.y.abs());
-    gap.abs() <= SLACK * size && is_cell(&grid.layout, grid.neighbour(place, exit.direction()).0)
+    gap.abs() <= SLACK * size && is_cell(&grid.layout, grid.neighbor(place, exit.direction()).0)
 }
 
-/// Whether a disk touches its partner when it collides with it; a prediction out of date is made anew when it comes up.
+/// Tells whether a disk touches its partner when it collides with it; a prediction out of date is made anew when it comes up.
 fn meets_its_partner(saved: &Saved, bodies: &Bodies, disk: usize, forecast: &Forecast) -> bool {
     let Forecast { collision_due, partner, partner_collisions, .. } = *forecast;
     let is_soon = collision_due - saved.now <= MOST_EPOCHS * saved.epoch_length;

@@ -9,14 +9,9 @@
 use glam::DVec2;
 
 use super::forecast::Forecast;
+use super::kinds::Kinds;
 use crate::Disk;
 use crate::collision::{Body, Material};
-
-/// Diameters that a typical disk goes, or falls, in an epoch.
-const DIAMETERS: f64 = 64.0;
-
-/// The factor by which a disk may be faster than a typical one before it decides how often the epoch moves.
-const FASTER: f64 = 16.0;
 
 /// A straight trajectory in the free-fall frame; one row is one 32-byte load.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,66 +79,7 @@ pub(in crate::simulation) struct Bodies {
     pub(in crate::simulation) gravity: f64,
     kinds: Kinds,
     /// The diameter in which the length of an epoch is measured.
-    typical_diameter: f64,
-}
-
-/// Radius, mass and inertia of a disk: all that does not change.
-#[derive(Debug, Clone, Copy)]
-struct Kind {
-    /// A disk of this kind at rest at the origin.
-    disk: Disk,
-    material: Material,
-}
-
-impl Kind {
-    fn of(disk: &Disk) -> Self {
-        let disk = disk.with_motion(DVec2::ZERO, DVec2::ZERO, 0.0, 0.0);
-        Self { disk, material: Material::of(&disk) }
-    }
-}
-
-/// One kind for all disks where they are equal, so that it stays in cache.
-#[derive(Debug, Clone)]
-enum Kinds {
-    Same(Kind),
-    Each(Vec<Kind>),
-}
-
-impl Kinds {
-    fn of(disks: &[Disk]) -> Self {
-        match disks.split_first() {
-            Some((first, rest)) if rest.iter().all(|disk| is_alike(disk, first)) => {
-                Self::Same(Kind::of(first))
-            }
-            _ => Self::Each(disks.iter().map(Kind::of).collect()),
-        }
-    }
-
-    /// The median diameter, which does not depend on the order of the disks; 0 without disks.
-    fn typical_diameter(&self) -> f64 {
-        match self {
-            Self::Same(kind) => 2.0 * kind.material.radius,
-            Self::Each(each) if each.is_empty() => 0.0,
-            Self::Each(each) => {
-                let mut radii: Vec<f64> = each.iter().map(|kind| kind.material.radius).collect();
-                let middle = radii.len() / 2;
-                2.0 * *radii.select_nth_unstable_by(middle, f64::total_cmp).1
-            }
-        }
-    }
-
-    #[inline]
-    fn get(&self, disk: usize) -> &Kind {
-        match self {
-            Self::Same(kind) => kind,
-            Self::Each(each) => &each[disk],
-        }
-    }
-}
-
-fn is_alike(disk: &Disk, other: &Disk) -> bool {
-    let properties = |disk: &Disk| [disk.radius(), disk.mass(), disk.inertia_factor()];
-    properties(disk) == properties(other)
+    pub(super) typical_diameter: f64,
 }
 
 impl Bodies {
@@ -172,20 +108,14 @@ impl Bodies {
         Self::of_kinds(Kinds::of(kinds), gravity, particles, spins)
     }
 
-    /// What [`Self::restored`] takes.
+    /// The kinds that [`Self::restored`] takes.
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn kinds(&self) -> Vec<Disk> {
-        match &self.kinds {
-            Kinds::Same(kind) => vec![kind.disk],
-            Kinds::Each(each) => each.iter().map(|kind| kind.disk).collect(),
-        }
+        self.kinds.disks()
     }
 
     pub(in crate::simulation) fn largest_radius(&self) -> f64 {
-        match &self.kinds {
-            Kinds::Same(kind) => kind.disk.radius(),
-            Kinds::Each(each) => each.iter().map(|kind| kind.disk.radius()).fold(0.0, f64::max),
-        }
+        self.kinds.largest_radius()
     }
 
     pub(in crate::simulation) fn len(&self) -> usize {
@@ -211,10 +141,7 @@ impl Bodies {
     /// The diameter, if all disks have the same.
     #[inline]
     pub(in crate::simulation) fn common_diameter(&self) -> Option<f64> {
-        match &self.kinds {
-            Kinds::Same(kind) => Some(2.0 * kind.material.radius),
-            Kinds::Each(_) => None,
-        }
+        self.kinds.common_diameter()
     }
 
     /// Displacement and velocity that gravity has added by this time offset.
@@ -315,54 +242,5 @@ impl Bodies {
             particle.trajectory.position.y -= 0.5 * gained * offset;
         }
         self.gravity = gravity;
-    }
-
-    /// The length of an epoch: a typical disk goes, or falls, some tens of diameters in it, and none [`FASTER`] times as far.
-    pub(in crate::simulation) fn epoch_length(&self) -> f64 {
-        let squares = || self.particles.iter().map(|particle| particle.trajectory.velocity.length_squared());
-        let typical = (squares().sum::<f64>() / self.len() as f64).sqrt();
-        self.epoch_length_at(typical.max(squares().fold(0.0, f64::max).sqrt() / FASTER))
-    }
-
-    /// Whether a disk of this velocity goes no further in an epoch of this length than any should. A collision can make a
-    /// disk faster than all were; its place at the epoch, so far away, would lack digits.
-    #[inline]
-    pub(in crate::simulation) fn keeps_pace(&self, velocity: DVec2, epoch_length: f64) -> bool {
-        let most = FASTER * DIAMETERS * self.typical_diameter;
-        (velocity * epoch_length).length_squared() <= most * most
-    }
-
-    /// The length of an epoch that suits a disk of this velocity, too.
-    pub(in crate::simulation) fn epoch_length_for(&self, velocity: DVec2) -> f64 {
-        self.epoch_length_at(velocity.length() / FASTER)
-    }
-
-    /// A power of two, so that epochs add up without rounding.
-    fn epoch_length_at(&self, speed: f64) -> f64 {
-        let way = DIAMETERS * self.typical_diameter;
-        let length = way / (speed + (self.gravity.abs() * way).sqrt());
-        if length.is_finite() && length > 0.0 { power_of_two_below(length) } else { 1.0 }
-    }
-}
-
-/// The largest power of two that is not above a positive number, and not so small or large that its square is none.
-fn power_of_two_below(number: f64) -> f64 {
-    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
-    let number = number.clamp(f64::from_bits((1023 - 900) << 52), f64::from_bits((1023 + 900) << 52));
-    // Without its fraction a float is its power of two: exact, where a logarithm would be rounded.
-    f64::from_bits(number.to_bits() & EXPONENT)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::power_of_two_below;
-
-    #[test]
-    fn powers_of_two_are_exact() {
-        let next_below_8 = 8.0_f64.next_down();
-        let cases = [(1.0, 1.0), (next_below_8, 4.0), (8.0, 8.0), (0.3, 0.25), (1e-300, 2.0_f64.powi(-900))];
-        for (number, power) in cases {
-            assert_eq!(power_of_two_below(number), power, "{number}");
-        }
     }
 }

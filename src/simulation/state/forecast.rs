@@ -39,7 +39,7 @@ impl Exit {
         (right, up)
     }
 
-    /// Whether the flight goes on in a neighbor cell.
+    /// Tells whether the flight goes on in a neighbor cell.
     #[inline]
     pub(in crate::simulation) fn is_passage(self) -> bool {
         matches!(self, Self::Left | Self::Right | Self::Down | Self::Up)
@@ -75,7 +75,7 @@ impl Forecast {
         wall: 0,
     };
 
-    /// Whether the collision comes first. Of equal times it is the collision: disks come before walls and cells.
+    /// Tells whether the collision comes first. Of equal times it is the collision: disks come before walls and cells.
     #[inline]
     pub(in crate::simulation) fn is_collision(&self) -> bool {
         self.collision_due <= self.exit_due

@@ -1,15 +1,17 @@
 //! The guard against runs that cannot progress.
 
-/// Events allowed while time advances by less than [`RESOLUTION`] epochs: so many, and as many more for each disk, since
-/// disks on a lattice may all have something to do at the same time.
+/// Events allowed while time advances by less than [`RESOLUTION`] epochs.
 const PATIENCE: u64 = 200_000;
+
+/// Events allowed in addition for each disk: on a lattice, all may have an event at the same time.
 const PATIENCE_PER_DISK: u64 = 20;
 
-/// Time that counts as progress, in epochs: at less for so many events an epoch, in which a disk goes some tens of
-/// diameters, would take days.
+/// Time that counts as progress, in epochs.
 ///
-/// Time need not stand still for that: a disk at rest on a wall bounces as high as rounding lets it. On the other side, a
-/// contact duration of a ten-millionth of the time that a disk takes for a diameter is progress even if all bounce at once.
+/// A disk goes some tens of diameters in an epoch. If [`PATIENCE`] events advance time by less than this, an epoch takes 10¹³ events:
+/// days. The bound is not zero, since time does not quite stand still in such a run: a disk at rest on a wall bounces as high as
+/// rounding lets it. Nor is it larger, since a run under a contact duration of a ten-millionth of the time that a disk takes for a
+/// diameter makes progress, even if all disks bounce at once.
 const RESOLUTION: f64 = 1.0 / (1u64 << 25) as f64;
 
 /// Counts events since time last progressed.
@@ -21,8 +23,8 @@ pub(in crate::simulation) struct Guard {
 }
 
 impl Guard {
-    /// Takes note of an event; returns how many there were without progress, if too many, and starts afresh: whoever
-    /// mends the cause may go on.
+    /// Takes note of an event. If there were too many without progress, returns their number and counts from 0 again, so that
+    /// a caller who mends the cause can go on.
     #[inline]
     pub(in crate::simulation) fn watch(
         &mut self,
@@ -40,7 +42,7 @@ impl Guard {
         None
     }
 
-    /// The epoch has moved.
+    /// Measures time from an epoch that is later by this much.
     pub(in crate::simulation) fn shift(&mut self, by: f64) {
         self.since -= by;
     }

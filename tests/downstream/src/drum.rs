@@ -2,11 +2,11 @@
 
 use std::borrow::Cow;
 
-use granular_edmd::collision::CollisionRule;
-use granular_edmd::{Fingerprint, Flight};
 use granular_edmd::boundary::{Boundary, Domain, Region, Response, Surface, Touch};
+use granular_edmd::collision::CollisionRule;
 use granular_edmd::glam::DVec2;
 use granular_edmd::roots::first_descent_of_quartic;
+use granular_edmd::{Fingerprint, Flight};
 
 use crate::viscoelastic::Viscoelastic;
 
@@ -83,6 +83,9 @@ impl Boundary for Drum {
 
     fn fingerprint(&self) -> Option<Fingerprint> {
         let drum = Fingerprint::of("Drum").number(self.radius).number(self.angular_velocity);
-        Some(self.rule.map_or(drum, |rule| rule.fingerprint().map_or(drum, |rule| drum.part(rule))))
+        match self.rule {
+            None => Some(drum),
+            Some(rule) => Some(drum.part(rule.fingerprint()?)),
+        }
     }
 }

@@ -1,37 +1,43 @@
 //! An observer.
 
-use granular_edmd::observable::{Collision, Observer, Partner, Snapshot};
+use granular_edmd::observable::{Collision, Moment, Observer, Partner, SampleTimes, Snapshot};
 
 /// The hardest impact on each wall within each interval of time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HardestImpacts {
-    interval: f64,
-    next: f64,
+    times: SampleTimes,
     present: Vec<f64>,
-    /// One row an interval, one number a wall.
+    /// One row for each interval, one number for each wall.
     pub hardest: Vec<Vec<f64>>,
 }
 
 impl HardestImpacts {
-    pub fn new(walls: usize, interval: f64) -> Self {
-        Self { interval, next: interval, present: vec![0.0; walls], hardest: Vec::new() }
+    pub const fn new(times: SampleTimes) -> Self {
+        Self { times, present: Vec::new(), hardest: Vec::new() }
     }
 }
 
 impl Observer for HardestImpacts {
+    fn on_start(&mut self, moment: &Moment) {
+        self.times.start_at(moment.time());
+        self.present.resize(moment.wall_count(), 0.0);
+    }
+
     fn on_collision(&mut self, collision: &Collision) {
         if let Partner::Wall(wall) = collision.partner {
+            // Single steps have no start that would tell how many walls there are.
+            self.present.resize(self.present.len().max(wall + 1), 0.0);
             self.present[wall] = self.present[wall].max(collision.impulse.normal());
         }
     }
 
     fn next_sample(&self) -> f64 {
-        self.next
+        self.times.upcoming()
     }
 
-    fn on_sample(&mut self, _: &Snapshot<'_>) {
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         let walls = self.present.len();
         self.hardest.push(std::mem::replace(&mut self.present, vec![0.0; walls]));
-        self.next += self.interval;
+        self.times.advance_past(snapshot.time());
     }
 }

@@ -17,9 +17,17 @@ fn a_motion_keeps_its_contract() {
 
 #[test]
 fn a_drum_keeps_its_contract() {
-    for (radius, speed) in [(0.5, 1.0), (3.0, 1e-3), (7.9, 1e4)] {
+    for (radius, speed) in [(0.5, 1.0), (3.0, 1e-3), (7.0, 1e4)] {
         let drum = Drum::new(8.0).turning(0.3);
-        assert_eq!(boundary::laws::check(&mut drum.with_rule(Viscoelastic::new(0.1, 0.0).unwrap()), radius, speed, 1), Ok(()));
+        assert_eq!(
+            boundary::laws::check(
+                &mut drum.with_rule(Viscoelastic::new(0.1, 0.0).unwrap()),
+                radius,
+                speed,
+                1
+            ),
+            Ok(())
+        );
     }
 }
 

@@ -8,7 +8,7 @@ use downstream::viscoelastic::Viscoelastic;
 use granular_edmd::boundary::Boundary;
 use granular_edmd::collision::{CollisionRule, Smooth};
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{CollisionCounts, Energies, Observer, SampleTimes, Series};
+use granular_edmd::observable::{self, CollisionCounts, Energies, Observer, SampleTimes, Series};
 use granular_edmd::scheduler::EventScheduler;
 use granular_edmd::{Disk, Simulation, initial};
 
@@ -53,7 +53,7 @@ fn boxes_change_nothing() {
 #[test]
 fn a_vector_of_observers_sees_what_each_would_see_alone() {
     let mut simulation = boxed();
-    let mut impacts = HardestImpacts::new(1, 1.5);
+    let mut impacts = HardestImpacts::new(every(1.5));
     let mut momentum = Series::new(ABOUT, every(1.0));
     let mut energies = Series::new(Energies, every(0.7));
     let mut counts = CollisionCounts::since(0.0);
@@ -68,7 +68,7 @@ fn a_vector_of_observers_sees_what_each_would_see_alone() {
     drop(observers);
 
     let mut alone = boxed();
-    let mut impacts_alone = HardestImpacts::new(1, 1.5);
+    let mut impacts_alone = HardestImpacts::new(every(1.5));
     alone.run_until(21.0, &mut impacts_alone).unwrap();
     assert_eq!(impacts, impacts_alone);
     assert_eq!(impacts.hardest.len(), 14);
@@ -82,6 +82,12 @@ fn a_vector_of_observers_sees_what_each_would_see_alone() {
     assert_eq!(counts.disk_collisions(), simulation.counters().collisions);
     assert_eq!(counts.wall_collisions(), simulation.counters().wall_collisions);
     assert_eq!(simulation.disks(), alone.disks());
+}
+
+#[test]
+fn observers_keep_their_contract() {
+    observable::laws::check(&mut HardestImpacts::new(every(1.5))).unwrap();
+    observable::laws::check(&mut Series::new(ABOUT, every(0.1))).unwrap();
 }
 
 #[test]

@@ -1,0 +1,133 @@
+//! The next event of each disk: the search for its partner, the end of its flight, the word to the scheduler.
+
+use std::hint::select_unpredictable;
+
+use glam::DVec2;
+
+use super::Simulation;
+use super::prediction::{LANES, cell_exit, earliest_collision};
+use super::state::{Earliest, Exit, Forecast};
+use crate::Flight;
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::scheduler::EventScheduler;
+
+/// Epochs that a wall is searched for ahead: no search is endless.
+pub(super) const HORIZON: f64 = 2.0;
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
+    /// Finds the next event of a disk among all its neighbors, and tells the scheduler.
+    pub(super) fn predict(&mut self, disk: usize) {
+        self.find_next(disk);
+        self.schedule(disk);
+    }
+
+    /// Finds the next event of a disk among all its neighbors.
+    ///
+    /// One copy for all callers: the whole search is inlined into it.
+    #[inline(never)]
+    pub(super) fn find_next(&mut self, disk: usize) {
+        self.find_partner(disk);
+        self.end_flight(disk);
+    }
+
+    /// Finds another partner for a disk whose partner has collided meanwhile: its own flight in its cell ends as it did.
+    #[inline(never)]
+    pub(super) fn predict_partner(&mut self, disk: usize) {
+        self.find_partner(disk);
+        self.schedule(disk);
+    }
+
+    /// Finds the next collision of a disk among all its neighbors.
+    #[inline(always)]
+    fn find_partner(&mut self, disk: usize) {
+        let count = self.cells.around(disk, &mut self.scratch.found);
+        let earliest = self.earliest_collision(disk, count, Earliest::NONE);
+        let partner_collisions =
+            self.bodies.forecast(earliest.partner as usize).map_or(0, |partner| partner.collisions);
+        self.forecast_mut(disk).expect(earliest, partner_collisions);
+    }
+
+    #[inline]
+    pub(super) fn earliest_collision(&mut self, disk: usize, count: usize, known: Earliest) -> Earliest {
+        let period = self.cells.grid().period();
+        let found = &mut self.scratch.found;
+        earliest_collision(&self.bodies, period, disk, found, count, self.clock.now, known)
+    }
+
+    /// Takes `earliest` as the next collision of a disk whose next was `known` before.
+    ///
+    /// No branch on whether they are the same: that is known last of all, and a wrong guess would undo much.
+    #[inline]
+    pub(super) fn expect_next(&mut self, disk: usize, earliest: Earliest, known: Earliest) {
+        let nobody = earliest.partner as usize >= self.bodies.len();
+        let partner = select_unpredictable(nobody, disk, earliest.partner as usize);
+        let counted = self.forecast(disk).partner_collisions;
+        let collisions = select_unpredictable(earliest == known, counted, self.forecast(partner).collisions);
+        self.forecast_mut(disk).expect(earliest, collisions);
+    }
+
+    /// Tells the scheduler when the next event of a disk is due.
+    #[inline]
+    pub(super) fn schedule(&mut self, disk: usize) {
+        self.scheduler.set(disk, self.forecast(disk).due());
+    }
+
+    /// Keeps the room for neighbors in step with the cells, which grow when one gets crowded: asked for wherever disks come into
+    /// cells.
+    #[inline]
+    pub(super) fn make_room(&mut self) {
+        let room = self.cells.room() + LANES;
+        if self.scratch.found.len() < room {
+            self.scratch.found.resize(room, 0);
+        }
+    }
+
+    /// Finds when the flight of a disk in its cell ends, and how.
+    #[inline]
+    pub(super) fn end_flight(&mut self, disk: usize) {
+        let (place, grid) = (self.cells.place(disk), self.cells.grid());
+        let (exit_due, exit) = cell_exit(&self.bodies, disk, &grid.region(place), self.clock.now);
+        let at_wall = self.cells.is_at_wall(place);
+        let forecast = self.forecast_mut(disk);
+        (forecast.exit_due, forecast.exit) = (exit_due, exit);
+        if at_wall {
+            self.end_at_wall(disk);
+        }
+    }
+
+    /// Ends the flight at a wall, if the disk touches one before it leaves its cell.
+    fn end_at_wall(&mut self, disk: usize) {
+        let now = self.clock.now;
+        let horizon = now + HORIZON * self.clock.epoch_length;
+        let flight = self.flight(disk);
+        let forecast = &mut self.bodies.particles[disk].forecast;
+        let until = forecast.exit_due.min(horizon);
+        if let Some(touch) = self.boundary.first_touch(&flight, until) {
+            let is_possible = touch.time >= now && touch.time <= until && touch.wall < self.wall_count;
+            (forecast.exit_due, forecast.exit) =
+                if is_possible { (touch.time, Exit::Wall) } else { (now, Exit::Impossible) };
+            forecast.wall = touch.wall as u16;
+        } else if forecast.exit_due > horizon {
+            (forecast.exit_due, forecast.exit) = (horizon, Exit::Horizon);
+        }
+    }
+
+    #[inline]
+    pub(super) fn flight(&self, disk: usize) -> Flight {
+        let now = self.clock.now;
+        let acceleration = DVec2::new(0.0, -self.bodies.gravity);
+        let (position, velocity) = (self.bodies.position(disk, now), self.bodies.velocity(disk, now));
+        Flight::new(now, position, velocity, acceleration, self.bodies.material(disk).radius)
+    }
+
+    #[inline]
+    pub(super) fn forecast(&self, disk: usize) -> &Forecast {
+        &self.bodies.particles[disk].forecast
+    }
+
+    #[inline]
+    pub(super) fn forecast_mut(&mut self, disk: usize) -> &mut Forecast {
+        &mut self.bodies.particles[disk].forecast
+    }
+}

@@ -1,0 +1,90 @@
+//! The kinds of disks: what does not change about them.
+
+use glam::DVec2;
+
+use crate::Disk;
+use crate::collision::Material;
+
+/// Radius, mass and inertia of a disk: all that does not change.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Kind {
+    /// A disk of this kind at rest at the origin.
+    pub(super) disk: Disk,
+    pub(super) material: Material,
+}
+
+impl Kind {
+    fn of(disk: &Disk) -> Self {
+        let disk = disk.with_motion(DVec2::ZERO, DVec2::ZERO, 0.0, 0.0);
+        Self { disk, material: Material::of(&disk) }
+    }
+}
+
+/// One kind for all disks where they are equal, so that it stays in cache.
+#[derive(Debug, Clone)]
+pub(super) enum Kinds {
+    Same(Kind),
+    Each(Vec<Kind>),
+}
+
+impl Kinds {
+    pub(super) fn of(disks: &[Disk]) -> Self {
+        match disks.split_first() {
+            Some((first, rest)) if rest.iter().all(|disk| is_alike(disk, first)) => {
+                Self::Same(Kind::of(first))
+            }
+            _ => Self::Each(disks.iter().map(Kind::of).collect()),
+        }
+    }
+
+    /// The median diameter, which does not depend on the order of the disks; 0 without disks.
+    pub(super) fn typical_diameter(&self) -> f64 {
+        match self {
+            Self::Same(kind) => 2.0 * kind.material.radius,
+            Self::Each(each) if each.is_empty() => 0.0,
+            Self::Each(each) => {
+                let mut radii: Vec<f64> = each.iter().map(|kind| kind.material.radius).collect();
+                let middle = radii.len() / 2;
+                2.0 * *radii.select_nth_unstable_by(middle, f64::total_cmp).1
+            }
+        }
+    }
+
+    /// One for each disk, or one for all.
+    #[cfg(feature = "serde")]
+    pub(super) fn disks(&self) -> Vec<Disk> {
+        match self {
+            Self::Same(kind) => vec![kind.disk],
+            Self::Each(each) => each.iter().map(|kind| kind.disk).collect(),
+        }
+    }
+
+    pub(super) fn largest_radius(&self) -> f64 {
+        match self {
+            Self::Same(kind) => kind.disk.radius(),
+            Self::Each(each) => each.iter().map(|kind| kind.disk.radius()).fold(0.0, f64::max),
+        }
+    }
+
+    /// The diameter, if all disks have the same.
+    #[inline]
+    pub(super) fn common_diameter(&self) -> Option<f64> {
+        match self {
+            Self::Same(kind) => Some(2.0 * kind.material.radius),
+            Self::Each(_) => None,
+        }
+    }
+
+    #[inline]
+    pub(super) fn get(&self, disk: usize) -> &Kind {
+        match self {
+            Self::Same(kind) => kind,
+            Self::Each(each) => &each[disk],
+        }
+    }
+}
+
+fn is_alike(disk: &Disk, other: &Disk) -> bool {
+    let properties = |disk: &Disk| [disk.radius(), disk.mass(), disk.inertia_factor()];
+    properties(disk) == properties(other)
+}

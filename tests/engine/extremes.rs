@@ -1,0 +1,168 @@
+//! Systems of extreme numbers, and changes of everything between runs: an error that names its cause, or physics.
+
+use granular_edmd::boundary::{Boundary, Container, Thermal, Wall};
+use granular_edmd::collision::{CollisionRule, Elastic, Frictional, Smooth};
+use granular_edmd::glam::DVec2;
+use granular_edmd::simulation::BuildError;
+use granular_edmd::wall::{BiParabolic, Sinusoidal};
+use granular_edmd::{Disk, Simulation};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use crate::schedulers::{SCHEDULERS, Scheduler};
+
+type Rule = std::sync::Arc<dyn CollisionRule>;
+type Run = Simulation<Rule, Container, Scheduler>;
+
+struct Random(Xoshiro256PlusPlus);
+
+impl Random {
+    fn new(seed: u64) -> Self {
+        Self(Xoshiro256PlusPlus::seed_from_u64(seed))
+    }
+
+    /// A number of any of these decades.
+    fn decade(&mut self, low: f64, high: f64) -> f64 {
+        10_f64.powf(self.0.random_range(low..high))
+    }
+
+    fn chance(&mut self, of: u32) -> bool {
+        self.0.random_range(0..of) == 0
+    }
+
+    fn rule(&mut self) -> Rule {
+        match self.0.random_range(0..3) {
+            0 => std::sync::Arc::new(Elastic),
+            1 => std::sync::Arc::new(Smooth::new(self.0.random_range(0.0..=0.5)).unwrap()),
+            _ => std::sync::Arc::new(Frictional::new(self.0.random_range(0.0..0.5), 0.3).unwrap()),
+        }
+    }
+
+    fn walls(&mut self, size: f64) -> Container {
+        let closed = if self.chance(4) { Container::open(size) } else { Container::closed(size, size) };
+        let closed = if self.chance(4) { closed.unwrap().with_periodic_sides() } else { closed.unwrap() };
+        let wall = Wall::Floor;
+        match self.0.random_range(0..4) {
+            0 => {
+                let motion = Sinusoidal::new(0.01 * size, self.decade(-3.0, 3.0)).unwrap();
+                closed.with_motion(wall, motion).unwrap()
+            }
+            1 => {
+                let motion = BiParabolic::new(0.01 * size, self.decade(-3.0, 3.0)).unwrap();
+                closed.with_motion(wall, motion).unwrap()
+            }
+            2 => closed.with_temperature(wall, Thermal::new(self.decade(-30.0, 30.0)).unwrap()).unwrap(),
+            _ => closed,
+        }
+    }
+
+    fn disks(&mut self, size: f64) -> Vec<Disk> {
+        let count = self.0.random_range(1..7);
+        let (radius, speed) = (0.1 * size * self.decade(-3.0, 0.0), self.decade(-30.0, 30.0));
+        let mut disk = |k: i32| {
+            let place = DVec2::new(f64::from(k % 3), f64::from(k / 3)) * (0.3 * size) + 0.15 * size;
+            let direction = DVec2::new(self.0.random_range(-1.0..1.0), self.0.random_range(-1.0..1.0));
+            let disk = Disk::new(place, radius.clamp(1e-30, 1e30))?.with_mass(self.decade(-6.0, 6.0))?;
+            let speed = if self.chance(5) { speed * self.decade(-20.0, 0.0) } else { speed };
+            disk.with_velocity(speed * direction)?.with_angular_velocity(speed * direction.x)
+        };
+        (0..count).map(|k| disk(k).unwrap()).collect()
+    }
+
+    fn gravity(&mut self) -> f64 {
+        match self.0.random_range(0..5) {
+            0 | 1 => 0.0,
+            2 => self.decade(-300.0, 300.0),
+            3 => -self.decade(-30.0, 30.0),
+            _ => self.decade(-30.0, 30.0),
+        }
+    }
+}
+
+/// A time in which disks go some diameters.
+fn short_while(run: &Run) -> f64 {
+    let disks = run.disks();
+    let diameter = disks.iter().map(|disk| 2.0 * disk.radius()).fold(f64::INFINITY, f64::min);
+    let speed = disks.iter().map(|disk| disk.velocity().length()).fold(0.0, f64::max);
+    let way = 20.0 * diameter;
+    (way / (speed + (run.gravity().abs() * way).sqrt())).min(1e100)
+}
+
+/// The depth to which disks are beyond the domain or in each other, in terms of their size.
+fn deepest(run: &Run) -> f64 {
+    let domain = run.boundary().domain();
+    let depth = |disk: &Disk| {
+        let DVec2 { x, y } = disk.position();
+        let out = (domain.left - x).max(x - domain.right).max(domain.bottom - y).max(y - domain.top);
+        out / disk.radius()
+    };
+    run.disks().iter().map(depth).fold(f64::NEG_INFINITY, f64::max)
+}
+
+fn assert_sound(run: &Run, case: u64) {
+    for disk in run.disks() {
+        let numbers =
+            [disk.position().x, disk.position().y, disk.velocity().x, disk.velocity().y, disk.angle()];
+        assert!(numbers.iter().all(|number| number.is_finite()), "{case}: {disk:?}");
+    }
+    assert!(run.time().is_finite());
+    assert!(deepest(run) < 1e-6, "{case}: {:e} {:?} {:?}", deepest(run), run.counters(), run.disks());
+}
+
+/// Does some events, with a change now and then; all errors are clear ones.
+fn live(random: &mut Random, run: &mut Run, size: f64, case: u64) {
+    for _ in 0..30 {
+        for _ in 0..20 {
+            let before = run.time();
+            let end = run.time() + short_while(run);
+            if run.step_until(end, &mut ()).is_err() {
+                assert_sound(run, case);
+                return;
+            }
+            assert!(run.time() >= before, "{case}");
+            assert_sound(run, case);
+        }
+        match random.0.random_range(0..8) {
+            0 => run.set_rule(random.rule()),
+            1 => drop(run.set_gravity(random.gravity())),
+            2 => drop(run.set_boundary(random.walls(size))),
+            _ => {}
+        }
+        assert_sound(run, case);
+    }
+}
+
+fn try_systems(cases: std::ops::Range<u64>) -> usize {
+    let mut built = 0;
+    for case in cases {
+        let mut random = Random::new(case);
+        let size = random.decade(-20.0, 20.0);
+        let start = if random.chance(3) { random.decade(-10.0, 15.0) } else { 0.0 };
+        let scheduler = SCHEDULERS[case as usize % SCHEDULERS.len()]();
+        let builder = Simulation::builder(random.rule(), random.walls(size)).disks(random.disks(size));
+        match builder.gravity(random.gravity()).start_time(start).scheduler(scheduler).build() {
+            Ok(mut run) => {
+                built += 1;
+                live(&mut random, &mut run, size, case);
+            }
+            Err(
+                BuildError::StartTime { .. }
+                | BuildError::OverlapsWall { .. }
+                | BuildError::DomainTooSmall { .. },
+            ) => {}
+            Err(error) => panic!("{case}: {error}"),
+        }
+    }
+    built
+}
+
+#[test]
+fn extreme_systems_are_refused_or_run() {
+    assert!(try_systems(0..300) > 100);
+}
+
+#[test]
+#[ignore = "minutes: many more of them"]
+fn many_extreme_systems_are_refused_or_run() {
+    assert!(try_systems(1000..20_000) > 5000);
+}

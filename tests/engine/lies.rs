@@ -1,0 +1,624 @@
+//! Rules, boundaries, schedulers and observers that break their contract: each is named, and the state is whole after it.
+
+use std::cell::Cell;
+use std::ops::ControlFlow;
+use std::rc::Rc;
+
+use granular_edmd::boundary::{Boundary, Container, Domain, Region, Surface, Touch};
+use granular_edmd::collision::{CollisionRule, Contact, Elastic, Frictional, Impulse};
+use granular_edmd::glam::DVec2;
+use granular_edmd::observable::{Collision, Moment, Observer, Partner, Snapshot, Verdict};
+use granular_edmd::scheduler::{EventScheduler, LinearScan};
+use granular_edmd::simulation::{BoundaryFault, BuildError, RunError};
+use granular_edmd::{Disk, Flight, Simulation, initial};
+
+fn walls() -> Container {
+    Container::closed(12.0, 10.0).unwrap()
+}
+
+fn disks() -> Vec<Disk> {
+    let disks = initial::lattice(&walls(), 20, 0.5).unwrap();
+    initial::with_maxwellian_velocities(disks, 1.0, 3).unwrap()
+}
+
+/// After an error all disks are where they can be, and a checkpoint is a state to go on from, with honest parts.
+fn assert_whole<R: CollisionRule, B: Boundary, S: EventScheduler>(run: &Simulation<R, B, S>) {
+    let walls = walls();
+    for disk in run.disks() {
+        assert!(disk.position().is_finite() && disk.velocity().is_finite() && disk.angle().is_finite());
+        let overlap = walls.overlap(disk.position(), disk.radius(), 0.0);
+        assert!(overlap.is_none_or(|(_, depth)| depth < 1e-9), "{overlap:?} at {}", run.time());
+    }
+    #[cfg(feature = "serde")]
+    {
+        use granular_edmd::simulation::Checkpoint;
+        let checkpoint = Checkpoint::from_bytes(&run.checkpoint().to_bytes().unwrap()).unwrap();
+        let resumption = Simulation::resume(&checkpoint, Elastic, walls);
+        let mut honest = resumption.with_another_rule().with_another_boundary().build().unwrap();
+        honest.run_until(honest.time() + 5.0, &mut ()).unwrap();
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Lie {
+    None,
+    Time(f64),
+    Beyond,
+    Wall(usize),
+    Normal(DVec2),
+    Velocity(DVec2),
+}
+
+/// A container that tells the truth so many times.
+#[derive(Clone)]
+struct Liar {
+    honest: Container,
+    truths: Rc<Cell<u32>>,
+    lie: Lie,
+}
+
+impl Liar {
+    fn lies(&self) -> bool {
+        let truths = self.truths.get();
+        self.truths.set(truths.saturating_sub(1));
+        truths == 0
+    }
+}
+
+impl Boundary for Liar {
+    fn domain(&self) -> Domain {
+        self.honest.domain()
+    }
+    fn wall_count(&self) -> usize {
+        self.honest.wall_count()
+    }
+    fn set_time_origin(&mut self, origin: f64) {
+        self.honest.set_time_origin(origin);
+    }
+    fn may_touch(&self, region: &Region, radius: f64) -> bool {
+        self.honest.may_touch(region, radius)
+    }
+    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+        let touch = self.honest.first_touch(flight, until);
+        match self.lie {
+            Lie::Time(wait) if self.lies() => Some(Touch::new(flight.time() + wait, 0)),
+            Lie::Beyond if self.lies() => {
+                Some(Touch::new(if until == f64::INFINITY { until } else { until.next_up() }, 0))
+            }
+            Lie::Wall(wall) if self.lies() => Some(Touch::new(flight.time(), wall)),
+            _ => touch,
+        }
+    }
+    fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
+        let surface = self.honest.surface(wall, position, time);
+        match self.lie {
+            Lie::Normal(normal) if self.lies() => Surface::new(normal, surface.velocity),
+            Lie::Velocity(velocity) if self.lies() => Surface::new(surface.normal, velocity),
+            _ => surface,
+        }
+    }
+    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+        self.honest.overlap(position, radius, time)
+    }
+}
+
+fn run_among_liars(lie: Lie, truths: u32) -> (Simulation<Elastic, Liar>, Result<f64, RunError>) {
+    let liar = Liar { honest: walls(), truths: Rc::new(Cell::new(truths)), lie };
+    let mut run = Simulation::builder(Elastic, liar).disks(disks()).build().unwrap();
+    let mut last = 0.0;
+    let end = loop {
+        match run.step_until(50.0, &mut ()) {
+            Ok(Some(_)) => {}
+            Ok(None) => break Ok(run.time()),
+            Err(error) => break Err(error),
+        }
+        assert!(run.time() >= last);
+        last = run.time();
+    };
+    (run, end)
+}
+
+#[test]
+fn touches_that_cannot_be_are_named() {
+    let lies = [
+        Lie::Time(-1.0),
+        Lie::Time(-f64::MIN_POSITIVE.sqrt().sqrt()),
+        Lie::Time(f64::NAN),
+        Lie::Time(f64::INFINITY),
+        Lie::Time(f64::NEG_INFINITY),
+        Lie::Time(-1e300),
+        Lie::Beyond,
+        Lie::Wall(4),
+        Lie::Wall(70_000),
+        Lie::Wall((1 << 16) + 1),
+        Lie::Wall(usize::MAX),
+    ];
+    for (lie, truths) in lies.into_iter().flat_map(|lie| [0, 1, 57, 300].map(|truths| (lie, truths))) {
+        let (run, end) = run_among_liars(lie, truths);
+        let error = end.unwrap_err();
+        if matches!(lie, Lie::Time(wait) if wait.abs() < 1e-70) && matches!(error, RunError::Stalled { .. }) {
+            // So short a time changes none: this is a touch at once, again and again.
+            continue;
+        }
+        let RunError::Boundary { fault: BoundaryFault::Touch { wall, walls, early_by, .. }, time, .. } =
+            error
+        else {
+            panic!("{lie:?} {truths}: {error}")
+        };
+        assert_eq!(walls, 4);
+        assert!(time.is_finite() && time >= 0.0 && time == run.time());
+        match lie {
+            Lie::Wall(named) => assert_eq!(wall, named),
+            Lie::Time(wait) if wait.is_finite() => assert!(early_by > 0.0, "{lie:?}: {early_by}"),
+            _ => {}
+        }
+        assert_whole(&run);
+    }
+    assert!(run_among_liars(Lie::None, 0).1.is_ok());
+}
+
+#[test]
+fn surfaces_that_cannot_be_are_named() {
+    let normals = [
+        DVec2::ZERO,
+        DVec2::NAN,
+        DVec2::new(0.0, 1.1),
+        DVec2::new(f64::INFINITY, 0.0),
+        DVec2::new(1e-3, 0.0),
+        DVec2::splat(1e200),
+    ];
+    let velocities = [
+        DVec2::NAN,
+        DVec2::new(f64::INFINITY, 0.0),
+        DVec2::new(0.0, f64::NEG_INFINITY),
+        DVec2::new(1e200, 0.0),
+    ];
+    let lies = normals.map(Lie::Normal).into_iter().chain(velocities.map(Lie::Velocity));
+    for (lie, truths) in lies.flat_map(|lie| [0, 13].map(|truths| (lie, truths))) {
+        let (run, end) = run_among_liars(lie, truths);
+        let error = end.unwrap_err();
+        assert!(
+            matches!(error, RunError::Boundary { fault: BoundaryFault::Surface { .. }, .. }),
+            "{lie:?}: {error}"
+        );
+        assert_whole(&run);
+    }
+}
+
+#[test]
+fn too_many_walls_are_refused() {
+    struct Many(Container, usize);
+    impl Boundary for Many {
+        fn domain(&self) -> Domain {
+            self.0.domain()
+        }
+        fn wall_count(&self) -> usize {
+            self.1
+        }
+        fn set_time_origin(&mut self, _: f64) {}
+        fn may_touch(&self, _: &Region, _: f64) -> bool {
+            true
+        }
+        fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+            self.0.first_touch(flight, until).map(|touch| Touch::new(touch.time, self.1 - 1 - touch.wall))
+        }
+        fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
+            self.0.surface(self.1 - 1 - wall, position, time)
+        }
+        fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+            self.0.overlap(position, radius, time)
+        }
+    }
+    let build = |count| Simulation::builder(Elastic, Many(walls(), count)).disks(disks()).build();
+    for count in [(1 << 16) + 1, 70_000, usize::MAX] {
+        let error = build(count).map(|_| ()).unwrap_err();
+        assert!(matches!(error, BuildError::TooManyWalls { count: named, .. } if named == count), "{error}");
+    }
+    // The last that can be numbered is named as it is.
+    let mut run = build(1 << 16).unwrap();
+    let mut named = Vec::new();
+    let mut log = granular_edmd::observable::on_collision(|collision: &Collision| {
+        if let Partner::Wall(wall) = collision.partner {
+            named.push(wall);
+        }
+    });
+    run.run_until(20.0, &mut log).unwrap();
+    assert!(named.iter().all(|&wall| wall >= (1 << 16) - 4) && named.contains(&((1 << 16) - 1)));
+}
+
+/// What a scheduler answers in place of the truth.
+type Answer = fn((usize, f64)) -> (usize, f64);
+
+/// A scheduler that is wrong from some answer on.
+struct Misled {
+    honest: LinearScan,
+    sets: u32,
+    truths: u32,
+    wrong: fn((usize, f64)) -> (usize, f64),
+}
+
+impl EventScheduler for Misled {
+    fn reset(&mut self, due: &[f64]) {
+        self.honest.reset(due);
+    }
+    fn set(&mut self, disk: usize, due: f64) {
+        self.sets += 1;
+        self.honest.set(disk, due);
+    }
+    fn earliest(&self) -> (usize, f64) {
+        let honest = self.honest.earliest();
+        if self.sets >= self.truths { (self.wrong)(honest) } else { honest }
+    }
+    fn upcoming(&mut self, disks: &mut Vec<usize>) {
+        disks.extend([usize::MAX, 1 << 40, 20]);
+    }
+}
+
+#[test]
+fn schedulers_that_name_what_is_not_so_are_named() {
+    let lies: [Answer; 8] = [
+        |(_, due)| (20, due),
+        |(_, due)| (usize::MAX, due),
+        |(disk, _)| (disk, f64::NAN),
+        |(disk, due)| (disk, due - 1.0),
+        |(disk, due)| (disk, due.next_down()),
+        |(disk, _)| (disk, f64::NEG_INFINITY),
+        |(disk, due)| ((disk + 1) % 20, due),
+        |(disk, _)| (disk, -1e300),
+    ];
+    for (number, wrong) in lies.into_iter().enumerate() {
+        for truths in [0, 1, 100, 999] {
+            let scheduler = Misled { honest: LinearScan::new(), sets: 0, truths, wrong };
+            let builder = Simulation::builder(Elastic, walls()).disks(disks()).scheduler(scheduler);
+            let mut run = builder.build().unwrap();
+            let error = run.run_until(50.0, &mut ()).unwrap_err();
+            assert!(matches!(error, RunError::Scheduler { .. }), "{number} {truths}: {error}");
+            assert!(run.time().is_finite() && run.time() >= 0.0);
+            assert_whole(&run);
+        }
+    }
+}
+
+/// A scheduler that forgets the times it is told: what it names has been done.
+#[test]
+fn a_scheduler_that_names_an_old_time_is_named() {
+    struct Forgetful(LinearScan, u32);
+    impl EventScheduler for Forgetful {
+        fn reset(&mut self, due: &[f64]) {
+            self.0.reset(due);
+        }
+        fn set(&mut self, disk: usize, due: f64) {
+            self.1 += 1;
+            if self.1 != 200 {
+                self.0.set(disk, due);
+            }
+        }
+        fn earliest(&self) -> (usize, f64) {
+            self.0.earliest()
+        }
+    }
+    let scheduler = Forgetful(LinearScan::new(), 0);
+    let builder = Simulation::builder(Elastic, walls()).disks(disks()).scheduler(scheduler);
+    let mut run = builder.build().unwrap();
+    let error = run.run_until(50.0, &mut ()).unwrap_err();
+    assert!(matches!(error, RunError::Scheduler { expected: Some(_), .. }), "{error}");
+    assert_whole(&run);
+}
+
+#[test]
+fn sample_times_that_cannot_be_are_named() {
+    struct Clock(fn(f64) -> f64, f64);
+    impl Observer for Clock {
+        fn next_sample(&self) -> f64 {
+            self.1
+        }
+        fn on_sample(&mut self, _: &Snapshot<'_>) {
+            self.1 = (self.0)(self.1);
+        }
+    }
+    let clocks: [fn(f64) -> f64; 5] =
+        [|_| f64::NAN, |time| time, |time| time - 1.0, |time| time.next_down(), |_| f64::NEG_INFINITY];
+    for clock in clocks {
+        let mut run = Simulation::builder(Elastic, walls()).disks(disks()).build().unwrap();
+        let error = run.run_until(5.0, &mut Clock(clock, 1.0)).unwrap_err();
+        assert!(matches!(error, RunError::SampleTime { time: 1.0, .. }), "{error}");
+        assert_whole(&run);
+        run.run_until(6.0, &mut ()).unwrap();
+    }
+    let mut run = Simulation::builder(Elastic, walls()).disks(disks()).build().unwrap();
+    let error = run.run_until(5.0, &mut Clock(|time| time, f64::NAN)).unwrap_err();
+    assert!(matches!(error, RunError::SampleTime { next, time: 0.0, .. } if next.is_nan()), "{error}");
+    // A clock that is behind catches up, and one that never beats is left alone.
+    run.run_until(5.0, &mut Clock(|time| time + 1.0, -3.0)).unwrap();
+    run.run_until(6.0, &mut Clock(|time| time, f64::INFINITY)).unwrap();
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Stage {
+    Start,
+    Collision,
+    Sample,
+    End,
+}
+
+/// An observer that fails at one of its calls, and counts the others.
+#[derive(Default)]
+struct Failing {
+    at: Option<Stage>,
+    due: bool,
+    starts: u32,
+    ends: u32,
+    collisions_after: u32,
+    sampled: bool,
+}
+
+impl Failing {
+    fn reach(&mut self, stage: Stage) {
+        self.due |= self.at == Some(stage);
+    }
+}
+
+impl Observer for Failing {
+    fn on_start(&mut self, _: &Moment) {
+        self.starts += 1;
+        self.reach(Stage::Start);
+    }
+    fn on_collision(&mut self, _: &Collision) {
+        self.collisions_after += u32::from(self.due);
+        self.reach(Stage::Collision);
+    }
+    fn next_sample(&self) -> f64 {
+        if self.sampled { f64::INFINITY } else { 1.0 }
+    }
+    fn on_sample(&mut self, _: &Snapshot<'_>) {
+        self.sampled = true;
+        self.reach(Stage::Sample);
+    }
+    fn on_end(&mut self, _: &Moment) {
+        self.ends += 1;
+        self.reach(Stage::End);
+    }
+    fn verdict(&mut self) -> Verdict {
+        if self.due { Err("the disk is full".into()) } else { Ok(ControlFlow::Continue(())) }
+    }
+}
+
+#[test]
+fn an_observer_that_fails_ends_the_run_there() {
+    for stage in [Stage::Start, Stage::Collision, Stage::Sample, Stage::End] {
+        let mut run = Simulation::builder(Elastic, walls()).disks(disks()).build().unwrap();
+        let mut failing = Failing { at: Some(stage), ..Failing::default() };
+        let error = run.run_until(5.0, &mut failing).unwrap_err();
+        let RunError::Observer { time, source } = &error else { panic!("{stage:?}: {error}") };
+        assert_eq!(source.to_string(), "the disk is full");
+        assert!(!error.to_string().contains("full"), "the source is told once: {error}");
+        assert_eq!(*time, run.time());
+        match stage {
+            Stage::Start => assert_eq!(*time, 0.0),
+            Stage::Collision => assert_eq!(run.counters().collisions + run.counters().wall_collisions, 1),
+            Stage::Sample => assert_eq!(*time, 1.0),
+            Stage::End => assert_eq!(*time, 5.0),
+        }
+        assert_eq!((failing.starts, failing.ends, failing.collisions_after), (1, 1, 0), "{stage:?}");
+        assert_whole(&run);
+        // Nothing is lost: the run goes on with the bits that it would have had.
+        run.run_until(9.0, &mut ()).unwrap();
+        let mut plain = Simulation::builder(Elastic, walls()).disks(disks()).build().unwrap();
+        plain.run_until(9.0, &mut ()).unwrap();
+        assert_eq!(run.disks(), plain.disks(), "{stage:?}");
+    }
+}
+
+#[test]
+fn an_end_before_the_present_tells_no_observer() {
+    let mut run = Simulation::builder(Elastic, walls()).disks(disks()).start_time(3.0).build().unwrap();
+    let mut failing = Failing::default();
+    assert!(matches!(run.run_until(2.0, &mut failing), Err(RunError::End { .. })));
+    assert_eq!((failing.starts, failing.ends), (0, 0));
+}
+
+/// A rule that fails at its so-manieth contact with this impulse.
+struct Failed {
+    truths: Cell<u32>,
+    impulse: fn(&Contact) -> Impulse,
+}
+
+impl CollisionRule for Failed {
+    fn impulse(&self, contact: &Contact) -> Impulse {
+        if self.truths.get() == 0 {
+            return (self.impulse)(contact);
+        }
+        self.truths.set(self.truths.get() - 1);
+        Elastic.impulse(contact)
+    }
+    fn explain(&self, contact: &Contact) -> Option<String> {
+        Some(format!("closing at {} is too much", contact.closing_speed()))
+    }
+}
+
+#[test]
+fn an_outcome_that_is_no_motion_names_both_partners_the_contact_and_the_reason() {
+    let impulses: [fn(&Contact) -> Impulse; 7] = [
+        |_| Impulse::new(f64::NAN, 0.0),
+        |_| Impulse::new(0.0, f64::NAN),
+        |_| Impulse::new(f64::INFINITY, 0.0),
+        |_| Impulse::new(1.0, f64::NEG_INFINITY),
+        |_| Impulse::new(f64::MAX, 0.0),
+        |_| Impulse::new(1e61, 0.0),
+        |_| Impulse::new(0.5, 1e61),
+    ];
+    let (mut pairs, mut walls_named) = (0, 0);
+    for impulse in impulses {
+        for truths in [0, 1, 2, 3, 10, 50, 51, 52, 53, 200] {
+            let rule = Failed { truths: Cell::new(truths), impulse };
+            let mut run = Simulation::builder(rule, walls()).disks(disks()).build().unwrap();
+            let error = run.run_until(50.0, &mut ()).unwrap_err();
+            let said = error.to_string();
+            let RunError::NotFinite(failed) = error else { panic!("{error}") };
+            assert!(failed.disk < 20 && failed.time == run.time());
+            let closing = failed.contact.closing_speed();
+            assert!(closing >= 0.0 && closing.is_finite());
+            let asked = impulse(&failed.contact);
+            let same = |a: f64, b: f64| a.to_bits() == b.to_bits();
+            assert!(
+                same(failed.impulse.normal(), asked.normal())
+                    && same(failed.impulse.tangential(), asked.tangential())
+            );
+            assert_eq!(failed.explanation, Some(format!("closing at {closing} is too much")));
+            let names = match failed.partner {
+                Partner::Disk(partner) => {
+                    pairs += 1;
+                    format!("disks {} and {partner}", failed.disk)
+                }
+                Partner::Wall(wall) => {
+                    walls_named += 1;
+                    format!("disk {} with wall {wall}", failed.disk)
+                }
+            };
+            assert!(said.contains(&names) && said.contains("is too much"), "{said}");
+            assert_whole(&run);
+            // An infinite velocity does not stay: the rule that is mended goes on.
+            run.set_rule(Failed { truths: Cell::new(u32::MAX), impulse });
+            run.run_until(50.0, &mut ()).unwrap();
+            assert_whole(&run);
+        }
+    }
+    assert!(pairs > 10 && walls_named > 10, "{pairs} {walls_named}");
+}
+
+/// Changes that are finite each, and lead beyond all bounds together.
+#[test]
+fn velocities_that_grow_beyond_all_bounds_end_the_run() {
+    let growing = granular_edmd::collision::from_fn(|contact: &Contact| {
+        Impulse::new(contact.normal_mass() * contact.closing_speed() * 1e9, 0.0)
+    });
+    let mut run = Simulation::builder(growing, walls()).disks(disks()).build().unwrap();
+    let error = loop {
+        if let Err(error) = run.step_until(run.time() + 1.0, &mut ()) {
+            break error;
+        }
+    };
+    assert!(matches!(error, RunError::NotFinite(_) | RunError::TimeTooLate { .. }), "{error}");
+    assert!(run.disks().iter().all(|disk| disk.velocity().abs().max_element() <= 1e60));
+    let error = loop {
+        if let Err(error) = run.step_until(run.time() + 1.0, &mut ()) {
+            break error;
+        }
+    };
+    assert!(matches!(error, RunError::NotFinite(_) | RunError::TimeTooLate { .. }), "{error}");
+}
+
+/// A rule under which every contact is asserted to be one.
+struct Strict<R>(R);
+
+impl<R: CollisionRule> CollisionRule for Strict<R> {
+    fn impulse(&self, contact: &Contact) -> Impulse {
+        let closing = contact.closing_speed();
+        assert!(closing >= 0.0 && closing.is_finite() && closing.is_sign_positive(), "{contact}");
+        assert!(contact.slip_speed().is_finite(), "{contact}");
+        assert!(contact.normal_mass() > 0.0 && contact.tangential_mass() > 0.0, "{contact}");
+        assert!(contact.tangential_mass() <= contact.normal_mass(), "{contact}");
+        assert!(contact.time_since_last_collision() >= 0.0, "{contact}");
+        self.0.impulse(contact)
+    }
+}
+
+/// A round drum whose wall turns: what touches it is carried along.
+#[derive(Debug, Clone)]
+struct Drum {
+    radius: f64,
+    speed: f64,
+}
+
+impl Boundary for Drum {
+    fn domain(&self) -> Domain {
+        Domain::new(-self.radius, self.radius, -self.radius, self.radius)
+    }
+    fn wall_count(&self) -> usize {
+        1
+    }
+    fn set_time_origin(&mut self, _: f64) {}
+    fn may_touch(&self, _: &Region, _: f64) -> bool {
+        true
+    }
+    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+        let start = flight.time();
+        let (r, v, a) = (flight.position(start), flight.velocity(start), flight.acceleration());
+        let free = self.radius - flight.radius();
+        let gap = [
+            (free - r.length()) * (free + r.length()),
+            -2.0 * r.dot(v),
+            -(v.length_squared() + r.dot(a)),
+            -v.dot(a),
+            -0.25 * a.length_squared(),
+        ];
+        let wait = granular_edmd::roots::first_descent_of_quartic(&gap, until - start)?;
+        Some(Touch::new((start + wait).min(until), 0))
+    }
+    fn surface(&self, _: usize, position: DVec2, _: f64) -> Surface<'_> {
+        let normal = -position.normalize_or(DVec2::Y);
+        Surface::new(normal, normal.perp() * self.speed)
+    }
+    fn overlap(&self, position: DVec2, radius: f64, _: f64) -> Option<(usize, f64)> {
+        let depth = position.length() + radius - self.radius;
+        (depth > 0.0).then_some((0, depth))
+    }
+}
+
+/// Does so many collisions, or as many as there are: disks at rest on a wall have no end of them.
+fn take_steps<R: CollisionRule, B: Boundary>(run: &mut Simulation<R, B>, steps: usize) {
+    for _ in 0..steps {
+        if !matches!(run.step_until(200.0, &mut ()), Ok(Some(_))) {
+            break;
+        }
+    }
+}
+
+#[test]
+fn no_rule_is_given_a_closing_speed_below_zero() {
+    use granular_edmd::boundary::{Thermal, Wall};
+    use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
+    let rules = || {
+        [
+            Frictional::new(0.0, 0.2),
+            Frictional::new(0.1, 0.0),
+            Frictional::new(0.3, 0.5),
+            Frictional::new(0.5, 0.1),
+        ]
+        .map(Result::unwrap)
+    };
+    let containers = [
+        Ok(walls()),
+        walls().with_motion(Wall::Floor, Sinusoidal::new(0.1, 50.0).unwrap()),
+        walls().with_motion(Wall::Lid, BiParabolic::new(0.1, 10.0).unwrap()),
+        walls().with_motion(Wall::Left, Sawtooth::new(0.1, 10.0).unwrap()),
+        walls().with_motion(Wall::Right, Triangular::new(0.1, 10.0).unwrap()),
+        walls().with_temperature(Wall::Floor, Thermal::new(2.0).unwrap()),
+        Ok(walls().with_periodic_sides()),
+    ];
+    for (container, rule) in
+        containers.into_iter().map(Result::unwrap).flat_map(|c| rules().map(|r| (c.clone(), r)))
+    {
+        for gravity in [0.0, 0.3] {
+            let builder =
+                Simulation::builder(Strict(rule), container.clone()).disks(disks()).gravity(gravity);
+            let mut run = builder.build().unwrap();
+            take_steps(&mut run, 5000);
+        }
+    }
+    for (speed, rule) in [0.0, 0.3, -7.0].into_iter().flat_map(|speed| rules().map(|rule| (speed, rule))) {
+        let drum = Drum { radius: 4.0, speed };
+        let places =
+            (-2..=2).flat_map(|x| (-2..=2).map(move |y| 1.1 * DVec2::new(f64::from(x), f64::from(y))));
+        let disks = places.map(|place| Disk::new(place, 0.45).unwrap()).collect();
+        let disks = initial::with_maxwellian_velocities(disks, 1.0, 9).unwrap();
+        for gravity in [0.0, 0.5] {
+            let builder =
+                Simulation::builder(Strict(rule), drum.clone()).disks(disks.clone()).gravity(gravity);
+            let mut run = builder.build().unwrap();
+            take_steps(&mut run, 5000);
+            assert!(run.counters().wall_collisions > 20, "{speed} {rule:?}: {:?}", run.counters());
+            assert!(run.counters().max_wall_overlap < 1e-9, "{speed} {rule:?}: {:?}", run.counters());
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! Measurements as data: written half way and read back, they end with the bits of one without interruption.
+
+#![cfg(feature = "serde")]
+
+use granular_edmd::boundary::{Boundary, Container, Region, Wall};
+use granular_edmd::collision::{ContactDuration, Frictional};
+use granular_edmd::glam::DVec2;
+use granular_edmd::observable::{
+    CenterOfMass, CollisionCounts, Energies, EnergyChange, EnergyChangeProfile, Fields, HeightProfile,
+    Moment, Observer, OrderParameters, SampleTimes, Series, Temperatures,
+};
+use granular_edmd::statistics::{BlockedMean, Estimate, RunningMean};
+use granular_edmd::wall::BiParabolic;
+use granular_edmd::{ParameterError, Simulation, initial};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+
+type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+type Rule = ContactDuration<Frictional>;
+
+/// All observers at once.
+type Watchers = (
+    Series<((OrderParameters, CenterOfMass), (Energies, Temperatures))>,
+    (EnergyChange, CollisionCounts),
+    EnergyChangeProfile,
+    HeightProfile,
+    Fields,
+);
+
+const HALF: f64 = 60.1;
+const END: f64 = 120.2;
+
+fn watchers() -> Result<Watchers, ParameterError> {
+    let times = SampleTimes::every(0.3)?;
+    let observables = ((OrderParameters, CenterOfMass), (Energies, Temperatures));
+    let region = region(DVec2::ZERO, DVec2::new(10.0, 20.0));
+    Ok((
+        Series::new(observables, times),
+        (EnergyChange::default(), CollisionCounts::since(0.0)),
+        EnergyChangeProfile::new(0.0, 20.0, 5, times.starting_at(0.7)?)?,
+        HeightProfile::new(0.0, 20.0, 7, times)?,
+        Fields::new(region, 3, 4, times)?,
+    ))
+}
+
+fn region(min: DVec2, max: DVec2) -> Region {
+    Region::new(min, max)
+}
+
+fn container() -> Result<Container, Box<dyn std::error::Error>> {
+    Ok(Container::closed(10.0, 20.0)?.with_motion(Wall::Floor, BiParabolic::new(0.2, 5.0)?)?)
+}
+
+fn rule() -> Result<Rule, ParameterError> {
+    ContactDuration::new(Frictional::new(0.05, 0.2)?, 1e-3)
+}
+
+fn simulation() -> Result<Simulation<Rule>, Box<dyn std::error::Error>> {
+    let disks = initial::with_maxwellian_velocities(initial::lattice(&container()?, 40, 0.5)?, 1.0, 3)?;
+    Ok(Simulation::builder(rule()?, container()?).disks(disks).gravity(0.2).build()?)
+}
+
+fn json<T: Serialize + DeserializeOwned>(value: &T) -> Result<T, Box<dyn std::error::Error>> {
+    Ok(serde_json::from_str(&serde_json::to_string(value)?)?)
+}
+
+fn binary<T: Serialize + DeserializeOwned>(value: &T) -> Result<T, Box<dyn std::error::Error>> {
+    Ok(postcard::from_bytes(&postcard::to_stdvec(value)?)?)
+}
+
+/// A run from time 0 to the end, whose observers and state pass through `through` half way.
+fn measured(
+    through: impl Fn(Watchers) -> Result<Watchers, Box<dyn std::error::Error>>,
+) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
+    let mut run = simulation()?;
+    let mut watchers = watchers()?;
+    watchers.on_start(&Moment::new(0.0, run.len(), 4, run.boundary().domain(), run.gravity()));
+    run.run_until(HALF, &mut watchers)?;
+    let mut watchers = through(watchers)?;
+    let mut run = Simulation::resume(&run.checkpoint(), rule()?, container()?).build()?;
+    run.run_until(END, &mut watchers)?;
+    assert_eq!(watchers.0.values().len(), 400);
+    assert!(watchers.1.0.disks().count() > 500 && watchers.1.0.wall(0).count() > 50);
+    Ok(postcard::to_stdvec(&watchers)?)
+}
+
+#[test]
+fn a_measurement_goes_on_with_the_same_bits() -> Outcome {
+    let whole = measured(Ok)?;
+    assert_eq!(measured(|watchers| json(&watchers))?, whole);
+    assert_eq!(measured(|watchers| binary(&watchers))?, whole);
+    // In one, too: at most the rounding of the time to which the first half ran is between them.
+    let mut run = simulation()?;
+    let mut uncut = watchers()?;
+    uncut.on_start(&Moment::new(0.0, run.len(), 4, run.boundary().domain(), run.gravity()));
+    run.run_until(END, &mut uncut)?;
+    assert_eq!(postcard::to_stdvec(&uncut)?, whole);
+    Ok(())
+}
+
+#[test]
+fn means_and_estimates_survive_files() -> Outcome {
+    for count in [0_u32, 1, 2, 3, 100, 1023] {
+        let series = || (0..count).map(|k| f64::from(k * k % 17) / 7.0);
+        let (running, blocked) = (series().collect::<RunningMean>(), series().collect::<BlockedMean>());
+        assert_eq!((json(&running)?, json(&blocked)?), (running, blocked.clone()));
+        assert_eq!((binary(&running)?, binary(&blocked)?), (running, blocked.clone()));
+        for estimate in [running.estimate(), blocked.estimate()] {
+            // NaN is not equal to itself: as text.
+            assert_eq!(format!("{:?}", json(&estimate)?), format!("{estimate:?}"));
+            assert_eq!(format!("{:?}", binary(&estimate)?), format!("{estimate:?}"));
+        }
+        // As many levels as the count has binary digits.
+        let levels = serde_json::to_value(&blocked)?.as_array().map(Vec::len);
+        assert_eq!(levels, Some((u32::BITS - count.leading_zeros()) as usize));
+    }
+    Ok(())
+}
+
+/// A value with one number of it changed, at a JSON pointer.
+fn forged(value: &impl Serialize, at: &str, number: Value) -> Value {
+    let mut value = serde_json::to_value(value).unwrap();
+    *value.pointer_mut(at).unwrap_or_else(|| panic!("{at}")) = number;
+    value
+}
+
+fn refused<T: DeserializeOwned>(value: Value) -> bool {
+    serde_json::from_value::<T>(value).is_err()
+}
+
+#[test]
+fn forged_measurements_are_refused() -> Outcome {
+    let running = RunningMean::from_iter([1.0, 2.0]);
+    for (at, number) in [
+        ("/count", json!(0)),
+        ("/count", json!(1)),
+        ("/squares", json!(-1.0)),
+        ("/mean", json!(null)),
+        ("/count", json!(u64::MAX)),
+    ] {
+        assert!(refused::<RunningMean>(forged(&running, at, number)), "{at}");
+    }
+    let blocked = BlockedMean::from_iter([1.0, 2.0, 4.0, 5.0, 7.0]);
+    for (at, number) in [
+        ("", json!([])).clone(),
+        ("/0/blocks/count", json!(9)),
+        ("/1/blocks/count", json!(3)),
+        ("/0/waiting", json!(null)),
+        ("/1/waiting", json!(1.5)),
+        ("/2", json!({ "blocks": { "count": 0, "mean": 0.0, "squares": 0.0 }, "waiting": null })),
+    ] {
+        let changed = forged(&blocked, at, number);
+        assert_eq!(refused::<BlockedMean>(changed), !at.is_empty(), "{at}");
+    }
+    let estimate: Estimate = blocked.estimate();
+    for (at, number) in [
+        ("/samples", json!(1)),
+        ("/mean", json!(null)),
+        ("/standard_error", json!(-1.0)),
+        ("/standard_error", json!(null)),
+        ("/correlated_samples", json!(-2.0)),
+        ("/basis", json!("Independent")),
+        ("/basis", json!("Guessed")),
+    ] {
+        assert!(refused::<Estimate>(forged(&estimate, at, number)), "{at}");
+    }
+    let times = SampleTimes::every(0.5)?.starting_at(3.0)?;
+    for (at, number) in [("/interval", json!(0.0)), ("/first", json!("soon")), ("/beat", json!(-1))] {
+        assert!(refused::<SampleTimes>(forged(&times, at, number)), "{at}");
+    }
+    let (series, (_, counts), profile, heights, fields) = &watchers()?;
+    assert!(refused::<Series<((OrderParameters, CenterOfMass), (Energies, Temperatures))>>(forged(
+        series,
+        "/times",
+        json!([1.0])
+    )));
+    assert!(refused::<CollisionCounts>(forged(counts, "/sticking", json!(1))));
+    assert!(refused::<CollisionCounts>(forged(counts, "/disks", json!(u64::MAX))));
+    for (at, number) in [("/layers/1/height", json!(0.5)), ("/bins/count", json!(4)), ("/layers", json!([]))]
+    {
+        assert!(refused::<EnergyChangeProfile>(forged(profile, at, number)), "{at}");
+    }
+    for (at, number) in [
+        ("/bins/height", json!(-1.0)),
+        ("/bins/height", json!(1e308)),
+        ("/bins/count", json!(0)),
+        ("/sums", json!([0.0])),
+    ] {
+        assert!(refused::<HeightProfile>(forged(heights, at, number)), "{at}");
+    }
+    for (at, number) in [
+        ("/columns", json!(4)),
+        ("/rows", json!(u64::MAX)),
+        ("/max/0", json!(-1.0)),
+        ("/sums/0/count", json!(1)),
+        ("/sums/0/area", json!(1.0)),
+        ("/sums/0/velocity/1/squares", json!(1.0)),
+    ] {
+        assert!(refused::<Fields>(forged(fields, at, number)), "{at}");
+    }
+    Ok(())
+}

@@ -1,0 +1,318 @@
+//! The contract of observers: the clock, what those made of others pass on, stops, and the check of all that.
+
+use std::ops::ControlFlow;
+
+use granular_edmd::ParameterError;
+use granular_edmd::boundary::{Boundary, Container, Domain};
+use granular_edmd::collision::{Contact, Impulse};
+use granular_edmd::observable::laws::{self, Violation};
+use granular_edmd::observable::{
+    CenterOfMass, Collision, CollisionCounts, EnergyChange, EnergyChangeProfile, Fields, HeightProfile,
+    Moment, Observable, Observer, Partner, SampleTimes, Series, Snapshot, Verdict, from_fn, on_collision,
+    on_sample, stop_when, stop_when_sampled,
+};
+
+type Outcome = Result<(), ParameterError>;
+
+fn domain() -> Domain {
+    Container::closed(10.0, 10.0).unwrap().domain()
+}
+
+fn moment(time: f64) -> Moment {
+    Moment::new(time, 0, 4, domain(), 1.0)
+}
+
+fn snapshot(time: f64) -> Snapshot<'static> {
+    Snapshot::new(time, &[], domain(), 1.0)
+}
+
+fn collision(time: f64, partner: Partner) -> Collision {
+    Collision::new(time, 0, partner, Contact::new(2.0, 0.0, 0.5, 0.5 / 3.0), Impulse::new(1.5, 0.0))
+}
+
+/// Runs without disks, as the engine does.
+fn run(observer: &mut impl Observer, start: f64, end: f64) {
+    observer.on_start(&moment(start));
+    while observer.next_sample() <= end {
+        observer.on_sample(&snapshot(observer.next_sample().max(start)));
+    }
+    observer.on_end(&moment(end));
+}
+
+/// Times of the samples of runs that follow each other, with this clock.
+fn sampled(times: SampleTimes, runs: &[(f64, f64)]) -> Vec<f64> {
+    let mut series = Series::new(from_fn(|snapshot: &Snapshot<'_>| snapshot.disks().len()), times);
+    for &(start, end) in runs {
+        run(&mut series, start, end);
+    }
+    series.times().to_vec()
+}
+
+#[test]
+fn the_first_sample_comes_on_the_beat_and_not_at_the_start() -> Outcome {
+    let every = SampleTimes::every(2.0)?;
+    assert_eq!(sampled(every, &[(0.0, 6.0)]), [2.0, 4.0, 6.0]);
+    assert_eq!(sampled(every, &[(11.5, 16.5)]), [12.0, 14.0, 16.0], "a start time off the beat");
+    assert_eq!(sampled(every, &[(12.0, 18.0)]), [14.0, 16.0, 18.0], "after a run to settle");
+    assert_eq!(sampled(every, &[(-5.0, 1.0)]), [-4.0, -2.0, 0.0], "before time 0");
+    let from = SampleTimes::every(2.0)?.starting_at(10.5)?;
+    assert_eq!(sampled(from, &[(0.0, 13.0)]), [10.5, 12.5]);
+    assert_eq!(sampled(from, &[(10.5, 13.0)]), [10.5, 12.5], "a start on the first time");
+    assert_eq!(sampled(from, &[(12.5, 15.0)]), [14.5], "a start on another time");
+    assert_eq!(sampled(from, &[(100.0, 103.0)]), [100.5, 102.5]);
+    Ok(())
+}
+
+/// Intervals that are no binary fractions, at starts that are sums of them, each missed by some roundings.
+#[test]
+fn a_run_of_some_intervals_has_as_many_samples() -> Outcome {
+    for interval in [0.1, 1.0 / 3.0, 62.8, 1e-3] {
+        for settled in [1, 3, 7, 1000, 12_345] {
+            let start = f64::from(settled) * interval;
+            for near in [start, start.next_down(), start.next_up(), start * (1.0 - 4e-16)] {
+                let end = f64::from(settled + 10) * interval;
+                let times = sampled(SampleTimes::every(interval)?, &[(near, end)]);
+                assert_eq!(times.len(), 10, "{interval} {settled} {near}");
+                assert!(times[0] > start + 0.9 * interval);
+                let times = sampled(SampleTimes::every(interval)?.starting_at(start)?, &[(near, end)]);
+                assert!(
+                    (10..=11).contains(&times.len()) && times[0] <= near.max(start),
+                    "{interval} {settled}"
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn a_run_in_pieces_has_the_samples_of_a_run_in_one() -> Outcome {
+    let whole = sampled(SampleTimes::every(0.1)?, &[(0.0, 30.0)]);
+    assert_eq!(whole.len(), 300);
+    let mut time = 0.0;
+    let mut pieces = Vec::new();
+    while time < 30.0 {
+        // Sums miss the beats, which are multiples, on both sides.
+        pieces.push((time, time + 0.1));
+        time += 0.1;
+    }
+    let times = sampled(SampleTimes::every(0.1)?, &pieces);
+    assert_eq!(times.len(), 300);
+    assert!(times.iter().zip(&whole).all(|(one, other)| (one - other).abs() < 1e-13));
+    // A gap leaves out what lies in it, a run that starts again is another run.
+    let every = SampleTimes::every(1.0)?;
+    assert_eq!(sampled(every, &[(0.0, 2.0), (10.0, 12.0)]), [1.0, 2.0, 11.0, 12.0]);
+    assert_eq!(sampled(every, &[(0.0, 3.0), (0.0, 2.0)]), [1.0, 2.0, 3.0, 1.0, 2.0]);
+    let from = every.starting_at(5.0)?;
+    assert_eq!(sampled(from, &[(5.0, 5.0), (5.0, 6.5), (6.5, 7.0)]), [5.0, 6.0, 7.0], "no beat twice");
+    assert_eq!(sampled(from, &[(5.0, 7.0), (5.0, 6.0)]), [5.0, 6.0, 7.0, 5.0, 6.0]);
+    Ok(())
+}
+
+#[test]
+fn clocks_far_out_do_not_hang() -> Outcome {
+    for far in [1e300, f64::MAX, f64::INFINITY, f64::NAN, -1e300, f64::NEG_INFINITY] {
+        for interval in [1e-300, 1.0, 1e300] {
+            for mut times in [SampleTimes::every(interval)?, SampleTimes::every(interval)?.starting_at(1.0)?]
+            {
+                times.start_at(far);
+                assert!(!times.upcoming().is_nan());
+                times.advance_past(far);
+                assert!(!(far.is_finite() && times.upcoming() <= far), "{interval} {far} {times:?}");
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Counts what it is told, and has a verdict.
+#[derive(Debug, Default)]
+struct Tally {
+    wanted: Option<f64>,
+    verdict: Option<&'static str>,
+    told: [usize; 4],
+}
+
+impl Observer for Tally {
+    fn on_start(&mut self, _: &Moment) {
+        self.told[0] += 1;
+    }
+    fn on_collision(&mut self, _: &Collision) {
+        self.told[1] += 1;
+    }
+    fn next_sample(&self) -> f64 {
+        self.wanted.unwrap_or(f64::INFINITY)
+    }
+    fn on_sample(&mut self, _: &Snapshot<'_>) {
+        self.told[2] += 1;
+    }
+    fn on_end(&mut self, _: &Moment) {
+        self.told[3] += 1;
+    }
+    fn verdict(&mut self) -> Verdict {
+        match self.verdict {
+            None => Ok(ControlFlow::Continue(())),
+            Some("stop") => Ok(ControlFlow::Break(())),
+            Some(error) => Err(error.into()),
+        }
+    }
+}
+
+fn tallies(verdicts: [Option<&'static str>; 6]) -> [Tally; 6] {
+    verdicts.map(|verdict| Tally { wanted: Some(1.0), verdict, ..Tally::default() })
+}
+
+/// The verdict of all of them in one, in all ways to make one.
+fn verdict_of(tallies: &mut [Tally; 6]) -> String {
+    let [boxed, listed, other, optional, bare, late] = tallies;
+    late.wanted = Some(2.0);
+    let boxed: Box<dyn Observer + '_> = Box::new(boxed);
+    let mut all = (boxed, vec![listed, other], Some(optional), bare, (late, None::<Tally>), ());
+    let all: &mut dyn Observer = &mut all;
+    all.on_start(&moment(0.0));
+    all.on_collision(&collision(0.5, Partner::Wall(0)));
+    assert_eq!(all.next_sample(), 1.0);
+    all.on_sample(&snapshot(1.0));
+    all.on_end(&moment(1.5));
+    match all.verdict() {
+        Ok(ControlFlow::Continue(())) => "continue".to_owned(),
+        Ok(ControlFlow::Break(())) => "stop".to_owned(),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn observers_made_of_others_pass_everything_on() {
+    let mut all = tallies([None; 6]);
+    assert_eq!(verdict_of(&mut all), "continue");
+    let told = all.map(|tally| tally.told);
+    assert_eq!(told, [[1; 4], [1; 4], [1; 4], [1; 4], [1; 4], [1, 1, 0, 1]]);
+    for place in 0..6 {
+        let mut verdicts = [None; 6];
+        verdicts[place] = Some("stop");
+        assert_eq!(verdict_of(&mut tallies(verdicts)), "stop", "{place}");
+        verdicts[5 - place] = Some("disk full");
+        assert_eq!(verdict_of(&mut tallies(verdicts)), "disk full", "{place}: a failure comes before a stop");
+        verdicts[(5 - place).max(place)] = Some("disk gone");
+        verdicts[(5 - place).min(place)] = Some("disk full");
+        assert_eq!(verdict_of(&mut tallies(verdicts)), "disk full", "{place}: the first failure");
+    }
+    let broken = || Tally { wanted: Some(f64::NAN), ..Tally::default() };
+    assert!((Tally::default(), broken()).next_sample().is_nan(), "a broken clock shows in a tuple");
+    assert!((broken(), Tally::default()).next_sample().is_nan());
+    assert!(vec![Tally::default(), broken(), Tally::default()].next_sample().is_nan());
+}
+
+#[test]
+fn closures_stop_a_run_and_let_it_go_on() -> Outcome {
+    let mut at_wall = stop_when(|collision: &Collision| collision.partner == Partner::Wall(0));
+    let mut stopped = |partner| {
+        at_wall.on_collision(&collision(0.5, partner));
+        at_wall.verdict().unwrap().is_break()
+    };
+    assert_eq!([Partner::Disk(0), Partner::Wall(0), Partner::Disk(0)].map(&mut stopped), [false, true, true]);
+    at_wall.on_start(&moment(1.0));
+    assert!(at_wall.verdict().unwrap().is_continue());
+
+    let mut late =
+        stop_when_sampled(SampleTimes::every(1.0)?, |snapshot: &Snapshot<'_>| snapshot.time() > 2.5);
+    late.on_start(&moment(0.5));
+    for (time, stops) in [(1.0, false), (2.0, false), (3.0, true)] {
+        assert_eq!(late.next_sample(), time);
+        late.on_sample(&snapshot(time));
+        assert_eq!(late.verdict().unwrap().is_break(), stops, "{time}");
+    }
+    late.on_start(&moment(3.0));
+    assert!(late.verdict().unwrap().is_continue() && late.next_sample() == 4.0);
+    Ok(())
+}
+
+#[test]
+fn all_observers_keep_their_contract() -> Outcome {
+    let times = SampleTimes::every(0.7)?;
+    let region = granular_edmd::boundary::Region::new([0.0, 0.0].into(), [10.0, 10.0].into());
+    let height = from_fn(|snapshot: &Snapshot<'_>| CenterOfMass.measure(snapshot).y);
+    let (mut collisions, mut samples) = (0, 0);
+    let mut all = (
+        (Series::new(CenterOfMass, times), Series::new(height, times.starting_at(-3.0)?)),
+        (EnergyChange::default(), CollisionCounts::since(0.0)),
+        (EnergyChangeProfile::new(0.0, 10.0, 5, times)?, HeightProfile::new(0.0, 10.0, 5, times)?),
+        Fields::new(region, 3, 3, times)?,
+        on_collision(|_: &Collision| collisions += 1),
+        on_sample(times, |_: &Snapshot<'_>| samples += 1),
+    );
+    laws::check(&mut all).unwrap();
+    assert!(all.0.0.values().len() > 50 && all.0.1.values().len() > 50);
+    assert!(all.1.0.disks().count() > 10 && all.1.1.collisions_with_wall(3) > 10);
+    drop(all);
+    assert!(collisions > 100 && samples > 50);
+    laws::check(&mut stop_when(|_: &Collision| true)).unwrap();
+    laws::check(&mut stop_when_sampled(times, |_: &Snapshot<'_>| true)).unwrap();
+    laws::check(&mut Tally { verdict: Some("disk full"), ..Tally::default() }).unwrap();
+    laws::check(&mut ()).unwrap();
+    Ok(())
+}
+
+/// A clock with a fault.
+struct Faulty<F> {
+    next: f64,
+    started: bool,
+    after_sample: F,
+    at_collision: f64,
+}
+
+fn faulty<F: Fn(f64) -> f64>(after_sample: F) -> Faulty<F> {
+    Faulty { next: 0.5, started: true, after_sample, at_collision: 0.0 }
+}
+
+impl<F: Fn(f64) -> f64> Observer for Faulty<F> {
+    fn on_start(&mut self, moment: &Moment) {
+        if self.started {
+            self.next = moment.time() + 0.5;
+        }
+    }
+    fn on_collision(&mut self, _: &Collision) {
+        self.next += self.at_collision;
+    }
+    fn next_sample(&self) -> f64 {
+        self.next
+    }
+    fn on_sample(&mut self, _: &Snapshot<'_>) {
+        self.next = (self.after_sample)(self.next);
+    }
+}
+
+#[test]
+fn planted_faults_are_caught() {
+    let sound = |time: f64| time + 1.0;
+    laws::check(&mut faulty(sound)).unwrap();
+    laws::check(&mut faulty(|_| f64::INFINITY)).unwrap();
+    let nan = laws::check(&mut faulty(|_| f64::NAN)).unwrap_err();
+    assert!(matches!(nan, Violation::NotANumber { after: 0.5 }), "{nan}");
+    let stuck = laws::check(&mut faulty(|time| time)).unwrap_err();
+    assert_eq!(stuck, Violation::NotLater { sample: 0.5, next: 0.5 });
+    assert_eq!(stuck.to_string(), "after the sample at 0.5 the next one is not later, at 0.5");
+    let late = laws::check(&mut faulty(|time| if time > 9.0 { time } else { time + 1.0 })).unwrap_err();
+    assert_eq!(late, Violation::NotLater { sample: 9.5, next: 9.5 });
+    let back = laws::check(&mut faulty(|time| time - 0.25)).unwrap_err();
+    assert_eq!(back, Violation::NotLater { sample: 0.5, next: 0.25 });
+    let deaf = laws::check(&mut Faulty { started: false, ..faulty(sound) }).unwrap_err();
+    assert!(matches!(deaf, Violation::BeforeStart { .. }), "{deaf}");
+    let restless = laws::check(&mut Faulty { at_collision: 0.25, ..faulty(sound) }).unwrap_err();
+    assert_eq!(restless, Violation::Moved { before: 0.5, next: 0.75 });
+    let composed = laws::check(&mut ((), vec![faulty(|_| f64::NAN)])).unwrap_err();
+    assert!(matches!(composed, Violation::NotANumber { .. }), "{composed}");
+}
+
+#[test]
+fn walls_that_were_never_touched_have_no_collisions() {
+    let (mut counts, mut change) = (CollisionCounts::default(), EnergyChange::default());
+    for wall in [2, usize::MAX] {
+        counts.on_collision(&collision(1.0, Partner::Wall(wall)));
+        change.on_collision(&collision(1.0, Partner::Wall(wall)));
+    }
+    for (wall, expected) in [(0, 0), (2, 1), (3, 0), (usize::MAX - 1, 0), (usize::MAX, 1)] {
+        assert_eq!((counts.collisions_with_wall(wall), change.wall(wall).count()), (expected, expected));
+    }
+    assert_eq!((change.wall(2).mean(), change.wall(7).mean()), (-0.75, 0.0));
+}

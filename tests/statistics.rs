@@ -1,0 +1,173 @@
+//! Errors of means against the true scatter over seeds, of series whose correlation is known.
+
+use granular_edmd::statistics::{BlockedMean, Estimate, RunningMean, block_average};
+use rand::{Rng, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// Runs of each series: the scatter over them is known to 8 %.
+const SEEDS: u64 = 80;
+
+/// An autoregressive series of variance 1 and this correlation of neighbors.
+struct Autoregressive {
+    generator: Xoshiro256PlusPlus,
+    correlation: f64,
+    state: f64,
+}
+
+impl Autoregressive {
+    fn new(seed: u64, correlation: f64) -> Self {
+        let mut series = Self { generator: Xoshiro256PlusPlus::seed_from_u64(seed), correlation, state: 0.0 };
+        series.state = series.normal();
+        series
+    }
+
+    /// Sum of 12 uniform numbers.
+    fn normal(&mut self) -> f64 {
+        let mut uniform = || (self.generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    }
+}
+
+impl Iterator for Autoregressive {
+    type Item = f64;
+
+    fn next(&mut self) -> Option<f64> {
+        let kick = self.normal() * (1.0 - self.correlation * self.correlation).sqrt();
+        self.state = self.correlation * self.state + kick;
+        Some(self.state)
+    }
+}
+
+/// Means of the same series under all seeds.
+fn means(series: impl Fn(u64) -> BlockedMean) -> Vec<BlockedMean> {
+    (0..SEEDS).map(series).collect()
+}
+
+/// Scatter of the means over seeds, and what an error is of that on average.
+fn share(means: &[BlockedMean], error: impl Fn(&BlockedMean) -> f64) -> f64 {
+    let scatter = means.iter().map(BlockedMean::mean).collect::<RunningMean>().standard_deviation();
+    means.iter().map(error).collect::<RunningMean>().mean() / scatter
+}
+
+fn share_converged(means: &[BlockedMean]) -> f64 {
+    means.iter().filter(|mean| mean.estimate().is_converged()).count() as f64 / means.len() as f64
+}
+
+fn printed(mean: &BlockedMean) -> f64 {
+    mean.estimate().standard_error()
+}
+
+#[test]
+fn the_printed_error_covers_the_scatter_over_seeds() {
+    for correlation in [0.0, 0.5, 0.9, 0.97] {
+        let means = means(|seed| Autoregressive::new(seed, correlation).take(1 << 14).collect());
+        assert!(share_converged(&means) > 0.9, "{correlation}");
+        let covered = share(&means, printed);
+        assert!((0.75..1.3).contains(&covered), "{correlation}: {covered}");
+        // What is taken as independent is too small by the root of the correlated samples.
+        let naive = share(&means, |mean| mean.ungrouped().standard_error());
+        let expected = ((1.0 - correlation) / (1.0 + correlation)).sqrt();
+        assert!((naive / expected - 1.0).abs() < 0.3, "{correlation}: {naive}");
+    }
+}
+
+/// Collisions of a gas that slowly warms and cools: strong noise of each, and a long correlation of small
+/// variance.
+#[test]
+fn a_slow_part_of_small_variance_is_seen() {
+    let slow = |seed, correlation: f64| {
+        let noise = Autoregressive::new(seed, 0.0).zip(Autoregressive::new(!seed, correlation));
+        noise.map(|(noise, slow)| noise + 0.15 * slow).take(1 << 16).collect::<BlockedMean>()
+    };
+    let shorter = means(|seed| slow(seed, 0.99));
+    assert!(share_converged(&shorter) > 0.9);
+    assert!((0.75..1.3).contains(&share(&shorter, printed)));
+    assert!(share(&shorter, |mean| mean.ungrouped().standard_error()) < 0.5);
+    // Of so few of the long times of correlation nobody can tell for sure: most of the estimates say so.
+    let longer = means(|seed| slow(seed, 0.9999));
+    assert!(share_converged(&longer) < 0.4, "{}", share_converged(&longer));
+    let covered = share(&longer, printed);
+    assert!((0.5..1.5).contains(&covered), "{covered}");
+    assert!(share(&longer, |mean| mean.ungrouped().standard_error()) < 0.1);
+}
+
+#[test]
+fn streamed_blocks_are_those_of_the_whole_series() {
+    let series: Vec<f64> = Autoregressive::new(7, 0.8).take(700).collect();
+    let mut streamed = BlockedMean::new();
+    for (count, &number) in series.iter().enumerate() {
+        if count >= 2 {
+            assert_eq!(streamed.estimate(), block_average(&series[..count]).unwrap());
+        }
+        streamed.push(number);
+    }
+    let whole: RunningMean = series.iter().copied().collect();
+    assert_eq!((streamed.ungrouped(), streamed.count()), (whole, 700));
+    assert_eq!((streamed.mean(), streamed.sum()), (whole.mean(), whole.sum()));
+}
+
+/// Records of studies keep the bits of means.
+#[test]
+fn a_running_mean_is_that_of_welford_to_the_bit() {
+    let (mut count, mut mean, mut squares) = (0.0, 0.0, 0.0);
+    let mut running = RunningMean::default();
+    for number in Autoregressive::new(5, 0.3).take(1000) {
+        running.push(number);
+        count += 1.0;
+        let before = number - mean;
+        mean += before / count;
+        squares += before * (number - mean);
+        assert_eq!(running.mean(), mean);
+        assert_eq!(running.variance(), if count < 2.0 { 0.0 } else { squares / (count - 1.0) });
+    }
+}
+
+/// The error is that of blocks of one size, by the textbook.
+#[test]
+fn the_error_is_that_of_blocks_of_one_size() {
+    let series: Vec<f64> = Autoregressive::new(3, 0.5).take(4000).collect();
+    let estimate = block_average(&series).unwrap();
+    let error = |size: usize| {
+        let means = series.chunks_exact(size).map(|block| block.iter().sum::<f64>() / size as f64);
+        means.collect::<RunningMean>().standard_error()
+    };
+    let sizes = (0..9).map(|level| 1 << level);
+    let found: Vec<usize> =
+        sizes.filter(|&size| (error(size) / estimate.standard_error() - 1.0).abs() < 1e-12).collect();
+    let growth = estimate.correlated_samples();
+    assert!(matches!(found[..], [size] if (size as f64).powi(3) > 8000.0 * growth * growth), "{found:?}");
+    assert!((growth / 3.0 - 1.0).abs() < 0.4, "{growth}");
+}
+
+#[test]
+fn no_and_few_numbers_have_no_error() {
+    let none = BlockedMean::new();
+    assert_eq!((none.count(), none.mean(), none.sum()), (0, 0.0, 0.0));
+    let nothing = none.estimate();
+    assert!(nothing.mean().is_nan() && nothing.standard_error().is_nan() && !nothing.is_converged());
+    let one = BlockedMean::from_iter([5.0]).estimate();
+    assert!(one.mean() == 5.0 && one.standard_error().is_nan() && !one.is_converged());
+    assert_eq!(one.to_string(), "5.00000 ± NaN (too few samples for an error)");
+    let two = BlockedMean::from_iter([5.0, 7.0]).estimate();
+    assert_eq!((two.standard_error(), two.is_converged()), (1.0, false));
+    let equal = BlockedMean::from_iter([0.1; 9]).estimate();
+    assert_eq!((equal.standard_error(), equal.is_converged(), equal.correlated_samples()), (0.0, true, 1.0));
+    let broken = BlockedMean::from_iter([1.0, f64::NAN, f64::INFINITY, 2.0]).estimate();
+    assert!(broken.mean().is_nan() && !broken.is_converged());
+    let huge = BlockedMean::from_iter([1e200, -1e200, 3e200, 1e300]).estimate();
+    assert!(!huge.is_converged());
+}
+
+#[test]
+fn two_digits_of_the_error_are_printed() {
+    let printed = |spread: f64| {
+        let numbers = (0..1000).map(|k| -0.125 + if k % 3 == 0 { spread } else { -0.5 * spread });
+        let mean: RunningMean = numbers.collect();
+        let estimate: Estimate = mean.estimate();
+        assert!(estimate.assumes_independence() && estimate.is_converged());
+        estimate.to_string()
+    };
+    assert_eq!(printed(0.0), "-0.12500 ± 0.00000 (independent samples)");
+    assert_eq!(printed(1.0), "-0.124 ± 0.022 (independent samples)");
+    assert_eq!(printed(1e4), "10 ± 224 (independent samples)");
+}
