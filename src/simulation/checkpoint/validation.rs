@@ -32,6 +32,7 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     check([1, count].contains(&saved.kinds.len()), "its disks are of too many kinds, or of none")?;
     let times = [saved.origin, saved.now, saved.epoch_length, saved.gravity];
     check(times.iter().all(|time| time.is_finite()), "a time is not finite")?;
+    check(saved.gravity.abs() <= LARGEST, "its gravity is beyond all bounds")?;
     check(is_epoch_length(saved.epoch_length) && saved.now >= 0.0, "its epoch is out of order")?;
     check(saved.trajectories.iter().all(is_trajectory), "a trajectory is beyond all bounds")?;
     check(saved.spins.iter().all(|spin| is_spin(spin, saved.now)), "a rotation is beyond all bounds")?;
