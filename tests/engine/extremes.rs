@@ -148,6 +148,7 @@ fn try_systems(cases: std::ops::Range<u64>) -> usize {
             Err(
                 BuildError::StartTime { .. }
                 | BuildError::OverlapsWall { .. }
+                | BuildError::Parameter(_)
                 | BuildError::DomainTooSmall { .. },
             ) => {}
             Err(error) => panic!("{case}: {error}"),
