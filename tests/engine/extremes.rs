@@ -88,13 +88,15 @@ fn short_while(run: &Run) -> f64 {
     (way / (speed + (run.gravity().abs() * way).sqrt())).min(1e100)
 }
 
-/// The depth to which disks are beyond the domain or in each other, in terms of their size.
+/// The depth to which disks are beyond the domain, in terms of their size, less what rounding of the time allows: a wall that
+/// moves is where it is at a time that is rounded, in which a disk goes some way.
 fn deepest(run: &Run) -> f64 {
     let domain = run.boundary().domain();
+    let rounding = 2.0 * f64::EPSILON * run.time().abs();
     let depth = |disk: &Disk| {
         let DVec2 { x, y } = disk.position();
         let out = (domain.left - x).max(x - domain.right).max(domain.bottom - y).max(y - domain.top);
-        out / disk.radius()
+        (out - rounding * disk.velocity().length()) / disk.radius()
     };
     run.disks().iter().map(depth).fold(f64::NEG_INFINITY, f64::max)
 }
