@@ -121,7 +121,8 @@ fn live(random: &mut Random, run: &mut Run, size: f64, case: u64) {
                 assert_sound(run, case);
                 return;
             }
-            assert!(run.time() >= before, "{case}");
+            // An epoch that begins for a kick, at a time that is twice its origin, may round the time down.
+            assert!(run.time() >= before.next_down(), "{case}");
             assert_sound(run, case);
         }
         match random.0.random_range(0..8) {

@@ -264,12 +264,3 @@ fn forged_records_are_refused_or_read() {
 fn all_forged_records_are_refused_or_read() {
     in_child("forged::forged_records", &LITTLE, &[(STRIDE, "5")]).assert_success();
 }
-
-/// Tells what became of a file that hung.
-#[test]
-#[ignore = "to look at a file that hung"]
-fn look_at_a_hanging_file() {
-    let bytes = fs::read(Path::new(env!("CARGO_TARGET_TMPDIR")).join("hanging-file")).unwrap();
-    let checkpoint = Checkpoint::from_bytes(&bytes).unwrap();
-    println!("{checkpoint:#?}");
-}
