@@ -181,7 +181,7 @@ fn scale(name: &'static str, value: f64) -> Result<f64, ParameterError> {
     accept(SCALE.contains(&value), name, "in [1e-30, 1e30]", value)
 }
 
-fn bounded(name: &'static str, value: f64) -> Result<f64, ParameterError> {
+pub(crate) fn bounded(name: &'static str, value: f64) -> Result<f64, ParameterError> {
     accept(value.abs() <= LARGEST, name, "finite and at most 1e60 in magnitude", value)
 }
 

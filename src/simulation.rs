@@ -41,8 +41,9 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::boundary::{Boundary, Container};
 use crate::collision::{CollisionRule, Frictional};
+use crate::disk::bounded;
 use crate::observable::{Moment, Observable, Observer, Snapshot};
-use crate::quantity::{accept, finite};
+use crate::quantity::accept;
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, ParameterError};
 use builder::fit;
@@ -338,10 +339,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Sets gravity from now on.
     ///
     /// # Errors
-    /// If it is not finite, or disks would fall so fast that times as late as the present are too far apart; the simulation is
+    /// If it is not finite or above 1e60 in magnitude, or disks would fall so fast that times as late as the present are too far apart; the simulation is
     /// as before.
     pub fn set_gravity(&mut self, gravity: f64) -> Result<(), ParameterError> {
-        finite("gravity", gravity)?;
+        bounded("gravity", gravity)?;
         let epoch_length = self.bodies.epoch_length_under(gravity);
         let is_coarse = Clock { epoch_length, ..self.clock }.coarseness(self.clock.now).is_some();
         let requirement = "so small that the run can still tell times apart";

@@ -13,7 +13,7 @@ use super::state::{Bodies, Clock};
 use crate::Disk;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
-use crate::disk::MOST_DISKS;
+use crate::disk::{MOST_DISKS, bounded};
 use crate::quantity::finite;
 use crate::scheduler::{BySize, EventScheduler};
 
@@ -102,10 +102,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
     /// The simulation.
     ///
     /// # Errors
-    /// If gravity or the start time is not finite, the domain is too small for the disks, or a disk is outside, overlaps
+    /// If gravity or the start time is not finite, or gravity above 1e60 in magnitude, the domain is too small for the disks, or a disk is outside, overlaps
     /// a wall or overlaps another disk; the error names it.
     pub fn build(self) -> Result<Simulation<R, B, S>, BuildError> {
-        finite("gravity", self.gravity)?;
+        bounded("gravity", self.gravity)?;
         finite("start time", self.start_time)?;
         if self.disks.len() > MOST_DISKS {
             return Err(BuildError::TooManyDisks { count: self.disks.len(), most: MOST_DISKS });

@@ -88,13 +88,15 @@ fn short_while(run: &Run) -> f64 {
     (way / (speed + (run.gravity().abs() * way).sqrt())).min(1e100)
 }
 
-/// The depth to which disks are beyond the domain or in each other, in terms of their size.
+/// The depth to which disks are beyond the domain, in terms of their size, less what rounding of the time allows: a wall that
+/// moves is where it is at a time that is rounded, in which a disk goes some way.
 fn deepest(run: &Run) -> f64 {
     let domain = run.boundary().domain();
+    let rounding = 2.0 * f64::EPSILON * run.time().abs();
     let depth = |disk: &Disk| {
         let DVec2 { x, y } = disk.position();
         let out = (domain.left - x).max(x - domain.right).max(domain.bottom - y).max(y - domain.top);
-        out / disk.radius()
+        (out - rounding * disk.velocity().length()) / disk.radius()
     };
     run.disks().iter().map(depth).fold(f64::NEG_INFINITY, f64::max)
 }
@@ -119,7 +121,8 @@ fn live(random: &mut Random, run: &mut Run, size: f64, case: u64) {
                 assert_sound(run, case);
                 return;
             }
-            assert!(run.time() >= before, "{case}");
+            // An epoch that begins for a kick, at a time that is twice its origin, may round the time down.
+            assert!(run.time() >= before.next_down(), "{case}");
             assert_sound(run, case);
         }
         match random.0.random_range(0..8) {
@@ -148,6 +151,7 @@ fn try_systems(cases: std::ops::Range<u64>) -> usize {
             Err(
                 BuildError::StartTime { .. }
                 | BuildError::OverlapsWall { .. }
+                | BuildError::Parameter(_)
                 | BuildError::DomainTooSmall { .. },
             ) => {}
             Err(error) => panic!("{case}: {error}"),

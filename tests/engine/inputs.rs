@@ -44,7 +44,20 @@ fn times_and_gravity_must_be_finite() {
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let builder = || Simulation::builder(Elastic, closed()).disks([at(1.0, 1.0)]);
         assert!(builder().gravity(value).build().unwrap_err().to_string().contains("gravity"));
+        let mut run = builder().build().unwrap();
+        assert!(run.set_gravity(value).unwrap_err().to_string().contains("gravity"));
         assert!(builder().start_time(value).build().unwrap_err().to_string().contains("start time"));
+    }
+}
+
+/// The square of the speed of a fall must be a number.
+#[test]
+fn gravity_has_a_bound() {
+    for gravity in [1e61, -1e61, f64::MAX] {
+        let builder = || Simulation::builder(Elastic, closed()).disks([at(1.0, 1.0)]);
+        assert_eq!(builder().build().unwrap().set_gravity(gravity).unwrap_err().value(), gravity);
+        let error = builder().gravity(gravity).build().unwrap_err();
+        assert!(matches!(error, BuildError::Parameter(_)), "{error}");
     }
 }
 

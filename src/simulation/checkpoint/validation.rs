@@ -5,6 +5,7 @@
 //! does not hang.
 
 use super::{CheckpointError, Saved};
+use crate::boundary::Domain;
 use crate::disk::LARGEST;
 use crate::simulation::cells::{CELLS_PER_DISK, Grid, Layout, Place, SPARE_CELLS};
 use crate::simulation::events::Counters;
@@ -32,6 +33,7 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     check([1, count].contains(&saved.kinds.len()), "its disks are of too many kinds, or of none")?;
     let times = [saved.origin, saved.now, saved.epoch_length, saved.gravity];
     check(times.iter().all(|time| time.is_finite()), "a time is not finite")?;
+    check(saved.gravity.abs() <= LARGEST, "its gravity is beyond all bounds")?;
     check(is_epoch_length(saved.epoch_length) && saved.now >= 0.0, "its epoch is out of order")?;
     check(saved.trajectories.iter().all(is_trajectory), "a trajectory is beyond all bounds")?;
     check(saved.spins.iter().all(|spin| is_spin(spin, saved.now)), "a rotation is beyond all bounds")?;
@@ -47,6 +49,10 @@ pub(super) fn check_places(saved: &Saved, grid: &Grid, bodies: &Bodies) -> Resul
     let disks = || saved.forecasts.iter().zip(&saved.places).enumerate();
     let inside = |(disk, (_, &place))| holds(grid, place, bodies.position(disk, saved.now));
     check(disks().all(inside), "a disk is outside its neighbor cell")?;
+    // The cells at walls have no end.
+    let within =
+        |disk| is_within(&saved.domain, bodies.position(disk, saved.now), bodies.material(disk).radius);
+    check((0..saved.places.len()).all(within), "a disk is outside the domain")?;
     check(has_room(saved, grid, bodies), "the disks of a cell overlap")?;
     let ends = |(disk, (forecast, &place))| ends_where_it_can(saved, grid, bodies, disk, forecast, place);
     check(disks().all(ends), "a disk leaves its neighbor cell where it is not")?;
@@ -121,6 +127,12 @@ fn are_forecasts(saved: &Saved, walls: usize) -> bool {
             && collision_due >= saved.now
             && exit_due >= saved.now
     })
+}
+
+/// Whether a disk at this position is in the domain, or beyond it by no more than its radius: much more than rounding.
+fn is_within(domain: &Domain, position: DVec2, radius: f64) -> bool {
+    let (low, high) = (DVec2::new(domain.left, domain.bottom), DVec2::new(domain.right, domain.top));
+    position.cmpge(low - radius).all() && position.cmple(high + radius).all()
 }
 
 /// Tells whether a disk at this position belongs into this cell.
