@@ -108,7 +108,7 @@ fn engine() -> Vec<Case> {
         (
             "start time",
             |value| told(Simulation::builder(Elastic, box_of(8.0)).start_time(value).build()),
-            f64::is_finite,
+            |value| value.abs() <= 1e60,
         ),
     ]
 }

@@ -12,19 +12,13 @@ use std::sync::{Mutex, Once};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-<<<<<<< HEAD
-use granular_edmd::Disk;
-use granular_edmd::simulation::Checkpoint;
-use granular_edmd::study::vibrated_box::{Convection, Sample, VibratedBox};
-use granular_edmd::study::{Control, Study};
-=======
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::{Checkpoint, CheckpointError};
-use granular_edmd::study::{Control, Sample, Study};
+use granular_edmd::study::vibrated_box::{Convection, Sample, VibratedBox};
+use granular_edmd::study::{Control, Study};
 use granular_edmd::{Disk, Simulation};
->>>>>>> forged
 
 use crate::forged_systems::{Run, SYSTEMS, System};
 use crate::limits::{Limits, in_child};
