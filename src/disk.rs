@@ -20,7 +20,7 @@ pub(crate) const LARGEST: f64 = 1e60;
 /// and masses are in any consistent units; the paper takes the diameter and the mass of a disk as units.
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Disk;
 ///
 /// let disk = Disk::new(DVec2::new(3.0, 4.0), 0.5)?.with_velocity(DVec2::X)?.with_angular_velocity(2.0)?;

@@ -8,7 +8,7 @@ use glam::DVec2;
 /// offsets from the origin that a [`Boundary`](crate::boundary::Boundary) was given last.
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Flight;
 /// let flight = Flight::new(1.0, DVec2::ZERO, DVec2::new(1.0, 2.0), DVec2::new(0.0, -1.0), 0.5);
 /// assert_eq!(flight.position(3.0), DVec2::new(2.0, 2.0));

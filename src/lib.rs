@@ -90,4 +90,4 @@ pub use error::ParameterError;
 pub use fingerprint::Fingerprint;
 pub use flight::Flight;
 pub use glam;
-pub use simulation::{BoxedSimulation, Simulation};
+pub use simulation::Simulation;

@@ -15,7 +15,9 @@ pub use crate::observable::{
     stop_when,
 };
 pub use crate::scheduler::EventScheduler;
-pub use crate::simulation::{BoxedSimulation, Event, RunEnd, RunError, Simulation};
+pub use crate::simulation::{
+    BoxedBoundary, BoxedRule, BoxedScheduler, BoxedSimulation, Event, RunEnd, RunError, Simulation,
+};
 pub use crate::statistics::Estimate;
 pub use crate::wall::{
     AccelerationBounds, BiParabolic, Fixed, Sawtooth, Sinusoidal, Triangular, WallMotion, WallState,

@@ -42,7 +42,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::boundary::{Boundary, Container};
 use crate::collision::{CollisionRule, Frictional};
 use crate::observable::{Moment, Observable, Observer, Snapshot};
-use crate::quantity::finite;
+use crate::quantity::{accept, finite};
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, ParameterError};
 use builder::fit;
@@ -91,12 +91,36 @@ pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     scratch: Scratch,
 }
 
+/// A rule that is chosen when the program runs.
+pub type BoxedRule = Box<dyn CollisionRule + Send + Sync>;
+
+/// A boundary that is chosen when the program runs.
+pub type BoxedBoundary = Box<dyn Boundary + Send + Sync>;
+
+/// A scheduler that is chosen when the program runs.
+pub type BoxedScheduler = Box<dyn EventScheduler + Send + Sync>;
+
 /// A simulation whose rule, boundary and scheduler are chosen when the program runs.
-pub type BoxedSimulation = Simulation<
-    Box<dyn CollisionRule + Send + Sync>,
-    Box<dyn Boundary + Send + Sync>,
-    Box<dyn EventScheduler + Send + Sync>,
->;
+///
+/// ```
+/// use granular_edmd::boundary::Container;
+/// use granular_edmd::collision::{Elastic, Smooth};
+/// use granular_edmd::scheduler::BySize;
+/// use granular_edmd::simulation::{BoxedBoundary, BoxedRule, BoxedScheduler, BoxedSimulation};
+/// use granular_edmd::{Simulation, initial};
+///
+/// fn simulation(is_lossy: bool) -> Result<BoxedSimulation, Box<dyn std::error::Error>> {
+///     let container = Container::closed(20.0, 20.0)?;
+///     let disks = initial::lattice(&container, 50, 0.5)?;
+///     let rule: BoxedRule = if is_lossy { Box::new(Smooth::from_restitution(0.9)?) } else { Box::new(Elastic) };
+///     let boundary: BoxedBoundary = Box::new(container);
+///     let scheduler: BoxedScheduler = Box::new(BySize::new());
+///     Ok(Simulation::builder(rule, boundary).disks(disks).scheduler(scheduler).build()?)
+/// }
+/// assert_eq!(simulation(true)?.len(), 50);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub type BoxedSimulation = Simulation<BoxedRule, BoxedBoundary, BoxedScheduler>;
 
 // A run can go to another thread, and be looked at from several: a private field could end that unseen.
 const _: () = {
@@ -152,10 +176,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Goes to the next collision not after the absolute time `end`, and returns it; `None`, at `end`, if there is none.
     ///
-    /// The observer is told of the collision; no samples are taken, and there is no start or end to tell of.
+    /// The observer is told of the collision only: `on_start`, `on_sample` and `on_end` are not called, so its clock stands still. If
+    /// it fails, that is an error; if it wants to stop, nothing happens, since the caller takes each step.
     ///
     /// ```
-    /// # use glam::DVec2;
+    /// # use granular_edmd::glam::DVec2;
     /// # use granular_edmd::{Disk, Simulation, boundary::Container, collision::Elastic, simulation::Event};
     /// let disk = Disk::new(DVec2::new(2.0, 1.0), 0.5)?.with_velocity(DVec2::NEG_Y)?;
     /// let mut run = Simulation::builder(Elastic, Container::open(4.0)?).disks([disk]).build()?;
@@ -313,9 +338,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Sets gravity from now on.
     ///
     /// # Errors
-    /// If it is not finite; the simulation is as before.
+    /// If it is not finite, or disks would fall so fast that times as late as the present are too far apart; the simulation is
+    /// as before.
     pub fn set_gravity(&mut self, gravity: f64) -> Result<(), ParameterError> {
         finite("gravity", gravity)?;
+        let epoch_length = self.bodies.epoch_length_under(gravity);
+        let is_coarse = Clock { epoch_length, ..self.clock }.coarseness(self.clock.now).is_some();
+        let requirement = "so small that the run can still tell times apart";
+        accept(self.is_empty() || !is_coarse, "gravity", requirement, gravity)?;
         self.shift_epoch(self.clock.exact_offset());
         self.bodies.set_gravity(gravity, self.clock.now);
         self.clock.epoch_length = self.bodies.epoch_length();

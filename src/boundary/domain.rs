@@ -8,7 +8,7 @@ use glam::DVec2;
 /// use granular_edmd::boundary::Domain;
 /// let domain = Domain::new(0.0, 60.0, -0.1, f64::INFINITY).with_periodic_sides();
 /// assert_eq!(domain.width(), 60.0);
-/// assert_eq!(domain.separation(glam::DVec2::new(59.0, 0.0), glam::DVec2::new(1.0, 0.0)).x, 2.0);
+/// assert_eq!(domain.separation(granular_edmd::glam::DVec2::new(59.0, 0.0), granular_edmd::glam::DVec2::new(1.0, 0.0)).x, 2.0);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]

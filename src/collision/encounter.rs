@@ -38,7 +38,7 @@ pub struct WallEncounter {
 /// part is zero.
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Disk;
 /// use granular_edmd::collision::{Elastic, collide};
 ///
@@ -74,7 +74,7 @@ pub fn collide<R: CollisionRule + ?Sized>(rule: &R, first: &Disk, second: &Disk)
 /// zero.
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Disk;
 /// use granular_edmd::collision::{Elastic, collide_with_wall};
 ///

@@ -57,7 +57,7 @@ pub fn random<B: Boundary + ?Sized>(
 /// If the height is not finite and positive, or a disk finds no place in ten thousand trials.
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::boundary::Container;
 /// use granular_edmd::{Disk, initial};
 /// let mix = vec![Disk::new(DVec2::ZERO, 2.0)?, Disk::new(DVec2::ZERO, 0.5)?.with_mass(0.1)?];

@@ -23,7 +23,7 @@ const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 /// `docs/physics-kinetic.md`.
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Disk;
 /// use granular_edmd::kinetic::Maxwellian;
 ///

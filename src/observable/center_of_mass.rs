@@ -8,7 +8,7 @@ use super::{Observable, Snapshot};
 /// Fig. 2. NaN without disks.
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Disk;
 /// use granular_edmd::boundary::Domain;
 /// use granular_edmd::observable::{CenterOfMass, Observable, Snapshot};

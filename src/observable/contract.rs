@@ -34,7 +34,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 
 /// A watcher of a run, told of what happens and shown samples at the times that it asks for.
 ///
-/// All methods have a default, which does nothing. All times are absolute: since time 0 of the run.
+/// All methods have a default, which does nothing. All times are absolute, as in [`Simulation::time`](crate::Simulation::time).
 ///
 /// # What the engine guarantees
 /// 1. Each call of `run_until` begins with `on_start` and ends with `on_end`, in whichever way it ends: at
@@ -48,7 +48,8 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 ///    told to stop, or that a verdict fails, does no further event.
 /// 5. Whatever an observer does, the trajectory has the same bits as without it, as far as it goes.
 ///
-/// Single steps ([`Simulation::step`](crate::Simulation::step)) tell of collisions only.
+/// [`Simulation::step_until`](crate::Simulation::step_until) tells of collisions only: no start, samples or end. A verdict that
+/// fails ends it with an error; one that stops has no effect, since the caller takes each step.
 ///
 /// # What an observer guarantees
 /// 1. `next_sample` is never NaN. It is infinite if no sample is wanted.

@@ -31,7 +31,7 @@ impl EnergyPerDisk {
 /// Translational, rotational and potential energy, averaged over the disks; NaN without disks.
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Disk;
 /// use granular_edmd::boundary::Domain;
 /// use granular_edmd::observable::{Energies, Observable, Snapshot};

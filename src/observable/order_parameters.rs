@@ -33,7 +33,7 @@ impl ConvectionOrder {
 /// larger than that. Positions count from the left end of the domain; without disks both are 0.
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Disk;
 /// use granular_edmd::boundary::Domain;
 /// use granular_edmd::observable::{Observable, OrderParameters, Snapshot};

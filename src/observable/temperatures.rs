@@ -34,7 +34,7 @@ impl Temperature {
 /// The flow of convection rolls counts as temperature here: a small part (`$\Psi^2\ll T$`).
 ///
 /// ```
-/// use glam::DVec2;
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::Disk;
 /// use granular_edmd::boundary::Domain;
 /// use granular_edmd::observable::{Observable, Snapshot, Temperatures};

@@ -37,11 +37,11 @@ pub struct SimulationBuilder<R, B, S = BySize> {
 }
 
 impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
-    /// Starts to describe a simulation: the rule between the disks (and of walls without one of their own), and the
+    /// Starts to describe a simulation: the rule of collisions between disks, which also serves walls without a rule of their own, and the
     /// walls around them.
     ///
     /// ```
-    /// use glam::DVec2;
+    /// use granular_edmd::glam::DVec2;
     /// use granular_edmd::boundary::Container;
     /// use granular_edmd::collision::Frictional;
     /// use granular_edmd::{Disk, Simulation};
@@ -172,6 +172,15 @@ fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells
     let domain = boundary.domain();
     // Without disks any cells will do.
     let diameter = if diameter > 0.0 { diameter } else { 0.125 * domain.width() };
+    if !(domain.width().is_finite() && domain.bottom.is_finite()) {
+        return Err(BuildError::Domain { domain });
+    }
+    // Walls that pass through each other leave no room.
+    let interior = boundary.interior();
+    if !(interior.width() > 0.0 && interior.height() > 0.0) {
+        let (width, height) = (interior.width(), interior.height());
+        return Err(BuildError::DomainTooSmall { width, height, diameter });
+    }
     let too_small = BuildError::DomainTooSmall { width: domain.width(), height: domain.height(), diameter };
     Cells::new(boundary, diameter, CellSize::Medium, disks.iter().map(Disk::position)).ok_or(too_small)
 }

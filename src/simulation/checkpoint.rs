@@ -7,7 +7,7 @@ mod validation;
 
 use std::fmt;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
@@ -88,8 +88,15 @@ struct Saved {
 #[non_exhaustive]
 pub enum CheckpointError {
     /// The file cannot be read or written.
-    #[error("the checkpoint file cannot be read or written")]
-    Io(#[from] io::Error),
+    #[error("cannot {action} the checkpoint {}", .path.display())]
+    Io {
+        /// The action: read or write.
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// The cause.
+        source: io::Error,
+    },
     /// The file is something else.
     #[error("this is not a checkpoint: it does not begin as one")]
     NotACheckpoint,
@@ -113,7 +120,7 @@ pub enum CheckpointError {
     /// The contents do not make a state.
     #[error("the checkpoint is inconsistent: {0}")]
     Inconsistent(&'static str),
-    /// The walls are not where those of the run that was saved were.
+    /// The boundary has another domain than that of the run that was saved.
     #[error("the checkpoint is of a run in the domain {saved:?}; the boundary's is {given:?}")]
     Domain {
         /// The domain of the run that was saved.
@@ -178,7 +185,7 @@ impl Checkpoint {
     /// # Errors
     /// If the file cannot be written; a file of that name is then as it was.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), CheckpointError> {
-        Ok(write_whole(path.as_ref(), &self.to_bytes()?)?)
+        write_whole(path.as_ref(), &self.to_bytes()?).map_err(failed("write", path.as_ref()))
     }
 
     /// Reads a checkpoint from a file.
@@ -186,8 +193,13 @@ impl Checkpoint {
     /// # Errors
     /// If the file cannot be read, or as [`Self::from_bytes`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CheckpointError> {
-        Self::from_bytes(&std::fs::read(path)?)
+        Self::from_bytes(&std::fs::read(path.as_ref()).map_err(failed("read", path.as_ref()))?)
     }
+}
+
+fn failed(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> CheckpointError {
+    let path = path.to_owned();
+    move |source| CheckpointError::Io { action, path, source }
 }
 
 fn contents(source: postcard::Error) -> CheckpointError {

@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use super::cells::Cells;
-use super::errors::{Outcome, RunError};
+use super::errors::Outcome;
 use super::state::Tally;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
@@ -34,10 +34,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[cold]
     #[inline(never)]
     pub(super) fn move_epoch(&mut self, due: f64) -> Outcome<()> {
-        if let Some(spacing) = self.clock.coarseness(due) {
-            let epoch = self.clock.epoch_length;
-            return Err(Box::new(RunError::TimeTooLate { time: self.time(), spacing, epoch }));
-        }
+        self.clock.check_coarseness(due)?;
         let by = self.clock.whole_epochs(due);
         self.clock.now = due;
         self.shift_epoch(by);

@@ -18,8 +18,8 @@ pub enum BuildError {
     Parameter(#[from] ParameterError),
     /// Absolute times at the start are too far apart for disks so fast: time would stand still.
     #[error(
-        "the run cannot start at time {start}: times there are {spacing} apart, too coarse for disks whose epochs last \
-         {epoch}; start nearer to 0"
+        "the run cannot start at time {start}: times there are {spacing:e} apart, too coarse for disks that go some tens of \
+         diameters in {epoch:e}; start nearer to 0"
     )]
     StartTime {
         /// The start time asked for.
@@ -28,6 +28,14 @@ pub enum BuildError {
         spacing: f64,
         /// Time in which a typical disk goes some tens of diameters.
         epoch: f64,
+    },
+    /// The boundary's domain is not a rectangle with finite sides and a finite bottom.
+    #[error(
+        "the domain must have finite sides and a finite bottom; only its top may be infinite: {domain:?}"
+    )]
+    Domain {
+        /// The domain.
+        domain: crate::boundary::Domain,
     },
     /// There are more disks than the engine can number.
     #[error("{count} disks are too many: at most {most} are possible")]
@@ -99,7 +107,7 @@ pub(super) type Outcome<T> = Result<T, Box<RunError>>;
 #[non_exhaustive]
 pub enum RunError {
     /// The end is before the present, or not finite.
-    #[error("the run cannot end at time {end}: it is at time {time}")]
+    #[error("the run cannot end at time {end}: the end must be finite and not before the present, {time}")]
     End {
         /// The end asked for.
         end: f64,
@@ -108,8 +116,8 @@ pub enum RunError {
     },
     /// Events pile up in vanishing time: inelastic collapse, or a disk that rests on a wall.
     #[error(
-        "{events} events without progress at time {time}, the last of disk {disk}: inelastic collapse, which the rule \
-         ContactDuration prevents, or a disk at rest on a wall"
+        "{events} events without progress at time {time}, the last of disk {disk}: an inelastic collapse, which the rule \
+         ContactDuration may prevent, or a disk that is at rest on a wall, squeezed, or never pushed apart by its rule"
     )]
     Stalled {
         /// The present.
@@ -149,8 +157,8 @@ pub enum RunError {
     },
     /// Absolute times are too far apart to go on: time would stand still.
     #[error(
-        "the run cannot go on at time {time}: times there are {spacing} apart, too coarse for disks whose epochs last \
-         {epoch}; start nearer to 0"
+        "the run cannot go on at time {time}: times there are {spacing:e} apart, too coarse for disks that go some tens of \
+         diameters in {epoch:e}; the run is too late, or its disks have become too fast: does a rule or a wall add energy?"
     )]
     TimeTooLate {
         /// The present.
@@ -161,7 +169,9 @@ pub enum RunError {
         epoch: f64,
     },
     /// An observer asks for a sample at a time that is not a number, or, after a sample, not later.
-    #[error("an observer asks for a sample at time {next}, at time {time}")]
+    #[error(
+        "an observer asks for its next sample at time {next}, which is not after the last one, at time {time}"
+    )]
     SampleTime {
         /// The time asked for.
         next: f64,
@@ -223,7 +233,7 @@ impl fmt::Display for FailedCollision {
 #[non_exhaustive]
 pub enum BoundaryFault {
     /// A touch before the flight, after the end of the search, or with a wall that there is not.
-    #[error("a touch with wall {wall} of {walls}, {early_by} before the flight (after it if negative)")]
+    #[error("a touch with wall {wall}, of {walls} walls from 0 on, {} after the start of the flight", -early_by)]
     Touch {
         /// The wall that it named.
         wall: usize,

@@ -12,7 +12,7 @@ use super::events::Event;
 use super::forecasting::HORIZON;
 use super::prediction::are_closing;
 use super::resolution::{Kick, failed, is_parting, is_unit_and_finite, resolve_pair, resolve_wall};
-use super::state::{Earliest, Exit, Forecast};
+use super::state::{Clock, Earliest, Exit, Forecast};
 use crate::boundary::{Boundary, Response};
 use crate::collision::laws::closing_speed_after;
 use crate::collision::{CollisionRule, Regime};
@@ -144,7 +144,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             self.counters.max_wall_overlap = self.counters.max_wall_overlap.max(depth);
         }
         if !self.is_tame(&kick) {
-            self.begin_epoch_for(&[kick]);
+            self.begin_epoch_for(&[kick])?;
         }
         self.counters.wall_collisions += 1;
         self.count_regime(&collision);
@@ -181,8 +181,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if !kicks.iter().all(Kick::is_possible) {
             return Err(failed(&self.rule, &collision).into());
         }
-        self.begin_epoch_for(&kicks);
-        Ok(())
+        self.begin_epoch_for(&kicks)
     }
 
     /// Begins a shorter epoch for disks that are about to become very fast.
@@ -190,12 +189,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// The place of a disk at the epoch would be so far away that it lacked digits. So the epoch moves before the kick, not after.
     #[cold]
     #[inline(never)]
-    fn begin_epoch_for(&mut self, kicks: &[Kick]) {
+    fn begin_epoch_for(&mut self, kicks: &[Kick]) -> Outcome<()> {
+        let lengths = kicks.iter().map(|kick| self.bodies.epoch_length_for(kick.after.velocity));
+        let epoch_length = lengths.fold(self.clock.epoch_length, f64::min);
+        // Late times are so far apart that the present is not near any epoch for them: the kick would lose the place.
+        Clock { epoch_length, ..self.clock }.check_coarseness(self.clock.now)?;
         self.shift_epoch(self.clock.exact_offset());
-        for kick in kicks {
-            let length = self.bodies.epoch_length_for(kick.after.velocity);
-            self.clock.epoch_length = self.clock.epoch_length.min(length);
-        }
+        self.clock.epoch_length = epoch_length;
+        Ok(())
     }
 
     /// Changes the motion of a disk, as all collisions do: predictions with it are out of date.

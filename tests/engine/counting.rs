@@ -111,3 +111,27 @@ fn changes_of_the_cells_are_counted() {
     assert!(run.counters().cell_resizes >= 1, "{:?}", run.counters());
     assert_eq!(run.counters().horizons, 0, "{:?}", run.counters());
 }
+
+/// Where nothing moves there is nothing to do, however late the end and near the walls.
+#[test]
+fn disks_at_rest_take_no_events() {
+    let disk = |x: f64| Disk::new(DVec2::new(x, 0.6), 0.5).unwrap();
+    for end in [1e6, 1e12, 1e15, 1e100] {
+        let builder = Simulation::builder(Elastic, Container::closed(10.0, 10.0).unwrap());
+        let mut run = builder.disks([disk(0.6), disk(5.0)]).build().unwrap();
+        run.run_until(end, &mut ()).unwrap();
+        assert!(run.counters().events() < 10, "{:?}", run.counters());
+        assert_eq!((run.time(), run.disks()[0]), (end, disk(0.6)));
+    }
+    // A wall that begins to move finds them where they are.
+    let floor = granular_edmd::wall::Sinusoidal::new(0.3, 2.0).unwrap();
+    let floor =
+        Container::closed(10.0, 10.0).unwrap().with_motion(granular_edmd::boundary::Wall::Floor, floor);
+    let builder = Simulation::builder(Elastic, Container::closed(10.0, 10.0).unwrap());
+    let mut run = builder.disks([disk(0.6), disk(5.0)]).build().unwrap();
+    run.run_until(std::f64::consts::PI * 1e3, &mut ()).unwrap();
+    run.set_boundary(floor.unwrap()).unwrap();
+    run.run_until(4000.0, &mut ()).unwrap();
+    assert!(run.counters().wall_collisions > 10, "{:?}", run.counters());
+    assert!(run.counters().max_wall_overlap < 1e-10, "{:?}", run.counters());
+}

@@ -124,7 +124,7 @@ fn live(random: &mut Random, run: &mut Run, size: f64, case: u64) {
         }
         match random.0.random_range(0..8) {
             0 => run.set_rule(random.rule()),
-            1 => run.set_gravity(random.gravity()).unwrap(),
+            1 => drop(run.set_gravity(random.gravity())),
             2 => drop(run.set_boundary(random.walls(size))),
             _ => {}
         }

@@ -185,6 +185,46 @@ fn a_kick_late_in_a_long_epoch_moves_no_disk() {
     }
 }
 
+/// A hot wall at so late a time that the disk it kicks would be elsewhere at the next number: the run ends before the kick.
+#[test]
+fn a_kick_too_fast_for_its_time_moves_no_disk() {
+    for (start, slow, temperature) in
+        [(1e12, 1e-3, 1e30), (1e15, 1e-4, 1e20), (1e30, 1e-17, 1.0), (1e7, 1.0, 1e40)]
+    {
+        let walls = Container::closed(10.0, 10.0).unwrap();
+        let walls = walls.with_temperature(Wall::Floor, Thermal::new(temperature).unwrap()).unwrap();
+        let disks = slow_disks(slow, 1);
+        let builder = Simulation::builder(Elastic, walls).disks(disks.clone()).start_time(start);
+        let mut run = builder.build().unwrap();
+        let error = run.run_until(start + 10.0 / slow, &mut ()).unwrap_err();
+        assert!(matches!(error, RunError::TimeTooLate { .. }), "{start:e}: {error}");
+        assert_eq!(run.counters().wall_collisions, 0, "{start:e}");
+        let flown = run.time() - start;
+        for (before, after) in disks.iter().zip(run.disks()) {
+            assert_eq!(before.velocity(), after.velocity());
+            let expected = before.position() + flown * before.velocity();
+            // Times are rounded to 64 numbers in an epoch at least, in which disks go some tens of diameters.
+            assert!((after.position() - expected).length() < 2.0, "{start:e}: {after:?} {expected}");
+        }
+    }
+}
+
+/// Gravity that is too strong for the present time: the next number after it is far below the floor.
+#[test]
+fn gravity_too_strong_for_the_time_is_refused() {
+    for (start, gravity) in [(1e7, 1e20), (1e12, 1e10), (1e12, -1e10), (1.0, 1e40)] {
+        let builder = Simulation::builder(Elastic, Container::closed(10.0, 10.0).unwrap()).disks(pair(1.0));
+        let mut run = builder.start_time(start).build().unwrap();
+        run.run_until(start + 0.3, &mut ()).unwrap();
+        let before = run.disks();
+        let error = run.set_gravity(gravity).unwrap_err();
+        assert!(error.to_string().contains("tell times apart"), "{error}");
+        assert_eq!((run.gravity(), run.disks()), (0.0, before));
+        run.set_gravity(1.0).unwrap();
+        run.run_until(start + 5.0, &mut ()).unwrap();
+    }
+}
+
 /// A wall that is not where it said shows in the counters.
 #[test]
 fn overlaps_with_walls_are_counted() {

@@ -161,19 +161,25 @@ fn another_boundary_at_a_resumption_is_as_one_that_is_set() {
 }
 
 #[test]
-fn parts_that_cannot_say_who_they_are_are_not_compared() {
+fn only_two_parts_that_cannot_say_who_they_are_pass_for_each_other() {
     let closure =
         |loss: f64| from_fn(move |contact: &Contact| Impulse::new(contact.normal_impulse(1.0 - loss), 0.0));
-    let state = run(closure(0.1)).checkpoint();
-    Simulation::resume(&state, closure(0.2), walls()).build().unwrap();
-    Simulation::resume(&state, rule(), walls()).build().unwrap();
-    let state = run(rule()).checkpoint();
-    Simulation::resume(&state, closure(0.2), walls()).build().unwrap();
+    let refused = |state: &Checkpoint, rule: &dyn CollisionRule, walls: Container| {
+        Simulation::resume(state, rule, walls).build().map(|_| ()).unwrap_err()
+    };
+    let unknown = run(closure(0.1)).checkpoint();
+    Simulation::resume(&unknown, closure(0.2), walls()).build().unwrap();
+    assert!(matches!(refused(&unknown, &rule(), walls()), CheckpointError::AnotherRule));
+    let known = run(rule()).checkpoint();
+    assert!(matches!(refused(&known, &closure(0.2), walls()), CheckpointError::AnotherRule));
+    Simulation::resume(&known, closure(0.2), walls()).with_another_rule().build().unwrap();
     let unnamed = || walls().with_rule(Wall::Left, closure(0.1)).unwrap();
-    Simulation::resume(&state, rule(), unnamed()).build().unwrap();
-    // The domain is compared at any rate.
+    assert!(matches!(refused(&known, &rule(), unnamed()), CheckpointError::AnotherBoundary));
+    // Of two unknown boundaries the domain is compared at any rate.
+    let builder = Simulation::builder(rule(), unnamed()).disks([]);
+    let unnamed = builder.build().unwrap().checkpoint();
     let wider = Container::closed(13.0, 10.0).unwrap().with_rule(Wall::Left, closure(0.1)).unwrap();
-    let error = Simulation::resume(&state, rule(), wider).build().map(|_| ()).unwrap_err();
+    let error = refused(&unnamed, &rule(), wider);
     assert!(matches!(error, CheckpointError::Domain { .. }), "{error}");
 }
 

@@ -75,10 +75,10 @@ fn files_that_cannot_be_read_are_errors() {
     let scratch = Scratch::new("unreadable");
     for path in [scratch.0.clone(), scratch.0.join("none"), "/dev/null".into()] {
         let error = Checkpoint::read(&path).unwrap_err();
-        assert!(matches!(error, CheckpointError::Io(_) | CheckpointError::NotACheckpoint), "{error}");
+        assert!(matches!(error, CheckpointError::Io { .. } | CheckpointError::NotACheckpoint), "{error}");
     }
     let error = checkpoint().write(scratch.0.join("none/file")).unwrap_err();
-    assert!(matches!(error, CheckpointError::Io(_)), "{error}");
+    assert!(matches!(error, CheckpointError::Io { .. }), "{error}");
     fs::write(scratch.0.join("specification.toml"), [0xff, 0xfe, 0]).unwrap();
     let error = granular_edmd::study::Study::open(&scratch.0).unwrap_err().to_string();
     assert!(error.contains("specification.toml"), "{error}");

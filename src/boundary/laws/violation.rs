@@ -10,7 +10,7 @@ use crate::boundary::{Domain, Region};
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Violation {
-    /// The domain is no rectangle that is open above at most.
+    /// The domain is not a rectangle with finite sides and a finite bottom; its top may be infinite.
     #[error("the domain {domain:?} is not a rectangle with finite sides and a finite bottom")]
     Domain {
         /// The domain.

@@ -26,7 +26,9 @@ pub struct Resumption<'a, R, B, S = BySize> {
 impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
     /// Begins to describe a run that goes on where the checkpoint was taken, with its gravity, random numbers and counters.
     ///
-    /// Rule and boundary are code, so they are given again: the same ones for the same future. [`Checkpoint`] has an example.
+    /// Rule and boundary are code, so they are given again: the same ones for the same future. Others are refused unless given on
+    /// purpose; only two parts that both have no fingerprint (closures, for example) cannot be told apart. [`Checkpoint`] has an
+    /// example.
     pub const fn resume(checkpoint: &Checkpoint, rule: R, boundary: B) -> Resumption<'_, R, B> {
         let scheduler = BySize::new();
         Resumption { checkpoint, rule, boundary, scheduler, another_rule: false, another_boundary: false }
@@ -61,14 +63,14 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
     /// its disks do not fit into the one that was.
     pub fn build(self) -> Result<Simulation<R, B, S>, CheckpointError> {
         let saved = &self.checkpoint.0;
-        let differ = |saved, given| matches!((saved, given), (Some(a), Some(b)) if a != b);
-        if !self.another_rule && differ(saved.rule, self.rule.fingerprint()) {
+        // A part that is known is never one that is not: only two unknown ones cannot be told apart.
+        if !self.another_rule && saved.rule != self.rule.fingerprint() {
             return Err(CheckpointError::AnotherRule);
         }
         if self.another_boundary {
             return self.build_anew();
         }
-        if differ(saved.boundary, self.boundary.fingerprint()) {
+        if saved.boundary != self.boundary.fingerprint() {
             return Err(CheckpointError::AnotherBoundary);
         }
         let given = self.boundary.domain();

@@ -1,6 +1,7 @@
 //! The time of a run, as an offset from an epoch that moves on.
 
 use super::guard::Guard;
+use crate::simulation::errors::{Outcome, RunError};
 
 /// Numbers that a run's latest times must tell apart in an epoch: a typical disk goes a diameter from one to the next.
 const TIMES_IN_EPOCH: f64 = 64.0;
@@ -49,6 +50,17 @@ impl Clock {
         let spacing = end.next_up() - end;
         let is_fine = spacing * TIMES_IN_EPOCH <= self.epoch_length;
         (!is_fine).then_some(spacing)
+    }
+
+    /// Checks that the epoch that begins at this offset can be added to the origin.
+    pub(in crate::simulation) fn check_coarseness(&self, offset: f64) -> Outcome<()> {
+        match self.coarseness(offset) {
+            Some(spacing) => {
+                let (time, epoch) = (self.time(), self.epoch_length);
+                Err(Box::new(RunError::TimeTooLate { time, spacing, epoch }))
+            }
+            None => Ok(()),
+        }
     }
 
     /// The whole epochs until an offset.

@@ -18,6 +18,14 @@ impl Bodies {
         self.epoch_length_at(typical.max(squares().fold(0.0, f64::max).sqrt() / FASTER))
     }
 
+    /// Returns the length of an epoch under another gravity.
+    pub(in crate::simulation) fn epoch_length_under(&mut self, gravity: f64) -> f64 {
+        let own = std::mem::replace(&mut self.gravity, gravity);
+        let length = self.epoch_length();
+        self.gravity = own;
+        length
+    }
+
     /// Tells whether a disk of this velocity goes no further in an epoch of this length than any should. A collision can make a
     /// disk faster than all were; its place at the epoch, so far away, would lack digits.
     #[inline]
@@ -35,7 +43,8 @@ impl Bodies {
     fn epoch_length_at(&self, speed: f64) -> f64 {
         let way = DIAMETERS * self.typical_diameter;
         let length = way / (speed + (self.gravity.abs() * way).sqrt());
-        if length.is_finite() && length > 0.0 { power_of_two_below(length) } else { 1.0 }
+        // Without disks it is no number. Where all are at rest it is endless: nothing that a horizon would have to be looked past.
+        if length > 0.0 { power_of_two_below(length) } else { 1.0 }
     }
 }
 
