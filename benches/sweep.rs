@@ -22,9 +22,8 @@ use common::ask;
 use common::quartiles::Quartiles;
 use common::state::{AMPLITUDE, ANGULAR_FREQUENCY, CONTACT_DURATION, DILUTE, DISKS, HEIGHT, WIDTH};
 use common::stopwatch::Stopwatch;
-use granular_edmd::study::{
-    Axis, Base, Control, Parameter, Protocol, Specification, SpecificationError, Study, System,
-};
+use granular_edmd::study::vibrated_box::{Base, VibratedBox};
+use granular_edmd::study::{Axis, Control, Plan, PlanError, Protocol, Study};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
@@ -48,12 +47,12 @@ fn run() -> Outcome<()> {
     let (rounds, cycles) =
         if ask::is_test() { (1, 20) } else { (u64::from(ask::number("ROUNDS", 7)?), 2000) };
     common::print_circumstances();
-    let specification = specification(cycles)?;
+    let plan = plan(cycles)?;
     let mut times = threads().into_iter().map(Times::on).collect::<Outcome<Vec<_>>>()?;
     for _ in 0..rounds {
         for times in &mut times {
             let watch = Stopwatch::of_process();
-            times.study.push(times.pool.install(|| study(&specification))?);
+            times.study.push(times.pool.install(|| study(&plan))?);
             times.processors.push(watch.seconds());
             times.arithmetic.push(times.pool.install(|| arithmetic(cycles)));
         }
@@ -79,22 +78,22 @@ impl Times {
 }
 
 /// Runs that take equally long: they differ in friction by next to nothing.
-fn specification(cycles: u64) -> Result<Specification, SpecificationError> {
+fn plan(cycles: u64) -> Result<Plan<VibratedBox>, PlanError> {
     let base = Base::BiParabolic { amplitude: AMPLITUDE, angular_frequency: ANGULAR_FREQUENCY };
-    let system = System::new(DISKS, WIDTH, base)
+    let experiment = VibratedBox::new(DISKS, WIDTH, base)
         .with_height(HEIGHT)
         .with_gravity(DILUTE.gravity)
         .with_inelasticity(DILUTE.inelasticity)
         .with_contact_duration(CONTACT_DURATION);
-    let frictions = (0..RUNS).map(|run| DILUTE.friction + 1e-9 * f64::from(run)).collect();
+    let frictions = (0..RUNS).map(|run| DILUTE.friction + 1e-9 * f64::from(run));
     let protocol = Protocol::new(cycles / 2, cycles / 20, 10);
-    Specification::new(system, protocol, 1)?.with_axis(Axis::new(Parameter::Friction, frictions))
+    Plan::new(experiment, protocol, 1)?.with_axis(Axis::new("friction", frictions))
 }
 
 /// Seconds for the whole study, its files among them.
-fn study(specification: &Specification) -> Outcome<f64> {
+fn study(plan: &Plan<VibratedBox>) -> Outcome<f64> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("sweep-{}", std::process::id()));
-    let study = Study::create(&folder, specification)?;
+    let study = Study::create(&folder, plan)?;
     let start = Instant::now();
     let summary = study.run(&Control::default())?;
     let seconds = start.elapsed().as_secs_f64();

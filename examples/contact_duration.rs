@@ -19,9 +19,8 @@ use clap::Parser;
 use granular_edmd::ParameterError;
 use granular_edmd::analysis::{ConvectiveRegime, StateCriteria, Transition, TransitionLine, transitions};
 use granular_edmd::statistics::RunningMean;
-use granular_edmd::study::{
-    Axis, Course, Outcome, Parameter, Protocol, Ramp, Record, Specification, SpecificationError,
-};
+use granular_edmd::study::vibrated_box::{Convection, VibratedBox};
+use granular_edmd::study::{Axis, Course, Outcome, Plan, PlanError, Protocol, Ramp};
 
 /// Transitions at five contact durations.
 #[derive(Parser)]
@@ -29,6 +28,8 @@ struct Arguments {
     #[command(flatten)]
     common: studies::Common,
 }
+
+type Record = granular_edmd::study::Record<VibratedBox>;
 
 const DURATIONS: [f64; 5] = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3];
 
@@ -51,12 +52,12 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let ramps = [
-        ("contact_duration-friction", Parameter::Friction, FRICTIONS.to_vec(), 0.0),
-        ("contact_duration-inelasticity", Parameter::Inelasticity, INELASTICITIES.to_vec(), FRICTION),
+        ("contact_duration-friction", "friction", FRICTIONS.to_vec(), 0.0),
+        ("contact_duration-inelasticity", "inelasticity", INELASTICITIES.to_vec(), FRICTION),
     ];
     for (name, parameter, values, friction) in ramps {
-        let specification = specification(&arguments.common, parameter, values, friction)?;
-        let Some(study) = studies::complete(&arguments.common.folder(name), &specification)? else {
+        let plan = plan(&arguments.common, parameter, values, friction)?;
+        let Some(study) = studies::complete(&arguments.common.folder(name), &plan)? else {
             return Ok(());
         };
         let records: Vec<Record> = study.records().collect::<Result<_, _>>()?;
@@ -65,23 +66,22 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Independent runs are a value that comes several times on an axis.
-fn specification(
+fn plan(
     common: &studies::Common,
-    parameter: Parameter,
+    parameter: &str,
     values: Vec<f64>,
     friction: f64,
-) -> Result<Specification, SpecificationError> {
-    let system = studies::vibrated_box(0.015_625).with_friction(friction);
+) -> Result<Plan<VibratedBox>, PlanError> {
+    let experiment = studies::vibrated_box(0.015_625).with_friction(friction);
     let protocol = if common.quick { Protocol::new(100, 10, 10) } else { Protocol::new(500, 100, 10) };
-    let durations = DURATIONS.iter().flat_map(|&duration| [duration; RUNS]).collect();
-    Specification::new(system, protocol, common.seed)?
+    Plan::new(experiment, protocol, common.seed)?
         .with_ramp(Ramp::new(parameter, values, Course::Up))?
-        .with_axis(Axis::new(Parameter::ContactDuration, durations))
+        .with_axis(Axis::new("contact_duration", DURATIONS))?
+        .with_repeats(RUNS)
 }
 
 /// A row for each contact duration: where the transitions are, and how many collisions the model has changed.
-fn print(parameter: Parameter, records: &[Record]) -> Result<(), Box<dyn Error>> {
+fn print(parameter: &str, records: &[Record]) -> Result<(), Box<dyn Error>> {
     println!(
         "transitions along {parameter}; ± is the standard error over independent ramps, and over a step"
     );
@@ -109,11 +109,12 @@ fn print(parameter: Parameter, records: &[Record]) -> Result<(), Box<dyn Error>>
 }
 
 /// The transitions of one ramp to states of more loss.
-fn rising(parameter: Parameter, ramp: &[Record]) -> Result<Vec<Transition>, ParameterError> {
+fn rising(parameter: &str, ramp: &[Record]) -> Result<Vec<Transition>, ParameterError> {
     let regime = |record: &Record| -> Result<(f64, ConvectiveRegime), ParameterError> {
         let noise = record.thermal_noise();
         let found = StateCriteria::default().classify(&record.order(), noise, record.densest_layer())?;
-        Ok((record.system().get(parameter).unwrap_or(f64::NAN), found.regime()))
+        let value = record.parameter(parameter).and_then(|value| value.number());
+        Ok((value.unwrap_or(f64::NAN), found.regime()))
     };
     let regimes: Vec<_> =
         ramp.iter().filter(|record| !record.samples().is_empty()).map(regime).collect::<Result<_, _>>()?;

@@ -18,9 +18,8 @@ use std::sync::Arc;
 
 use clap::Parser;
 use granular_edmd::statistics::Estimate;
-use granular_edmd::study::{
-    Axis, Base, Parameter, Protocol, Specification, SpecificationError, Study, System,
-};
+use granular_edmd::study::vibrated_box::{Base, VibratedBox};
+use granular_edmd::study::{Axis, Plan, PlanError, Protocol, Record, Study};
 use kuva::plot::legend::LegendPosition;
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::figure::Figure;
@@ -44,9 +43,9 @@ const FRICTIONS: [f64; 15] = [0.0, 0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0
 const FEW_FRICTIONS: [f64; 7] = [0.0, 0.03, 0.1, 0.3, 0.6, 2.0, 10.0];
 
 impl Arguments {
-    fn specification(&self) -> Result<Specification, SpecificationError> {
+    fn plan(&self) -> Result<Plan<VibratedBox>, PlanError> {
         let base = Base::Thermal { temperature: 1.0, slip: self.slip };
-        let system = System::new(500, 25.0, base)
+        let experiment = VibratedBox::new(500, 25.0, base)
             .with_gravity(0.002)
             .with_inelasticity(0.025)
             .with_contact_duration(1e-5);
@@ -55,8 +54,7 @@ impl Arguments {
         } else {
             (Protocol::new(20_000, 1_000, 100), FRICTIONS.to_vec())
         };
-        Specification::new(system, protocol, self.common.seed)?
-            .with_axis(Axis::new(Parameter::Friction, frictions))
+        Plan::new(experiment, protocol, self.common.seed)?.with_axis(Axis::new("friction", frictions))
     }
 }
 
@@ -73,16 +71,16 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let name = if arguments.slip { "fig2_center_of_mass-slip" } else { "fig2_center_of_mass" };
     let folder = arguments.common.folder(name);
-    let Some(study) = studies::complete(&folder, &arguments.specification()?)? else { return Ok(()) };
+    let Some(study) = studies::complete(&folder, &arguments.plan()?)? else { return Ok(()) };
     let points = points(&study)?;
     print(&points);
     studies::write_png(figure(&points, arguments.slip), &study, "fig2_center_of_mass.png")
 }
 
-fn points(study: &Study) -> Result<Vec<Point>, Box<dyn Error>> {
-    let point = |record: granular_edmd::study::Record| {
-        let friction = record.system().get(Parameter::Friction).unwrap_or(f64::NAN);
-        Point { friction, height: record.mean(|sample| sample.height) }
+fn points(study: &Study<VibratedBox>) -> Result<Vec<Point>, Box<dyn Error>> {
+    let point = |record: Record<VibratedBox>| {
+        let height = record.mean(|sample| sample.height);
+        Point { friction: record.experiment().friction, height }
     };
     Ok(study.records().map(|record| record.map(point)).collect::<Result<_, _>>()?)
 }

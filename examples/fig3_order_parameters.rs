@@ -16,9 +16,8 @@ use std::error::Error;
 use std::process::ExitCode;
 
 use clap::Parser;
-use granular_edmd::study::{
-    Course, Parameter, Protocol, Ramp, Record, Sample, Specification, SpecificationError, Study,
-};
+use granular_edmd::study::vibrated_box::{Convection, Sample, VibratedBox};
+use granular_edmd::study::{Course, Plan, PlanError, Protocol, Ramp, Study};
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::figure::Figure;
 use kuva::render::layout::Layout;
@@ -37,16 +36,18 @@ struct Arguments {
 /// Friction of the first value, and step to the next.
 const STEP: f64 = 0.005;
 
+type Record = granular_edmd::study::Record<VibratedBox>;
+
 impl Arguments {
-    fn specification(&self) -> Result<Specification, SpecificationError> {
-        let system = studies::vibrated_box(0.015_625);
+    fn plan(&self) -> Result<Plan<VibratedBox>, PlanError> {
+        let experiment = studies::vibrated_box(0.015_625);
         // The paper keeps each value for 100 000 oscillations, and draws all samples, those of the transient included.
         let protocol =
             if self.common.quick { Protocol::new(0, 200, 50) } else { Protocol::new(0, 1000, 100) };
-        let frictions = (1..=15).map(|step| f64::from(step) * STEP).collect();
+        let frictions: Vec<f64> = (1..=15).map(|step| f64::from(step) * STEP).collect();
         let course = if self.down { Course::UpAndDown } else { Course::Up };
-        let ramp = Ramp::new(Parameter::Friction, frictions, course);
-        Specification::new(system, protocol, self.common.seed)?.with_ramp(ramp)
+        let ramp = Ramp::new("friction", frictions, course);
+        Plan::new(experiment, protocol, self.common.seed)?.with_ramp(ramp)
     }
 }
 
@@ -57,7 +58,7 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let name = if arguments.down { "fig3_order_parameters-down" } else { "fig3_order_parameters" };
     let folder = arguments.common.folder(name);
-    let Some(study) = studies::complete(&folder, &arguments.specification()?)? else { return Ok(()) };
+    let Some(study) = studies::complete(&folder, &arguments.plan()?)? else { return Ok(()) };
     let records: Vec<Record> = study.records().collect::<Result<_, _>>()?;
     print(&records);
     studies::write_png(figure(&records, &study), &study, "fig3_order_parameters.png")
@@ -82,13 +83,13 @@ fn print(records: &[Record]) {
     }
 }
 
-fn friction(record: &Record) -> f64 {
-    record.system().get(Parameter::Friction).unwrap_or(f64::NAN)
+const fn friction(record: &Record) -> f64 {
+    record.experiment().friction
 }
 
 /// Both order parameters, one above the other, in bins of equal friction; bin `k` is centred at `k + 1`.
-fn figure(records: &[Record], study: &Study) -> Figure {
-    let cycles = study.specification().protocol().cycles();
+fn figure(records: &[Record], study: &Study<VibratedBox>) -> Figure {
+    let cycles = study.plan().protocol().cycles();
     let title = format!("g = 0.015625, q = 0, N = 1000; {cycles} oscillations for each value of κ");
     let (first, one) = panel(records, |sample| sample.one_roll, "Ψ₁");
     let (second, two) = panel(records, |sample| sample.two_rolls, "Ψ₂");

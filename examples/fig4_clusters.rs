@@ -20,7 +20,8 @@ use std::process::ExitCode;
 use clap::Parser;
 use granular_edmd::analysis::{Classification, ConvectiveState, StateCriteria};
 use granular_edmd::glam::DVec2;
-use granular_edmd::study::{Axis, Parameter, Protocol, Record, Specification, SpecificationError, Study};
+use granular_edmd::study::vibrated_box::{Convection, VibratedBox};
+use granular_edmd::study::{Plan, PlanError, Protocol, Record, Study};
 use kuva::plot::scatter::MarkerShape;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 
@@ -40,24 +41,23 @@ struct Arguments {
 }
 
 impl Arguments {
-    fn specification(&self) -> Result<Specification, SpecificationError> {
-        let system = studies::vibrated_box(0.015_625);
+    fn plan(&self) -> Result<Plan<VibratedBox>, PlanError> {
+        let experiment = studies::vibrated_box(0.015_625).with_friction(self.friction);
         // The paper: 100 000 oscillations, sampled every 100, the first half discarded.
         let protocol =
             if self.common.quick { Protocol::new(4_000, 400, 20) } else { Protocol::new(50_000, 500, 100) };
-        Specification::new(system, protocol, self.common.seed)?
-            .with_axis(Axis::new(Parameter::Friction, vec![self.friction; self.runs]))
+        Plan::new(experiment, protocol, self.common.seed)?.with_repeats(self.runs)
     }
 }
 
 /// A run and its clusters.
 struct Run {
-    record: Record,
+    record: Record<VibratedBox>,
     found: Classification,
 }
 
 impl Run {
-    fn of(record: Record) -> Result<Self, Box<dyn Error>> {
+    fn of(record: Record<VibratedBox>) -> Result<Self, Box<dyn Error>> {
         let found = StateCriteria::default().classify(
             &record.order(),
             record.thermal_noise(),
@@ -77,7 +77,7 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let folder = arguments.common.folder("fig4_clusters");
-    let Some(study) = studies::complete(&folder, &arguments.specification()?)? else { return Ok(()) };
+    let Some(study) = studies::complete(&folder, &arguments.plan()?)? else { return Ok(()) };
     let runs: Vec<Run> = study.records().map(|record| Run::of(record?)).collect::<Result<_, _>>()?;
     runs.iter().for_each(print);
     let three = runs.iter().filter(|run| run.clusters() == 3).count();
@@ -129,11 +129,11 @@ const SIZE: (f64, f64) = (860.0, 526.0);
 /// The ranges of both axes.
 const RANGES: [(f64, f64); 2] = [(-0.25, 0.25), (-0.08, 0.22)];
 
-fn draw(arguments: &Arguments, study: &Study, run: &Run) -> Result<Vec<u8>, String> {
+fn draw(arguments: &Arguments, study: &Study<VibratedBox>, run: &Run) -> Result<Vec<u8>, String> {
     let mut sheet = Sheet::new(SIZE.0, HEADER + SIZE.1);
     let plural = if run.clusters() == 1 { "" } else { "s" };
     let title = format!("{} cluster{plural} at κ = {}", run.clusters(), arguments.friction);
-    let protocol = study.specification().protocol();
+    let protocol = study.plan().protocol();
     let samples = protocol.samples();
     let system = "N = 1000, box 60 × 150, g = 0.015625, q = 0, bi-parabolic base A = 0.1, ω = 10, contact duration 1e-4";
     let protocol = format!(

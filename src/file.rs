@@ -4,4 +4,4 @@ mod seal;
 mod whole;
 
 pub(crate) use seal::{Broken, Seal};
-pub(crate) use whole::{is_temporary, write_whole};
+pub(crate) use whole::{is_temporary, unique_name, write_whole};

@@ -33,7 +33,7 @@
 //! # Map
 //! | floor | what is there |
 //! |---|---|
-//! | [`study`] (feature `serde`) | studies as data: ramps, sweeps, records, resume |
+//! | [`study`] (feature `serde`) | studies of experiments of your own: plans, ramps, sweeps, records, resume, many processes |
 //! | [`analysis`] | convective states, clusters, transitions |
 //! | [`kinetic`] | ⟨dE⟩ by closed form and Monte Carlo, effective inelasticity; needs no simulation |
 //! | [`simulation`] | the engine: builder, event loop, checkpoints |
@@ -51,6 +51,7 @@
 //! |---|---|
 //! | `serde` | parameters that serialise through their validating constructors, checkpoints, studies |
 //! | `rayon` | Monte Carlo and sweeps on all cores, with the same bits |
+//! | `cli` | the command line of studies: the binary `granular-edmd`, and `study::cli` for the same of your own |
 //! | `proptest` | random contacts and disks for property tests of your own rules: `strategies` |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]

@@ -1,177 +1,262 @@
-//! Studies: many runs, planned as data, watched, stopped, resumed, and kept.
+//! Studies: many runs, planned as data, watched, stopped, resumed, spread over processes, and kept.
 //!
-//! A [`Specification`] says what is done: a [`System`], a [`Protocol`] to sample it, a [`Ramp`] of one parameter up or
-//! down, and a sweep of independent ramps over the grid of its [`Axis`]es. A [`Study`] is a specification in a folder.
-//! [`Study::run`] does what is not done yet, on all cores with the feature `rayon`; each finished value is written at
-//! once, as a [`Record`].
+//! An [`Experiment`] is what is studied: a serialisable type of your own, whose fields are the parameters and whose methods say
+//! what is simulated, what is measured, and which columns the tables have. A [`Plan`] says what is done with it: a
+//! [`Protocol`] to sample it, a [`Ramp`] of one parameter up or down, a sweep of independent ramps over the grid of its
+//! [`Axis`]es, and repeats. A [`Study`] is a plan in a folder. [`Study::run`] does what is not done yet, on all cores with the
+//! feature `rayon`, in any number of processes; each finished value is written at once, as a [`Record`].
+//!
+//! The paper's system is an experiment like any other: [`vibrated_box`].
 //!
 //! # Promises
-//! 1. A value is a function of specification, index and seed: the files of a complete study are the same bytes on any
-//!    number of threads, and however often it was interrupted or killed. Only `log.jsonl`, which has the times, differs.
+//! 1. A value is a function of plan, index and seed: the files of a complete study are the same bytes on any number of threads
+//!    and processes, and however often they were interrupted or killed. Only `log.jsonl`, which has the times, differs.
 //! 2. A file is whole or not there. A damaged one is named and done again, never read as data.
-//! 3. One process at a time runs a study; another is told so.
-//! 4. A run that cannot progress is an [`Outcome`] of its value: the study goes on.
+//! 3. Any number of processes run a study at the same time, started at any time: each ramp is done by one of them. They need
+//!    a file system whose locks all of them see: local ones have that, as NFS has from version 4 on.
+//! 4. A study writes into a folder that is empty or its own, and changes or removes no file but its own.
+//! 5. A run that cannot progress is an [`Outcome`] of its value: the study goes on.
 //!
 //! ```
-//! use granular_edmd::study::{Base, Control, Course, Parameter, Protocol, Ramp, Specification, Study, System};
+//! use granular_edmd::study::vibrated_box::{Base, VibratedBox};
+//! use granular_edmd::study::{Control, Course, Plan, Protocol, Ramp, Study};
 //!
 //! let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
-//! let system = System::new(30, 10.0, base).with_height(30.0).with_gravity(0.0156).with_contact_duration(1e-4);
-//! let ramp = Ramp::new(Parameter::Friction, vec![0.01, 0.02], Course::Up);
-//! let specification = Specification::new(system, Protocol::new(10, 4, 5), 1)?.with_ramp(ramp)?;
+//! let experiment = VibratedBox::new(30, 10.0, base).with_height(30.0).with_gravity(0.0156).with_contact_duration(1e-4);
+//! let ramp = Ramp::new("friction", [0.01, 0.02], Course::Up);
+//! let plan = Plan::new(experiment, Protocol::new(10, 4, 5), 1)?.with_ramp(ramp)?;
 //!
 //! # let folder = std::env::temp_dir().join(format!("granular-edmd-study-{}", std::process::id()));
-//! let study = Study::open_or_create(&folder, &specification)?;
+//! let study = Study::open_or_create(&folder, &plan)?;
 //! let summary = study.run(&Control::default())?;
 //! assert!(summary.is_complete());
 //! for record in study.records() {
 //!     let record = record?;
-//!     println!("{:?} {:?}", record.system().get(Parameter::Friction), record.mean(|sample| sample.height));
+//!     println!("{} {}", record.experiment().friction, record.mean(|sample| sample.height));
 //!     assert_eq!(record.samples().len(), 4);
 //! }
 //! # std::fs::remove_dir_all(&folder)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod base;
+#[cfg(feature = "cli")]
+pub mod cli;
+mod column;
 mod control;
 mod errors;
+mod experiment;
 mod file;
 mod folder;
 mod lock;
-mod parameter;
+mod measurement;
+mod parameters;
+mod plan;
 mod protocol;
 mod ramp;
 mod record;
-mod rule;
+mod refinement;
 mod runner;
-mod sample;
-mod specification;
-mod system;
+mod scalar;
 mod tables;
-mod value;
+pub mod vibrated_box;
 
 use std::path::Path;
 
-pub use base::{Base, Sides};
+pub use column::{Column, Table};
 pub use control::{Control, Progress, Summary};
-pub use errors::{SpecificationError, StudyError};
-pub use parameter::Parameter;
+pub use errors::{PlanError, StudyError};
+pub use experiment::{Experiment, ExperimentError, Run};
+pub use parameters::Difference;
+pub use plan::Plan;
 pub use protocol::Protocol;
 pub use ramp::{Axis, Course, Leg, Ramp};
 pub use record::{Outcome, Record};
-pub use sample::Sample;
-pub use specification::Specification;
-pub use system::System;
+pub use refinement::Bracket;
+pub use scalar::Scalar;
 
 use folder::Folder;
-use record::Origin;
+use record::{Contents, Origin};
+use refinement::Seen;
+use tables::Tables;
 
 /// Version of this crate: another one may have other results.
 const CRATE_VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// A [`Specification`] in a folder, with the records of what has been done of it.
+/// A [`Plan`] in a folder, with the records of what has been done of it.
 ///
 /// See [the module](crate::study) for an example and for what it promises.
 #[derive(Debug, Clone)]
-pub struct Study {
+pub struct Study<E> {
     folder: Folder,
-    specification: Specification,
-    /// Hash of the specification: what ties a record to its study.
+    plan: Plan<E>,
+    /// Hash of the plan: what ties a record to its study.
     hash: [u8; 32],
 }
 
-impl Study {
-    /// A new study in a folder, which is made if it is not there.
+impl<E: Experiment> Study<E> {
+    /// Makes a new study in a folder, which is made if it is not there and must be empty if it is.
     ///
     /// # Errors
-    /// If the folder holds a study already or cannot be written.
-    pub fn create(folder: impl AsRef<Path>, specification: &Specification) -> Result<Self, StudyError> {
-        let folder = Folder::new(folder.as_ref());
-        if folder.holds_study() {
+    /// If the folder holds a study or anything else, or cannot be written.
+    pub fn create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
+        let folder = Folder::new(folder.as_ref())?;
+        if folder.holds_study() || !folder.create(&plan.to_toml()?)? {
             return Err(StudyError::Exists { path: folder.root().to_owned() });
         }
-        folder.create(specification)?;
-        Self::in_folder(folder, specification.clone())
+        Self::in_folder(folder, plan.clone())
     }
 
-    /// The study in a folder.
+    /// Opens the study in a folder.
     ///
     /// # Errors
-    /// If there is none, or it cannot be read.
+    /// If there is none, or none of this experiment, or it cannot be read.
     pub fn open(folder: impl AsRef<Path>) -> Result<Self, StudyError> {
-        let folder = Folder::new(folder.as_ref());
+        let folder = Folder::new(folder.as_ref())?;
         if !folder.holds_study() {
             return Err(StudyError::Missing { path: folder.root().to_owned() });
         }
-        let specification = folder.read_specification()?;
-        Self::in_folder(folder, specification)
+        let unreadable = |source| StudyError::Unreadable { path: folder.plan(), source };
+        let plan = Plan::from_toml(&folder.read_plan()?).map_err(unreadable)?;
+        Self::in_folder(folder, plan)
     }
 
-    /// The study in a folder, or a new one: the same command starts a study and goes on with it.
+    /// Opens the study in a folder, or makes a new one: the same command starts a study and goes on with it, also in several
+    /// processes at the same time.
     ///
     /// # Errors
-    /// If the folder holds a study with another specification, or cannot be read or written.
-    pub fn open_or_create(
-        folder: impl AsRef<Path>,
-        specification: &Specification,
-    ) -> Result<Self, StudyError> {
-        let path = folder.as_ref();
-        if !Folder::new(path).holds_study() {
-            return Self::create(path, specification);
+    /// If the folder holds a study with another plan, or other files and no study, or cannot be read or written.
+    pub fn open_or_create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
+        let folder = Folder::new(folder.as_ref())?;
+        if !folder.holds_study() {
+            folder.create(&plan.to_toml()?)?;
         }
-        let study = Self::open(path)?;
-        if study.specification == *specification {
-            Ok(study)
-        } else {
-            Err(StudyError::Different { path: path.to_owned() })
-        }
+        let study = Self::in_folder(folder, plan.clone())?;
+        study.check_plan()?;
+        Ok(study)
     }
 
-    fn in_folder(folder: Folder, specification: Specification) -> Result<Self, StudyError> {
-        let hash = *blake3::hash(specification.to_toml()?.as_bytes()).as_bytes();
-        Ok(Self { folder, specification, hash })
+    fn in_folder(folder: Folder, plan: Plan<E>) -> Result<Self, StudyError> {
+        let hash = *blake3::hash(plan.to_toml()?.as_bytes()).as_bytes();
+        Ok(Self { folder, plan, hash })
     }
 
-    /// Its folder.
+    /// Checks that the plan in the folder is this one: it may have been changed since it was read.
+    fn check_plan(&self) -> Result<(), StudyError> {
+        let text = self.folder.read_plan()?;
+        let ours = self.plan.to_toml()?;
+        if text == ours {
+            return Ok(());
+        }
+        let tree =
+            |text: &str| text.parse::<toml::Table>().map_err(|error| PlanError::Toml(error.to_string()));
+        let unreadable = |source| StudyError::Unreadable { path: self.folder.plan(), source };
+        let differences = parameters::differences(&tree(&text).map_err(unreadable)?, &tree(&ours)?);
+        if differences.is_empty()
+            || Plan::<E>::from_toml(&text).and_then(|plan| plan.to_toml()).is_ok_and(|text| text == ours)
+        {
+            return Ok(());
+        }
+        Err(StudyError::Different { path: self.folder.root().to_owned(), differences })
+    }
+
+    /// Returns its folder.
     pub fn folder(&self) -> &Path {
         self.folder.root()
     }
 
-    /// What it does.
-    pub const fn specification(&self) -> &Specification {
-        &self.specification
+    /// Returns its plan.
+    pub const fn plan(&self) -> &Plan<E> {
+        &self.plan
     }
 
-    /// The record of a value; `None` if it is not finished.
+    /// Returns the record of a value; `None` if it is not finished.
     ///
     /// # Errors
     /// If the file is damaged, of another study, or cannot be read.
-    pub fn record(&self, ramp: usize, value: usize) -> Result<Option<Record>, StudyError> {
+    pub fn record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
         let path = self.folder.record(ramp, value);
-        let Some(record) = file::read_sealed::<Record>(&path)? else { return Ok(None) };
-        self.check_origin(&record.origin, ramp, value, &path)?;
-        record.check(&self.specification).map_err(|reason| file::damaged(&path, reason))?;
+        let Some(contents) = file::read_sealed::<Contents<_, _>>(&path)? else { return Ok(None) };
+        self.check_origin(&contents.origin, ramp, value, &path)?;
+        let spans = |at| self.plan.ramp().is_some_and(|ramp| ramp.spans(at));
+        if contents.at.is_some_and(|at| !spans(at)) {
+            return Err(file::damaged(&path, "it is outside the ramp"));
+        }
+        let record = Record { experiment: self.plan.experiment_at(ramp, contents.at)?, contents };
+        record.check(&self.plan).map_err(|reason| file::damaged(&path, reason))?;
         Ok(Some(record))
     }
 
-    /// All finished records, ramp by ramp, read one by one.
-    pub fn records(&self) -> impl Iterator<Item = Result<Record, StudyError>> {
-        self.places().filter_map(|(ramp, value)| self.record(ramp, value).transpose())
+    /// Returns all finished records, ramp by ramp, read one by one.
+    pub fn records(&self) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
+        (0..self.plan.ramps()).flat_map(|ramp| self.ramp_records(ramp))
     }
 
-    /// The indices of all ramps and values.
-    fn places(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let values = self.specification.values();
-        (0..self.specification.ramps()).flat_map(move |ramp| (0..values).map(move |value| (ramp, value)))
+    /// Returns all finished records of a ramp, read one by one.
+    pub fn ramp_records(&self, ramp: usize) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
+        let values = self.plan.values();
+        let own = (0..values).filter_map(move |value| self.record(ramp, value).transpose());
+        // Those of a refinement have no gaps, and their number is known at the end only.
+        let is_refined = self.plan.ramp().is_some_and(|ramp| ramp.refine().is_some());
+        let more = (values..)
+            .take_while(move |_| is_refined)
+            .map_while(move |value| self.record(ramp, value).transpose());
+        own.chain(more)
+    }
+
+    /// Returns the transitions that a refined ramp has bracketed; none before all of them are.
+    ///
+    /// # Errors
+    /// If a record is damaged, of another study, or cannot be read.
+    pub fn transitions(&self, ramp: usize) -> Result<Vec<Bracket>, StudyError> {
+        let seen: Vec<Seen> =
+            self.ramp_records(ramp).map(|record| Ok(record?.seen())).collect::<Result<_, StudyError>>()?;
+        Ok(self.plan.ramp().map_or_else(Vec::new, |ramp| ramp.brackets(&seen)))
+    }
+
+    /// Writes the tables of all records that there are; returns how many.
+    ///
+    /// A run does this when all is done; in between, it is for looking.
+    ///
+    /// # Errors
+    /// If a record is damaged, or a file cannot be read or written.
+    pub fn write_tables(&self) -> Result<usize, StudyError> {
+        let mut tables = Tables::new(&self.plan);
+        let mut finished = 0;
+        for ramp in 0..self.plan.ramps() {
+            let mut seen = Vec::new();
+            for record in self.ramp_records(ramp) {
+                let record = record?;
+                tables.add(&record);
+                seen.push(record.seen());
+                finished += 1;
+            }
+            tables
+                .add_transitions(ramp, &self.plan.ramp().map_or_else(Vec::new, |ramp| ramp.brackets(&seen)));
+        }
+        let tables = tables.finish();
+        self.folder.write_tables(tables.iter().map(|(name, text)| (name.as_str(), text.as_str())))?;
+        Ok(finished)
+    }
+
+    /// Returns how far a ramp is.
+    pub fn status(&self, ramp: usize) -> RampStatus {
+        if self.folder.is_done(ramp) {
+            RampStatus::Done
+        } else if self.folder.is_taken(ramp) {
+            RampStatus::Running
+        } else if self.folder.ramp(ramp).exists() {
+            RampStatus::Begun
+        } else {
+            RampStatus::Waiting
+        }
     }
 
     fn origin(&self, ramp: usize, value: usize) -> Origin {
-        let seed = self.specification.ramp_seed(ramp);
+        let seed = self.plan.ramp_seed(ramp);
         Origin { study: self.hash, version: CRATE_VERSION.to_owned(), ramp, value, seed }
     }
 
-    /// That a file is of this study and this place.
+    /// Checks that a file is of this study and this place.
     fn check_origin(&self, found: &Origin, ramp: usize, value: usize, path: &Path) -> Result<(), StudyError> {
         if found.study != self.hash {
             return Err(StudyError::Foreign { path: path.to_owned() });
@@ -182,4 +267,18 @@ impl Study {
             Err(file::damaged(path, "it is of another value"))
         }
     }
+}
+
+/// How far a ramp is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RampStatus {
+    /// All its values have a record.
+    Done,
+    /// A process does it now.
+    Running,
+    /// It was begun, and nobody does it now.
+    Begun,
+    /// Nothing has been done of it.
+    Waiting,
 }

@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::Frictional;
 use granular_edmd::simulation::{BuildError, CheckpointError};
-use granular_edmd::study::{Base, Protocol, Specification, SpecificationError, Study, StudyError, System};
+use granular_edmd::study::vibrated_box::{Base, VibratedBox};
+use granular_edmd::study::{Plan, PlanError, Protocol, Study, StudyError};
 use granular_edmd::{Disk, ParameterError, Simulation, glam::DVec2, initial};
 use report::{messages, report};
 
@@ -22,9 +23,9 @@ fn tells_each_thing_once(error: &(dyn Error + 'static)) {
     }
 }
 
-fn specification() -> Specification {
+fn plan() -> Plan<VibratedBox> {
     let base = Base::Thermal { temperature: 1.0, slip: false };
-    Specification::new(System::new(3, 4.0, base).with_height(3.0), Protocol::new(1, 1, 1), 1).unwrap()
+    Plan::new(VibratedBox::new(3, 4.0, base).with_height(3.0), Protocol::new(1, 1, 1), 1).unwrap()
 }
 
 fn no_parameter() -> ParameterError {
@@ -36,14 +37,15 @@ fn study_errors() -> Vec<StudyError> {
     let path = PathBuf::from("study/values.csv");
     let outside = BuildError::Outside { disk: 3, x: 1.0, y: -2.0 };
     vec![
-        StudyError::Specification(SpecificationError::Parameter(no_parameter())),
+        StudyError::Plan(PlanError::Parameter(no_parameter())),
+        StudyError::Plan(PlanError::Experiment { place: String::new(), source: no_parameter().into() }),
         StudyError::Io {
             action: "write",
             path: path.clone(),
             source: io::Error::other("No space left on device"),
         },
-        StudyError::Build { ramp: 1, value: 2, source: outside },
-        StudyError::Build { ramp: 1, value: 2, source: BuildError::Parameter(no_parameter()) },
+        StudyError::Build { ramp: 1, value: 2, source: outside.into() },
+        StudyError::Build { ramp: 1, value: 2, source: BuildError::Parameter(no_parameter()).into() },
         StudyError::Checkpoint { ramp: 1, value: 2, source: CheckpointError::Damaged },
         StudyError::Encode { path, source: "too long".into() },
     ]
@@ -69,8 +71,8 @@ fn errors_that_happen_tell_each_thing_once() {
         Box::new(build.build().unwrap_err()),
         Box::new(initial::lattice(&container, 1000, 0.5).unwrap_err()),
         Box::new(Container::open(4.0).unwrap().with_temperature(Wall::Lid, thermal()).unwrap_err()),
-        Box::new(Specification::from_toml("seed = 1\nsede = 2").unwrap_err()),
-        Box::new(Study::create(&file, &specification()).unwrap_err()),
+        Box::new(Plan::<VibratedBox>::from_toml("seed = 1\nsede = 2").unwrap_err()),
+        Box::new(Study::create(&file, &plan()).unwrap_err()),
     ];
     std::fs::remove_file(&file).unwrap();
     for error in &errors {

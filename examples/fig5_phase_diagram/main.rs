@@ -26,6 +26,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::study::Study;
+use granular_edmd::study::vibrated_box::VibratedBox;
 
 use plan::{Gravity, Part, Size};
 
@@ -65,13 +66,13 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let parts = plan::parts(arguments.size, arguments.gravity, arguments.seed)?;
     if !arguments.draw {
         for part in &parts {
-            if studies::complete(&folder.join(part.folder), &part.specification)?.is_none() {
+            if studies::complete(&folder.join(part.folder), &part.plan)?.is_none() {
                 break;
             }
         }
     }
     let started = parts.iter().filter(|part| folder.join(part.folder).is_dir());
-    let studies: Vec<Study> =
+    let studies: Vec<Study<VibratedBox>> =
         started.map(|part| Study::open(folder.join(part.folder))).collect::<Result<_, _>>()?;
     let points = states::points(&studies)?;
     let lines = states::lines(&points)?;
@@ -87,9 +88,8 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 }
 
 fn caption(arguments: &Arguments, parts: &[Part], finished: usize) -> String {
-    let total: usize =
-        parts.iter().map(|part| part.specification.ramps() * part.specification.values()).sum();
-    let cycles = parts[0].specification.protocol().cycles();
+    let total: usize = parts.iter().map(|part| part.plan.ramps() * part.plan.values()).sum();
+    let cycles = parts[0].plan.protocol().cycles();
     let unfinished =
         if finished < total { format!("; {finished} of {total} points so far") } else { String::new() };
     format!(

@@ -1,7 +1,8 @@
 //! What is simulated: ramps of friction, up and down, side by side for each inelasticity.
 
 use clap::ValueEnum;
-use granular_edmd::study::{Axis, Course, Parameter, Protocol, Ramp, Specification, SpecificationError};
+use granular_edmd::study::vibrated_box::VibratedBox;
+use granular_edmd::study::{Axis, Course, Plan, PlanError, Protocol, Ramp};
 
 use crate::studies;
 
@@ -65,11 +66,11 @@ const FEW_FRICTIONS: [f64; 8] = [0.005, 0.015, 0.04, 0.07, 0.15, 0.3, 1.0, 3.0];
 /// A study in a folder of its own.
 pub(crate) struct Part {
     pub(crate) folder: &'static str,
-    pub(crate) specification: Specification,
+    pub(crate) plan: Plan<VibratedBox>,
 }
 
 /// The studies of a phase diagram: the ramps up, and the ramps down.
-pub(crate) fn parts(size: Size, gravity: Gravity, seed: u64) -> Result<Vec<Part>, SpecificationError> {
+pub(crate) fn parts(size: Size, gravity: Gravity, seed: u64) -> Result<Vec<Part>, PlanError> {
     let up = inelasticities(size, gravity);
     // Going down is for hysteresis; a short run cannot tell it from a late start.
     let down = match size {
@@ -81,24 +82,24 @@ pub(crate) fn parts(size: Size, gravity: Gravity, seed: u64) -> Result<Vec<Part>
     let wanted = parts.into_iter().filter(|(_, _, inelasticities)| !inelasticities.is_empty());
     wanted
         .map(|(folder, course, inelasticities)| {
-            let specification = specification(size, gravity, seed, course, inelasticities)?;
-            Ok(Part { folder, specification })
+            let plan = plan(size, gravity, seed, course, inelasticities)?;
+            Ok(Part { folder, plan })
         })
         .collect()
 }
 
-fn specification(
+fn plan(
     size: Size,
     gravity: Gravity,
     seed: u64,
     course: Course,
     inelasticities: Vec<f64>,
-) -> Result<Specification, SpecificationError> {
-    let system = studies::vibrated_box(gravity.value());
+) -> Result<Plan<VibratedBox>, PlanError> {
+    let experiment = studies::vibrated_box(gravity.value());
     let frictions = if size == Size::Quick { FEW_FRICTIONS.to_vec() } else { FRICTIONS.to_vec() };
-    Specification::new(system, protocol(size), seed)?
-        .with_ramp(Ramp::new(Parameter::Friction, frictions, course))?
-        .with_axis(Axis::new(Parameter::Inelasticity, inelasticities))
+    Plan::new(experiment, protocol(size), seed)?
+        .with_ramp(Ramp::new("friction", frictions, course))?
+        .with_axis(Axis::new("inelasticity", inelasticities))
 }
 
 /// The first half is discarded.

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use granular_edmd::ParameterError;
 use granular_edmd::analysis::{ConvectiveRegime, PlaneTransition, StateCriteria, plane_transitions};
-use granular_edmd::study::{Leg, Parameter, Record, Study};
+use granular_edmd::study::vibrated_box::{Convection, VibratedBox};
+use granular_edmd::study::{Leg, Record, Study};
 
 /// What was seen at a point of the plane, on the way up or down.
 pub(crate) struct Point {
@@ -27,14 +28,13 @@ pub(crate) struct Point {
 
 impl Point {
     /// The point of a record; `None` if it has no samples.
-    fn of(record: &Record) -> Result<Option<Self>, ParameterError> {
+    fn of(record: &Record<VibratedBox>) -> Result<Option<Self>, ParameterError> {
         let Some(layer) = record.densest_layer() else { return Ok(None) };
         let noise = record.thermal_noise();
         let found = StateCriteria::default().classify(&record.order(), noise, Some(layer))?;
-        let parameter = |parameter| record.system().get(parameter).unwrap_or(f64::NAN);
         Ok(Some(Self {
-            friction: parameter(Parameter::Friction),
-            inelasticity: parameter(Parameter::Inelasticity),
+            friction: record.experiment().friction,
+            inelasticity: record.experiment().inelasticity,
             leg: record.leg(),
             regime: found.regime(),
             weights: [0, 1, 2].map(|rolls| found.weight_of_rolls(rolls)),
@@ -50,7 +50,7 @@ impl Point {
 }
 
 /// The points of all finished values.
-pub(crate) fn points(studies: &[Study]) -> Result<Vec<Point>, Box<dyn Error>> {
+pub(crate) fn points(studies: &[Study<VibratedBox>]) -> Result<Vec<Point>, Box<dyn Error>> {
     let mut points = Vec::new();
     for record in studies.iter().flat_map(Study::records) {
         points.extend(Point::of(&record?)?);

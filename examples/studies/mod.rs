@@ -7,7 +7,8 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
-use granular_edmd::study::{Base, Control, Progress, Specification, Study, System};
+use granular_edmd::study::vibrated_box::{Base, VibratedBox};
+use granular_edmd::study::{Control, Experiment, Plan, Progress, Study};
 use indicatif::{ProgressBar, ProgressStyle};
 use kuva::backend::png::PngBackend;
 use kuva::render::figure::Figure;
@@ -37,9 +38,9 @@ impl Common {
 }
 
 /// The paper's vibrated box at this gravity, with the contact duration that our figures take.
-pub(crate) fn vibrated_box(gravity: f64) -> System {
+pub(crate) fn vibrated_box(gravity: f64) -> VibratedBox {
     let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
-    System::new(1000, 60.0, base).with_height(150.0).with_gravity(gravity).with_contact_duration(1e-4)
+    VibratedBox::new(1000, 60.0, base).with_height(150.0).with_gravity(gravity).with_contact_duration(1e-4)
 }
 
 /// Says in one line what went wrong, if something did, and why.
@@ -60,12 +61,12 @@ pub(crate) fn end(result: Result<(), Box<dyn Error>>) -> ExitCode {
 ///
 /// The same command starts a study and goes on with it. A second Ctrl-C ends the program at once: what was saved by then
 /// is kept.
-pub(crate) fn complete(
+pub(crate) fn complete<E: Experiment>(
     folder: &Path,
-    specification: &Specification,
-) -> Result<Option<Study>, Box<dyn Error>> {
-    println!("study in {}:\n\n{specification}", folder.display());
-    let study = Study::open_or_create(folder, specification)?;
+    plan: &Plan<E>,
+) -> Result<Option<Study<E>>, Box<dyn Error>> {
+    println!("study in {}:\n\n{plan}", folder.display());
+    let study = Study::open_or_create(folder, plan)?;
     stop_on_ctrl_c()?;
     let bar = progress_bar()?;
     let show = |progress: &Progress| {
@@ -110,9 +111,13 @@ fn progress_bar() -> Result<ProgressBar, Box<dyn Error>> {
 }
 
 /// Writes a figure into the folder of a study.
-pub(crate) fn write_png(figure: Figure, study: &Study, name: &str) -> Result<(), Box<dyn Error>> {
+pub(crate) fn write_png<E: Experiment>(
+    figure: Figure,
+    study: &Study<E>,
+    name: &str,
+) -> Result<(), Box<dyn Error>> {
     let path = study.folder().join(name);
     std::fs::write(&path, PngBackend::new().render_scene(&figure.render())?)?;
-    println!("wrote {}; the tables beside it are values.csv, samples.csv and profiles.csv", path.display());
+    println!("wrote {}; the tables are beside it", path.display());
     Ok(())
 }

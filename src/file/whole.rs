@@ -71,7 +71,7 @@ fn create_new(path: &Path) -> io::Result<(PathBuf, File)> {
 ///
 /// The process tells programs on this host apart, the count the writers in this process, and the random
 /// number the hosts that share a disk. The file's own name is not in it, so that it cannot become too long.
-fn unique_name() -> String {
+pub(crate) fn unique_name() -> String {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
     // The standard library seeds its hash tables from the system: the random number that needs no dependency.

@@ -35,12 +35,13 @@ pub struct Control<'a> {
     progress: Option<&'a (dyn Fn(&Progress) + Sync)>,
     interrupt: Option<&'a AtomicBool>,
     save_interval: Duration,
+    waits: bool,
 }
 
 impl Default for Control<'_> {
-    /// Nobody watches, nothing stops it, and values half done are saved every minute.
+    /// Nobody watches, nothing stops it, values half done are saved every minute, and ramps that other processes do are waited for.
     fn default() -> Self {
-        Self { progress: None, interrupt: None, save_interval: Duration::from_secs(60) }
+        Self { progress: None, interrupt: None, save_interval: Duration::from_secs(60), waits: true }
     }
 }
 
@@ -60,6 +61,15 @@ impl<'a> Control<'a> {
         Self { save_interval: interval, ..self }
     }
 
+    /// Returns at once when all that is left is done by other processes, which may yet be killed; [`Summary::elsewhere`] names it.
+    pub fn without_waiting(self) -> Self {
+        Self { waits: false, ..self }
+    }
+
+    pub(super) const fn waits(&self) -> bool {
+        self.waits
+    }
+
     pub(super) const fn save_interval(&self) -> Duration {
         self.save_interval
     }
@@ -77,20 +87,22 @@ impl fmt::Debug for Control<'_> {
     }
 }
 
-/// What a run of a study did.
+/// The outcome of a run of a study.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Summary {
     /// Values that have a record now.
     pub finished: usize,
-    /// Values of the study.
+    /// Values of the study, or of the ramps that were to be run.
     pub total: usize,
+    /// Ramps that other processes are doing.
+    pub elsewhere: Vec<usize>,
     /// Files that were damaged and have been replaced.
     pub redone: Vec<PathBuf>,
 }
 
 impl Summary {
-    /// Whether the study is complete.
+    /// Returns whether all that was to be run is complete.
     pub const fn is_complete(&self) -> bool {
         self.finished == self.total
     }
@@ -100,19 +112,24 @@ impl Summary {
 pub(super) struct Meter<'a> {
     control: &'a Control<'a>,
     done: AtomicU64,
-    total: u64,
+    total: AtomicU64,
 }
 
 impl<'a> Meter<'a> {
     pub(super) const fn new(control: &'a Control<'a>, total: u64) -> Self {
-        Self { control, done: AtomicU64::new(0), total }
+        Self { control, done: AtomicU64::new(0), total: AtomicU64::new(total) }
+    }
+
+    /// Takes note of steps that are to be done, too.
+    pub(super) fn extend(&self, steps: u64) {
+        self.total.fetch_add(steps, Ordering::Relaxed);
     }
 
     /// Takes note of steps that were done.
     pub(super) fn advance(&self, ramp: usize, value: usize, steps: u64) {
         let done = self.done.fetch_add(steps, Ordering::Relaxed) + steps;
         if let Some(progress) = self.control.progress {
-            progress(&Progress { ramp, value, done, total: self.total });
+            progress(&Progress { ramp, value, done, total: self.total.load(Ordering::Relaxed) });
         }
     }
 }

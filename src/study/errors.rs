@@ -5,57 +5,72 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::Parameter;
+use super::experiment::ExperimentError;
+use super::parameters::Difference;
 use crate::ParameterError;
-use crate::boundary::WallError;
-use crate::initial::PlacementError;
-use crate::simulation::{BuildError, CheckpointError};
+use crate::simulation::CheckpointError;
 
-/// A specification that cannot be carried out.
-#[derive(Debug, Clone, PartialEq, Error)]
+/// A plan that cannot be carried out.
+///
+/// A message does not repeat its [source](std::error::Error::source): report the whole chain.
+#[derive(Debug, Error)]
 #[non_exhaustive]
-pub enum SpecificationError {
-    /// A value is out of range.
+pub enum PlanError {
+    /// A number of the protocol, or the seed, is out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// The disks do not fit.
-    #[error(transparent)]
-    Placement(#[from] PlacementError),
-    /// A wall of the container cannot be so.
-    #[error(transparent)]
-    Wall(#[from] WallError),
-    /// The text is not a specification.
+    /// The text is not a plan, or the plan cannot be a text.
     #[error("{0}")]
     Toml(String),
-    /// The base has no such parameter.
-    #[error("the base has no {parameter}")]
-    NoSuchParameter {
-        /// The parameter.
-        parameter: Parameter,
+    /// The parameters of a value are refused by the experiment.
+    #[error("the experiment cannot be{place}")]
+    Experiment {
+        /// The parameters that vary, with their values; empty for the experiment as it is given.
+        place: String,
+        /// The reason.
+        source: ExperimentError,
+    },
+    /// There is no parameter of this name.
+    #[error("there is no parameter `{parameter}` ({reason}); there are {}", known.join(", "))]
+    UnknownParameter {
+        /// The name.
+        parameter: String,
+        /// The names of the parameters that have a value.
+        known: Vec<String>,
+        /// The reason for which it is not one.
+        reason: String,
+    },
+    /// A short name stands for several parameters.
+    #[error("`{parameter}` may be any of {}", known.join(", "))]
+    Ambiguous {
+        /// The name.
+        parameter: String,
+        /// The parameters that it may be.
+        known: Vec<String>,
     },
     /// The parameter cannot change with the disks in place.
     #[error("{parameter} cannot be ramped with the disks in place; sweep it instead")]
     NotRampable {
         /// The parameter.
-        parameter: Parameter,
+        parameter: String,
     },
     /// The parameter varies in two ways at once.
     #[error("{parameter} varies twice: each parameter can be ramped or swept once")]
     VariesTwice {
         /// The parameter.
-        parameter: Parameter,
+        parameter: String,
     },
     /// There are no values.
     #[error("{parameter} has no values")]
     NoValues {
         /// The parameter.
-        parameter: Parameter,
+        parameter: String,
     },
     /// A value is infinite or NaN.
     #[error("a value of {parameter} must be finite, but is {value}")]
     NotFinite {
         /// The parameter.
-        parameter: Parameter,
+        parameter: String,
         /// The value.
         value: f64,
     },
@@ -65,7 +80,7 @@ pub enum SpecificationError {
     )]
     NotIncreasing {
         /// The parameter.
-        parameter: Parameter,
+        parameter: String,
         /// The value.
         value: f64,
         /// The one before it.
@@ -79,6 +94,16 @@ pub enum SpecificationError {
         /// The largest possible number.
         most: usize,
     },
+    /// A column or a table of the experiment has a name that is taken or cannot be one.
+    #[error("{name:?} cannot be the name of a {what}: {reason}")]
+    Name {
+        /// The name.
+        name: String,
+        /// The thing that has it: `column` or `table`.
+        what: &'static str,
+        /// The reason.
+        reason: &'static str,
+    },
 }
 
 /// A study cannot be made, opened, run or read.
@@ -87,9 +112,36 @@ pub enum SpecificationError {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum StudyError {
-    /// The specification is no good.
+    /// The plan is no good.
     #[error(transparent)]
-    Specification(#[from] SpecificationError),
+    Plan(#[from] PlanError),
+    /// The plan of a folder cannot be read as one of this experiment.
+    #[error("{} is no plan of this experiment", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        source: PlanError,
+    },
+    /// The path of the folder is empty.
+    #[error("the path of a study's folder is empty; take `.` for this folder")]
+    NoPath,
+    /// The folder holds files, and none of them is a plan: a study would mix its own with them.
+    #[error("{} holds other files ({}) and no study; choose an empty folder", path.display(), name)]
+    Occupied {
+        /// The folder.
+        path: PathBuf,
+        /// One of the files.
+        name: String,
+    },
+    /// The study has no such ramp.
+    #[error("there is no ramp {ramp}: the study has {ramps}, counted from 0")]
+    NoSuchRamp {
+        /// The index that was asked for.
+        ramp: usize,
+        /// The number of ramps.
+        ramps: usize,
+    },
     /// A file or folder cannot be read or written.
     #[error("cannot {action} {}", path.display())]
     Io {
@@ -112,19 +164,13 @@ pub enum StudyError {
         /// The folder.
         path: PathBuf,
     },
-    /// There is a study with another specification.
-    #[error("{} holds a study with another specification; choose another folder", path.display())]
+    /// There is a study with another plan.
+    #[error("{} holds a study with another plan; choose another folder: {}", path.display(), told(differences))]
     Different {
         /// The folder.
         path: PathBuf,
-    },
-    /// Another process runs the study.
-    #[error("the study in {} is being run by another process{}", path.display(), holder(*process))]
-    Locked {
-        /// The folder.
-        path: PathBuf,
-        /// The number of the process, if known.
-        process: Option<u32>,
+        /// The fields in which the plans differ.
+        differences: Vec<Difference>,
     },
     /// A file was cut or changed, or belongs elsewhere.
     #[error("{} is damaged: {reason}; run the study again to redo it", path.display())]
@@ -134,8 +180,8 @@ pub enum StudyError {
         /// The damage.
         reason: &'static str,
     },
-    /// A record is of another specification: one of the two was changed by hand.
-    #[error("{} is of another specification than that in its folder; take a new folder for a new one", path.display())]
+    /// A record is of another plan: one of the two was changed by hand.
+    #[error("{} is of another plan than that in its folder; take a new folder for a new one", path.display())]
     Foreign {
         /// The file.
         path: PathBuf,
@@ -158,7 +204,7 @@ pub enum StudyError {
         /// Index of the value in it.
         value: usize,
         /// The reason.
-        source: BuildError,
+        source: ExperimentError,
     },
     /// A state cannot be resumed.
     #[error("value {value} of ramp {ramp} cannot go on")]
@@ -187,6 +233,11 @@ impl StudyError {
     }
 }
 
-fn holder(process: Option<u32>) -> String {
-    process.map_or_else(String::new, |process| format!(", {process}"))
+/// Tells of the first differences.
+fn told(differences: &[Difference]) -> String {
+    const FIRST: usize = 5;
+    let told: Vec<String> = differences.iter().take(FIRST).map(ToString::to_string).collect();
+    let more = differences.len().saturating_sub(FIRST);
+    let more = if more > 0 { format!(", and {more} more") } else { String::new() };
+    format!("{}{more}", told.join(", "))
 }

@@ -8,21 +8,48 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::errors::StudyError;
-use crate::file::{Broken, Seal, is_temporary, write_whole};
+use crate::file::{Broken, Seal, is_temporary, unique_name, write_whole};
 
 /// Mark of a record, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal { magic: *b"GRANSTUD", version: 2 };
+const SEAL: Seal = Seal { magic: *b"GRANSTUD", version: 3 };
 
 /// Writes a file, whole or not at all.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     write_whole(path, bytes).map_err(StudyError::io("write", path))
 }
 
-/// Writes data with magic, version and checksum.
-pub(super) fn write_sealed(path: &Path, data: &impl Serialize) -> Result<(), StudyError> {
-    let contents = postcard::to_stdvec(data)
-        .map_err(|error| StudyError::Encode { path: path.to_owned(), source: Box::new(error) })?;
-    write(path, &SEAL.seal(&contents))
+/// Writes a file that is not there yet, whole or not at all; returns false if there is one already, which stays.
+///
+/// A link, unlike a rename, never takes the place of another file: of two writers one wins, also on file systems of a network.
+pub(super) fn publish(path: &Path, bytes: &[u8]) -> Result<bool, StudyError> {
+    let draft = path.with_file_name(unique_name());
+    write(&draft, bytes)?;
+    let published = match fs::hard_link(&draft, path) {
+        Ok(()) => Ok(true),
+        Err(_) if path.exists() => Ok(false),
+        // A file system without links; the lock of the folder keeps other writers away.
+        Err(_) => write(path, bytes).map(|()| true),
+    };
+    remove(&draft)?;
+    published
+}
+
+/// Writes data with magic, version and checksum; they must read back as they were written.
+pub(super) fn write_sealed<T: DeserializeOwned + Serialize>(
+    path: &Path,
+    data: &impl Serialize,
+) -> Result<(), StudyError> {
+    let cannot = |source| StudyError::Encode { path: path.to_owned(), source };
+    let contents = postcard::to_stdvec(data).map_err(|error| cannot(Box::new(error)))?;
+    let again = postcard::from_bytes::<T>(&contents).and_then(|read| postcard::to_stdvec(&read));
+    if again.is_ok_and(|again| again == contents) {
+        return write(path, &SEAL.seal(&contents));
+    }
+    Err(cannot(
+        "a sample or observer does not read back as it is written: its type must not have `#[serde(untagged)]`, \
+         `flatten`, `skip` or `skip_serializing_if`"
+            .into(),
+    ))
 }
 
 /// Reads data that [`write_sealed`] has written; `None` if there is no such file.
@@ -61,7 +88,7 @@ pub(super) fn remove(path: &Path) -> Result<(), StudyError> {
     }
 }
 
-/// Removes the temporary files that a killed process has left in a folder, and nothing else.
+/// Removes the temporary files that a killed process has left in a folder, and nothing else. The folder must be locked.
 pub(super) fn remove_temporaries(folder: &Path) -> Result<(), StudyError> {
     let cannot_read = || StudyError::io("read", folder);
     for entry in fs::read_dir(folder).map_err(cannot_read())? {

@@ -1,29 +1,40 @@
-//! Where the files of a study are.
+//! Where the files of a study are, and who may write them.
+//!
+//! Whoever writes into the folder of a study, or into that of a ramp, holds its lock; so a temporary file that is found
+//! under the lock has a writer that is dead.
 
 use std::fs;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::Specification;
 use super::errors::StudyError;
 use super::file;
+use super::lock::{self, Lock};
+use crate::file::is_temporary;
 
-/// What a stranger finds in the folder of a study.
+/// Told to a stranger in the folder of a study.
 const ABOUT: &str = "\
 A study by granular-edmd (event-driven molecular dynamics of frictional, inelastic, rotating disks).
 
-specification.toml    what was simulated: system, protocol, ramp, sweep, seed
+plan.toml             what is simulated: experiment, protocol, ramp, sweep, repeats, seed
 values.csv            a row for each value: parameters, means, standard errors, counts
 samples.csv           a row for each sample
-profiles.csv          packing fraction by height, averaged over the samples of each value
+points.csv            a row for each value, all repeats of it together
+transitions.csv       a row for each transition that a refined ramp brackets
+columns.csv           the names and units of all columns of all tables
 ramps/R/V.record      value V of ramp R: samples, counts and last state, with a checksum; read by the library
 ramps/R/V.partial     a value half done
+ramps/R/done          there once all values of ramp R have a record
+ramps/R/lock          locked while a process does ramp R
 log.jsonl             when values were finished, and the seconds that they took; not a result
-lock                  held while a process runs the study
+lock                  locked while a process makes the plan or the tables
 
-Diameter and mass of a disk are the units. Lost or damaged files come back, the same bytes, when the study is run again
-by the same version.
+Tables are written when all ramps are done, or on demand. Lost or damaged files come back, the same bytes, when the study is
+run again by the same version. Any number of processes may run it at the same time.
 ";
+
+const PLAN: &str = "plan.toml";
+const README: &str = "README.txt";
 
 /// The folder of a study.
 #[derive(Debug, Clone)]
@@ -32,23 +43,19 @@ pub(super) struct Folder {
 }
 
 impl Folder {
-    pub(super) fn new(root: &Path) -> Self {
-        Self { root: root.to_owned() }
+    pub(super) fn new(root: &Path) -> Result<Self, StudyError> {
+        if root.as_os_str().is_empty() { Err(StudyError::NoPath) } else { Ok(Self { root: root.to_owned() }) }
     }
 
     pub(super) fn root(&self) -> &Path {
         &self.root
     }
 
-    pub(super) fn file(&self, name: &str) -> PathBuf {
-        self.root.join(name)
+    pub(super) fn plan(&self) -> PathBuf {
+        self.root.join(PLAN)
     }
 
-    fn specification(&self) -> PathBuf {
-        self.file("specification.toml")
-    }
-
-    fn ramp(&self, ramp: usize) -> PathBuf {
+    pub(super) fn ramp(&self, ramp: usize) -> PathBuf {
         self.root.join("ramps").join(format!("{ramp:04}"))
     }
 
@@ -60,35 +67,105 @@ impl Folder {
         self.ramp(ramp).join(format!("{value:04}.partial"))
     }
 
+    fn done(&self, ramp: usize) -> PathBuf {
+        self.ramp(ramp).join("done")
+    }
+
     pub(super) fn holds_study(&self) -> bool {
-        self.specification().exists()
+        self.plan().exists()
     }
 
-    /// Makes the folder of a new study.
-    pub(super) fn create(&self, specification: &Specification) -> Result<(), StudyError> {
+    /// Puts a plan into the folder, which is made if it is not there; returns false if there is one already.
+    pub(super) fn create(&self, plan: &str) -> Result<bool, StudyError> {
+        self.check_free()?;
         fs::create_dir_all(&self.root).map_err(StudyError::io("create", &self.root))?;
-        file::write(&self.file("README.txt"), ABOUT.as_bytes())?;
-        file::write(&self.specification(), specification.to_toml()?.as_bytes())
-    }
-
-    pub(super) fn read_specification(&self) -> Result<Specification, StudyError> {
-        let path = self.specification();
-        let text = fs::read_to_string(&path).map_err(StudyError::io("read", &path))?;
-        Ok(Specification::from_toml(&text)?)
-    }
-
-    /// Makes the folders of all ramps, and removes the temporary files of a killed process.
-    pub(super) fn prepare(&self, ramps: usize) -> Result<(), StudyError> {
+        let _lock = Lock::take(&self.root)?;
         file::remove_temporaries(&self.root)?;
-        (0..ramps).map(|ramp| self.ramp(ramp)).try_for_each(|folder| {
-            fs::create_dir_all(&folder).map_err(StudyError::io("create", &folder))?;
-            file::remove_temporaries(&folder)
-        })
+        let is_new = file::publish(&self.plan(), plan.as_bytes())?;
+        file::publish(&self.root.join(README), ABOUT.as_bytes())?;
+        Ok(is_new)
+    }
+
+    /// Checks that there is nothing in the folder, or only what was there before a plan of ours came, or the plan.
+    fn check_free(&self) -> Result<(), StudyError> {
+        let Some(stranger) = self.stranger()? else { return Ok(()) };
+        // The plan may have come while the folder was read.
+        if self.holds_study() {
+            return Ok(());
+        }
+        Err(StudyError::Occupied { path: self.root.clone(), name: stranger })
+    }
+
+    fn stranger(&self) -> Result<Option<String>, StudyError> {
+        let cannot_read = || StudyError::io("read", &self.root);
+        let entries = match fs::read_dir(&self.root) {
+            // The attempt to make it tells why it cannot be, if it cannot.
+            Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
+                return Ok(None);
+            }
+            entries => entries.map_err(cannot_read())?,
+        };
+        for entry in entries {
+            let entry = entry.map_err(cannot_read())?;
+            let name = entry.file_name();
+            let is_lock =
+                name == lock::NAME && entry.metadata().is_ok_and(|data| data.is_file() && data.len() == 0);
+            if !is_lock && !is_temporary(&name) {
+                return Ok(Some(name.to_string_lossy().into_owned()));
+            }
+        }
+        Ok(None)
+    }
+
+    pub(super) fn read_plan(&self) -> Result<String, StudyError> {
+        fs::read_to_string(self.plan()).map_err(StudyError::io("read", &self.plan()))
+    }
+
+    /// Takes the lock of a ramp, in its folder; `None` if somebody does the ramp.
+    pub(super) fn take(&self, ramp: usize) -> Result<Option<Lock>, StudyError> {
+        let folder = self.ramp(ramp);
+        fs::create_dir_all(&folder).map_err(StudyError::io("create", &folder))?;
+        let lock = Lock::try_take(&folder)?;
+        if lock.is_some() {
+            file::remove_temporaries(&folder)?;
+        }
+        Ok(lock)
+    }
+
+    pub(super) fn is_taken(&self, ramp: usize) -> bool {
+        Lock::is_taken(&self.ramp(ramp))
+    }
+
+    pub(super) fn is_done(&self, ramp: usize) -> bool {
+        self.done(ramp).exists()
+    }
+
+    /// Says of a ramp that it is done.
+    pub(super) fn mark_done(&self, ramp: usize) -> Result<(), StudyError> {
+        let path = self.done(ramp);
+        if path.exists() { Ok(()) } else { file::write(&path, b"") }
+    }
+
+    /// Takes back that a ramp is done.
+    pub(super) fn mark_undone(&self, ramp: usize) -> Result<(), StudyError> {
+        file::remove(&self.done(ramp))
+    }
+
+    /// Writes tables, by their names.
+    pub(super) fn write_tables<'a>(
+        &self,
+        tables: impl IntoIterator<Item = (&'a str, &'a str)>,
+    ) -> Result<(), StudyError> {
+        let _lock = Lock::take(&self.root)?;
+        file::remove_temporaries(&self.root)?;
+        tables
+            .into_iter()
+            .try_for_each(|(name, text)| file::write(&self.root.join(format!("{name}.csv")), text.as_bytes()))
     }
 
     /// Adds a line to the log.
     pub(super) fn log(&self, line: &str) -> Result<(), StudyError> {
-        let path = self.file("log.jsonl");
+        let path = self.root.join("log.jsonl");
         let file = fs::OpenOptions::new().append(true).create(true).open(&path);
         file.and_then(|mut file| file.write_all(format!("{line}\n").as_bytes()))
             .map_err(StudyError::io("write", &path))

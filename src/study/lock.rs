@@ -1,56 +1,65 @@
 //! One process at a time.
 
 use std::fs::{File, TryLockError};
-use std::io::{Read, Seek, Write};
 use std::path::Path;
 
 use super::errors::StudyError;
 
-/// The right to write into a study; it ends with the process at the latest, however that ends.
+/// Name of the file that is locked, in each folder.
+pub(super) const NAME: &str = "lock";
+
+/// The right to write into a folder; it ends with the process at the latest, however that ends.
+///
+/// The file stays, and stays empty: to remove it would let two processes hold locks of two files of the same name.
 #[derive(Debug)]
 pub(super) struct Lock {
     file: File,
 }
 
 impl Lock {
-    /// Takes the lock of the study in `folder`.
-    pub(super) fn take(folder: &Path) -> Result<Self, StudyError> {
-        let path = folder.join("lock");
-        let mut options = File::options();
-        options.read(true).write(true).create(true).truncate(false);
-        let file = options.open(&path).map_err(StudyError::io("write", &path))?;
+    /// Takes the lock of a folder; `None` if somebody has it.
+    pub(super) fn try_take(folder: &Path) -> Result<Option<Self>, StudyError> {
+        let path = folder.join(NAME);
+        let file = open(&path)?;
         match file.try_lock() {
-            Ok(()) => {
-                let mut lock = Self { file };
-                lock.say(&std::process::id().to_string()).map_err(StudyError::io("write", &path))?;
-                Ok(lock)
-            }
-            Err(TryLockError::WouldBlock) => {
-                Err(StudyError::Locked { path: folder.to_owned(), process: holder(file) })
-            }
+            Ok(()) => Ok(Some(Self { file })),
+            Err(TryLockError::WouldBlock) => Ok(None),
             Err(TryLockError::Error(error)) => Err(StudyError::io("lock", &path)(error)),
         }
     }
 
-    fn say(&mut self, text: &str) -> std::io::Result<()> {
-        self.file.set_len(0)?;
-        self.file.rewind()?;
-        self.file.write_all(text.as_bytes())
+    /// Takes the lock of a folder, as soon as nobody else has it.
+    pub(super) fn take(folder: &Path) -> Result<Self, StudyError> {
+        let path = folder.join(NAME);
+        let file = open(&path)?;
+        file.lock().map_err(StudyError::io("lock", &path))?;
+        Ok(Self { file })
     }
+
+    /// Returns whether somebody has the lock of a folder; nobody has it where it cannot be told.
+    pub(super) fn is_taken(folder: &Path) -> bool {
+        let Ok(file) = File::open(folder.join(NAME)) else { return false };
+        match file.try_lock_shared() {
+            Ok(()) => {
+                let _ = file.unlock();
+                false
+            }
+            Err(TryLockError::WouldBlock) => true,
+            Err(TryLockError::Error(_)) => false,
+        }
+    }
+}
+
+fn open(path: &Path) -> Result<File, StudyError> {
+    let mut options = File::options();
+    options.read(true).write(true).create(true).truncate(false);
+    options.open(path).map_err(StudyError::io("write", path))
 }
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // Whether or not the file can be emptied, the system takes the lock back. Closing it would not do that while a
-        // process that was forked meanwhile, to start another program, has it open, too.
-        let _ = self.say("");
+        // Closing the file would not give the lock back while a process that was forked meanwhile, to start another
+        // program, has it open, too.
         let _ = self.file.unlock();
     }
-}
-
-/// Who holds the lock, as far as its file tells.
-fn holder(mut file: File) -> Option<u32> {
-    let mut text = String::new();
-    file.read_to_string(&mut text).ok()?;
-    text.trim().parse().ok()
 }

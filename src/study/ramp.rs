@@ -2,8 +2,9 @@
 
 use std::fmt;
 
-use super::Parameter;
-use super::errors::SpecificationError;
+use super::Scalar;
+use super::errors::PlanError;
+use crate::quantity::positive;
 
 /// The way through the values of a [`Ramp`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -41,29 +42,51 @@ impl fmt::Display for Leg {
 /// A parameter that changes step by step, each value from the last state of the one before: hysteresis shows.
 ///
 /// ```
-/// use granular_edmd::study::{Course, Leg, Parameter, Ramp};
-/// let ramp = Ramp::new(Parameter::Friction, vec![0.1, 0.2, 0.3], Course::UpAndDown);
+/// use granular_edmd::study::{Course, Leg, Ramp};
+/// let ramp = Ramp::new("friction", [0.1, 0.2, 0.3], Course::UpAndDown);
 /// let path: Vec<(Leg, f64)> = ramp.path().collect();
 /// assert_eq!(path[1..4], [(Leg::Up, 0.2), (Leg::Up, 0.3), (Leg::Down, 0.2)]);
 /// ```
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ramp {
-    parameter: Parameter,
+    parameter: String,
     values: Vec<f64>,
     #[serde(default)]
     course: Course,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    refine: Option<f64>,
 }
 
 impl Ramp {
-    /// A ramp through these values, which increase.
-    pub const fn new(parameter: Parameter, values: Vec<f64>, course: Course) -> Self {
-        Self { parameter, values, course }
+    /// Makes a ramp of the parameter of this name through these values, which increase.
+    pub fn new(parameter: impl Into<String>, values: impl Into<Vec<f64>>, course: Course) -> Self {
+        Self { parameter: parameter.into(), values: values.into(), course, refine: None }
     }
 
-    /// What is ramped.
-    pub const fn parameter(&self) -> Parameter {
-        self.parameter
+    /// Returns the same ramp with each transition between two of its values bisected until it is known to this width.
+    ///
+    /// Transitions are changes of [`Experiment::state`](super::Experiment::state), of which two neighbours hold one. A ramp up
+    /// brackets them from below, one down from above. The values of a bisection come after those of the ramp, each from the
+    /// last state on the near side.
+    pub fn with_refinement(self, width: f64) -> Self {
+        Self { refine: Some(width), ..self }
+    }
+
+    /// Returns the width to which transitions are bisected.
+    pub const fn refine(&self) -> Option<f64> {
+        self.refine
+    }
+
+    /// Returns whether a value is between the first and the last.
+    pub(super) fn spans(&self, at: f64) -> bool {
+        self.values.first().is_some_and(|low| *low <= at)
+            && self.values.last().is_some_and(|high| at <= *high)
+    }
+
+    /// Returns the name of the parameter.
+    pub fn parameter(&self) -> &str {
+        &self.parameter
     }
 
     /// Its values in the order in which they come.
@@ -97,17 +120,21 @@ impl Ramp {
         }
     }
 
-    pub(super) fn check(&self) -> Result<(), SpecificationError> {
-        if !self.parameter.can_be_ramped() {
-            return Err(SpecificationError::NotRampable { parameter: self.parameter });
+    pub(super) fn check(&self) -> Result<(), PlanError> {
+        let parameter = || self.parameter.clone();
+        if self.values.is_empty() {
+            return Err(PlanError::NoValues { parameter: parameter() });
         }
-        check_values(self.parameter, &self.values)?;
+        if let Some(&value) = self.values.iter().find(|value| !value.is_finite()) {
+            return Err(PlanError::NotFinite { parameter: parameter(), value });
+        }
+        if let Some(width) = self.refine {
+            positive("width of a transition", width)?;
+        }
         match self.values.windows(2).find(|pair| pair[0] >= pair[1]) {
-            Some(pair) => Err(SpecificationError::NotIncreasing {
-                parameter: self.parameter,
-                value: pair[1],
-                before: pair[0],
-            }),
+            Some(pair) => {
+                Err(PlanError::NotIncreasing { parameter: parameter(), value: pair[1], before: pair[0] })
+            }
             None => Ok(()),
         }
     }
@@ -116,43 +143,46 @@ impl Ramp {
 /// A parameter that differs between ramps: each of its values starts afresh, independent of all others.
 ///
 /// ```
-/// use granular_edmd::study::{Axis, Parameter};
-/// assert_eq!(Axis::new(Parameter::Inelasticity, vec![0.0, 0.01]).values().len(), 2);
+/// use granular_edmd::study::Axis;
+/// assert_eq!(Axis::new("inelasticity", [0.0, 0.01]).values().len(), 2);
+/// assert_eq!(Axis::new("sides", ["hard", "periodic"]).parameter(), "sides");
 /// ```
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Axis {
-    parameter: Parameter,
-    values: Vec<f64>,
+    parameter: String,
+    values: Vec<Scalar>,
 }
 
 impl Axis {
-    /// A parameter and its values, in any order.
-    pub const fn new(parameter: Parameter, values: Vec<f64>) -> Self {
-        Self { parameter, values }
+    /// Makes an axis of the parameter of this name with these values, in any order.
+    pub fn new(parameter: impl Into<String>, values: impl IntoIterator<Item: Into<Scalar>>) -> Self {
+        Self { parameter: parameter.into(), values: values.into_iter().map(Into::into).collect() }
     }
 
-    /// What differs.
-    pub const fn parameter(&self) -> Parameter {
-        self.parameter
+    /// Returns the name of the parameter.
+    pub fn parameter(&self) -> &str {
+        &self.parameter
     }
 
-    /// Its values.
-    pub fn values(&self) -> &[f64] {
+    /// Returns its values.
+    pub fn values(&self) -> &[Scalar] {
         &self.values
     }
 
-    pub(super) fn check(&self) -> Result<(), SpecificationError> {
-        check_values(self.parameter, &self.values)
+    /// Takes each value as the parameter does, which may know another kind of numbers.
+    pub(super) fn set_values(&mut self, values: Vec<Scalar>) {
+        self.values = values;
     }
-}
 
-fn check_values(parameter: Parameter, values: &[f64]) -> Result<(), SpecificationError> {
-    if values.is_empty() {
-        return Err(SpecificationError::NoValues { parameter });
-    }
-    match values.iter().find(|value| !value.is_finite()) {
-        Some(&value) => Err(SpecificationError::NotFinite { parameter, value }),
-        None => Ok(()),
+    pub(super) fn check(&self) -> Result<(), PlanError> {
+        let parameter = || self.parameter.clone();
+        if self.values.is_empty() {
+            return Err(PlanError::NoValues { parameter: parameter() });
+        }
+        match self.values.iter().filter_map(Scalar::number).find(|value| !value.is_finite()) {
+            Some(value) => Err(PlanError::NotFinite { parameter: parameter(), value }),
+            None => Ok(()),
+        }
     }
 }

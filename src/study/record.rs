@@ -1,13 +1,11 @@
 //! What is kept of a finished value.
 
-use super::{Leg, Sample, Specification, System};
-use crate::analysis::thermal_noise;
-use crate::observable::{ConvectionOrder, DenseLayer};
+use std::fmt;
+
+use super::refinement::Seen;
+use super::{Experiment, Leg, Plan, Scalar, column::Column, parameters};
 use crate::simulation::{Checkpoint, Counters};
 use crate::statistics::{BlockedMean, Estimate};
-
-/// Largest number of bins of a profile: of one diameter each.
-pub(super) const MOST_BINS: usize = 65_536;
 
 /// Rounding of a time that was run to, relative to it.
 const TIME_ROUNDING: f64 = 1e-12;
@@ -19,8 +17,13 @@ const TIME_ROUNDING: f64 = 1e-12;
 pub enum Outcome {
     /// All samples were taken.
     Completed,
-    /// Events piled up in vanishing time, as in an inelastic collapse: there are only the samples until then.
-    /// The next value of the ramp starts from the state in which this one did.
+    /// The observer ended the value: there are only the samples until then. The next value of the ramp starts from there.
+    Stopped {
+        /// When, since the start of the ramp.
+        time: f64,
+    },
+    /// Events piled up in vanishing time, as in an inelastic collapse: there are only the samples until then. The next
+    /// value of the ramp starts from the state in which this one did.
     Stalled {
         /// When, since the start of the ramp.
         time: f64,
@@ -37,10 +40,11 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// A word for it.
+    /// Returns a word for it.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Completed => "completed",
+            Self::Stopped { .. } => "stopped",
             Self::Stalled { .. } => "stalled",
             Self::Failed { .. } => "failed",
         }
@@ -48,27 +52,40 @@ impl Outcome {
 }
 
 /// A finished value: its parameters, samples, counts and last state.
+///
+/// Samples, observer and times are those of the measured part, after the value has settled.
+pub struct Record<E: Experiment> {
+    pub(super) experiment: E,
+    pub(super) contents: Contents<E::Sample, E::Observer>,
+}
+
+/// A record as in its file; the experiment follows from the plan.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Record {
+pub(super) struct Contents<S, O> {
     pub(super) origin: Origin,
     pub(super) leg: Option<Leg>,
-    pub(super) system: System,
+    /// Value of the ramped parameter.
+    pub(super) at: Option<f64>,
     pub(super) outcome: Outcome,
-    /// Cycles since the start of the ramp.
-    pub(super) cycles: u64,
-    pub(super) samples: Vec<Sample>,
-    /// Packing fraction by height, in bins of one diameter.
-    pub(super) profile: Vec<f64>,
+    pub(super) end: Cycles,
+    pub(super) measured: Measured<S, O>,
     pub(super) counters: Counters,
     pub(super) state: Checkpoint,
+}
+
+/// What was measured of a value.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(super) struct Measured<S, O> {
+    pub(super) times: Vec<f64>,
+    pub(super) samples: Vec<S>,
+    pub(super) observer: O,
 }
 
 /// Which study and place a file is of.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Origin {
-    /// Hash of the specification.
+    /// Hash of the plan.
     pub(super) study: [u8; 32],
     /// Version of this crate.
     pub(super) version: String,
@@ -77,111 +94,175 @@ pub(super) struct Origin {
     pub(super) seed: u64,
 }
 
-impl Record {
-    /// That it is what its place in this study can hold; why not, else.
-    pub(super) fn check(&self, study: &Specification) -> Result<(), &'static str> {
-        let Origin { ramp, value, .. } = self.origin;
-        let protocol = study.protocol();
-        let most = protocol.cycles().saturating_mul(value as u64 + 1);
-        let expected = protocol.samples() == self.samples.len() as u64;
-        let is_short = self.outcome != Outcome::Completed && protocol.samples() > self.samples.len() as u64;
-        check(self.cycles <= most, "it is longer than the protocol")?;
-        check(expected || is_short, "its samples are not as many as in the protocol")?;
-        check(study.system(ramp, value).as_ref() == Ok(&self.system), "its system is of another value")?;
-        check(study.leg(value) == self.leg, "it is on another way through the ramp")?;
-        check_state(&self.state, self.cycles, &self.system)?;
-        check_samples(&self.samples, &self.profile)
+/// A time, counted in whole cycles since one that was a time of its own: products of whole numbers do not drift.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(super) struct Cycles {
+    /// Absolute time from which cycles are counted.
+    pub(super) since: f64,
+    pub(super) count: u64,
+}
+
+impl Cycles {
+    pub(super) const START: Self = Self { since: 0.0, count: 0 };
+
+    /// Returns the absolute time of so many more cycles of this length.
+    pub(super) fn time(&self, more: f64, cycle: f64) -> f64 {
+        self.since + (self.count as f64 + more) * cycle
+    }
+}
+
+impl<E: Experiment> Record<E> {
+    /// Checks that it is what its place in this study can hold; else says why not.
+    pub(super) fn check(&self, plan: &Plan<E>) -> Result<(), &'static str> {
+        let Contents { origin, leg, at, outcome, end, measured, state, .. } = &self.contents;
+        let protocol = plan.protocol();
+        let (most, samples) =
+            (protocol.cycles().saturating_mul(origin.value as u64 + 1), measured.samples.len());
+        let is_short = *outcome != Outcome::Completed && protocol.samples() > samples as u64;
+        check(end.count <= most, "it is longer than the protocol")?;
+        let is_full = protocol.samples() == samples as u64;
+        check(is_full || is_short, "its samples are not as many as in the protocol")?;
+        let is_placed = match plan.step(origin.value) {
+            Some((way, value)) => *leg == Some(way) && *at == Some(value),
+            None => plan.ramp().is_some_and(|ramp| ramp.refine().is_some()) || at.is_none(),
+        };
+        check(is_placed, "it is on another way through the ramp")?;
+        check_state(state, end.time(0.0, self.experiment.cycle()))?;
+        measured.check(&self.experiment, state)
     }
 
-    /// Index of its ramp.
+    /// Returns the index of its ramp.
     pub const fn ramp(&self) -> usize {
-        self.origin.ramp
+        self.contents.origin.ramp
     }
 
-    /// Its index in the ramp.
+    /// Returns its index in the ramp.
     pub const fn value(&self) -> usize {
-        self.origin.value
+        self.contents.origin.value
     }
 
-    /// The seed of its ramp.
+    /// Returns the seed of its ramp.
     pub const fn seed(&self) -> u64 {
-        self.origin.seed
+        self.contents.origin.seed
     }
 
-    /// The version of this crate that made it.
+    /// Returns the version of this crate that made it.
     pub fn version(&self) -> &str {
-        &self.origin.version
+        &self.contents.origin.version
     }
 
-    /// The way on which it was come to; `None` without a ramp.
+    /// Returns the way on which it was come to; `None` without a ramp.
     pub const fn leg(&self) -> Option<Leg> {
-        self.leg
+        self.contents.leg
     }
 
-    /// The system, with the parameters of this value.
-    pub const fn system(&self) -> &System {
-        &self.system
+    /// Returns the value of the ramped parameter; `None` without a ramp.
+    pub const fn at(&self) -> Option<f64> {
+        self.contents.at
     }
 
-    /// How it ended.
+    /// Returns the record as the way through the ramp depends on it.
+    pub(super) fn seen(&self) -> Seen {
+        Seen { leg: self.leg(), at: self.at(), state: E::state(self) }
+    }
+
+    /// Returns the experiment, with the parameters of this value.
+    pub const fn experiment(&self) -> &E {
+        &self.experiment
+    }
+
+    /// Returns a parameter of the experiment by its name, as in a [`Plan`]; `None` if it has none of this name.
+    pub fn parameter(&self, name: &str) -> Option<Scalar> {
+        let tree = parameters::tree(&self.experiment).ok()?;
+        let name = parameters::whole_name(&tree, name).ok()?;
+        parameters::get(&tree, &name).and_then(Scalar::of_toml)
+    }
+
+    /// Returns how it ended.
     pub const fn outcome(&self) -> &Outcome {
-        &self.outcome
+        &self.contents.outcome
     }
 
-    /// Its samples.
-    pub fn samples(&self) -> &[Sample] {
-        &self.samples
+    /// Returns its samples.
+    pub fn samples(&self) -> &[E::Sample] {
+        &self.contents.measured.samples
     }
 
-    /// What happened in it, settling included; the largest overlap is that since the start of the ramp.
+    /// Returns the times of its samples, since the start of the ramp.
+    pub fn times(&self) -> &[f64] {
+        &self.contents.measured.times
+    }
+
+    /// Returns the observer as it was at the end.
+    pub const fn observer(&self) -> &E::Observer {
+        &self.contents.measured.observer
+    }
+
+    /// Returns what happened in it, settling included; the largest overlap is that since the start of the ramp.
     pub const fn counters(&self) -> &Counters {
-        &self.counters
+        &self.contents.counters
     }
 
-    /// The state at its end.
+    /// Returns the state at its end.
     pub const fn state(&self) -> &Checkpoint {
-        &self.state
-    }
-
-    /// `$(\Psi_1, \Psi_2)$` of each sample.
-    pub fn order(&self) -> Vec<ConvectionOrder> {
-        let order = |sample: &Sample| ConvectionOrder::new(sample.one_roll, sample.two_rolls);
-        self.samples.iter().map(order).collect()
-    }
-
-    /// Packing fraction by height, averaged over the samples: heights of the middles of bins of one diameter,
-    /// and fractions.
-    pub fn profile(&self) -> impl Iterator<Item = (f64, f64)> {
-        self.profile.iter().enumerate().map(|(bin, &fraction)| (bin as f64 + 0.5, fraction))
-    }
-
-    /// The densest layer of the profile; `None` without samples.
-    pub fn densest_layer(&self) -> Option<DenseLayer> {
-        DenseLayer::among(self.profile())
+        &self.contents.state
     }
 
     /// Returns the mean of a quantity over the samples, with an error that knows that they are correlated.
     ///
     /// NaN is the mean of no samples, and the error of fewer than two.
-    pub fn mean(&self, quantity: impl Fn(&Sample) -> f64) -> Estimate {
-        self.samples.iter().map(quantity).collect::<BlockedMean>().estimate()
+    pub fn mean(&self, quantity: impl Fn(&E::Sample) -> f64) -> Estimate {
+        self.samples().iter().map(quantity).collect::<BlockedMean>().estimate()
     }
 
-    /// Returns the mean energy change in a collision of two disks, each collision counting alike.
-    pub fn energy_change(&self) -> Estimate {
-        let collisions: f64 = self.samples.iter().map(|sample| sample.collisions as f64).sum();
-        let total: f64 = self.samples.iter().map(|s| s.collisions as f64 * s.energy_change).sum();
-        let mean = total / collisions;
-        let per_sample = collisions / self.samples.len() as f64;
-        // The error of a ratio is that of the mean residual, over the mean number of collisions.
-        self.mean(|s| s.collisions as f64 * (s.energy_change - mean) / per_sample).about(mean)
+    /// Returns the mean of the column of this name; `None` if there is none, or none that has an error.
+    pub fn estimate(&self, column: &str) -> Option<Estimate> {
+        let columns = E::columns();
+        columns
+            .iter()
+            .filter(|known| known.name() == column)
+            .find_map(|known: &Column<E>| known.estimate(self))
     }
+}
 
-    /// Standard deviation of `$\Psi_1$` and `$\Psi_2$` in a gas at rest of this temperature,
-    /// `$\sqrt{T_y/2N}$`.
-    pub fn thermal_noise(&self) -> f64 {
-        let temperature = self.mean(|sample| sample.vertical_temperature).mean();
-        thermal_noise(temperature, 1.0, self.system.disks()).unwrap_or(f64::NAN)
+impl<E: Experiment + Clone> Clone for Record<E>
+where
+    E::Sample: Clone,
+    E::Observer: Clone,
+{
+    fn clone(&self) -> Self {
+        Self { experiment: self.experiment.clone(), contents: self.contents.clone() }
+    }
+}
+
+impl<E: Experiment + PartialEq> PartialEq for Record<E>
+where
+    E::Sample: PartialEq,
+    E::Observer: PartialEq,
+{
+    fn eq(&self, other: &Self) -> bool {
+        self.experiment == other.experiment && self.contents == other.contents
+    }
+}
+
+impl<E: Experiment> fmt::Debug for Record<E> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut debug = formatter.debug_struct("Record");
+        debug.field("origin", &self.contents.origin).field("outcome", &self.contents.outcome);
+        debug.field("samples", &self.samples().len()).finish_non_exhaustive()
+    }
+}
+
+impl<S, O> Measured<S, O> {
+    /// Checks that it can have been measured.
+    pub(super) fn check<E>(&self, experiment: &E, state: &Checkpoint) -> Result<(), &'static str>
+    where
+        E: Experiment<Sample = S, Observer = O>,
+    {
+        check(self.times.len() == self.samples.len(), "its times are not as many as its samples")?;
+        check(self.times.iter().all(|time| time.is_finite()), "a time is not finite")?;
+        check(self.times.is_sorted(), "its times are out of order")?;
+        experiment.check_measured(&self.samples, &self.observer, state)
     }
 }
 
@@ -189,16 +270,7 @@ pub(super) fn check(valid: bool, reason: &'static str) -> Result<(), &'static st
     if valid { Ok(()) } else { Err(reason) }
 }
 
-/// That a state is of the time so many cycles after the start of its ramp.
-pub(super) fn check_state(state: &Checkpoint, cycles: u64, system: &System) -> Result<(), &'static str> {
-    let time = cycles as f64 * system.cycle();
+/// Checks that a state is of this time.
+pub(super) fn check_state(state: &Checkpoint, time: f64) -> Result<(), &'static str> {
     check((state.time() - time).abs() <= TIME_ROUNDING * time, "its state is of another time")
-}
-
-/// That what was measured can be.
-pub(super) fn check_samples(samples: &[Sample], profile: &[f64]) -> Result<(), &'static str> {
-    check(samples.iter().all(Sample::is_finite), "a sample is not finite")?;
-    let is_fraction = |fraction: &f64| fraction.is_finite() && *fraction >= 0.0;
-    check(profile.iter().all(is_fraction), "a packing fraction is negative or not finite")?;
-    check(profile.len() <= MOST_BINS, "its profile is higher than any")
 }

@@ -249,22 +249,22 @@ fn more_disks_than_memory_holds_are_refused_at_once() {
 #[test]
 #[cfg(feature = "serde")]
 fn plans_of_any_numbers_are_taken_or_refused() {
-    use granular_edmd::study::{Axis, Base, Parameter, Protocol, Specification, System};
+    use granular_edmd::study::vibrated_box::{Base, VibratedBox};
+    use granular_edmd::study::{Axis, Plan, Protocol};
     let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 3.0 };
     let names =
         ["friction", "dynamic_friction", "inelasticity", "tangential_inelasticity", "gravity", "amplitude"];
     let more = ["angular_frequency", "temperature", "contact_duration", "width", "height"];
     for (name, value) in names.into_iter().chain(more).flat_map(|name| NUMBERS.map(|value| (name, value))) {
-        let parameter: Parameter = serde_json::from_str(&format!("\"{name}\"")).unwrap();
-        let plan = Specification::new(System::new(2, 9.0, base), Protocol::new(1, 1, 1), 1).unwrap();
-        let Ok(plan) = plan.with_axis(Axis::new(parameter, vec![value])) else { continue };
-        assert_eq!(Specification::from_toml(&plan.to_toml().unwrap()).unwrap(), plan, "{name} {value}");
+        let plan = Plan::new(VibratedBox::new(2, 9.0, base), Protocol::new(1, 1, 1), 1).unwrap();
+        let Ok(plan) = plan.with_axis(Axis::new(name, [value])) else { continue };
+        assert_eq!(Plan::from_toml(&plan.to_toml().unwrap()).unwrap(), plan, "{name} {value}");
     }
     for [settle, samples, every] in
         [[0, 0, 0], [1, 1, 0], [0, 1, 1], [u64::MAX; 3], [1, u64::MAX, 1], [0, 1, u64::MAX]]
     {
         let protocol = Protocol::new(settle, samples, every);
-        let plan = Specification::new(System::new(2, 9.0, base), protocol, 1);
+        let plan = Plan::new(VibratedBox::new(2, 9.0, base), protocol, 1);
         assert_eq!(plan.is_ok(), (settle, samples, every) == (0, 1, 1), "{protocol:?}");
         assert!(protocol.cycles() >= settle);
     }

@@ -9,7 +9,8 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use granular_edmd::simulation::Checkpoint;
-use granular_edmd::study::{Axis, Base, Control, Parameter, Protocol, Specification, Study, System};
+use granular_edmd::study::vibrated_box::{Base, VibratedBox};
+use granular_edmd::study::{Axis, Control, Plan, Protocol, Study};
 
 use crate::limits::{Limits, in_child};
 use crate::report::report;
@@ -18,11 +19,11 @@ use crate::specimens::{Scratch, checkpoint};
 const FOLDER: &str = "GRANULAR_EDMD_HOSTILE_FOLDER";
 
 /// Three ramps of one value, with records of some kilobytes.
-fn specification() -> Specification {
+fn plan() -> Plan<VibratedBox> {
     let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
-    let system = System::new(60, 12.0, base).with_height(20.0).with_contact_duration(1e-3);
-    let axis = Axis::new(Parameter::Friction, vec![0.1, 0.2, 0.3]);
-    Specification::new(system, Protocol::new(10, 20, 2), 5).unwrap().with_axis(axis).unwrap()
+    let experiment = VibratedBox::new(60, 12.0, base).with_height(20.0).with_contact_duration(1e-3);
+    let axis = Axis::new("friction", [0.1, 0.2, 0.3]);
+    Plan::new(experiment, Protocol::new(10, 20, 2), 5).unwrap().with_axis(axis).unwrap()
 }
 
 /// All files of a study but its log, which has the times.
@@ -42,14 +43,14 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 
 fn expected(name: &str) -> BTreeMap<PathBuf, Vec<u8>> {
     let scratch = Scratch::new(name);
-    let study = Study::create(&scratch.0, &specification()).unwrap();
+    let study = Study::create(&scratch.0, &plan()).unwrap();
     assert!(study.run(&Control::default()).unwrap().is_complete());
     contents(&scratch.0)
 }
 
 /// Runs the study in a folder, saving at every step.
 fn run(folder: &Path) -> Result<bool, String> {
-    let study = Study::open_or_create(folder, &specification()).map_err(|error| report(&error))?;
+    let study = Study::open_or_create(folder, &plan()).map_err(|error| report(&error))?;
     let control = Control::default().with_save_interval(Duration::ZERO);
     study.run(&control).map(|summary| summary.is_complete()).map_err(|error| report(&error))
 }
@@ -165,7 +166,7 @@ fn a_disk_that_turns_read_only_keeps_what_it_has() {
     disk.remount("ro");
     let error = run(&folder).unwrap_err();
     assert!(error.starts_with("cannot write") && error.contains("Read-only"), "{error}");
-    assert_eq!(Study::open(&folder).unwrap().records().map(Result::unwrap).count(), 2);
+    assert_eq!(Study::<VibratedBox>::open(&folder).unwrap().records().map(Result::unwrap).count(), 2);
     assert!(report(&new.write(&path).unwrap_err()).contains("Read-only"));
     assert_eq!(Checkpoint::read(&path).unwrap(), old);
     disk.remount("rw");

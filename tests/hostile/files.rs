@@ -3,11 +3,12 @@
 use std::fs;
 
 use granular_edmd::simulation::{Checkpoint, CheckpointError};
-use granular_edmd::study::{Specification, StudyError};
+use granular_edmd::study::vibrated_box::VibratedBox;
+use granular_edmd::study::{Plan, Study, StudyError};
 use proptest::prelude::*;
 
 use crate::cases::config;
-use crate::specimens::{CONTENTS_AT, Scratch, VERSION_AT, checkpoint, done_study, sealed, specification};
+use crate::specimens::{CONTENTS_AT, Scratch, VERSION_AT, checkpoint, done_study, plan, sealed};
 
 #[test]
 fn a_sealed_file_is_resealed_as_the_library_does() {
@@ -79,9 +80,9 @@ fn files_that_cannot_be_read_are_errors() {
     }
     let error = checkpoint().write(scratch.0.join("none/file")).unwrap_err();
     assert!(matches!(error, CheckpointError::Io { .. }), "{error}");
-    fs::write(scratch.0.join("specification.toml"), [0xff, 0xfe, 0]).unwrap();
-    let error = granular_edmd::study::Study::open(&scratch.0).unwrap_err().to_string();
-    assert!(error.contains("specification.toml"), "{error}");
+    fs::write(scratch.0.join("plan.toml"), [0xff, 0xfe, 0]).unwrap();
+    let error = Study::<VibratedBox>::open(&scratch.0).unwrap_err().to_string();
+    assert!(error.contains("plan.toml"), "{error}");
 }
 
 /// A change of a text.
@@ -163,9 +164,9 @@ proptest! {
 
     #[test]
     fn any_plan_is_read_or_refused(edits in prop::collection::vec(edit(), 1..6)) {
-        let text = edited(&specification().to_toml().unwrap(), &edits);
-        if let Ok(plan) = Specification::from_toml(&text) {
-            prop_assert_eq!(Specification::from_toml(&plan.to_toml().unwrap()).unwrap(), plan);
+        let text = edited(&plan().to_toml().unwrap(), &edits);
+        if let Ok(plan) = Plan::<VibratedBox>::from_toml(&text) {
+            prop_assert_eq!(Plan::from_toml(&plan.to_toml().unwrap()).unwrap(), plan);
         }
     }
 }

@@ -14,7 +14,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use granular_edmd::Disk;
 use granular_edmd::simulation::Checkpoint;
-use granular_edmd::study::{Control, Sample, Study};
+use granular_edmd::study::vibrated_box::{Convection, Sample, VibratedBox};
+use granular_edmd::study::{Control, Study};
 
 use crate::forged_systems::{Run, SYSTEMS, System};
 use crate::limits::{Limits, in_child};
@@ -211,7 +212,7 @@ fn forged_records() {
         let _ = (record.densest_layer(), record.profile().count(), record.state().time());
         let _ = resume(record.state());
         // All values have records: this reads them and writes tables.
-        let _ = Study::open(&scratch.0).unwrap().run(&Control::default());
+        let _ = Study::<VibratedBox>::open(&scratch.0).unwrap().run(&Control::default());
     });
 }
 

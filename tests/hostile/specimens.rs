@@ -8,9 +8,9 @@ use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::{ContactDuration, Frictional};
 use granular_edmd::scheduler::LinearScan;
 use granular_edmd::simulation::{Checkpoint, CheckpointError};
+use granular_edmd::study::vibrated_box::{Base, VibratedBox};
 use granular_edmd::study::{
-    Base, Control, Course, Parameter, Progress, Protocol, Ramp, Specification, Study, StudyError, Summary,
-    System as StudySystem,
+    Control, Course, Experiment, Plan, Progress, Protocol, Ramp, Study, StudyError, Summary,
 };
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{Simulation, initial};
@@ -52,11 +52,11 @@ pub(crate) fn sealed(like: &[u8], contents: &[u8]) -> Vec<u8> {
 }
 
 /// A study of two values.
-pub(crate) fn specification() -> Specification {
+pub(crate) fn plan() -> Plan<VibratedBox> {
     let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
-    let system = StudySystem::new(3, 4.0, base).with_height(3.0).with_contact_duration(1e-3);
-    let ramp = Ramp::new(Parameter::Friction, vec![0.1, 0.2], Course::Up);
-    Specification::new(system, Protocol::new(2, 3, 1), 5).unwrap().with_ramp(ramp).unwrap()
+    let experiment = VibratedBox::new(3, 4.0, base).with_height(3.0).with_contact_duration(1e-3);
+    let ramp = Ramp::new("friction", [0.1, 0.2], Course::Up);
+    Plan::new(experiment, Protocol::new(2, 3, 1), 5).unwrap().with_ramp(ramp).unwrap()
 }
 
 /// A folder of a test's own, removed with it.
@@ -79,24 +79,24 @@ impl Drop for Scratch {
 }
 
 /// The small study, stopped after so many steps.
-pub(crate) fn stopped_study(name: &str, steps: u64) -> (Scratch, Study) {
+pub(crate) fn stopped_study(name: &str, steps: u64) -> (Scratch, Study<VibratedBox>) {
     let scratch = Scratch::new(name);
-    let study = Study::create(&scratch.0, &specification()).unwrap();
+    let study = Study::create(&scratch.0, &plan()).unwrap();
     run_steps(&study, steps).unwrap();
     (scratch, study)
 }
 
 /// Runs a study until it has done so many steps in all.
-pub(crate) fn run_steps(study: &Study, steps: u64) -> Result<Summary, StudyError> {
+pub(crate) fn run_steps<E: Experiment>(study: &Study<E>, steps: u64) -> Result<Summary, StudyError> {
     let stop = AtomicBool::new(false);
     let progress = |progress: &Progress| stop.store(progress.done >= steps, Ordering::Relaxed);
     study.run(&Control::default().with_progress(&progress).with_interrupt(&stop))
 }
 
 /// The small study, done.
-pub(crate) fn done_study(name: &str) -> (Scratch, Study) {
+pub(crate) fn done_study(name: &str) -> (Scratch, Study<VibratedBox>) {
     let scratch = Scratch::new(name);
-    let study = Study::create(&scratch.0, &specification()).unwrap();
+    let study = Study::create(&scratch.0, &plan()).unwrap();
     assert!(study.run(&Control::default()).unwrap().is_complete());
     (scratch, study)
 }

@@ -13,14 +13,15 @@ use granular_edmd::observable::{
 };
 use granular_edmd::simulation::Checkpoint;
 use granular_edmd::statistics::BlockedMean;
-use granular_edmd::study::{Axis, Base, Course, Parameter, Protocol, Ramp, Record, Specification, System};
+use granular_edmd::study::vibrated_box::{Base, Measurement, Sample, VibratedBox};
+use granular_edmd::study::{Axis, Course, Outcome, Plan, Protocol, Ramp};
 use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
 use granular_edmd::{Disk, initial};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
-use crate::specimens::{checkpoint, container, done_study, resume, specification};
+use crate::specimens::{checkpoint, container, done_study, plan, resume};
 
 /// Gives each object of a value a field too many, in turn.
 fn with_intruders(value: &Value) -> Vec<Value> {
@@ -134,24 +135,24 @@ fn measurements_with_a_field_too_many_are_refused() {
 
 #[test]
 fn plans_and_records_with_a_field_too_many_are_refused() {
-    refuses(&specification());
-    refuses(&Ramp::new(Parameter::Friction, vec![0.1], Course::Down));
-    refuses(&Axis::new(Parameter::Friction, vec![0.1]));
+    refuses(&plan());
+    refuses(&Ramp::new("friction", [0.1], Course::Down));
+    refuses(&Axis::new("friction", [0.1]));
     for base in [
         Base::BiParabolic { amplitude: 0.1, angular_frequency: 1.0 },
         Base::Sinusoidal { amplitude: 0.1, angular_frequency: 1.0 },
         Base::Thermal { temperature: 1.0, slip: true },
     ] {
-        let system = System::new(3, 4.0, base).with_height(3.0).with_contact_duration(1e-3);
-        refuses(&Specification::new(system, Protocol::new(2, 3, 1), 5).unwrap());
+        let experiment = VibratedBox::new(3, 4.0, base).with_height(3.0).with_contact_duration(1e-3);
+        refuses(&Plan::new(experiment, Protocol::new(2, 3, 1), 5).unwrap());
     }
     let (_scratch, study) = done_study("intruder");
-    // Without its plan, tried above, and what is of the engine: JSON has no infinity.
-    let mut record = serde_json::to_value(study.record(0, 1).unwrap().unwrap()).unwrap();
-    for part in ["system", "state", "counters"] {
-        record.as_object_mut().unwrap().remove(part);
-    }
-    refuses_intruders::<Record>(&record);
+    let record = study.record(0, 1).unwrap().unwrap();
+    refuses::<Sample>(&record.samples()[0]);
+    let mut measurement = serde_json::to_value(record.observer()).unwrap();
+    measurement["intruder"] = json!(1);
+    assert!(serde_json::from_value::<Measurement>(measurement).unwrap_err().to_string().contains("intruder"));
+    refuses(&Outcome::Stopped { time: 1.0 });
     // A checkpoint is bytes in any format, so that nothing gets past its version and checksum.
     let mut state = serde_json::to_value(checkpoint()).unwrap();
     state.as_array_mut().unwrap().push(json!(1));
@@ -162,11 +163,11 @@ fn plans_and_records_with_a_field_too_many_are_refused() {
 /// The same in TOML, at each place of a plan.
 #[test]
 fn a_plan_in_toml_with_a_field_too_many_is_refused() {
-    let text = specification().to_toml().unwrap();
+    let text = plan().to_toml().unwrap();
     let lines: Vec<&str> = text.lines().collect();
     for at in 0..=lines.len() {
         let changed = [&lines[..at], &["intruder = 1"], &lines[at..]].concat().join("\n");
-        let error = Specification::from_toml(&changed).unwrap_err().to_string();
+        let error = Plan::<VibratedBox>::from_toml(&changed).unwrap_err().to_string();
         assert!(error.contains("intruder"), "{error}");
     }
 }
@@ -174,17 +175,17 @@ fn a_plan_in_toml_with_a_field_too_many_is_refused() {
 /// Numbers deep in each other are refused; so is a plan that is too large, at once.
 #[test]
 fn plans_that_are_too_deep_or_too_long_are_refused_at_once() {
-    let text = specification().to_toml().unwrap();
+    let text = plan().to_toml().unwrap();
     let deep = [text.as_str(), "\nsweep = ", &"[".repeat(100_000)].concat();
-    assert!(Specification::from_toml(&deep).is_err());
+    assert!(Plan::<VibratedBox>::from_toml(&deep).is_err());
     let count = 1_000_001;
     let values: Vec<f64> = (0..count).map(f64::from).collect();
-    let ramp = Ramp::new(Parameter::Gravity, values, Course::Up);
-    let error = specification().with_ramp(ramp).unwrap_err().to_string();
+    let ramp = Ramp::new("gravity", values, Course::Up);
+    let error = plan().with_ramp(ramp).unwrap_err().to_string();
     assert!(error.contains("1000001"), "{error}");
     let values: Vec<f64> = (0..200_000).map(f64::from).collect();
-    let ramp = Ramp::new(Parameter::Gravity, values, Course::UpAndDown);
-    assert_eq!(specification().with_ramp(ramp).unwrap().values(), 399_999, "in time that grows with it only");
+    let ramp = Ramp::new("gravity", values, Course::UpAndDown);
+    assert_eq!(plan().with_ramp(ramp).unwrap().values(), 399_999, "in time that grows with it only");
     let crowd = initial::lattice(&container(), usize::MAX, 0.5).unwrap_err().to_string();
     assert!(crowd.contains("number of disks"), "{crowd}");
 }

@@ -1,13 +1,12 @@
 //! What is below the disks, and at their sides.
 
-use super::Parameter;
-use super::errors::SpecificationError;
 use crate::boundary::{Container, Thermal, Wall};
+use crate::study::ExperimentError;
 use crate::wall::{BiParabolic, Sinusoidal, WallMotion};
 
 /// The base of the box: what gives the disks their energy.
 ///
-/// In a study file: `base.bi_parabolic = { amplitude = 0.1, angular_frequency = 10.0 }` or
+/// In a plan: `base.bi_parabolic = { amplitude = 0.1, angular_frequency = 10.0 }` or
 /// `base.thermal = { temperature = 1.0 }`.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -52,39 +51,6 @@ pub enum Sides {
 }
 
 impl Base {
-    pub(super) const fn get(&self, parameter: Parameter) -> Option<f64> {
-        match (self, parameter) {
-            (
-                Self::BiParabolic { amplitude, .. } | Self::Sinusoidal { amplitude, .. },
-                Parameter::Amplitude,
-            ) => Some(*amplitude),
-            (
-                Self::BiParabolic { angular_frequency, .. } | Self::Sinusoidal { angular_frequency, .. },
-                Parameter::AngularFrequency,
-            ) => Some(*angular_frequency),
-            (Self::Thermal { temperature, .. }, Parameter::Temperature) => Some(*temperature),
-            _ => None,
-        }
-    }
-
-    pub(super) fn with(mut self, parameter: Parameter, value: f64) -> Result<Self, SpecificationError> {
-        match (&mut self, parameter) {
-            (
-                Self::BiParabolic { amplitude, .. } | Self::Sinusoidal { amplitude, .. },
-                Parameter::Amplitude,
-            ) => {
-                *amplitude = value;
-            }
-            (
-                Self::BiParabolic { angular_frequency, .. } | Self::Sinusoidal { angular_frequency, .. },
-                Parameter::AngularFrequency,
-            ) => *angular_frequency = value,
-            (Self::Thermal { temperature, .. }, Parameter::Temperature) => *temperature = value,
-            _ => return Err(SpecificationError::NoSuchParameter { parameter }),
-        }
-        Ok(self)
-    }
-
     pub(super) fn period(&self) -> Option<f64> {
         let &(Self::BiParabolic { angular_frequency, .. } | Self::Sinusoidal { angular_frequency, .. }) =
             self
@@ -95,7 +61,7 @@ impl Base {
     }
 
     /// This base under a container.
-    pub(super) fn under(&self, container: Container) -> Result<Container, SpecificationError> {
+    pub(super) fn under(&self, container: Container) -> Result<Container, ExperimentError> {
         Ok(match *self {
             Self::BiParabolic { amplitude, angular_frequency } => {
                 container.with_motion(Wall::Floor, BiParabolic::new(amplitude, angular_frequency)?)?

@@ -1,0 +1,220 @@
+//! The command line of a study: `new`, `check`, `run`, `status` and `tables`, for any experiment.
+//!
+//! The `main` of a program of your own is one call of [`main`]; the binary `granular-edmd` is that for the paper's box.
+//!
+//! ```no_run
+//! use granular_edmd::study::vibrated_box::{Base, VibratedBox};
+//! use granular_edmd::study::{Plan, Protocol, cli};
+//!
+//! fn main() -> std::process::ExitCode {
+//!     let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
+//!     cli::main(|| Plan::new(VibratedBox::new(100, 20.0, base), Protocol::new(100, 100, 10), 1))
+//! }
+//! ```
+//!
+//! | exit code | meaning |
+//! |---|---|
+//! | 0 | all that was asked for is done |
+//! | 1 | it failed; one line on standard error says why |
+//! | 2 | the command line or the plan cannot be used |
+//! | 3 | other processes do the rest (`--no-wait`), or, of `status`, there is a rest |
+//! | 130 | stopped by Ctrl-C or SIGTERM, with all that was done saved: the same command goes on |
+
+mod template;
+mod watch;
+
+use std::error::Error;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use super::{Control, Experiment, Plan, PlanError, RampStatus, Study, StudyError};
+use watch::Watch;
+
+/// Plans, runs and reads studies: many runs of one experiment, in any number of processes.
+///
+/// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 others do the rest, 130 stopped with all saved.
+#[derive(Debug, Parser)]
+#[command(version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Writes a commented plan to begin with.
+    New {
+        /// File to write; standard output if there is none. A file that is there is left as it is.
+        file: Option<PathBuf>,
+    },
+    /// Checks a plan, and tells how much it is.
+    Check {
+        /// The plan, in TOML.
+        plan: PathBuf,
+    },
+    /// Does what is not done yet of a plan, beside any other process that does the same.
+    Run {
+        /// The plan, in TOML.
+        plan: PathBuf,
+        /// Folder of the study: empty, or one with this plan.
+        #[arg(long)]
+        out: PathBuf,
+        /// Does this ramp alone, counted from 0.
+        #[arg(long)]
+        ramp: Option<usize>,
+        /// Number of threads; one for each processor if not given.
+        #[arg(long)]
+        threads: Option<usize>,
+        /// Ends when all that is left is done by other processes.
+        #[arg(long)]
+        no_wait: bool,
+    },
+    /// Tells how far a study is.
+    Status {
+        /// Folder of the study.
+        folder: PathBuf,
+    },
+    /// Writes the tables of what is done.
+    Tables {
+        /// Folder of the study.
+        folder: PathBuf,
+    },
+}
+
+/// The end of a command.
+enum End {
+    Done,
+    /// Other processes do the rest.
+    Elsewhere,
+    Interrupted,
+}
+
+/// A reason for which a command fails.
+enum Failure {
+    Plan(Box<dyn Error>),
+    Run(Box<dyn Error>),
+}
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
+        Self::Run(error.into())
+    }
+}
+
+impl From<PlanError> for Failure {
+    fn from(error: PlanError) -> Self {
+        Self::Plan(error.into())
+    }
+}
+
+/// Does what the command line of the program says, with plans of this experiment; `example` is the plan that `new` writes.
+pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>) -> ExitCode {
+    let ended = match Arguments::parse().command {
+        Command::New { file } => new(example, file.as_deref()),
+        Command::Check { plan } => check::<E>(&plan),
+        Command::Run { plan, out, ramp, threads, no_wait } => run::<E>(&plan, &out, ramp, threads, no_wait),
+        Command::Status { folder } => status::<E>(&folder),
+        Command::Tables { folder } => tables::<E>(&folder),
+    };
+    match ended {
+        Ok(End::Done) => ExitCode::SUCCESS,
+        Ok(End::Elsewhere) => ExitCode::from(3),
+        Ok(End::Interrupted) => ExitCode::from(130),
+        Err(Failure::Plan(error)) => report(error.as_ref(), 2),
+        Err(Failure::Run(error)) => report(error.as_ref(), 1),
+    }
+}
+
+/// Tells of an error with its sources in one line.
+fn report(error: &dyn Error, code: u8) -> ExitCode {
+    let sources = std::iter::successors(error.source(), |&source| source.source()).map(ToString::to_string);
+    let told: Vec<String> = std::iter::once(error.to_string()).chain(sources).collect();
+    let _ = writeln!(std::io::stderr(), "error: {}", told.join(": "));
+    ExitCode::from(code)
+}
+
+/// Prints a line; somebody who has stopped reading misses nothing.
+fn say(line: &str) {
+    let _ = writeln!(std::io::stdout(), "{line}");
+}
+
+fn new<E: Experiment>(
+    example: impl FnOnce() -> Result<Plan<E>, PlanError>,
+    file: Option<&Path>,
+) -> Result<End, Failure> {
+    let text = template::commented(&example()?)?;
+    let Some(path) = file else {
+        say(text.trim_end());
+        return Ok(End::Done);
+    };
+    let written = fs::File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
+    written.map_err(StudyError::io("write", path))?;
+    Ok(End::Done)
+}
+
+fn read<E: Experiment>(path: &Path) -> Result<Plan<E>, Failure> {
+    let text = fs::read_to_string(path).map_err(StudyError::io("read", path))?;
+    Ok(Plan::from_toml(&text)?)
+}
+
+fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
+    let plan = read::<E>(path)?;
+    let (ramps, values, cycles) = (plan.ramps(), plan.values(), plan.protocol().cycles());
+    say(&format!(
+        "{ramps} ramps of {values} values of {cycles} cycles, {} repeats among them",
+        plan.repeats()
+    ));
+    Ok(End::Done)
+}
+
+fn run<E: Experiment>(
+    path: &Path,
+    out: &Path,
+    ramp: Option<usize>,
+    threads: Option<usize>,
+    no_wait: bool,
+) -> Result<End, Failure> {
+    let study = Study::open_or_create(out, &read::<E>(path)?)?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
+    let pool = pool.map_err(|error| Failure::Run(error.into()))?;
+    let watch = Watch::new().map_err(Failure::Run)?;
+    let show = |progress: &super::Progress| watch.show(progress);
+    let control = Control::default().with_progress(&show).with_interrupt(watch::stop());
+    let control = if no_wait { control.without_waiting() } else { control };
+    let summary = pool.install(|| match ramp {
+        Some(ramp) => study.run_ramp(ramp, &control),
+        None => study.run(&control),
+    })?;
+    watch.end();
+    for file in &summary.redone {
+        say(&format!("{} was damaged and has been done again", file.display()));
+    }
+    say(&format!("{} of {} values are finished in {}", summary.finished, summary.total, out.display()));
+    Ok(match (summary.is_complete(), summary.elsewhere.is_empty()) {
+        (true, _) => End::Done,
+        (false, false) if !watch::is_stopped() => End::Elsewhere,
+        _ => End::Interrupted,
+    })
+}
+
+fn status<E: Experiment>(folder: &Path) -> Result<End, Failure> {
+    let study = Study::<E>::open(folder)?;
+    let ramps = study.plan().ramps();
+    let all: Vec<RampStatus> = (0..ramps).map(|ramp| study.status(ramp)).collect();
+    let count = |wanted| all.iter().filter(|status| **status == wanted).count();
+    let [done, running] = [RampStatus::Done, RampStatus::Running].map(count);
+    let [begun, waiting] = [RampStatus::Begun, RampStatus::Waiting].map(count);
+    say(&format!("{ramps} ramps: {done} done, {running} running, {begun} begun, {waiting} waiting"));
+    Ok(if done == ramps { End::Done } else { End::Elsewhere })
+}
+
+fn tables<E: Experiment>(folder: &Path) -> Result<End, Failure> {
+    let study = Study::<E>::open(folder)?;
+    let finished = study.write_tables()?;
+    say(&format!("tables of {finished} values are in {}", folder.display()));
+    Ok(End::Done)
+}

@@ -1,0 +1,46 @@
+//! A plan with comments.
+
+use crate::study::{Experiment, Plan, PlanError, parameters};
+
+/// Explanations of the lines of a plan, by how they begin.
+const NOTES: [(&str, &str); 6] = [
+    ("seed", "Seed of all random numbers: the same plan gives the same bytes."),
+    ("repeats", "Times that each point is done, with different seeds."),
+    ("[experiment]", "The system: each of its parameters can be ramped or swept."),
+    ("[protocol]", "In cycles: settle for so long, then take so many samples, one after `every` cycles."),
+    (
+        "[ramp]",
+        "A parameter that changes step by step, each value from the last state of the one before.\n# course: up, down or up_and_down.",
+    ),
+    ("[[sweep]]", "A parameter that differs between ramps, which are independent of each other."),
+];
+
+/// Sections that a plan may have, for one that lacks them.
+const EXAMPLES: [(&str, &str); 3] = [
+    ("repeats", "repeats = 3   (before [experiment])"),
+    ("[ramp]", "[ramp]\n# parameter = \"NAME\"\n# values = [0.1, 0.2]\n# course = \"up\""),
+    ("[[sweep]]", "[[sweep]]\n# parameter = \"NAME\"\n# values = [0.1, 0.2]"),
+];
+
+/// Returns a plan in TOML with explanations.
+pub(super) fn commented<E: Experiment>(plan: &Plan<E>) -> Result<String, PlanError> {
+    let bare = plan.to_toml()?;
+    let mut lines = vec!["# A plan of a study.".to_owned(), String::new()];
+    for line in bare.lines() {
+        let note = NOTES.iter().find(|(start, _)| begins(line, start));
+        lines.extend(note.map(|(_, note)| format!("# {note}")));
+        lines.push(line.to_owned());
+    }
+    let absent = EXAMPLES.iter().filter(|(start, _)| !bare.lines().any(|line| begins(line, start)));
+    lines.extend(absent.map(|(_, example)| format!("\n# {example}")));
+    let names = parameters::names(&parameters::tree(&plan.experiment)?).join(", ");
+    let columns: Vec<&str> = E::columns().iter().map(crate::study::Column::name).collect();
+    lines.push(format!("\n# Parameters: {names}."));
+    lines.push("# Those without a value are not named here.".to_owned());
+    lines.push(format!("# Measured: {}.\n", columns.join(", ")));
+    Ok(lines.join("\n"))
+}
+
+fn begins(line: &str, start: &str) -> bool {
+    if start.starts_with('[') { line == start } else { line.split(' ').next() == Some(start) }
+}

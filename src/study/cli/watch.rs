@@ -1,0 +1,75 @@
+//! Progress on the terminal, or in lines; and stopping.
+
+use std::error::Error;
+use std::io::{IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::study::Progress;
+
+/// Set by Ctrl-C and SIGTERM.
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Time between two lines where there is no terminal.
+const BETWEEN_LINES: Duration = Duration::from_secs(10);
+
+pub(super) const fn stop() -> &'static AtomicBool {
+    &STOP
+}
+
+pub(super) fn is_stopped() -> bool {
+    STOP.load(Ordering::Relaxed)
+}
+
+/// What is shown while a study runs.
+pub(super) struct Watch {
+    /// On a terminal.
+    bar: Option<ProgressBar>,
+    told: Mutex<Instant>,
+}
+
+impl Watch {
+    /// Shows progress from now on, and stops when it is asked to; asked twice, it ends at once, with what was saved by then.
+    pub(super) fn new() -> Result<Self, Box<dyn Error>> {
+        ctrlc::set_handler(|| {
+            if STOP.swap(true, Ordering::Relaxed) {
+                std::process::exit(130);
+            }
+        })?;
+        let style =
+            ProgressStyle::with_template("{elapsed_precise} {wide_bar} {percent}% {per_sec}, {eta} left")?;
+        let bar = std::io::stderr().is_terminal().then(|| ProgressBar::new(0).with_style(style));
+        Ok(Self { bar, told: Mutex::new(Instant::now()) })
+    }
+
+    pub(super) fn show(&self, progress: &Progress) {
+        let Some(bar) = &self.bar else { return self.tell(progress) };
+        let before = bar.position();
+        bar.set_length(progress.total);
+        bar.set_position(progress.done);
+        // A value that was done before says nothing about the rate.
+        if progress.done > before + 1 {
+            bar.reset_eta();
+        }
+    }
+
+    fn tell(&self, progress: &Progress) {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        if told.elapsed() < BETWEEN_LINES {
+            return;
+        }
+        *told = Instant::now();
+        let percent = 100.0 * progress.done as f64 / progress.total.max(1) as f64;
+        let line = format!("{percent:.1} % ({} of {} steps)", progress.done, progress.total);
+        let _ = writeln!(std::io::stderr(), "{line}");
+    }
+
+    pub(super) fn end(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

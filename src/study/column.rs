@@ -1,0 +1,197 @@
+//! Columns of tables: name, unit and value, said once.
+
+use std::fmt;
+
+use super::errors::PlanError;
+use super::{Experiment, Record, Scalar};
+use crate::statistics::Estimate;
+
+type OfSample<E> = Box<dyn Fn(&<E as Experiment>::Sample) -> Scalar + Send + Sync>;
+type OfRecord<E, T> = Box<dyn Fn(&Record<E>) -> T + Send + Sync>;
+
+/// A column of the tables of a study: its name, its unit, and its value as a function of a sample or of a record.
+///
+/// ```
+/// use granular_edmd::study::{Column, vibrated_box::{Sample, VibratedBox}};
+/// // A row for each sample, and a mean with its error for each value.
+/// let height: Column<VibratedBox> = Column::sampled("height", "diameter", |sample: &Sample| sample.height);
+/// // A number for each value.
+/// let overlap: Column<VibratedBox> = Column::of_record("max_overlap", "diameter", |record| record.counters().max_overlap);
+/// assert_eq!((height.name(), overlap.unit()), ("height", "diameter"));
+/// ```
+pub struct Column<E: Experiment> {
+    name: &'static str,
+    unit: &'static str,
+    kind: Kind<E>,
+    in_samples: bool,
+    in_values: bool,
+}
+
+pub(super) enum Kind<E: Experiment> {
+    Sample(OfSample<E>),
+    Record(OfRecord<E, Scalar>),
+    Estimate(OfRecord<E, Estimate>),
+}
+
+impl<E: Experiment> Column<E> {
+    /// Makes a column of a quantity of each sample: its value in the table of samples, its mean, with error and number of
+    /// independent samples, in that of values.
+    pub fn sampled<T: Into<Scalar>>(
+        name: &'static str,
+        unit: &'static str,
+        value: impl Fn(&E::Sample) -> T + Send + Sync + 'static,
+    ) -> Self {
+        let kind = Kind::Sample(Box::new(move |sample| value(sample).into()));
+        Self { name, unit, kind, in_samples: true, in_values: true }
+    }
+
+    /// Makes a column of a quantity of each record, in the table of values.
+    pub fn of_record<T: Into<Scalar>>(
+        name: &'static str,
+        unit: &'static str,
+        value: impl Fn(&Record<E>) -> T + Send + Sync + 'static,
+    ) -> Self {
+        let kind = Kind::Record(Box::new(move |record| value(record).into()));
+        Self { name, unit, kind, in_samples: false, in_values: true }
+    }
+
+    /// Makes a column of a quantity of each record that has an error, in the table of values.
+    pub fn estimated(
+        name: &'static str,
+        unit: &'static str,
+        value: impl Fn(&Record<E>) -> Estimate + Send + Sync + 'static,
+    ) -> Self {
+        Self { name, unit, kind: Kind::Estimate(Box::new(value)), in_samples: false, in_values: true }
+    }
+
+    /// Returns the same column in the table of samples alone.
+    pub fn in_samples_only(self) -> Self {
+        Self { in_values: false, ..self }
+    }
+
+    /// Returns the same column in the table of values alone.
+    pub fn in_values_only(self) -> Self {
+        Self { in_samples: false, ..self }
+    }
+
+    /// Returns its name.
+    pub const fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// Returns its unit.
+    pub const fn unit(&self) -> &'static str {
+        self.unit
+    }
+
+    pub(super) const fn kind(&self) -> &Kind<E> {
+        &self.kind
+    }
+
+    pub(super) const fn is_in_samples(&self) -> bool {
+        self.in_samples
+    }
+
+    pub(super) const fn is_in_values(&self) -> bool {
+        self.in_values
+    }
+
+    /// Returns the estimate of a record; `None` of a column that has no error.
+    pub(super) fn estimate(&self, record: &Record<E>) -> Option<Estimate> {
+        match &self.kind {
+            Kind::Sample(value) => Some(record.mean(|sample| value(sample).number().unwrap_or(f64::NAN))),
+            Kind::Estimate(value) => Some(value(record)),
+            Kind::Record(_) => None,
+        }
+    }
+}
+
+impl<E: Experiment> fmt::Debug for Column<E> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut debug = formatter.debug_struct("Column");
+        debug.field("name", &self.name).field("unit", &self.unit).finish_non_exhaustive()
+    }
+}
+
+/// A table beyond those of values and samples: some rows for each record.
+///
+/// ```
+/// use granular_edmd::study::{Table, vibrated_box::{Convection, VibratedBox}};
+/// let profiles: Table<VibratedBox> =
+///     Table::new("profiles", &[("height", "diameter"), ("packing_fraction", "1")], |record| {
+///         record.profile().map(|(height, fraction)| vec![height, fraction]).collect()
+///     });
+/// assert_eq!(profiles.name(), "profiles");
+/// ```
+pub struct Table<E: Experiment> {
+    name: &'static str,
+    columns: &'static [(&'static str, &'static str)],
+    rows: OfRecord<E, Vec<Vec<f64>>>,
+}
+
+impl<E: Experiment> Table<E> {
+    /// Makes a table of this name, with these names and units of columns, whose rows are those of each record in turn.
+    ///
+    /// A row has a number for each column: missing ones are NaN, and those beyond are left out.
+    pub fn new(
+        name: &'static str,
+        columns: &'static [(&'static str, &'static str)],
+        rows: impl Fn(&Record<E>) -> Vec<Vec<f64>> + Send + Sync + 'static,
+    ) -> Self {
+        Self { name, columns, rows: Box::new(rows) }
+    }
+
+    /// Returns its name: that of its file, without the ending.
+    pub const fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// Returns the names and units of its columns.
+    pub const fn columns(&self) -> &'static [(&'static str, &'static str)] {
+        self.columns
+    }
+
+    pub(super) fn rows(&self, record: &Record<E>) -> Vec<Vec<f64>> {
+        (self.rows)(record)
+    }
+}
+
+impl<E: Experiment> fmt::Debug for Table<E> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut debug = formatter.debug_struct("Table");
+        debug.field("name", &self.name).field("columns", &self.columns).finish_non_exhaustive()
+    }
+}
+
+/// Names of the tables that each study has, and of columns that each table has.
+const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
+const PLACE: [&str; 8] = ["ramp", "value", "leg", "repeat", "seed", "outcome", "samples", "not_converged"];
+
+/// Checks that all names of an experiment's columns and tables can be told apart, and be names.
+pub(super) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanError> {
+    let (columns, tables) = (E::columns(), E::tables());
+    let taken = [PLACE.as_slice(), varied].concat();
+    let of = |is_in: fn(&Column<E>) -> bool| -> Vec<&str> {
+        columns.iter().filter(|column| is_in(column)).map(|column| column.name).collect()
+    };
+    check("column", &of(Column::is_in_samples), &[taken.as_slice(), &["time"]].concat())?;
+    check("column", &of(Column::is_in_values), &taken)?;
+    for table in &tables {
+        check("column", &table.columns.iter().map(|(name, _)| *name).collect::<Vec<_>>(), &taken)?;
+    }
+    check("table", &tables.iter().map(Table::name).collect::<Vec<_>>(), &TABLES)
+}
+
+fn check(what: &'static str, names: &[&str], taken: &[&str]) -> Result<(), PlanError> {
+    for (index, name) in names.iter().enumerate() {
+        let refuse = |reason| Err(PlanError::Name { name: (*name).to_owned(), what, reason });
+        let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+        if name.is_empty() || !name.chars().all(is_plain) {
+            return refuse("it must be of letters, digits and underscores");
+        }
+        if taken.contains(name) || names[..index].contains(name) {
+            return refuse("another one has it");
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,208 @@
+//! One value of a ramp, from its start to its record: a pure function of plan, index and the record before.
+
+use super::errors::StudyError;
+use super::experiment::{Experiment, ExperimentError, Run};
+use super::record::{Contents, Cycles, Measured, Origin, Outcome, Record, check, check_state};
+use super::refinement::Step;
+use super::{Plan, Protocol};
+use crate::Simulation;
+use crate::simulation::{Checkpoint, CheckpointError, Counters, RunEnd, RunError};
+
+/// Which value is to be done.
+pub(super) struct Value<'a, E: Experiment> {
+    pub(super) plan: &'a Plan<E>,
+    pub(super) origin: Origin,
+    pub(super) experiment: E,
+    pub(super) step: Step,
+    /// The record of the value before, if there is one.
+    pub(super) before: Option<&'a Record<E>>,
+}
+
+/// A value half done, as data: where it is, what has been done of it, and its state.
+pub(super) type Partial<E> =
+    (Origin, Work<<E as Experiment>::Sample, <E as Experiment>::Observer>, Checkpoint);
+
+/// What has been done of a value.
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Work<S, O> {
+    /// The start of the value.
+    start: Cycles,
+    steps: u64,
+    /// Counters at the start of the value.
+    counters: Counters,
+    measured: Measured<S, O>,
+}
+
+/// A value that is being done.
+pub(super) struct Active<'a, E: Experiment> {
+    value: &'a Value<'a, E>,
+    work: Work<E::Sample, E::Observer>,
+    run: Run<E>,
+}
+
+impl<'a, E: Experiment> Value<'a, E> {
+    /// Starts the value.
+    pub(super) fn begin(&'a self) -> Result<Active<'a, E>, StudyError> {
+        let run = self.first_state()?;
+        let (start, counters) = (self.start(), *run.counters());
+        let measured =
+            Measured { times: Vec::new(), samples: Vec::new(), observer: self.experiment.observer() };
+        Ok(Active { value: self, work: Work { start, steps: 0, counters, measured }, run })
+    }
+
+    /// Goes on with the value where it was saved; says why, if that cannot be.
+    pub(super) fn go_on(&'a self, (_, work, state): Partial<E>) -> Result<Active<'a, E>, &'static str> {
+        work.check(self.plan.protocol())?;
+        check(work.start == self.start(), "it starts elsewhere")?;
+        let passed = self.plan.protocol().cycles_of(work.steps) as f64;
+        check_state(&state, work.start.time(passed, self.experiment.cycle()))?;
+        work.measured.check(&self.experiment, &state)?;
+        let run = Self::resume(&state, &self.experiment).map_err(|_| "its state cannot go on")?;
+        check(run.gravity() == self.experiment.gravity(), "its state has another gravity")?;
+        Ok(Active { value: self, work, run })
+    }
+
+    /// Returns the time at which the value starts: in whole cycles, as long as cycles are of one length.
+    fn start(&self) -> Cycles {
+        let Some(before) = self.before else { return Cycles::START };
+        let (end, cycle) = (before.contents.end, before.experiment.cycle());
+        if cycle == self.experiment.cycle() { end } else { Cycles { since: end.time(0.0, cycle), count: 0 } }
+    }
+
+    /// Returns the simulation at the start of the value.
+    fn first_state(&self) -> Result<Run<E>, StudyError> {
+        let Some(before) = self.before else {
+            return self.experiment.build(self.origin.seed).map_err(|source| self.cannot_start(source));
+        };
+        let resumed = Self::resume(before.state(), &before.experiment);
+        let mut run = resumed.map_err(|error| match error {
+            Unresumed::Experiment(source) => self.cannot_start(source),
+            Unresumed::Checkpoint(source) => {
+                StudyError::Checkpoint { ramp: self.origin.ramp, value: self.origin.value, source }
+            }
+        })?;
+        self.experiment.change(&mut run).map_err(|source| self.cannot_start(source))?;
+        Ok(run)
+    }
+
+    /// Resumes a saved state under the rule and in the walls that it was saved with.
+    fn resume(state: &Checkpoint, saved: &E) -> Result<Run<E>, Unresumed> {
+        let rule = saved.rule().map_err(Unresumed::Experiment)?;
+        let boundary = saved.boundary().map_err(Unresumed::Experiment)?;
+        Simulation::resume(state, rule, boundary).build().map_err(Unresumed::Checkpoint)
+    }
+
+    fn cannot_start(&self, source: ExperimentError) -> StudyError {
+        StudyError::Build { ramp: self.origin.ramp, value: self.origin.value, source }
+    }
+}
+
+/// Reason for which a state cannot go on.
+enum Unresumed {
+    Experiment(ExperimentError),
+    Checkpoint(CheckpointError),
+}
+
+impl<E: Experiment> Active<'_, E> {
+    /// Returns how many steps are done.
+    pub(super) const fn steps(&self) -> u64 {
+        self.work.steps
+    }
+
+    pub(super) fn is_done(&self) -> bool {
+        self.work.steps >= self.value.plan.protocol().steps()
+    }
+
+    /// Does the next step: settles on, or takes a sample. The observer may end the value in it.
+    pub(super) fn step(&mut self) -> Result<RunEnd, RunError> {
+        let protocol = self.value.plan.protocol();
+        let (step, cycle) = (self.work.steps, self.value.experiment.cycle());
+        let end = protocol.end_of(step) as f64;
+        let at = |cycles: f64| self.work.start.time(cycles, cycle);
+        let ended = if protocol.is_sampled(step) {
+            let (sample, end) = (at(end - protocol.lead()), at(end));
+            self.sample(sample, end)?
+        } else {
+            self.run.run_until(at(end), &mut ())?
+        };
+        if ended == RunEnd::Time {
+            self.work.steps += 1;
+        }
+        Ok(ended)
+    }
+
+    fn sample(&mut self, time: f64, end: f64) -> Result<RunEnd, RunError> {
+        let Measured { times, samples, observer } = &mut self.work.measured;
+        let ended = self.run.run_until(time, observer)?;
+        if ended != RunEnd::Time {
+            return Ok(ended);
+        }
+        let snapshot = self.run.snapshot();
+        times.push(snapshot.time());
+        samples.push(self.value.experiment.sample(&snapshot, observer));
+        self.run.run_until(end, observer)
+    }
+
+    /// Returns the value as data, to go on with later.
+    pub(super) fn partial(&self) -> (&Origin, &Work<E::Sample, E::Observer>, Checkpoint) {
+        (&self.value.origin, &self.work, self.run.checkpoint())
+    }
+
+    /// Returns the record of a value that is done.
+    pub(super) fn record(self) -> Record<E> {
+        let mut end = self.work.start;
+        end.count += self.value.plan.protocol().cycles();
+        let state = self.run.checkpoint();
+        self.into_record(Outcome::Completed, end, state)
+    }
+
+    /// Returns the record of a value that its observer has ended.
+    pub(super) fn stopped(self) -> Record<E> {
+        let (time, state) = (self.run.time(), self.run.checkpoint());
+        self.into_record(Outcome::Stopped { time }, Cycles { since: time, count: 0 }, state)
+    }
+
+    /// Returns the record of a value that the engine could not finish: the next one starts as this one did.
+    pub(super) fn failed(self, error: &RunError) -> Result<Record<E>, StudyError> {
+        let (time, reason) = (self.run.time(), chain(error));
+        let outcome = match error {
+            RunError::Stalled { .. } => Outcome::Stalled { time, reason },
+            _ => Outcome::Failed { time, reason },
+        };
+        let (start, state) = (self.work.start, self.value.first_state()?.checkpoint());
+        Ok(self.into_record(outcome, start, state))
+    }
+
+    fn into_record(self, outcome: Outcome, end: Cycles, state: Checkpoint) -> Record<E> {
+        let Self { value, work, run } = self;
+        let contents = Contents {
+            origin: value.origin.clone(),
+            leg: value.step.leg,
+            at: value.step.at,
+            outcome,
+            end,
+            measured: work.measured,
+            counters: run.counters().since(&work.counters),
+            state,
+        };
+        Record { experiment: value.experiment.clone(), contents }
+    }
+}
+
+impl<S, O> Work<S, O> {
+    /// Checks that it is what a value can be at some step.
+    fn check(&self, protocol: &Protocol) -> Result<(), &'static str> {
+        check(self.steps <= protocol.steps(), "it is longer than the protocol")?;
+        let samples = protocol.samples_of(self.steps);
+        check(samples == self.measured.samples.len() as u64, "its samples are not as many as its steps")
+    }
+}
+
+/// Returns an error with its sources, in one line.
+fn chain(error: &RunError) -> String {
+    let sources = std::iter::successors(std::error::Error::source(error), |&source| source.source());
+    let told: Vec<String> =
+        std::iter::once(error.to_string()).chain(sources.map(ToString::to_string)).collect();
+    told.join(": ")
+}

@@ -1,0 +1,151 @@
+//! Parameters of any serialisable type, by name.
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use toml::{Table, Value};
+
+use super::Scalar;
+use super::errors::PlanError;
+
+/// Returns the parameters of an experiment as a tree of names.
+pub(super) fn tree(experiment: &impl Serialize) -> Result<Table, PlanError> {
+    Table::try_from(experiment).map_err(|error| PlanError::Toml(error.to_string()))
+}
+
+/// Makes an experiment of a tree of names.
+pub(super) fn experiment<E: DeserializeOwned>(tree: Table) -> Result<E, String> {
+    E::deserialize(Value::Table(tree)).map_err(|error| error.to_string().trim().to_owned())
+}
+
+/// Returns the names of all parameters: those inside others behind a dot.
+pub(super) fn names(tree: &Table) -> Vec<String> {
+    let mut names = Vec::new();
+    for (name, value) in tree {
+        match value {
+            Value::Table(inner) => {
+                names.extend(self::names(inner).iter().map(|inner| format!("{name}.{inner}")));
+            }
+            _ => names.push(name.clone()),
+        }
+    }
+    names
+}
+
+/// Returns a parameter by its whole name.
+pub(super) fn get<'a>(tree: &'a Table, name: &str) -> Option<&'a Value> {
+    match name.split_once('.') {
+        None => tree.get(name),
+        Some((first, rest)) => get(tree.get(first)?.as_table()?, rest),
+    }
+}
+
+/// Sets a parameter by its whole name; returns false if one of the names before the last is not that of a group.
+#[must_use]
+pub(super) fn set(tree: &mut Table, name: &str, to: &Scalar) -> bool {
+    match name.split_once('.') {
+        None => {
+            let to = to.to_toml();
+            match tree.get_mut(name) {
+                Some(place) => *place = to,
+                None => drop(tree.insert(name.to_owned(), to)),
+            }
+            true
+        }
+        Some((first, rest)) => {
+            let group = tree.entry(first).or_insert_with(|| Value::Table(Table::new()));
+            group.as_table_mut().is_some_and(|group| set(group, rest, to))
+        }
+    }
+}
+
+/// Returns the whole name of a parameter: its last part is enough where no other ends so.
+///
+/// A name that is not there is returned as it is: it may be that of a parameter without a value.
+pub(super) fn whole_name(tree: &Table, name: &str) -> Result<String, PlanError> {
+    if get(tree, name).is_some() {
+        return Ok(name.to_owned());
+    }
+    let ending = format!(".{name}");
+    let mut found: Vec<String> = names(tree).into_iter().filter(|whole| whole.ends_with(&ending)).collect();
+    match found.len() {
+        0 => Ok(name.to_owned()),
+        1 => Ok(found.remove(0)),
+        _ => Err(PlanError::Ambiguous { parameter: name.to_owned(), known: found }),
+    }
+}
+
+/// Sets a parameter of an experiment and reads it back, as it has become; an error says why there is none of this name.
+pub(super) fn probe<E: Serialize + DeserializeOwned>(
+    base: &Table,
+    parameter: &str,
+    name: &str,
+    to: &Scalar,
+) -> Result<Scalar, PlanError> {
+    let known = get(base, name);
+    let to = known.map_or_else(|| to.clone(), |known| to.clone().like(known));
+    let mut changed = base.clone();
+    let unknown = |reason: String| PlanError::UnknownParameter {
+        parameter: parameter.to_owned(),
+        known: names(base),
+        reason,
+    };
+    if !set(&mut changed, name, &to) {
+        return Err(unknown("a part of its name is that of a parameter without parts".to_owned()));
+    }
+    let refused = |reason: String| match known {
+        Some(_) => PlanError::Experiment { place: place(&[(parameter, &to)]), source: reason.into() },
+        None => unknown(reason),
+    };
+    let read = experiment::<E>(changed).map_err(refused)?;
+    let found = get(&tree(&read)?, name).and_then(Scalar::of_toml);
+    found.ok_or_else(|| unknown("the experiment ignores it".to_owned()))
+}
+
+/// Names the values of parameters, for errors.
+pub(super) fn place(varied: &[(&str, &Scalar)]) -> String {
+    let varied: Vec<String> = varied.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    if varied.is_empty() { String::new() } else { format!(" at {}", varied.join(", ")) }
+}
+
+/// A field in which two plans differ; absent fields are `None`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Difference {
+    /// The name of the field, with those that it is in.
+    pub field: String,
+    /// Its value in the plan that is there.
+    pub old: Option<String>,
+    /// Its value in the plan that was given.
+    pub new: Option<String>,
+}
+
+impl std::fmt::Display for Difference {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let told = |value: &Option<String>| value.clone().unwrap_or_else(|| "absent".to_owned());
+        write!(formatter, "{} is {} there and {} here", self.field, told(&self.old), told(&self.new))
+    }
+}
+
+/// Returns the fields in which two trees differ.
+pub(super) fn differences(old: &Table, new: &Table) -> Vec<Difference> {
+    let mut found = Vec::new();
+    collect_differences("", old, new, &mut found);
+    found
+}
+
+fn collect_differences(prefix: &str, old: &Table, new: &Table, found: &mut Vec<Difference>) {
+    let added = new.keys().filter(|name| !old.contains_key(*name));
+    for name in old.keys().chain(added) {
+        let field = format!("{prefix}{name}");
+        match (old.get(name), new.get(name)) {
+            (Some(Value::Table(old)), Some(Value::Table(new))) => {
+                collect_differences(&format!("{field}."), old, new, found);
+            }
+            (old, new) if old == new => {}
+            (old, new) => {
+                let [old, new] = [old, new].map(|value| value.map(ToString::to_string));
+                found.push(Difference { field, old, new });
+            }
+        }
+    }
+}

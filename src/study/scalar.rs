@@ -1,0 +1,135 @@
+//! Numbers, words and switches: settings of parameters and cells of tables.
+
+use std::fmt;
+
+/// A single value: of a parameter that varies, or in a cell of a table.
+///
+/// ```
+/// use granular_edmd::study::Scalar;
+/// assert_eq!(Scalar::from(0.1).to_string(), "0.1");
+/// assert_eq!(Scalar::from(3_u64), Scalar::Integer(3));
+/// assert_eq!(Scalar::from("periodic").number(), None);
+/// ```
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(untagged)]
+pub enum Scalar {
+    /// Yes or no.
+    Flag(bool),
+    /// A whole number.
+    Integer(i64),
+    /// A number.
+    Number(f64),
+    /// A word, such as the name of a choice.
+    Text(String),
+}
+
+impl Scalar {
+    /// Returns its number; `None` for a word or a switch.
+    pub const fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            Self::Integer(number) => Some(*number as f64),
+            Self::Flag(_) | Self::Text(_) => None,
+        }
+    }
+
+    /// Returns the scalar that a TOML value is; `None` for a table, a list or a date.
+    pub(super) fn of_toml(value: &toml::Value) -> Option<Self> {
+        match value {
+            toml::Value::Boolean(flag) => Some(Self::Flag(*flag)),
+            toml::Value::Integer(number) => Some(Self::Integer(*number)),
+            toml::Value::Float(number) => Some(Self::Number(*number)),
+            toml::Value::String(text) => Some(Self::Text(text.clone())),
+            _ => None,
+        }
+    }
+
+    pub(super) fn to_toml(&self) -> toml::Value {
+        match self {
+            Self::Flag(flag) => (*flag).into(),
+            Self::Integer(number) => (*number).into(),
+            Self::Number(number) => (*number).into(),
+            Self::Text(text) => text.clone().into(),
+        }
+    }
+
+    /// Returns the same value in the kind of another one, where nothing is lost: 1.0 where there are integers.
+    pub(super) fn like(self, other: &toml::Value) -> Self {
+        /// Beyond this size not all whole numbers are doubles.
+        const EXACT: f64 = 9_007_199_254_740_992.0;
+        match (other, self) {
+            (toml::Value::Integer(_), Self::Number(number))
+                if number.abs() <= EXACT && number.trunc() == number =>
+            {
+                Self::Integer(number as i64)
+            }
+            (toml::Value::Float(_), Self::Integer(number)) => Self::Number(number as f64),
+            (_, same) => same,
+        }
+    }
+}
+
+/// Numbers read back to the same bits; words are in quotes where a table needs it.
+impl fmt::Display for Scalar {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flag(flag) => write!(formatter, "{flag}"),
+            Self::Integer(number) => write!(formatter, "{number}"),
+            Self::Number(number) => write!(formatter, "{number:?}"),
+            Self::Text(text) if text.contains([',', '"', '\n', '\r']) => {
+                write!(formatter, "\"{}\"", text.replace('"', "\"\""))
+            }
+            Self::Text(text) => formatter.write_str(text),
+        }
+    }
+}
+
+impl From<bool> for Scalar {
+    fn from(flag: bool) -> Self {
+        Self::Flag(flag)
+    }
+}
+
+impl From<f64> for Scalar {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<i32> for Scalar {
+    fn from(number: i32) -> Self {
+        Self::Integer(number.into())
+    }
+}
+
+impl From<i64> for Scalar {
+    fn from(number: i64) -> Self {
+        Self::Integer(number)
+    }
+}
+
+/// The largest numbers become the largest that a table takes.
+impl From<u64> for Scalar {
+    fn from(number: u64) -> Self {
+        Self::Integer(i64::try_from(number).unwrap_or(i64::MAX))
+    }
+}
+
+/// The largest numbers become the largest that a table takes.
+impl From<usize> for Scalar {
+    fn from(number: usize) -> Self {
+        Self::from(number as u64)
+    }
+}
+
+impl From<&str> for Scalar {
+    fn from(text: &str) -> Self {
+        Self::Text(text.to_owned())
+    }
+}
+
+impl From<String> for Scalar {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}

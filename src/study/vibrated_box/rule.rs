@@ -1,0 +1,41 @@
+//! The collision rule of the box.
+
+use crate::Fingerprint;
+use crate::collision::{CollisionRule, Contact, ContactDuration, Frictional, Impulse};
+
+/// The paper's rule, with or without the contact-duration model.
+#[derive(Debug, Clone, Copy)]
+pub struct BoxRule(Kind);
+
+#[derive(Debug, Clone, Copy)]
+enum Kind {
+    Plain(Frictional),
+    Lasting(ContactDuration<Frictional>),
+}
+
+impl BoxRule {
+    pub(super) const fn plain(rule: Frictional) -> Self {
+        Self(Kind::Plain(rule))
+    }
+
+    pub(super) const fn lasting(rule: ContactDuration<Frictional>) -> Self {
+        Self(Kind::Lasting(rule))
+    }
+}
+
+impl CollisionRule for BoxRule {
+    #[inline]
+    fn impulse(&self, contact: &Contact) -> Impulse {
+        match &self.0 {
+            Kind::Plain(rule) => rule.impulse(contact),
+            Kind::Lasting(rule) => rule.impulse(contact),
+        }
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        match &self.0 {
+            Kind::Plain(rule) => rule.fingerprint(),
+            Kind::Lasting(rule) => rule.fingerprint(),
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! Studies: the plan as data, the same bytes however they come about, and damage that is noticed.
+
+#![cfg(feature = "serde")]
+
+#[path = "../support/cases.rs"]
+mod cases;
+mod damage;
+mod folders;
+mod interruption;
+mod own;
+mod plans;
+mod processes;
+mod refinement;
+#[path = "../support/report.rs"]
+mod report;
+mod support;
+mod tables;
+mod values;

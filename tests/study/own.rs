@@ -1,0 +1,336 @@
+//! An experiment of one's own: a drum that turns, with a rule of its own, a mixture of disks, and samples of variable length.
+
+use std::fs;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use granular_edmd::boundary::Container;
+use granular_edmd::collision::{CollisionRule, Contact, Impulse};
+use granular_edmd::glam::DVec2;
+use granular_edmd::observable::{CollisionCounts, Observer, Snapshot};
+use granular_edmd::study::{
+    Axis, Column, Control, Course, Experiment, ExperimentError, Plan, PlanError, Progress, Protocol, Ramp,
+    Record, Scalar, Study, StudyError, Table,
+};
+use granular_edmd::{Disk, initial, quantity};
+use serde::{Deserialize, Serialize};
+
+use crate::report::report;
+use crate::support::{AnyError, Scratch, assert_same, contents};
+
+/// Loses the more the faster: no fingerprint, as a closure has none.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sticky {
+    loss: f64,
+}
+
+impl CollisionRule for Sticky {
+    fn impulse(&self, contact: &Contact) -> Impulse {
+        let restitution = 1.0 / (1.0 + self.loss * contact.closing_speed());
+        Impulse::new(contact.normal_impulse(restitution), 0.0)
+    }
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Mixture {
+    loss: f64,
+    disks: Counts,
+    /// Strength of the drive, with gravity: the cycle follows from both.
+    weight: f64,
+    #[serde(default)]
+    note: Option<String>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Counts {
+    small: usize,
+    large: usize,
+}
+
+/// The heights of the large disks that are above the small ones: a list of any length.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Risen {
+    heights: Vec<f64>,
+    angular_momentum: f64,
+    collisions: u64,
+}
+
+impl Experiment for Mixture {
+    type Rule = Sticky;
+    type Boundary = Container;
+    type Observer = CollisionCounts;
+    type Sample = Risen;
+
+    fn rule(&self) -> Result<Sticky, ExperimentError> {
+        Ok(Sticky { loss: quantity::non_negative("loss", self.loss)? })
+    }
+
+    fn boundary(&self) -> Result<Container, ExperimentError> {
+        Ok(Container::closed(12.0, 12.0)?)
+    }
+
+    fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
+        let (small, large) = (Disk::new(DVec2::ZERO, 0.3)?, Disk::new(DVec2::ZERO, 0.6)?);
+        let disks = vec![small; self.disks.small].into_iter().chain(vec![large; self.disks.large]);
+        let disks = initial::placed_at_random(&self.boundary()?, disks.collect::<Vec<_>>(), 12.0, seed)?;
+        Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
+    }
+
+    fn gravity(&self) -> f64 {
+        self.weight
+    }
+
+    fn cycle(&self) -> f64 {
+        1.0 / (1.0 + self.weight)
+    }
+
+    fn sample(&self, snapshot: &Snapshot<'_>, observer: &mut CollisionCounts) -> Risen {
+        let middle = snapshot.mean(|disk| disk.position().y);
+        let large = snapshot.disks().iter().filter(|disk| disk.radius() > 0.5);
+        let heights = large.map(|disk| disk.position().y).filter(|height| *height > middle).collect();
+        let spin = |disk: &Disk| disk.mass() * disk.position().perp_dot(disk.velocity());
+        let counts = std::mem::take(observer);
+        Risen { heights, angular_momentum: snapshot.mean(spin), collisions: counts.disk_collisions() }
+    }
+
+    fn columns() -> Vec<Column<Self>> {
+        vec![
+            Column::sampled("risen", "1", |sample: &Risen| sample.heights.len()),
+            Column::sampled("angular_momentum", "mass diameter velocity", |sample: &Risen| {
+                sample.angular_momentum
+            }),
+            Column::sampled("collisions", "1", |sample: &Risen| sample.collisions).in_samples_only(),
+            Column::of_record("overlap", "diameter", |record| record.counters().max_overlap),
+        ]
+    }
+
+    /// Heavy or light: known beforehand, so that a test can say where the transition is.
+    fn state(record: &Record<Self>) -> Option<String> {
+        Some(if record.experiment().weight > 0.137 { "heavy" } else { "light" }.to_owned())
+    }
+
+    fn tables() -> Vec<Table<Self>> {
+        vec![Table::new("heights", &[("sample", "1"), ("height", "diameter")], |record| {
+            let heights = |(index, sample): (usize, &Risen)| -> Vec<Vec<f64>> {
+                sample.heights.iter().map(|height| vec![index as f64, *height]).collect()
+            };
+            record.samples().iter().enumerate().flat_map(heights).collect()
+        })]
+    }
+}
+
+pub(crate) fn mixture() -> Mixture {
+    Mixture { loss: 0.05, disks: Counts { small: 12, large: 4 }, weight: 0.1, note: None }
+}
+
+/// Coupled parameters: the weight is ramped, the loss and the mixture differ between ramps.
+fn plan() -> Plan<Mixture> {
+    Plan::new(mixture(), Protocol::new(4, 5, 2).with_phase(0.5), 3)
+        .and_then(|plan| plan.with_axis(Axis::new("loss", [0.0, 0.2])))
+        .and_then(|plan| plan.with_axis(Axis::new("disks.large", [2.0, 4.0])))
+        .and_then(|plan| plan.with_ramp(Ramp::new("weight", [0.1, 0.2], Course::UpAndDown)))
+        .unwrap()
+}
+
+fn done(name: &str) -> (Scratch, Study<Mixture>) {
+    let scratch = Scratch::new(name);
+    let study = Study::create(&scratch.0, &plan()).unwrap();
+    assert!(study.run(&Control::default()).unwrap().is_complete());
+    (scratch, study)
+}
+
+#[test]
+fn an_own_experiment_is_swept_ramped_and_recorded() -> Result<(), AnyError> {
+    let (scratch, study) = done("own");
+    let records: Vec<_> = study.records().collect::<Result<_, _>>()?;
+    assert_eq!(records.len(), 4 * 3);
+    assert_eq!(
+        study.plan().parameters(1, 0)[1],
+        ("disks.large", Scalar::Integer(4)),
+        "numbers of the field's kind"
+    );
+    assert_eq!(records[3].experiment().disks.large, 4);
+    assert_eq!(records[3].state().len(), 16);
+    // The cycle changes along the ramp: the next value starts at the end of the one before.
+    let cycles = [1.0 / 1.1, 1.0 / 1.2];
+    let expected = 14.0 * cycles[0] + (4.0 + 1.5) * cycles[1];
+    assert!((records[1].times()[0] - expected).abs() < 1e-9, "{} {expected}", records[1].times()[0]);
+    assert!(records.iter().all(|record| record.samples().iter().any(|sample| sample.collisions > 0)));
+    let lengths: Vec<usize> = records.iter().flat_map(Record::samples).map(|s| s.heights.len()).collect();
+    assert!(lengths.iter().any(|length| *length != lengths[0]), "samples are of variable length");
+    let heights = fs::read_to_string(scratch.0.join("heights.csv"))?;
+    assert!(heights.starts_with("ramp,value,leg,loss,disks.large,weight,sample,height\n"), "{heights}");
+    assert_eq!(heights.lines().count(), 1 + lengths.iter().sum::<usize>());
+    Ok(())
+}
+
+#[test]
+fn an_own_experiment_goes_on_with_the_same_bytes() -> Result<(), AnyError> {
+    let (expected, _) = done("own-not-interrupted");
+    let scratch = Scratch::new("own-interrupted");
+    let mut runs = 0;
+    loop {
+        let stop = AtomicBool::new(false);
+        let steps = std::sync::atomic::AtomicU64::new(0);
+        let progress =
+            |_: &Progress| stop.store(steps.fetch_add(1, Ordering::Relaxed) > 12, Ordering::Relaxed);
+        let control = Control::default().with_interrupt(&stop).with_progress(&progress);
+        let study = Study::open_or_create(&scratch.0, &plan())?;
+        runs += 1;
+        if study.run(&control.with_save_interval(Duration::ZERO))?.is_complete() {
+            break;
+        }
+    }
+    assert!(runs > 2, "it was interrupted");
+    assert_same(&scratch.0, &expected.0);
+    Ok(())
+}
+
+#[test]
+fn a_damaged_record_of_one_s_own_is_done_again() -> Result<(), AnyError> {
+    let (scratch, study) = done("own-damaged");
+    let before = contents(&scratch.0);
+    let path = scratch.0.join("ramps/0002/0001.record");
+    let sound = fs::read(&path)?;
+    for cut in [0, 20, sound.len() / 2, sound.len() - 1] {
+        fs::write(&path, &sound[..cut])?;
+        assert!(matches!(study.record(2, 1), Err(StudyError::Damaged { .. })));
+        assert_eq!(study.run(&Control::default())?.redone, std::slice::from_ref(&path));
+        assert!(contents(&scratch.0) == before);
+    }
+    Ok(())
+}
+
+#[test]
+fn unknown_parameters_are_refused_with_those_that_there_are() {
+    let refused = |name: &str| report(&plan().with_axis(Axis::new(name, [1.0])).unwrap_err());
+    let error = refused("wieght");
+    assert!(
+        error.contains("no parameter `wieght`") && error.contains("disks.large, disks.small, loss, weight"),
+        "{error}"
+    );
+    assert!(refused("loss.small").contains("no parameter `loss.small`"));
+    assert!(refused("disks.medium").contains("unknown field `medium`"));
+    assert!(refused("large").contains("varies twice"), "the last part of a name is enough");
+    let note =
+        Plan::new(mixture(), Protocol::new(1, 1, 1), 1).unwrap().with_axis(Axis::new("note", ["a", "b"]));
+    assert_eq!(
+        note.unwrap().experiment(1, 0).unwrap().note.as_deref(),
+        Some("b"),
+        "a parameter without a value is one"
+    );
+    let error = report(&plan().with_axis(Axis::new("small", [1.5])).unwrap_err());
+    assert!(error.contains("the experiment cannot be at small = 1.5"), "{error}");
+}
+
+#[test]
+fn parameters_that_are_refused_are_named_when_the_plan_is_made() {
+    let error = Plan::new(mixture(), Protocol::new(1, 1, 1), 1)
+        .and_then(|plan| plan.with_axis(Axis::new("loss", [0.1, -0.5])))
+        .unwrap_err();
+    assert_eq!(
+        report(&error),
+        "the experiment cannot be at loss = -0.5: loss must be finite and not negative, but is -0.5"
+    );
+    let crowd = Plan::new(mixture(), Protocol::new(1, 1, 1), 1)
+        .and_then(|plan| plan.with_axis(Axis::new("large", [4, 100_000])))
+        .unwrap_err();
+    assert!(
+        matches!(&crowd, PlanError::Experiment { place, .. } if place == " at large = 100000"),
+        "{crowd}"
+    );
+}
+
+/// Ignores parameters that it does not know, and has samples that cannot be read back.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Careless {
+    loss: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Gap {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    maybe: Option<f64>,
+    always: f64,
+}
+
+/// Ends the value after so many collisions.
+#[derive(Debug, Default, Serialize, Deserialize)]
+struct Patience(u64);
+
+impl Observer for Patience {
+    fn on_collision(&mut self, _: &granular_edmd::observable::Collision) {
+        self.0 += 1;
+    }
+
+    fn verdict(&mut self) -> Result<std::ops::ControlFlow<()>, granular_edmd::observable::ObserverError> {
+        use std::ops::ControlFlow::{Break, Continue};
+        Ok(if self.0 >= 40 { Break(()) } else { Continue(()) })
+    }
+}
+
+impl Experiment for Careless {
+    type Rule = Sticky;
+    type Boundary = Container;
+    type Observer = Patience;
+    type Sample = Gap;
+
+    fn rule(&self) -> Result<Sticky, ExperimentError> {
+        Ok(Sticky { loss: self.loss })
+    }
+
+    fn boundary(&self) -> Result<Container, ExperimentError> {
+        Ok(Container::closed(6.0, 6.0)?)
+    }
+
+    fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
+        let disks = initial::lattice(&self.boundary()?, 5, 0.5)?;
+        Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
+    }
+
+    fn sample(&self, snapshot: &Snapshot<'_>, _: &mut Patience) -> Gap {
+        let speed = snapshot.mean(|disk| disk.velocity().length());
+        Gap { maybe: (self.loss > 0.0).then_some(speed), always: speed }
+    }
+
+    fn columns() -> Vec<Column<Self>> {
+        vec![Column::sampled("speed", "velocity", |sample: &Gap| sample.maybe.unwrap_or(sample.always))]
+    }
+}
+
+#[test]
+fn a_parameter_that_the_experiment_ignores_is_none() {
+    let plan = Plan::new(Careless { loss: 0.0 }, Protocol::new(1, 1, 1), 1).unwrap();
+    let error = report(&plan.with_axis(Axis::new("los", [0.0])).unwrap_err());
+    assert!(error.contains("no parameter `los` (the experiment ignores it); there are loss"), "{error}");
+}
+
+#[test]
+fn samples_that_do_not_read_back_are_an_error_and_no_record() -> Result<(), AnyError> {
+    let scratch = Scratch::new("own-careless");
+    let study = Study::create(&scratch.0, &Plan::new(Careless { loss: 0.0 }, Protocol::new(1, 2, 1), 1)?)?;
+    let error = study.run(&Control::default()).unwrap_err();
+    assert!(matches!(error, StudyError::Encode { .. }), "{error}");
+    assert!(report(&error).contains("skip_serializing_if"), "{error}");
+    assert!(study.record(0, 0)?.is_none());
+    Ok(())
+}
+
+#[test]
+fn an_observer_ends_a_value_and_the_ramp_goes_on_from_there() -> Result<(), AnyError> {
+    let plan = Plan::new(Careless { loss: 0.1 }, Protocol::new(0, 50, 1), 1)?;
+    let plan = plan.with_ramp(Ramp::new("loss", [0.1, 0.2], Course::Up))?;
+    let scratch = Scratch::new("own-stopped");
+    let study = Study::create(&scratch.0, &plan)?;
+    assert!(study.run(&Control::default())?.is_complete());
+    let [first, second] = [0, 1].map(|value| study.record(0, value).unwrap().unwrap());
+    assert_eq!(first.outcome().name(), "stopped");
+    assert!(!first.samples().is_empty() && first.samples().len() < 50);
+    assert_eq!(first.observer().0, 40);
+    assert!(
+        second.times()[0] > first.state().time() && second.times()[0] <= first.state().time() + 1.0 + 1e-9
+    );
+    Ok(())
+}

@@ -1,0 +1,131 @@
+//! Plans: as data and as text, with errors by name.
+
+use granular_edmd::study::vibrated_box::VibratedBox;
+use granular_edmd::study::{Axis, Course, Plan, Protocol, Ramp};
+use proptest::prelude::*;
+
+use crate::cases::config;
+use crate::report::report;
+use crate::support::{AnyError, BASE, small_box};
+
+const PLAN: &str = r#"
+seed = 1
+
+[experiment]
+disks = 30
+width = 10.0
+height = 30
+gravity = 0.015625
+friction = 0.01
+base.bi_parabolic = { amplitude = 0.1, angular_frequency = 10.0 }
+
+[protocol]
+settle = 100
+samples = 10
+every = 10
+
+[ramp]
+parameter = "friction"
+values = [0.01, 0.02]
+
+[[sweep]]
+parameter = "inelasticity"
+values = [0.0, 0.01, 0.01]
+"#;
+
+#[test]
+fn a_plan_is_read_as_it_is_written() -> Result<(), AnyError> {
+    let plan = Plan::<VibratedBox>::from_toml(PLAN)?;
+    let by_hand = Plan::new(
+        VibratedBox::new(30, 10.0, BASE).with_height(30.0).with_gravity(0.015_625).with_friction(0.01),
+        Protocol::new(100, 10, 10),
+        1,
+    )?
+    .with_ramp(Ramp::new("friction", vec![0.01, 0.02], Course::Up))?
+    .with_axis(Axis::new("inelasticity", [0.0, 0.01, 0.01]))?;
+    assert_eq!(plan, by_hand);
+    assert_eq!(Plan::<VibratedBox>::from_toml(&plan.to_string())?, plan);
+    assert_eq!((plan.ramps(), plan.values()), (3, 2));
+    Ok(())
+}
+
+/// A line of a plan, what takes its place, and what the error says.
+const REFUSED: [(&str, &str, &str); 19] = [
+    ("seed = 1", "seed = 1\nsede = 2", "unknown field `sede`"),
+    ("disks = 30", "disks = 30\nmass = 2", "unknown field `mass`"),
+    ("disks = 30", "disks = 0", "number of disks must be at least 1, but is 0"),
+    ("disks = 30", "disks = 300000", "there is room for"),
+    (
+        "disks = 30\nwidth = 10.0\nheight = 30",
+        "disks = 9000000000000000000\nwidth = 10.0",
+        "but is 9000000000000000000",
+    ),
+    ("disks = 30", "", "missing field `disks`"),
+    ("width = 10.0", "width = -10.0", "width must be finite and positive, but is -10"),
+    ("height = 30", "height = inf", "height must be finite and positive, but is inf"),
+    ("gravity = 0.015625", "gravity = nan", "gravity must be finite, but is NaN"),
+    (
+        "friction = 0.01",
+        "dynamic_friction = 1.5",
+        "dynamic friction must be at most the static friction, but is 1.5",
+    ),
+    ("friction = 0.01", "contact_duration = 0.0", "contact duration must be finite and positive, but is 0"),
+    ("amplitude = 0.1", "amplitude = 0.0", "amplitude must be finite and positive, but is 0"),
+    ("amplitude = 0.1", "amplitude = 0.1, phase = 2", "unexpected keys in table: phase"),
+    ("bi_parabolic", "square", "unknown variant `square`"),
+    ("samples = 10", "samples = 0", "number of samples must be in 1..=2^40, but is 0"),
+    ("every = 10", "every = 10\nphase = 0.0", "phase of the samples must be in (0, 1], but is 0"),
+    ("values = [0.01, 0.02]", "values = [0.02, 0.01]", "friction has 0.01 after 0.02"),
+    ("values = [0.0, 0.01, 0.01]", "values = [0.7]", "normal inelasticity must be in [0, 0.5], but is 0.7"),
+    ("parameter = \"inelasticity\"", "parameter = \"friction\"", "friction varies twice"),
+];
+
+#[test]
+fn plans_with_errors_are_refused_by_name() {
+    for (line, instead, expected) in REFUSED {
+        assert!(PLAN.contains(line));
+        let error = report(&Plan::<VibratedBox>::from_toml(&PLAN.replacen(line, instead, 1)).unwrap_err());
+        assert!(error.contains(expected), "{instead}: {error}");
+    }
+    let ramps = [
+        ("friction", "width", "width cannot be ramped"),
+        ("friction", "temperature", "there is no parameter `temperature`"),
+        ("values = [0.01, 0.02]", "values = []", "friction has no values"),
+        ("values = [0.01, 0.02]", "values = [0.01, inf]", "a value of friction must be finite, but is inf"),
+        (
+            "values = [0.01, 0.02]",
+            "values = [-1.0]",
+            "static friction must be finite and not negative, but is -1",
+        ),
+    ];
+    for (word, instead, expected) in ramps {
+        let (head, tail) = PLAN.split_once("[ramp]").unwrap();
+        let text = format!("{head}[ramp]{}", tail.replacen(word, instead, 1));
+        let error = report(&Plan::<VibratedBox>::from_toml(&text).unwrap_err());
+        assert!(error.contains(expected), "{instead}: {error}");
+    }
+}
+
+proptest! {
+    #![proptest_config(config(64))]
+
+    /// Every number survives the file, to the last bit.
+    #[test]
+    fn plans_survive_their_file(
+        seed in 0..i64::MAX as u64,
+        gravity in -1e3..1e3_f64,
+        friction in prop::collection::btree_set(0_u64..1 << 52, 1..6),
+        course in prop::sample::select(vec![Course::Up, Course::Down, Course::UpAndDown]),
+        every in 1_u64..1000,
+        phase in 1e-9..=1.0_f64,
+    ) {
+        let values: Vec<f64> = friction.into_iter().map(|bits| bits as f64 / 7e15).collect();
+        let plan = Plan::new(
+            small_box().with_gravity(gravity),
+            Protocol::new(3, 5, every).with_phase(phase),
+            seed,
+        )?
+        .with_ramp(Ramp::new("friction", values, course))?;
+        prop_assert_eq!(Plan::<VibratedBox>::from_toml(&plan.to_toml()?)?, plan);
+    }
+}

@@ -1,0 +1,126 @@
+//! Transitions, bracketed and bisected along a ramp.
+
+use std::fs;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::Duration;
+
+use granular_edmd::study::vibrated_box::VibratedBox;
+use granular_edmd::study::{
+    Axis, Control, Course, Leg, Plan, Progress, Protocol, Ramp, Record, Study, StudyError,
+};
+
+use crate::own::{Mixture, mixture};
+use crate::report::report;
+use crate::support::{AnyError, Scratch, assert_same, contents, small_box};
+
+const WIDTH: f64 = 0.002;
+
+/// Up and down over a transition at 0.137, for two losses.
+fn plan() -> Plan<Mixture> {
+    let ramp = Ramp::new("weight", [0.1, 0.15, 0.2, 0.25], Course::UpAndDown).with_refinement(WIDTH);
+    Plan::new(mixture(), Protocol::new(2, 3, 1), 3)
+        .and_then(|plan| plan.with_axis(Axis::new("loss", [0.0, 0.2])))
+        .and_then(|plan| plan.with_ramp(ramp))
+        .unwrap()
+}
+
+fn done(name: &str) -> (Scratch, Study<Mixture>) {
+    let scratch = Scratch::new(name);
+    let study = Study::create(&scratch.0, &plan()).unwrap();
+    let summary = study.run(&Control::default()).unwrap();
+    assert!(summary.is_complete());
+    // Seven values of each ramp, and five halves of each of two brackets of 0.05.
+    assert_eq!(summary.total, 2 * (7 + 2 * 5));
+    (scratch, study)
+}
+
+#[test]
+fn a_transition_is_bracketed_from_below_and_from_above() -> Result<(), AnyError> {
+    let (scratch, study) = done("refined");
+    for ramp in 0..2 {
+        let brackets = study.transitions(ramp)?;
+        assert_eq!(
+            brackets.iter().map(|bracket| bracket.leg).collect::<Vec<_>>(),
+            [Some(Leg::Up), Some(Leg::Down)]
+        );
+        for bracket in brackets {
+            let (low, high) = (bracket.near.min(bracket.far), bracket.near.max(bracket.far));
+            assert!(low <= 0.137 && 0.137 < high && high - low <= WIDTH, "{bracket:?}");
+        }
+        // The first half starts where the value on the near side has ended.
+        let records: Vec<Record<Mixture>> = study.ramp_records(ramp).collect::<Result<_, _>>()?;
+        let (near, half) = (&records[0], &records[7]);
+        assert!(half.times()[0] > near.state().time() && half.times()[0] < records[1].state().time());
+        assert_eq!(half.at(), Some(0.125));
+    }
+    let table = fs::read_to_string(scratch.0.join("transitions.csv"))?;
+    assert!(table.starts_with("ramp,leg,loss,near,far,from_state,to_state\n0,up,0.0,0.13"), "{table}");
+    assert_eq!(table.lines().count(), 5);
+    Ok(())
+}
+
+#[test]
+fn an_interrupted_refinement_goes_on_with_the_same_bytes() -> Result<(), AnyError> {
+    let (expected, _) = done("refined-not-interrupted");
+    let scratch = Scratch::new("refined-interrupted");
+    let mut runs = 0;
+    loop {
+        let (stop, steps) = (AtomicBool::new(false), AtomicU64::new(0));
+        let progress = |progress: &Progress| {
+            assert!(progress.done <= progress.total);
+            // Values that are known count as one: each run gets further than the one before.
+            let limit = 25 + 4 * runs;
+            stop.store(steps.fetch_add(1, Ordering::Relaxed) > limit, Ordering::Relaxed);
+        };
+        let control = Control::default().with_interrupt(&stop).with_progress(&progress);
+        let study = Study::open_or_create(&scratch.0, &plan())?;
+        if study.run(&control.with_save_interval(Duration::ZERO))?.is_complete() {
+            break;
+        }
+        runs += 1;
+    }
+    assert!(runs > 2, "it was interrupted");
+    assert_same(&scratch.0, &expected.0);
+    Ok(())
+}
+
+#[test]
+fn a_damaged_value_of_a_refinement_is_done_again() -> Result<(), AnyError> {
+    let (scratch, study) = done("refined-damaged");
+    let before = contents(&scratch.0);
+    for value in [1, 9] {
+        let path = scratch.0.join(format!("ramps/0001/{value:04}.record"));
+        fs::write(&path, "cut")?;
+        assert!(matches!(study.record(1, value), Err(StudyError::Damaged { .. })));
+        assert_eq!(study.run(&Control::default())?.redone, [path]);
+        assert!(contents(&scratch.0) == before);
+    }
+    // One of another half is told apart by its place.
+    let [first, second] = ["0007", "0008"].map(|value| scratch.0.join(format!("ramps/0000/{value}.record")));
+    fs::copy(&first, &second)?;
+    assert_eq!(study.run(&Control::default())?.redone, [second]);
+    assert!(contents(&scratch.0) == before);
+    Ok(())
+}
+
+#[test]
+fn the_states_of_the_box_are_its_convective_regimes() -> Result<(), AnyError> {
+    let scratch = Scratch::new("refined-box");
+    let plan = Plan::new(small_box(), Protocol::new(5, 10, 2), 1)?;
+    let study = Study::<VibratedBox>::create(&scratch.0, &plan)?;
+    study.run(&Control::default())?;
+    let record = study.record(0, 0)?.ok_or("no record")?;
+    let state = <VibratedBox as granular_edmd::study::Experiment>::state(&record);
+    assert!(state.is_some_and(|state| !state.is_empty()));
+    assert_eq!(study.transitions(0)?, []);
+    Ok(())
+}
+
+#[test]
+fn a_width_that_cannot_be_is_refused() {
+    for width in [0.0, -1.0, f64::NAN] {
+        let ramp = Ramp::new("weight", [0.1, 0.2], Course::Up).with_refinement(width);
+        let error = Plan::new(mixture(), Protocol::new(1, 1, 1), 1).and_then(|plan| plan.with_ramp(ramp));
+        assert!(report(&error.unwrap_err()).contains("width of a transition must be finite and positive"));
+    }
+}

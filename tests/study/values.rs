@@ -1,0 +1,107 @@
+//! Values: what they record, how long they last, and how they end.
+
+use granular_edmd::study::vibrated_box::{Base, Convection, VibratedBox};
+use granular_edmd::study::{Course, Leg, Outcome, Plan, Protocol, Ramp};
+
+use crate::support::{AnyError, BASE, done, small_box, small_plan};
+
+#[test]
+fn a_study_records_what_it_was_asked_for() {
+    let (_scratch, study) = done(&small_plan(), "records");
+    let records: Vec<_> = study.records().map(Result::unwrap).collect();
+    assert_eq!(records.len(), 10);
+    for record in &records {
+        assert_eq!(record.outcome(), &Outcome::Completed);
+        assert_eq!(record.samples().len(), 6);
+        assert_eq!(record.seed(), study.plan().ramp_seed(record.ramp()));
+        let sampled: u64 = record.samples().iter().map(|sample| sample.collisions).sum();
+        assert!(sampled > 0 && sampled < record.counters().collisions, "settling has collisions too");
+        // All disks are in the profile: its area is theirs.
+        let area: f64 = record.profile().map(|(_, fraction)| fraction * 10.0).sum();
+        approx::assert_relative_eq!(area, 30.0 * std::f64::consts::FRAC_PI_4, max_relative = 1e-3);
+        assert!(record.energy_change().mean() < 0.0 && record.energy_change().standard_error() > 0.0);
+        assert!(
+            !record.energy_change().is_converged() && !record.mean(|sample| sample.height).is_converged()
+        );
+    }
+    let friction: Vec<_> = records[..5].iter().map(|r| r.experiment().friction).collect();
+    assert_eq!(friction, [0.01, 0.1, 0.3, 0.1, 0.01]);
+    assert_eq!(records[3].leg(), Some(Leg::Down));
+    // Time goes on through a ramp, and samples are at whole periods.
+    let period = std::f64::consts::TAU / 10.0;
+    approx::assert_relative_eq!(records[1].times()[0], (85.0 + 35.0) * period, max_relative = 1e-12);
+    assert_ne!(records[0].samples(), records[5].samples(), "ramps have seeds of their own");
+}
+
+/// A value is as long and as sampled as one made by hand with the engine.
+#[test]
+fn a_value_is_the_engine_s_run() -> Result<(), AnyError> {
+    use granular_edmd::observable::{OrderParameters, SampleTimes, Series};
+    let plan = Plan::new(small_box(), Protocol::new(25, 6, 10), 7)?;
+    let (_scratch, study) = done(&plan, "engine");
+    let record = study.record(0, 0)?.ok_or("no record")?;
+    let long = Plan::new(small_box(), Protocol::new(0, 85, 1), 7)?;
+    let (_scratch, study) = done(&long, "engine-every");
+    let every = study.record(0, 0)?.ok_or("no record")?;
+    let thinned: Vec<_> = every.samples().iter().skip(34).step_by(10).map(|sample| sample.one_roll).collect();
+    assert_eq!(record.samples().iter().map(|sample| sample.one_roll).collect::<Vec<_>>(), thinned);
+    assert_eq!(record.state().to_bytes()?, every.state().to_bytes()?);
+    // And from its last state it goes on like any other run.
+    let container = granular_edmd::boundary::Container::closed(10.0, 30.0)?.with_motion(
+        granular_edmd::boundary::Wall::Floor,
+        granular_edmd::wall::BiParabolic::new(0.1, 10.0)?,
+    )?;
+    let rule = granular_edmd::collision::ContactDuration::new(
+        granular_edmd::collision::Frictional::new(0.05, 0.0)?,
+        1e-4,
+    )?;
+    let scheduler = granular_edmd::scheduler::TournamentTree::default();
+    let resumption = granular_edmd::Simulation::resume(record.state(), rule, container);
+    let mut run = resumption.with_another_rule().scheduler(scheduler).build()?;
+    let period = std::f64::consts::TAU / 10.0;
+    let times = SampleTimes::every(10.0 * period)?.starting_at(95.0 * period)?;
+    let mut series = Series::new(OrderParameters, times);
+    run.run_until(95.0 * period, &mut series)?;
+    assert_eq!(series.values().len(), 1);
+    Ok(())
+}
+
+#[test]
+fn other_parameters_ramp_and_other_bases_run() -> Result<(), AnyError> {
+    let thermal =
+        VibratedBox::new(30, 10.0, Base::Thermal { temperature: 1.0, slip: false }).with_gravity(0.1);
+    let ramps = [
+        (small_box(), "gravity", vec![0.01, 0.02]),
+        (small_box(), "amplitude", vec![0.1, 0.2]),
+        (small_box(), "inelasticity", vec![0.0, 0.1]),
+        (thermal, "temperature", vec![1.0, 2.0]),
+    ];
+    for (system, parameter, values) in ramps {
+        let ramp = Ramp::new(parameter, values.clone(), Course::Down);
+        let plan = Plan::new(system, Protocol::new(5, 3, 5), 1)?.with_ramp(ramp)?;
+        let (_scratch, study) = done(&plan, &format!("other-{parameter}"));
+        let last = study.record(0, 1)?.ok_or("no record")?;
+        assert_eq!(last.parameter(parameter), Some(values[0].into()));
+        assert_eq!(last.outcome(), &Outcome::Completed);
+    }
+    Ok(())
+}
+
+/// Without the contact-duration model a vibrated floor stops lossy disks for good: an outcome, not an end.
+#[test]
+fn a_stalled_value_does_not_stop_the_study() -> Result<(), AnyError> {
+    let system = VibratedBox::new(30, 10.0, BASE).with_height(30.0).with_gravity(0.5);
+    let ramp = Ramp::new("inelasticity", vec![0.0, 0.45], Course::UpAndDown);
+    let plan = Plan::new(system, Protocol::new(50, 5, 10), 1)?.with_ramp(ramp)?;
+    let (_scratch, study) = done(&plan, "stalled");
+    let outcomes: Vec<_> =
+        study.records().map(|record| record.map(|r| r.outcome().name())).collect::<Result<_, _>>()?;
+    assert_eq!(outcomes, ["completed", "stalled", "completed"]);
+    let (before, stalled, after) = (study.record(0, 0)?, study.record(0, 1)?, study.record(0, 2)?);
+    let time = |record: &Option<granular_edmd::study::Record<VibratedBox>>| {
+        record.as_ref().map(|r| r.state().time())
+    };
+    assert_eq!(time(&before), time(&stalled), "the next value starts where this one did");
+    assert!(time(&after) > time(&stalled));
+    Ok(())
+}
