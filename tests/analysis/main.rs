@@ -1,6 +1,7 @@
 //! Clusters, states, transitions and block averages, on data whose answer is known.
 
 mod clusters;
+mod convective_states;
 mod states;
 
 use granular_edmd::ParameterError;

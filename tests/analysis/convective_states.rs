@@ -1,7 +1,7 @@
 //! The states of the paper's system at q = 0 and g = 1/64, found by running it: half a minute in release.
 //!
 //! ```text
-//! cargo test --release --test convective_states -- --ignored
+//! cargo test --release --test analysis convective_states -- --ignored
 //! ```
 
 use std::error::Error;

@@ -1,7 +1,7 @@
 //! Very long runs: no drift of the energy, no overlap beyond rounding, and late times as good as early ones.
 //!
 //! ```text
-//! COLLISIONS=10000000 cargo test --release --test engine -- --ignored --nocapture for_a_billion_collisions
+//! COLLISIONS=10000000 cargo test --release --test simulation -- --ignored --nocapture for_a_billion_collisions
 //! ```
 
 use granular_edmd::boundary::{Boundary, Container, Wall};

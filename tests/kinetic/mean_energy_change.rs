@@ -1,8 +1,6 @@
 //! The mean energy loss per collision: two roads to it, and the paper's figures of it.
 
-#[path = "support/cases.rs"]
-mod cases;
-
+use crate::cases;
 use granular_edmd::collision::{
     CollisionRule, Contact, Elastic, Encounter, Frictional, Impulse, Rough, Smooth, collide, from_fn,
 };

@@ -9,7 +9,7 @@ use granular_edmd::wall::{
     AccelerationBounds, BiParabolic, Fixed, Sawtooth, Sinusoidal, Triangular, WallMotion, WallState, laws,
 };
 
-use crate::{AMPLITUDE, FREQUENCY, Loose, PERIOD, motions};
+use super::{AMPLITUDE, FREQUENCY, Loose, PERIOD, motions};
 
 /// All that a motion says of a time.
 fn said<M: WallMotion>(

@@ -1,7 +1,5 @@
 //! Measurements as data: written half way and read back, they end with the bits of one without interruption.
 
-#![cfg(feature = "serde")]
-
 use granular_edmd::boundary::{Boundary, Container, Region, Wall};
 use granular_edmd::collision::{ContactDuration, Frictional};
 use granular_edmd::glam::DVec2;

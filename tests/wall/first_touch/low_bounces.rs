@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use granular_edmd::wall::{Approach, Sinusoidal, Triangular, WallMotion, WallState, first_touch};
 
-use crate::{AMPLITUDE, FREQUENCY, Flight, Loose, PERIOD};
+use super::{AMPLITUDE, FREQUENCY, Flight, Loose, PERIOD};
 
 /// A disk that leaves a sine so slowly that the whole bounce is lower than rounding: it ends when the gap
 /// closes as fast as it opened.

@@ -1,0 +1,7 @@
+//! Boundaries: the container in exact numbers, the contract, which each planted fault breaks, names and fingerprints.
+
+mod container;
+mod contract;
+mod fingerprints;
+mod names;
+mod planted;

@@ -1,0 +1,7 @@
+//! The kinetic floor: two roads to the mean energy change, the Monte Carlo average, and the paper's section II.
+
+#[path = "../support/cases.rs"]
+mod cases;
+mod mean_energy_change;
+mod monte_carlo;
+mod paper_energy_loss;

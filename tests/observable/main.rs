@@ -1,0 +1,7 @@
+//! Observables of known states, observers against the bare list of collisions, their contract, and their files.
+
+#[cfg(feature = "serde")]
+mod measurements;
+mod observables;
+mod observers;
+mod profiles_and_fields;
