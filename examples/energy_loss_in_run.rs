@@ -1,5 +1,5 @@
-//! The mean energy loss of the Maxwellian gas and of the real one, side by side: the paper's central quantity, held
-//! against the simulation of its own system.
+//! The mean energy loss of the Maxwellian gas and of the simulated one, side by side: the paper's central
+//! quantity, compared with a simulation of the paper's own system.
 //!
 //! ```text
 //! cargo run --release --example energy_loss_in_run
@@ -12,7 +12,7 @@ use granular_edmd::kinetic::{Maxwellian, mean_energy_change};
 use granular_edmd::observable::EnergyChangeProfile;
 use granular_edmd::prelude::*;
 
-/// Oscillations before measuring, and while measuring.
+/// Numbers of oscillations before measuring, and while measuring.
 const OSCILLATIONS: (f64, f64) = (2000.0, 2000.0);
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Energy changes and temperatures by height, in the paper's box, once it has settled.
+/// Measures energy changes and temperatures by height in the paper's box, once it has settled.
 fn measured(rule: Frictional) -> Result<EnergyChangeProfile, Box<dyn Error>> {
     let base = BiParabolic::new(0.1, 10.0)?;
     let oscillation = TAU / base.angular_frequency();
