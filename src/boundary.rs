@@ -36,7 +36,8 @@ use crate::{Fingerprint, Flight};
 /// # Contract
 /// An implementation guarantees:
 /// 1. [`domain`](Self::domain), [`interior`](Self::interior) and [`wall_count`](Self::wall_count) never
-///    change. A disk that has not passed a wall has its center in the domain at all times.
+///    change. The domain has finite sides and a finite bottom; only its top may be infinite. A disk that has
+///    not passed a wall has its center in the domain at all times.
 /// 2. [`may_touch`](Self::may_touch) holds for all times: it is false only for a region in which no disk of
 ///    this radius, or a smaller one, can touch a wall at any time. If it is true for a region, it is true for
 ///    every larger region around that one.
@@ -56,7 +57,8 @@ use crate::{Fingerprint, Flight};
 /// - The origin is set before the first question and whenever the epoch of the run moves. No time before the
 ///   origin is asked for.
 /// - Flights have finite numbers, begin at the present, in the domain, and end where the disk leaves a cell,
-///   at most a few epochs later. At periodic sides a flight ends at the side.
+///   at most two epochs later (`until`). In an epoch, a typical disk goes some tens of diameters. At periodic
+///   sides, a flight ends at the side.
 /// - `first_touch` is asked only in cells for which `may_touch` holds with the largest of all radii. Cells at
 ///   the edges of the domain reach to infinity.
 /// - `surface` is asked at a touch that `first_touch` found, for the wall, the time and the place of the disk

@@ -228,17 +228,29 @@ fn killed(round: u64, kills: usize) -> BTreeMap<PathBuf, Vec<u8>> {
     contents(&folder)
 }
 
+/// Checks file by file, so that a failure names the file.
+fn assert_same(found: &BTreeMap<PathBuf, Vec<u8>>, expected: &BTreeMap<PathBuf, Vec<u8>>) {
+    assert!(found.keys().eq(expected.keys()), "{:?} {:?}", found.keys(), expected.keys());
+    for (name, bytes) in expected {
+        assert!(found[name] == *bytes, "{} differs", name.display());
+    }
+}
+
 #[test]
 fn studies_killed_at_random_moments_end_with_the_same_bytes() {
     let expected = expected("killed-not");
-    assert!((0..2).all(|round| killed(round, 8) == expected));
+    for round in 0..2 {
+        assert_same(&killed(round, 8), &expected);
+    }
 }
 
 #[test]
 #[ignore = "a minute: the same at many more moments"]
 fn studies_killed_at_many_random_moments_end_with_the_same_bytes() {
     let expected = expected("killed-often-not");
-    assert!((100..130).all(|round| killed(round, 25) == expected));
+    for round in 100..130 {
+        assert_same(&killed(round, 25), &expected);
+    }
 }
 
 #[test]

@@ -5,6 +5,9 @@ use crate::simulation::errors::{Outcome, RunError};
 
 /// Number of floating-point times that an epoch must contain at least. A typical disk then goes at most about
 /// a diameter from one to the next.
+///
+/// So few times suffice, because epochs are powers of two, and so are the distances between these times.
+/// Adding an epoch to the origin is therefore exact, and moving walls do not jump.
 const TIMES_IN_EPOCH: f64 = 64.0;
 
 /// The numbers of cell crossings and of collisions of two disks when the epoch last moved.
@@ -77,6 +80,11 @@ impl Clock {
     /// hold, and leaves the rest to the offset of the present.
     pub(in crate::simulation) fn exact_offset(&self) -> f64 {
         let nearest = self.time();
+        // At times beyond twice the origin, the difference below need not be exact. Times are then no coarser
+        // than offsets, and the epoch may move to the present itself.
+        if self.now > self.origin.abs() {
+            return self.now;
+        }
         let by = nearest - self.origin;
         if by <= self.now { by } else { nearest.next_down() - self.origin }
     }
@@ -93,5 +101,28 @@ impl Clock {
         self.origin += by;
         self.now -= by;
         self.guard.shift(by);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_xoshiro::Xoshiro256PlusPlus;
+
+    use super::Clock;
+
+    #[test]
+    fn an_epoch_that_begins_for_a_kick_takes_time_neither_back_nor_on() {
+        let mut generator = Xoshiro256PlusPlus::seed_from_u64(1);
+        for _ in 0..100_000 {
+            let sign = if generator.random() { 1.0 } else { -1.0 };
+            let origin = sign * f64::powi(2.0, generator.random_range(-30..30)) * generator.random::<f64>();
+            let now = f64::powi(2.0, generator.random_range(-30..30)) * generator.random::<f64>();
+            let mut clock = Clock { now, ..Clock::new(origin, 1.0) };
+            let (time, by) = (clock.time(), clock.exact_offset());
+            clock.shift(by);
+            assert!(clock.now >= 0.0, "{origin:e} {now:e}");
+            assert_eq!(clock.time(), time, "{origin:e} {now:e}");
+        }
     }
 }
