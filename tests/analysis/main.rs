@@ -70,7 +70,7 @@ fn block_error_is_that_of_an_autoregressive_series() -> Outcome {
             assert!((growth.sqrt() - 1.0).abs() < 0.35, "{rho}: {average:?}");
             squares += (average.mean() / average.standard_error()).powi(2);
         }
-        // Mean of 40 squared normals: standard error 0.22, and 1/error^2 is biased up by a few per cent.
+        // Mean of 40 squared normals: standard error 0.22, and 1/error^2 is biased up by a few percent.
         let chi = squares / runs as f64;
         assert!((0.35..1.9).contains(&chi), "{rho}: {chi}");
     }

@@ -261,7 +261,7 @@ proptest! {
         prop_assert!((equal - unequal).abs() <= 1e-13, "{equal} {unequal}");
     }
 
-    /// The loss at the maximiser against a scan over eight decades of friction.
+    /// The loss at the maximizer against a scan over eight decades of friction.
     #[test]
     fn no_friction_loses_more_than_the_maximiser(rule in rules(), gas in gases()) {
         let ratio =
