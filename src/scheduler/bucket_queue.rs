@@ -14,7 +14,7 @@ use piles::Piles;
 /// buckets, and the ends of all of them stay in the caches.
 const EVENTS_PER_BUCKET: usize = 512;
 
-/// Number of events of a page for each disk. Two of them share the cost of dealing out all disks anew.
+/// Number of events of a page for each disk, which share the cost of dealing out that disk anew.
 const EVENTS_PER_DISK: usize = 2;
 
 /// Number of events for each disk after which a page is turned at the latest. The page was meant to last half
