@@ -165,7 +165,7 @@ fn maps() -> [Map; 4] {
             lowest: Lowest::Zero,
         },
         Map {
-            name: "velocity; colour: upward",
+            name: "velocity; color: upward",
             value: |cell| cell.velocity.y,
             color: |share| sheet::diverging(2.0 * share - 1.0),
             lowest: Lowest::Opposite,

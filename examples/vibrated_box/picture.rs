@@ -107,7 +107,7 @@ fn write_header(sheet: &mut Sheet, arguments: &Arguments, outcome: &Outcome) {
          friction κ = {friction}"
     );
     let legend = format!(
-        "disks: coloured by their spin, blue clockwise, red counterclockwise    \
+        "disks: colored by their spin, blue clockwise, red counterclockwise    \
          arrows: mean velocity in the second half, the longest {:.2}",
         fastest(outcome)
     );

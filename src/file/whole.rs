@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_unique_and_recognised() {
+    fn names_are_unique_and_recognized() {
         let names: HashSet<String> = (0..1000).map(|_| unique_name()).collect();
         assert_eq!(names.len(), 1000);
         assert!(names.iter().all(|name| is_temporary(OsStr::new(name))));

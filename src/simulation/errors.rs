@@ -132,7 +132,7 @@ pub enum RunError {
     #[error("the collision of {0}")]
     NotFinite(Box<FailedCollision>),
     /// The boundary gave an impossible answer.
-    #[error("the boundary's answer for disk {disk} at time {time} cannot be: {fault}")]
+    #[error("the boundary gave an impossible answer for disk {disk} at time {time}: {fault}")]
     Boundary {
         /// The disk about which it was asked.
         disk: usize,

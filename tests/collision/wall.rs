@@ -77,8 +77,8 @@ proptest! {
         let size = momentum(&disk).length() + momentum(&bounced).length();
         prop_assert!((momentum(&bounced) - momentum(&disk) - kick).length() <= 8.0 * EPSILON * size);
         // The arm is taken from the center: the position of the disk is another matter.
-        let centred = |disk: &Disk| disk.with_position(DVec2::ZERO).unwrap();
-        let (disk, bounced) = (centred(&disk), centred(&bounced));
+        let centered = |disk: &Disk| disk.with_position(DVec2::ZERO).unwrap();
+        let (disk, bounced) = (centered(&disk), centered(&bounced));
         let touch = -normal * disk.radius();
         let change = angular_momentum(&bounced, touch) - angular_momentum(&disk, touch);
         let size = angular_magnitude(&bounced, touch) + angular_magnitude(&disk, touch);

@@ -263,7 +263,7 @@ proptest! {
 
     /// The loss at the maximizer against a scan over eight decades of friction.
     #[test]
-    fn no_friction_loses_more_than_the_maximiser(rule in rules(), gas in gases()) {
+    fn no_friction_loses_more_than_the_maximizer(rule in rules(), gas in gases()) {
         let ratio =
             if rule.static_friction() == 0.0 { 1.0 } else { rule.dynamic_friction() / rule.static_friction() };
         let at = |friction: f64| {
