@@ -115,10 +115,6 @@ impl Bodies {
         self.kinds.disks()
     }
 
-    pub(in crate::simulation) fn largest_radius(&self) -> f64 {
-        self.kinds.largest_radius()
-    }
-
     pub(in crate::simulation) fn len(&self) -> usize {
         self.particles.len()
     }

@@ -59,13 +59,6 @@ impl Kinds {
         }
     }
 
-    pub(super) fn largest_radius(&self) -> f64 {
-        match self {
-            Self::Same(kind) => kind.disk.radius(),
-            Self::Each(each) => each.iter().map(|kind| kind.disk.radius()).fold(0.0, f64::max),
-        }
-    }
-
     /// Returns the diameter, if all disks have the same one.
     #[inline]
     pub(super) fn common_diameter(&self) -> Option<f64> {
