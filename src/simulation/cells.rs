@@ -16,13 +16,11 @@ use crate::boundary::{Boundary, Region};
 use crate::prefetch::prefetch;
 pub(super) use cell_size::CellSize;
 use contents::Contents;
-#[cfg(feature = "serde")]
-pub(super) use grid::{CELLS_PER_DISK, SPARE_CELLS};
-pub(super) use grid::{Grid, Layout, Place};
+pub(super) use grid::{CELLS_PER_DISK, Grid, Layout, Place, SPARE_CELLS};
 #[cfg(feature = "serde")]
 pub(super) use layers::Grids;
-use layers::Layers;
 pub(super) use layers::Layouts;
+use layers::{Layers, layouts};
 use size_class::classes;
 
 /// The disks in the cells of a grid.
@@ -47,22 +45,14 @@ impl Cells {
     ) -> Option<Self> {
         let domain = boundary.domain();
         let diameters = disks.clone().map(|(_, radius)| 2.0 * radius);
-        let mut classes = classes(diameters.clone());
-        if classes.is_empty() {
-            // Any cells do without disks.
-            classes.push(0.125 * domain.width());
-        }
         let highest = disks.clone().map(|(position, _)| position.y).fold(domain.bottom, f64::max);
-        let layout = |diameter: f64| Layout::new(&domain, diameter, cell_size, disks.len(), highest);
-        let largest = *classes.last()?;
-        let single = layout(largest)?;
-        let counts = layers::counts(&classes, diameters.clone());
-        let layered = layout(classes[0]).and_then(|smallest| {
-            let grid = Grid::new(&domain, smallest, classes[0]);
-            let larger = layers::layouts(&domain, &grid, cell_size, &classes, &counts, highest)?;
-            Some(Layouts { smallest, larger })
-        });
+        let classes = classes(diameters.clone());
+        // Any cells do without disks.
+        let largest = classes.last().map_or(0.125 * domain.width(), |class| class.largest);
+        let most = CELLS_PER_DISK * disks.len() as f64 + SPARE_CELLS;
+        let single = Layout::new(&domain, largest, cell_size, most, highest)?;
         // Where the sides are periodic and too close, all disks share the cells of the largest.
+        let layered = if classes.len() > 1 { layouts(&domain, &classes, cell_size, highest) } else { None };
         let layouts = layered.unwrap_or(Layouts { smallest: single, larger: Vec::new() });
         let mut cells = Self::empty(boundary, &layouts, diameters)?;
         cells.places =
@@ -92,7 +82,7 @@ impl Cells {
     ) -> Option<Self> {
         let domain = boundary.domain();
         let classes = layouts.classes(&domain, diameters.clone())?;
-        let grid = Grid::new(&domain, layouts.smallest, classes[0]);
+        let grid = Grid::new(&domain, layouts.smallest, classes[0].largest);
         let contents = Contents::empty(grid.len(), 1);
         let layers = (!layouts.larger.is_empty()).then(|| {
             let mut layers = Layers::empty(&domain, &grid, &classes, &layouts.larger, diameters);
@@ -100,7 +90,7 @@ impl Cells {
             Box::new(layers)
         });
         let mut cells = Self { grid, contents, places: Vec::new(), layers };
-        cells.mark_walls(boundary, 0.5 * classes[0]);
+        cells.mark_walls(boundary, 0.5 * classes[0].largest);
         Some(cells)
     }
 

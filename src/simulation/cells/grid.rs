@@ -56,12 +56,13 @@ pub(in crate::simulation) struct Layout {
 }
 
 impl Layout {
-    /// Returns the layout for `count` disks of at most this diameter, or `None` if the domain is too small.
+    /// Returns the layout of at most so many cells for disks of at most this diameter, or `None` if the domain is
+    /// too small.
     pub(in crate::simulation) fn new(
         domain: &Domain,
         diameter: f64,
         cell_size: CellSize,
-        count: usize,
+        most: f64,
         highest: f64,
     ) -> Option<Self> {
         let width = domain.width();
@@ -70,7 +71,6 @@ impl Layout {
         } else {
             2.0 * open_height(domain, highest, diameter)
         };
-        let most = CELLS_PER_DISK * count as f64 + SPARE_CELLS;
         let pitch = (cell_size.pitch() * diameter).max((width * height / most).sqrt());
         let along = |length: f64, pitch: f64| (length / pitch).floor().max(1.0);
         let mut columns = along(width, pitch).min(most.floor());

@@ -7,7 +7,17 @@ use super::cell_size::CellSize;
 use super::contents::Contents;
 use super::grid::{Grid, Layout, Place};
 use super::reach::{Homes, Reach};
+use super::size_class::SizeClass;
 use crate::boundary::{Boundary, Domain, Region};
+
+/// Homes per disk at most: empty ones are looked into, too.
+const HOMES_PER_DISK: f64 = 4.0;
+
+/// Homes that are always allowed.
+const SPARE_HOMES: f64 = 16.0;
+
+/// Size of a cell in free paths, for cells as large as a disk of the smallest class.
+const FREE_PATHS: f64 = 3.0;
 
 /// Doublings by which cells are finer than homes, at most.
 const FINEST: u32 = 10;
@@ -23,19 +33,26 @@ pub(in crate::simulation) struct LayerLayout {
 }
 
 impl LayerLayout {
-    /// Returns the homes for `count` disks of at most this diameter, with cells that suit a class of another diameter, too;
-    /// `None` if the domain is too small.
+    /// Returns the layout for one of several classes of disks; `None` if the domain is too small.
     pub(super) fn new(
         domain: &Domain,
-        (diameter, smallest): (f64, f64),
+        classes: &[SizeClass],
+        class: usize,
         cell_size: CellSize,
-        count: usize,
         highest: f64,
     ) -> Option<Self> {
-        let homes = Layout::new(domain, diameter, cell_size, count, highest)?;
-        // Small cells have few partners, and are passed often: between the two, as far from either.
-        let suitable = cell_size.pitch() * (diameter * smallest).sqrt();
-        let doublings = (homes.pitch.max_element() / suitable).log2().ceil().clamp(0.0, f64::from(FINEST));
+        let SizeClass { largest, count, .. } = classes[class];
+        let most = HOMES_PER_DISK * count as f64 + SPARE_HOMES;
+        let homes = Layout::new(domain, largest, cell_size, most, highest)?;
+        let height = domain.height().min(highest - domain.bottom + largest);
+        let density = |class: &SizeClass| class.count as f64 / (domain.width() * height);
+        // The way from one collision to the next, but for a factor of order 1.
+        let free_path =
+            1.0 / classes.iter().map(|other| density(other) * (largest + other.largest)).sum::<f64>();
+        // Small cells have few partners, and are passed often; no smaller than those that they reach into.
+        let suitable =
+            (FREE_PATHS * cell_size.pitch() * free_path).max(cell_size.pitch() * classes[0].largest);
+        let doublings = (homes.pitch.max_element() / suitable).log2().round().clamp(0.0, f64::from(FINEST));
         Some(Self { cells: homes, doublings: 0 }.finer(doublings as u32))
     }
 
@@ -176,8 +193,6 @@ pub(super) fn gather(
     found: &mut [u32],
     mut count: usize,
 ) -> usize {
-    for (first, homes) in reach.homes(place) {
-        count = contents.gather_run(first, homes, found, count);
-    }
+    reach.for_each_run(place, |first, homes| count = contents.gather_run(first, homes, found, count));
     count
 }

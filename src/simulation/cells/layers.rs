@@ -3,9 +3,15 @@
 use super::cell_size::CellSize;
 use super::grid::{Grid, LEAST_PITCH, Layout, Place};
 use super::layer::{Layer, LayerLayout, gather};
-use super::reach::{Homes, Reach};
-use super::size_class::{class_of, classes};
+use super::reach::{Distances, Homes, Reach};
+use super::size_class::{SizeClass, class_of, classes, together};
 use crate::boundary::{Boundary, Domain};
+
+/// Cells per disk of the smallest class at most.
+const CELLS_PER_SMALL_DISK: f64 = 6.0;
+
+/// Cells of the smallest class that are always allowed.
+const SPARE_SMALL_CELLS: f64 = 64.0;
 
 /// The layers of all classes but the smallest.
 #[derive(Debug, Clone)]
@@ -17,24 +23,25 @@ pub(super) struct Layers {
     upward: Vec<Reach>,
 }
 
-/// Returns the layouts of the layers above a grid for the smallest of these classes; `None` if the domain is too narrow for them.
+/// Returns the layouts of the cells of these classes; `None` if the domain is too narrow for them.
 pub(super) fn layouts(
     domain: &Domain,
-    grid: &Grid,
+    classes: &[SizeClass],
     cell_size: CellSize,
-    classes: &[f64],
-    counts: &[usize],
     highest: f64,
-) -> Option<Vec<LayerLayout>> {
-    let layout = |(&diameter, &count): (&f64, &usize)| {
-        let layout = LayerLayout::new(domain, (diameter, classes[0]), cell_size, count, highest)?;
-        if domain.periodic {
-            layout.narrower(widest(domain, grid, classes[0], diameter))
-        } else {
-            Some(layout)
-        }
+) -> Option<Layouts> {
+    let SizeClass { largest: diameter, count, .. } = classes[0];
+    // Large disks look into many of these cells: fewer than where all disks have the same.
+    let most = CELLS_PER_SMALL_DISK * count as f64 + SPARE_SMALL_CELLS;
+    let smallest = Layout::new(domain, diameter, cell_size, most, highest)?;
+    let grid = Grid::new(domain, smallest, diameter);
+    let layout = |class: usize| {
+        let layout = LayerLayout::new(domain, classes, class, cell_size, highest)?;
+        let widest = widest(domain, &grid, diameter, classes[class].largest);
+        if domain.periodic { layout.narrower(widest) } else { Some(layout) }
     };
-    classes.iter().zip(counts).skip(1).map(layout).collect()
+    let larger: Option<Vec<LayerLayout>> = (1..classes.len()).map(layout).collect();
+    Some(Layouts { smallest, larger: larger? })
 }
 
 /// Returns how wide a cell of a class may be at periodic sides.
@@ -54,17 +61,21 @@ impl Layers {
     pub(super) fn empty(
         domain: &Domain,
         grid: &Grid,
-        classes: &[f64],
+        classes: &[SizeClass],
         layouts: &[LayerLayout],
         diameters: impl Iterator<Item = f64>,
     ) -> Self {
         let mut larger: Vec<Layer> = layouts.iter().map(|&layout| Layer::empty(domain, layout)).collect();
-        let distance = |a: usize, b: usize| 0.5 * LEAST_PITCH * (classes[a] + classes[b]);
+        let distances = |a: usize, b: usize| Distances {
+            most: 0.5 * LEAST_PITCH * (classes[a].largest + classes[b].largest),
+            // Less, by more than the depth to which rounding can press disks into each other.
+            least: 0.5 / LEAST_PITCH * (classes[a].smallest + classes[b].smallest),
+        };
         let homes = |class: usize| match class {
             0 => homes_of(grid),
             class => larger[class - 1].homes(),
         };
-        let reach = |from: &Grid, a: usize, b: usize| Reach::new(from, &homes(b), distance(a, b));
+        let reach = |from: &Grid, a: usize, b: usize| Reach::new(from, &homes(b), distances(a, b));
         let upward = (1..classes.len()).map(|class| reach(grid, 0, class)).collect();
         let among = |a: usize| (0..classes.len()).map(|b| reach(&larger[a - 1].grid, a, b)).collect();
         let reaches: Vec<Vec<Reach>> = (1..classes.len()).map(among).collect();
@@ -74,9 +85,9 @@ impl Layers {
         Self { classes: diameters.map(|diameter| class_of(classes, diameter)).collect(), larger, upward }
     }
 
-    pub(super) fn mark_walls<B: Boundary + ?Sized>(&mut self, boundary: &B, classes: &[f64]) {
-        for (layer, diameter) in self.larger.iter_mut().zip(&classes[1..]) {
-            layer.mark_walls(boundary, 0.5 * diameter);
+    pub(super) fn mark_walls<B: Boundary + ?Sized>(&mut self, boundary: &B, classes: &[SizeClass]) {
+        for (layer, class) in self.larger.iter_mut().zip(&classes[1..]) {
+            layer.mark_walls(boundary, 0.5 * class.largest);
         }
     }
 
@@ -124,15 +135,6 @@ fn homes_of(grid: &Grid) -> Homes<'_> {
     Homes { grid, cells: 1, stride: grid.stride(), first: grid.stride() + 1 }
 }
 
-/// Returns how many disks each class has.
-pub(super) fn counts(classes: &[f64], diameters: impl Iterator<Item = f64>) -> Vec<usize> {
-    let mut counts = vec![0; classes.len()];
-    for diameter in diameters {
-        counts[usize::from(class_of(classes, diameter))] += 1;
-    }
-    counts
-}
-
 /// The layouts of all cells: what a run must keep to go on with the same bits.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -144,16 +146,18 @@ pub(in crate::simulation) struct Layouts {
 }
 
 impl Layouts {
-    /// Returns the largest diameter of each class that has cells of its own; `None` if there are not as many layers.
+    /// Returns the classes of disks that have cells of their own; `None` if there are not as many layers.
     pub(in crate::simulation) fn classes(
         &self,
         domain: &Domain,
         diameters: impl Iterator<Item = f64>,
-    ) -> Option<Vec<f64>> {
+    ) -> Option<Vec<SizeClass>> {
         let classes = classes(diameters);
         if self.larger.is_empty() {
             // Any cells do without disks.
-            return Some(vec![classes.last().copied().unwrap_or(0.125 * domain.width())]);
+            let any = 0.125 * domain.width();
+            let nobody = SizeClass { largest: any, smallest: any, count: 0 };
+            return Some(vec![together(&classes).unwrap_or(nobody)]);
         }
         (classes.len() == self.larger.len() + 1).then_some(classes)
     }
@@ -171,10 +175,10 @@ impl Grids {
     pub(in crate::simulation) fn new(
         domain: &Domain,
         layouts: &Layouts,
-        classes: &[f64],
+        classes: &[SizeClass],
         diameters: impl Iterator<Item = f64>,
     ) -> Self {
-        let smallest = Grid::new(domain, layouts.smallest, classes[0]);
+        let smallest = Grid::new(domain, layouts.smallest, classes[0].largest);
         let larger = layouts.larger.iter().map(|layer| Grid::without_margin(domain, layer.cells));
         let classes = diameters.map(|diameter| class_of(classes, diameter)).collect();
         Self { grids: std::iter::once(smallest).chain(larger).collect(), classes }

@@ -69,10 +69,11 @@ pub(super) fn grids(saved: &Saved, bodies: &Bodies) -> Option<Grids> {
     let layouts = &saved.layouts;
     let diameters = (0..bodies.len()).map(|disk| 2.0 * bodies.material(disk).radius);
     let classes = layouts.classes(&saved.domain, diameters.clone())?;
-    let suits = suits(saved, &layouts.smallest, classes[0])
-        && layouts.larger.iter().zip(&classes[1..]).all(|(layer, &diameter)| {
-            layer.homes().is_some_and(|homes| suits(saved, &homes, diameter))
-                && layer.is_narrow_enough(&saved.domain, &layouts.smallest, classes[0], diameter)
+    let smallest = classes[0].largest;
+    let suits = suits(saved, &layouts.smallest, smallest)
+        && layouts.larger.iter().zip(&classes[1..]).all(|(layer, class)| {
+            layer.homes().is_some_and(|homes| suits(saved, &homes, class.largest))
+                && layer.is_narrow_enough(&saved.domain, &layouts.smallest, smallest, class.largest)
         });
     if !suits {
         return None;

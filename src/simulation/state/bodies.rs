@@ -131,6 +131,11 @@ impl Bodies {
     }
 
     #[inline]
+    pub(in crate::simulation) fn radius(&self, disk: usize) -> f64 {
+        self.kinds.radius(disk)
+    }
+
+    #[inline]
     pub(in crate::simulation) fn material(&self, disk: usize) -> &Material {
         &self.kinds.get(disk).material
     }
