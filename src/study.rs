@@ -51,6 +51,7 @@ mod lock;
 mod measurement;
 mod parameters;
 mod plan;
+mod point;
 mod protocol;
 mod ramp;
 mod record;
@@ -68,8 +69,9 @@ pub use errors::{PlanError, StudyError};
 pub use experiment::{Experiment, ExperimentError, Run};
 pub use parameters::Difference;
 pub use plan::Plan;
+pub use point::Point;
 pub use protocol::Protocol;
-pub use ramp::{Axis, Course, Leg, Ramp};
+pub use ramp::{Axis, Course, Leg, Ramp, Width};
 pub use record::{Outcome, Record};
 pub use refinement::Bracket;
 pub use scalar::Scalar;
@@ -196,11 +198,31 @@ impl<E: Experiment> Study<E> {
         let values = self.plan.values();
         let own = (0..values).filter_map(move |value| self.record(ramp, value).transpose());
         // Those of a refinement have no gaps, and their number is known at the end only.
-        let is_refined = self.plan.ramp().is_some_and(|ramp| ramp.refine().is_some());
+        let is_refined = self.plan.is_refined();
         let more = (values..)
             .take_while(move |_| is_refined)
             .map_while(move |value| self.record(ramp, value).transpose());
         own.chain(more)
+    }
+
+    /// Returns a value of a point of the grid, with all repeats that are finished; `None` if none is.
+    ///
+    /// # Errors
+    /// If a record is damaged, of another study, or cannot be read.
+    pub fn point(&self, index: usize, value: usize) -> Result<Option<Point<E>>, StudyError> {
+        let repeats = self.plan.repeats();
+        let ramps = index * repeats..(index + 1) * repeats;
+        let records = ramps.filter_map(|ramp| self.record(ramp, value).transpose());
+        Ok(Point::of(index, value, records.collect::<Result<_, _>>()?))
+    }
+
+    /// Returns all values of all points of the grid of which a repeat is finished, read one by one.
+    ///
+    /// The values that a refinement adds are others in each repeat, and are not among them.
+    pub fn points(&self) -> impl Iterator<Item = Result<Point<E>, StudyError>> {
+        let values = move |index| (0..self.plan.values()).map(move |value| (index, value));
+        let places = (0..self.plan.points()).flat_map(values);
+        places.filter_map(|(index, value)| self.point(index, value).transpose())
     }
 
     /// Returns the transitions that a refined ramp has bracketed; none before all of them are.
@@ -210,7 +232,11 @@ impl<E: Experiment> Study<E> {
     pub fn transitions(&self, ramp: usize) -> Result<Vec<Bracket>, StudyError> {
         let seen: Vec<Seen> =
             self.ramp_records(ramp).map(|record| Ok(record?.seen())).collect::<Result<_, StudyError>>()?;
-        Ok(self.plan.ramp().map_or_else(Vec::new, |ramp| ramp.brackets(&seen)))
+        Ok(self.brackets(&seen))
+    }
+
+    fn brackets(&self, seen: &[Seen]) -> Vec<Bracket> {
+        self.plan.ramp().map_or_else(Vec::new, |ramp| ramp.brackets(seen))
     }
 
     /// Writes the tables of all records that there are; returns how many.
@@ -230,8 +256,7 @@ impl<E: Experiment> Study<E> {
                 seen.push(record.seen());
                 finished += 1;
             }
-            tables
-                .add_transitions(ramp, &self.plan.ramp().map_or_else(Vec::new, |ramp| ramp.brackets(&seen)));
+            tables.end_ramp(ramp, &self.brackets(&seen));
         }
         let tables = tables.finish();
         self.folder.write_tables(tables.iter().map(|(name, text)| (name.as_str(), text.as_str())))?;

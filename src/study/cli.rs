@@ -77,6 +77,9 @@ enum Command {
     Status {
         /// Folder of the study.
         folder: PathBuf,
+        /// Tells it as JSON, with the indices of the ramps.
+        #[arg(long)]
+        json: bool,
     },
     /// Writes the tables of what is done.
     Tables {
@@ -117,7 +120,7 @@ pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>)
         Command::New { file } => new(example, file.as_deref()),
         Command::Check { plan } => check::<E>(&plan),
         Command::Run { plan, out, ramp, threads, no_wait } => run::<E>(&plan, &out, ramp, threads, no_wait),
-        Command::Status { folder } => status::<E>(&folder),
+        Command::Status { folder, json } => status::<E>(&folder, json),
         Command::Tables { folder } => tables::<E>(&folder),
     };
     match ended {
@@ -201,15 +204,25 @@ fn run<E: Experiment>(
     })
 }
 
-fn status<E: Experiment>(folder: &Path) -> Result<End, Failure> {
+fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
     let study = Study::<E>::open(folder)?;
     let ramps = study.plan().ramps();
     let all: Vec<RampStatus> = (0..ramps).map(|ramp| study.status(ramp)).collect();
-    let count = |wanted| all.iter().filter(|status| **status == wanted).count();
-    let [done, running] = [RampStatus::Done, RampStatus::Running].map(count);
-    let [begun, waiting] = [RampStatus::Begun, RampStatus::Waiting].map(count);
-    say(&format!("{ramps} ramps: {done} done, {running} running, {begun} begun, {waiting} waiting"));
-    Ok(if done == ramps { End::Done } else { End::Elsewhere })
+    let of = |wanted| (0..ramps).filter(|&ramp| all[ramp] == wanted).collect::<Vec<usize>>();
+    let found = [
+        ("done", of(RampStatus::Done)),
+        ("running", of(RampStatus::Running)),
+        ("begun", of(RampStatus::Begun)),
+        ("waiting", of(RampStatus::Waiting)),
+    ];
+    if json {
+        let lists = found.each_ref().map(|(name, ramps)| format!(r#""{name}":{ramps:?}"#));
+        say(&format!(r#"{{"ramps":{ramps},{}}}"#, lists.join(",")));
+    } else {
+        let counts = found.each_ref().map(|(name, ramps)| format!("{} {name}", ramps.len()));
+        say(&format!("{ramps} ramps: {}", counts.join(", ")));
+    }
+    Ok(if found[0].1.len() == ramps { End::Done } else { End::Elsewhere })
 }
 
 fn tables<E: Experiment>(folder: &Path) -> Result<End, Failure> {

@@ -96,6 +96,11 @@ impl<E: Experiment> Column<E> {
         self.in_values
     }
 
+    /// Returns whether its values have an error.
+    pub(super) const fn has_error(&self) -> bool {
+        !matches!(self.kind, Kind::Record(_))
+    }
+
     /// Returns the estimate of a record; `None` of a column that has no error.
     pub(super) fn estimate(&self, record: &Record<E>) -> Option<Estimate> {
         match &self.kind {
@@ -165,7 +170,13 @@ impl<E: Experiment> fmt::Debug for Table<E> {
 
 /// Names of the tables that each study has, and of columns that each table has.
 const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
-const PLACE: [&str; 8] = ["ramp", "value", "leg", "repeat", "seed", "outcome", "samples", "not_converged"];
+const PLACE: [&str; 10] =
+    ["ramp", "point", "value", "leg", "repeat", "repeats", "seed", "outcome", "samples", "not_converged"];
+
+/// Returns the names of the columns that follow one of a mean: its error, and the number of independent samples.
+pub(super) fn error_names(name: &str) -> [String; 2] {
+    ["error", "independent_samples"].map(|ending| format!("{name}_{ending}"))
+}
 
 /// Checks that all names of an experiment's columns and tables can be told apart, and be names.
 pub(super) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanError> {
@@ -175,7 +186,10 @@ pub(super) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanErro
         columns.iter().filter(|column| is_in(column)).map(|column| column.name).collect()
     };
     check("column", &of(Column::is_in_samples), &[taken.as_slice(), &["time"]].concat())?;
-    check("column", &of(Column::is_in_values), &taken)?;
+    let with_errors = columns.iter().filter(|column| column.is_in_values() && column.has_error());
+    let errors: Vec<String> = with_errors.flat_map(|column| error_names(column.name)).collect();
+    let errors: Vec<&str> = errors.iter().map(String::as_str).collect();
+    check("column", &of(Column::is_in_values), &[taken.as_slice(), &errors].concat())?;
     for table in &tables {
         check("column", &table.columns.iter().map(|(name, _)| *name).collect::<Vec<_>>(), &taken)?;
     }

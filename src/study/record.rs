@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::refinement::Seen;
-use super::{Experiment, Leg, Plan, Scalar, column::Column, parameters};
+use super::{Experiment, Leg, Plan, Scalar, parameters};
 use crate::simulation::{Checkpoint, Counters};
 use crate::statistics::{BlockedMean, Estimate};
 
@@ -124,7 +124,7 @@ impl<E: Experiment> Record<E> {
         check(is_full || is_short, "its samples are not as many as in the protocol")?;
         let is_placed = match plan.step(origin.value) {
             Some((way, value)) => *leg == Some(way) && *at == Some(value),
-            None => plan.ramp().is_some_and(|ramp| ramp.refine().is_some()) || at.is_none(),
+            None => plan.is_refined() || at.is_none(),
         };
         check(is_placed, "it is on another way through the ramp")?;
         check_state(state, end.time(0.0, self.experiment.cycle()))?;
@@ -218,10 +218,8 @@ impl<E: Experiment> Record<E> {
     /// Returns the mean of the column of this name; `None` if there is none, or none that has an error.
     pub fn estimate(&self, column: &str) -> Option<Estimate> {
         let columns = E::columns();
-        columns
-            .iter()
-            .filter(|known| known.name() == column)
-            .find_map(|known: &Column<E>| known.estimate(self))
+        let named = columns.iter().filter(|known| known.name() == column);
+        named.filter_map(|known| known.estimate(self)).next()
     }
 }
 

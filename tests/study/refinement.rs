@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use granular_edmd::study::vibrated_box::VibratedBox;
 use granular_edmd::study::{
-    Axis, Control, Course, Leg, Plan, Progress, Protocol, Ramp, Record, Study, StudyError,
+    Axis, Control, Course, Leg, Plan, Progress, Protocol, Ramp, Record, Study, StudyError, Width,
 };
 
 use crate::own::{Mixture, mixture};
@@ -17,7 +17,8 @@ const WIDTH: f64 = 0.002;
 
 /// Up and down over a transition at 0.137, for two losses.
 fn plan() -> Plan<Mixture> {
-    let ramp = Ramp::new("weight", [0.1, 0.15, 0.2, 0.25], Course::UpAndDown).with_refinement(WIDTH);
+    let ramp = Ramp::new("weight", [0.1, 0.15, 0.2, 0.25], Course::UpAndDown)
+        .with_refinement(Width::Absolute(WIDTH));
     Plan::new(mixture(), Protocol::new(2, 3, 1), 3)
         .and_then(|plan| plan.with_axis(Axis::new("loss", [0.0, 0.2])))
         .and_then(|plan| plan.with_ramp(ramp))
@@ -118,9 +119,13 @@ fn the_states_of_the_box_are_its_convective_regimes() -> Result<(), AnyError> {
 
 #[test]
 fn a_width_that_cannot_be_is_refused() {
-    for width in [0.0, -1.0, f64::NAN] {
+    let numbers = [0.0, -1.0, f64::NAN];
+    for width in numbers.map(Width::Absolute).into_iter().chain(numbers.map(Width::Relative)) {
         let ramp = Ramp::new("weight", [0.1, 0.2], Course::Up).with_refinement(width);
         let error = Plan::new(mixture(), Protocol::new(1, 1, 1), 1).and_then(|plan| plan.with_ramp(ramp));
         assert!(report(&error.unwrap_err()).contains("width of a transition must be finite and positive"));
     }
+    let ramp = Ramp::new("weight", [0.0, 0.2], Course::Up).with_refinement(Width::Relative(0.01));
+    let error = Plan::new(mixture(), Protocol::new(1, 1, 1), 1).and_then(|plan| plan.with_ramp(ramp));
+    assert!(report(&error.unwrap_err()).contains("value of a ramp with a relative width must be"));
 }
