@@ -9,7 +9,7 @@ use granular_edmd::study::{
     Axis, Control, Course, Leg, Plan, Progress, Protocol, Ramp, Record, Study, StudyError, Width,
 };
 
-use crate::own::{Mixture, mixture};
+use crate::mixture::{Mixture, mixture};
 use crate::report::report;
 use crate::support::{AnyError, Scratch, assert_same, contents, small_box};
 
