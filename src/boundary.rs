@@ -35,7 +35,7 @@ use crate::{Fingerprint, Flight};
 /// # Contract
 /// An implementation guarantees:
 /// 1. [`domain`](Self::domain), [`interior`](Self::interior) and [`wall_count`](Self::wall_count) never
-///    change. A disk that has not passed a wall has its center in the domain at all times.
+///    change. The domain has finite sides and a finite bottom; only its top may be infinite. A disk that has not passed a wall has its center in the domain at all times.
 /// 2. [`may_touch`](Self::may_touch) holds for all times: it is false only for a region in which no disk of
 ///    this radius, or a smaller one, can touch a wall at any time. A region that contains another may be
 ///    touched where the other may.
@@ -54,7 +54,7 @@ use crate::{Fingerprint, Flight};
 /// The engine guarantees:
 /// - It sets the origin first, whenever its epoch moves, and never asks for a time before the origin.
 /// - Flights have finite numbers, begin at the present, in the domain, and end where the disk leaves a cell,
-///   at most a few epochs later. At periodic sides a flight ends at the side.
+///   at most two epochs later (`until`); in an epoch a typical disk goes some tens of diameters. At periodic sides a flight ends at the side.
 /// - `first_touch` is asked only in cells for which `may_touch` holds, with the largest of all radii. Cells
 ///   at the edges of the domain reach to infinity beyond them.
 /// - `surface` is asked at a touch that `first_touch` found, for its wall and time and the place of the disk

@@ -1,5 +1,7 @@
 //! The error of a parameter that cannot be used.
 
+use std::fmt;
+
 use thiserror::Error;
 
 /// A parameter lies outside the range in which it has a meaning.
@@ -9,14 +11,28 @@ use thiserror::Error;
 /// let error = Smooth::new(0.7).unwrap_err();
 /// assert_eq!(error.to_string(), "normal inelasticity must be in [0, 0.5], but is 0.7");
 /// assert_eq!(error.value(), 0.7);
+///
+/// let error = Smooth::new(1e300).unwrap_err();
+/// assert_eq!(error.to_string(), "normal inelasticity must be in [0, 0.5], but is 1e300");
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("{name} must be {requirement}, but is {value}")]
+#[error("{name} must be {requirement}, but is {}", Readable(*.value))]
 #[non_exhaustive]
 pub struct ParameterError {
     name: &'static str,
     requirement: &'static str,
     value: f64,
+}
+
+/// A number in as few characters as tell it apart: very large and very small ones have an exponent.
+struct Readable(f64);
+
+impl fmt::Display for Readable {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = self.0.abs();
+        let is_plain = size == 0.0 || (1e-5..1e15).contains(&size) || !size.is_finite();
+        if is_plain { write!(formatter, "{}", self.0) } else { write!(formatter, "{:e}", self.0) }
+    }
 }
 
 impl ParameterError {

@@ -20,6 +20,7 @@ pub enum Partner {
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse};
+/// use granular_edmd::glam::DVec2;
 /// use granular_edmd::observable::{Collision, EnergyChange, Observer, Partner};
 ///
 /// // What an observer makes of a collision with the floor, without a simulation.
@@ -27,6 +28,10 @@ pub enum Partner {
 /// let mut energy_change = EnergyChange::default();
 /// energy_change.on_collision(&Collision::new(0.5, 7, Partner::Wall(0), contact, impulse));
 /// assert_eq!(energy_change.wall(0).mean(), -1.5);
+///
+/// let mut collision = Collision::new(0.5, 7, Partner::Disk(8), contact, impulse);
+/// collision.position = DVec2::new(2.0, 3.0);
+/// assert_eq!(collision.partner_position(), DVec2::new(2.0, 2.0));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -66,5 +71,12 @@ impl Collision {
         let energy_change = impulse.energy_change(&contact);
         let (normal, position) = (DVec2::Y, DVec2::ZERO);
         Self { time, disk, partner, normal, position, distance, contact, impulse, energy_change }
+    }
+
+    /// Returns the position of the partner: the center of a disk, or the point where a wall is touched.
+    ///
+    /// At periodic sides the disk may touch the partner's image, whose position this is then.
+    pub fn partner_position(&self) -> DVec2 {
+        self.position - self.normal * self.distance
     }
 }

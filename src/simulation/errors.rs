@@ -196,6 +196,8 @@ pub struct FailedCollision {
     pub disk: usize,
     /// Its partner.
     pub partner: Partner,
+    /// Name of the wall, if the partner is one.
+    pub wall: Option<String>,
     /// The present.
     pub time: f64,
     /// The contact that the rule was asked about.
@@ -209,9 +211,10 @@ pub struct FailedCollision {
 impl fmt::Display for FailedCollision {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { disk, time, contact, impulse, .. } = self;
-        match self.partner {
-            Partner::Disk(other) => write!(formatter, "disks {disk} and {other}")?,
-            Partner::Wall(wall) => write!(formatter, "disk {disk} with wall {wall}")?,
+        match (self.partner, &self.wall) {
+            (Partner::Disk(other), _) => write!(formatter, "disks {disk} and {other}")?,
+            (Partner::Wall(_), Some(name)) => write!(formatter, "disk {disk} with the wall {name:?}")?,
+            (Partner::Wall(wall), None) => write!(formatter, "disk {disk} with wall {wall}")?,
         }
         write!(
             formatter,

@@ -134,9 +134,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let (collision, kick) =
             resolve_wall(&self.bodies, &self.rule, &mut self.generator, &surface, &self.clock, disk, wall);
         if !kick.is_possible() {
+            let name = Some(self.boundary.wall_name(wall).into_owned());
             let error = match surface.response {
-                Response::Rule(own) => failed(own, &collision),
-                _ => failed(&self.rule, &collision),
+                Response::Rule(own) => failed(own, &collision, name),
+                _ => failed(&self.rule, &collision, name),
             };
             return Err(error.into());
         }
@@ -179,7 +180,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let period = self.cells.grid().period();
         let (collision, kicks) = resolve_pair(&self.bodies, &self.rule, period, &self.clock, disk, partner);
         if !kicks.iter().all(Kick::is_possible) {
-            return Err(failed(&self.rule, &collision).into());
+            return Err(failed(&self.rule, &collision, None).into());
         }
         self.begin_epoch_for(&kicks)
     }

@@ -45,7 +45,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let earliest = self.earliest_collision(disk, count, Earliest::NONE);
         let partner_collisions =
             self.bodies.forecast(earliest.partner as usize).map_or(0, |partner| partner.collisions);
-        self.forecast_mut(disk).expect(earliest, partner_collisions);
+        self.forecast_mut(disk).set_collision(earliest, partner_collisions);
     }
 
     #[inline]
@@ -64,7 +64,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let partner = select_unpredictable(nobody, disk, earliest.partner as usize);
         let counted = self.forecast(disk).partner_collisions;
         let collisions = select_unpredictable(earliest == known, counted, self.forecast(partner).collisions);
-        self.forecast_mut(disk).expect(earliest, collisions);
+        self.forecast_mut(disk).set_collision(earliest, collisions);
     }
 
     /// Tells the scheduler when the next event of a disk is due.

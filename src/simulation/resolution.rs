@@ -149,10 +149,15 @@ pub(super) fn is_unit_and_finite(surface: &Surface<'_>) -> bool {
 
 /// The error of a collision whose outcome is no motion.
 #[cold]
-pub(super) fn failed<R: CollisionRule + ?Sized>(rule: &R, collision: &Collision) -> RunError {
+pub(super) fn failed<R: CollisionRule + ?Sized>(
+    rule: &R,
+    collision: &Collision,
+    wall: Option<String>,
+) -> RunError {
     let Collision { disk, partner, time, contact, impulse, .. } = *collision;
     let explanation = rule.explain(&contact);
-    RunError::NotFinite(Box::new(FailedCollision { disk, partner, time, contact, impulse, explanation }))
+    let failed = FailedCollision { disk, partner, wall, time, contact, impulse, explanation };
+    RunError::NotFinite(Box::new(failed))
 }
 
 /// The motion in which a disk leaves a thermal wall.

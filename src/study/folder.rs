@@ -82,8 +82,13 @@ impl Folder {
         let _lock = Lock::take(&self.root)?;
         file::remove_temporaries(&self.root)?;
         let is_new = file::publish(&self.plan(), plan.as_bytes())?;
-        file::publish(&self.root.join(README), ABOUT.as_bytes())?;
+        self.write_about()?;
         Ok(is_new)
+    }
+
+    /// Writes what tells a stranger about the folder, if it is not there.
+    fn write_about(&self) -> Result<(), StudyError> {
+        file::publish(&self.root.join(README), ABOUT.as_bytes()).map(drop)
     }
 
     /// Checks that there is nothing in the folder, or only what was there before a plan of ours came, or the plan.
@@ -158,6 +163,8 @@ impl Folder {
     ) -> Result<(), StudyError> {
         let _lock = Lock::take(&self.root)?;
         file::remove_temporaries(&self.root)?;
+        // Whoever made the plan may have been killed before it wrote this.
+        self.write_about()?;
         tables
             .into_iter()
             .try_for_each(|(name, text)| file::write(&self.root.join(format!("{name}.csv")), text.as_bytes()))

@@ -191,8 +191,8 @@ fn wrong_rectangles_are_caught() {
 
 #[test]
 fn wrong_surfaces_are_caught() {
-    assert!(matches!(verdict(Fault::OutwardNormal), Violation::Normal { .. }));
-    assert!(matches!(verdict(Fault::SlantedNormal), Violation::Normal { .. }));
+    assert!(matches!(verdict(Fault::OutwardNormal), Violation::NormalDirection { .. }));
+    assert!(matches!(verdict(Fault::SlantedNormal), Violation::NormalDirection { .. }));
     assert!(matches!(verdict(Fault::LongNormal), Violation::NormalLength { .. }));
     assert!(matches!(verdict(Fault::VelocityNaN), Violation::Velocity { .. }));
 }

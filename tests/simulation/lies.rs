@@ -472,7 +472,10 @@ fn an_outcome_that_is_no_motion_names_both_partners_the_contact_and_the_reason()
                 }
                 Partner::Wall(wall) => {
                     walls_named += 1;
-                    format!("disk {} with wall {wall}", failed.disk)
+                    let name = run.boundary().wall_name(wall).into_owned();
+                    let names = format!("disk {} with the wall {name:?}", failed.disk);
+                    assert_eq!(failed.wall, Some(name));
+                    names
                 }
             };
             assert!(said.contains(&names) && said.contains("is too much"), "{said}");

@@ -154,7 +154,7 @@ fn check_surface<B: Boundary + ?Sized>(
     if goes_in && (comes_out || !is_alone) {
         Ok(())
     } else {
-        Err(Violation::Normal { wall, normal, place, time })
+        Err(Violation::NormalDirection { wall, normal, place, time })
     }
 }
 

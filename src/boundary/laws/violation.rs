@@ -142,7 +142,7 @@ pub enum Violation {
     #[error(
         "the normal {normal} of wall {wall} does not lead out of it, for a disk at {place} at time {time}"
     )]
-    Normal {
+    NormalDirection {
         /// The wall.
         wall: usize,
         /// The normal.

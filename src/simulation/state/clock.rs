@@ -4,6 +4,9 @@ use super::guard::Guard;
 use crate::simulation::errors::{Outcome, RunError};
 
 /// Numbers that a run's latest times must tell apart in an epoch: a typical disk goes a diameter from one to the next.
+///
+/// So few are enough, since epochs are powers of two, as the distance of these numbers is: adding one to the origin is exact, and
+/// walls that move do not jump.
 const TIMES_IN_EPOCH: f64 = 64.0;
 
 /// Cell crossings and collisions of two disks, as they were when the epoch last moved.
@@ -75,6 +78,11 @@ impl Clock {
     /// is exact, so this moves the origin to a number that it can be, and leaves the rest to the offset.
     pub(in crate::simulation) fn exact_offset(&self) -> f64 {
         let nearest = self.time();
+        // Beyond twice the origin their difference need not be exact. Then times are no coarser than offsets, and the epoch
+        // may move to the present itself.
+        if self.now > self.origin.abs() {
+            return self.now;
+        }
         let by = nearest - self.origin;
         if by <= self.now { by } else { nearest.next_down() - self.origin }
     }
@@ -90,5 +98,28 @@ impl Clock {
         self.origin += by;
         self.now -= by;
         self.guard.shift(by);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_xoshiro::Xoshiro256PlusPlus;
+
+    use super::Clock;
+
+    #[test]
+    fn an_epoch_that_begins_for_a_kick_takes_time_neither_back_nor_on() {
+        let mut generator = Xoshiro256PlusPlus::seed_from_u64(1);
+        for _ in 0..100_000 {
+            let sign = if generator.random() { 1.0 } else { -1.0 };
+            let origin = sign * f64::powi(2.0, generator.random_range(-30..30)) * generator.random::<f64>();
+            let now = f64::powi(2.0, generator.random_range(-30..30)) * generator.random::<f64>();
+            let mut clock = Clock { now, ..Clock::new(origin, 1.0) };
+            let (time, by) = (clock.time(), clock.exact_offset());
+            clock.shift(by);
+            assert!(clock.now >= 0.0, "{origin:e} {now:e}");
+            assert_eq!(clock.time(), time, "{origin:e} {now:e}");
+        }
     }
 }

@@ -89,7 +89,7 @@ impl Forecast {
 
     /// Takes this as the next collision, with a partner that has collided so often.
     #[inline]
-    pub(in crate::simulation) fn expect(&mut self, earliest: Earliest, partner_collisions: u32) {
+    pub(in crate::simulation) fn set_collision(&mut self, earliest: Earliest, partner_collisions: u32) {
         self.collision_due = earliest.due;
         self.partner = earliest.partner;
         self.partner_collisions = partner_collisions;
