@@ -1,8 +1,8 @@
 //! How the transitions between convective states move with the contact duration.
 //!
-//! The paper's system at `g = 0.015625`: friction goes up at `q = 0`, and inelasticity goes up at `κ = 0.05`, with contact
-//! durations from 1e-7 to 1e-3, three independent ramps each. The paper has no contact duration; results that depend on
-//! it would be results of the remedy, not of the system.
+//! The paper's system at `g = 0.015625`: friction goes up at `q = 0`, and inelasticity goes up at `κ = 0.05`,
+//! with contact durations from 1e-7 to 1e-3, three independent ramps each. The paper has no contact duration;
+//! results that depend on it would be results of the remedy, not of the system.
 //!
 //! ```text
 //! cargo run --release --features serde,rayon --example contact_duration
@@ -121,7 +121,8 @@ fn rising(parameter: &str, ramp: &[Record]) -> Result<Vec<Transition>, Parameter
     Ok(transitions(regimes)?.into_iter().filter(|transition| transition.rising).collect())
 }
 
-/// The first crossing of a line in each ramp: mean, and error from the scatter of ramps and the width of a step.
+/// The first crossing of a line in each ramp: mean, and error from the scatter of ramps and the width of a
+/// step.
 fn place(line: TransitionLine, ramps: &[Vec<Transition>]) -> String {
     let first: Vec<&Transition> =
         ramps.iter().filter_map(|found| found.iter().find(|transition| transition.line == line)).collect();

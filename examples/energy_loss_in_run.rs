@@ -1,5 +1,5 @@
-//! The mean energy loss of the Maxwellian gas and of the real one, side by side: the paper's central quantity, held
-//! against the simulation of its own system.
+//! The mean energy loss of the Maxwellian gas and of the real one, side by side: the paper's central
+//! quantity, held against the simulation of its own system.
 //!
 //! ```text
 //! cargo run --release --example energy_loss_in_run

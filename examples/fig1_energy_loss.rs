@@ -1,7 +1,9 @@
-//! The paper's Fig. 1: lines of equal mean energy loss per collision in the plane of friction and inelasticity.
+//! The paper's Fig. 1: lines of equal mean energy loss per collision in the plane of friction and
+//! inelasticity.
 //!
-//! Writes `fig1_energy_loss.png` (both panels), `fig1_energy_loss.csv` (the lines) and `fig1_largest_loss.csv` (the
-//! friction of the largest loss for each inelasticity), and compares closed form and Monte Carlo on a few points.
+//! Writes `fig1_energy_loss.png` (both panels), `fig1_energy_loss.csv` (the lines) and
+//! `fig1_largest_loss.csv` (the friction of the largest loss for each inelasticity), and compares closed form
+//! and Monte Carlo on a few points.
 //!
 //! ```text
 //! cargo run --release --example fig1_energy_loss -- --out out
@@ -124,7 +126,7 @@ impl Panel {
         (x - at_x).abs() < 0.024 && (y - at_y).abs() < 0.022
     }
 
-    /// A label centred on `place`.
+    /// A label centered on `place`.
     fn label(&self, (friction, inelasticity): (f64, f64), text: &str, color: &str) -> TextAnnotation {
         let baseline = inelasticity - 0.024 * self.largest_inelasticity;
         TextAnnotation::new(text, friction, baseline).with_font_size(11).with_color(color)

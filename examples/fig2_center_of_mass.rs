@@ -1,8 +1,8 @@
 //! The paper's Fig. 2: height of the center of mass over a thermal base, against friction.
 //!
-//! 500 disks in a narrow open box, `q = 0.025`, `g = 0.002`. The column is lowest where a collision loses most energy, at a
-//! friction of about 0.3. The paper does not say what its base does to tangential and angular velocity: a full thermal
-//! base is the default, one with slip is `--slip`.
+//! 500 disks in a narrow open box, `q = 0.025`, `g = 0.002`. The column is lowest where a collision loses
+//! most energy, at a friction of about 0.3. The paper does not say what its base does to tangential and
+//! angular velocity: a full thermal base is the default, one with slip is `--slip`.
 //!
 //! ```text
 //! cargo run --release --features serde,rayon --example fig2_center_of_mass -- --quick

@@ -1,8 +1,8 @@
 //! The paper's Fig. 3: order parameters while friction grows step by step.
 //!
-//! 1000 disks in the vibrated box, `g = 0.015625`, `q = 0`: friction alone loses energy. It goes up from 0.005 in steps of
-//! 0.005, each value from the last state of the one before. One roll sets in and changes its sense now and then; at
-//! about 0.06 it gives way to two.
+//! 1000 disks in the vibrated box, `g = 0.015625`, `q = 0`: friction alone loses energy. It goes up from
+//! 0.005 in steps of 0.005, each value from the last state of the one before. One roll sets in and changes
+//! its sense now and then; at about 0.06 it gives way to two.
 //!
 //! ```text
 //! cargo run --release --features serde --example fig3_order_parameters -- --quick
@@ -41,7 +41,8 @@ type Record = granular_edmd::study::Record<VibratedBox>;
 impl Arguments {
     fn plan(&self) -> Result<Plan<VibratedBox>, PlanError> {
         let experiment = studies::vibrated_box(0.015_625);
-        // The paper keeps each value for 100 000 oscillations, and draws all samples, those of the transient included.
+        // The paper keeps each value for 100 000 oscillations, and draws all samples, those of the transient
+        // included.
         let protocol =
             if self.common.quick { Protocol::new(0, 200, 50) } else { Protocol::new(0, 1000, 100) };
         let frictions: Vec<f64> = (1..=15).map(|step| f64::from(step) * STEP).collect();
@@ -86,7 +87,7 @@ const fn friction(record: &Record) -> f64 {
     record.experiment().friction
 }
 
-/// Both order parameters, one above the other, in bins of equal friction; bin `k` is centred at `k + 1`.
+/// Both order parameters, one above the other, in bins of equal friction; bin `k` is centered at `k + 1`.
 fn figure(records: &[Record], study: &Study<VibratedBox>) -> Figure {
     let cycles = study.plan().protocol().cycles();
     let title = format!("g = 0.015625, q = 0, N = 1000; {cycles} oscillations for each value of κ");

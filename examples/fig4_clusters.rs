@@ -1,14 +1,16 @@
 //! The paper's Fig. 4: samples in the plane of the order parameters where one roll and two coexist.
 //!
-//! 1000 disks in the vibrated box, `g = 0.015625`, `q = 0`, friction 0.0605. The samples of a run form up to three clouds:
-//! one roll of either sense, and two rolls. A finite number of disks makes the state jump between them; not every run
-//! visits all. Some independent runs are done, and one that shows most clusters is drawn.
+//! 1000 disks in the vibrated box, `g = 0.015625`, `q = 0`, friction 0.0605. The samples of a run form up to
+//! three clouds: one roll of either sense, and two rolls. A finite number of disks makes the state jump
+//! between them; not every run visits all. Some independent runs are done, and one that shows most clusters
+//! is drawn.
 //!
 //! ```text
 //! cargo run --release --features serde,rayon --example fig4_clusters -- --quick
 //! ```
 //!
-//! Writes `fig4_clusters.png`, `clusters.csv` and the tables of the study. Interrupted, the same command goes on.
+//! Writes `fig4_clusters.png`, `clusters.csv` and the tables of the study. Interrupted, the same command goes
+//! on.
 
 mod common;
 mod studies;

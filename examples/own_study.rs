@@ -1,7 +1,7 @@
 //! A study of one's own: a rule, a boundary and a sample that the library does not know, swept over two axes.
 //!
-//! Rough grains in a hot round drum that turns. How fast do they turn with it, for each loss and spin? Stopped or killed, the
-//! same command goes on; so does any number of them at the same time.
+//! Rough grains in a hot round drum that turns. How fast do they turn with it, for each loss and spin?
+//! Stopped or killed, the same command goes on; so does any number of them at the same time.
 //!
 //! ```text
 //! cargo run --release --features serde,rayon --example own_study -- --quick
@@ -121,7 +121,7 @@ impl Experiment for Turning {
 }
 
 fn plan(common: &studies::Common) -> Result<Plan<Turning>, PlanError> {
-    let protocol = if common.quick { Protocol::new(50, 200, 1) } else { Protocol::new(500, 2000, 2) };
+    let protocol = if common.quick { Protocol::new(50, 1000, 1) } else { Protocol::new(500, 5000, 5) };
     Plan::new(Turning { disks: 60, loss: 0.1, spin: 0.1 }, protocol, common.seed)?
         .with_axis(Axis::new("loss", [0.0, 0.1, 0.3]))?
         .with_axis(Axis::new("spin", [0.05, 0.1, 0.2]))?

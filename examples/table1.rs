@@ -1,13 +1,14 @@
-//! The paper's Table I: effective inelasticities from the mean energy changes at the transitions, beside the printed.
+//! The paper's Table I: effective inelasticities from the mean energy changes at the transitions, beside the
+//! printed.
 //!
 //! ```text
 //! cargo run --release --example table1 -- --out out
 //! cargo run --release --example table1 -- --study out/fig5_phase_diagram-0.015625-coarse
 //! ```
 //!
-//! With `--study`, the lines that the example `fig5_phase_diagram` has found are averaged as in the paper, beside the
-//! printed ones: the energy change of each point by the closed form at its friction and inelasticity, mean and standard
-//! deviation over the points of a line.
+//! With `--study`, the lines that the example `fig5_phase_diagram` has found are averaged as in the paper,
+//! beside the printed ones: the energy change of each point by the closed form at its friction and
+//! inelasticity, mean and standard deviation over the points of a line.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};

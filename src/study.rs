@@ -1,19 +1,22 @@
 //! Studies: many runs, planned as data, watched, stopped, resumed, spread over processes, and kept.
 //!
-//! An [`Experiment`] is what is studied: a serialisable type of your own, whose fields are the parameters and whose methods say
-//! what is simulated, what is measured, and which columns the tables have. A [`Plan`] says what is done with it: a
-//! [`Protocol`] to sample it, a [`Ramp`] of one parameter up or down, a sweep of independent ramps over the grid of its
-//! [`Axis`]es, and repeats. A [`Study`] is a plan in a folder. [`Study::run`] does what is not done yet, on all cores with the
-//! feature `rayon`, in any number of processes; each finished value is written at once, as a [`Record`].
+//! An [`Experiment`] is what is studied: a serializable type of your own, whose fields are the parameters and
+//! whose methods say what is simulated, what is measured, and which columns the tables have. A [`Plan`] says
+//! what is done with it: a [`Protocol`] to sample it, a [`Ramp`] of one parameter up or down, a sweep of
+//! independent ramps over the grid of its [`Axis`]es, and repeats. A [`Study`] is a plan in a folder.
+//! [`Study::run`] does what is not done yet, on all cores with the feature `rayon`, in any number of
+//! processes; each finished value is written at once, as a [`Record`].
 //!
 //! The paper's system is an experiment like any other: [`vibrated_box`].
 //!
 //! # Promises
-//! 1. A value is a function of plan, index and seed: the files of a complete study are the same bytes on any number of threads
-//!    and processes, and however often they were interrupted or killed. Only `log.jsonl`, which has the times, differs.
+//! 1. A value is a function of plan, index and seed: the files of a complete study are the same bytes on any
+//!    number of threads and processes, and however often they were interrupted or killed. Only `log.jsonl`,
+//!    which has the times, differs.
 //! 2. A file is whole or not there. A damaged one is named and done again, never read as data.
-//! 3. Any number of processes run a study at the same time, started at any time: each ramp is done by one of them. They need
-//!    a file system whose locks all of them see: local ones have that, as NFS has from version 4 on.
+//! 3. Any number of processes run a study at the same time, started at any time: each ramp is done by one of
+//!    them. They need a file system whose locks all of them see: local ones have that, as NFS has from
+//!    version 4 on.
 //! 4. A study writes into a folder that is empty or its own, and changes or removes no file but its own.
 //! 5. A run that cannot progress is an [`Outcome`] of its value: the study goes on.
 //!
@@ -22,7 +25,8 @@
 //! use granular_edmd::study::{Control, Course, Plan, Protocol, Ramp, Study};
 //!
 //! let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
-//! let experiment = VibratedBox::new(30, 10.0, base).with_height(30.0).with_gravity(0.0156).with_contact_duration(1e-4);
+//! let experiment = VibratedBox::new(30, 10.0, base).with_height(30.0).with_contact_duration(1e-4);
+//! let experiment = experiment.with_gravity(0.0156);
 //! let ramp = Ramp::new("friction", [0.01, 0.02], Course::Up);
 //! let plan = Plan::new(experiment, Protocol::new(10, 4, 5), 1)?.with_ramp(ramp)?;
 //!
@@ -122,11 +126,12 @@ impl<E: Experiment> Study<E> {
         Self::in_folder(folder, plan)
     }
 
-    /// Opens the study in a folder, or makes a new one: the same command starts a study and goes on with it, also in several
-    /// processes at the same time.
+    /// Opens the study in a folder, or makes a new one: the same command starts a study and goes on with it,
+    /// also in several processes at the same time.
     ///
     /// # Errors
-    /// If the folder holds a study with another plan, or other files and no study, or cannot be read or written.
+    /// If the folder holds a study with another plan, or other files and no study, or cannot be read or
+    /// written.
     pub fn open_or_create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
         let folder = Folder::new(folder.as_ref())?;
         if !folder.holds_study() {
@@ -197,7 +202,7 @@ impl<E: Experiment> Study<E> {
     pub fn ramp_records(&self, ramp: usize) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
         let values = self.plan.values();
         let own = (0..values).filter_map(move |value| self.record(ramp, value).transpose());
-        // Those of a refinement have no gaps, and their number is known at the end only.
+        // The values of a refinement have no gaps, and their number is known at the end only.
         let is_refined = self.plan.is_refined();
         let more = (values..)
             .take_while(move |_| is_refined)
@@ -302,7 +307,7 @@ pub enum RampStatus {
     Done,
     /// A process does it now.
     Running,
-    /// It was begun, and nobody does it now.
+    /// A process has begun it, and nobody does it now.
     Begun,
     /// Nothing has been done of it.
     Waiting,

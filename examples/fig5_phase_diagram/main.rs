@@ -1,16 +1,17 @@
 //! The paper's Fig. 5: convective states in the plane of friction and inelasticity.
 //!
-//! 1000 disks in the vibrated box. For each inelasticity, friction goes up step by step, each value from the last state
-//! of the one before, and for some comes down again from the other end. Each point gets the name of its state; the
-//! transitions lie between neighbors of different states.
+//! 1000 disks in the vibrated box. For each inelasticity, friction goes up step by step, each value from the
+//! last state of the one before, and for some comes down again from the other end. Each point gets the name
+//! of its state; the transitions lie between neighbors of different states.
 //!
 //! ```text
-//! cargo run --release --features serde,rayon --example fig5_phase_diagram -- --size quick
-//! cargo run --release --features serde,rayon --example fig5_phase_diagram -- --gravity 0.002025 --size coarse
+//! cargo run --release --all-features --example fig5_phase_diagram -- --size quick
+//! cargo run --release --all-features --example fig5_phase_diagram -- --gravity 0.002025 --size coarse
 //! ```
 //!
-//! Writes `fig5_phase_diagram.png`, `points.csv` and `transitions.csv`, which the example `table1` reads, beside the
-//! studies `up` and `down`. Ctrl-C stops with all that was done saved, and draws that; the same command goes on.
+//! Writes `fig5_phase_diagram.png`, `points.csv` and `transitions.csv`, which the example `table1` reads,
+//! beside the studies `up` and `down`. Ctrl-C stops with all that was done saved, and draws that; the same
+//! command goes on.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -55,7 +55,8 @@ impl Gravity {
     }
 }
 
-/// Friction from 0.005 to 3: about equal steps of its logarithm, smaller ones where one roll gives way to two.
+/// Friction from 0.005 to 3: about equal steps of its logarithm, smaller ones where one roll gives way to
+/// two.
 const FRICTIONS: [f64; 26] = [
     0.005, 0.007_5, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.055, 0.06, 0.065, 0.07, 0.085, 0.1, 0.15, 0.2,
     0.3, 0.4, 0.5, 0.65, 0.8, 1.0, 1.3, 1.7, 2.2, 3.0,

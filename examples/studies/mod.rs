@@ -45,7 +45,7 @@ impl Common {
     }
 }
 
-/// The paper's vibrated box at this gravity, with the contact duration that our figures take.
+/// Returns the paper's vibrated box at this gravity, with the contact duration that our figures take.
 pub(crate) fn vibrated_box(gravity: f64) -> VibratedBox {
     let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
     VibratedBox::new(1000, 60.0, base).with_height(150.0).with_gravity(gravity).with_contact_duration(1e-4)
@@ -65,10 +65,11 @@ pub(crate) fn end(result: Result<(), Box<dyn Error>>) -> ExitCode {
     }
 }
 
-/// Does what is not done yet of a study, or of one ramp of it, and returns the study once all of it is complete.
+/// Does what is not done yet of a study, or of one ramp of it, and returns the study once all of it is
+/// complete.
 ///
-/// The same command starts a study and goes on with it. Ctrl-C stops with all that was done saved; a second one ends the
-/// program at once, with what was saved by then.
+/// The same command starts a study and goes on with it. Ctrl-C stops with all that was done saved; a second
+/// one ends the program at once, with what was saved by then.
 pub(crate) fn complete<E: Experiment>(
     folder: &Path,
     plan: &Plan<E>,

@@ -6,32 +6,33 @@ use super::Estimate;
 const ENOUGH: usize = 8;
 
 impl Estimate {
-    /// Returns the estimate of several independent runs together, from that of each: as if their samples were of one run.
+    /// Returns the estimate of several independent runs together, from that of each: as if their samples were
+    /// of one run.
     ///
-    /// Each run counts by the number of its samples. The error is the larger of two: that which follows from the errors of
-    /// the runs, and that of the scatter of their means,
+    /// Each run counts by the number of its samples. The error is the larger of two: that which follows from
+    /// the errors of the runs, and that of the scatter of their means,
     ///
     /// ```math
     /// \epsilon^2 = \max\left(\sum_i w_i^2\epsilon_i^2,\; \frac{1}{k-1}\sum_i w_i(\bar x_i-\bar x)^2\right),
     /// \quad w_i = n_i/n .
     /// ```
     ///
-    /// The scatter sees what a run is too short to see, another sense of a roll for example; of two or three runs it may be
-    /// small by chance, and the errors of the runs are then the better ones. The estimate has converged if those of all runs have, or
-    /// if there are eight runs. Runs without samples are left out.
+    /// The scatter sees what a run is too short to see, another sense of a roll for example; of two or three
+    /// runs it may be small by chance, and the errors of the runs are then the better ones. The estimate has
+    /// converged if those of all runs have, or if there are eight runs. Runs without samples are left out.
     ///
     /// ```
     /// use granular_edmd::statistics::{Estimate, block_average};
-    /// let chaos: Vec<f64> = std::iter::successors(Some(0.3), |x| Some(4.0 * x * (1.0 - x))).take(4096).collect();
+    /// let chaos = std::iter::successors(Some(0.3), |x| Some(4.0 * x * (1.0 - x)));
+    /// let chaos: Vec<f64> = chaos.take(4096).collect();
     /// let runs = chaos.chunks(1024).map(block_average).collect::<Result<Vec<_>, _>>()?;
     /// let together = Estimate::over_repeats(runs.iter().copied());
     /// assert_eq!(together.samples(), 4096);
     /// assert!(together.is_converged() && together.standard_error() < runs[0].standard_error());
     ///
     /// // Two runs that found different states: only their number counts, not that of their samples.
-    /// let apart = [0.0, 1.0].map(|level| chaos[..1024].iter().map(|x| level + 0.01 * x).collect::<Vec<_>>());
-    /// let runs = apart.iter().map(|run| block_average(run)).collect::<Result<Vec<_>, _>>()?;
-    /// let together = Estimate::over_repeats(runs);
+    /// let run = |level: f64| chaos[..1024].iter().map(|x| level + 0.01 * x).collect::<Vec<_>>();
+    /// let together = Estimate::over_repeats([block_average(&run(0.0))?, block_average(&run(1.0))?]);
     /// assert!((together.standard_error() - 0.5).abs() < 0.01);
     /// assert!(together.independent_samples() < 1.1);
     /// # Ok::<(), granular_edmd::ParameterError>(())

@@ -1,6 +1,7 @@
 //! The command line of a study: `new`, `check`, `run`, `status` and `tables`, for any experiment.
 //!
-//! The `main` of a program of your own is one call of [`main`]; the binary `granular-edmd` is that for the paper's box.
+//! The `main` of a program of your own is one call of [`main`]; the binary `granular-edmd` is that for the
+//! paper's box.
 //!
 //! ```no_run
 //! use granular_edmd::study::vibrated_box::{Base, VibratedBox};
@@ -36,7 +37,8 @@ use watch::Watch;
 
 /// Plans, runs and reads studies: many runs of one experiment, in any number of processes.
 ///
-/// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 others do the rest, 130 stopped with all saved.
+/// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 others do the rest, 130 stopped with all
+/// saved.
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Arguments {
@@ -114,7 +116,8 @@ impl From<PlanError> for Failure {
     }
 }
 
-/// Does what the command line of the program says, with plans of this experiment; `example` is the plan that `new` writes.
+/// Does what the command line of the program says, with plans of this experiment; `example` is the plan that
+/// `new` writes.
 pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>) -> ExitCode {
     let ended = match Arguments::parse().command {
         Command::New { file } => new(example, file.as_deref()),

@@ -17,7 +17,7 @@ use crate::statistics::Estimate;
 /// for point in study.points() {
 ///     let point = point?;
 ///     let height = point.mean(|sample| sample.height);
-///     println!("{}: {height}, {:.1} independent samples", point.experiment().friction, height.independent_samples());
+///     println!("{height}, as from {:.1} independent samples", height.independent_samples());
 ///     assert_eq!((point.records().len(), height.samples()), (3, 60));
 /// }
 /// # std::fs::remove_dir_all(&folder)?;
@@ -67,7 +67,8 @@ impl<E: Experiment> Point<E> {
         Estimate::over_repeats(self.records.iter().map(|record| record.mean(&quantity)))
     }
 
-    /// Returns the mean of the column of this name over all repeats; `None` if there is none, or none that has an error.
+    /// Returns the mean of the column of this name over all repeats; `None` if there is none, or none that
+    /// has an error.
     pub fn estimate(&self, column: &str) -> Option<Estimate> {
         let columns = E::columns();
         let column = columns.iter().find(|known| known.name() == column && known.has_error())?;

@@ -1,4 +1,4 @@
-//! Which values a parameter takes, one after the other or side by side.
+//! The values that a parameter takes, one after the other or side by side.
 
 use std::fmt;
 
@@ -65,7 +65,8 @@ pub struct Ramp {
 pub enum Width {
     /// In the unit of the parameter.
     Absolute(f64),
-    /// A share of the value itself, for parameters that go over orders of magnitude. All values must be positive.
+    /// A share of the value itself, for parameters that go over orders of magnitude. All values must be
+    /// positive.
     Relative(f64),
 }
 
@@ -75,11 +76,12 @@ impl Ramp {
         Self { parameter: parameter.into(), values: values.into(), course, refine: None }
     }
 
-    /// Returns the same ramp with each transition between two of its values bisected until it is known to this width.
+    /// Returns the same ramp with each transition between two of its values bisected until it is known to
+    /// this width.
     ///
-    /// Transitions are changes of [`Experiment::state`](super::Experiment::state). Only neighbors of different states are
-    /// looked between. A ramp up brackets transitions from below, one down from above. The values of a bisection come after
-    /// those of the ramp, each from the last state on the near side.
+    /// Transitions are changes of [`Experiment::state`](super::Experiment::state). Only neighbors of
+    /// different states are looked between. A ramp up brackets transitions from below, one down from above.
+    /// The values of a bisection come after those of the ramp, each from the last state on the near side.
     pub fn with_refinement(self, width: Width) -> Self {
         Self { refine: Some(width), ..self }
     }

@@ -17,13 +17,14 @@ const TIME_ROUNDING: f64 = 1e-12;
 pub enum Outcome {
     /// All samples were taken.
     Completed,
-    /// The observer ended the value: there are only the samples until then. The next value of the ramp starts from there.
+    /// The observer ended the value: there are only the samples until then. The next value of the ramp starts
+    /// from there.
     Stopped {
         /// When, since the start of the ramp.
         time: f64,
     },
-    /// Events piled up in vanishing time, as in an inelastic collapse: there are only the samples until then. The next
-    /// value of the ramp starts from the state in which this one did.
+    /// Events piled up in vanishing time, as in an inelastic collapse: there are only the samples until then.
+    /// The next value of the ramp starts from the state in which this one did.
     Stalled {
         /// When, since the start of the ramp.
         time: f64,
@@ -81,7 +82,7 @@ pub(super) struct Measured<S, O> {
     pub(super) observer: O,
 }
 
-/// Which study and place a file is of.
+/// The study and the place in it that a file belongs to.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Origin {
@@ -94,7 +95,8 @@ pub(super) struct Origin {
     pub(super) seed: u64,
 }
 
-/// A time, counted in whole cycles since one that was a time of its own: products of whole numbers do not drift.
+/// A time, counted in whole cycles since one that was a time of its own: products of whole numbers do not
+/// drift.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Cycles {
     /// Absolute time from which cycles are counted.
@@ -171,7 +173,8 @@ impl<E: Experiment> Record<E> {
         &self.experiment
     }
 
-    /// Returns a parameter of the experiment by its name, as in a [`Plan`]; `None` if it has none of this name.
+    /// Returns a parameter of the experiment by its name, as in a [`Plan`]; `None` if it has none of this
+    /// name.
     pub fn parameter(&self, name: &str) -> Option<Scalar> {
         let tree = parameters::tree(&self.experiment).ok()?;
         let name = parameters::whole_name(&tree, name).ok()?;
@@ -198,7 +201,8 @@ impl<E: Experiment> Record<E> {
         &self.contents.measured.observer
     }
 
-    /// Returns what happened in it, settling included; the largest overlap is that since the start of the ramp.
+    /// Returns what happened in it, settling included; the largest overlap is that since the start of the
+    /// ramp.
     pub const fn counters(&self) -> &Counters {
         &self.contents.counters
     }
@@ -218,8 +222,8 @@ impl<E: Experiment> Record<E> {
     /// Returns the mean of the column of this name; `None` if there is none, or none that has an error.
     pub fn estimate(&self, column: &str) -> Option<Estimate> {
         let columns = E::columns();
-        let named = columns.iter().filter(|known| known.name() == column);
-        named.filter_map(|known| known.estimate(self)).next()
+        let mut named = columns.iter().filter(|known| known.name() == column);
+        named.find_map(|known| known.estimate(self))
     }
 }
 

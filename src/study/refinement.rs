@@ -42,7 +42,8 @@ impl Ramp {
         self.search(seen).err()
     }
 
-    /// Returns the transitions between the values that are done, as far as they are bracketed to the wanted width.
+    /// Returns the transitions between the values that are done, as far as they are bracketed to the wanted
+    /// width.
     pub(super) fn brackets(&self, seen: &[Seen]) -> Vec<Bracket> {
         self.search(seen).unwrap_or_default()
     }
@@ -72,11 +73,12 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Narrows the transitions between two neighbors of the ramp, in the order of the way; the next value, if they
-    /// need one more.
+    /// Narrows the transitions between two neighbors of the ramp, in the order of the way; the next value, if
+    /// they need one more.
     ///
-    /// Each value starts from the last state on the near side of its transition, so that a bracket belongs to the way on
-    /// which it was come to. Of several transitions the first is narrowed first: all other states are beyond it.
+    /// Each value starts from the last state on the near side of its transition, so that a bracket belongs to
+    /// the way on which it was come to. Of several transitions the first is narrowed first: all other states
+    /// are beyond it.
     fn between(&mut self, mut near: usize, far: usize) -> Result<(), Step> {
         if self.seen[far].state.is_none() {
             return Ok(());
@@ -89,9 +91,9 @@ impl Search<'_> {
             if let Some(at) = self.middle(near, far).filter(|_| is_transition) {
                 let index = self.half(Step { leg: self.seen[far].leg, at: Some(at), before: Some(near) })?;
                 if self.seen[index].state == *from {
-                    near = index
+                    near = index;
                 } else {
-                    beyond.push(index)
+                    beyond.push(index);
                 }
                 continue;
             }
@@ -186,7 +188,7 @@ mod tests {
     #[test]
     fn all_transitions_between_two_neighbors_are_found() {
         let states = |at: f64, _| {
-            Some(["a", "b", "c", "d"][(at > 0.3) as usize + (at > 0.6) as usize + (at > 0.61) as usize])
+            Some(["a", "b", "c", "d"][[0.3, 0.6, 0.61].iter().filter(|place| at > **place).count()])
         };
         for (course, expected) in [
             (Course::Up, [("a", "b"), ("b", "c"), ("c", "d")]),
@@ -204,7 +206,8 @@ mod tests {
     #[test]
     fn a_relative_width_is_finer_at_smaller_values() {
         let ramp = Ramp::new("x", [0.01, 0.1, 1.0, 10.0], Course::Up).with_refinement(Width::Relative(0.01));
-        let states = |at: f64, _| Some(["a", "b", "c"][(at > 0.033) as usize + (at > 4.4) as usize]);
+        let states =
+            |at: f64, _| Some(["a", "b", "c"][[0.033, 4.4].iter().filter(|place| at > **place).count()]);
         let brackets = ramp.brackets(&walk_through(&ramp, states).0);
         assert_eq!(told(&brackets), [("a", "b"), ("b", "c")]);
         for (bracket, at) in brackets.iter().zip([0.033, 4.4]) {
@@ -215,7 +218,8 @@ mod tests {
         }
     }
 
-    /// A value that shows no state, as one that has stalled, is beyond the transition, and nothing is sought beyond it.
+    /// A value that shows no state, as one that has stalled, is beyond the transition, and nothing is sought
+    /// beyond it.
     #[test]
     fn a_value_without_a_state_ends_a_search() {
         let ramp = Ramp::new("x", [0.0, 1.0, 2.0], Course::Up).with_refinement(Width::Absolute(0.1));

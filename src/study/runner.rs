@@ -35,19 +35,20 @@ struct Shift<'a, E: Experiment> {
 impl<E: Experiment> Study<E> {
     /// Does all values that have no record yet, and writes the tables.
     ///
-    /// Any number of processes may do this at the same time, and [`Self::run_ramp`]: each ramp is done by one of them.
-    /// Ramps that others do are waited for, and taken over from a process that was killed. Ramps are done in parallel with
-    /// the feature `rayon`, in the pool that this is called from. Interrupted, it returns with all that was done saved; run
-    /// again, it goes on, with the same result.
+    /// Any number of processes may do this at the same time, and [`Self::run_ramp`]: each ramp is done by one
+    /// of them. Ramps that others do are waited for, and taken over from a process that was killed. Ramps are
+    /// done in parallel with the feature `rayon`, in the pool that this is called from. Interrupted, it
+    /// returns with all that was done saved; run again, it goes on, with the same result.
     ///
     /// # Errors
-    /// If the plan of the folder has changed, files cannot be read or written, records were made by another version, or a value
-    /// cannot be started.
+    /// If the plan of the folder has changed, files cannot be read or written, records were made by another
+    /// version, or a value cannot be started.
     pub fn run(&self, control: &Control<'_>) -> Result<Summary, StudyError> {
         self.run_ramps((0..self.plan().ramps()).collect(), control)
     }
 
-    /// Does the values of one ramp that have no record yet, and writes the tables if all other ramps are done.
+    /// Does the values of one ramp that have no record yet, and writes the tables if all other ramps are
+    /// done.
     ///
     /// # Errors
     /// As [`Self::run`]; also if there is no such ramp.
@@ -74,7 +75,8 @@ impl<E: Experiment> Study<E> {
         Ok(Summary { finished: shift.finished.into_inner(), total, elsewhere, redone })
     }
 
-    /// Returns whether all ramps are done. Those after `first` are looked at first: they are the last to be done.
+    /// Returns whether all ramps are done. Those after `first` are looked at first: they are the last to be
+    /// done.
     fn is_done(&self, first: usize) -> bool {
         let ramps = self.plan().ramps();
         (1..=ramps).map(|step| (first + step) % ramps).all(|ramp| self.folder.is_done(ramp))
@@ -110,7 +112,8 @@ impl<'a, E: Experiment> Shift<'a, E> {
         }
     }
 
-    /// Does ramps until each is done, by somebody; returns those that others do, if they are not to be waited for.
+    /// Does ramps until each is done, by somebody; returns those that others do, if they are not to be waited
+    /// for.
     fn all(&self, mut ramps: Vec<usize>) -> Result<Vec<usize>, StudyError> {
         loop {
             for_each_ramp(&ramps, |ramp| {

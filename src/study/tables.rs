@@ -76,7 +76,7 @@ impl<'a, E: Experiment> Tables<'a, E> {
     /// Adds what is known once all records of a ramp have come.
     pub(super) fn end_ramp(&mut self, ramp: usize, brackets: &[Bracket]) {
         self.add_transitions(ramp, brackets);
-        if (ramp + 1) % self.plan.repeats() == 0 {
+        if (ramp + 1).is_multiple_of(self.plan.repeats()) {
             let repeats = std::mem::take(&mut self.repeats);
             repeats.write(self.plan, ramp / self.plan.repeats(), &mut self.points);
         }

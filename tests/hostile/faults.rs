@@ -1,4 +1,5 @@
-//! Faults of the machine, for real: full disks, folders that cannot be written, processes killed at any moment.
+//! Faults of the machine, for real: full disks, folders that cannot be written, processes killed at any
+//! moment.
 //!
 //! What the system does not permit (mounting, another user) is said and skipped.
 

@@ -1,6 +1,7 @@
 //! Files whose checksum is right and whose contents are not: refused, or a state that runs on.
 //!
-//! What a forged state may cost is limited by the system: this test runs itself in a process with little memory and time.
+//! What a forged state may cost is limited by the system: this test runs itself in a process with little
+//! memory and time.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -134,7 +135,8 @@ fn bytes_behind_a_checkpoint_are_refused() {
     assert!(error.to_string().contains("something follows it"), "{error}");
 }
 
-/// The cells at walls reach to infinity: a disk that is deep in a wall, and fast, would take ages to come back.
+/// The cells at walls reach to infinity: a disk that is deep in a wall, and fast, would take ages to come
+/// back.
 #[test]
 fn a_disk_beyond_a_wall_is_refused() {
     let place = DVec2::new(1.234_567, 2.345_678);
@@ -155,7 +157,8 @@ fn a_disk_beyond_a_wall_is_refused() {
     }
 }
 
-/// The file with a few places overwritten: by patterns, by what stands elsewhere in it, and by numbers near those that were there.
+/// The file with a few places overwritten: by patterns, by what stands elsewhere in it, and by numbers near
+/// those that were there.
 fn edited(file: &[u8], seed: u64) -> Vec<u8> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut contents = file[CONTENTS_AT..].to_vec();

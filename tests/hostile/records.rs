@@ -1,4 +1,5 @@
-//! Records and values half done whose checksum is right, and which say what their study cannot have: each is named.
+//! Records and values half done whose checksum is right, and which say what their study cannot have: each is
+//! named.
 
 use std::fs;
 use std::path::PathBuf;

@@ -1,21 +1,19 @@
 //! Experiments of one's own: swept, ramped, recorded, resumed, and refused where they cannot be.
 
 use std::fs;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
 use granular_edmd::boundary::Container;
 use granular_edmd::observable::{Observer, Snapshot};
 use granular_edmd::study::{
-    Axis, Column, Control, Course, Experiment, ExperimentError, Plan, PlanError, Progress, Protocol, Ramp,
-    Record, Scalar, Study, StudyError,
+    Axis, Column, Control, Course, Experiment, ExperimentError, Plan, PlanError, Protocol, Ramp, Record,
+    Scalar, Study, StudyError,
 };
 use granular_edmd::{Disk, initial};
 use serde::{Deserialize, Serialize};
 
 use crate::mixture::{Mixture, Sticky, mixture};
 use crate::report::report;
-use crate::support::{AnyError, Scratch, assert_same, contents};
+use crate::support::{AnyError, Scratch, assert_same, contents, run_with_interruptions};
 
 /// Coupled parameters: the weight is ramped, the loss and the mixture differ between ramps.
 fn plan() -> Plan<Mixture> {
@@ -59,25 +57,11 @@ fn an_own_experiment_is_swept_ramped_and_recorded() -> Result<(), AnyError> {
 }
 
 #[test]
-fn an_own_experiment_goes_on_with_the_same_bytes() -> Result<(), AnyError> {
+fn an_own_experiment_goes_on_with_the_same_bytes() {
     let (expected, _) = done("own-not-interrupted");
     let scratch = Scratch::new("own-interrupted");
-    let mut runs = 0;
-    loop {
-        let stop = AtomicBool::new(false);
-        let steps = std::sync::atomic::AtomicU64::new(0);
-        let progress =
-            |_: &Progress| stop.store(steps.fetch_add(1, Ordering::Relaxed) > 12, Ordering::Relaxed);
-        let control = Control::default().with_interrupt(&stop).with_progress(&progress);
-        let study = Study::open_or_create(&scratch.0, &plan())?;
-        runs += 1;
-        if study.run(&control.with_save_interval(Duration::ZERO))?.is_complete() {
-            break;
-        }
-    }
-    assert!(runs > 2, "it was interrupted");
+    assert!(run_with_interruptions(&scratch.0, &plan(), |_| 12, |_| {}) > 1);
     assert_same(&scratch.0, &expected.0);
-    Ok(())
 }
 
 #[test]

@@ -100,7 +100,8 @@ fn of_two_plans_at_the_same_moment_one_wins_and_the_other_is_told() {
     }
 }
 
-/// Four processes at once on a fresh folder, some of which are killed; then one to finish what all of them left.
+/// Four processes at once on a fresh folder, some of which are killed; then one to finish what all of them
+/// left.
 fn killed(round: u64) -> BTreeMap<PathBuf, Vec<u8>> {
     let scratch = Scratch::new(&format!("many-killed-{round}"));
     let mut below = numbers(round);

@@ -1,8 +1,6 @@
 //! Transitions, bracketed and bisected along a ramp.
 
 use std::fs;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::Duration;
 
 use granular_edmd::study::vibrated_box::VibratedBox;
 use granular_edmd::study::{
@@ -11,7 +9,7 @@ use granular_edmd::study::{
 
 use crate::mixture::{Mixture, mixture};
 use crate::report::report;
-use crate::support::{AnyError, Scratch, assert_same, contents, small_box};
+use crate::support::{AnyError, Scratch, assert_same, contents, run_with_interruptions, small_box};
 
 const WIDTH: f64 = 0.002;
 
@@ -61,28 +59,13 @@ fn a_transition_is_bracketed_from_below_and_from_above() -> Result<(), AnyError>
 }
 
 #[test]
-fn an_interrupted_refinement_goes_on_with_the_same_bytes() -> Result<(), AnyError> {
+fn an_interrupted_refinement_goes_on_with_the_same_bytes() {
     let (expected, _) = done("refined-not-interrupted");
     let scratch = Scratch::new("refined-interrupted");
-    let mut runs = 0;
-    loop {
-        let (stop, steps) = (AtomicBool::new(false), AtomicU64::new(0));
-        let progress = |progress: &Progress| {
-            assert!(progress.done <= progress.total);
-            // Values that are known count as one: each run gets further than the one before.
-            let limit = 25 + 4 * runs;
-            stop.store(steps.fetch_add(1, Ordering::Relaxed) > limit, Ordering::Relaxed);
-        };
-        let control = Control::default().with_interrupt(&stop).with_progress(&progress);
-        let study = Study::open_or_create(&scratch.0, &plan())?;
-        if study.run(&control.with_save_interval(Duration::ZERO))?.is_complete() {
-            break;
-        }
-        runs += 1;
-    }
-    assert!(runs > 2, "it was interrupted");
+    let watch = |progress: &Progress| assert!(progress.done <= progress.total);
+    // Values that are known count as one step: each run gets further than the one before.
+    assert!(run_with_interruptions(&scratch.0, &plan(), |run| 25 + 4 * run, watch) > 2);
     assert_same(&scratch.0, &expected.0);
-    Ok(())
 }
 
 #[test]
@@ -96,7 +79,7 @@ fn a_damaged_value_of_a_refinement_is_done_again() -> Result<(), AnyError> {
         assert_eq!(study.run(&Control::default())?.redone, [path]);
         assert!(contents(&scratch.0) == before);
     }
-    // One of another half is told apart by its place.
+    // The record of another half is told apart by its place.
     let [first, second] = ["0007", "0008"].map(|value| scratch.0.join(format!("ramps/0000/{value}.record")));
     fs::copy(&first, &second)?;
     assert_eq!(study.run(&Control::default())?.redone, [second]);

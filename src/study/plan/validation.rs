@@ -43,7 +43,8 @@ impl<E: Experiment> Plan<E> {
         }
     }
 
-    /// Sets each parameter that varies for itself: that there is one of this name, and what its values become.
+    /// Sets each parameter that varies for itself: that there is one of this name, and what its values
+    /// become.
     fn try_names(&mut self) -> Result<(), PlanError> {
         for (axis, name) in self.sweep.iter_mut().zip(&self.varied) {
             let tried = axis.values().iter().map(|to| probe::<E>(&self.tree, axis.parameter(), name, to));

@@ -1,4 +1,4 @@
-//! One value: read if it is finished, gone on with if it was begun, else done from its start.
+//! A value that is read if it is finished, gone on with if it was begun, and else done from its start.
 
 use std::path::Path;
 use std::sync::PoisonError;

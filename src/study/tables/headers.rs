@@ -53,8 +53,8 @@ fn place<E: Experiment>(plan: &Plan<E>) -> Vec<Described> {
     place
 }
 
-/// Describes the columns of the table of values. Its last column names those whose error is a lower bound, apart by spaces: they
-/// have too few samples for their correlations.
+/// Describes the columns of the table of values. Its last column names those whose error is a lower bound,
+/// apart by spaces: they have too few samples for their correlations.
 pub(super) fn of_values<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -> Vec<Described> {
     let mut all = place(plan);
     all.extend(["seed", "outcome", "samples"].map(|name| described(name, "")));
@@ -95,7 +95,8 @@ fn of_estimate<E: Experiment>(column: &Column<E>) -> [Described; 3] {
     [described(name, unit), described(error, unit), described(independent, "")]
 }
 
-/// Describes the columns of the table of transitions: the values of the ramped parameter and the states on both sides.
+/// Describes the columns of the table of transitions: the values of the ramped parameter and the states on
+/// both sides.
 pub(super) fn of_transitions<E: Experiment>(plan: &Plan<E>) -> Vec<Described> {
     let mut all: Vec<_> = ["ramp", "leg"].map(|name| described(name, "")).into();
     all.extend((plan.repeats() > 1).then(|| described("repeat", "")));

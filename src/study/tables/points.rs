@@ -4,7 +4,8 @@ use super::{append, append_estimate, not_converged};
 use crate::statistics::Estimate;
 use crate::study::{Experiment, Plan};
 
-/// The estimates of the repeats of one point: a list for each value, in it one for each repeat, with the names of columns.
+/// The estimates of the repeats of one point: a list for each value, in it one for each repeat, with the
+/// names of columns.
 #[derive(Default)]
 pub(super) struct Repeats(Vec<Vec<Vec<(&'static str, Estimate)>>>);
 
@@ -45,7 +46,9 @@ fn row<E: Experiment>(
     let names = repeats[0].iter().map(|(name, _)| *name).enumerate();
     let together: Vec<(&str, Estimate)> =
         names.map(|(column, name)| (name, Estimate::over_repeats(of_column(column)))).collect();
-    together.iter().for_each(|(_, estimate)| append_estimate(&mut line, estimate));
+    for (_, estimate) in &together {
+        append_estimate(&mut line, estimate);
+    }
     append(&mut line, &not_converged(&together));
     line
 }
