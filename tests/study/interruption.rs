@@ -5,13 +5,11 @@ use std::time::Duration;
 
 use granular_edmd::study::{Control, Progress, Study};
 
-use crate::support::{
-    AnyError, CHILD_FOLDER, Scratch, assert_same, done, run_with_interruptions, small_plan, start,
-};
+use crate::support::{CHILD_FOLDER, Scratch, assert_same, done, run_with_interruptions, small_plan, start};
 
 #[test]
 #[cfg(feature = "rayon")]
-fn threads_do_not_matter() -> Result<(), AnyError> {
+fn threads_do_not_matter() -> Result<(), crate::support::AnyError> {
     let (expected, _) = done(&small_plan(), "threads-any");
     for threads in [1, 2] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
