@@ -9,7 +9,7 @@ use granular_edmd::wall::{
 
 const FLIGHTS: usize = 1024;
 
-/// Disks that fall onto the wall from up to two amplitudes above its reach, at all phases.
+/// Returns flights of disks that fall onto the wall from up to two amplitudes above its reach, at all phases.
 fn flights() -> Vec<Approach> {
     let flight = |k: usize| {
         let (phase, height, speed) = ((k % 97) as f64, (k * 37 % 101) as f64, (k * 53 % 89) as f64);

@@ -1,10 +1,11 @@
-//! How fast the mean energy loss is: the closed form per point, the Monte Carlo average per collision.
+//! The speed of the mean energy loss: of the closed form per point, and of the Monte Carlo average per
+//! collision.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use granular_edmd::collision::Frictional;
 use granular_edmd::kinetic::{IsoLine, Maxwellian, MonteCarlo, friction_of_largest_loss, mean_energy_change};
 
-/// Points over the plane of Fig. 1.
+/// Returns points over the plane of Fig. 1.
 fn points() -> Vec<Frictional> {
     let point = |i: u32| Frictional::new(f64::from(i % 100) * 2e-3, f64::from(i / 100) * 0.01).unwrap();
     (0..10_000).map(point).collect()

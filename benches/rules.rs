@@ -9,13 +9,15 @@ use granular_edmd::collision::{
 
 const CONTACTS: usize = 1024;
 
-/// Slow and fast, grazing and central: sticking and sliding in no order.
+/// Returns slow and fast, grazing and central contacts, in which sticking and sliding alternate without
+/// order.
 fn contacts() -> Vec<Contact> {
     let speeds = (0..CONTACTS).map(|k| (1.0 + (k * 37 % 101) as f64, (k * 53 % 211) as f64 - 105.0));
     speeds.map(|(closing, slip)| Contact::new(0.02 * closing, 0.02 * slip, 0.5, 0.5 / 3.0)).collect()
 }
 
-/// A rule as a user writes it: restitution that falls with the speed of the impact, over the library's friction.
+/// Returns a rule as a user writes it: restitution that falls with the speed of the impact, over the
+/// library's friction.
 fn speed_dependent() -> impl CollisionRule {
     let friction = Friction::new(0.05, 0.1).expect("valid");
     from_fn(move |contact: &Contact| -> Impulse {

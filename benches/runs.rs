@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use common::state::{DENSE, DILUTE, Run};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
-/// Time for this many collisions.
+/// Returns the time for this many collisions.
 fn collide(run: &mut Run, collisions: u64) -> Duration {
     let (start, last) = (Instant::now(), run.counters().collisions + collisions);
     while run.counters().collisions < last {

@@ -1,4 +1,4 @@
-//! What an event costs each scheduler: the earliest disk is found and gets a later time.
+//! The cost of an event for each scheduler: the earliest disk is found and gets a later time.
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use granular_edmd::scheduler::{BucketQueue, EventScheduler, LinearScan, TournamentTree};
@@ -7,7 +7,7 @@ type New = fn() -> Box<dyn EventScheduler>;
 
 const EVENTS: usize = 1024;
 
-/// Times without order between 0 and 1.
+/// Returns times without order between 0 and 1.
 fn scattered(k: usize) -> f64 {
     (k.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 11) as f64 / (1u64 << 53) as f64
 }

@@ -1,13 +1,14 @@
-//! How much faster a sweep of independent runs is on more threads.
+//! The gain in speed of a sweep of independent runs on more threads.
 //!
 //! ```sh
 //! RUSTFLAGS="-C target-cpu=native" cargo bench --all-features --bench sweep
 //! ```
 //!
-//! A study of 24 runs is done on one thread and on more, in turn, `ROUNDS` times. So is a loop of plain arithmetic
-//! that touches no memory: what it gains is all that the machine has to give at the time, and the quotient of the two
-//! gains is what the study makes of it. On a machine with other work on it even that says little; then look at the time
-//! on processors, which is the same on more threads as on one as long as the runs do not get into each other's way.
+//! A study of 24 runs is done on one thread and on more, in turn, `ROUNDS` times. The same is done with a
+//! loop of plain arithmetic that touches no memory. The gain of the loop is all that the machine can give at
+//! the time, and the quotient of the two gains is what the study makes of it. On a machine with other work,
+//! even this quotient says little. Then look at the time on processors: it is the same on more threads as on
+//! one, as long as the runs do not disturb each other.
 
 mod common;
 
@@ -27,10 +28,11 @@ use granular_edmd::study::{Axis, Control, Plan, PlanError, Protocol, Study};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// Runs of a study: so many that no thread waits long for the last one.
+/// Number of runs of a study, so large that no thread waits long for the last run.
 const RUNS: u32 = 24;
 
-/// Seconds of the study and of the arithmetic on so many threads, by the wall clock and on all processors together.
+/// Seconds of the study and of the arithmetic on so many threads, by the wall clock and on all processors
+/// together.
 struct Times {
     threads: usize,
     pool: ThreadPool,
@@ -61,7 +63,7 @@ fn run() -> Outcome<()> {
     Ok(())
 }
 
-/// One, two, and as many as there are.
+/// Returns the numbers of threads: one, two, and as many as there are.
 fn threads() -> Vec<usize> {
     let all = available_parallelism().map_or(1, usize::from);
     let mut threads = vec![1, 2, all.max(1)];
@@ -77,7 +79,7 @@ impl Times {
     }
 }
 
-/// Runs that take equally long: they differ in friction by next to nothing.
+/// Returns a plan of runs that take equally long, since they hardly differ in friction.
 fn plan(cycles: u64) -> Result<Plan<VibratedBox>, PlanError> {
     let base = Base::BiParabolic { amplitude: AMPLITUDE, angular_frequency: ANGULAR_FREQUENCY };
     let experiment = VibratedBox::new(DISKS, WIDTH, base)
@@ -90,7 +92,7 @@ fn plan(cycles: u64) -> Result<Plan<VibratedBox>, PlanError> {
     Plan::new(experiment, protocol, 1)?.with_axis(Axis::new("friction", frictions))
 }
 
-/// Seconds for the whole study, its files among them.
+/// Returns the seconds for the whole study, including its files.
 fn study(plan: &Plan<VibratedBox>) -> Outcome<f64> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("sweep-{}", std::process::id()));
     let study = Study::create(&folder, plan)?;
@@ -101,7 +103,7 @@ fn study(plan: &Plan<VibratedBox>) -> Outcome<f64> {
     if summary.is_complete() { Ok(seconds) } else { Err("a run of the study failed".into()) }
 }
 
-/// Seconds for as many loops of arithmetic as there are runs, of about the same length.
+/// Returns the seconds for as many loops of arithmetic as there are runs, of about the same length.
 fn arithmetic(cycles: u64) -> f64 {
     let start = Instant::now();
     (0..RUNS).into_par_iter().with_max_len(1).for_each(|run| {
@@ -135,7 +137,7 @@ fn print(times: &[Times], rounds: u64) {
     }
 }
 
-/// One number over the other, round by round.
+/// Returns the ratios of two lists of numbers, round by round.
 fn ratios(above: &[f64], below: &[f64]) -> Vec<f64> {
     above.iter().zip(below).map(|(above, below)| above / below).collect()
 }

@@ -1,14 +1,14 @@
-//! How the transitions between convective states move with the contact duration.
+//! The transitions between convective states as they depend on the contact duration.
 //!
-//! The paper's system at `g = 0.015625`: friction goes up at `q = 0`, and inelasticity goes up at `κ = 0.05`,
-//! with contact durations from 1e-7 to 1e-3, three independent ramps each. The paper has no contact duration;
-//! results that depend on it would be results of the remedy, not of the system.
+//! The system is the paper's at `g = 0.015625`. Friction goes up at `q = 0`, and inelasticity goes up at
+//! `κ = 0.05`, with contact durations from 1e-7 to 1e-3 and three independent ramps each. The paper has no
+//! contact duration: results that depend on it would be results of the remedy and not of the system.
 //!
 //! ```text
 //! cargo run --release --features serde,rayon --example contact_duration
 //! ```
 //!
-//! Writes the studies, and prints a table. Interrupted, the same command goes on.
+//! The example writes the studies, and prints a table. After an interruption, the same command goes on.
 
 mod studies;
 
@@ -33,17 +33,17 @@ type Record = granular_edmd::study::Record<VibratedBox>;
 
 const DURATIONS: [f64; 5] = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3];
 
-/// Independent ramps for each duration.
+/// Number of independent ramps for each duration.
 const RUNS: usize = 3;
 
-/// Close steps where a transition is expected.
+/// Frictions of the ramp, with small steps where a transition is expected.
 const FRICTIONS: [f64; 19] = [
     0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.05, 0.055, 0.06, 0.065, 0.07, 0.075, 0.08, 0.09, 0.1, 0.15,
     0.175, 0.2, 0.3,
 ];
 const INELASTICITIES: [f64; 9] = [0.01, 0.02, 0.025, 0.03, 0.035, 0.04, 0.045, 0.05, 0.1];
 
-/// Friction while inelasticity is ramped.
+/// Friction of the ramps of inelasticity.
 const FRICTION: f64 = 0.05;
 
 fn main() -> ExitCode {
@@ -80,7 +80,8 @@ fn plan(
         .with_repeats(RUNS)
 }
 
-/// A row for each contact duration: where the transitions are, and how many collisions the model has changed.
+/// Prints a row for each contact duration: the places of the transitions, and the share of collisions that
+/// the model has changed.
 fn print(parameter: &str, records: &[Record]) -> Result<(), Box<dyn Error>> {
     println!(
         "transitions along {parameter}; ± is the standard error over independent ramps, and over a step"
@@ -108,7 +109,7 @@ fn print(parameter: &str, records: &[Record]) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The transitions of one ramp to states of more loss.
+/// Returns the transitions of one ramp to states of larger loss.
 fn rising(parameter: &str, ramp: &[Record]) -> Result<Vec<Transition>, ParameterError> {
     let regime = |record: &Record| -> Result<(f64, ConvectiveRegime), ParameterError> {
         let noise = record.thermal_noise();
@@ -121,8 +122,8 @@ fn rising(parameter: &str, ramp: &[Record]) -> Result<Vec<Transition>, Parameter
     Ok(transitions(regimes)?.into_iter().filter(|transition| transition.rising).collect())
 }
 
-/// The first crossing of a line in each ramp: mean, and error from the scatter of ramps and the width of a
-/// step.
+/// Returns the first crossing of a line in each ramp: the mean, and its error from the scatter of the ramps
+/// and from the width of a step.
 fn place(line: TransitionLine, ramps: &[Vec<Transition>]) -> String {
     let first: Vec<&Transition> =
         ramps.iter().filter_map(|found| found.iter().find(|transition| transition.line == line)).collect();
@@ -131,7 +132,8 @@ fn place(line: TransitionLine, ramps: &[Vec<Transition>]) -> String {
     match values.count() {
         0 => "–".to_owned(),
         count => {
-            // Anywhere in a step alike: its standard deviation is the half step over the root of three.
+            // The transition lies anywhere in a step with equal probability. Its standard deviation is the
+            // half step over the root of three.
             let error = values.standard_error().hypot(half_steps.mean() / 3.0_f64.sqrt());
             let of = if count < RUNS as u64 { format!(" ({count} of {RUNS})") } else { String::new() };
             format!("{:.4} ± {error:.4}{of}", values.mean())
@@ -139,7 +141,7 @@ fn place(line: TransitionLine, ramps: &[Vec<Transition>]) -> String {
     }
 }
 
-/// The share of all collisions, with disks and walls, that the model made elastic.
+/// Returns the share of all collisions, with disks and walls, that the model made elastic.
 fn share_changed<'a>(records: impl Iterator<Item = &'a Record>) -> f64 {
     let (changed, all) = records.map(Record::counters).fold((0, 0), |(changed, all), counters| {
         let collisions = counters.collisions + counters.wall_collisions;

@@ -1,5 +1,5 @@
-//! The mean energy loss of the Maxwellian gas and of the real one, side by side: the paper's central
-//! quantity, held against the simulation of its own system.
+//! The mean energy loss of the Maxwellian gas and of the simulated one, side by side: the paper's central
+//! quantity, compared with a simulation of the paper's own system.
 //!
 //! ```text
 //! cargo run --release --example energy_loss_in_run
@@ -13,7 +13,7 @@ use granular_edmd::observable::EnergyChangeProfile;
 use granular_edmd::prelude::*;
 use granular_edmd::statistics::BlockedMean;
 
-/// Oscillations before measuring, and while measuring.
+/// Numbers of oscillations before measuring, and while measuring.
 const OSCILLATIONS: (f64, f64) = (2000.0, 2000.0);
 
 /// Parts of the measured time, whose scatter tells the errors.

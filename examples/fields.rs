@@ -7,7 +7,7 @@
 //! cargo run --release --example fields -- --friction 0.04 --out one_roll
 //! ```
 //!
-//! Writes `fields.png` and `fields.csv`.
+//! The example writes `fields.png` and `fields.csv`.
 
 mod common;
 
@@ -54,7 +54,7 @@ const BOX: DVec2 = DVec2::new(60.0, 150.0);
 /// Time between two samples, in oscillations: not a whole number, so that all phases of the base are seen.
 const INTERVAL: f64 = 0.99;
 
-/// Columns and rows: fine for the maps, coarse for the arrows.
+/// Columns and rows of the grids: fine for the maps, coarse for the arrows.
 const FINE: (usize, usize) = (24, 60);
 const COARSE: (usize, usize) = (10, 25);
 
@@ -84,7 +84,7 @@ fn cannot_write(path: &Path, error: impl std::fmt::Display) -> Failure {
     Failure::run(format_args!("cannot write {}: {error}", path.display()))
 }
 
-/// The fields in the second half of a run, on both grids.
+/// Returns the fields in the second half of a run, on both grids.
 fn measured(arguments: &Arguments) -> Result<(Fields, Fields), Box<dyn Error>> {
     let base = BiParabolic::new(0.1, 10.0)?;
     let oscillation = TAU / base.angular_frequency();
@@ -132,21 +132,21 @@ const BAR: f64 = 64.0;
 /// Length of a diameter on the sheet.
 const UNIT: f64 = 4.4;
 
-/// Cells with less than this share of the disks of the fullest one stay white: their averages are noise.
+/// Share of the disks of the fullest cell below which a cell stays white, since its averages are noise.
 const ENOUGH: f64 = 0.05;
 
-/// Where the range of the colours begins.
+/// The beginning of the range of the colors.
 #[derive(Clone, Copy)]
 enum Lowest {
-    /// At zero.
+    /// The range begins at zero.
     Zero,
-    /// As far below zero as the largest value is above.
+    /// The range begins as far below zero as the largest value is above it.
     Opposite,
-    /// At the smallest value.
+    /// The range begins at the smallest value.
     Smallest,
 }
 
-/// One field: its name, its value in a cell, the colour of a share of its range.
+/// A map of a field: its name, its value in a cell, and the color of a share of its range.
 struct Map {
     name: &'static str,
     value: fn(&FieldCell) -> f64,
@@ -165,7 +165,7 @@ fn maps() -> [Map; 4] {
             lowest: Lowest::Zero,
         },
         Map {
-            name: "velocity; colour: upward",
+            name: "velocity; color: upward",
             value: |cell| cell.velocity.y,
             color: |share| sheet::diverging(2.0 * share - 1.0),
             lowest: Lowest::Opposite,
@@ -223,19 +223,19 @@ fn write_header(sheet: &mut Sheet, arguments: &Arguments, fine: &Fields, coarse:
     sheet.text(MARGINS[0], 66.0, 12, QUIET, &protocol);
 }
 
-/// The height that is shown: of the highest cell with enough disks, and a little more.
+/// Returns the height that is shown: that of the highest cell with enough disks, and a little more.
 fn top(fields: &Fields) -> f64 {
     let highest = seen(fields).map(|cell| cell.center.y).fold(0.0, f64::max);
     (10.0 * (0.1 * highest + 0.5).ceil()).min(BOX.y)
 }
 
-/// How many disks a cell needs.
+/// Returns the number of disks that a cell needs.
 fn enough(fields: &Fields) -> u64 {
     let fullest = fields.iter().map(|cell| cell.count).max().unwrap_or(0);
     (ENOUGH * fullest as f64).ceil().max(1.0) as u64
 }
 
-/// The cells with enough disks.
+/// Iterates over the cells with enough disks.
 fn seen(fields: &Fields) -> impl Iterator<Item = FieldCell> {
     let enough = enough(fields);
     fields.iter().filter(move |cell| cell.count >= enough)
@@ -250,14 +250,14 @@ fn range(map: &Map, fields: &Fields) -> (f64, f64) {
     }
 }
 
-/// The smallest and the largest value.
+/// Returns the smallest and the largest value.
 fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values
         .filter(|value| value.is_finite())
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-/// The colours of a range above the panel.
+/// Draws the colors of a range above the panel.
 fn draw_bar(sheet: &mut Sheet, place: Place, map: &Map, range: (f64, f64)) {
     let shares = (0..64).map(|step| f64::from(step) / 63.0);
     let color = map.color;
@@ -279,7 +279,7 @@ fn heat_map(map: &Map, fields: &Fields, range: (f64, f64)) -> Plot {
     let enough = enough(fields);
     let cells = fields.iter().map(|cell| if cell.count >= enough { share(&cell) } else { f64::NAN });
     let cells: Vec<f64> = cells.map(|share| if share.is_finite() { share } else { f64::NAN }).collect();
-    // The heat map stretches its data over all its colours, and the bar does not.
+    // The heat map stretches its data over all its colors, but the bar does not.
     let (low, high) = ends(cells.iter().copied());
     let color = map.color;
     let colors = move |stretched: f64| {
@@ -299,7 +299,7 @@ fn fastest(coarse: &Fields) -> f64 {
     seen(coarse).map(|cell| cell.velocity.length()).fold(0.0, f64::max)
 }
 
-/// The mean flow; the longest arrow is as long as 1.6 cells.
+/// Returns the mean flow as arrows. The longest arrow is as long as 1.6 cells.
 fn arrows(coarse: &Fields) -> Plot {
     let scale = 1.6 * BOX.x / COARSE.0 as f64 / fastest(coarse).max(f64::MIN_POSITIVE);
     let arrows = seen(coarse)

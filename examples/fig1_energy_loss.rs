@@ -1,9 +1,9 @@
 //! The paper's Fig. 1: lines of equal mean energy loss per collision in the plane of friction and
 //! inelasticity.
 //!
-//! Writes `fig1_energy_loss.png` (both panels), `fig1_energy_loss.csv` (the lines) and
-//! `fig1_largest_loss.csv` (the friction of the largest loss for each inelasticity), and compares closed form
-//! and Monte Carlo on a few points.
+//! The example writes `fig1_energy_loss.png` (both panels), `fig1_energy_loss.csv` (the lines) and
+//! `fig1_largest_loss.csv` (the friction of the largest loss for each inelasticity). It also compares closed
+//! form and Monte Carlo on a few points.
 //!
 //! ```text
 //! cargo run --release --example fig1_energy_loss -- --out out
@@ -39,7 +39,7 @@ struct Arguments {
     seed: u64,
 }
 
-/// A part of the plane and the levels drawn in it.
+/// A part of the plane, and the levels that are drawn in it.
 struct Panel {
     name: &'static str,
     logarithmic: bool,
@@ -98,13 +98,14 @@ impl Panel {
         }
     }
 
-    /// Where a point is in the panel, from 0 to 1 in both directions.
+    /// Returns the place of a point in the panel, from 0 to 1 in both directions.
     fn fraction(&self, (friction, inelasticity): (f64, f64)) -> (f64, f64) {
         let across = if self.logarithmic { (friction.log10() + 3.0) / 4.0 } else { friction };
         (across, inelasticity / self.largest_inelasticity)
     }
 
-    /// The point of a line that carries its label: neighboring lines have theirs at different heights.
+    /// Returns the point of a line that carries its label. Neighboring lines have their labels at different
+    /// heights.
     fn label_place(&self, index: usize, piece: &Piece) -> (f64, f64) {
         let lowest = piece.iter().map(|&point| self.fraction(point).1).fold(1.0, f64::min);
         let height = (0.45 + 0.1 * f64::from(u8::from(index.is_multiple_of(2)))).max(lowest + 0.15);
@@ -120,19 +121,19 @@ impl Panel {
         if short { middle } else { nearest.copied().unwrap_or(middle) }
     }
 
-    /// Whether a point of a line would run through the label at `place`.
+    /// Tells whether a point of a line would run through the label at `place`.
     fn hides(&self, place: (f64, f64), point: (f64, f64)) -> bool {
         let ((x, y), (at_x, at_y)) = (self.fraction(point), self.fraction(place));
         (x - at_x).abs() < 0.024 && (y - at_y).abs() < 0.022
     }
 
-    /// A label centered on `place`.
+    /// Returns a label centered on `place`.
     fn label(&self, (friction, inelasticity): (f64, f64), text: &str, color: &str) -> TextAnnotation {
         let baseline = inelasticity - 0.024 * self.largest_inelasticity;
         TextAnnotation::new(text, friction, baseline).with_font_size(11).with_color(color)
     }
 
-    /// Points of the curve on which friction loses most.
+    /// Returns points of the curve on which friction loses most.
     fn maxima(&self, gas: &Maxwellian) -> Result<Piece, ParameterError> {
         let inelasticity = |step: i32| self.largest_inelasticity * f64::from(step) / 100.0;
         let maxima: Result<Vec<_>, _> = (0..=100)
@@ -164,7 +165,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Closed form beside Monte Carlo at the largest loss of a few inelasticities.
+/// Compares closed form and Monte Carlo at the largest loss of a few inelasticities.
 fn compare(gas: &Maxwellian, seed: u64) -> Result<(), ParameterError> {
     println!("largest loss:   q   kappa     <dE>      Monte Carlo (standard error of independent samples)");
     for q in [0.0, 0.025, 0.05, 0.1, 0.2] {
@@ -234,7 +235,7 @@ fn draw_panel(panel: &Panel, gas: &Maxwellian) -> Result<(Vec<Plot>, Layout), Pa
     Ok((plots, labels.into_iter().fold(panel.layout(), Layout::with_annotation)))
 }
 
-/// From blue for little loss to red for much.
+/// Returns a color from blue for little loss to red for much.
 fn color(level: f64) -> String {
     let share = -level;
     format!("rgb({:.0},{:.0},{:.0})", 30.0 + 190.0 * share, 90.0 - 50.0 * share, 200.0 - 150.0 * share)

@@ -1,14 +1,15 @@
 //! The paper's Fig. 2: height of the center of mass over a thermal base, against friction.
 //!
-//! 500 disks in a narrow open box, `q = 0.025`, `g = 0.002`. The column is lowest where a collision loses
-//! most energy, at a friction of about 0.3. The paper does not say what its base does to tangential and
-//! angular velocity: a full thermal base is the default, one with slip is `--slip`.
+//! The system has 500 disks in a narrow open box, with `q = 0.025` and `g = 0.002`. The column is lowest
+//! where a collision loses most energy, at a friction of about 0.3. The paper does not say what its base does
+//! to tangential and angular velocity. A full thermal base is the default; `--slip` gives one with slip.
 //!
 //! ```text
 //! cargo run --release --features serde,rayon --example fig2_center_of_mass -- --quick
 //! ```
 //!
-//! Writes `fig2_center_of_mass.png` and the tables of the study. Interrupted, the same command goes on.
+//! The example writes `fig2_center_of_mass.png` and the tables of the study. After an interruption, the same
+//! command goes on.
 
 mod studies;
 
@@ -36,10 +37,10 @@ struct Arguments {
     slip: bool,
 }
 
-/// The frictions of a full run.
+/// Frictions of a full run.
 const FRICTIONS: [f64; 15] = [0.0, 0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 1.0, 2.0, 3.0, 6.0, 10.0];
 
-/// The frictions of a short run.
+/// Frictions of a short run.
 const FEW_FRICTIONS: [f64; 7] = [0.0, 0.03, 0.1, 0.3, 0.6, 2.0, 10.0];
 
 impl Arguments {
@@ -95,7 +96,7 @@ fn print(points: &[Point]) {
 }
 
 fn figure(points: &[Point], slip: bool) -> Figure {
-    // The axis is logarithmic: no friction is a line.
+    // The axis is logarithmic, so the value without friction is drawn as a line.
     let drawn: Vec<&Point> = points.iter().filter(|point| point.friction > 0.0).collect();
     let places: Vec<(f64, f64)> = drawn.iter().map(|point| (point.friction, point.height.mean())).collect();
     let line =

@@ -1,14 +1,16 @@
 //! The paper's Fig. 3: order parameters while friction grows step by step.
 //!
-//! 1000 disks in the vibrated box, `g = 0.015625`, `q = 0`: friction alone loses energy. It goes up from
-//! 0.005 in steps of 0.005, each value from the last state of the one before. One roll sets in and changes
-//! its sense now and then; at about 0.06 it gives way to two.
+//! The system has 1000 disks in the vibrated box, with `g = 0.015625` and `q = 0`, so friction alone loses
+//! energy. Friction goes up from 0.005 in steps of 0.005, and each value starts from the last state of the
+//! previous one. One roll sets in and changes its sense now and then. At about 0.06 it gives way to two
+//! rolls.
 //!
 //! ```text
 //! cargo run --release --features serde --example fig3_order_parameters -- --quick
 //! ```
 //!
-//! Writes `fig3_order_parameters.png` and the tables of the study. Interrupted, the same command goes on.
+//! The example writes `fig3_order_parameters.png` and the tables of the study. After an interruption, the
+//! same command goes on.
 
 mod studies;
 
@@ -33,7 +35,7 @@ struct Arguments {
     down: bool,
 }
 
-/// Friction of the first value, and step to the next.
+/// Friction of the first value, and the step to the next value.
 const STEP: f64 = 0.005;
 
 type Record = granular_edmd::study::Record<VibratedBox>;
@@ -64,7 +66,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     studies::write_png(figure(&records, &study), &study, "fig3_order_parameters.png")
 }
 
-/// Means over the second half of each value, as in the paper.
+/// Prints means over the second half of each value, as in the paper.
 fn print(records: &[Record]) {
     println!("friction    Psi1   |Psi1|    Psi2   (noise at rest)");
     for record in records {
@@ -87,7 +89,8 @@ const fn friction(record: &Record) -> f64 {
     record.experiment().friction
 }
 
-/// Both order parameters, one above the other, in bins of equal friction; bin `k` is centered at `k + 1`.
+/// Draws both order parameters, one above the other, in bins of equal friction. Bin `k` is centered at
+/// `k + 1`.
 fn figure(records: &[Record], study: &Study<VibratedBox>) -> Figure {
     let cycles = study.plan().protocol().cycles();
     let title = format!("g = 0.015625, q = 0, N = 1000; {cycles} oscillations for each value of κ");

@@ -1,16 +1,16 @@
 //! The paper's Fig. 4: samples in the plane of the order parameters where one roll and two coexist.
 //!
-//! 1000 disks in the vibrated box, `g = 0.015625`, `q = 0`, friction 0.0605. The samples of a run form up to
-//! three clouds: one roll of either sense, and two rolls. A finite number of disks makes the state jump
-//! between them; not every run visits all. Some independent runs are done, and one that shows most clusters
-//! is drawn.
+//! The system has 1000 disks in the vibrated box, with `g = 0.015625`, `q = 0` and friction 0.0605. The
+//! samples of a run form up to three clouds: one roll of either sense, and two rolls. A finite number of
+//! disks makes the state jump between the clouds, and not every run visits all of them. The example does some
+//! independent runs, and draws one that shows most clusters.
 //!
 //! ```text
 //! cargo run --release --features serde,rayon --example fig4_clusters -- --quick
 //! ```
 //!
-//! Writes `fig4_clusters.png`, `clusters.csv` and the tables of the study. Interrupted, the same command goes
-//! on.
+//! The example writes `fig4_clusters.png`, `clusters.csv` and the tables of the study. After an interruption,
+//! the same command goes on.
 
 mod common;
 mod studies;
@@ -45,7 +45,7 @@ struct Arguments {
 impl Arguments {
     fn plan(&self) -> Result<Plan<VibratedBox>, PlanError> {
         let experiment = studies::vibrated_box(0.015_625).with_friction(self.friction);
-        // The paper: 100 000 oscillations, sampled every 100, the first half discarded.
+        // The paper does 100 000 oscillations, samples every 100, and discards the first half.
         let protocol =
             if self.common.quick { Protocol::new(4_000, 400, 20) } else { Protocol::new(50_000, 500, 100) };
         Plan::new(experiment, protocol, self.common.seed)?.with_repeats(self.runs)
@@ -84,7 +84,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let three = runs.iter().filter(|run| run.clusters() == 3).count();
     println!("{three} of {} runs show three clusters", runs.len());
     write_clusters(&runs, study.folder())?;
-    // The first one of those with most clusters.
+    // The first of the runs with most clusters is shown.
     let Some(shown) = runs.iter().rev().max_by_key(|run| run.clusters()) else { return Ok(()) };
     let path = study.folder().join("fig4_clusters.png");
     std::fs::write(&path, draw(arguments, &study, shown)?)?;
@@ -124,10 +124,10 @@ fn write_clusters(runs: &[Run], folder: &Path) -> Result<(), Box<dyn Error>> {
 
 const MARGINS: [f64; 4] = [70.0, 20.0, 12.0, 52.0];
 const HEADER: f64 = 76.0;
-/// Of the panel: a unit is equally long in both directions.
+/// Size of the panel, in which a unit is equally long in both directions.
 const SIZE: (f64, f64) = (860.0, 526.0);
 
-/// The ranges of both axes.
+/// Ranges of both axes.
 const RANGES: [(f64, f64); 2] = [(-0.25, 0.25), (-0.08, 0.22)];
 
 fn draw(arguments: &Arguments, study: &Study<VibratedBox>, run: &Run) -> Result<Vec<u8>, String> {
@@ -156,7 +156,7 @@ fn draw(arguments: &Arguments, study: &Study<VibratedBox>, run: &Run) -> Result<
     let place = Place { x: 0.0, y: HEADER, width: SIZE.0, height: SIZE.1 };
     sheet.panel(place, MARGINS, plots(run), layout);
     for (state, cluster) in run.found.iter() {
-        // Two rolls have their name above them, one roll below.
+        // The name of two rolls is above them, and that of one roll is below.
         let away = 3.0 * cluster.spread(DVec2::Y) + 0.01;
         let away = if state.rolls() == Some(2) { away } else { -away - 0.012 };
         let text = format!("{state}, {:.0} %", 100.0 * cluster.weight());
@@ -166,7 +166,7 @@ fn draw(arguments: &Arguments, study: &Study<VibratedBox>, run: &Run) -> Result<
     sheet.png(1.6)
 }
 
-/// Where a point of the plane is on the sheet.
+/// Returns the place of a point of the plane on the sheet.
 fn on_sheet(point: DVec2) -> (f64, f64) {
     let [left, right, top, bottom] = MARGINS;
     let share = |value: f64, (low, high): (f64, f64)| (value - low) / (high - low);

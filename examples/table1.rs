@@ -1,5 +1,5 @@
 //! The paper's Table I: effective inelasticities from the mean energy changes at the transitions, beside the
-//! printed.
+//! printed ones.
 //!
 //! ```text
 //! cargo run --release --example table1 -- --out out
@@ -7,8 +7,8 @@
 //! ```
 //!
 //! With `--study`, the lines that the example `fig5_phase_diagram` has found are averaged as in the paper,
-//! beside the printed ones: the energy change of each point by the closed form at its friction and
-//! inelasticity, mean and standard deviation over the points of a line.
+//! and shown beside the printed ones. The energy change of each point comes from the closed form at its
+//! friction and inelasticity. The table has the mean and the standard deviation over the points of a line.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -31,7 +31,7 @@ struct Arguments {
     study: Vec<PathBuf>,
 }
 
-/// A row as printed: gravity, transition, mean energy change and effective inelasticity with their errors.
+/// A row as printed: gravity, transition, mean energy change and effective inelasticity, with their errors.
 struct Row {
     gravity: f64,
     transition: &'static str,
@@ -54,7 +54,7 @@ const TABLE: [Row; 8] = [
     row(0.015_625, "2-collapse", (-0.290, 0.037), (0.079, 0.011)),
 ];
 
-/// Half of the last printed digit, and a little for numbers that lie exactly there.
+/// Half of the last printed digit, and a little more for numbers that lie exactly there.
 const HALF_DIGIT: f64 = 0.5e-3 + 1e-12;
 
 impl Row {
@@ -62,12 +62,13 @@ impl Row {
         effective_inelasticity(self.change.0, 1.0)
     }
 
-    /// The error of the mean energy change through the slope of Eq. (9), `$1/(4(1-2q))$`.
+    /// Returns the error that follows from that of the mean energy change, by the slope of Eq. (9),
+    /// `$1/(4(1-2q))$`.
     fn error(&self) -> Result<f64, ParameterError> {
         Ok(self.change.1 / (4.0 * (1.0 - 2.0 * self.effective()?)))
     }
 
-    /// Both columns are printed to three decimals: does the one follow from the other?
+    /// Tells whether the one column follows from the other. Both are printed to three decimals.
     fn verdict(&self) -> Result<&'static str, ParameterError> {
         let least = effective_inelasticity(self.change.0 + HALF_DIGIT, 1.0)?;
         let most = effective_inelasticity(self.change.0 - HALF_DIGIT, 1.0)?;
@@ -81,14 +82,14 @@ impl Row {
     }
 }
 
-/// A point of a line that was found: gravity, transition, and the rule there.
+/// A point of a line that was found: its gravity, its transition, and the rule there.
 struct Point {
     gravity: f64,
     transition: String,
     rule: Frictional,
 }
 
-/// The columns of `transitions.csv`: gravity, line, friction and inelasticity; what follows is not needed.
+/// The columns of `transitions.csv` that are needed: gravity, line, friction and inelasticity.
 type Columns = (f64, String, f64, f64);
 
 fn read(folder: &Path) -> Result<Vec<Point>, Box<dyn Error>> {
@@ -106,7 +107,7 @@ fn read(folder: &Path) -> Result<Vec<Point>, Box<dyn Error>> {
     Ok(points)
 }
 
-/// The average over the points of a line; `None` if it has none.
+/// Returns the average over the points of a line, or `None` if there are none.
 fn measured(row: &Row, points: &[Point]) -> Result<Option<LineAverage>, ParameterError> {
     let of = points.iter().filter(|point| point.gravity == row.gravity && point.transition == row.transition);
     let line: Vec<Frictional> = of.map(|point| point.rule).collect();
@@ -184,7 +185,7 @@ fn print_measured(average: &LineAverage) {
     println!("{:>20}  {}   {}", points, text(change, 3), text(effective, 4));
 }
 
-/// The last columns: number of points, and mean and standard deviation of both quantities.
+/// Returns the last columns: the number of points, and mean and standard deviation of both quantities.
 fn cells(average: Option<&LineAverage>) -> (Option<u64>, [Option<f64>; 4]) {
     let Some(average) = average else { return (None, [None; 4]) };
     let (change, effective) = (average.energy_change(), average.effective_inelasticity());

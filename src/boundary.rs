@@ -27,44 +27,48 @@ use crate::{Fingerprint, Flight};
 /// The walls around the disks.
 ///
 /// # Times
-/// All times are *offsets*: from the absolute time that [`set_time_origin`](Self::set_time_origin) was given
-/// last. Absolute times grow without bound and would lose digits. Before the first call, the origin is 0. A
-/// boundary whose walls do not move may ignore the origin. One with walls that move reduces it by whole
-/// periods to a phase of their motion, as [`WallMotion`](crate::wall::WallMotion) explains.
+/// All times are *offsets* from the absolute time that was last given to
+/// [`set_time_origin`](Self::set_time_origin). Absolute times grow without bound and would lose digits.
+/// Before the first call, the origin is 0. A boundary whose walls do not move may ignore the origin. One with
+/// walls that move reduces it by whole periods to a phase of their motion, as
+/// [`WallMotion`](crate::wall::WallMotion) explains.
 ///
 /// # Contract
 /// An implementation guarantees:
 /// 1. [`domain`](Self::domain), [`interior`](Self::interior) and [`wall_count`](Self::wall_count) never
-///    change. The domain has finite sides and a finite bottom; only its top may be infinite. A disk that has not passed a wall has its center in the domain at all times.
+///    change. The domain has finite sides and a finite bottom; only its top may be infinite. A disk that has
+///    not passed a wall has its center in the domain at all times.
 /// 2. [`may_touch`](Self::may_touch) holds for all times: it is false only for a region in which no disk of
-///    this radius, or a smaller one, can touch a wall at any time. A region that contains another may be
-///    touched where the other may.
-/// 3. [`first_touch`](Self::first_touch) misses no touch, and finds none where a gap is open. Its time is
-///    neither before the flight nor after `until`, and its wall is less than `wall_count`.
-/// 4. A wall that is touched already, by rounding too, counts at once while the disk approaches it, and never
-///    while the disk leaves it.
+///    this radius, or a smaller one, can touch a wall at any time. If it is true for a region, it is true for
+///    every larger region around that one.
+/// 3. [`first_touch`](Self::first_touch) misses no touch, and finds none where a gap is open. The time of the
+///    touch is neither before the flight nor after `until`, and its wall is less than `wall_count`.
+/// 4. A wall that the disk touches already, if only by rounding, counts at once while the disk approaches it,
+///    and never while the disk leaves it.
 /// 5. [`surface`](Self::surface) gives a unit normal that points from the wall to the disk, and finite
 ///    velocities.
 /// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise it is the depth to which the disk
 ///    reaches into a wall.
-/// 7. Another origin changes nothing but the numbers of the times: the same flight touches the same wall at
-///    the same absolute time.
+/// 7. Another origin changes only the numbers of the times: the same flight touches the same wall at the same
+///    absolute time.
 /// 8. The same questions get the same answers, bit for bit.
 ///
 /// The engine guarantees:
-/// - It sets the origin first, whenever its epoch moves, and never asks for a time before the origin.
+/// - The origin is set before the first question and whenever the epoch of the run moves. No time before the
+///   origin is asked for.
 /// - Flights have finite numbers, begin at the present, in the domain, and end where the disk leaves a cell,
-///   at most two epochs later (`until`); in an epoch a typical disk goes some tens of diameters. At periodic sides a flight ends at the side.
-/// - `first_touch` is asked only in cells for which `may_touch` holds, with the largest of all radii. Cells
-///   at the edges of the domain reach to infinity beyond them.
-/// - `surface` is asked at a touch that `first_touch` found, for its wall and time and the place of the disk
-///   then.
+///   at most two epochs later (`until`). In an epoch, a typical disk goes some tens of diameters. At periodic
+///   sides, a flight ends at the side.
+/// - `first_touch` is asked only in cells for which `may_touch` holds with the largest of all radii. Cells at
+///   the edges of the domain reach to infinity.
+/// - `surface` is asked at a touch that `first_touch` found, for the wall, the time and the place of the disk
+///   at that time.
 /// - `overlap` is asked when a simulation is built or gets other walls, and wherever disks are placed at
 ///   random.
 ///
-/// # Boundaries that break it
-/// [`laws::check`] finds most faults. A missed touch lets a disk through: it leaves the domain unseen. An
-/// early one turns disks back in mid-air. A touch of a wall that disks leave comes again at once, until the
+/// # Boundaries that break the contract
+/// [`laws::check`] finds most faults. A missed touch lets a disk leave the domain unseen. An early touch
+/// turns disks back in mid-air. A touch with a wall that the disk is leaving comes again at once, until the
 /// run ends for want of progress. A velocity or normal that is not finite ends the run with an error.
 ///
 /// ```
@@ -130,8 +134,8 @@ pub trait Boundary {
     /// Returns the rectangle that holds the centers of all disks at all times.
     fn domain(&self) -> Domain;
 
-    /// Returns a rectangle in the domain in which initial states are placed: without the reach of walls that
-    /// move.
+    /// Returns a rectangle in the domain in which initial states are placed. It leaves out the reach of
+    /// moving walls.
     fn interior(&self) -> Domain {
         self.domain()
     }
@@ -139,7 +143,7 @@ pub trait Boundary {
     /// Returns how many walls there are; their indices are less than this.
     fn wall_count(&self) -> usize;
 
-    /// Returns the name of a wall, for messages; a number does for an index without a wall.
+    /// Returns the name of a wall, for messages. The name may be a number if the index has no wall.
     fn wall_name(&self, wall: usize) -> Cow<'_, str> {
         Cow::Owned(format!("wall {wall}"))
     }
@@ -155,16 +159,17 @@ pub trait Boundary {
 
     /// Returns the first touch of this flight, not later than `until`.
     ///
-    /// A wall that is touched already counts at once while it is approached, and never while it is left.
+    /// A wall that the disk touches already counts at once while the disk approaches it, and never while the
+    /// disk leaves it.
     fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch>;
 
     /// Returns the surface that a disk at `position` touches at `time`.
     ///
-    /// The wall is one of those that there are; for another index the call may panic.
+    /// The wall must be one of those that exist. For another index the call may panic.
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_>;
 
-    /// Returns a wall that a disk at `position` overlaps at `time`, and how deep; `None` if the disk is
-    /// inside.
+    /// Returns a wall that a disk at `position` overlaps at `time`, and the depth. The result is `None` if
+    /// the disk is inside.
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)>;
 
     /// Returns the fingerprint of the boundary: its name and everything that decides what it does.

@@ -1,10 +1,10 @@
-//! Collision rules: what happens when two disks, or a disk and a wall, touch.
+//! Collision rules: the outcome when two disks, or a disk and a wall, touch.
 //!
 //! A rule is a pure function from a [`Contact`] (how fast the surfaces close and slip, and the masses that
-//! resist) to an [`Impulse`]. The engine applies the impulse to one partner and its opposite to the other at
-//! the contact point, so momentum, angular momentum and Galilean invariance hold for *any* rule; what a rule
-//! can get wrong is energy, separation and friction, and [`laws`] checks those. A wall is a partner of
-//! infinite mass: one rule serves both.
+//! resist) to an [`Impulse`]. The engine applies the impulse to one partner at the contact point, and its
+//! opposite to the other. Momentum, angular momentum and Galilean invariance therefore hold for *any* rule. A
+//! rule can only get energy, separation and friction wrong, and [`laws`] checks those. A wall is a partner of
+//! infinite mass, so one rule serves disks and walls.
 //!
 //! | rule | energy loss | source |
 //! |---|---|---|
@@ -12,11 +12,11 @@
 //! | [`Smooth`] | normal restitution only | paper, Eq. (8) |
 //! | [`Rough`] | normal and tangential restitution, no Coulomb limit | paper, Eqs. (3), (4) |
 //! | [`Elastic`] | none | |
-//! | [`ContactDuration`] | an adaptor: repeated contacts within a set time lose nothing | Luding and McNamara 1998 |
+//! | [`ContactDuration`] | an adaptor: contacts soon after another lose nothing | Luding and McNamara 1998 |
 //! | [`from_fn`] | yours, as a closure | |
 //!
 //! # A rule of your own
-//! A rule that decides the normal direction takes the tangential one from [`Friction`]. Here is the
+//! A rule that decides the normal direction takes the tangential one from [`Friction`]. The example is the
 //! restitution of C. Bizon et al., Phys. Rev. Lett. **80**, 57 (1998), which falls with the speed of the
 //! impact until it is constant, `$r_n = 1 - (1 - r_0)\min(v_n/v_0, 1)^{3/4}$`:
 //!
@@ -31,7 +31,7 @@
 //!
 //! impl CollisionRule for Bizon {
 //!     fn impulse(&self, contact: &Contact) -> Impulse {
-//!         // Square roots have the same bits on every platform, `powf(0.75)` has not.
+//!         // Square roots have the same bits on every platform; `powf(0.75)` does not.
 //!         let root = (contact.closing_speed() / self.speed).min(1.0).sqrt();
 //!         let restitution = 1.0 - (1.0 - self.restitution) * root * root.sqrt();
 //!         self.friction.impulse(contact, contact.normal_impulse(restitution))
@@ -75,20 +75,20 @@ use crate::Fingerprint;
 ///
 /// # Contract
 /// The engine calls [`Self::impulse`] once for each collision that the rule decides, of disks or with a wall.
-/// It guarantees of the contact:
+/// The engine guarantees of the contact:
 /// - the closing speed is finite and not negative; it may be zero;
 /// - the slip speed is finite, of either sign or zero;
 /// - the masses are finite and positive, the tangential one not above the normal one.
 ///
 /// The rule guarantees:
-/// 1. The same contact gets the same impulse, to the bit, every time: a rule that wants history finds it in
-///    the contact. Else a run depends on what was computed before, and a resumed run is another one.
-/// 2. The impulse is finite. Else the run ends with an error that names the partners, with what
-///    [`Self::explain`] says.
-/// 3. The surfaces do not close any more afterwards. Else they collide again at once, until the run ends as
+/// 1. The same contact gets the same impulse every time, to the bit; a rule that needs history finds it in
+///    the contact. Otherwise, a run would depend on what was computed before, and a resumed run would differ.
+/// 2. The impulse is finite. Otherwise, the run ends with an error that names the partners and contains the
+///    text of [`Self::explain`].
+/// 3. The surfaces no longer close afterwards. Otherwise, they collide again at once, until the run ends as
 ///    stalled.
-/// 4. The collision gains no energy, unless that is what the rule is for. Else the system heats up, and
-///    nobody tells.
+/// 4. The collision gains no energy, unless the rule is meant to drive. Otherwise, the system heats up
+///    unnoticed.
 ///
 /// [`laws::check_rule`] tests all four.
 #[diagnostic::on_unimplemented(
@@ -102,15 +102,16 @@ pub trait CollisionRule {
 
     /// Says why the rule has no answer for a contact.
     ///
-    /// The engine asks only after an impulse that is not finite, and puts the text into its error.
+    /// The engine asks only after an impulse that is not finite, and adds the text to its error.
     fn explain(&self, contact: &Contact) -> Option<String> {
         let _ = contact;
         None
     }
 
-    /// Names the rule by a number, so that a checkpoint notices when a run is resumed under another rule.
+    /// Returns a number that identifies the rule, so that a checkpoint notices when a run is resumed under
+    /// another rule.
     ///
-    /// Rules of equal fingerprints must give equal impulses. A rule that says nothing is not compared.
+    /// Rules with equal fingerprints must give equal impulses. A rule without a fingerprint is not compared.
     fn fingerprint(&self) -> Option<Fingerprint> {
         None
     }

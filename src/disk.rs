@@ -5,10 +5,10 @@ use glam::DVec2;
 use crate::ParameterError;
 use crate::quantity::{accept, finite, positive};
 
-/// Largest and smallest magnitude of a radius or mass: products of a few of them stay finite and normal.
+/// Range of a radius or a mass. Products of a few of them stay finite and normal.
 const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
-/// Most disks that there can be at once.
+/// Largest number of disks in a simulation.
 pub(crate) const MOST_DISKS: usize = 1 << 28;
 
 /// Largest magnitude of a component of a position or velocity, and of an angular velocity.
@@ -16,8 +16,9 @@ pub(crate) const LARGEST: f64 = 1e60;
 
 /// A rotating hard disk: position, velocity, angle, angular velocity, radius, mass and inertia factor.
 ///
-/// Its moment of inertia is `$I = \beta m R^2$`, with `$\beta = 1/2$` unless said otherwise. Lengths, times
-/// and masses are in any consistent units; the paper takes the diameter and the mass of a disk as units.
+/// The moment of inertia is `$I = \beta m R^2$`, with `$\beta = 1/2$` unless another factor is given.
+/// Lengths, times and masses are in any consistent units; the paper takes the diameter and the mass of a disk
+/// as units.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;
@@ -44,10 +45,10 @@ pub struct Disk {
 }
 
 impl Disk {
-    /// Inertia factor of a homogeneous disk, `$\beta = 1/2$` in `$I = \beta m R^2$`.
+    /// Inertia factor of a homogeneous disk: `$\beta = 1/2$` in `$I = \beta m R^2$`.
     pub const HOMOGENEOUS_INERTIA_FACTOR: f64 = 0.5;
 
-    /// A homogeneous disk of mass 1 at rest.
+    /// Creates a homogeneous disk of mass 1 at rest.
     ///
     /// # Errors
     /// If the position is not finite or above 1e60 in magnitude, or the radius is not in `[1e-30, 1e30]`.
@@ -63,7 +64,7 @@ impl Disk {
         })
     }
 
-    /// The same disk elsewhere.
+    /// Returns the same disk at this position of its center.
     ///
     /// # Errors
     /// If a component is not finite, or above 1e60 in magnitude.
@@ -71,7 +72,7 @@ impl Disk {
         Ok(Self { position: bounded_vector("position", position)?, ..self })
     }
 
-    /// The same disk with this velocity of its center.
+    /// Returns the same disk with this velocity of its center.
     ///
     /// # Errors
     /// If a component is not finite, or above 1e60 in magnitude.
@@ -79,7 +80,7 @@ impl Disk {
         Ok(Self { velocity: bounded_vector("velocity", velocity)?, ..self })
     }
 
-    /// The same disk turned to this angle, in radians, counterclockwise.
+    /// Returns the same disk turned to this angle, in radians, counterclockwise.
     ///
     /// # Errors
     /// If the angle is not finite. It may be as large as a long run makes it.
@@ -87,7 +88,7 @@ impl Disk {
         Ok(Self { angle: finite("angle", angle)?, ..self })
     }
 
-    /// The same disk with this angular velocity, in radians per time, counterclockwise.
+    /// Returns the same disk with this angular velocity, in radians per time, counterclockwise.
     ///
     /// # Errors
     /// If it is not finite, or above 1e60 in magnitude.
@@ -95,7 +96,7 @@ impl Disk {
         Ok(Self { angular_velocity: bounded("angular velocity", angular_velocity)?, ..self })
     }
 
-    /// The same disk with this mass.
+    /// Returns the same disk with this mass.
     ///
     /// # Errors
     /// If it is not in `[1e-30, 1e30]`.
@@ -103,8 +104,8 @@ impl Disk {
         Ok(Self { mass: scale("mass", mass)?, ..self })
     }
 
-    /// The same disk with the moment of inertia `$I = \beta m R^2$` for this `$\beta$`: 1/2 for a homogeneous
-    /// disk, 1 for a ring.
+    /// Returns the same disk with the moment of inertia `$I = \beta m R^2$` for this `$\beta$`: 1/2 for a
+    /// homogeneous disk, 1 for a ring.
     ///
     /// # Errors
     /// If it is not in `[1e-6, 1]`.
@@ -114,57 +115,58 @@ impl Disk {
         Ok(Self { inertia_factor, ..self })
     }
 
-    /// Position of the center.
+    /// Returns the position of the center.
     pub const fn position(&self) -> DVec2 {
         self.position
     }
 
-    /// Velocity of the center.
+    /// Returns the velocity of the center.
     pub const fn velocity(&self) -> DVec2 {
         self.velocity
     }
 
-    /// Angle in radians, counterclockwise.
+    /// Returns the angle in radians, counterclockwise.
     pub const fn angle(&self) -> f64 {
         self.angle
     }
 
-    /// Angular velocity in radians per time, counterclockwise.
+    /// Returns the angular velocity in radians per time, counterclockwise.
     pub const fn angular_velocity(&self) -> f64 {
         self.angular_velocity
     }
 
-    /// Radius.
+    /// Returns the radius.
     pub const fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// Mass.
+    /// Returns the mass.
     pub const fn mass(&self) -> f64 {
         self.mass
     }
 
-    /// `$\beta$` in `$I = \beta m R^2$`.
+    /// Returns the inertia factor `$\beta$` in `$I = \beta m R^2$`.
     pub const fn inertia_factor(&self) -> f64 {
         self.inertia_factor
     }
 
-    /// Moment of inertia about the center, `$I = \beta m R^2$`.
+    /// Returns the moment of inertia about the center, `$I = \beta m R^2$`.
     pub fn moment_of_inertia(&self) -> f64 {
         self.inertia_factor * self.mass * self.radius * self.radius
     }
 
-    /// Kinetic energy of the center, `$\tfrac12 m v^2$`.
+    /// Returns the kinetic energy of the center, `$\tfrac12 m v^2$`.
     pub fn translational_energy(&self) -> f64 {
         0.5 * self.mass * self.velocity.length_squared()
     }
 
-    /// Kinetic energy of the rotation, `$\tfrac12 I \omega^2$`.
+    /// Returns the kinetic energy of the rotation, `$\tfrac12 I \omega^2$`.
     pub fn rotational_energy(&self) -> f64 {
         0.5 * self.moment_of_inertia() * self.angular_velocity * self.angular_velocity
     }
 
-    /// The disk with the motion that the engine computed for it: no check, since the engine has its own.
+    /// Returns the disk with the motion that the engine computed for it. The engine has its own checks, so
+    /// there are none here.
     pub(crate) fn with_motion(
         self,
         position: DVec2,
@@ -189,7 +191,7 @@ fn bounded_vector(name: &'static str, vector: DVec2) -> Result<DVec2, ParameterE
     Ok(DVec2::new(bounded(name, vector.x)?, bounded(name, vector.y)?))
 }
 
-/// The fields of a file, before they have passed the constructors.
+/// Fields of a disk in a file, before they have passed the constructors.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields, rename = "Disk")]

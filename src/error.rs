@@ -4,7 +4,7 @@ use std::fmt;
 
 use thiserror::Error;
 
-/// A parameter lies outside the range in which it has a meaning.
+/// An error: a parameter lies outside the range in which it has a meaning.
 ///
 /// ```
 /// use granular_edmd::collision::Smooth;
@@ -24,7 +24,7 @@ pub struct ParameterError {
     value: f64,
 }
 
-/// A number in as few characters as tell it apart: very large and very small ones have an exponent.
+/// A number in a short form that identifies it. Very large and very small numbers have an exponent.
 struct Readable(f64);
 
 impl fmt::Display for Readable {
@@ -36,25 +36,25 @@ impl fmt::Display for Readable {
 }
 
 impl ParameterError {
-    /// An error for the parameter `name`, which should meet `requirement` but has this `value`.
+    /// Creates an error for the parameter `name`, which should meet `requirement` but has this `value`.
     ///
-    /// Meant for rules, walls and observables of your own, so that all parameters fail alike; the checks of
-    /// [`quantity`](crate::quantity) make it for the usual ranges.
+    /// The constructor is meant for rules, walls and observables of your own, so that all parameters fail
+    /// alike. The checks of [`quantity`](crate::quantity) create the error for the usual ranges.
     pub const fn new(name: &'static str, requirement: &'static str, value: f64) -> Self {
         Self { name, requirement, value }
     }
 
-    /// The parameter's name.
+    /// Returns the parameter's name.
     pub const fn name(&self) -> &'static str {
         self.name
     }
 
-    /// The value that was refused.
+    /// Returns the value that was refused.
     pub const fn value(&self) -> f64 {
         self.value
     }
 
-    /// What the value should have been.
+    /// Returns the condition that the value should have met.
     pub const fn requirement(&self) -> &'static str {
         self.requirement
     }

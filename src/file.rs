@@ -1,4 +1,4 @@
-//! Files: contents with a seal that tells damage, and writing that leaves a file whole or as it was.
+//! Files: contents under a seal that shows damage, and writes that leave a file whole or as it was.
 
 mod seal;
 mod whole;

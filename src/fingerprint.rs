@@ -1,10 +1,11 @@
-//! Who a rule, a wall motion or a boundary is, as a number that a checkpoint keeps.
+//! Fingerprints: the identity of a rule, a wall motion or a boundary, as a number that a checkpoint keeps.
 
 /// Identity of a part of a simulation: equal for equal parts, different for parts that act differently.
 ///
-/// A checkpoint keeps the fingerprints of its rule and its boundary, and tells when a run is resumed with others. A part of your
-/// own gives one by its name and all numbers that decide what it does; parts that cannot (a closure) give none, and
-/// are then not compared. The hash is FNV-1a with 64 bits, over bytes in a fixed order: the same on every platform.
+/// A checkpoint keeps the fingerprints of its rule and its boundary, and notices when a run is resumed with
+/// others. A part of your own makes its fingerprint from its name and from all numbers that decide what it
+/// does. A part that cannot do so, such as a closure, gives none and is not compared. The hash is FNV-1a with
+/// 64 bits, over bytes in a fixed order, so it is the same on every platform.
 ///
 /// ```
 /// use granular_edmd::Fingerprint;
@@ -22,23 +23,24 @@ const OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
 const PRIME: u64 = 0x0000_0100_0000_01b3;
 
 impl Fingerprint {
-    /// The fingerprint of a part of this name, without parameters.
+    /// Creates the fingerprint of a part with this name and no parameters.
     pub const fn of(name: &str) -> Self {
         Self(OFFSET).text(name)
     }
 
-    /// Adds a parameter that is a number; numbers of different bits are different, `0.0` and `-0.0` too.
+    /// Adds a parameter that is a number. Numbers of different bits count as different, also `0.0` and
+    /// `-0.0`.
     pub const fn number(self, value: f64) -> Self {
         self.bytes(&value.to_bits().to_le_bytes())
     }
 
     /// Adds a parameter that is a text.
     pub const fn text(self, text: &str) -> Self {
-        // The length stands behind it, so that two texts in a row are not one text cut elsewhere.
+        // The length follows the text, so that two texts in a row differ from one text that is cut elsewhere.
         self.bytes(text.as_bytes()).bytes(&(text.len() as u64).to_le_bytes())
     }
 
-    /// Adds a part that this one is made of.
+    /// Adds the fingerprint of a part that this one contains.
     pub const fn part(self, part: Self) -> Self {
         self.bytes(&part.0.to_le_bytes())
     }
@@ -46,7 +48,7 @@ impl Fingerprint {
     const fn bytes(self, bytes: &[u8]) -> Self {
         let mut hash = self.0;
         let mut rest = bytes;
-        // A loop that a constant can be computed by: iterators cannot.
+        // A plain loop can run in a constant; an iterator cannot.
         while let [first, others @ ..] = rest {
             hash = (hash ^ *first as u64).wrapping_mul(PRIME);
             rest = others;
@@ -59,7 +61,8 @@ impl Fingerprint {
 mod tests {
     use super::Fingerprint;
 
-    /// Checkpoints keep these: a change of the hash makes each of them that of another part.
+    /// Checkpoints keep these numbers. After a change of the hash, each of them would be that of another
+    /// part.
     #[test]
     fn fingerprints_keep_their_bits() {
         let part = Fingerprint::of("Frictional").number(0.1).text("sliding");

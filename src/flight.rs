@@ -42,7 +42,7 @@ impl Flight {
         self.radius
     }
 
-    /// Returns the acceleration, the same all along.
+    /// Returns the acceleration, which is constant.
     #[inline]
     pub const fn acceleration(&self) -> DVec2 {
         self.acceleration

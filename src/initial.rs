@@ -1,8 +1,8 @@
-//! Initial states: where the disks start, and how fast.
+//! Initial states: the positions and velocities at which disks start.
 //!
-//! All places are free of walls: at each, [`Boundary::overlap`](crate::boundary::Boundary::overlap) is `None`
-//! at time 0. So the functions work in a boundary of any shape, also one that fills only a part of its
-//! interior.
+//! No disk is placed into a wall: [`Boundary::overlap`](crate::boundary::Boundary::overlap) is `None` for
+//! each at time 0. The functions therefore work in a boundary of any shape, also in one that fills only a
+//! part of its interior.
 
 mod lattice;
 mod random;
@@ -19,7 +19,7 @@ use crate::boundary::Domain;
 use crate::disk::MOST_DISKS;
 use crate::quantity::accept;
 
-/// The disks do not fit, or cannot be placed.
+/// An error: the disks do not fit, or cannot be placed.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PlacementError {
@@ -29,22 +29,22 @@ pub enum PlacementError {
     /// There is no room for so many disks.
     #[error("there is room for {placed} of {count} disks of radius {radius}")]
     NoRoom {
-        /// Count of disks wanted.
+        /// Number of disks wanted.
         count: usize,
-        /// Count of disks that could be placed.
+        /// Number of disks that could be placed.
         placed: usize,
-        /// Their radius.
+        /// Radius of the disks.
         radius: f64,
     },
 }
 
-/// Checks that so many disks can be numbered: an open container has room for any number, and a slip of the
-/// pen must not cost all memory.
+/// Checks that so many disks can be numbered. An open container has room for any number, and a mistyped one
+/// must not fill the memory.
 fn countable(count: usize) -> Result<(), ParameterError> {
     accept(count <= MOST_DISKS, "number of disks", "at most 2^28", count as f64).map(|_| ())
 }
 
-/// Returns the rectangle in which a center may be; an open top stays open.
+/// Returns the rectangle in which a center may lie. An open top stays open.
 fn room(interior: &Domain, radius: f64) -> Domain {
     let side = if interior.periodic { 0.0 } else { radius };
     let room = Domain::new(

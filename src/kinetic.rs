@@ -1,10 +1,9 @@
 //! Mean energy loss per collision, the quantity that the states of the driven system follow.
 //!
-//! A gas of disks with Maxwellian velocities and spins ([`Maxwellian`]) collides under a rule;
-//! `$\langle dE\rangle$` is the mean change of kinetic energy per collision, negative when energy is lost.
-//! Two roads lead to it, and each tests the other: [`mean_energy_change`] in closed form for the paper's
-//! rule, and [`MonteCarlo`] for any [`CollisionRule`](crate::collision::CollisionRule). Neither needs a
-//! simulation.
+//! A gas of disks with Maxwellian velocities and spins ([`Maxwellian`]) collides under a rule. The mean
+//! change of kinetic energy per collision is `$\langle dE\rangle$`, negative when energy is lost. Two ways
+//! lead to it, and each tests the other: [`mean_energy_change`] in closed form for the paper's rule, and
+//! [`MonteCarlo`] for any [`CollisionRule`](crate::collision::CollisionRule). Neither needs a simulation.
 //!
 //! | question | answer | source |
 //! |---|---|---|
@@ -27,7 +26,7 @@
 //! let estimate = MonteCarlo::new(7).with_samples(100_000).mean_energy_change(&rule, &gas);
 //! assert!((estimate.mean() - exact).abs() < 5.0 * estimate.standard_error());
 //!
-//! // All of it as if it came from the normal restitution alone:
+//! // The same loss, if it came from the normal restitution alone:
 //! assert!((effective_inelasticity(exact, 1.0)? - 0.23472).abs() < 1e-5);
 //! # Ok::<(), granular_edmd::ParameterError>(())
 //! ```

@@ -1,20 +1,21 @@
-//! Event-driven molecular dynamics of shaken granular matter: exact collisions, no time step, no soft springs.
+//! Event-driven molecular dynamics of shaken granular matter: exact collisions, no time step, no soft
+//! springs.
 //!
-//! Inelastic hard disks that rotate and rub (normal and tangential restitution, static and dynamic friction) move under
-//! gravity in a box whose base vibrates or is a thermal wall, and are taken from collision to collision. The system is that
-//! of D. Risso, R. Soto, S. Godoy and P. Cordero, *Friction and convection in a vertically vibrated granular system*,
-//! Phys. Rev. E **72**, 011305 (2005), “the paper” throughout; rules, walls, boundaries, schedulers and observables
-//! are traits, for studies beyond it.
+//! Inelastic hard disks rotate and rub (normal and tangential restitution, static and dynamic friction). They
+//! move under gravity in a box whose base vibrates or is a thermal wall; the engine takes them from collision
+//! to collision. The system is that of D. Risso, R. Soto, S. Godoy and P. Cordero, *Friction and convection
+//! in a vertically vibrated granular system*, Phys. Rev. E **72**, 011305 (2005), called “the paper”
+//! throughout. Rules, walls, boundaries, schedulers and observables are traits, for studies beyond it.
 //!
 //! ```
 //! use granular_edmd::prelude::*;
 //!
-//! // The paper's box, smaller: width 20, height 50, a base that vibrates with amplitude 0.1 and frequency 10.
+//! // A box smaller than the paper's: width 20, height 50, a base of amplitude 0.1 and angular frequency 10.
 //! let base = BiParabolic::new(0.1, 10.0)?;
 //! let oscillation = std::f64::consts::TAU / base.angular_frequency();
 //! let container = Container::closed(20.0, 50.0)?.with_motion(Wall::Floor, base)?;
 //!
-//! // 100 disks of diameter 1, at first on a lattice, with inelasticity 0.01 and friction 0.1.
+//! // 100 disks of diameter 1 that start on a lattice, with inelasticity 0.01 and friction 0.1.
 //! let disks = initial::lattice(&container, 100, 0.5)?;
 //! let disks = initial::with_maxwellian_velocities(disks, 0.5, 42)?;
 //! let rule = ContactDuration::new(Frictional::new(0.01, 0.1)?, 1e-4)?;
@@ -33,7 +34,7 @@
 //! # Map
 //! | floor | what is there |
 //! |---|---|
-//! | [`study`] (feature `serde`) | studies of experiments of your own: plans, ramps, sweeps, records, resume, many processes |
+//! | [`study`] (feature `serde`) | studies of your own experiments: plans, ramps, sweeps, records |
 //! | [`analysis`] | convective states, clusters, transitions |
 //! | [`kinetic`] | ⟨dE⟩ by closed form and Monte Carlo, effective inelasticity; needs no simulation |
 //! | [`simulation`] | the engine: builder, event loop, checkpoints |
@@ -49,14 +50,15 @@
 //! # Features
 //! | feature | what it adds |
 //! |---|---|
-//! | `serde` | parameters that serialise through their validating constructors, checkpoints, studies |
-//! | `rayon` | Monte Carlo and sweeps on all cores, with the same bits |
-//! | `cli` | the command line of studies: the binary `granular-edmd`, and `study::cli` for the same of your own |
+//! | `serde` | parameters that serialize through their validating constructors, checkpoints, studies |
+//! | `rayon` | Monte Carlo and sweeps on all cores, with the same bits as on one |
+//! | `cli` | the command line of studies: the binary `granular-edmd`, and `study::cli` for your own binary |
 //! | `proptest` | random contacts and disks for property tests of your own rules: `strategies` |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-// The old floating-point unit of x86 keeps more digits than a double has, so the same inputs would give other bits there.
+// The x87 floating-point unit of old x86 processors keeps more digits than a double has. The same inputs
+// would give other bits there.
 #[cfg(all(target_arch = "x86", not(target_feature = "sse2")))]
 compile_error!("granular-edmd needs SSE2 on x86: build for i686, or with `-C target-feature=+sse2`");
 

@@ -1,9 +1,9 @@
 //! Observables and observers: quantities of a state, and watchers of a run.
 //!
-//! An [`Observable`] is a pure function of a [`Snapshot`]. An [`Observer`] is told when a run begins and ends
-//! and of every [`Collision`], is shown a snapshot at the times that it asks for, and may stop the run. Both
-//! are lent to a run and read afterwards; several compose as a tuple, a slice, a `Vec`, an `Option` or a
-//! `Box`. Watching never changes a trajectory.
+//! An [`Observable`] is a pure function of a [`Snapshot`]. An [`Observer`] is told of the beginning and end
+//! of a run and of every [`Collision`]. It is shown a snapshot at the times that it asks for, and may stop
+//! the run. Both are lent to a run and read afterwards. Several of them compose as a tuple, a slice, a `Vec`,
+//! an `Option` or a `Box`. Watching never changes a trajectory.
 //!
 //! | observable | value |
 //! |---|---|
@@ -24,8 +24,8 @@
 //! | [`on_collision`], [`on_sample`] | whatever a closure keeps |
 //! | [`stop_when`], [`stop_when_sampled`] | nothing: they stop the run when a closure says so |
 //!
-//! # An observer of one's own
-//! [`SampleTimes`] is the clock of all observers here, and of one's own: [`laws::check`] tells in a plain
+//! # An observer of your own
+//! [`SampleTimes`] is the clock of all observers here, and can serve yours. [`laws::check`] tells in a plain
 //! test whether an observer keeps its contract.
 //!
 //! ```
@@ -58,10 +58,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # A measurement that goes on later
-//! With the feature `serde` the observers of this module, but for closures, can be written to a file beside
-//! the checkpoint of the run. Read back and lent to the resumed run, they end with the same bits as in a run
-//! without interruption. JSON keeps them if its reader rounds correctly (serde_json's `float_roundtrip`).
+//! # Measurements in files
+//! With the feature `serde`, the observers of this module, except for closures, can be written to a file
+//! beside the checkpoint of the run. They are read back and lent to the resumed run, and end with the same
+//! bits as in a run without interruption. JSON keeps the bits if its reader rounds correctly (serde_json's
+//! `float_roundtrip`).
 
 mod center_of_mass;
 mod collision_counts;

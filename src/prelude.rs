@@ -1,7 +1,7 @@
-//! The names of most programs, in one line: `use granular_edmd::prelude::*;`.
+//! The names that most programs need, in one line: `use granular_edmd::prelude::*;`.
 //!
-//! Everything that a run needs, and everything that a rule, a wall motion, a boundary, a scheduler, an observable or an
-//! observer of one's own is made of.
+//! The prelude holds everything that a run needs, and everything that a rule, a wall motion, a boundary, a
+//! scheduler, an observable or an observer of your own is made of.
 
 pub use crate::boundary::{Boundary, Container, Domain, Region, Response, Surface, Thermal, Touch, Wall};
 pub use crate::collision::{

@@ -1,4 +1,4 @@
-//! Checks of parameters: the gate that every constructor and every deserialised value passes.
+//! Checks of parameters: the gate that every constructor and every deserialized value passes.
 //!
 //! Each function returns the value that it was given, or the error that names it. Types of your own use the
 //! same functions, so that all parameters of a program fail alike.
@@ -52,7 +52,7 @@ pub fn finite(name: &'static str, value: f64) -> Result<f64, ParameterError> {
     accept(value.is_finite(), name, "finite", value)
 }
 
-/// Returns `value` if `valid` holds, else the error that says what the value should have been.
+/// Returns `value` if `valid` holds, and otherwise the error that says what the value should have been.
 ///
 /// ```
 /// use granular_edmd::quantity::accept;
@@ -72,7 +72,7 @@ pub fn accept(
     if valid { Ok(value) } else { Err(ParameterError::new(name, requirement, value)) }
 }
 
-/// Numbers that have a meaning, and the words that say which they are.
+/// A range of numbers that have a meaning, and the words for it.
 #[derive(Clone, Copy)]
 pub(crate) struct Range {
     requirement: &'static str,
@@ -94,13 +94,14 @@ impl Range {
     }
 }
 
-/// A kind of number: its name in errors, and its range. Implemented by types without values.
+/// A kind of number: its name in errors, and its range. Types without values implement it.
 pub(crate) trait Quantity {
     const NAME: &'static str;
     const RANGE: Range;
 }
 
-/// A number that has passed the check of its kind; in files a plain number, read through the same check.
+/// A number that has passed the check of its kind. In files it is a plain number, read through the same
+/// check.
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "f64", into = "f64", bound = "Q: Quantity"))]
 pub(crate) struct Checked<Q>(f64, PhantomData<Q>);
@@ -118,7 +119,8 @@ impl<Q> Checked<Q> {
     }
 }
 
-// Written out, since derived ones would ask the same of a kind, which has no values to copy or compare.
+// These traits are written out, because derived ones would require them of `Q`. A kind has no values to copy
+// or compare.
 
 impl<Q> Clone for Checked<Q> {
     fn clone(&self) -> Self {

@@ -1,22 +1,24 @@
-//! The few samplers that enter a trajectory. They are our own, so that no dependency can change their bits.
+//! The few samplers that enter a trajectory. They are part of this crate, so that no dependency can change
+//! their bits.
 
 use rand::Rng;
 
-/// Draws a number uniform in the open interval (0, 1).
+/// Draws a number uniformly from the open interval (0, 1).
 pub(crate) fn uniform<G: Rng + ?Sized>(generator: &mut G) -> f64 {
-    // The middles of 2⁵² equal intervals: neither end is drawn, so that a logarithm of the result is finite.
+    // The samples are the middles of 2⁵² equal intervals. Neither end is drawn, so a logarithm of the result
+    // is finite.
     const SCALE: f64 = 1.0 / (1u64 << 52) as f64;
     ((generator.next_u64() >> 12) as f64 + 0.5) * SCALE
 }
 
-/// Draws a normal variable of mean 0 and variance 1 (Box & Muller 1958, one of the pair).
+/// Draws a normal variable of mean 0 and variance 1 (Box & Muller 1958, one variable of the pair).
 pub(crate) fn normal<G: Rng + ?Sized>(generator: &mut G) -> f64 {
     let radius = rayleigh(generator);
     radius * libm::cos(std::f64::consts::TAU * uniform(generator))
 }
 
-/// Draws a Rayleigh variable, of density `$v\,e^{-v^2/2}$`: the normal speed at which a wall of temperature 1
-/// is left.
+/// Draws a Rayleigh variable, of density `$v\,e^{-v^2/2}$`: the normal speed of a disk that leaves a wall of
+/// temperature 1.
 pub(crate) fn rayleigh<G: Rng + ?Sized>(generator: &mut G) -> f64 {
     (-2.0 * libm::log(uniform(generator))).sqrt()
 }
@@ -27,7 +29,7 @@ mod tests {
     use rand::SeedableRng;
     use rand_xoshiro::Xoshiro256PlusPlus;
 
-    /// A change of these bits changes trajectories: it must be announced under "Results" in the changelog.
+    /// A change of these bits changes trajectories. It must be announced under "Results" in the changelog.
     #[test]
     fn samplers_keep_their_bits() {
         let mut generator = Xoshiro256PlusPlus::seed_from_u64(1);
@@ -50,7 +52,7 @@ mod tests {
             sums[2] += speed * speed;
         }
         let [mean, variance, flux] = sums.map(|sum| sum / f64::from(count));
-        // Standard errors 0.0022, 0.0032, 0.0045: five of them.
+        // The standard errors are 0.0022, 0.0032 and 0.0045; each bound is five of them.
         assert!(mean.abs() < 0.011 && (variance - 1.0).abs() < 0.016 && (flux - 2.0).abs() < 0.023);
     }
 }

@@ -1,12 +1,12 @@
-//! Schedulers: the disk whose event is the earliest.
+//! Schedulers, which know the disk with the earliest event.
 //!
-//! The engine keeps one event for each disk, the earliest that it knows of. A scheduler puts the times of
-//! these events in order and knows nothing else of them. Equal times go to the smaller index, so any two
-//! schedulers give the same trajectory bit for bit.
+//! The engine keeps one event for each disk, the earliest that is known. A scheduler orders the times of
+//! these events, and knows nothing else about them. Of equal times, the one with the smaller index comes
+//! first, so any two schedulers give the same trajectory bit for bit.
 //!
 //! | scheduler | cost of an event | use |
 //! |---|---|---|
-//! | [`BySize`] | as the better of the next two | default |
+//! | [`BySize`] | that of the better of the next two | default |
 //! | [`TournamentTree`] | `$O(\log N)$`, no branches | up to some ten thousand disks |
 //! | [`BucketQueue`] | `$O(1)$` | more |
 //! | [`LinearScan`] | `$O(N)$` | the oracle that tests the others |
@@ -26,43 +26,46 @@ pub(crate) use by_size::LARGE_SYSTEM;
 pub use linear_scan::LinearScan;
 pub use tournament_tree::TournamentTree;
 
-/// The answer of a scheduler without disks: no disk, never.
+/// The answer of a scheduler without disks: no disk, at no time.
 ///
-/// Its index is that of no disk and its time is after the end of any run, so the comparison with the end,
-/// which the engine makes at each event anyway, rejects it.
+/// The index is that of no disk, and the time is after the end of any run. The engine compares the time of
+/// each event with the end anyway, and this comparison rejects the answer.
 pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 
-/// Puts the events of the disks in the order of their times.
+/// A scheduler: it orders the events of the disks by their times.
 ///
-/// # What an implementer guarantees
-/// 1. **The earliest comes first.** [`earliest`](Self::earliest) names the disk with the smallest of the times
-///    last given for each disk, and that time.
-/// 2. **Ties go to the smallest index.** `0.0` and `-0.0` are the same time. Where all times are infinite,
-///    the disk with the smallest index is named, with its infinite time.
-/// 3. **Time may go back.** [`set`](Self::set) takes any time: later than that of the disk before, or
-///    earlier, because a faster partner has appeared, or earlier than the last answer. After most events the
-///    disk just named gets a later time; a scheduler may be slow in the other cases, but not wrong.
+/// # What a scheduler guarantees
+/// 1. **The earliest comes first.** [`earliest`](Self::earliest) names the disk with the smallest of the
+///    times that were last given for each disk, and that time.
+/// 2. **Ties go to the smallest index.** `0.0` and `-0.0` are the same time. If all times are infinite, the
+///    disk with the smallest index is named, with its infinite time.
+/// 3. **Time may go back.** [`set`](Self::set) takes any time. It may be later than the disk's last time,
+///    earlier than it (because a faster partner has appeared), or even earlier than the last answer. After
+///    most events, the disk that was just named gets a later time. In the other cases a scheduler may be
+///    slow, but not wrong.
 /// 4. **Nothing outlives a reset.** [`reset`](Self::reset) may come with more disks, with fewer, or with
 ///    none.
-/// 5. Without disks, as before the first `reset`, the answer is [`NOTHING_DUE`].
+/// 5. **Without disks**, as before the first `reset`, the answer is [`NOTHING_DUE`].
 ///
 /// # What the engine guarantees
-/// - Times are offsets from the epoch of the run, never NaN. They may be infinite: an event that never comes.
-/// - `reset` comes first, and again whenever many times change at once, as when the epoch moves. After a
-///   `reset` with `$n$` times only disks below `$n$` are `set`.
-/// - For each event it asks `earliest`, then, in systems so large that memory is slow,
-///   [`upcoming`](Self::upcoming), and then sets the disks whose next event has changed: mostly one or two.
+/// - Times are offsets from the epoch of the run, and never NaN. An infinite time stands for an event that
+///   never comes.
+/// - `reset` is called first, and again whenever many times change at once, as when the epoch moves. After a
+///   `reset` with `$n$` times, `set` is called only for disks below `$n$`.
+/// - For each event, the engine calls `earliest`, and then `set` for the disks whose next event has changed,
+///   mostly one or two. In between, it calls [`upcoming`](Self::upcoming) in systems so large that memory is
+///   slow.
 ///
-/// # What happens otherwise
+/// # Schedulers that break the contract
 /// The engine compares each answer with the event that it keeps: a disk that does not exist, or a time other
-/// than the last one set for it, ends the run with an error. A disk that is named although another one is due
-/// before it cannot be noticed at this price; events then come out of order and the trajectory is wrong.
-/// [`laws::check`] finds both kinds of fault.
+/// than the last one set for it, ends the run with an error. It does not notice a disk that is named although
+/// another one is due before it. Events then come out of order, and the trajectory is wrong. [`laws::check`]
+/// finds both kinds of fault.
 ///
-/// # The answer is a pair, not an `Option`
-/// It is asked for at every event. A pair comes back in two registers, and [`NOTHING_DUE`] fails the
-/// comparison with the end of the run that is needed in any case; an `Option` would add a branch to each
-/// event and say no more.
+/// # Why the answer is a pair and not an `Option`
+/// The engine asks for the answer at every event. A pair comes back in two registers, and [`NOTHING_DUE`]
+/// fails the comparison with the end of the run, which is needed anyway. An `Option` would add a branch to
+/// each event, and no information.
 ///
 /// ```
 /// use granular_edmd::scheduler::{EventScheduler, LinearScan, NOTHING_DUE, TournamentTree};
@@ -85,23 +88,24 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
     note = "one of your own implements `reset`, `set` and `earliest`; `scheduler::laws::check` tests it"
 )]
 pub trait EventScheduler {
-    /// Forgets everything and takes these times, one for each disk.
+    /// Forgets everything, and takes these times, one for each disk.
     fn reset(&mut self, due: &[f64]);
 
-    /// Takes a new time for the event of `disk`, in place of its last one; it may be earlier or later.
+    /// Takes a new time for the event of `disk`, in place of its last one. The new time may be earlier or
+    /// later.
     fn set(&mut self, disk: usize, due: f64);
 
-    /// Returns the disk whose event is due first, and its time; [`NOTHING_DUE`] without disks.
+    /// Returns the disk whose event is due first, and its time, or [`NOTHING_DUE`] without disks.
     ///
-    /// It only looks: a lazy scheduler removes what is out of date in `set`.
+    /// This method changes nothing: a lazy scheduler removes outdated entries in `set`.
     fn earliest(&self) -> (usize, f64);
 
     /// Appends the disks whose events are due soon and that have not been named yet, if the scheduler knows
     /// them.
     ///
-    /// A hint, by which the engine asks the memory in time for what their events will need. It changes
-    /// neither the order of events nor what `disks` holds already. Disks may be missing, or be named twice or
-    /// in any order; those that do not exist are ignored by the engine. By default none is named.
+    /// The answer is a hint: the engine fetches early what these events will need from memory. The call
+    /// changes neither the order of events nor the disks that `disks` holds already. Disks may be missing, or
+    /// be named twice or in any order. The engine ignores disks that do not exist. The default names none.
     fn upcoming(&mut self, disks: &mut Vec<usize>) {
         let _ = disks;
     }

@@ -1,19 +1,23 @@
-//! The engine: it takes disks from event to event.
+//! The engine, which takes disks from event to event.
 //!
-//! [`Simulation::builder`] checks disks, gravity and boundary and makes a [`Simulation`]; [`Simulation::run_until`] and
-//! [`Simulation::step_until`] advance it; rule, boundary and gravity can be changed between runs.
+//! [`Simulation::builder`] checks disks, gravity and boundary and makes a [`Simulation`].
+//! [`Simulation::run_until`] and [`Simulation::step_until`] advance it. Rule, boundary and gravity can be
+//! changed between runs.
 //!
 //! # Promises
-//! 1. The same inputs give the same bits, under every scheduler, with any observer, and however a run is cut into
-//!    pieces.
-//! 2. Equal times are ordered by the smaller disk index, then the smaller partner index, disks before walls.
+//! 1. The same inputs give the same bits, under every scheduler, with any observer, and however a run is cut
+//!    into pieces.
+//! 2. Equal times are ordered by the smaller disk index, then by the smaller partner index, with disks before
+//!    walls.
 //! 3. A sample at time `$t$` has seen all events up to and at `$t$`.
-//! 4. A run that cannot progress ends with [`RunError::Stalled`]. Events that pile up in less than some 1e-8 of the time in which
-//!    a typical disk goes its diameter are such a run; a run that is only slow goes on.
-//! 5. A checkpoint restores everything that the future depends on, except rule and boundary, which are given again; it
-//!    tells if they are others, as far as they can say who they are.
-//! 6. A part that breaks its contract (a rule, boundary, scheduler or observer) ends the run with an error that names what it
-//!    answered; it never makes the engine go back in time or name a disk or wall that there is not.
+//! 4. A run that cannot progress ends with [`RunError::Stalled`]. Such a run has 200 000 events, and 20 more
+//!    for each disk, within at most some 1e-6 of the time in which a typical disk goes its diameter. A run
+//!    that is only slow goes on.
+//! 5. A checkpoint restores everything on which the future depends, except rule and boundary, which are given
+//!    again. It notices if they are others, as far as they have fingerprints.
+//! 6. A part that breaks its contract (a rule, boundary, scheduler or observer) ends the run with an error
+//!    that names what it answered. It never makes the engine go back in time, or name a disk or wall that
+//!    does not exist.
 
 mod builder;
 mod cells;
@@ -54,9 +58,9 @@ use state::{Bodies, Clock};
 
 /// A system of disks that is taken from event to event.
 ///
-/// Times given and returned are absolute times, in the units of the caller; inside they are offsets from an epoch that moves on,
-/// so that late times keep their digits. See [`Simulation::builder`] for how to make one, and [the module](crate::simulation) for
-/// its promises.
+/// Times given and returned are absolute times, in the units of the caller. Internally, times are offsets
+/// from an epoch that moves on, so that late times keep their digits. [`Simulation::builder`] makes a
+/// simulation; [the module](crate::simulation) lists its promises.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall};
@@ -80,7 +84,7 @@ use state::{Bodies, Clock};
 pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     rule: R,
     boundary: B,
-    /// Walls of the boundary; its answers are checked against it.
+    /// Number of walls of the boundary. The answers of the boundary are checked against it.
     wall_count: usize,
     scheduler: S,
     bodies: Bodies,
@@ -113,7 +117,8 @@ pub type BoxedScheduler = Box<dyn EventScheduler + Send + Sync>;
 /// fn simulation(is_lossy: bool) -> Result<BoxedSimulation, Box<dyn std::error::Error>> {
 ///     let container = Container::closed(20.0, 20.0)?;
 ///     let disks = initial::lattice(&container, 50, 0.5)?;
-///     let rule: BoxedRule = if is_lossy { Box::new(Smooth::from_restitution(0.9)?) } else { Box::new(Elastic) };
+///     let lossy = Smooth::from_restitution(0.9)?;
+///     let rule: BoxedRule = if is_lossy { Box::new(lossy) } else { Box::new(Elastic) };
 ///     let boundary: BoxedBoundary = Box::new(container);
 ///     let scheduler: BoxedScheduler = Box::new(BySize::new());
 ///     Ok(Simulation::builder(rule, boundary).disks(disks).scheduler(scheduler).build()?)
@@ -123,7 +128,8 @@ pub type BoxedScheduler = Box<dyn EventScheduler + Send + Sync>;
 /// ```
 pub type BoxedSimulation = Simulation<BoxedRule, BoxedBoundary, BoxedScheduler>;
 
-// A run can go to another thread, and be looked at from several: a private field could end that unseen.
+// A simulation can be sent to another thread, and be shared by several. Without these lines, a private field
+// could end that unnoticed.
 const _: () = {
     const fn is_sent_and_shared<T: Send + Sync>() {}
     is_sent_and_shared::<Simulation>();
@@ -133,7 +139,7 @@ const _: () = {
     is_sent_and_shared::<BuildError>();
 };
 
-/// Room that is used again and again.
+/// Memory that is used again and again.
 #[derive(Debug, Clone, Default)]
 struct Scratch {
     /// The neighbors of one disk.
@@ -145,15 +151,17 @@ struct Scratch {
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Runs until the absolute time `end`, with `observer` watching; `&mut ()` for nobody. Returns what ended the run.
+    /// Runs until the absolute time `end` while `observer` watches (`&mut ()` for no observer). Returns what
+    /// ended the run.
     ///
-    /// The observer is told of the start, of each collision, is shown the samples that it asks for and is told of the end, also
-    /// if that is an error. If it stops the run, the present is the time of the collision or sample at which it did, and
-    /// the next run goes on from there with the same bits.
+    /// The observer is told of the start, of each collision, and of the end, also if that is an error. It is
+    /// shown the samples that it asks for. If it stops the run, the present is the time of the collision or
+    /// sample at which it did so, and the next run goes on from there with the same bits.
     ///
     /// # Errors
-    /// If the end is not finite or before the present, the run cannot progress, a rule, boundary, scheduler or observer breaks its
-    /// contract, or an observer fails. The state is that of the moment.
+    /// If the end is not finite or before the present, the run cannot progress, a rule, boundary, scheduler
+    /// or observer breaks its contract, or an observer fails. The simulation then keeps the state of that
+    /// moment.
     pub fn run_until<O: Observer + ?Sized>(
         &mut self,
         end: f64,
@@ -170,15 +178,18 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             stopped => stopped.map(|_| RunEnd::Observer),
         };
         observer.on_end(&self.moment());
-        // A wish to stop comes too late now; a failure, such as of a last write, must still be told.
+        // A verdict to stop comes too late now. A failure, such as that of a last write, must still be
+        // reported.
         let last = self.verdict_of(observer);
         ended.and_then(|end| last.map(|_| end))
     }
 
-    /// Goes to the next collision not after the absolute time `end`, and returns it; `None`, at `end`, if there is none.
+    /// Goes to the next collision, if it is not after the absolute time `end`, and returns it. If there is
+    /// none, goes to `end` and returns `None`.
     ///
-    /// The observer is told of the collision only: `on_start`, `on_sample` and `on_end` are not called, so its clock stands still. If
-    /// it fails, that is an error; if it wants to stop, nothing happens, since the caller takes each step.
+    /// The observer is told of the collision only: `on_start`, `on_sample` and `on_end` are not called, so
+    /// its clock stands still. If the observer fails, the step returns an error. A verdict to stop has no
+    /// effect, since the caller takes each step.
     ///
     /// ```
     /// # use granular_edmd::glam::DVec2;
@@ -205,7 +216,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     fn watched_step<O: Observer + ?Sized>(&mut self, end: f64, observer: &mut O) -> Outcome<Option<Event>> {
         self.check_end(end)?;
         let event = self.collide_until(end, observer)?;
-        // A wish to stop is idle here: whoever takes single steps can stop at any.
+        // A verdict to stop has no effect: the caller of single steps can stop at any of them.
         let _: ControlFlow<()> = self.verdict_of(observer)?;
         Ok(event)
     }
@@ -240,7 +251,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Does all events until the next collision, or until the absolute time `stop`, and goes there.
     #[inline]
     fn collide_until<O: Observer + ?Sized>(&mut self, stop: f64, observer: &mut O) -> Outcome<Option<Event>> {
-        // The epoch may move with each event: the offset of `stop` is another then.
+        // The epoch may move with each event, which changes the offset of `stop`.
         while let Some((disk, due)) = self.next_due(stop - self.clock.origin) {
             let event = self.advance(disk, due, observer)?;
             if event.is_some() {
@@ -256,7 +267,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if is_ahead { Ok(()) } else { Err(Box::new(RunError::End { end, time: self.time() })) }
     }
 
-    /// Asks the observer whether the run shall go on.
+    /// Asks the observer whether the run goes on.
     #[inline]
     fn verdict_of<O: Observer + ?Sized>(&self, observer: &mut O) -> Outcome<ControlFlow<()>> {
         observer.verdict().map_err(|source| Box::new(RunError::Observer { time: self.time(), source }))
@@ -267,12 +278,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Moment::new(self.time(), self.len(), self.wall_count, domain, self.bodies.gravity)
     }
 
-    /// The present, in absolute time.
+    /// Returns the present, in absolute time.
     pub fn time(&self) -> f64 {
         self.clock.time()
     }
 
-    /// Number of disks.
+    /// Returns the number of disks.
     pub fn len(&self) -> usize {
         self.bodies.len()
     }
@@ -282,28 +293,30 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.bodies.len() == 0
     }
 
-    /// A disk as it is now; `None` if there is no such disk.
+    /// Returns a disk as it is now, or `None` if there is no such disk.
     pub fn disk(&self, disk: usize) -> Option<Disk> {
         (disk < self.len()).then(|| self.bodies.disk(disk, self.clock.now))
     }
 
-    /// All disks as they are now.
+    /// Returns all disks as they are now.
     pub fn disks(&self) -> Vec<Disk> {
         self.bodies.disks(self.clock.now)
     }
 
-    /// The value of an observable now.
+    /// Returns the present value of an observable.
     pub fn measure<Q: Observable + ?Sized>(&self, observable: &Q) -> Q::Value {
         let disks = self.disks();
         observable.measure(&Snapshot::new(self.time(), &disks, self.boundary.domain(), self.bodies.gravity))
     }
 
-    /// The present state, for observables and observers of one's own; `&mut`, since the copies of the disks are kept for the next.
+    /// Returns the present state, for observables and observers of your own. The method needs `&mut self`,
+    /// since the copies of the disks are kept for the next snapshot.
     pub fn snapshot(&mut self) -> Snapshot<'_> {
         self.snapshot_as_of(self.time())
     }
 
-    /// The present state under the name by which it was asked for, which [`Self::time`] may miss by rounding.
+    /// Returns the present state as of the time that was asked for. [`Self::time`] may differ from that time
+    /// by rounding.
     fn snapshot_as_of(&mut self, time: f64) -> Snapshot<'_> {
         let Self { bodies, scratch, clock, .. } = self;
         scratch.copies.clear();
@@ -311,27 +324,28 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Snapshot::new(time, &self.scratch.copies, self.boundary.domain(), self.bodies.gravity)
     }
 
-    /// Numbers of events since the simulation was built.
+    /// Returns the numbers of events since the simulation was built.
     pub const fn counters(&self) -> &Counters {
         &self.counters
     }
 
-    /// The rule between the disks.
+    /// Returns the rule between the disks.
     pub const fn rule(&self) -> &R {
         &self.rule
     }
 
-    /// The walls.
+    /// Returns the boundary.
     pub const fn boundary(&self) -> &B {
         &self.boundary
     }
 
-    /// Gravity, pointing down.
+    /// Returns gravity, which points down.
     pub const fn gravity(&self) -> f64 {
         self.bodies.gravity
     }
 
-    /// Sets another rule from now on. Predictions stay: a rule decides the outcome of a collision, not its time.
+    /// Sets another rule from now on. The predictions stay, since a rule decides the outcome of a collision
+    /// and not its time.
     pub fn set_rule(&mut self, rule: R) {
         self.rule = rule;
     }
@@ -339,8 +353,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Sets gravity from now on.
     ///
     /// # Errors
-    /// If it is not finite or above 1e60 in magnitude, or disks would fall so fast that times as late as the present are too far apart; the simulation is
-    /// as before.
+    /// If gravity is not finite or above 1e60 in magnitude, or disks would fall so fast that times as late as
+    /// the present are too coarse. The simulation is then as before.
     pub fn set_gravity(&mut self, gravity: f64) -> Result<(), ParameterError> {
         bounded("gravity", gravity)?;
         let epoch_length = self.bodies.epoch_length_under(gravity);
@@ -357,7 +371,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Sets other walls from now on.
     ///
     /// # Errors
-    /// If the disks do not fit into them; the simulation is as before.
+    /// If the disks do not fit into them. The simulation is then as before.
     pub fn set_boundary(&mut self, mut boundary: B) -> Result<(), BuildError> {
         boundary.set_time_origin(self.clock.origin);
         let (wall_count, cells) = fit(&boundary, &self.disks(), self.clock.now)?;

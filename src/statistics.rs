@@ -4,17 +4,17 @@
 //! |---|---|
 //! | mean and variance of independent numbers | [`RunningMean`] |
 //! | mean of correlated numbers with its error, without keeping the numbers | [`BlockedMean`] |
-//! | the same of a series that is at hand | [`block_average`] |
+//! | the same for a series in memory | [`block_average`] |
 //! | a mean, its error, and what the error rests on | [`Estimate`] |
 //! | the mean of several runs together | [`Estimate::over_repeats`] |
 //!
-//! Collisions and samples of one run are correlated: a standard error that takes them as independent is too
-//! small, often by a factor of ten. An error over them comes from blocks, and says when the run was too short
-//! for it.
+//! Collisions and samples of one run are correlated. A standard error that takes them as independent is too
+//! small, often by a factor of ten. The error of such a mean comes from blocks, and shows when the run was
+//! too short for it.
 //!
 //! ```
 //! use granular_edmd::statistics::BlockedMean;
-//! // An uncorrelated sequence (the logistic map), each value held for 16 samples: 16 are worth one.
+//! // An uncorrelated sequence (the logistic map), each value repeated 16 times: 16 samples are worth one.
 //! let chaos = std::iter::successors(Some(0.3), |x| Some(4.0 * x * (1.0 - x)));
 //! let mean: BlockedMean = chaos.take(512).flat_map(|x| [x; 16]).collect();
 //! let estimate = mean.estimate();

@@ -1,10 +1,10 @@
-//! Random inputs for property tests of your own rules and walls; needs the feature `proptest`.
+//! Random inputs for property tests of your own rules and walls; the module needs the feature `proptest`.
 //!
-//! Each function gives a [`Strategy`], made to be hostile: ordinary values, the edges of their
-//! ranges, and values spread over many decades, in mixtures that a run of the simulation might take days to
-//! meet. The crate's own tests use the same ones.
+//! Each function returns a [`Strategy`] that is hostile on purpose: ordinary values, the edges of their
+//! ranges, and values over many decades, in mixtures that a run of the simulation might take days to meet.
+//! The crate's own tests use the same strategies.
 //!
-//! A rule of your own, against momentum conservation and the laws of friction:
+//! The example checks a rule of your own against momentum conservation and the laws of friction:
 //! ```
 //! use granular_edmd::collision::{Contact, Friction, collide, from_fn, laws};
 //! use granular_edmd::strategies;
@@ -26,7 +26,8 @@
 //!         prop_assert_eq!(promises.check(&encounter.contact, encounter.impulse), Ok(()));
 //!
 //!         let before = first.mass() * first.velocity() + second.mass() * second.velocity();
-//!         let after = first.mass() * encounter.first.velocity() + second.mass() * encounter.second.velocity();
+//!         let after = first.mass() * encounter.first.velocity()
+//!             + second.mass() * encounter.second.velocity();
 //!         let size = first.mass() * (first.velocity().length() + encounter.first.velocity().length())
 //!             + second.mass() * (second.velocity().length() + encounter.second.velocity().length());
 //!         prop_assert!((after - before).length() <= 1e-14 * size);
@@ -46,7 +47,7 @@ use crate::simulation::BuildError;
 use crate::wall::{BiParabolic, Sinusoidal};
 use crate::{Disk, Simulation, initial};
 
-/// Positive numbers spread evenly over the decades from `$10^\text{low}$` to `$10^\text{high}$`.
+/// Returns positive numbers, spread evenly over the decades from `$10^\text{low}$` to `$10^\text{high}$`.
 ///
 /// ```
 /// use granular_edmd::strategies::decades;
@@ -58,7 +59,7 @@ pub fn decades(low: f64, high: f64) -> impl Strategy<Value = f64> {
     (low..=high).prop_map(libm::exp10)
 }
 
-/// Speeds of either sign: ordinary ones, over 24 decades, or zero.
+/// Returns speeds of either sign: ordinary ones, over 24 decades, or zero.
 ///
 /// ```
 /// use proptest::prelude::*;
@@ -72,7 +73,7 @@ pub fn speed() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Unit vectors: any angle, and the axes, where components vanish.
+/// Returns unit vectors: at any angle, and along the axes, where components vanish.
 ///
 /// ```
 /// use proptest::prelude::*;
@@ -89,9 +90,9 @@ pub fn direction() -> impl Strategy<Value = DVec2> {
     ]
 }
 
-/// Contacts as a rule sees them, closing, of partners that have never collided before.
+/// Returns contacts as a rule sees them: they close, and the partners have never collided before.
 ///
-/// The tangential mass is not above the normal one, and can be a thousandth of it.
+/// The tangential mass is at most the normal one, and can be a thousandth of it.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Elastic, laws};
@@ -118,7 +119,8 @@ fn closing_speed() -> impl Strategy<Value = f64> {
     prop_oneof![0.1..3.0, decades(-12.0, 12.0)]
 }
 
-/// Disks at the origin with their centers at rest, of any size, mass and inertia, that rotate or not.
+/// Returns disks at the origin with their centers at rest, of any size, mass and inertia, with or without
+/// rotation.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;
@@ -141,7 +143,8 @@ pub fn disk() -> impl Strategy<Value = Disk> {
     )
 }
 
-/// Two disks that touch and approach, of any sizes, masses and inertia; the second is at the origin.
+/// Returns two disks that touch and approach, of any sizes, masses and inertia. The second disk is at the
+/// origin.
 ///
 /// ```
 /// use granular_edmd::collision::{Elastic, collide};
@@ -167,8 +170,8 @@ pub fn touching_pair() -> impl Strategy<Value = (Disk, Disk)> {
     )
 }
 
-/// A disk that closes onto a wall which moves or rests: the disk, the unit vector from the wall to it, and
-/// the wall's velocity, as [`collide_with_wall`](crate::collision::collide_with_wall) takes them.
+/// Returns a disk that closes onto a moving or resting wall: the disk, the unit vector from the wall to it,
+/// and the wall's velocity, as [`collide_with_wall`](crate::collision::collide_with_wall) takes them.
 ///
 /// ```
 /// use granular_edmd::collision::{Elastic, collide_with_wall, laws};
@@ -185,13 +188,13 @@ pub fn disk_closing_on_wall() -> impl Strategy<Value = (Disk, DVec2, DVec2)> {
     touching_pair().prop_map(|(disk, wall)| (disk, disk.position().normalize(), wall.velocity()))
 }
 
-/// A small system, all but its rule: up to thirty disks in a box, at rest or shaken, heated, periodic or open.
+/// A small system without its rule: up to thirty disks in a box, at rest or shaken, heated, periodic or open.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct SetUp {
     /// The walls.
     pub container: Container,
-    /// The disks, moving.
+    /// The disks, with their velocities.
     pub disks: Vec<Disk>,
     /// Gravity, pointing down.
     pub gravity: f64,
@@ -205,7 +208,7 @@ impl SetUp {
     /// Makes the simulation of this system under a rule.
     ///
     /// # Errors
-    /// If the disks do not fit, which those of [`set_up`] do.
+    /// If the disks do not fit. Those of [`set_up`] fit.
     pub fn simulation<R: CollisionRule>(&self, rule: R) -> Result<Simulation<R>, BuildError> {
         Simulation::builder(rule, self.container.clone())
             .disks(self.disks.iter().copied())
@@ -216,7 +219,7 @@ impl SetUp {
     }
 }
 
-/// Small systems of all kinds, to run a rule of your own in.
+/// Returns small systems of all kinds, in which to run a rule of your own.
 ///
 /// ```
 /// use granular_edmd::collision::Elastic;
@@ -242,7 +245,7 @@ pub fn set_up() -> impl Strategy<Value = SetUp> {
     )
 }
 
-/// A box of some tens of disks' area, with one of four floors.
+/// Returns boxes with an area of some tens of disks and one of four floors.
 fn container() -> impl Strategy<Value = Container> {
     (0..4_u8, any::<bool>(), any::<bool>()).prop_filter_map("no such box", |(floor, open, periodic)| {
         let container = if open { Container::open(10.0) } else { Container::closed(10.0, 12.0) }.ok()?;
@@ -256,7 +259,7 @@ fn container() -> impl Strategy<Value = Container> {
     })
 }
 
-/// Disks of one size or of three, placed and set in motion by `seed`.
+/// Returns disks of one size or of three, placed and set in motion by `seed`.
 fn disks_in(container: &Container, count: usize, mixed: bool, seed: u64) -> Option<Vec<Disk>> {
     let radius = |index: usize| if mixed { [0.5, 0.25, 0.1][index % 3] } else { 0.5 };
     let disk = |index| Disk::new(DVec2::ZERO, radius(index)).ok()?.with_mass(4.0 * radius(index)).ok();

@@ -8,8 +8,8 @@
 //! | [`Triangular`] | constant speed up, constant speed down | |
 //! | [`Sawtooth`] | constant speed up, instantly back | |
 //!
-//! [`first_touch`] finds the contact for all of them and for yours: it needs bounds of the acceleration on
-//! pieces of time, nothing more. See [`WallMotion`] for an example, and [`laws`] for a check of your own
+//! [`first_touch`] finds the contact for all of them and for your own motions. It only needs bounds of the
+//! acceleration on pieces of time. See [`WallMotion`] for an example, and [`laws`] for a check of your own
 //! motion.
 
 mod bi_parabolic;
@@ -32,7 +32,7 @@ pub use triangular::Triangular;
 
 use crate::Fingerprint;
 
-/// Place and velocity of a wall along its normal, which points to the disks.
+/// The place and velocity of a wall along its normal, which points to the disks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct WallState {
@@ -50,7 +50,7 @@ impl WallState {
     }
 }
 
-/// Bounds of a wall's acceleration on a piece of time: from the phase asked for to `until`.
+/// Bounds of a wall's acceleration on a piece of time, from the phase asked for to `until`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct AccelerationBounds {
@@ -73,31 +73,31 @@ impl AccelerationBounds {
 /// The motion of a wall along its normal.
 ///
 /// # Phases
-/// A motion is asked for *phases*. For a motion without a period, the phase is the absolute time of the run.
-/// For one with a period it is the absolute time less some whole periods, which keeps all digits of late
-/// times. It is then below one period in magnitude when an epoch of the run begins, grows as the epoch goes
-/// on, and is negative only in runs that begin at a negative time. A motion whose smallest and largest
-/// displacement are equal never moves: it is asked for small phases, whatever the time.
+/// The methods of a motion take *phases*. For a motion without a period, the phase is the absolute time of
+/// the run. For a motion with a period, the phase is the absolute time less some whole periods, which keeps
+/// all digits of late times. It is below one period in magnitude when an epoch of the run begins, grows as
+/// the epoch goes on, and is negative only in runs that begin at a negative time. A motion whose smallest and
+/// largest displacement are equal never moves: it is asked for small phases, whatever the time.
 ///
 /// # Contract
 /// An implementation guarantees, for every phase:
 /// 1. [`state`](Self::state) and [`acceleration`](Self::acceleration) give finite numbers, the same ones each
-///    time they are asked; only `until` may be infinite.
+///    time they are called. Only `until` may be infinite.
 /// 2. The displacement lies within [`reach`](Self::reach).
 /// 3. A piece ends later than the phase asked for, and its bounds hold for the acceleration up to its end.
-/// 4. Inside a piece, displacement and velocity are continuous, and the one is the integral of the other. At
-///    the end of a piece the velocity may jump, and the displacement may jump away from the disks, never
-///    toward them. The state at that phase is the one after the jump.
-/// 5. If there is a [`period`](Self::period), everything repeats after it.
+/// 4. Inside a piece, displacement and velocity are continuous, and the displacement is the integral of the
+///    velocity. At the end of a piece, the velocity may jump. The displacement may jump there, too, but only
+///    away from the disks. The state at that phase is the one after the jump.
+/// 5. If there is a [`period`](Self::period), the whole motion repeats after it.
 ///
-/// [`laws::check`] tries all of this on a stretch of phases. A container calls the methods in any order and
+/// [`laws::check`] tests all of this on a stretch of phases. A container calls the methods in any order and
 /// from any thread.
 ///
-/// # Motions that break it
+/// # Motions that break the contract
 /// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion that answers with
-/// numbers that are not finite, at phases from 0 on that it looks at. Whatever a motion answers,
-/// [`first_touch`] ends: see there. Bounds that are too small, a reach that is too small or a jump toward the
-/// disks let disks pass into the wall. Bounds that are too large cost time only.
+/// numbers that are not finite at one of the phases that it tries, from 0 on. [`first_touch`] ends whatever a
+/// motion answers; its documentation tells how. Bounds that are too small, a reach that is too small or a
+/// jump toward the disks let disks pass into the wall. Bounds that are too large only cost time.
 ///
 /// ```
 /// use granular_edmd::wall::{AccelerationBounds, Approach, WallMotion, WallState, first_touch, laws};
@@ -136,12 +136,12 @@ pub trait WallMotion {
     /// Returns displacement and velocity at `phase`.
     fn state(&self, phase: f64) -> WallState;
 
-    /// Returns bounds of the acceleration from `phase` to the end of the piece that it lies in.
+    /// Returns bounds of the acceleration from `phase` to the end of the piece in which it lies.
     fn acceleration(&self, phase: f64) -> AccelerationBounds;
 
     /// Returns the smallest and the largest displacement.
     ///
-    /// They should be narrow: flights above the largest displacement are skipped without a search.
+    /// The range should be narrow, since flights above the largest displacement are skipped without a search.
     fn reach(&self) -> (f64, f64);
 
     /// Returns the period, finite and positive, if the motion has one.
@@ -151,8 +151,8 @@ pub trait WallMotion {
 
     /// Returns the fingerprint of the motion: its name and all numbers that decide how it moves.
     ///
-    /// Checkpoints compare it when a run is resumed. Without one, a boundary with this motion has none
-    /// either, and is not compared.
+    /// Checkpoints compare the fingerprint when a run is resumed. A boundary with a motion without a
+    /// fingerprint has none either, and is not compared.
     fn fingerprint(&self) -> Option<Fingerprint> {
         None
     }

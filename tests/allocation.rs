@@ -1,9 +1,9 @@
-//! The event loop allocates nothing: asserted with an allocator that counts.
+//! A test that the event loop allocates nothing, with an allocator that counts.
 //!
-//! What does is a change of the size of the cells, when the state has become denser or more dilute: dense and dilute runs that
-//! have settled have none.
+//! Only a change of the size of the cells allocates, when the state has become denser or more dilute. Dense
+//! and dilute runs that have settled have no such change.
 
-// An allocator cannot be written without it; it hands every call through to the system's.
+// An allocator cannot be written without unsafe code. This one passes every call on to that of the system.
 #![allow(unsafe_code)]
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -35,7 +35,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// One test for both, since all tests share the counter.
+/// A single test covers both runs, since all tests share the counter.
 #[test]
 fn settled_runs_allocate_nothing() -> Result<(), Box<dyn std::error::Error>> {
     for (inelasticity, friction) in [(0.05, 0.1), (0.0, 0.01)] {

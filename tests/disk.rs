@@ -1,4 +1,4 @@
-//! A disk: what its constructors accept, and that a run's own disk can be read back.
+//! Disks: what their constructors accept, and that a disk of a run can be read back.
 
 use granular_edmd::Disk;
 use granular_edmd::glam::DVec2;

@@ -1,4 +1,4 @@
-//! Errors tell each thing once: a message never repeats that of its source, which a report shows behind it.
+//! Errors tell each thing once: a message never repeats that of its source, which a report shows after it.
 #![cfg(feature = "serde")]
 
 #[path = "support/report.rs"]
@@ -32,7 +32,7 @@ fn no_parameter() -> ParameterError {
     Frictional::new(0.7, 0.1).unwrap_err()
 }
 
-/// One of each variant of a study's errors that has a source.
+/// Returns one of each variant of a study's errors that has a source.
 fn study_errors() -> Vec<StudyError> {
     let path = PathBuf::from("study/values.csv");
     let outside = BuildError::Outside { disk: 3, x: 1.0, y: -2.0 };
@@ -58,7 +58,7 @@ fn errors_of_studies_tell_each_thing_once() {
     }
 }
 
-/// As users meet them.
+/// The errors occur as users meet them.
 #[test]
 fn errors_that_happen_tell_each_thing_once() {
     let container = Container::closed(4.0, 4.0).unwrap();

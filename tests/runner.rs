@@ -130,7 +130,7 @@ fn ramps_in_many_processes_are_a_study() {
     assert_eq!((code(&outside), said(&outside).lines().count()), (Some(1), 1));
 }
 
-/// A signal stops a study with all saved, and the same command goes on.
+/// A signal stops a study with everything saved, and the same command goes on.
 #[test]
 #[cfg(unix)]
 fn a_signal_saves_and_the_same_command_goes_on() {

@@ -1,10 +1,10 @@
-//! Errors of means against the true scatter over seeds, of series whose correlation is known.
+//! Errors of means, against the true scatter over seeds, for series whose correlation is known.
 
 use granular_edmd::statistics::{BlockedMean, Estimate, RunningMean, block_average};
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// Runs of each series: the scatter over them is known to 8 %.
+/// Number of runs of each series. The scatter over them is known to 8 %.
 const SEEDS: u64 = 80;
 
 /// An autoregressive series of variance 1 and this correlation of neighbors.
@@ -21,7 +21,7 @@ impl Autoregressive {
         series
     }
 
-    /// Sum of 12 uniform numbers.
+    /// Returns the sum of 12 uniform numbers.
     fn normal(&mut self) -> f64 {
         let mut uniform = || (self.generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         (0..12).map(|_| uniform()).sum::<f64>() - 6.0
@@ -38,12 +38,12 @@ impl Iterator for Autoregressive {
     }
 }
 
-/// Means of the same series under all seeds.
+/// Returns the means of the same series under all seeds.
 fn means(series: impl Fn(u64) -> BlockedMean) -> Vec<BlockedMean> {
     (0..SEEDS).map(series).collect()
 }
 
-/// Scatter of the means over seeds, and what an error is of that on average.
+/// Returns the ratio of the average error to the scatter of the means over seeds.
 fn share(means: &[BlockedMean], error: impl Fn(&BlockedMean) -> f64) -> f64 {
     let scatter = means.iter().map(BlockedMean::mean).collect::<RunningMean>().standard_deviation();
     means.iter().map(error).collect::<RunningMean>().mean() / scatter
@@ -64,15 +64,15 @@ fn the_printed_error_covers_the_scatter_over_seeds() {
         assert!(share_converged(&means) > 0.9, "{correlation}");
         let covered = share(&means, printed);
         assert!((0.75..1.3).contains(&covered), "{correlation}: {covered}");
-        // What is taken as independent is too small by the root of the correlated samples.
+        // An error that takes the samples as independent is too small by the root of the correlated samples.
         let naive = share(&means, |mean| mean.ungrouped().standard_error());
         let expected = ((1.0 - correlation) / (1.0 + correlation)).sqrt();
         assert!((naive / expected - 1.0).abs() < 0.3, "{correlation}: {naive}");
     }
 }
 
-/// Collisions of a gas that slowly warms and cools: strong noise of each, and a long correlation of small
-/// variance.
+/// The samples resemble collisions of a gas that slowly warms and cools: each has strong noise, and a small
+/// part of the variance has a long correlation.
 #[test]
 fn a_slow_part_of_small_variance_is_seen() {
     let slow = |seed, correlation: f64| {
@@ -83,7 +83,8 @@ fn a_slow_part_of_small_variance_is_seen() {
     assert!(share_converged(&shorter) > 0.9);
     assert!((0.75..1.3).contains(&share(&shorter, printed)));
     assert!(share(&shorter, |mean| mean.ungrouped().standard_error()) < 0.5);
-    // Of so few of the long times of correlation nobody can tell for sure: most of the estimates say so.
+    // There are so few of the long correlation times that the error cannot be known. Most of the estimates
+    // say so.
     let longer = means(|seed| slow(seed, 0.9999));
     assert!(share_converged(&longer) < 0.4, "{}", share_converged(&longer));
     let covered = share(&longer, printed);
@@ -122,7 +123,7 @@ fn a_running_mean_is_that_of_welford_to_the_bit() {
     }
 }
 
-/// The error is that of blocks of one size, by the textbook.
+/// The error is that of blocks of one size, computed as in the textbook.
 #[test]
 fn the_error_is_that_of_blocks_of_one_size() {
     let series: Vec<f64> = Autoregressive::new(3, 0.5).take(4000).collect();

@@ -1,4 +1,5 @@
-//! What the measurements share: the paper's box in a settled state, medians, and what the environment asks for.
+//! Parts that the measurements share: the paper's box in a settled state, medians, and settings from the
+//! environment.
 #![allow(dead_code, reason = "each bench takes what it needs")]
 
 pub(crate) mod ask;
@@ -10,7 +11,7 @@ use std::process::ExitCode;
 
 pub(crate) use state::Outcome;
 
-/// One line on standard error if it did not work out.
+/// Reports a failure in one line on standard error.
 pub(crate) fn report(outcome: Outcome<()>) -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -21,7 +22,7 @@ pub(crate) fn report(outcome: Outcome<()>) -> ExitCode {
     }
 }
 
-/// How this was compiled, and how busy the machine is.
+/// Prints how this program was compiled, and how busy the machine is.
 pub(crate) fn print_circumstances() {
     let wide = if cfg!(target_feature = "avx2") {
         "with AVX2"
@@ -31,7 +32,7 @@ pub(crate) fn print_circumstances() {
     println!("Compiled {wide}. Load of the machine: {}.", load());
 }
 
-/// Processes that ran or waited in the last minute, of which one is this.
+/// Returns the number of processes that ran or waited in the last minute. This process is one of them.
 pub(crate) fn load() -> String {
     let text = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
     text.split_whitespace().next().unwrap_or("unknown").to_owned()

@@ -1,8 +1,8 @@
-//! Medians: of a few measurements on a busy machine, means say little.
+//! Medians and quartiles. On a busy machine, the mean of a few measurements says little.
 
 use std::fmt;
 
-/// Median and quartiles of a few measurements.
+/// The median and quartiles of a few measurements.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Quartiles {
     pub(crate) low: f64,
@@ -11,7 +11,7 @@ pub(crate) struct Quartiles {
 }
 
 impl Quartiles {
-    /// Of these values; NaN of none.
+    /// Computes the quartiles of these values; NaN without values.
     pub(crate) fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut values: Vec<f64> = values.into_iter().collect();
         values.sort_by(f64::total_cmp);
@@ -20,7 +20,7 @@ impl Quartiles {
     }
 }
 
-/// Linear between neighbors.
+/// Returns a quantile, by linear interpolation between neighbors.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let place = share * last as f64;

@@ -9,25 +9,25 @@ use granular_edmd::scheduler::{EventScheduler, TournamentTree};
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{Disk, Simulation, initial};
 
-/// Of whatever can go wrong before and while something is measured.
+/// The result of a measurement, with any error that can occur before or during it.
 pub(crate) type Outcome<T> = Result<T, Box<dyn Error + Send + Sync>>;
 
-/// Disks in a box of the paper's width.
+/// Number of disks in a box of the paper's width.
 pub(crate) const DISKS: usize = 1000;
 pub(crate) const WIDTH: f64 = 60.0;
 pub(crate) const HEIGHT: f64 = 150.0;
 pub(crate) const AMPLITUDE: f64 = 0.1;
 pub(crate) const ANGULAR_FREQUENCY: f64 = 10.0;
 
-/// Short enough to change nothing but the collapse.
+/// Contact duration, short enough to change nothing but the collapse.
 pub(crate) const CONTACT_DURATION: f64 = 1e-5;
 
-/// The time of one oscillation of the base.
+/// Time of one oscillation of the base.
 pub(crate) const OSCILLATION: f64 = std::f64::consts::TAU / ANGULAR_FREQUENCY;
 
 pub(crate) type Run<S = TournamentTree> = Simulation<ContactDuration<Frictional>, Container, S>;
 
-/// What decides how dense the gas becomes.
+/// The parameters that decide how dense the gas becomes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct State {
     pub(crate) gravity: f64,
@@ -35,14 +35,14 @@ pub(crate) struct State {
     pub(crate) inelasticity: f64,
 }
 
-/// A gas that fills the box: most events are passages between cells.
+/// A gas that fills the box. Most events are passages between cells.
 pub(crate) const DILUTE: State = State { gravity: 0.015_625, friction: 0.03, inelasticity: 0.0 };
 
-/// A fluid a dozen diameters high: most events are collisions.
+/// A fluid that is a dozen diameters high. Most events are collisions.
 pub(crate) const DENSE: State = State { gravity: 0.015_625, friction: 0.1, inelasticity: 0.05 };
 
 impl State {
-    /// These disks in a box as many times wider than the paper's.
+    /// Puts these disks into a box as many times wider than the paper's.
     pub(crate) fn run<S: EventScheduler>(
         &self,
         disks: Vec<Disk>,
@@ -55,7 +55,8 @@ impl State {
         Ok(run.scheduler(scheduler).build()?)
     }
 
-    /// A thousand disks in the paper's box that have forgotten their lattice after so many oscillations.
+    /// Returns a thousand disks in the paper's box, which have forgotten their lattice after so many
+    /// oscillations.
     pub(crate) fn settled(&self, seed: u64, oscillations: u32) -> Outcome<Run> {
         let disks = initial::lattice(&container(1)?, DISKS, 0.5)?;
         let disks = initial::with_maxwellian_velocities(disks, 1.0, seed)?;

@@ -1,4 +1,4 @@
-//! Time spent on a processor: other work on the machine does not count.
+//! A stopwatch for the time on processors. Other work on the machine does not count.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::time::Instant;
 
 type Clock = fn() -> Option<f64>;
 
-/// Started when it was made.
+/// A stopwatch, which starts when it is made.
 pub(crate) struct Stopwatch {
     wall: Instant,
     clock: Clock,
@@ -14,12 +14,12 @@ pub(crate) struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// Of this thread.
+    /// Starts a stopwatch of this thread.
     pub(crate) fn of_thread() -> Self {
         Self::with(|| seconds_of(Path::new("/proc/thread-self")))
     }
 
-    /// Of all threads that this process has at both ends.
+    /// Starts a stopwatch of all threads that this process has both now and at the end.
     pub(crate) fn of_process() -> Self {
         Self::with(|| {
             let tasks = fs::read_dir("/proc/self/task").ok()?;
@@ -31,7 +31,8 @@ impl Stopwatch {
         Self { wall: Instant::now(), clock, start: clock() }
     }
 
-    /// Seconds on processors, good to some milliseconds; by the wall clock where Linux does not say.
+    /// Returns the seconds on processors, which are good to some milliseconds. Where Linux does not tell
+    /// them, the seconds are those of the wall clock.
     pub(crate) fn seconds(&self) -> f64 {
         let passed = (self.clock)().zip(self.start).map(|(now, start)| now - start);
         passed.unwrap_or_else(|| self.wall.elapsed().as_secs_f64())

@@ -6,10 +6,11 @@
 //! REFERENCE=path/to/its/folder GRID=1 cargo bench --bench ratio   # the κ–q plane of Fig. 5, both gravities
 //! ```
 //!
-//! Machines are noisy and no two are alike, so the two run in turn, and the median of the ratios of collisions of two
-//! disks per second counts. Each starts from a lattice of its own, settles for so many oscillations of the base, and is
-//! measured for as many by the wall clock. `ROUNDS` and `OSCILLATIONS` change how often and how long; at a smaller
-//! gravity it is longer, as flights are.
+//! Machines are noisy and no two are alike. Therefore, the two programs run in turn, and the median of the
+//! ratios of collisions of two disks per second counts. Each program starts from its own lattice, settles for
+//! so many oscillations of the base, and is measured for as many oscillations by the wall clock. `ROUNDS` and
+//! `OSCILLATIONS` change how often and how long it is measured. At a smaller gravity the measurement is
+//! longer, as flights are.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -24,16 +25,17 @@ use common::quartiles::Quartiles;
 use common::state::{DENSE, DILUTE, State, oscillate};
 use reference::Reference;
 
-/// What a run of either program gives.
+/// The speed of one of the two programs in a run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Speed {
-    /// Collisions of two disks per second.
+    /// Number of collisions of two disks per second.
     per_second: f64,
-    /// Collisions of two disks per oscillation: alike, if the two are in the same state.
+    /// Number of collisions of two disks per oscillation. The numbers of both programs are alike if they are
+    /// in the same state.
     per_oscillation: f64,
 }
 
-/// How often, how long, and which states.
+/// The plan of the measurement: how often, how long, and in which states.
 struct Plan {
     rounds: u32,
     oscillations: u32,
@@ -73,13 +75,13 @@ impl Plan {
         Ok(Self { rounds, oscillations, states })
     }
 
-    /// As many flights at any gravity.
+    /// Returns the number of oscillations with as many flights at any gravity.
     fn oscillations_at(&self, gravity: f64) -> u32 {
         (f64::from(self.oscillations) * DILUTE.gravity / gravity).round() as u32
     }
 }
 
-/// The plane of Fig. 5, from the most dilute gas to the collapse.
+/// Returns states over the plane of Fig. 5, from the most dilute gas to the collapse.
 fn plane() -> Vec<State> {
     let mut states = Vec::new();
     for gravity in [0.015_625, 0.002_025] {
@@ -91,7 +93,7 @@ fn plane() -> Vec<State> {
     states
 }
 
-/// Both in turn, the first to run being another one from round to round.
+/// Measures both programs in turn. The first one to run changes from round to round.
 fn measure(
     plan: &Plan,
     state: &State,
@@ -108,7 +110,7 @@ fn measure(
     Ok((ours(state, seed, oscillations)?, theirs))
 }
 
-/// So many oscillations to settle from the lattice, and as many to measure.
+/// Runs this crate for so many oscillations to settle from the lattice, and for as many to measure.
 fn ours(state: &State, seed: u64, oscillations: u32) -> Outcome<Speed> {
     let mut run = state.settled(seed, oscillations)?;
     let (start, before) = (Instant::now(), run.counters().collisions);
@@ -139,7 +141,7 @@ fn print_row(state: &State, rounds: &[(Speed, Option<Speed>)]) {
     println!("| {state} | {ratio} | {} | {} | {} | {} |", ours[0], theirs[0], ours[1], theirs[1]);
 }
 
-/// Medians of both numbers; dashes for none.
+/// Returns the medians of both numbers, or dashes without measurements.
 fn columns(speeds: &[Speed]) -> [String; 2] {
     let median = |number: fn(&Speed) -> f64| Quartiles::of(speeds.iter().map(number)).median;
     let rate = median(|speed| speed.per_second) / 1e6;

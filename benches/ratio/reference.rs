@@ -1,4 +1,5 @@
-//! The plain simulation that this crate is compared with: another program, built and run as its users would.
+//! The plain simulation with which this crate is compared. It is another program, built and run as its users
+//! would do it.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -7,17 +8,17 @@ use super::Speed;
 use crate::common::Outcome;
 use crate::common::state::{self, State};
 
-/// Friction differs by so much between its two runs: it measures each value of friction by itself, from the last state
-/// of the one before, so that the first one settles the state for the second.
+/// Difference in friction between the two parts of its run. The program measures each value of friction
+/// separately, from the last state of the previous value, so the first one settles the state for the second.
 const STEP: f64 = 1e-9;
 
-/// The program, built.
+/// The other program, built.
 pub(crate) struct Reference {
     program: PathBuf,
 }
 
 impl Reference {
-    /// Built from its folder for the processor of this machine.
+    /// Builds the program from its folder for the processor of this machine.
     pub(crate) fn build(folder: &Path) -> Outcome<Self> {
         let target = Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("reference");
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
@@ -31,7 +32,7 @@ impl Reference {
         Err(format!("the reference cannot be built: {}", String::from_utf8_lossy(&built.stderr)).into())
     }
 
-    /// So many oscillations to settle from its lattice, and as many to measure.
+    /// Runs the program for so many oscillations to settle from its lattice, and for as many to measure.
     pub(crate) fn measure(&self, state: &State, seed: u64, oscillations: u32) -> Outcome<Speed> {
         let oscillations_text = oscillations.to_string();
         let mut run = Command::new(&self.program);
@@ -45,7 +46,7 @@ impl Reference {
     }
 }
 
-/// The same state in its words.
+/// Returns the flags of the program for the same state.
 fn flags(state: &State) -> Vec<String> {
     let State { gravity, friction, inelasticity } = *state;
     let flags = [
@@ -63,7 +64,7 @@ fn flags(state: &State) -> Vec<String> {
     flags.into_iter().flat_map(|(flag, value)| [flag.to_owned(), value.to_string()]).collect()
 }
 
-/// The number after this name in a line of names and numbers.
+/// Returns the number after this name in a line of names and numbers.
 fn field(line: &str, name: &str) -> Option<f64> {
     line.split_whitespace().find_map(|word| word.strip_prefix(name))?.parse().ok()
 }

@@ -1,12 +1,13 @@
-//! How speed, memory and set-up grow with the number of disks, for each scheduler.
+//! The growth of time, memory and set-up with the number of disks, for each scheduler.
 //!
 //! ```sh
 //! RUSTFLAGS="-C target-cpu=native" cargo bench --bench scaling
 //! ```
 //!
-//! The same physical state in boxes of the same height that are wider and wider, `LARGEST` (10⁶) disks at most. It is
-//! done `ROUNDS` times, and medians count, of the time on a processor. Once disks are numbered by their place, which is
-//! the best for the caches, and once at random. The picture goes to `PICTURE`, `out/scaling.png` if that is not set.
+//! The bench runs the same physical state in boxes of the same height and growing width, with at most
+//! `LARGEST` (10⁶) disks. It measures `ROUNDS` times, and the medians of the time on a processor count. The
+//! disks are numbered once by their place, which is the best for the caches, and once at random. The picture
+//! goes to `PICTURE`, or to `out/scaling.png` if that is not set.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -52,12 +53,12 @@ pub(crate) struct Row {
     rounds: Vec<Measurement>,
 }
 
-/// How large, how often, and how long.
+/// The plan of the measurement: how large, how often, and how long.
 struct Plan {
     largest: usize,
     rounds: u32,
     settle: u32,
-    /// Disks times oscillations of each run: the more disks, the fewer oscillations.
+    /// Disks times oscillations of each run. The more disks there are, the fewer oscillations.
     work: usize,
 }
 
@@ -82,7 +83,7 @@ fn run() -> Outcome<()> {
     if ask::is_test() { Ok(()) } else { draw(&rows) }
 }
 
-/// What the process that measures this system says.
+/// Measures this system in the present process, and prints the numbers.
 fn measure_one(plan: &Plan, row: &Row) -> Outcome<()> {
     let (boxes, oscillations) = (row.disks / DISKS, (plan.work / row.disks).max(1) as u32);
     let tiles = Tiles::settled(&DILUTE, plan.settle, boxes)?;
@@ -100,7 +101,7 @@ impl Plan {
     }
 }
 
-/// All sizes, from a thousand in steps of ten, with all schedulers and numberings.
+/// Returns rows of all sizes, from a thousand in steps of ten, with all schedulers and numberings.
 fn rows(largest: usize) -> Vec<Row> {
     let sizes = std::iter::successors(Some(DISKS), |disks| Some(10 * disks));
     let mut rows = Vec::new();
@@ -143,7 +144,7 @@ fn print(rows: &[Row]) {
     }
 }
 
-/// Memory of a small system drowns in that of the process.
+/// Returns the bytes per disk. The memory of a small system drowns in that of the process.
 fn bytes(row: &Row) -> String {
     let bytes = row.quartiles(|round| round.bytes_per_disk).median;
     if row.disks < 10_000 || bytes.is_nan() { "–".to_owned() } else { format!("{bytes:.0}") }

@@ -1,4 +1,4 @@
-//! What is measured of one system.
+//! The measurement of one system.
 
 use std::fmt;
 use std::process::Command;
@@ -12,7 +12,7 @@ use crate::common::Outcome;
 use crate::common::state::{DISKS, State, oscillate};
 use crate::common::stopwatch::Stopwatch;
 
-/// One system, once.
+/// The measured numbers of one system, from one run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Measurement {
     pub(crate) nanoseconds_per_collision: f64,
@@ -21,16 +21,17 @@ pub(crate) struct Measurement {
     pub(crate) set_up_seconds: f64,
 }
 
-/// What a new process is asked for.
+/// Flag by which a new process is asked to measure one system.
 const ASK: &str = "--one";
 
-/// The system that this process is asked to measure.
+/// Returns the number of the system that this process is asked to measure.
 pub(crate) fn asked_for() -> Option<usize> {
     std::env::args().skip_while(|argument| argument != ASK).nth(1)?.parse().ok()
 }
 
 impl Measurement {
-    /// Of a system by its number, in a process of its own: freed memory would be used again and not seen.
+    /// Measures a system, given by its number, in a process of its own. In this process, freed memory would
+    /// be used again and not seen.
     pub(crate) fn in_new_process(number: usize) -> Outcome<Self> {
         let mut process = Command::new(std::env::current_exe()?);
         process.args(std::env::args().skip(1)).args([ASK, &number.to_string()]);
@@ -53,7 +54,8 @@ impl fmt::Display for Measurement {
     }
 }
 
-/// Oscillations that do not count: until the epoch has moved, and the neighbor cells have found their size.
+/// Number of oscillations that do not count, until the epoch has moved and the neighbor cells have found
+/// their size.
 const WARM_UP: u32 = 30;
 
 /// Builds the system and runs it for so many oscillations, after [`WARM_UP`].
@@ -86,7 +88,7 @@ fn events(counters: &Counters) -> u64 {
     collisions + wall_collisions + cell_crossings + repredictions
 }
 
-/// Memory of this process that is in use; NaN where Linux does not say.
+/// Returns the memory of this process that is in use; NaN where Linux does not tell it.
 fn resident_bytes() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));

@@ -10,7 +10,7 @@ const HEIGHT: f64 = 420.0;
 const HEADER: f64 = 52.0;
 const COLORS: [&str; 6] = [BLUE, ORANGE, GREEN, "#8a4fbf", INK, "#b23a48"];
 
-/// The picture as a PNG file.
+/// Draws the picture, and returns it as a PNG file.
 pub(crate) fn draw(subtitle: &str, rows: &[Row]) -> Result<Vec<u8>, String> {
     let mut sheet = Sheet::new(WIDTH, HEADER + HEIGHT);
     sheet.text(58.0, 24.0, 17, INK, "Time per collision of two disks");
@@ -27,7 +27,7 @@ pub(crate) fn draw(subtitle: &str, rows: &[Row]) -> Result<Vec<u8>, String> {
 
 type Points = Vec<(f64, f64)>;
 
-/// Scheduler and numbering, and how the time grows.
+/// Returns a line for each scheduler and numbering: how its time grows.
 fn lines(rows: &[Row]) -> Vec<(String, Points)> {
     let mut lines: Vec<(String, Points)> = Vec::new();
     for row in rows {

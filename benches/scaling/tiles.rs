@@ -1,7 +1,8 @@
 //! A settled state of any size: boxes of the paper's width side by side.
 //!
-//! To settle a million disks from a lattice takes an hour. A thousand settle at once, and snapshots of them at different
-//! times, one beside the other, are a settled state of a wide box; every second is mirrored, so that the flow goes on.
+//! Settling a million disks from a lattice takes an hour. A thousand disks settle at once, and snapshots of
+//! them at different times, one beside the other, are a settled state of a wide box. Every second snapshot is
+//! mirrored, so that the flow goes on across the seam.
 
 use std::cmp::Ordering;
 
@@ -14,12 +15,12 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::common::Outcome;
 use crate::common::state::{Run, State, WIDTH, oscillate};
 
-/// How disks are numbered, which decides how far apart neighbors are in memory.
+/// The numbering of disks, which decides how far apart neighbors are in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Numbering {
-    /// By narrow columns from left to right: neighbors in space have near numbers.
+    /// Numbers by narrow columns from left to right. Neighbors in space have near numbers.
     ByPlace,
-    /// At random, as after a long time in which the disks have mixed.
+    /// Numbers at random, as after a long time in which the disks have mixed.
     Mixed,
 }
 
@@ -40,14 +41,14 @@ pub(crate) struct Tiles {
 }
 
 impl Tiles {
-    /// So many boxes of this state.
+    /// Settles one box, and takes so many snapshots of this state.
     pub(crate) fn settled(state: &State, settle: u32, count: usize) -> Outcome<Self> {
         let mut run = state.settled(1, settle)?;
         let snapshots = (0..count).map(|_| next(&mut run)).collect::<Outcome<_>>()?;
         Ok(Self { snapshots })
     }
 
-    /// The first so many boxes side by side.
+    /// Returns the disks of the first so many boxes side by side.
     pub(crate) fn disks(&self, boxes: usize, numbering: Numbering) -> Outcome<Vec<Disk>> {
         let mut disks = Vec::new();
         for (place, snapshot) in self.snapshots.iter().take(boxes).enumerate() {
@@ -63,7 +64,7 @@ impl Tiles {
     }
 }
 
-/// Columns are a diameter wide.
+/// Compares two disks by their places. Columns are a diameter wide.
 fn by_place(one: &Disk, other: &Disk) -> Ordering {
     let place = |disk: &Disk| (disk.position().x.floor(), disk.position().y);
     place(one).partial_cmp(&place(other)).unwrap_or(Ordering::Equal)
@@ -74,7 +75,7 @@ fn next(run: &mut Run) -> Outcome<Vec<Disk>> {
     Ok(run.disks())
 }
 
-/// A disk of the box that stands at this place in the row.
+/// Returns a disk of the box at this place in the row.
 fn placed(disk: &Disk, place: usize) -> Outcome<Disk> {
     let (position, velocity, spin) = (disk.position(), disk.velocity(), disk.angular_velocity());
     let left = WIDTH * place as f64;

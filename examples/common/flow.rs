@@ -4,10 +4,10 @@ use granular_edmd::boundary::Domain;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::Snapshot;
 
-/// Rows beyond which nothing is kept: without a lid a disk may fly high.
+/// Largest number of rows. Nothing is kept beyond it, since a disk may fly high without a lid.
 const MOST_ROWS: usize = 2000;
 
-/// Mean velocity of the disks on a grid of square cells, each disk counting once a snapshot.
+/// The mean velocity of the disks on a grid of square cells. Each disk counts once per snapshot.
 #[derive(Debug, Clone)]
 pub(crate) struct Flow {
     domain: Domain,
@@ -29,12 +29,12 @@ pub(crate) struct Arrow {
 }
 
 impl Flow {
-    /// No flow yet, on a grid of this many columns.
+    /// Creates an empty flow on a grid of this many columns.
     pub(crate) fn new(domain: Domain, columns: usize) -> Self {
         Self { domain, columns: columns.max(1), cells: Vec::new() }
     }
 
-    /// Length of the side of a cell.
+    /// Returns the length of the side of a cell.
     pub(crate) fn pitch(&self) -> f64 {
         self.domain.width() / self.columns as f64
     }
@@ -58,7 +58,7 @@ impl Flow {
         (row < MOST_ROWS).then(|| row * self.columns + column.min(self.columns - 1))
     }
 
-    /// The arrows of the cells that hold at least this share of what the fullest cell holds.
+    /// Returns the arrows of the cells that hold at least this share of what the fullest cell holds.
     pub(crate) fn arrows(&self, share: f64) -> Vec<Arrow> {
         let most = self.cells.iter().map(|cell| cell.count).max().unwrap_or(0);
         let enough = (share * most as f64).max(1.0);

@@ -1,4 +1,4 @@
-//! What the examples share: reading the command line, the mean flow, putting panels on a sheet.
+//! Parts that the examples share: the command line, the mean flow, and panels on a sheet.
 #![allow(dead_code, reason = "each example takes what it needs")]
 
 pub(crate) mod command_line;

@@ -5,7 +5,7 @@ use kuva::prelude::{Layout, Plot};
 use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
 use kuva::render::theme::Theme;
 
-/// The colours of all pictures.
+/// Colors of all pictures.
 pub(crate) const INK: &str = "#22272e";
 pub(crate) const QUIET: &str = "#6b7480";
 pub(crate) const BLUE: &str = "#2c6fbb";
@@ -27,12 +27,13 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    /// An empty sheet.
+    /// Creates an empty sheet.
     pub(crate) fn new(width: f64, height: f64) -> Self {
         Self { scene: Scene::new(width, height) }
     }
 
-    /// A panel with the space that `margins` says between its edge and its axes: left, right, top, bottom.
+    /// Adds a panel with the space that `margins` gives between its edge and its axes: left, right, top,
+    /// bottom.
     pub(crate) fn panel(&mut self, place: Place, margins: [f64; 4], plots: Vec<Plot>, layout: Layout) {
         let [left, right, top, bottom] = margins;
         let grid = layout.show_grid;
@@ -53,7 +54,7 @@ impl Sheet {
         self.scene.add(Primitive::GroupEnd);
     }
 
-    /// A line of text that starts here.
+    /// Adds a line of text that starts here.
     pub(crate) fn text(&mut self, x: f64, y: f64, size: u32, color: &str, content: &str) {
         self.scene.add(Primitive::Text {
             x,
@@ -67,7 +68,7 @@ impl Sheet {
         });
     }
 
-    /// Names in their colours, side by side from here.
+    /// Adds names in their colors, side by side from here.
     pub(crate) fn key(&mut self, x: f64, y: f64, names: &[(&str, &str)]) {
         let mut x = x;
         for (color, name) in names {
@@ -76,13 +77,13 @@ impl Sheet {
         }
     }
 
-    /// The picture as a PNG file, with this many pixels to a unit.
+    /// Returns the picture as a PNG file, with this many pixels to a unit.
     pub(crate) fn png(&self, scale: f32) -> Result<Vec<u8>, String> {
         PngBackend::new().with_scale(scale).render_scene(&self.scene)
     }
 }
 
-/// A layout whose axes have exactly these ranges.
+/// Returns a layout whose axes have exactly these ranges.
 pub(crate) fn axes(x: (f64, f64), y: (f64, f64)) -> Layout {
     let exact = Layout::new(x, y).with_x_axis_min(x.0).with_x_axis_max(x.1);
     exact.with_y_axis_min(y.0).with_y_axis_max(y.1)
@@ -98,7 +99,7 @@ fn theme() -> Theme {
     }
 }
 
-/// A colour from blue (-1) over light grey (0) to red (1).
+/// Returns a color from blue (-1) over light gray (0) to red (1).
 pub(crate) fn diverging(value: f64) -> String {
     let (middle, blue, red) = ([214.0, 217.0, 221.0], [33.0, 102.0, 172.0], [178.0, 34.0, 48.0]);
     let end = if value < 0.0 { blue } else { red };

@@ -1,17 +1,18 @@
 //! The paper's Fig. 5: convective states in the plane of friction and inelasticity.
 //!
-//! 1000 disks in the vibrated box. For each inelasticity, friction goes up step by step, each value from the
-//! last state of the one before, and for some comes down again from the other end. Each point gets the name
-//! of its state; the transitions lie between neighbors of different states.
+//! The system has 1000 disks in the vibrated box. For each inelasticity, friction goes up step by step, and
+//! each value starts from the last state of the previous one. For some inelasticities, friction also comes
+//! down again from the other end. Each point gets the name of its state. The transitions lie between
+//! neighbors of different states.
 //!
 //! ```text
-//! cargo run --release --all-features --example fig5_phase_diagram -- --size quick
-//! cargo run --release --all-features --example fig5_phase_diagram -- --gravity 0.002025 --size coarse
+//! cargo run --release --features serde,rayon --example fig5_phase_diagram -- --size quick
+//! cargo run --release --features serde,rayon --example fig5_phase_diagram -- --size coarse
 //! ```
 //!
-//! Writes `fig5_phase_diagram.png`, `points.csv` and `transitions.csv`, which the example `table1` reads,
-//! beside the studies `up` and `down`. Ctrl-C stops with all that was done saved, and draws that; the same
-//! command goes on.
+//! The example writes `fig5_phase_diagram.png`, `points.csv` and `transitions.csv`, which the example
+//! `table1` reads, beside the studies `up` and `down`. Ctrl-C stops the example, which saves all that was
+//! done and draws it. The same command then goes on.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,4 +1,4 @@
-//! The picture: the states as dots, the transitions with their errors over them.
+//! The picture: the states as dots, and over them the transitions with their errors.
 
 use granular_edmd::ParameterError;
 use granular_edmd::analysis::{ConvectiveRegime, PlaneTransition, TransitionLine};
@@ -13,7 +13,7 @@ use crate::common::sheet::{self, INK, Place, QUIET, Sheet};
 use crate::plan::Gravity;
 use crate::states::Point;
 
-/// Colours of the regimes, in their order: from little energy loss to much.
+/// Colors of the regimes, in their order from little energy loss to much.
 const REGIMES: [(ConvectiveRegime, &str, &str); 5] = [
     (ConvectiveRegime::Conductive, "#9aa3ad", "0 rolls"),
     (ConvectiveRegime::OneRoll, "#2c6fbb", "1 roll"),
@@ -22,7 +22,7 @@ const REGIMES: [(ConvectiveRegime, &str, &str); 5] = [
     (ConvectiveRegime::Collapsed, "#22272e", "collapse"),
 ];
 
-/// Colours of the lines, and the mean energy changes that the paper has for them at both gravities (Table I).
+/// Colors of the lines, and the mean energy changes that the paper has for them at both gravities (Table I).
 const LINES: [(TransitionLine, &str, [f64; 2]); 4] = [
     (TransitionLine::ZeroOne, "#3f8fd6", [-0.090, -0.047]),
     (TransitionLine::OneTwoBeginning, "#8e5bb5", [-0.351, -0.137]),
@@ -38,7 +38,7 @@ const WIDTH: f64 = 980.0;
 const HEADER: f64 = 122.0;
 const HEIGHT: f64 = 600.0;
 
-/// The picture as a PNG file.
+/// Draws the picture, and returns it as a PNG file.
 pub(crate) fn draw(
     gravity: Gravity,
     caption: &str,
@@ -73,7 +73,7 @@ fn write_header(sheet: &mut Sheet, gravity: Gravity, caption: &str) {
 
 fn layout(gravity: Gravity) -> Layout {
     let most = gravity.largest_inelasticity();
-    // A little below zero, so that the dots there are whole.
+    // The axis begins a little below zero, so that the dots there are whole.
     sheet::axes(FRICTIONS, (-0.03 * most, most))
         .with_log_x()
         .with_x_tick_format(TickFormat::Custom(Arc::new(|value| value.to_string())))
@@ -85,7 +85,7 @@ fn layout(gravity: Gravity) -> Layout {
         .with_box_axes()
 }
 
-/// Where the paper's hypothesis and its numbers put the lines.
+/// Returns the lines where the paper's hypothesis and its numbers put them.
 fn iso_lines(gravity: Gravity) -> Result<Vec<Plot>, ParameterError> {
     let (low, high) = FRICTIONS;
     let frictions: Vec<f64> =
@@ -100,7 +100,7 @@ fn iso_lines(gravity: Gravity) -> Result<Vec<Plot>, ParameterError> {
     Ok(plots)
 }
 
-/// A disk for what was seen on the way up, a ring round it for what was seen on the way down.
+/// Draws a disk for a state on the way up, and a ring around it for a state on the way down.
 fn dots(points: &[Point]) -> Vec<Plot> {
     let legs = [(Some(Leg::Down), 7.5), (Some(Leg::Up), 4.2)];
     let sets = legs.iter().flat_map(|&leg| REGIMES.map(|regime| (leg, regime)));
@@ -117,12 +117,13 @@ fn dots(points: &[Point]) -> Vec<Plot> {
     .collect()
 }
 
-/// Each line through its points, low and high frictions apart if it leaves the plane between them.
+/// Draws each line through its points. Low and high frictions are apart if the line leaves the plane between
+/// them.
 fn transitions(found: &[PlaneTransition]) -> Vec<Plot> {
     let of = |line| found.iter().filter(move |at| at.line == line).collect::<Vec<_>>();
     let mut plots = Vec::new();
     for (line, color, _) in LINES {
-        // The beginning of coexistence lies under its end where both are at the same place.
+        // The beginning of coexistence lies under its end, where both are at the same place.
         let width = if line == TransitionLine::OneTwoBeginning { 4.4 } else { 2.0 };
         plots.extend(branches(&of(line)).into_iter().map(|branch| path(branch, color, width)));
         plots.extend(diamonds(&of(line), color, 2.4 + width));
@@ -130,7 +131,8 @@ fn transitions(found: &[PlaneTransition]) -> Vec<Plot> {
     plots
 }
 
-/// The points of a line by friction; two branches if it meets `q = 0` on both sides of the largest loss.
+/// Returns the points of a line by friction, in two branches if the line meets `q = 0` on both sides of the
+/// largest loss.
 fn branches(of: &[&PlaneTransition]) -> Vec<Piece> {
     let on_axis = |rising| of.iter().filter(move |at| at.inelasticity == 0.0 && at.rising == rising);
     let last = on_axis(true).map(|at| at.friction).reduce(f64::max);
@@ -141,10 +143,10 @@ fn branches(of: &[&PlaneTransition]) -> Vec<Piece> {
     [low, high].into_iter().map(means).filter(|piece| !piece.is_empty()).collect()
 }
 
-/// The points in the order of their frictions; those of equal friction as their mean.
+/// Returns the points in the order of their frictions. Points of equal friction are replaced by their mean.
 fn means(mut points: Piece) -> Piece {
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // Middles of the same neighbors may differ in their last digits.
+    // The middles of the same neighbors may differ in their last digits.
     let equal = points.chunk_by(|a, b| b.0 < a.0 * (1.0 + 1e-9));
     equal.map(|at| (at[0].0, at.iter().map(|point| point.1).sum::<f64>() / at.len() as f64)).collect()
 }
@@ -153,7 +155,7 @@ fn path(points: Piece, color: &str, width: f64) -> Plot {
     LinePlot::new().with_data(points).with_color(color).with_stroke_width(width).into()
 }
 
-/// The points of a line, with bars to the neighbors between which they lie.
+/// Draws the points of a line, with bars to the neighbors between which they lie.
 fn diamonds(of: &[&PlaneTransition], color: &str, size: f64) -> [Plot; 2] {
     let (across, up): (Vec<_>, Vec<_>) = of.iter().partition(|at| at.between[0].1 == at.between[1].1);
     let plot = |of: &[&PlaneTransition]| {

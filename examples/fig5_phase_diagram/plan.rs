@@ -1,4 +1,4 @@
-//! What is simulated: ramps of friction, up and down, side by side for each inelasticity.
+//! The simulated runs: ramps of friction, up and down, side by side for each inelasticity.
 
 use clap::ValueEnum;
 use granular_edmd::study::vibrated_box::VibratedBox;
@@ -6,7 +6,7 @@ use granular_edmd::study::{Axis, Course, Plan, PlanError, Protocol, Ramp};
 
 use crate::studies;
 
-/// How much is done.
+/// The size of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Size {
     /// A few values of each parameter, for a minute or two: the picture in rough outlines.
@@ -46,7 +46,7 @@ impl Gravity {
         }
     }
 
-    /// The largest inelasticity of the picture: the smaller gravity needs more loss for everything.
+    /// Returns the largest inelasticity of the picture. At the smaller gravity, everything needs more loss.
     pub(crate) const fn largest_inelasticity(self) -> f64 {
         match self {
             Self::Small => 0.24,
@@ -55,8 +55,8 @@ impl Gravity {
     }
 }
 
-/// Friction from 0.005 to 3: about equal steps of its logarithm, smaller ones where one roll gives way to
-/// two.
+/// Frictions from 0.005 to 3, with about equal steps of the logarithm, and smaller ones where one roll gives
+/// way to two.
 const FRICTIONS: [f64; 26] = [
     0.005, 0.007_5, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.055, 0.06, 0.065, 0.07, 0.085, 0.1, 0.15, 0.2,
     0.3, 0.4, 0.5, 0.65, 0.8, 1.0, 1.3, 1.7, 2.2, 3.0,
@@ -70,10 +70,10 @@ pub(crate) struct Part {
     pub(crate) plan: Plan<VibratedBox>,
 }
 
-/// The studies of a phase diagram: the ramps up, and the ramps down.
+/// Returns the studies of a phase diagram: the ramps up, and the ramps down.
 pub(crate) fn parts(size: Size, gravity: Gravity, seed: u64) -> Result<Vec<Part>, PlanError> {
     let up = inelasticities(size, gravity);
-    // Going down is for hysteresis; a short run cannot tell it from a late start.
+    // The ramps down show hysteresis. A short run cannot distinguish hysteresis from a late start.
     let down = match size {
         Size::Quick => Vec::new(),
         Size::Coarse => up.iter().copied().step_by(2).take(4).collect(),
@@ -103,7 +103,7 @@ fn plan(
         .with_axis(Axis::new("inelasticity", inelasticities))
 }
 
-/// The first half is discarded.
+/// Returns the protocol, which discards the first half.
 const fn protocol(size: Size) -> Protocol {
     match size {
         Size::Quick => Protocol::new(750, 150, 5),
@@ -112,7 +112,7 @@ const fn protocol(size: Size) -> Protocol {
     }
 }
 
-/// Equal steps, those of the smaller gravity being larger.
+/// Returns inelasticities in equal steps, which are larger for the smaller gravity.
 fn inelasticities(size: Size, gravity: Gravity) -> Vec<f64> {
     let (step, most) = match gravity {
         Gravity::Small => (0.02, 12),

@@ -1,4 +1,4 @@
-//! From records to the states of the points, and to the transitions between them.
+//! The states of the points, from records, and the transitions between them.
 
 use std::error::Error;
 use std::path::Path;
@@ -8,7 +8,7 @@ use granular_edmd::analysis::{ConvectiveRegime, PlaneTransition, StateCriteria, 
 use granular_edmd::study::vibrated_box::{Convection, VibratedBox};
 use granular_edmd::study::{Leg, Record, Study};
 
-/// What was seen at a point of the plane, on the way up or down.
+/// The state seen at a point of the plane, on the way up or down.
 pub(crate) struct Point {
     pub(crate) friction: f64,
     pub(crate) inelasticity: f64,
@@ -27,7 +27,7 @@ pub(crate) struct Point {
 }
 
 impl Point {
-    /// The point of a record; `None` if it has no samples.
+    /// Returns the point of a record, or `None` if the record has no samples.
     fn of(record: &Record<VibratedBox>) -> Result<Option<Self>, ParameterError> {
         let Some(layer) = record.densest_layer() else { return Ok(None) };
         let noise = record.thermal_noise();
@@ -49,7 +49,7 @@ impl Point {
     }
 }
 
-/// The points of all finished values.
+/// Returns the points of all finished values.
 pub(crate) fn points(studies: &[Study<VibratedBox>]) -> Result<Vec<Point>, Box<dyn Error>> {
     let mut points = Vec::new();
     for record in studies.iter().flat_map(Study::records) {
@@ -58,7 +58,7 @@ pub(crate) fn points(studies: &[Study<VibratedBox>]) -> Result<Vec<Point>, Box<d
     Ok(points)
 }
 
-/// The points of the transition lines.
+/// Returns the points of the transition lines.
 pub(crate) fn lines(points: &[Point]) -> Result<Vec<PlaneTransition>, ParameterError> {
     plane_transitions(points.iter().map(|point| (point.friction, point.inelasticity, point.regime)))
 }

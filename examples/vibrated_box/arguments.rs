@@ -1,4 +1,4 @@
-//! The flags.
+//! The flags of the example.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -12,9 +12,9 @@ use crate::common::command_line::{non_negative, plain, positive, whole};
 
 /// Frictional, inelastic disks in a box with a vibrating base: convection rolls, or none.
 ///
-/// Lengths are in disk diameters, masses in disk masses, times in any unit that gravity and ω share. Prints a summary
-/// and writes a picture (disks, mean flow, series) and the series as a table. An oscillation lasts 2π/ω, also over a
-/// thermal base.
+/// Lengths are in disk diameters, masses in disk masses, times in any unit that gravity and ω share. Prints a
+/// summary and writes a picture (disks, mean flow, series) and the series as a table. An oscillation lasts
+/// 2π/ω, also over a thermal base.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "vibrated_box", allow_negative_numbers = true)]
 pub(crate) struct Arguments {
@@ -57,28 +57,29 @@ pub(crate) struct Arguments {
     /// Sides of the box.
     #[arg(long, value_enum, default_value_t = Sides::Walls)]
     pub(crate) sides: Sides,
-    /// Contact duration of the TC model, 0 for none; unless given, 1e-4 of the time in which a disk with the speed of
-    /// the base, A ω (or √T0 over a thermal base), moves by its diameter.
+    /// Contact duration of the TC model, 0 for none; unless given, 1e-4 of the time in which a disk with the
+    /// speed of the base, A ω (or √T0 over a thermal base), moves by its diameter.
     #[arg(long, value_parser = non_negative)]
     pub(crate) contact_duration: Option<f64>,
     /// Folder for `vibrated_box.png` and `vibrated_box.csv`.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
-    /// Writes the results as one JSON object to this file, or to standard output for `-`. Means are over the second
-    /// half of the samples, `mean_energy_change` over all disk–disk collisions of that time; its standard error knows
-    /// that they are correlated, and is a lower bound unless `mean_energy_change_converged`. Counts, the largest
-    /// overlap, `run_seconds` and `collisions_per_second` (disk–disk) are those of the whole run.
+    /// Writes the results as one JSON object to this file, or to standard output for `-`. Means are over the
+    /// second half of the samples, `mean_energy_change` over all disk–disk collisions of that time; its
+    /// standard error knows that they are correlated, and is a lower bound unless
+    /// `mean_energy_change_converged`. Counts, the largest overlap, `run_seconds` and `collisions_per_second`
+    /// (disk–disk) are those of the whole run.
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
 }
 
 impl Arguments {
-    /// Duration of an oscillation.
+    /// Returns the duration of an oscillation.
     pub(crate) fn period(&self) -> f64 {
         TAU / self.omega
     }
 
-    /// Scale of the speeds that the base gives to disks.
+    /// Returns the scale of the speeds that the base gives to disks.
     pub(crate) fn base_speed(&self) -> f64 {
         match self.base {
             Base::Thermal(temperature) => temperature.sqrt(),
@@ -86,22 +87,22 @@ impl Arguments {
         }
     }
 
-    /// Contact duration of the TC model; 0 for none.
+    /// Returns the contact duration of the TC model; 0 for none.
     pub(crate) fn contact_duration(&self) -> f64 {
         self.contact_duration.unwrap_or(1e-4 / self.base_speed())
     }
 
-    /// How many samples the run takes.
+    /// Returns the number of samples that the run takes.
     pub(crate) fn samples(&self) -> u64 {
         self.oscillations / self.every
     }
 
-    /// The sample after which means are taken.
+    /// Returns the number of the sample after which means are taken.
     pub(crate) fn settled(&self) -> u64 {
         self.samples() / 2
     }
 
-    /// Whether results on standard output would disturb the JSON there.
+    /// Tells whether results on standard output would disturb the JSON there.
     pub(crate) fn json_to_standard_output(&self) -> bool {
         self.json.as_ref().is_some_and(|path| path.as_os_str() == "-")
     }
@@ -112,7 +113,7 @@ fn inelasticity(text: &str) -> Result<f64, String> {
     Frictional::new(value, 0.0).map(|_| value).map_err(|error| format!("must be {}", error.requirement()))
 }
 
-/// Height of the lid, if there is one.
+/// The height of the lid, if there is one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Height(pub(crate) Option<f64>);
 
@@ -136,7 +137,7 @@ impl fmt::Display for Height {
     }
 }
 
-/// What drives the disks.
+/// The base, which drives the disks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Base {
     BiParabolic,
@@ -185,7 +186,7 @@ pub(crate) enum Sides {
 }
 
 impl Sides {
-    /// The word for it.
+    /// Returns the word for the sides.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Walls => "walls",

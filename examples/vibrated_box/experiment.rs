@@ -21,7 +21,7 @@ use crate::common::flow::Flow;
 
 const RADIUS: f64 = 0.5;
 
-/// What one run gave.
+/// The results of one run.
 pub(crate) struct Outcome {
     pub(crate) samples: Vec<Sample>,
     /// Energy change of disk–disk collisions in the second half, with the error of correlated collisions.
@@ -73,7 +73,7 @@ fn simulate<R: CollisionRule>(rule: R, arguments: &Arguments) -> Result<Outcome,
     })
 }
 
-/// What is kept while the run goes on.
+/// The record that is kept while the run goes on.
 struct Record {
     samples: Vec<Sample>,
     energy_change: EnergyChange,
@@ -87,7 +87,7 @@ impl Record {
         Self { samples: Vec::new(), energy_change: EnergyChange::default(), flow, run_seconds: 0.0 }
     }
 
-    /// Runs to the end of this oscillation and keeps what is to be kept.
+    /// Runs to the end of this oscillation and records it.
     fn follow<R: CollisionRule>(
         &mut self,
         simulation: &mut Simulation<R, Container>,
@@ -170,7 +170,8 @@ fn sample<R: CollisionRule>(simulation: &mut Simulation<R, Container>, oscillati
     Sample { oscillation, time: simulation.time(), order, center_of_mass_height: center.y, energies }
 }
 
-/// Columns of the flow's grid: cells of about seven diameters, fewer if the box is narrow, larger if it is wide.
+/// Returns the number of columns of the flow's grid. Cells have about seven diameters: there are fewer if the
+/// box is narrow, and they are larger if it is wide.
 fn columns(width: f64) -> usize {
     (width / 7.0).round().clamp(4.0, 24.0) as usize
 }
@@ -182,7 +183,7 @@ fn progress_bar(oscillations: u64) -> ProgressBar {
     ProgressStyle::with_template(template).map_or(bar.clone(), |style| bar.with_style(style))
 }
 
-/// A name for the state to its last bit.
+/// Returns a name for the state, which depends on its last bit.
 fn hash(time: f64, disks: &[Disk]) -> String {
     let mut hasher = blake3::Hasher::new();
     for disk in disks {

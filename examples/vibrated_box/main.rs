@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cargo run --release --example vibrated_box
-//! cargo run --release --example vibrated_box -- --friction 0.07 --oscillations 10000 --every 20 --out two_rolls
+//! cargo run --release --example vibrated_box -- --friction 0.07 --oscillations 10000 --out two_rolls
 //! cargo run --release --example vibrated_box -- --help
 //! ```
 
@@ -33,7 +33,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// What can be known to fail before a long run.
+/// Checks everything that can be known to fail before a long run.
 fn check(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { every, oscillations, out, .. } = arguments;
     if every > oscillations {
@@ -53,7 +53,7 @@ fn check(arguments: &Arguments) -> Result<(), Failure> {
     fs::create_dir_all(out).map_err(|error| Failure::run(format_args!("--out {}: {error}", out.display())))
 }
 
-/// Writes everything.
+/// Writes all results.
 fn write(arguments: &Arguments, outcome: &Outcome) -> Result<(), Failure> {
     write_json(arguments, outcome)?;
     let table = arguments.out.join("vibrated_box.csv");

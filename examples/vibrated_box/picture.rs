@@ -17,10 +17,10 @@ const SERIES_WIDTH: f64 = 540.0;
 /// Space between a panel's edge and its axes: left, right, top, bottom.
 const MARGINS: [f64; 4] = [58.0, 12.0, 20.0, 44.0];
 
-/// Cells that hold less than this share of what the fullest cell holds show no arrow.
+/// Share of what the fullest cell holds, below which a cell shows no arrow.
 const ENOUGH: f64 = 0.1;
 
-/// The picture as a PNG file.
+/// Draws the picture, and returns it as a PNG file.
 pub(crate) fn draw(arguments: &Arguments, outcome: &Outcome) -> Result<Vec<u8>, String> {
     let view = View::of(arguments, &outcome.disks);
     let width = view.place.width + SERIES_WIDTH;
@@ -31,7 +31,7 @@ pub(crate) fn draw(arguments: &Arguments, outcome: &Outcome) -> Result<Vec<u8>, 
     sheet.png(1.6)
 }
 
-/// The part of the box that is shown, and how large.
+/// The part of the box that is shown, and its scale.
 struct View {
     width: f64,
     height: f64,
@@ -68,14 +68,15 @@ fn disks_and_flow(view: &View, outcome: &Outcome) -> Vec<Plot> {
     vec![rims.into(), faces.into(), arrows(outcome).into()]
 }
 
-/// Blue for disks that rotate clockwise, red for the others; full colour at twice the root mean square.
+/// Returns blue for disks that rotate clockwise and red for the others, in full color at twice the root mean
+/// square.
 fn colors(disks: &[Disk]) -> Vec<String> {
     let square = disks.iter().map(|disk| disk.angular_velocity().powi(2)).sum::<f64>() / disks.len() as f64;
     let full = 2.0 * square.sqrt().max(f64::MIN_POSITIVE);
     disks.iter().map(|disk| sheet::diverging(disk.angular_velocity() / full)).collect()
 }
 
-/// The mean flow; the longest arrow is a little longer than a cell.
+/// Returns the mean flow as arrows. The longest arrow is a little longer than a cell.
 fn arrows(outcome: &Outcome) -> QuiverPlot {
     let arrows = outcome.flow.arrows(ENOUGH);
     let scale = 1.1 * outcome.flow.pitch() / fastest(outcome).max(f64::MIN_POSITIVE);
@@ -106,7 +107,7 @@ fn write_header(sheet: &mut Sheet, arguments: &Arguments, outcome: &Outcome) {
          friction κ = {friction}"
     );
     let legend = format!(
-        "disks: coloured by their spin, blue clockwise, red counterclockwise    \
+        "disks: colored by their spin, blue clockwise, red counterclockwise    \
          arrows: mean velocity in the second half, the longest {:.2}",
         fastest(outcome)
     );
@@ -115,14 +116,14 @@ fn write_header(sheet: &mut Sheet, arguments: &Arguments, outcome: &Outcome) {
     sheet.text(MARGINS[0], 66.0, 12, QUIET, &legend);
 }
 
-/// One panel of series: what it shows, under which names, and how high it is.
+/// A panel of series: what it shows, under which names, and how high it is.
 struct Panel {
     label: &'static str,
     share: f64,
     series: Vec<Series>,
 }
 
-/// One line: its colour, its name, its values.
+/// A line of a panel: its color, its name, its values.
 struct Series(&'static str, &'static str, fn(&Sample) -> f64);
 
 fn panels() -> [Panel; 3] {
@@ -142,7 +143,7 @@ fn panels() -> [Panel; 3] {
     ]
 }
 
-/// The series, one panel above the other.
+/// Draws the series, one panel above the other.
 fn draw_series(sheet: &mut Sheet, left: f64, arguments: &Arguments, outcome: &Outcome) {
     let noise = 2.0 * Means::of(outcome).noise(arguments.disks);
     let mut top = HEADER;
@@ -170,7 +171,7 @@ fn line(samples: &[Sample], Series(color, _, quantity): &Series) -> Plot {
     LinePlot::new().with_data(points).with_color(*color).with_stroke_width(1.6).into()
 }
 
-/// Where the order parameters of a gas without flow would be.
+/// Returns the band in which the order parameters of a gas without flow would be.
 fn noise_band(arguments: &Arguments, noise: f64) -> Plot {
     let ends = [0.0, arguments.oscillations as f64];
     let line = LinePlot::new().with_data(ends.map(|x| (x, 0.0))).with_color("#b9c0c8").with_stroke_width(1.0);
@@ -182,7 +183,7 @@ fn series_layout(plots: &[Plot], arguments: &Arguments, label: &str) -> Layout {
     axes.with_y_label(label)
 }
 
-/// The range of all values with a little air.
+/// Returns the range of all values with a little air.
 fn range(plots: &[Plot]) -> (f64, f64) {
     let ranges = plots.iter().filter_map(Plot::bounds).map(|(_, y)| y);
     let (low, high) =

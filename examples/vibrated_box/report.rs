@@ -21,7 +21,7 @@ pub(crate) struct Means {
 }
 
 impl Means {
-    /// The means of a run.
+    /// Computes the means of a run.
     pub(crate) fn of(outcome: &Outcome) -> Self {
         let settled = &outcome.samples[outcome.samples.len() / 2..];
         let mean = |quantity: fn(&Sample) -> f64| settled.iter().map(quantity).collect();
@@ -36,17 +36,18 @@ impl Means {
         }
     }
 
-    /// Standard deviation of `$\Psi_1$` and `$\Psi_2$` in a gas of this temperature without a flow.
+    /// Returns the standard deviation of `$\Psi_1$` and `$\Psi_2$` in a gas of this temperature without a
+    /// flow.
     pub(crate) fn noise(&self, disks: u64) -> f64 {
         (self.translational_energy.mean() / (2.0 * disks as f64)).sqrt()
     }
 
-    /// What the flow looks like.
+    /// Describes the flow in words.
     pub(crate) fn verdict(&self, arguments: &Arguments) -> &'static str {
         let (one, two) = (self.abs_psi1.mean(), self.psi2.mean());
         let seen = 2.0 * self.noise(arguments.disks);
         match arguments.sides {
-            // Without walls a pair of rolls drifts, from one order parameter to the other.
+            // Without walls, a pair of rolls drifts from one order parameter to the other.
             Sides::Periodic if self.amplitude.mean() > seen => "two rolls",
             Sides::Walls if two > seen.max(one) => "two rolls",
             Sides::Walls if one > seen && self.psi1.mean() > 0.0 => "one roll, clockwise",
@@ -56,7 +57,7 @@ impl Means {
     }
 }
 
-/// The summary, for people.
+/// Returns the summary, for people.
 pub(crate) fn summary(arguments: &Arguments, outcome: &Outcome) -> String {
     let means = Means::of(outcome);
     let counters = &outcome.counters;
@@ -93,7 +94,7 @@ pub(crate) fn summary(arguments: &Arguments, outcome: &Outcome) -> String {
     text
 }
 
-/// The results, for programs.
+/// Returns the results, for programs.
 pub(crate) fn json(arguments: &Arguments, outcome: &Outcome) -> Value {
     let means = Means::of(outcome);
     let counters = &outcome.counters;
@@ -139,7 +140,7 @@ fn parameters(arguments: &Arguments) -> Value {
     })
 }
 
-/// The series as a table.
+/// Writes the series as a table.
 pub(crate) fn write_table(path: &Path, samples: &[Sample]) -> Result<(), csv::Error> {
     let mut table = csv::Writer::from_path(path)?;
     table.write_record([
@@ -170,7 +171,7 @@ fn per_second(outcome: &Outcome) -> f64 {
     outcome.counters.collisions as f64 / outcome.run_seconds
 }
 
-/// A mean and how far the samples scatter about it.
+/// Formats a mean, and how far the samples scatter about it.
 fn figure(mean: &RunningMean) -> String {
     format!("{:.4} (scatter {:.4})", mean.mean(), mean.variance().sqrt())
 }

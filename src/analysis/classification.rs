@@ -1,4 +1,4 @@
-//! The states that order parameters show.
+//! Names for the states that order parameters show.
 
 use glam::DVec2;
 
@@ -9,17 +9,18 @@ use crate::ParameterError;
 use crate::observable::{ConvectionOrder, DenseLayer};
 use crate::quantity::{accept, non_negative, positive};
 
-/// Returns the standard deviation of `$\Psi_1$` and of `$\Psi_2$` in a gas at rest, a velocity.
+/// Returns the standard deviation of `$\Psi_1$` and of `$\Psi_2$`, which are velocities, in a gas at rest.
 ///
-/// It is
+/// The deviation is
 ///
 /// ```math
 /// \sigma = \sqrt{\frac{T_y}{2Nm}},
 /// ```
 ///
-/// for `$N$` disks of mass `$m$` at the vertical temperature `$T_y = m\langle v_y^2\rangle$`. It holds for
-/// independent velocities and disks spread evenly over the width, where `$\langle\sin^2\rangle = 1/2$`. Just
-/// below the onset of convection the slow mode `$\Psi_1$` fluctuates more than that.
+/// for `$N$` disks of mass `$m$` at the vertical temperature `$T_y = m\langle v_y^2\rangle$`. The formula
+/// holds for independent velocities and for disks spread evenly over the width, where
+/// `$\langle\sin^2\rangle = 1/2$`. Just below the onset of convection the slow mode `$\Psi_1$` fluctuates
+/// more than that.
 ///
 /// # Errors
 /// If the temperature is negative, the mass is not positive, one is not finite, or there are no disks.
@@ -41,18 +42,19 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 /// The samples of `$(\Psi_1, \Psi_2)$` are divided into [distinct clusters](distinct_clusters). With
 /// `$\sigma$` the [`thermal_noise`]:
 ///
-/// 1. A run is **collapsed**, as a whole, if its height profile has a compact layer, of packing fraction
-///    above 0.60, on a gas of less than half of that, and its two-roll flow has died,
+/// 1. A run as a whole is **collapsed** if two conditions hold. Its height profile has a compact layer, of
+///    packing fraction above 0.60, on a gas of less than half of that. And its two-roll flow has died,
 ///    `$|\langle\Psi_2\rangle| < 0.03$`.
 /// 2. A cluster is **conductive** if its center is at most `$3\sigma$` from the origin.
-/// 3. It is **two rolls** if `$|\Psi_2| > |\Psi_1|$`: up in the middle for a positive `$\Psi_2$`, else down.
-/// 4. It is **one roll** otherwise: clockwise for a positive `$\Psi_1$`.
+/// 3. A cluster is **two rolls** if `$|\Psi_2| > |\Psi_1|$`: up in the middle for a positive `$\Psi_2$`, else
+///    down.
+/// 4. A cluster is **one roll** otherwise: clockwise for a positive `$\Psi_1$`.
 ///
-/// The `$3\sigma$` compare the center of a cluster with *single* samples of a gas at rest; a share of
-/// `$e^{-9/2}$`, one in ninety, is as far out. An error of the mean would depend on the correlation of the
-/// samples, and this does not. The rolls of the paper's system are far stronger, so the number matters at
-/// their onset only. One roll is not pure `$\Psi_1$`, but its `$\Psi_2$` is small enough to keep it off the
-/// diagonal.
+/// The bound of `$3\sigma$` compares the center of a cluster with *single* samples of a gas at rest, of which
+/// a share of `$e^{-9/2}$`, one in ninety, lies as far out. Unlike an error of the mean, this bound does not
+/// depend on the correlation of the samples. The rolls of the paper's system are far stronger, so the number
+/// matters at their onset only. One roll is not pure `$\Psi_1$`, but its `$\Psi_2$` is small enough to keep
+/// it off the diagonal.
 ///
 /// A collapsed run keeps a weak, slow `$\Psi_2$`, whose mean needs thousands of oscillations.
 ///
@@ -99,7 +101,8 @@ impl StateCriteria {
     /// Sets the packing fraction above which a layer is compact, 0.60 unless given, and the
     /// `$|\langle\Psi_2\rangle|$` below which rolls have died, 0.03 unless given.
     ///
-    /// The latter is a velocity; 0.03 is for `$A\omega = 1$`, as in the paper.
+    /// The bound on `$|\langle\Psi_2\rangle|$` is a velocity; 0.03 is meant for `$A\omega = 1$`, as in the
+    /// paper.
     ///
     /// # Errors
     /// If one is negative or not finite.
@@ -112,7 +115,8 @@ impl StateCriteria {
         })
     }
 
-    /// Sets the weight that one roll and two must have at least, each, to coexist; 0.05 unless given.
+    /// Sets the least weight that one roll and two rolls must each have in order to coexist; 0.05 unless
+    /// given.
     ///
     /// # Errors
     /// If it is not in `[0, 0.5]`.
@@ -121,7 +125,7 @@ impl StateCriteria {
         Ok(Self { least_weight: accept(valid, "least weight", "in [0, 0.5]", weight)?, ..self })
     }
 
-    /// Sets the seed of the clustering, 0 unless given. Clusters that are distinct do not depend on it.
+    /// Sets the seed of the clustering, 0 unless given. Distinct clusters do not depend on it.
     pub const fn with_seed(self, seed: u64) -> Self {
         Self { seed, ..self }
     }
@@ -169,7 +173,7 @@ impl StateCriteria {
     }
 }
 
-/// The clusters of a run and their names; made by [`StateCriteria::classify`].
+/// The clusters of a run with their names; made by [`StateCriteria::classify`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Classification {
     clusters: Clusters,
@@ -178,29 +182,30 @@ pub struct Classification {
 }
 
 impl Classification {
-    /// The clusters in the plane of `$\Psi_1$` (x) and `$\Psi_2$` (y).
+    /// Returns the clusters in the plane of `$\Psi_1$` (x) and `$\Psi_2$` (y).
     pub const fn clusters(&self) -> &Clusters {
         &self.clusters
     }
 
-    /// Returns each cluster with its name. A name may come twice.
+    /// Iterates over the clusters with their names. A name may occur twice.
     pub fn iter(&self) -> impl Iterator<Item = (ConvectiveState, &Cluster)> {
         self.states.iter().copied().zip(self.clusters.iter())
     }
 
-    /// The state with the largest weight; the first cluster's if several have it.
+    /// Returns the state with the largest weight. If several states have it, the state of the first cluster
+    /// wins.
     pub fn state(&self) -> ConvectiveState {
         let weights = self.states.iter().map(|&state| (state, self.weight(state)));
         let start = (ConvectiveState::Conductive, 0.0);
         weights.fold(start, |best, next| if next.1 > best.1 { next } else { best }).0
     }
 
-    /// Fraction of the samples in this state.
+    /// Returns the fraction of the samples in this state.
     pub fn weight(&self, state: ConvectiveState) -> f64 {
         self.sum_weights(|of| of == state)
     }
 
-    /// Fraction of the samples with this number of rolls.
+    /// Returns the fraction of the samples with this number of rolls.
     pub fn weight_of_rolls(&self, rolls: usize) -> f64 {
         self.sum_weights(|of| of.rolls() == Some(rolls))
     }
@@ -209,8 +214,8 @@ impl Classification {
         self.iter().filter(|&(state, _)| counts(state)).map(|(_, cluster)| cluster.weight()).sum()
     }
 
-    /// The region of Fig. 5: coexistence if one roll and two both have the least weight, otherwise the number
-    /// of rolls with the largest weight.
+    /// Returns the region of Fig. 5: coexistence if one roll and two rolls both have the least weight,
+    /// otherwise the region of the number of rolls with the largest weight.
     pub fn regime(&self) -> ConvectiveRegime {
         let [none, one, two] = [0, 1, 2].map(|rolls| self.weight_of_rolls(rolls));
         if self.state() == ConvectiveState::Collapsed {

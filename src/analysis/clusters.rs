@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-/// One cluster: its center, its size and its spread.
+/// A cluster of points: its center, its size and its spread.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Cluster {
@@ -24,22 +24,22 @@ impl Cluster {
         Self { center, count: points.len(), weight: count / of as f64, covariance }
     }
 
-    /// Mean of its points.
+    /// Returns the mean of the cluster's points.
     pub const fn center(&self) -> DVec2 {
         self.center
     }
 
-    /// Number of its points.
+    /// Returns the number of the cluster's points.
     pub const fn count(&self) -> usize {
         self.count
     }
 
-    /// Its share of all points.
+    /// Returns the cluster's share of all points.
     pub const fn weight(&self) -> f64 {
         self.weight
     }
 
-    /// Standard deviation of its points along this direction, a unit vector.
+    /// Returns the standard deviation of the cluster's points along this direction, a unit vector.
     pub fn spread(&self, direction: DVec2) -> f64 {
         self.variance(direction).sqrt()
     }
@@ -47,11 +47,11 @@ impl Cluster {
     fn variance(&self, direction: DVec2) -> f64 {
         let (xx, yy, xy) = self.covariance;
         let DVec2 { x, y } = direction;
-        // Across a line of points the variance is zero, and rounding can make it negative.
+        // The variance is zero across a line of points, and rounding can make it negative.
         (xx * x * x + 2.0 * xy * x * y + yy * y * y).max(0.0)
     }
 
-    /// Distance of two centers, in units of the spread along the line between them.
+    /// Returns the distance of two centers, in units of the spread along the line between them.
     fn separation(&self, other: &Self, noise: f64) -> f64 {
         let between = other.center - self.center;
         let direction = between.normalize_or_zero();
@@ -91,30 +91,30 @@ impl Clusters {
         Self { clusters: found.into_iter().map(|(_, cluster)| cluster).collect(), labels: places }
     }
 
-    /// Number of clusters; at least one.
+    /// Returns the number of clusters, which is at least one.
     #[expect(clippy::len_without_is_empty, reason = "there is always a cluster")]
     pub const fn len(&self) -> usize {
         self.clusters.len()
     }
 
-    /// The cluster of this number.
+    /// Returns the cluster of this number.
     pub fn get(&self, cluster: usize) -> Option<&Cluster> {
         self.clusters.get(cluster)
     }
 
-    /// The clusters in their order.
+    /// Iterates over the clusters in their order.
     pub fn iter(&self) -> impl Iterator<Item = &Cluster> {
         self.clusters.iter()
     }
 
-    /// The number of the cluster of each point, in the order in which the points were given.
+    /// Returns the number of each point's cluster, in the order in which the points were given.
     pub fn labels(&self) -> &[usize] {
         &self.labels
     }
 
     /// Returns the least separation of two clusters, infinite for a single one.
     ///
-    /// For clusters `$a$` and `$b$` it is
+    /// The separation of clusters `$a$` and `$b$` is the quantity that is minimized in
     ///
     /// ```math
     /// D = \min_{a\ne b}\frac{|c_a - c_b|}{\max(s_{ab}, \sigma)},\qquad

@@ -1,4 +1,4 @@
-//! The number of clusters.
+//! The number of clusters in a set of points.
 
 use glam::DVec2;
 
@@ -7,28 +7,28 @@ use super::k_means::KMeans;
 use crate::ParameterError;
 use crate::quantity::non_negative;
 
-/// Most clusters that are looked for: one roll of either sense, two rolls of either sense.
+/// Largest number of clusters that are looked for: one roll of either sense, two rolls of either sense.
 const MOST: usize = 4;
 
-/// Separation above which two clusters are two.
+/// Separation above which two clusters are distinct.
 const DISTINCT: f64 = 4.0;
 
 /// Finds the clusters of these points that are distinct.
 ///
-/// Of `$k = 1\ldots4$` clusters, these are the largest number whose pairs are all separated by `$D > 4$`
+/// The result has the largest number of clusters, from 1 to 4, whose pairs are all separated by `$D > 4$`
 /// ([`Clusters::separation`]).
 ///
-/// k-means finds as many clusters as it is asked for, so it must be told from the result how many there are.
-/// Suppose that a single cloud, of symmetric density with one maximum, is cut in two. In each half the
-/// density falls away from the cut, so its mean is at most `$\sqrt3$` of its standard deviations from the
-/// cut, with equality for the uniform density. So a single cloud has `$D \le 2\sqrt3 = 3.46$` (a Gaussian one
-/// 2.65), and above 4 there are two clouds. Neither the width of a cloud nor the correlation of its samples
-/// enters, as long as the series fills the cloud: a series of a few correlation times can look like several
-/// clouds.
+/// The k-means search finds as many clusters as it is asked for, so the result itself must show how many
+/// there are. Suppose that it cuts a single cloud, of symmetric density with one maximum, in two. In each
+/// half the density falls away from the cut. The mean of the half is therefore at most `$\sqrt3$` of its
+/// standard deviations away from the cut, with equality for the uniform density. A single cloud has
+/// `$D \le 2\sqrt3 = 3.46$` (a Gaussian one 2.65), so above 4 there are two clouds. Neither the width of a
+/// cloud nor the correlation of its samples enters, as long as the series fills the cloud. A series of only a
+/// few correlation times can look like several clouds.
 ///
 /// `noise` is the least standard deviation of a single state, such as
-/// [`thermal_noise`](super::thermal_noise). Clusters closer than four of it are never distinct, however sharp
-/// they are.
+/// [`thermal_noise`](super::thermal_noise). Clusters closer than four times this noise are never distinct,
+/// however sharp they are.
 ///
 /// # Errors
 /// If there is no point, a coordinate is not finite or above 1e100 in size, or the noise is negative or not

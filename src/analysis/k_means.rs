@@ -1,4 +1,4 @@
-//! Clusters of a given number.
+//! Clusters of a given number, by k-means.
 
 use glam::DVec2;
 use rand::SeedableRng;
@@ -9,20 +9,21 @@ use crate::ParameterError;
 use crate::quantity::accept;
 use crate::random::uniform;
 
-/// Restarts unless given: with four clusters or fewer, most of them find the same best result.
+/// Default number of restarts. With four clusters or fewer, most of them find the same best result.
 const RESTARTS: usize = 16;
 
-/// Most rounds of one descent, far above the usual.
+/// Largest number of rounds of one descent, far above the usual one.
 const ROUNDS: usize = 1000;
 
-/// Largest coordinate: its square, summed over all points, stays finite.
+/// Largest coordinate. Its square, summed over all points, stays finite.
 const LARGEST: f64 = 1e100;
 
 /// k-means clustering in a plane, the best of several restarts.
 ///
-/// It looks for the centers `$c_j$` that minimise the scatter `$\sum_i \min_j |r_i - c_j|^2$` (MacQueen 1967,
-/// the paper's reference 14), from first centers by k-means++ (Arthur & Vassilvitskii 2007). The result
-/// depends on the points and the seed, not on the order of the points: they are sorted first.
+/// The search looks for the centers `$c_j$` that minimize the scatter `$\sum_i \min_j |r_i - c_j|^2$`
+/// (MacQueen 1967, the paper's reference 14). It starts from centers that k-means++ chooses (Arthur &
+/// Vassilvitskii 2007). The result depends on the points and the seed, but not on the order of the points,
+/// which are sorted first.
 ///
 /// ```
 /// use granular_edmd::analysis::KMeans;
@@ -60,7 +61,7 @@ impl KMeans {
         Ok(Self { restarts, ..self })
     }
 
-    /// Finds the clusters of these points; fewer than asked for if fewer of the points differ.
+    /// Finds the clusters of these points. There are fewer than asked for if fewer of the points differ.
     ///
     /// # Errors
     /// If there are fewer points than clusters, or a coordinate is not finite or above 1e100 in size.
@@ -111,7 +112,8 @@ fn plus_plus(points: &[DVec2], clusters: usize, generator: &mut Xoshiro256PlusPl
     centers
 }
 
-/// Returns the center nearest to a point, the first of equals, and its squared distance.
+/// Returns the center nearest to a point, and its squared distance. Of equally near centers the first one
+/// counts.
 fn nearest(point: DVec2, centers: &[DVec2]) -> (usize, f64) {
     let distances = centers.iter().map(|&center| point.distance_squared(center)).enumerate();
     distances.fold((0, f64::INFINITY), |best, next| if next.1 < best.1 { next } else { best })
@@ -122,8 +124,8 @@ struct Fit {
     scatter: f64,
 }
 
-/// Assigns points to their nearest centers and moves centers to the means of their points, until nothing
-/// changes.
+/// Assigns the points to their nearest centers and moves the centers to the means of their points, until
+/// nothing changes.
 fn descend(points: &[DVec2], mut centers: Vec<DVec2>) -> Fit {
     let mut fit = assign(points, &centers);
     for _ in 0..ROUNDS {
@@ -144,7 +146,7 @@ fn assign(points: &[DVec2], centers: &[DVec2]) -> Fit {
     Fit { labels, scatter: distances.iter().sum() }
 }
 
-/// Moves each center to the mean of its points; one that has lost all of them stays where it is.
+/// Moves each center to the mean of its points. A center that has lost all points stays where it is.
 fn move_to_means(points: &[DVec2], labels: &[usize], centers: &mut [DVec2]) {
     for (label, center) in centers.iter_mut().enumerate() {
         let own = || points.iter().zip(labels).filter(|&(_, &of)| of == label).map(|(&point, _)| point);

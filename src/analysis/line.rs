@@ -1,4 +1,4 @@
-//! One number for a line of transitions.
+//! Averages along a line of transitions.
 
 use crate::ParameterError;
 use crate::collision::Frictional;
@@ -15,12 +15,13 @@ pub struct LineAverage {
 }
 
 impl LineAverage {
-    /// `$\langle dE\rangle$` over the points of the line: mean, and standard deviation as the table's error.
+    /// Returns `$\langle dE\rangle$` over the points of the line: the mean, and the standard deviation as the
+    /// table's error.
     pub const fn energy_change(&self) -> &RunningMean {
         &self.energy_change
     }
 
-    /// `$q_\text{eff}$` over the points of the line.
+    /// Returns `$q_\text{eff}$` over the points of the line.
     pub const fn effective_inelasticity(&self) -> &RunningMean {
         &self.effective_inelasticity
     }
@@ -31,8 +32,8 @@ impl LineAverage {
 /// Each point is the rule at which a transition was seen. Its `$\langle dE\rangle$` is the [closed
 /// form](mean_energy_change) in a Maxwellian `gas`, and its `$q_\text{eff}$` follows by the paper's Eq. (9).
 /// Both are averaged over the points, as in the paper's Table I. The table's "±" is their [standard
-/// deviation](RunningMean::standard_deviation) and not the error of the mean: it is the scatter along the
-/// line that tests the paper's hypothesis.
+/// deviation](RunningMean::standard_deviation), not the error of the mean, because the scatter along the line
+/// tests the paper's hypothesis.
 ///
 /// # Errors
 /// If there is no point, or one loses more than smooth disks can (see [`effective_inelasticity`]).

@@ -12,11 +12,11 @@ use crate::quantity::positive;
 pub struct PlaneTransition {
     /// The line that is crossed.
     pub line: TransitionLine,
-    /// Friction `$\kappa$` of the middle between the neighbors, on a logarithmic axis.
+    /// Friction `$\kappa$` in the middle between the neighbors, on a logarithmic axis.
     pub friction: f64,
-    /// Inelasticity `$q$` of the middle.
+    /// Inelasticity `$q$` in the middle.
     pub inelasticity: f64,
-    /// Both neighbors, `$(\kappa, q)$`: the transition lies between them. They share one coordinate.
+    /// The two neighbors, as `$(\kappa, q)$`, between which the transition lies. They share one coordinate.
     pub between: [(f64, f64); 2],
     /// True if the regime moves up from the first neighbor to the second.
     pub rising: bool,
@@ -24,13 +24,13 @@ pub struct PlaneTransition {
 
 /// Finds the transitions in the plane of friction and inelasticity (paper, Fig. 5).
 ///
-/// The observations are `$(\kappa, q)$` and regime of all runs on a grid, in any order. Runs of the same
-/// inelasticity are compared along the friction, as the paper's ramps do, and runs of the same friction along
-/// the inelasticity: a line that runs flat through the plane is crossed by the latter only. The middle of two
-/// frictions is that of their logarithms. Hysteresis is treated as by [`transitions`].
+/// The observations are `$(\kappa, q)$` and the regime of all runs on a grid, in any order. Runs of the same
+/// inelasticity are compared along the friction, as on the paper's ramps. Runs of the same friction are
+/// compared along the inelasticity, since only they cross a line that runs flat through the plane. The middle
+/// of two frictions is that of their logarithms. Hysteresis is treated as in [`transitions`].
 ///
-/// The points along the friction come first, in the order of inelasticity, then the others in the order of
-/// friction.
+/// The points along the friction come first, in the order of inelasticity. The points along the inelasticity
+/// follow, in the order of friction.
 ///
 /// # Errors
 /// If a friction is not positive, or one of the numbers is not finite.
@@ -65,10 +65,10 @@ pub fn plane_transitions(
     Ok(found)
 }
 
-/// Two coordinates and the regime seen there.
+/// Two coordinates, and the regime seen there.
 type Observation = (f64, f64, ConvectiveRegime);
 
-/// Groups the observations by one coordinate, in ascending order: the first of those that `turned` returns.
+/// Groups the observations by one coordinate, the first of the two that `turned` returns, in ascending order.
 fn scans(
     all: &[Observation],
     turned: impl Fn(&Observation) -> Observation,
@@ -91,7 +91,7 @@ mod tests {
     use crate::collision::Frictional;
     use crate::kinetic::{Maxwellian, mean_energy_change};
 
-    /// The regimes of the paper's hypothesis: a function of the mean energy change alone.
+    /// Returns the regime by the paper's hypothesis: it depends on the mean energy change alone.
     fn regime(friction: f64, inelasticity: f64) -> Result<ConvectiveRegime, ParameterError> {
         let rule =
             Frictional::from_inelasticity(inelasticity, inelasticity)?.with_friction(friction, friction)?;
@@ -114,7 +114,8 @@ mod tests {
             .map(|(friction, q)| Ok((friction, q, regime(friction, q)?)))
             .collect::<Result<_, ParameterError>>()?;
         let found = plane_transitions(seen)?;
-        // Friction alone goes through all lines up to 0.3 and back beyond: the re-entrance.
+        // Up to 0.3, friction alone crosses all lines. Beyond 0.3 it crosses them again on the way back: the
+        // re-entrance.
         let smooth: Vec<bool> =
             found.iter().filter(|at| at.inelasticity == 0.0).map(|at| at.rising).collect();
         assert_eq!(smooth, [true, true, true, true, false, false, false, false]);

@@ -13,22 +13,22 @@ use std::fmt;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum ConvectiveState {
-    /// No flow: heat is conducted.
+    /// A state without flow, in which heat is conducted.
     Conductive,
-    /// One roll, up on the left: `$\Psi_1 > 0$`.
+    /// A single roll, up on the left: `$\Psi_1 > 0$`.
     ClockwiseRoll,
-    /// One roll, up on the right: `$\Psi_1 < 0$`.
+    /// A single roll, up on the right: `$\Psi_1 < 0$`.
     CounterclockwiseRoll,
     /// Two rolls, up in the middle: `$\Psi_2 > 0$`.
     TwoRollsUp,
     /// Two rolls, down in the middle: `$\Psi_2 < 0$`.
     TwoRollsDown,
-    /// A compact layer on a gas.
+    /// A compact layer of disks on a gas.
     Collapsed,
 }
 
 impl ConvectiveState {
-    /// Number of its rolls; `None` if it is collapsed.
+    /// Returns the number of rolls, or `None` for the collapsed state.
     pub const fn rolls(self) -> Option<usize> {
         match self {
             Self::Conductive => Some(0),
@@ -66,7 +66,7 @@ pub enum ConvectiveRegime {
     Conductive,
     /// Region "1": one roll of either sense.
     OneRoll,
-    /// Between the lines 1–2 (a) and (b): one roll and two in turn.
+    /// The region between the lines 1–2 (a) and (b), where one roll and two rolls take turns.
     Coexistence,
     /// Region "2": two rolls.
     TwoRolls,

@@ -13,13 +13,13 @@ use crate::quantity::finite;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum TransitionLine {
-    /// "0-1": the first roll.
+    /// Line "0-1": the first roll appears.
     ZeroOne,
-    /// "1-2(a)": the beginning of the coexistence of one roll and two.
+    /// Line "1-2(a)": the coexistence of one roll and two rolls begins.
     OneTwoBeginning,
-    /// "1-2(b)": its end.
+    /// Line "1-2(b)": the coexistence ends.
     OneTwoEnd,
-    /// "2-collapse".
+    /// Line "2-collapse".
     TwoCollapse,
 }
 
@@ -27,7 +27,7 @@ impl TransitionLine {
     /// All lines, in the order of growing energy loss.
     pub const ALL: [Self; 4] = [Self::ZeroOne, Self::OneTwoBeginning, Self::OneTwoEnd, Self::TwoCollapse];
 
-    /// The first regime beyond the line.
+    /// Returns the first regime beyond the line.
     const fn beyond(self) -> ConvectiveRegime {
         match self {
             Self::ZeroOne => ConvectiveRegime::OneRoll,
@@ -38,7 +38,7 @@ impl TransitionLine {
     }
 
     /// Returns true beyond the line and false before it, for a control value at which all these regimes were
-    /// seen; `None` if they lie on both sides.
+    /// seen. The result is `None` if they lie on both sides.
     fn side(self, seen: Seen) -> Option<bool> {
         let (least, most) = (seen.least >= self.beyond(), seen.most >= self.beyond());
         match self {
@@ -67,9 +67,9 @@ impl std::fmt::Display for TransitionLine {
 pub struct Transition {
     /// The line that is crossed.
     pub line: TransitionLine,
-    /// The middle between the neighboring control values on either side.
+    /// Middle between the neighboring control values on either side.
     pub value: f64,
-    /// Half the distance of these control values: the transition lies between `value - error` and
+    /// Half the distance of these control values. The transition lies between `value - error` and
     /// `value + error`.
     pub error: f64,
     /// True if the regime moves up with a growing control value. It moves down where the paper finds
@@ -87,15 +87,15 @@ struct Seen {
 
 /// Finds the transitions along one control parameter.
 ///
-/// The observations are the regimes seen at all its values, in any order: on a ramp up, on a ramp down, with
-/// other seeds. The result is in ascending order of the values, and at equal values in the order of the
-/// lines.
+/// The observations are the regimes seen at all values of the parameter, in any order: on a ramp up, on a
+/// ramp down, with other seeds. The result is in ascending order of the values, and at equal values in the
+/// order of the lines.
 ///
 /// There is hysteresis if runs at the same control value end in different regimes. Coexistence begins (a) at
 /// the first value where a run shows two rolls, or both numbers of rolls in turn, and ends (b) at the last
-/// value where a run shows anything but two rolls. The other lines have no hysteresis in the paper: where
-/// runs disagree about them, the transition lies anywhere between the values at which they agree, and its
-/// error is as large. The observations of a single ramp give the points of that ramp.
+/// value where a run shows anything but two rolls. The other lines have no hysteresis in the paper. Where
+/// runs disagree about them, the transition lies somewhere between the values at which the runs agree, and
+/// its error covers that range. The observations of a single ramp give the points of that ramp.
 ///
 /// # Errors
 /// If a control value is not finite.
@@ -122,7 +122,7 @@ pub fn transitions(
     Ok(found)
 }
 
-/// Merges the observations to one entry for each control value, ascending.
+/// Merges the observations into one entry for each control value, in ascending order.
 fn merge(
     observations: impl IntoIterator<Item = (f64, ConvectiveRegime)>,
 ) -> Result<Vec<Seen>, ParameterError> {
@@ -141,8 +141,8 @@ fn merge(
     Ok(all)
 }
 
-/// Returns the crossings of a line: neighbors on different sides of it, among the values whose side is
-/// certain.
+/// Returns the crossings of a line. A crossing lies between neighbors on different sides of the line, among
+/// the values whose side is certain.
 fn crossings(line: TransitionLine, seen: &[Seen]) -> Vec<Transition> {
     let certain: Vec<(f64, bool)> =
         seen.iter().filter_map(|&seen| Some((seen.value, line.side(seen)?))).collect();

@@ -18,8 +18,8 @@ use crate::{Fingerprint, Flight, ParameterError};
 
 /// A rectangular container with its lower left corner at the origin: the paper's box and its relatives.
 ///
-/// All walls start fixed, under the rule that the disks have among themselves. Each can be given a motion
-/// along its normal (which points inward), a rule of its own, or a temperature.
+/// All walls are fixed at first, and follow the rule of the disks. Each wall can be given a motion along its
+/// normal (which points inward), its own rule, or a temperature.
 ///
 /// ```
 /// use granular_edmd::boundary::{Boundary, Container, Thermal, Wall};
@@ -43,9 +43,9 @@ use crate::{Fingerprint, Flight, ParameterError};
 #[derive(Debug, Clone)]
 pub struct Container {
     width: f64,
-    /// Infinite without a lid.
+    /// Height of the lid; infinite without a lid.
     height: f64,
-    /// The walls that are there, and a plane for each.
+    /// The walls that exist, and a plane for each of them.
     walls: Vec<Wall>,
     planes: Vec<Plane>,
 }
@@ -75,7 +75,7 @@ impl Container {
         Ok(container)
     }
 
-    /// Returns the same container without side walls: what leaves on one side enters on the other.
+    /// Returns the same container with periodic sides: a disk that leaves on one side enters on the other.
     pub fn with_periodic_sides(mut self) -> Self {
         for wall in [Wall::Left, Wall::Right] {
             self.remove(wall);
@@ -83,7 +83,7 @@ impl Container {
         self
     }
 
-    /// Returns the same container with a wall that moves along its normal, which points inward.
+    /// Returns the same container with a wall that moves along its normal. The normal points inward.
     ///
     /// # Errors
     /// If the container has no such wall, or the motion answers with numbers that are not finite at one of
@@ -99,7 +99,7 @@ impl Container {
         Ok(self)
     }
 
-    /// Returns the same container with a wall that has a rule of its own.
+    /// Returns the same container with a wall that has its own rule.
     ///
     /// # Errors
     /// If the container has no such wall.
@@ -126,12 +126,12 @@ impl Container {
         self.width
     }
 
-    /// Returns the height `$L_y$` of the lid; infinite without one.
+    /// Returns the height `$L_y$` of the lid; infinite without a lid.
     pub const fn height(&self) -> f64 {
         self.height
     }
 
-    /// Returns the index of a wall, if it is there.
+    /// Returns the index of a wall, if the wall exists.
     pub fn index(&self, wall: Wall) -> Option<usize> {
         self.walls.iter().position(|&kind| kind == wall)
     }
@@ -165,7 +165,7 @@ impl Container {
 }
 
 impl Container {
-    /// Makes the sides of a rectangle periodic if those of the container are.
+    /// Makes the sides of a rectangle periodic if the container's sides are periodic.
     fn with_sides(&self, domain: Domain) -> Domain {
         if self.index(Wall::Left).is_none() { domain.with_periodic_sides() } else { domain }
     }
@@ -227,7 +227,7 @@ impl Boundary for Container {
     }
 
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
-        // Most walls are far away: there is no need to ask where they are.
+        // Most walls are far away, and need not be asked where they are.
         let near =
             self.planes.iter().enumerate().filter(|(_, plane)| plane.is_within_reach(position, radius));
         let depths = near.map(|(wall, plane)| (wall, plane.depth(position, radius, time)));

@@ -1,14 +1,15 @@
-//! Rectangles: where the centers of disks can be.
+//! Rectangles in which the centers of disks can be.
 
 use glam::DVec2;
 
-/// The rectangle that holds the centers of all disks; its left and right sides may be the same line.
+/// The rectangle that holds the centers of all disks. Its left and right sides may be the same line.
 ///
 /// ```
 /// use granular_edmd::boundary::Domain;
+/// use granular_edmd::glam::DVec2;
 /// let domain = Domain::new(0.0, 60.0, -0.1, f64::INFINITY).with_periodic_sides();
 /// assert_eq!(domain.width(), 60.0);
-/// assert_eq!(domain.separation(granular_edmd::glam::DVec2::new(59.0, 0.0), granular_edmd::glam::DVec2::new(1.0, 0.0)).x, 2.0);
+/// assert_eq!(domain.separation(DVec2::new(59.0, 0.0), DVec2::new(1.0, 0.0)).x, 2.0);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
@@ -22,7 +23,7 @@ pub struct Domain {
     pub bottom: f64,
     /// Upper end; infinite without a lid.
     pub top: f64,
-    /// True if what leaves on one side enters on the other.
+    /// True if a disk that leaves on one side enters on the other.
     pub periodic: bool,
 }
 
@@ -33,7 +34,7 @@ impl Domain {
         Self { left, right, bottom, top, periodic: false }
     }
 
-    /// Returns the same rectangle with periodic sides: what leaves on one side enters on the other.
+    /// Returns the same rectangle with periodic sides: a disk that leaves on one side enters on the other.
     #[must_use]
     pub const fn with_periodic_sides(self) -> Self {
         Self { periodic: true, ..self }
@@ -59,7 +60,7 @@ impl Domain {
     }
 }
 
-/// A rectangle inside the domain; its edges may be infinite.
+/// A rectangle inside the domain. Its edges may be infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Region {

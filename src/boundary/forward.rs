@@ -1,4 +1,4 @@
-//! A boundary in a box, or lent, is that boundary.
+//! Forwarding: a boxed or borrowed boundary is a boundary, too.
 
 use std::borrow::Cow;
 

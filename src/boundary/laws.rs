@@ -1,7 +1,7 @@
-//! The contract of a boundary, as a check for boundaries of your own.
+//! Checks of a boundary's contract, for boundaries of your own.
 //!
-//! [`check`] sends disks on random flights between the walls, and looks at all that the boundary says of
-//! them.
+//! [`check`] sends disks on random flights between the walls, and examines all that the boundary answers
+//! about them.
 
 mod flight;
 mod trial;
@@ -18,39 +18,39 @@ use crate::Flight;
 use crate::random::uniform;
 use trial::Trial;
 
-/// Disks that are sent on a flight.
+/// Number of disks that are sent on flights.
 const DISKS: usize = 400;
 
-/// Flights of each disk, from touch to touch.
+/// Number of flights of each disk, from touch to touch.
 const FLIGHTS: usize = 4;
 
-/// Trials to find a free place for a disk.
+/// Number of attempts to find a free place for a disk.
 const PLACES: usize = 10_000;
 
-/// Largest absolute time at which a flight begins, in times that a disk takes across the domain.
+/// Largest absolute time at which a flight begins, in units of the time that a disk takes across the domain.
 const LATEST: f64 = 100.0;
 
 /// Checks that a boundary keeps its contract with disks of this radius, on random flights at about this
 /// speed.
 ///
 /// Each of four hundred disks flies from a free place, with and without gravity, at various times, and is
-/// turned back where it touches a wall, four times in a row. The check asks of each flight:
-/// - Sampled along it, the disk neither overlaps a wall nor leaves the domain before the touch, or before the
-///   end of the flight if there is none.
-/// - The touch is neither before the flight nor after its limit, at a wall that there is, and the gap to that
-///   wall is closed up to rounding. The disk approaches the wall there, and would touch it again at once if
-///   it did not turn.
+/// turned back where it touches a wall, four times in a row. The check requires of each flight:
+/// - At samples along the flight, the disk neither overlaps a wall nor leaves the domain before the touch, or
+///   before the end of the flight if there is no touch.
+/// - The touch is neither before the flight nor after its limit. Its wall exists, and the gap to that wall is
+///   closed up to rounding. The disk approaches the wall there, and would touch it again at once if it did
+///   not turn.
 /// - The normal is a unit vector along which a disk comes out of the wall, and the velocity is finite.
-/// - `may_touch` holds for all kinds of regions around the touch, those without ends at the edges of the
-///   domain too.
+/// - `may_touch` holds for all kinds of regions around the touch, also for those that extend to infinity at
+///   the edges of the domain.
 /// - With another time origin, the same flight touches at the same absolute time.
-/// - Domain and count of walls stay the same, and the interior lies in the domain.
+/// - The domain and the number of walls stay the same, and the interior lies in the domain.
 ///
-/// The speed should be one that disks have: walls that move are met while they are at all places. The
-/// boundary is left with another time origin.
+/// The speed should be one that disks have, so that they meet moving walls at all places of the motion. The
+/// check changes the boundary's time origin.
 ///
 /// # Errors
-/// The first violation that it finds, with the flight on which it did.
+/// The first violation that the check finds, with the flight on which it was found.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall, laws};
@@ -67,7 +67,7 @@ pub fn check<B: Boundary + ?Sized>(
 ) -> Result<(), Violation> {
     let domain = boundary.domain();
     check_rectangles(&domain, &boundary.interior())?;
-    // Names are for messages, also about a wall that there is not: they must not panic.
+    // Names are for messages, also about a wall that does not exist. They must not panic.
     for wall in [0, boundary.wall_count(), usize::MAX] {
         drop(boundary.wall_name(wall));
     }
@@ -80,7 +80,7 @@ pub fn check<B: Boundary + ?Sized>(
     Ok(())
 }
 
-/// Checks that the domain is a rectangle, open above at most, and holds the interior.
+/// Checks that the domain is a rectangle, at most open above, and contains the interior.
 fn check_rectangles(domain: &Domain, interior: &Domain) -> Result<(), Violation> {
     let is_bounded = [domain.left, domain.right, domain.bottom].iter().all(|edge| edge.is_finite());
     if !(is_bounded && domain.left < domain.right && domain.bottom < domain.top) {
@@ -94,7 +94,7 @@ fn check_rectangles(domain: &Domain, interior: &Domain) -> Result<(), Violation>
     if is_inside { Ok(()) } else { Err(Violation::Interior { interior: *interior, domain: *domain }) }
 }
 
-/// Draws flights.
+/// A generator of random flights.
 struct Random(Xoshiro256PlusPlus);
 
 impl Random {
@@ -110,7 +110,8 @@ impl Random {
         trial.set_origin(origin);
         let position = self.place(trial, time)?;
         let speed = trial.speed() * self.between(0.1, 3.0);
-        // A point in the unit disk, made a direction: no angle, for its sine and cosine are the platform's.
+        // The direction comes from a point in a square, not from an angle: sine and cosine differ
+        // between platforms.
         let direction = DVec2::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0)).normalize_or(DVec2::X);
         let pull = trial.speed() * trial.speed() / trial.length();
         let gravity = [0.0, 0.5 * pull, 4.0 * pull, -pull][self.between(0.0, 4.0) as usize];

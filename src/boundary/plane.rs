@@ -11,22 +11,22 @@ use crate::collision::CollisionRule;
 use crate::wall::{Approach, Fixed, WallMotion, first_touch};
 use crate::{Fingerprint, Flight};
 
-/// A half plane that disks stay on one side of.
+/// A straight wall: the disks stay on one side of a line.
 #[derive(Clone)]
 pub(super) struct Plane {
-    /// Unit vector to the disks.
+    /// Unit vector from the wall to the disks.
     normal: DVec2,
     /// Place of the wall at rest, along its normal.
     place: f64,
     motion: Arc<dyn WallMotion + Send + Sync>,
-    /// Upper end of its reach.
+    /// Upper end of the motion's reach.
     highest: f64,
     conduct: Conduct,
     /// Phase of the motion at the time origin.
     phase: f64,
 }
 
-/// The response to a touch, owned; [`Response`] lends it out.
+/// Response of the wall to a touch, in owned form. [`Response`] lends it out.
 #[derive(Clone)]
 pub(super) enum Conduct {
     Shared,
@@ -62,10 +62,11 @@ impl Plane {
     pub(super) fn set_time_origin(&mut self, origin: f64) {
         let (low, high) = self.motion.reach();
         self.phase = match self.motion.period() {
-            // A wall that never leaves its place is the same at all times: phase 0 costs none of their
-            // digits.
+            // A wall that never leaves its place is the same at all times. Phase 0 costs the times none of
+            // their digits.
             _ if low == high => 0.0,
-            // The remainder of two floats is exact: the phase keeps all its digits however late the time is.
+            // The remainder of two floats is exact, so the phase keeps all its digits however late the time
+            // is.
             Some(period) => origin % period,
             None => origin,
         };
@@ -78,7 +79,7 @@ impl Plane {
     /// Tells whether a disk with its center in `region` can touch the wall at any time.
     pub(super) fn may_touch(&self, region: &Region, radius: f64) -> bool {
         let nearest = DVec2::select(self.normal.cmpgt(DVec2::ZERO), region.min, region.max);
-        // A component of the normal that is zero must not meet an infinite edge: their product is not a
+        // A zero component of the normal must not be multiplied by an infinite edge: the product is not a
         // number.
         let along = |component: f64, edge: f64| if component == 0.0 { 0.0 } else { component * edge };
         let height = along(self.normal.x, nearest.x) + along(self.normal.y, nearest.y) - self.place;
@@ -93,12 +94,13 @@ impl Plane {
             flight.velocity(flight.time()).dot(self.normal),
             flight.acceleration().dot(self.normal),
         );
-        // Most flights end in another cell before they get near this wall: they are spared the search.
+        // Most flights end in another cell before they get near this wall. They need no search.
         if approach.stays_above(self.highest, until + self.phase) {
             return None;
         }
         let touch = first_touch(&*self.motion, &approach, until + self.phase)?;
-        // The sum with the phase was rounded, and its difference is again: the touch stays within the flight.
+        // Adding the phase rounds the time, and subtracting it rounds again. The bounds keep the touch within
+        // the flight.
         Some((touch - self.phase).max(flight.time()).min(until))
     }
 
@@ -112,20 +114,20 @@ impl Plane {
         Surface::new(self.normal, velocity).with_response(response)
     }
 
-    /// Tells whether a disk is so near that it overlaps the wall at some time.
+    /// Tells whether a disk is so near that it overlaps the wall at some time of the motion.
     #[inline]
     pub(super) fn is_within_reach(&self, position: DVec2, radius: f64) -> bool {
         position.dot(self.normal) - self.place - radius <= self.highest
     }
 
-    /// Returns how far a disk reaches into the wall; negative when it is inside.
+    /// Returns how far a disk reaches into the wall; negative if the disk does not touch the wall.
     pub(super) fn depth(&self, position: DVec2, radius: f64, time: f64) -> f64 {
         let wall = self.place + self.motion.state(time + self.phase).displacement;
         wall + radius - position.dot(self.normal)
     }
 
-    /// Returns the fingerprint of motion and response, if both have one; the place is the container's to
-    /// tell.
+    /// Returns the fingerprint of motion and response, if both have one. The container adds the place of the
+    /// wall.
     pub(super) fn fingerprint(&self) -> Option<Fingerprint> {
         let plane = Fingerprint::of("Plane").part(self.motion.fingerprint()?);
         Some(plane.part(match &self.conduct {

@@ -1,4 +1,4 @@
-//! Surfaces of walls: where they point, how they move and what a touch does.
+//! Surfaces of walls: their normals, their velocities, and their responses to a touch.
 
 use std::fmt;
 
@@ -31,7 +31,7 @@ pub struct Surface<'a> {
 }
 
 impl<'a> Surface<'a> {
-    /// Creates a surface under the rule of the disks, with this unit normal and this velocity.
+    /// Creates a surface with this unit normal and this velocity, under the rule of the disks.
     #[inline]
     pub const fn new(normal: DVec2, velocity: DVec2) -> Self {
         Self { normal, velocity, response: Response::Shared }
@@ -49,11 +49,11 @@ impl<'a> Surface<'a> {
 #[derive(Clone, Copy)]
 #[non_exhaustive]
 pub enum Response<'a> {
-    /// The collision rule of the disks among themselves, with a partner of infinite mass.
+    /// The wall follows the collision rule of the disks, as a partner of infinite mass.
     Shared,
-    /// A rule of the wall's own, with a partner of infinite mass.
+    /// The wall follows its own rule, as a partner of infinite mass.
     Rule(&'a dyn CollisionRule),
-    /// Thermal re-emission.
+    /// The wall re-emits the disk thermally.
     Thermal(Thermal),
 }
 
@@ -67,8 +67,8 @@ impl fmt::Debug for Response<'_> {
     }
 }
 
-/// A stochastic wall: a disk that touches it leaves as if from a gas of this temperature at rest behind the
-/// wall.
+/// A stochastic wall: a disk that touches it leaves as if it came from a gas of this temperature that is at
+/// rest behind the wall.
 ///
 /// The normal speed has the flux-weighted density `$(m v/T_0)\,e^{-m v^2/2T_0}$`; the tangential velocity and
 /// the angular velocity are normal with variances `$T_0/m$` and `$T_0/I$`. The slip variant redraws the
@@ -88,7 +88,7 @@ pub struct Thermal {
     slip: bool,
 }
 
-/// Kind of number that the temperature of a wall is.
+/// The quantity "temperature of a wall".
 #[derive(Debug, Clone, Copy)]
 struct WallTemperature;
 
@@ -106,7 +106,7 @@ impl Thermal {
         Ok(Self { temperature: Checked::new(temperature)?, slip: false })
     }
 
-    /// Returns the same wall, leaving tangential and angular velocity as they are.
+    /// Returns the same wall with slip: tangential and angular velocity stay as they are.
     pub const fn with_slip(self) -> Self {
         Self { slip: true, ..self }
     }
@@ -116,7 +116,7 @@ impl Thermal {
         self.temperature.get()
     }
 
-    /// Tells whether tangential and angular velocity are left as they are.
+    /// Tells whether tangential and angular velocity stay as they are.
     pub const fn slip(&self) -> bool {
         self.slip
     }

@@ -1,4 +1,4 @@
-//! Touches of walls.
+//! Touches of walls by disks.
 
 /// The first touch of a flight with a wall.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,23 +1,23 @@
-//! From moving bodies to a contact, and from an impulse back to velocities.
+//! Conversions from moving bodies to a contact, and from an impulse back to velocities.
 
 use glam::DVec2;
 
 use super::{CollisionRule, Contact, Impulse};
 use crate::Disk;
 
-/// A body at rest, as a collision sees it: how far its surface is, and how it resists.
+/// The constant properties of a body in a collision: how far its surface is, and how it resists.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Material {
     pub(crate) radius: f64,
     pub(crate) inverse_mass: f64,
-    /// `$(1 + 1/\beta)/m$`: velocity of the contact point per tangential impulse.
+    /// Velocity of the contact point per tangential impulse, `$(1 + 1/\beta)/m$`.
     tangential_compliance: f64,
-    /// `$1/(\beta m R)$`: angular velocity per tangential impulse.
+    /// Angular velocity per tangential impulse, `$1/(\beta m R)$`.
     spin_response: f64,
 }
 
 impl Material {
-    /// A wall: it takes any impulse and does not move.
+    /// A wall, which takes any impulse and does not change its motion.
     pub(crate) const WALL: Self =
         Self { radius: 0.0, inverse_mass: 0.0, tangential_compliance: 0.0, spin_response: 0.0 };
 
@@ -32,7 +32,7 @@ impl Material {
     }
 }
 
-/// The motion that a collision changes.
+/// The motion of a body, which a collision changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Body {
     pub(crate) velocity: DVec2,
@@ -45,14 +45,14 @@ impl Body {
     }
 }
 
-/// The contact of two bodies, `normal` pointing from the second to the first.
+/// Returns the contact of two bodies. The `normal` points from the second to the first.
 #[inline]
 fn contact(normal: DVec2, first: (&Body, &Material), second: (&Body, &Material)) -> Contact {
     let approach = second.0.velocity - first.0.velocity;
     let closing = approach.dot(normal);
-    // Bodies that touch may part, by rounding or because the caller did not ask: no rule should take roots of
-    // that. A comparison is false for NaN, too, and gives one kind of zero; `f64::max` may give either, as
-    // the processor does.
+    // Bodies that touch may be parting, by rounding or because the caller did not check. A rule must not take
+    // roots of a negative speed. The comparison is also false for NaN, and always gives the same zero;
+    // `f64::max` may give either zero, depending on the processor.
     let closing = if closing > 0.0 { closing } else { 0.0 };
     let surface = second.1.radius * second.0.angular_velocity + first.1.radius * first.0.angular_velocity;
     let (normal_mass, tangential_mass) = (
@@ -62,8 +62,8 @@ fn contact(normal: DVec2, first: (&Body, &Material), second: (&Body, &Material))
     Contact::new(closing, approach.dot(normal.perp()) + surface, normal_mass, tangential_mass)
 }
 
-/// `body` after an impulse along the normal and its perpendicular; both partners of a collision turn the same
-/// way.
+/// Returns `body` after an impulse along the normal and its perpendicular. Both partners of a collision turn
+/// the same way.
 #[inline]
 fn kicked(body: &Body, material: &Material, kick: DVec2, tangential: f64) -> Body {
     Body {
@@ -72,7 +72,7 @@ fn kicked(body: &Body, material: &Material, kick: DVec2, tangential: f64) -> Bod
     }
 }
 
-/// Two bodies after a collision, with what happened between them.
+/// Two bodies after a collision, with the contact and the impulse.
 pub(crate) struct Outcome {
     pub(crate) first: Body,
     pub(crate) second: Body,
@@ -80,7 +80,7 @@ pub(crate) struct Outcome {
     pub(crate) impulse: Impulse,
 }
 
-/// Lets two bodies collide under `rule`, `normal` pointing from the second to the first.
+/// Lets two bodies collide under `rule`. The `normal` points from the second to the first.
 #[inline(always)]
 pub(crate) fn collide_bodies<R: CollisionRule + ?Sized>(
     rule: &R,

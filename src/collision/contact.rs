@@ -1,8 +1,8 @@
-//! The view of a contact that a rule is given.
+//! Contacts, as a rule sees them.
 
 use std::fmt;
 
-/// Two surfaces that touch: how fast they close and slip, and the masses that resist.
+/// A contact of two surfaces: how fast they close and slip, and the masses that resist.
 ///
 /// With `$\hat n$` from partner 2 to partner 1 and `$\vec v = \vec v_{C2} - \vec v_{C1}$` the relative
 /// velocity of the points in contact, the closing speed is `$v_n = \vec v\cdot\hat n$` and the slip speed
@@ -26,7 +26,7 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// A contact of partners that have never collided before.
+    /// Creates a contact of partners that have never collided before.
     #[inline]
     pub const fn new(closing_speed: f64, slip_speed: f64, normal_mass: f64, tangential_mass: f64) -> Self {
         Self {
@@ -38,46 +38,47 @@ impl Contact {
         }
     }
 
-    /// The same contact, a time after the latest collision of either partner.
+    /// Returns the same contact, at this time after the latest collision of either partner.
     #[inline]
     pub const fn with_time_since_last_collision(self, time: f64) -> Self {
         Self { time_since_last_collision: time, ..self }
     }
 
-    /// `$v_n$`: speed at which the surfaces approach, positive in a collision.
+    /// Returns the speed `$v_n$` at which the surfaces approach, positive in a collision.
     #[inline]
     pub const fn closing_speed(&self) -> f64 {
         self.closing_speed
     }
 
-    /// `$v_t$`: speed at which the surfaces slide, of either sign.
+    /// Returns the speed `$v_t$` at which the surfaces slide, of either sign.
     #[inline]
     pub const fn slip_speed(&self) -> f64 {
         self.slip_speed
     }
 
-    /// `$\mu$`: reduced mass of the normal direction.
+    /// Returns the reduced mass `$\mu$` of the normal direction.
     #[inline]
     pub const fn normal_mass(&self) -> f64 {
         self.normal_mass
     }
 
-    /// `$\mu_t$`: effective mass of the tangential direction, rotation included.
+    /// Returns the effective mass `$\mu_t$` of the tangential direction, rotation included.
     #[inline]
     pub const fn tangential_mass(&self) -> f64 {
         self.tangential_mass
     }
 
-    /// Time since either partner last collided with anything; infinite if neither ever has.
+    /// Returns the time since either partner last collided with anything; infinite if neither ever has.
     #[inline]
     pub const fn time_since_last_collision(&self) -> f64 {
         self.time_since_last_collision
     }
 
-    /// Normal impulse of a restitution `$r_n$`: `$\Delta_n = (1 + r_n)\,\mu\,v_n$` (paper, Eqs. (1), (3)).
+    /// Returns the normal impulse of a restitution `$r_n$`: `$\Delta_n = (1 + r_n)\,\mu\,v_n$` (paper, Eqs.
+    /// (1), (3)).
     ///
-    /// The restitution is not checked: this is for rules that compute it from the contact, in every
-    /// collision.
+    /// The restitution is not checked, since rules that compute it from the contact call this function in
+    /// every collision.
     ///
     /// ```
     /// use granular_edmd::collision::Contact;

@@ -1,30 +1,30 @@
-//! The remedy against inelastic collapse.
+//! The contact-duration model, the remedy against inelastic collapse.
 
 use super::{CollisionRule, Contact, Elastic, Impulse, Regime};
 use crate::quantity::{Checked, Quantity, Range};
 use crate::{Fingerprint, ParameterError};
 
-/// The tangential impulse of a contact that the contact-duration model makes elastic.
+/// The tangential impulse in a contact that the contact-duration model makes elastic.
 ///
-/// Published codes differ here, so it is said and not assumed.
+/// Published codes differ in this choice, so it is explicit here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum TangentialResponse {
-    /// There is none: the contact is elastic and frictionless.
+    /// No tangential impulse: the contact is elastic and frictionless.
     #[default]
     Frictionless,
-    /// It stays that of the rule: only the normal direction is made elastic.
+    /// The tangential impulse of the rule. Only the normal direction is made elastic.
     Unchanged,
 }
 
 /// The contact-duration (TC) model over any rule: a collision of a body that collided less than `$t_c$` ago
 /// loses no energy (Luding and McNamara 1998).
 ///
-/// Without it, dense inelastic states collide infinitely often in finite time, and a run ends with an error.
-/// The simulation counts the collisions changed this way, so that one sees when the model matters: with a
-/// collision rate `$\omega_c$` per disk, a share of about `$2.25\,\omega_c t_c$` of the dissipation is lost
-/// to it.
+/// Without the model, disks in dense inelastic states collide infinitely often in finite time, and the run
+/// ends with an error. The simulation counts the collisions that the model changes, which shows when the
+/// model matters. With a collision rate `$\omega_c$` per disk, a share of about `$2.25\,\omega_c t_c$` of the
+/// dissipation is lost to it.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, ContactDuration, Frictional, Regime};
@@ -55,26 +55,27 @@ impl Quantity for Duration {
 }
 
 impl<R> ContactDuration<R> {
-    /// `rule`, made elastic and frictionless for bodies that collided less than `duration` ago.
+    /// Creates the model over `rule`: elastic and frictionless for bodies that collided less than `duration`
+    /// ago.
     ///
     /// # Errors
-    /// If the duration is not finite and positive; use the rule alone for none.
+    /// If the duration is not finite and positive. For no contact duration, use the rule alone.
     pub fn new(rule: R, duration: f64) -> Result<Self, ParameterError> {
         let duration = Checked::new(duration)?;
         Ok(Self { rule, duration, tangential_response: TangentialResponse::default() })
     }
 
-    /// The same model with this tangential response.
+    /// Returns the same model with this tangential response.
     pub fn with_tangential_response(self, tangential_response: TangentialResponse) -> Self {
         Self { tangential_response, ..self }
     }
 
-    /// The rule of all other collisions.
+    /// Returns the rule of all other collisions.
     pub const fn rule(&self) -> &R {
         &self.rule
     }
 
-    /// `$t_c$`.
+    /// Returns the contact duration `$t_c$`.
     pub const fn duration(&self) -> f64 {
         self.duration.get()
     }
@@ -104,7 +105,7 @@ impl<R: CollisionRule> CollisionRule for ContactDuration<R> {
         self.rule.explain(contact)
     }
 
-    /// None if the rule within has none: two models could not be told apart.
+    /// Returns `None` if the rule inside has no fingerprint: two such models could not be told apart.
     fn fingerprint(&self) -> Option<Fingerprint> {
         let response = match self.tangential_response {
             TangentialResponse::Frictionless => "frictionless",

@@ -3,7 +3,7 @@
 use super::{CollisionRule, Contact, Impulse};
 use crate::Fingerprint;
 
-/// Smooth elastic collisions: the closing speed is reversed, the slip is not touched.
+/// Smooth elastic collisions: the closing speed is reversed, and the slip stays as it is.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Elastic};

@@ -6,7 +6,7 @@ use super::body::{Body, Material, collide_bodies};
 use super::{CollisionRule, Contact, Impulse};
 use crate::Disk;
 
-/// Two disks after their collision, with what happened between them; made by [`collide`].
+/// Two disks after their collision, with the contact and the impulse; made by [`collide`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Encounter {
@@ -20,7 +20,7 @@ pub struct Encounter {
     pub impulse: Impulse,
 }
 
-/// A disk after its collision with a wall, with what happened between them; made by [`collide_with_wall`].
+/// A disk after its collision with a wall, with the contact and the impulse; made by [`collide_with_wall`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct WallEncounter {
@@ -32,10 +32,11 @@ pub struct WallEncounter {
     pub impulse: Impulse,
 }
 
-/// Lets two disks collide under `rule` (paper, Eq. (2)), as a simulation does. Useful to test rules.
+/// Lets two disks collide under `rule` (paper, Eq. (2)), as a simulation does. The function is useful in
+/// tests of rules.
 ///
-/// The normal is taken from their centers; that they touch is not checked. The closing speed of disks that
-/// part is zero.
+/// The normal comes from the centers of the disks; the function does not check that the disks touch. The
+/// closing speed of disks that part is zero.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;

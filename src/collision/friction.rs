@@ -1,4 +1,4 @@
-//! Coulomb friction in a contact, whatever the normal direction does.
+//! Coulomb friction in a contact, for any behavior of the normal direction.
 
 use super::inelasticity::TangentialInelasticity;
 use super::{Contact, Impulse, Regime};
@@ -14,7 +14,7 @@ use crate::quantity::{accept, non_negative};
 /// \end{cases}
 /// ```
 ///
-/// (paper, Eqs. (4), (5)). A rule of your own decides the normal impulse, and leaves the rest to this:
+/// (paper, Eqs. (4), (5)). A rule of your own decides the normal impulse, and leaves the rest to this type:
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Friction, Impulse, Regime};
@@ -48,7 +48,7 @@ pub struct Friction {
 }
 
 impl Friction {
-    /// Friction with one coefficient, `$\kappa = \kappa_s = \kappa_d$`.
+    /// Creates friction with one coefficient, `$\kappa = \kappa_s = \kappa_d$`.
     ///
     /// # Errors
     /// If `tangential_inelasticity` is not in `[0, 1]`, or `coefficient` is negative or not finite.
@@ -56,7 +56,7 @@ impl Friction {
         Self::from_inelasticity(tangential_inelasticity)?.with_coefficients(coefficient, coefficient)
     }
 
-    /// The tangential inelasticity `$q_t \in [0, 1]$`, still without friction; see
+    /// Creates a tangential inelasticity `$q_t \in [0, 1]$` without friction; see
     /// [`Self::with_coefficients`].
     ///
     /// # Errors
@@ -65,7 +65,7 @@ impl Friction {
         TangentialInelasticity::new(tangential).map(Self::without_coefficients)
     }
 
-    /// The tangential restitution `$r_t \in [-1, 1]$`, still without friction; see
+    /// Creates a tangential restitution `$r_t \in [-1, 1]$` without friction; see
     /// [`Self::with_coefficients`].
     ///
     /// # Errors
@@ -78,7 +78,7 @@ impl Friction {
         Self { tangential_inelasticity, static_coefficient: 0.0, dynamic_coefficient: 0.0 }
     }
 
-    /// The same inelasticity with the friction coefficients `$\kappa_s \ge \kappa_d \ge 0$`.
+    /// Returns the same inelasticity with the friction coefficients `$\kappa_s \ge \kappa_d \ge 0$`.
     ///
     /// # Errors
     /// If one is negative or not finite, or the dynamic coefficient exceeds the static one: sliding could
@@ -95,35 +95,36 @@ impl Friction {
         Ok(Self { static_coefficient, dynamic_coefficient, ..self })
     }
 
-    /// Returns the whole impulse of a contact: the `normal` one as given, with the tangential one that it
-    /// allows.
+    /// Returns the whole impulse of a contact: the `normal` impulse as given, with the tangential impulse
+    /// that it allows.
     #[inline]
     pub fn impulse(&self, contact: &Contact, normal: f64) -> Impulse {
         let sticking = self.tangential_inelasticity.impulse(contact);
         let sliding = (self.dynamic_coefficient * normal).copysign(sticking);
-        // Selections, not a branch: which of the two it is, is a coin toss that no predictor learns.
+        // The code selects and does not branch: whether a contact sticks is a coin toss, which no branch
+        // predictor learns.
         let sticks = sticking.abs() < self.static_coefficient * normal;
         let tangential = if sticks { sticking } else { sliding };
         Impulse::new(normal, tangential).with_regime(if sticks { Regime::Sticking } else { Regime::Sliding })
     }
 
-    /// `$q_t$`.
+    /// Returns the tangential inelasticity `$q_t$`.
     pub const fn tangential_inelasticity(&self) -> f64 {
         self.tangential_inelasticity.get()
     }
 
-    /// `$\kappa_s$`.
+    /// Returns the static friction coefficient `$\kappa_s$`.
     pub const fn static_coefficient(&self) -> f64 {
         self.static_coefficient
     }
 
-    /// `$\kappa_d$`.
+    /// Returns the dynamic friction coefficient `$\kappa_d$`.
     pub const fn dynamic_coefficient(&self) -> f64 {
         self.dynamic_coefficient
     }
 }
 
-/// The fields of a file, before they are checked against each other.
+/// Fields of friction in a file, before they are checked against each other.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields, rename = "Friction")]

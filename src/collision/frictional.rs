@@ -15,7 +15,7 @@ use crate::{Fingerprint, ParameterError};
 /// \end{cases}
 /// ```
 ///
-/// For homogeneous disks `$\mu_t=\mu/3$`, and these are the paper's factors 2/3 and 3.
+/// For homogeneous disks `$\mu_t=\mu/3$`, which gives the paper's factors 2/3 and 3.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Frictional, Regime};
@@ -40,7 +40,7 @@ pub struct Frictional {
 }
 
 impl Frictional {
-    /// The paper's choice: `$q = q_n = q_t$` and `$\kappa = \kappa_s = \kappa_d$`.
+    /// Creates a rule with the paper's choice: `$q = q_n = q_t$` and `$\kappa = \kappa_s = \kappa_d$`.
     ///
     /// # Errors
     /// If `inelasticity` is not in `[0, 0.5]`, or `friction` is negative or not finite.
@@ -48,7 +48,8 @@ impl Frictional {
         Self::from_inelasticity(inelasticity, inelasticity)?.with_friction(friction, friction)
     }
 
-    /// A rule without friction from `$q_n \in [0, 1/2]$` and `$q_t \in [0, 1]$`; see [`Self::with_friction`].
+    /// Creates a rule without friction from `$q_n \in [0, 1/2]$` and `$q_t \in [0, 1]$`; see
+    /// [`Self::with_friction`].
     ///
     /// # Errors
     /// If an inelasticity is out of its range.
@@ -59,8 +60,8 @@ impl Frictional {
         })
     }
 
-    /// A rule without friction from the restitution coefficients `$r_n \in [0, 1]$` and `$r_t \in [-1, 1]$`
-    /// (paper, Eq. (1)); see [`Self::with_friction`].
+    /// Creates a rule without friction from the restitution coefficients `$r_n \in [0, 1]$` and
+    /// `$r_t \in [-1, 1]$` (paper, Eq. (1)); see [`Self::with_friction`].
     ///
     /// # Errors
     /// If a restitution is out of its range.
@@ -71,7 +72,7 @@ impl Frictional {
         })
     }
 
-    /// The same rule with the friction coefficients `$\kappa_s \ge \kappa_d \ge 0$`.
+    /// Returns the same rule with the friction coefficients `$\kappa_s \ge \kappa_d \ge 0$`.
     ///
     /// # Errors
     /// If one is negative or not finite, or the dynamic coefficient exceeds the static one: sliding could
@@ -80,22 +81,22 @@ impl Frictional {
         Ok(Self { friction: self.friction.with_coefficients(static_friction, dynamic_friction)?, ..self })
     }
 
-    /// `$q_n$`.
+    /// Returns the normal inelasticity `$q_n$`.
     pub const fn normal_inelasticity(&self) -> f64 {
         self.normal_inelasticity.get()
     }
 
-    /// `$q_t$`.
+    /// Returns the tangential inelasticity `$q_t$`.
     pub const fn tangential_inelasticity(&self) -> f64 {
         self.friction.tangential_inelasticity()
     }
 
-    /// `$\kappa_s$`.
+    /// Returns the static friction coefficient `$\kappa_s$`.
     pub const fn static_friction(&self) -> f64 {
         self.friction.static_coefficient()
     }
 
-    /// `$\kappa_d$`.
+    /// Returns the dynamic friction coefficient `$\kappa_d$`.
     pub const fn dynamic_friction(&self) -> f64 {
         self.friction.dynamic_coefficient()
     }
@@ -114,7 +115,7 @@ impl CollisionRule for Frictional {
     }
 }
 
-/// The rule in a file: all numbers side by side.
+/// Fields of the rule in a file: all numbers side by side.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, rename = "Frictional")]

@@ -6,7 +6,7 @@ use super::{CollisionRule, Contact, Impulse};
 #[derive(Debug, Clone, Copy)]
 pub struct FromFn<F>(F);
 
-/// A rule from a closure.
+/// Makes a rule from a closure.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Impulse, from_fn};

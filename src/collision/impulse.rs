@@ -1,10 +1,10 @@
-//! The answer of a collision rule.
+//! Impulses: the answers of collision rules.
 
 use std::fmt;
 
 use super::Contact;
 
-/// The way that a collision went, for those who count.
+/// The course that a collision took, for statistics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Regime {
@@ -19,7 +19,7 @@ pub enum Regime {
     ContactDuration,
 }
 
-/// The momentum that partner 1 receives along the normal and the tangent; partner 2 receives the opposite.
+/// The momentum that partner 1 receives along the normal and the tangent. Partner 2 receives the opposite.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse};
@@ -35,44 +35,45 @@ pub struct Impulse {
 }
 
 impl Impulse {
-    /// An impulse `$\Delta_n\hat n + \Delta_t\hat t$`.
+    /// Creates an impulse `$\Delta_n\hat n + \Delta_t\hat t$`.
     #[inline]
     pub const fn new(normal: f64, tangential: f64) -> Self {
         Self { normal, tangential, regime: Regime::Unspecified }
     }
 
-    /// The same impulse, labelled.
+    /// Returns the same impulse with this label.
     #[inline]
     pub const fn with_regime(self, regime: Regime) -> Self {
         Self { regime, ..self }
     }
 
-    /// `$\Delta_n$`, positive when it pushes the partners apart.
+    /// Returns the normal part `$\Delta_n$`, positive if it pushes the partners apart.
     #[inline]
     pub const fn normal(&self) -> f64 {
         self.normal
     }
 
-    /// `$\Delta_t$`, with the sign of the slip speed when it slows the slip.
+    /// Returns the tangential part `$\Delta_t$`, which has the sign of the slip speed if it slows the slip.
     #[inline]
     pub const fn tangential(&self) -> f64 {
         self.tangential
     }
 
-    /// Returns the way that the collision went.
+    /// Returns the course that the collision took.
     #[inline]
     pub const fn regime(&self) -> Regime {
         self.regime
     }
 
-    /// Change of kinetic energy in the collision, as seen from the wall if one partner is a wall:
+    /// Returns the change of kinetic energy in the collision, as seen from the wall if one partner is a wall:
     ///
     /// ```math
-    /// dE = -\Delta_n\left(v_n - \frac{\Delta_n}{2\mu}\right) - \Delta_t\left(v_t - \frac{\Delta_t}{2\mu_t}\right)
+    /// dE = -\Delta_n\left(v_n - \frac{\Delta_n}{2\mu}\right)
+    /// - \Delta_t\left(v_t - \frac{\Delta_t}{2\mu_t}\right)
     /// ```
     ///
-    /// Independent of the frame for two disks. With Eqs. (3)–(5) it is Eq. (7) of the paper for sliding, and
-    /// for sticking Eq. (6) with the factor 1/3 that is missing there in print.
+    /// For two disks the change does not depend on the frame. With Eqs. (3)–(5) it is the paper's Eq. (7) for
+    /// sliding. For sticking it is Eq. (6) with the factor 1/3, which is missing in print.
     #[inline]
     pub fn energy_change(&self, contact: &Contact) -> f64 {
         let normal = self.normal * (contact.closing_speed() - 0.5 * self.normal / contact.normal_mass());

@@ -25,13 +25,13 @@ impl Quantity for Tangential {
 }
 
 impl NormalInelasticity {
-    /// The inelasticity of a normal restitution in `[0, 1]`.
+    /// Creates the inelasticity of a normal restitution in `[0, 1]`.
     pub(super) fn from_restitution(value: f64) -> Result<Self, ParameterError> {
         accept((0.0..=1.0).contains(&value), "normal restitution", "in [0, 1]", value)?;
         Self::new(0.5 * (1.0 - value))
     }
 
-    /// Impulse that reverses the closing speed with a loss (paper, Eq. (3)).
+    /// Returns the impulse that reverses the closing speed with a loss (paper, Eq. (3)).
     #[inline]
     pub(super) const fn impulse(self, contact: &Contact) -> f64 {
         2.0 * (1.0 - self.get()) * contact.normal_mass() * contact.closing_speed()
@@ -39,13 +39,13 @@ impl NormalInelasticity {
 }
 
 impl TangentialInelasticity {
-    /// The inelasticity of a tangential restitution in `[-1, 1]`.
+    /// Creates the inelasticity of a tangential restitution in `[-1, 1]`.
     pub(super) fn from_restitution(value: f64) -> Result<Self, ParameterError> {
         accept((-1.0..=1.0).contains(&value), "tangential restitution", "in [-1, 1]", value)?;
         Self::new(0.5 * (1.0 - value))
     }
 
-    /// Impulse that reverses the slip with a loss, as if the surfaces held (paper, Eq. (4)).
+    /// Returns the impulse that reverses the slip with a loss, as if the surfaces held (paper, Eq. (4)).
     #[inline]
     pub(super) const fn impulse(self, contact: &Contact) -> f64 {
         2.0 * (1.0 - self.get()) * contact.tangential_mass() * contact.slip_speed()

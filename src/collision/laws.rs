@@ -1,7 +1,8 @@
-//! The laws that a collision rule can break, as checks for rules of your own.
+//! Checks of the laws that a collision rule can break, for rules of your own.
 //!
-//! Momentum, angular momentum and Galilean invariance hold by construction: the engine applies any impulse
-//! and its opposite at the contact point. Left to the rule are separation, energy and friction.
+//! Momentum, angular momentum and Galilean invariance hold by construction, because the engine applies any
+//! impulse and its opposite at the contact point. The rule is responsible for separation, energy and
+//! friction.
 //!
 //! [`check_rule`] asks a rule about some ten thousand contacts, always the same ones, and fits into a plain
 //! test:
@@ -17,8 +18,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! For contacts of your own there are [`check`], [`check_friction_opposes_slip`] and [`check_friction_cone`],
-//! and under the feature `proptest` the module `strategies` makes random ones.
+//! For contacts of your own there are [`check`], [`check_friction_opposes_slip`] and [`check_friction_cone`].
+//! Under the feature `proptest`, the module `strategies` makes random contacts.
 
 mod hostile;
 mod rule;
@@ -30,14 +31,15 @@ pub use violation::Violation;
 
 use super::{Contact, Impulse};
 
-/// Rounding allowed in each law, relative to the speeds and energies of the contact.
+/// Allowed rounding in each law, relative to the speeds and energies of the contact.
 const ROUNDING: f64 = 1e-12;
 
-/// Smaller products than this have the fewer digits the smaller they are, so that no relative bound holds for
-/// them.
+/// Smallest product with a relative bound on its rounding. Below it, a number has the fewer digits the
+/// smaller it is.
 const LEAST: f64 = f64::MIN_POSITIVE;
 
-/// Checks that `impulse` is one that `contact` can suffer: finite, separating, not gaining energy.
+/// Checks that `impulse` is possible in `contact`: it is finite, it separates the surfaces, and it gains no
+/// energy.
 ///
 /// # Errors
 /// The first law that is broken.
@@ -60,7 +62,7 @@ pub fn check(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
     Ok(())
 }
 
-/// Checks all but the energy.
+/// Checks all laws but that of the energy.
 fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
     if !(impulse.normal().is_finite() && impulse.tangential().is_finite()) {
         return Err(Violation::NotFinite { contact: *contact, impulse });
@@ -72,10 +74,10 @@ fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation
     Ok(())
 }
 
-/// Checks that the tangential impulse is one of friction: it slows the slip, and at most reverses it.
+/// Checks that the tangential impulse can be friction: it slows the slip, and at most reverses it.
 ///
-/// A rule may add to the slip and still lose energy, which it then takes from the normal direction: [`check`]
-/// allows that, friction does not do it.
+/// A rule may add to the slip and still lose energy, if it takes that energy from the normal direction.
+/// [`check`] allows this, but friction never does it.
 ///
 /// # Errors
 /// If the slip is faster afterwards.
@@ -88,7 +90,7 @@ fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation
 /// ```
 pub fn check_friction_opposes_slip(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
     let slip_speed = slip_speed_after(contact, impulse);
-    // The sign is told exactly, however small an impulse is beside the slip.
+    // The sign is exact, however small the impulse is compared with the slip.
     let opposes = impulse.tangential() == 0.0 || impulse.tangential().signum() * contact.slip_speed() > 0.0;
     let bound = contact.slip_speed().abs() + rounding_of(contact.slip_speed(), contact.tangential_mass());
     if opposes && slip_speed.abs() <= bound {
@@ -122,23 +124,25 @@ pub fn check_friction_cone(
     }
 }
 
-/// Rounding of a speed after an impulse on this mass; the impulse itself is rounded at [`LEAST`].
+/// Returns the rounding of a speed after an impulse on this mass. The impulse itself has a rounding of
+/// [`LEAST`].
 fn rounding_of(speed: f64, mass: f64) -> f64 {
     ROUNDING * speed.abs() + LEAST / mass
 }
 
-/// Closing speed after the collision, `$v_n' = v_n - \Delta_n/\mu$`; negative when the surfaces separate.
+/// Returns the closing speed after the collision, `$v_n' = v_n - \Delta_n/\mu$`; negative if the surfaces
+/// separate.
 pub fn closing_speed_after(contact: &Contact, impulse: Impulse) -> f64 {
     contact.closing_speed() - impulse.normal() / contact.normal_mass()
 }
 
-/// Slip speed after the collision, `$v_t' = v_t - \Delta_t/\mu_t$`.
+/// Returns the slip speed after the collision, `$v_t' = v_t - \Delta_t/\mu_t$`.
 pub fn slip_speed_after(contact: &Contact, impulse: Impulse) -> f64 {
     contact.slip_speed() - impulse.tangential() / contact.tangential_mass()
 }
 
-/// Kinetic energy of the relative motion, `$\tfrac12\mu v_n^2 + \tfrac12\mu_t v_t^2$`: the most that a
-/// collision can lose.
+/// Returns the kinetic energy of the relative motion, `$\tfrac12\mu v_n^2 + \tfrac12\mu_t v_t^2$`. A
+/// collision can lose no more than that.
 pub fn available_energy(contact: &Contact) -> f64 {
     let (closing, slip) = (contact.closing_speed(), contact.slip_speed());
     0.5 * contact.normal_mass() * (closing * closing) + 0.5 * contact.tangential_mass() * (slip * slip)

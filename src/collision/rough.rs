@@ -7,7 +7,8 @@ use crate::{Fingerprint, ParameterError};
 /// Rough inelastic collisions without a Coulomb limit: every collision sticks, `$\Delta_n = 2(1-q_n)\mu v_n$`
 /// and `$\Delta_t = 2(1-q_t)\mu_t v_t$` (paper, Eqs. (3), (4) with `$\kappa\to\infty$`).
 ///
-/// `$q_t = 0$` is perfectly rough and elastic in the tangential direction, `$q_t = 1$` perfectly smooth.
+/// Disks with `$q_t = 0$` are perfectly rough and elastic in the tangential direction, disks with `$q_t = 1$`
+/// perfectly smooth.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Rough};
@@ -25,7 +26,7 @@ pub struct Rough {
 }
 
 impl Rough {
-    /// A rule with `$q_n \in [0, 1/2]$` and `$q_t \in [0, 1]$`.
+    /// Creates a rule with `$q_n \in [0, 1/2]$` and `$q_t \in [0, 1]$`.
     ///
     /// # Errors
     /// If one is out of range.
@@ -36,7 +37,7 @@ impl Rough {
         })
     }
 
-    /// A rule with the restitution coefficients `$r_n \in [0, 1]$` and `$r_t \in [-1, 1]$`.
+    /// Creates a rule with the restitution coefficients `$r_n \in [0, 1]$` and `$r_t \in [-1, 1]$`.
     ///
     /// # Errors
     /// If one is out of range.
@@ -47,12 +48,12 @@ impl Rough {
         })
     }
 
-    /// `$q_n$`.
+    /// Returns the normal inelasticity `$q_n$`.
     pub const fn normal_inelasticity(&self) -> f64 {
         self.normal_inelasticity.get()
     }
 
-    /// `$q_t$`.
+    /// Returns the tangential inelasticity `$q_t$`.
     pub const fn tangential_inelasticity(&self) -> f64 {
         self.tangential_inelasticity.get()
     }

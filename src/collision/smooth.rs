@@ -22,7 +22,7 @@ pub struct Smooth {
 }
 
 impl Smooth {
-    /// A rule with the normal inelasticity `$q_n \in [0, 1/2]$`.
+    /// Creates a rule with the normal inelasticity `$q_n \in [0, 1/2]$`.
     ///
     /// # Errors
     /// If it is out of range.
@@ -30,7 +30,7 @@ impl Smooth {
         Ok(Self { normal_inelasticity: NormalInelasticity::new(inelasticity)? })
     }
 
-    /// A rule with the normal restitution `$r_n \in [0, 1]$`.
+    /// Creates a rule with the normal restitution `$r_n \in [0, 1]$`.
     ///
     /// # Errors
     /// If it is out of range.
@@ -38,7 +38,7 @@ impl Smooth {
         Ok(Self { normal_inelasticity: NormalInelasticity::from_restitution(restitution)? })
     }
 
-    /// `$q_n$`.
+    /// Returns the normal inelasticity `$q_n$`.
     pub const fn normal_inelasticity(&self) -> f64 {
         self.normal_inelasticity.get()
     }

@@ -1,6 +1,7 @@
-//! Bytes behind a name, a version and a checksum.
+//! Seals of files: a name, a version and a checksum before the contents.
 
-/// Name and version of a format. They come first in a file, then a checksum of the contents, then these.
+/// Name and version of a format. A sealed file holds these first, then a checksum of the contents, then the
+/// contents.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Seal {
     pub(crate) magic: [u8; 8],
@@ -10,13 +11,13 @@ pub(crate) struct Seal {
 /// A reason not to trust contents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Broken {
-    /// They are of another format.
+    /// The contents are of another format.
     Foreign,
-    /// They are of another version of the format.
+    /// The contents are of another version of the format.
     Version(u32),
-    /// They were cut.
+    /// The contents were cut.
     Cut,
-    /// Their checksum does not match.
+    /// The checksum does not match the contents.
     Changed,
 }
 
@@ -24,7 +25,7 @@ pub(crate) enum Broken {
 const HEADER: usize = 8 + 4 + blake3::OUT_LEN;
 
 impl Seal {
-    /// Returns the contents behind this seal.
+    /// Returns the contents with this seal before them.
     pub(crate) fn seal(self, contents: &[u8]) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(HEADER + contents.len());
         bytes.extend_from_slice(&self.magic);
@@ -34,7 +35,7 @@ impl Seal {
         bytes
     }
 
-    /// Returns the contents behind a seal that is whole.
+    /// Checks the seal of these bytes, and returns the contents behind it.
     pub(crate) fn open(self, bytes: &[u8]) -> Result<&[u8], Broken> {
         let rest = bytes.strip_prefix(&self.magic).ok_or(Broken::Foreign)?;
         let (version, rest) = rest.split_first_chunk::<4>().ok_or(Broken::Cut)?;

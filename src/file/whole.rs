@@ -1,4 +1,4 @@
-//! Writing a file whole or not at all.
+//! Writes of files that are done whole or not at all.
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
@@ -10,16 +10,16 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Beginning and ending of the names of files that are being written.
 const TEMPORARY: (&str, &str) = ("granular-edmd-", ".tmp");
 
-/// Number of names that are tried before giving up. The second is needed only if two random numbers are the
-/// same.
+/// Number of names that are tried before giving up. The second is needed only if two random numbers are
+/// equal.
 const NAMES: usize = 8;
 
-/// Writes a file, whole or not at all: a reader never sees half of it, and a file of that name stays if this
-/// fails.
+/// Writes a file whole or not at all. A reader never sees half of it, and if the write fails, an older file
+/// of that name stays.
 ///
-/// The bytes go to a temporary file beside it, which then takes its name. Any number of threads, processes
-/// and hosts may write the same file at a time: each has a temporary file of its own, and the last one to
-/// rename wins.
+/// The bytes go to a temporary file in the same folder, which then takes the name of the file. Any number of
+/// threads, processes and hosts may write the same file at a time: each has its own temporary file, and the
+/// last one to rename it wins.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if path.file_name().is_none() {
         return Err(io::Error::new(
@@ -30,7 +30,8 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let (temporary, file) = create_temporary(path)?;
     let written = write_synced(file, bytes).and_then(|()| fs::rename(&temporary, path));
     if written.is_err() {
-        // The rest of the attempt helps nobody; the first error is the one to tell.
+        // The remains of the attempt help nobody. A failure to remove them is ignored, since the first error
+        // is the one to report.
         let _ = fs::remove_file(&temporary);
         return written;
     }
@@ -38,7 +39,7 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
-/// Tells whether a name is that of a file which [`write_whole`] was writing: its pattern, in every part.
+/// Tells whether a name is that of a temporary file of [`write_whole`]. Every part of the name must match.
 pub(crate) fn is_temporary(name: &OsStr) -> bool {
     let unique = name.to_str().and_then(|name| name.strip_prefix(TEMPORARY.0)?.strip_suffix(TEMPORARY.1));
     let Some(unique) = unique else { return false };
@@ -49,7 +50,7 @@ pub(crate) fn is_temporary(name: &OsStr) -> bool {
         if is_decimal(process) && is_decimal(count) && is_hexadecimal(random))
 }
 
-/// Makes a temporary file beside `path`. It is a new one: a file that is there already is never touched.
+/// Creates a temporary file beside `path`. The file is new: a file that is there already is never touched.
 fn create_temporary(path: &Path) -> io::Result<(PathBuf, File)> {
     let mut attempt = create_new(path);
     for _ in 1..NAMES {
@@ -69,12 +70,13 @@ fn create_new(path: &Path) -> io::Result<(PathBuf, File)> {
 
 /// Returns a name that no other writer has.
 ///
-/// The process tells programs on this host apart, the count the writers in this process, and the random
-/// number the hosts that share a disk. The file's own name is not in it, so that it cannot become too long.
+/// The process number tells programs on this host apart, the count tells writers in this process apart, and
+/// the random number tells hosts apart that share a disk. The file's own name is left out, so that the result
+/// cannot become too long.
 pub(crate) fn unique_name() -> String {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    // The standard library seeds its hash tables from the system: the random number that needs no dependency.
+    // The standard library seeds its hash tables from the system: a random number that needs no dependency.
     let random = RandomState::new().build_hasher().finish();
     format!("{}{}-{count}-{random:016x}{}", TEMPORARY.0, std::process::id(), TEMPORARY.1)
 }
@@ -86,8 +88,7 @@ fn write_synced(mut file: File, bytes: &[u8]) -> io::Result<()> {
 
 /// Asks the system to keep the new name through a loss of power, too.
 ///
-/// Best effort: the file is in its place, and there are file systems on which folders cannot be opened or
-/// synced.
+/// A failure is ignored: the file is in its place already, and some file systems cannot open or sync folders.
 fn sync_folder(path: &Path) {
     if cfg!(unix) {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -102,7 +103,7 @@ mod tests {
 
     use super::*;
 
-    /// A folder of a test's own, removed with it.
+    /// A folder of one test, removed when the test ends.
     struct Scratch(PathBuf);
 
     impl Scratch {
@@ -125,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_unique_and_recognised() {
+    fn names_are_unique_and_recognized() {
         let names: HashSet<String> = (0..1000).map(|_| unique_name()).collect();
         assert_eq!(names.len(), 1000);
         assert!(names.iter().all(|name| is_temporary(OsStr::new(name))));
@@ -173,7 +174,7 @@ mod tests {
         assert_eq!(fs::read(path).unwrap(), b"whole");
     }
 
-    /// Contents in which every part tells of every other: a file of two halves is noticed.
+    /// Returns contents in which every part tells of every other, so that a file of two halves is noticed.
     fn contents(writer: u8, count: u32) -> Vec<u8> {
         [vec![writer; 1], count.to_le_bytes().to_vec()].concat().repeat(3000)
     }

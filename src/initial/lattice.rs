@@ -13,11 +13,11 @@ const CLOSE: f64 = 1.000_1;
 /// Largest distance of neighbors, in diameters.
 const LOOSE: f64 = 1.4;
 
-/// Returns `count` equal disks at rest on a square lattice in the lower part of the boundary, from the left
-/// to the right in rows from the floor up.
+/// Returns `count` equal disks at rest on a square lattice in the lower part of the boundary, row by row from
+/// the floor up and from left to right.
 ///
-/// Neighbors are up to 1.4 diameters apart, closer if the boundary is not high enough for that. Sites that
-/// overlap a wall ([`Boundary::overlap`]) are left out.
+/// Neighbors are up to 1.4 diameters apart, and closer if the boundary is not high enough for that. Sites
+/// that overlap a wall ([`Boundary::overlap`]) are left out.
 ///
 /// # Errors
 /// If the radius is not finite and positive, there are more than 2²⁸ disks, or there is no room.

@@ -19,10 +19,10 @@ const TRIALS: usize = 10_000;
 /// that is lower).
 ///
 /// Places are drawn in the interior of the boundary, and taken where a disk overlaps neither another disk nor
-/// a wall ([`Boundary::overlap`] at time 0): in a round drum, disks come to lie inside of the circle.
+/// a wall ([`Boundary::overlap`] at time 0). In a round drum, all disks lie inside the circle.
 ///
-/// Disks are placed one by one where there is room: dense states (area fraction above 0.5, say) do not come
-/// about this way; start from a [`lattice`](super::lattice()) and let it melt.
+/// Disks are placed one by one where there is room. Dense states (area fraction above 0.5, say) cannot be
+/// reached in this way: start from a [`lattice`](super::lattice()) and let it melt.
 ///
 /// # Errors
 /// If the radius or the height is not finite and positive, or a disk finds no place in ten thousand trials.
@@ -50,8 +50,8 @@ pub fn random<B: Boundary + ?Sized>(
     placed_at_random(boundary, disks, below, seed)
 }
 
-/// Returns these disks, of any mix of radii, at random places that do not overlap, below the height `below`;
-/// else as [`random`].
+/// Returns these disks, of any mix of radii, at random places that do not overlap, below the height `below`.
+/// The rest is as for [`random`].
 ///
 /// # Errors
 /// If the height is not finite and positive, or a disk finds no place in ten thousand trials.
@@ -91,7 +91,7 @@ pub fn placed_at_random<B: Boundary + ?Sized>(
     Ok(placed)
 }
 
-/// Returns a place in the interior, with the disk's edge below the height `below`.
+/// Returns a random place in the interior, such that the disk's edge is below the height `below`.
 fn random_site(interior: &Domain, radius: f64, below: f64, generator: &mut Xoshiro256PlusPlus) -> DVec2 {
     let room = room(interior, radius);
     let top = room.top.min(below - radius);
@@ -101,7 +101,7 @@ fn random_site(interior: &Domain, radius: f64, below: f64, generator: &mut Xoshi
     )
 }
 
-/// Square bins that find the disks near a place.
+/// Square bins for finding the disks near a place.
 struct Bins {
     domain: Domain,
     size: f64,

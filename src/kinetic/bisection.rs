@@ -1,9 +1,10 @@
-//! The place at which a condition ceases to hold.
+//! The place at which a condition ceases to hold, by bisection.
 
-/// Returns the last number from `inside`, where `holds` is true, towards `outside`, where it is false.
+/// Returns the last number from `inside`, where `holds` is true, toward `outside`, where it is false.
 ///
-/// If it changes more than once in between, one of the changes is found. The search halves the interval until
-/// no floating-point number is left inside it, which about two thousand halvings always reach.
+/// If the condition changes more than once in between, one of the changes is found. The search halves the
+/// interval until no floating-point number is left inside it. About two thousand halvings always suffice for
+/// that.
 pub(super) fn boundary(inside: f64, outside: f64, holds: impl Fn(f64) -> bool) -> f64 {
     let (mut inside, mut outside) = (inside, outside);
     loop {

@@ -13,11 +13,11 @@ use crate::collision::Frictional;
 ///
 /// with `$p = 1-q_n$`, `$\lambda = \mu/\mu_t$`, `$w^2 = 1+(\lambda-1)T_r/T$`, and the sticking probability
 /// `$s = \sin\alpha$`, `$k = \cos\alpha$`, `$\tan\alpha = \lambda p\kappa_s/\big((1-q_t)w\big)$`. The result
-/// is an energy, in the units of the temperature. The paper has this average by Monte Carlo only (Fig. 1); at
-/// zero friction it is the paper's Eq. (8). The derivation is in `docs/physics-kinetic.md`.
+/// is an energy, in the units of the temperature. The paper computes this average by Monte Carlo only (Fig.
+/// 1). At zero friction the average is the paper's Eq. (8). The derivation is in `docs/physics-kinetic.md`.
 ///
-/// Masses enter through `$\lambda$` alone, which is 3 for homogeneous disks of any masses. So Fig. 1 of the
-/// paper holds for any mixture at equal temperatures.
+/// Masses enter through `$\lambda$` alone, which is 3 for homogeneous disks of any masses. Therefore, Fig. 1
+/// of the paper holds for any mixture at equal temperatures.
 ///
 /// ```
 /// use granular_edmd::collision::Frictional;
@@ -31,7 +31,7 @@ pub fn mean_energy_change(rule: &Frictional, gas: &Maxwellian) -> f64 {
     let (mass_ratio, slip_ratio_squared) = (gas.mass_ratio(), gas.slip_ratio_squared());
     let (normal, tangential) = (rule.normal_inelasticity(), rule.tangential_inelasticity());
     let sector = sector(rule, gas);
-    // Friction grows without bound and the cosine of the sector falls as its inverse: only their product is
+    // Friction grows without bound, and the cosine of the sector falls as its inverse. Only their product is
     // finite.
     let friction = rule.dynamic_friction() * sector.cosine * (1.0 - normal);
     let sticking = tangential * (1.0 - tangential) * slip_ratio_squared / mass_ratio * sector.sticking_slip();
@@ -43,7 +43,7 @@ pub fn mean_energy_change(rule: &Frictional, gas: &Maxwellian) -> f64 {
 
 /// Returns the fraction of collisions that stick, under the paper's rule in a Maxwellian gas.
 ///
-/// It is `$s = \sin\alpha$`, `$\tan\alpha = \lambda(1-q_n)\kappa_s/\big((1-q_t)w\big)$` (see
+/// The fraction is `$s = \sin\alpha$` with `$\tan\alpha = \lambda(1-q_n)\kappa_s/\big((1-q_t)w\big)$` (see
 /// [`mean_energy_change`]).
 ///
 /// ```

@@ -2,7 +2,7 @@
 
 use crate::statistics::Estimate;
 
-/// Averages over the collisions of a gas under a rule; made by
+/// The averages over the collisions of a gas under a rule; made by
 /// [`MonteCarlo::average`](super::MonteCarlo::average).
 ///
 /// ```
@@ -31,8 +31,8 @@ impl CollisionAverage {
         self.energy_change
     }
 
-    /// Returns the fraction of collisions that the rule calls
-    /// [`Regime::Sticking`](crate::collision::Regime::Sticking), to about `2/sqrt(samples)`.
+    /// Returns the fraction of collisions that the rule labels
+    /// [`Regime::Sticking`](crate::collision::Regime::Sticking). Its error is about `2/sqrt(samples)`.
     pub const fn sticking_fraction(&self) -> f64 {
         self.sticking_fraction
     }

@@ -1,4 +1,4 @@
-//! One coefficient for the whole energy loss of a collision.
+//! The effective inelasticity: one coefficient for the whole energy loss of a collision.
 
 use crate::ParameterError;
 use crate::collision::Smooth;
@@ -6,16 +6,16 @@ use crate::quantity::{accept, positive};
 
 /// Returns the effective normal inelasticity: that of smooth disks that lose as much energy per collision.
 ///
-/// It is the paper's Eq. (9),
+/// The effective inelasticity is the paper's Eq. (9),
 ///
 /// ```math
 /// q_\text{eff} = \tfrac12\left(1 - \sqrt{1 + \langle dE\rangle/T}\right),
 /// ```
 ///
 /// in `[0, 1/2]`, for a mean energy change in `$[-T, 0]$`, with `$T$` the translational temperature. No gas
-/// of smooth disks is outside of that range: with restitution zero they lose exactly `$T$`, and they never
-/// gain energy. Friction can lose more, and a Monte Carlo mean can be above zero within its error; both are
-/// refused rather than clipped.
+/// of smooth disks is outside that range: with restitution zero they lose exactly `$T$`, and they never gain
+/// energy. Disks with friction can lose more, and a Monte Carlo mean can be above zero within its error. Such
+/// values are refused rather than clipped.
 ///
 /// # Errors
 /// If the temperature is not positive, or the mean energy change is not in `$[-T, 0]$`.
@@ -30,14 +30,14 @@ use crate::quantity::{accept, positive};
 pub fn effective_inelasticity(mean_energy_change: f64, temperature: f64) -> Result<f64, ParameterError> {
     let change = mean_energy_change / positive("temperature", temperature)?;
     accept((-1.0..=0.0).contains(&change), "mean energy change per temperature", "in [-1, 0]", change)?;
-    // (1 - root)/2, multiplied by (1 + root) above and below: at small losses the root is close to 1, and the
-    // difference would keep few digits.
+    // The result is (1 - root)/2, multiplied by (1 + root) above and below. At small losses the root is close
+    // to 1, and the difference would keep few digits.
     Ok(0.5 * change.abs() / (1.0 + (1.0 + change).sqrt()))
 }
 
 /// Returns the mean energy change per collision without friction, the inverse of [`effective_inelasticity`].
 ///
-/// It is `$\langle dE\rangle = -4q_n(1-q_n)T$` (paper, Eq. (8)).
+/// The energy change is `$\langle dE\rangle = -4q_n(1-q_n)T$` (paper, Eq. (8)).
 ///
 /// # Errors
 /// If the inelasticity is not in `[0, 1/2]`, or the temperature is not positive.

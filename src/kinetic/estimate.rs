@@ -15,23 +15,23 @@ impl Estimate {
         Self { mean, standard_error, samples, sticking_fraction }
     }
 
-    /// `$\langle dE\rangle$`, negative when energy is lost.
+    /// Returns `$\langle dE\rangle$`, negative when energy is lost.
     pub const fn mean(&self) -> f64 {
         self.mean
     }
 
-    /// Standard error of the mean, from the scatter of the samples within each stratum.
+    /// Returns the standard error of the mean, from the scatter of the samples within each stratum.
     pub const fn standard_error(&self) -> f64 {
         self.standard_error
     }
 
-    /// Number of collisions sampled.
+    /// Returns the number of collisions sampled.
     pub const fn samples(&self) -> u64 {
         self.samples
     }
 
-    /// Fraction of collisions that the rule calls [`Regime::Sticking`](crate::collision::Regime::Sticking);
-    /// its error is about `2/sqrt(samples)`.
+    /// Returns the fraction of collisions that the rule labels
+    /// [`Regime::Sticking`](crate::collision::Regime::Sticking). Its error is about `2/sqrt(samples)`.
     pub const fn sticking_fraction(&self) -> f64 {
         self.sticking_fraction
     }

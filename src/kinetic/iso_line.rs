@@ -13,7 +13,8 @@ pub type Piece = Vec<(f64, f64)>;
 /// `$q = q_n = q_t$` (paper, Fig. 1), for the paper's rule.
 ///
 /// With equal inelasticities the sticking probability does not depend on `$q$`, and `$\langle dE\rangle$` is
-/// a polynomial of second degree in `$q$`. So each friction has at most two `$q$`, and none is missed.
+/// a polynomial of second degree in `$q$`. Each friction therefore has at most two values of `$q$`, and none
+/// is missed.
 ///
 /// ```
 /// use granular_edmd::kinetic::{IsoLine, Maxwellian};
@@ -33,14 +34,14 @@ pub type Piece = Vec<(f64, f64)>;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IsoLine {
-    /// `$\langle dE\rangle/T$`.
+    /// Relative energy change `$\langle dE\rangle/T$` on the line.
     change: f64,
     mass_ratio: f64,
     slip_ratio: f64,
 }
 
 impl IsoLine {
-    /// Makes the line of this mean energy change per collision.
+    /// Creates the line of this mean energy change per collision.
     ///
     /// # Errors
     /// If the mean energy change is not finite, or positive: no collision gains energy.
@@ -55,7 +56,7 @@ impl IsoLine {
     }
 
     /// Returns the inelasticities in `[0, 1/2]` with this energy change at this friction: none, one or two,
-    /// ascending.
+    /// in ascending order.
     ///
     /// # Errors
     /// If the friction is negative or not finite.
@@ -68,10 +69,10 @@ impl IsoLine {
     /// Traces the line at these ascending frictions, as far as the inelasticity is at most
     /// `largest_inelasticity`.
     ///
-    /// The result is the connected pieces of the line. A piece that ends between two of the frictions gets
-    /// its exact end as a last point: the line leaves the plane there, or its lower and its upper
-    /// inelasticity meet, and both pieces have this point. A piece that lies between two of the frictions as
-    /// a whole is missed.
+    /// The result contains the connected pieces of the line. A piece that ends between two of the frictions
+    /// gets its exact end as a last point. There the line leaves the plane, or its lower and its upper
+    /// inelasticity meet; in that case both pieces have this point. A piece that lies entirely between two of
+    /// the frictions is missed.
     ///
     /// # Errors
     /// If a friction is negative or not finite, the frictions do not ascend, or `largest_inelasticity` is not
@@ -88,9 +89,11 @@ impl IsoLine {
         Ok([pieces(frictions, on(0)), pieces(frictions, on(1))].concat())
     }
 
-    /// Returns both real `$q$` at a friction, ascending, in the plane or not.
+    /// Returns both real values of `$q$` at a friction, in ascending order, whether they are in the plane or
+    /// not.
     ///
-    /// They solve `$a q^2 - b q + c = 0$` with `$c = (\langle dE\rangle|_{q=0} - \langle dE\rangle)/T$`.
+    /// The values solve `$a q^2 - b q + c = 0$` with
+    /// `$c = (\langle dE\rangle|_{q=0} - \langle dE\rangle)/T$`.
     fn roots(&self, friction: f64) -> [Option<f64>; 2] {
         let sector = StickSlip::new(friction, self.mass_ratio, self.slip_ratio);
         let squared = self.slip_ratio * self.slip_ratio / self.mass_ratio;
@@ -102,14 +105,14 @@ impl IsoLine {
     }
 }
 
-/// Returns the real roots of `$a x^2 - b x + c$` with `$a > 0$`, ascending.
+/// Returns the real roots of `$a x^2 - b x + c$` with `$a > 0$`, in ascending order.
 fn roots(a: f64, b: f64, c: f64) -> [Option<f64>; 2] {
     let discriminant = b * b - 4.0 * a * c;
     if discriminant < 0.0 {
         return [None; 2];
     }
-    // The root of larger size adds two numbers of the same sign. The other one would be their difference,
-    // with few digits left; the product of both roots, c/a, gives it in full.
+    // The root of larger size adds two numbers of the same sign. The other root would be their difference,
+    // with few digits left. The product of both roots, c/a, gives it to full precision.
     let larger = 0.5 * (b + discriminant.sqrt().copysign(b));
     if larger == 0.0 {
         return [Some(0.0); 2];

@@ -1,22 +1,23 @@
-//! The friction at which most energy is lost.
+//! The friction of the largest energy loss.
 
 use super::Maxwellian;
 use super::bisection::boundary;
 use crate::collision::Frictional;
 
-/// Returns the static friction at which the mean energy loss is largest, with all else as in `rule`.
+/// Returns the static friction at which the mean energy loss is largest, with the other coefficients of
+/// `rule`.
 ///
-/// The ratio `$\rho = \kappa_d/\kappa_s$` stays, too (1 if the rule has no friction). At a stationary point
-/// the sticking probability `$s$` depends on `$\rho$` and `$q_t$` alone; for `$\rho = 1$`
+/// The ratio `$\rho = \kappa_d/\kappa_s$` also stays as it is (1 if the rule has no friction). At a
+/// stationary point the sticking probability `$s$` depends on `$\rho$` and `$q_t$` alone; for `$\rho = 1$`
 ///
 /// ```math
 /// s = \sqrt{\frac{2(1-q_t)}{1-2q_t}} - 1,\qquad
 /// \kappa = \frac{(1-q_t)\,w}{\lambda(1-q_n)}\,\frac{s}{\sqrt{1-s^2}},
 /// ```
 ///
-/// which exists for `$q_t < 1/3$` (notation of [`mean_energy_change`](super::mean_energy_change); derivation
-/// in `docs/physics-kinetic.md`). Elastic disks lose most at `$\kappa = 0.2627$`, the paper's
-/// `$\kappa\approx0.3$`.
+/// which exists for `$q_t < 1/3$`. The notation is that of [`mean_energy_change`](super::mean_energy_change);
+/// the derivation is in `docs/physics-kinetic.md`. Elastic disks lose most at `$\kappa = 0.2627$`, the
+/// paper's `$\kappa\approx0.3$`.
 ///
 /// The result is `None` if no finite friction loses most. Where sticking itself loses much (`$q_t\ge1/3$` for
 /// `$\rho=1$`), the loss grows with friction all the way to rough disks; for `$\rho = 0$` sliding loses
@@ -45,12 +46,12 @@ fn friction_ratio(rule: &Frictional) -> f64 {
     if rule.static_friction() == 0.0 { 1.0 } else { rule.dynamic_friction() / rule.static_friction() }
 }
 
-/// A function of the sticking probability `$s$` with the sign of the slope of `$\langle dE\rangle$` in
+/// A function of the sticking probability `$s$` that has the sign of the slope of `$\langle dE\rangle$` in
 /// friction.
 ///
-/// It is `$-\rho + 3Gs^2 + 2H\,(1-(1+s)^{-2})$` with `$H = \rho^2(1-q_t)$`, `$G = \rho - q_t - H$`. It starts
-/// negative: the loss grows with friction. For `$G<0$` it stays negative; otherwise it rises, and its one
-/// root is the only minimum of `$\langle dE\rangle$`.
+/// The function is `$-\rho + 3Gs^2 + 2H\,(1-(1+s)^{-2})$` with `$H = \rho^2(1-q_t)$`, `$G = \rho - q_t - H$`.
+/// It starts negative: the loss grows with friction. For `$G<0$` it stays negative. Otherwise it rises, and
+/// its one root is the only minimum of `$\langle dE\rangle$`.
 struct Slope {
     ratio: f64,
     quadratic: f64,
@@ -65,7 +66,8 @@ impl Slope {
 
     fn at(&self, sine: f64) -> f64 {
         let above = 1.0 + sine;
-        // 1 - 1/(1+s)² over a common denominator: at small s the difference would keep few digits.
+        // This form of 1 - 1/(1+s)² has a common denominator. At small s the difference would keep few
+        // digits.
         let saturated = sine * (1.0 + above) / (above * above);
         -self.ratio + 3.0 * self.quadratic * sine * sine + 2.0 * self.saturating * saturated
     }

@@ -1,11 +1,10 @@
-//! The gas whose collisions are averaged.
+//! The Maxwellian gas whose collisions are averaged.
 
 use crate::collision::Contact;
 use crate::quantity::accept;
 use crate::{Disk, ParameterError};
 
-/// Smallest and largest temperature. Products and quotients with masses of the same range stay finite and
-/// normal.
+/// Range of a temperature. Products and quotients with masses of the same range stay finite and normal.
 const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
 /// A gas of Maxwellian velocities and spins, seen through the collisions of two of its disks.
@@ -49,7 +48,7 @@ pub struct Maxwellian {
 }
 
 impl Maxwellian {
-    /// Makes a gas of identical homogeneous disks of mass 1, with velocities and spins at this temperature.
+    /// Creates a gas of identical homogeneous disks of mass 1, with velocities and spins at this temperature.
     ///
     /// # Errors
     /// If the temperature is not in `[1e-30, 1e30]`.
@@ -64,7 +63,8 @@ impl Maxwellian {
         })
     }
 
-    /// Returns the same gas with its spins at another temperature. Zero: no disk rotates before it collides.
+    /// Returns the same gas with its spins at another temperature. At temperature zero, no disk rotates
+    /// before it collides.
     ///
     /// # Errors
     /// If the temperature is not in `[0, 1e30]`.
@@ -74,7 +74,7 @@ impl Maxwellian {
         Ok(Self { rotational_temperature: temperature, ..self })
     }
 
-    /// Returns the same gas, seen through the collisions of these two kinds of disks.
+    /// Returns the same gas, with collisions between these two kinds of disks.
     ///
     /// Only their masses and inertia factors matter; position and motion are ignored.
     pub fn with_partners(self, first: &Disk, second: &Disk) -> Self {
@@ -85,32 +85,32 @@ impl Maxwellian {
         }
     }
 
-    /// The translational temperature, `$T = m\langle v_x^2\rangle$`.
+    /// Returns the translational temperature, `$T = m\langle v_x^2\rangle$`.
     pub const fn translational_temperature(&self) -> f64 {
         self.translational_temperature
     }
 
-    /// The rotational temperature, `$T_r = I\langle\omega^2\rangle$`.
+    /// Returns the rotational temperature, `$T_r = I\langle\omega^2\rangle$`.
     pub const fn rotational_temperature(&self) -> f64 {
         self.rotational_temperature
     }
 
-    /// The normal effective mass `$\mu$`, with `$1/\mu = \sum 1/m_i$`.
+    /// Returns the normal effective mass `$\mu$`, with `$1/\mu = \sum 1/m_i$`.
     pub fn normal_mass(&self) -> f64 {
         1.0 / (1.0 / self.masses[0] + 1.0 / self.masses[1])
     }
 
-    /// The tangential effective mass `$\mu_t$`, with `$1/\mu_t = \sum (1 + 1/\beta_i)/m_i$`.
+    /// Returns the tangential effective mass `$\mu_t$`, with `$1/\mu_t = \sum (1 + 1/\beta_i)/m_i$`.
     pub fn tangential_mass(&self) -> f64 {
         1.0 / (self.compliance(0) + self.compliance(1))
     }
 
-    /// Half the mean square of the closing speed over collisions, `$S$`.
+    /// Returns half the mean square of the closing speed over collisions, `$S$`.
     pub fn closing_variance(&self) -> f64 {
         self.translational_temperature / self.normal_mass()
     }
 
-    /// Mean square of the slip speed over collisions, `$V$`.
+    /// Returns the mean square of the slip speed over collisions, `$V$`.
     pub fn slip_variance(&self) -> f64 {
         self.closing_variance() * self.slip_ratio_squared()
     }
@@ -119,14 +119,14 @@ impl Maxwellian {
         (1.0 + 1.0 / self.inertia_factors[partner]) / self.masses[partner]
     }
 
-    /// Ratio of the effective masses, `$\lambda = \mu/\mu_t$`: 3 for homogeneous disks, whatever their
-    /// masses.
+    /// Returns the ratio of the effective masses, `$\lambda = \mu/\mu_t$`. It is 3 for homogeneous disks,
+    /// whatever their masses.
     #[inline]
     pub(super) fn mass_ratio(&self) -> f64 {
         self.normal_mass() / self.tangential_mass()
     }
 
-    /// Ratio of the variances, `$w^2 = V/S = 1 + (\lambda - 1)T_r/T$`.
+    /// Returns the ratio of the variances, `$w^2 = V/S = 1 + (\lambda - 1)T_r/T$`.
     #[inline]
     pub(super) fn slip_ratio_squared(&self) -> f64 {
         1.0 + (self.mass_ratio() - 1.0) * (self.rotational_temperature / self.translational_temperature)
@@ -144,7 +144,7 @@ impl Maxwellian {
     }
 }
 
-/// The contents of a file, before they have passed the constructors.
+/// Fields of a gas in a file, before they have passed the constructors.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields, rename = "Maxwellian")]

@@ -10,31 +10,33 @@ use crate::quantity::positive;
 use crate::random::{normal, uniform};
 use crate::statistics::{Estimate, RunningMean};
 
-/// Strata of the angle between closing and slip speed.
+/// Number of strata of the angle between closing and slip speed.
 const STRATA: u32 = 64;
-/// Samples per stratum in one chunk.
+/// Number of samples per stratum in one chunk.
 const SAMPLES: u32 = 64;
-/// Collisions in one chunk, the unit of parallel work.
+/// Number of collisions in one chunk, the unit of parallel work.
 const CHUNK: u64 = STRATA as u64 * SAMPLES as u64;
-/// Chunks before the error is looked at for the first time: enough for the error to be known well itself.
+/// Number of chunks before the error is checked for the first time. They suffice for the error to be well
+/// known itself.
 const FIRST_ROUND: u64 = 16;
 
-/// Monte Carlo average of the energy change per collision, for any rule.
+/// A Monte Carlo average of the energy change per collision, for any rule.
 ///
 /// In units of `$\sqrt S$` and `$\sqrt V$` (see [`Maxwellian`]), the closing and the slip speed are the
 /// radius and the height of an isotropic vector of length `$R$` and polar angle `$\theta$`. Samples are drawn
 /// where they matter:
 ///
-/// - The angle is uniform, in 64 strata, so that grazing collisions get more samples than they would by
-///   chance.
-/// - `$R^2$` has its own density times `$R^2$`, because the energy of the relative motion, the most that a
-///   collision can lose, is proportional to it.
+/// - The angle is drawn uniformly, in 64 strata, so that grazing collisions get more samples than they would
+///   by chance.
+/// - The density of `$R^2$` is the true one times `$R^2$`, because the energy of the relative motion, the
+///   most that a collision can lose, is proportional to `$R^2$`.
 ///
-/// A weight makes up for both, so the estimate is unbiased for every rule. Under a rule without a speed
-/// scale, like the paper's, the only scatter left is that of the angle within a stratum.
+/// A weight compensates for both choices, so the estimate is unbiased for every rule. Under a rule without a
+/// speed scale, like the paper's, the only remaining scatter is that of the angle within a stratum.
 ///
-/// Collisions come in chunks of 4096. Each has a stream of its own from one generator, and chunks are added
-/// in order: the result is the same bits on any number of threads, with and without the feature `rayon`.
+/// Collisions come in chunks of 4096. Each chunk has its own stream from one generator, and chunks are added
+/// in order. The result therefore has the same bits on any number of threads, with and without the feature
+/// `rayon`.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse, from_fn};
@@ -60,21 +62,21 @@ pub struct MonteCarlo {
 }
 
 impl MonteCarlo {
-    /// Makes an average over 2²⁰ collisions.
+    /// Creates an average over 2²⁰ collisions.
     pub const fn new(seed: u64) -> Self {
         Self { seed, samples: 1 << 20, standard_error: None }
     }
 
-    /// Returns the same average over this number of collisions, rounded up to a multiple of 4096, at least
-    /// one.
+    /// Returns the same average over this number of collisions, rounded up to a multiple of 4096 and at
+    /// least 4096.
     pub const fn with_samples(self, samples: u64) -> Self {
         Self { samples, ..self }
     }
 
-    /// Returns the same average, but stopping early once the standard error is this small.
+    /// Returns the same average, which stops early once the standard error is this small.
     ///
-    /// The error is looked at after 2¹⁶ collisions and at each doubling. If the collisions run out first,
-    /// [`Estimate::standard_error`] is the error reached.
+    /// The error is checked after 2¹⁶ collisions and at each doubling. If the collisions run out first,
+    /// [`Estimate::standard_error`] is the error that was reached.
     ///
     /// # Errors
     /// If the error is not finite and positive.
@@ -84,8 +86,8 @@ impl MonteCarlo {
 
     /// Samples the mean energy change per collision `$\langle dE\rangle$` of `rule` in `gas`.
     ///
-    /// The partners have never collided before: a rule that asks for the time since their last collision is
-    /// told infinity.
+    /// The partners have never collided before: a rule that asks for the time since their last collision gets
+    /// infinity.
     pub fn mean_energy_change<R>(&self, rule: &R, gas: &Maxwellian) -> Estimate
     where
         R: CollisionRule + Sync + ?Sized,
@@ -93,8 +95,8 @@ impl MonteCarlo {
         self.average(rule, gas).energy_change()
     }
 
-    /// Returns averages over the collisions of `rule` in `gas`: the energy change, and the fraction that
-    /// sticks.
+    /// Returns averages over the collisions of `rule` in `gas`: the energy change, and the fraction of
+    /// collisions that stick.
     pub fn average<R>(&self, rule: &R, gas: &Maxwellian) -> CollisionAverage
     where
         R: CollisionRule + Sync + ?Sized,
@@ -119,7 +121,7 @@ impl MonteCarlo {
     }
 }
 
-/// Generators that never overlap, one per chunk.
+/// Random number generators that never overlap, one per chunk.
 struct Streams(Xoshiro256PlusPlus);
 
 impl Iterator for Streams {
@@ -132,20 +134,20 @@ impl Iterator for Streams {
     }
 }
 
-/// Does `work` on every item; the results are in order.
+/// Does `work` on every item. The results are in the order of the items.
 #[cfg(feature = "rayon")]
 fn map<T: Send, U: Send>(items: Vec<T>, work: impl Fn(T) -> U + Send + Sync) -> Vec<U> {
     use rayon::prelude::*;
     items.into_par_iter().map(work).collect()
 }
 
-/// Does `work` on every item; the results are in order.
+/// Does `work` on every item. The results are in the order of the items.
 #[cfg(not(feature = "rayon"))]
 fn map<T, U>(items: Vec<T>, work: impl Fn(T) -> U) -> Vec<U> {
     items.into_iter().map(work).collect()
 }
 
-/// Means over one chunk, and the variance of its mean energy.
+/// Means over one chunk, and the variance of its mean energy change.
 #[derive(Default)]
 struct Chunk {
     energy: f64,
@@ -175,7 +177,7 @@ where
     chunk
 }
 
-/// A collision in scaled speeds, and its weight.
+/// A collision in scaled speeds, with its weight.
 struct Sample {
     closing: f64,
     slip: f64,

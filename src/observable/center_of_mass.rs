@@ -4,8 +4,8 @@ use glam::DVec2;
 
 use super::{Observable, Snapshot};
 
-/// Position of the center of mass, `$\sum m_i\vec r_i/\sum m_i$`; its `y` is the `$Y_{cm}$` of the paper's
-/// Fig. 2. NaN without disks.
+/// The position of the center of mass, `$\sum m_i\vec r_i/\sum m_i$`, or NaN without disks. Its `y` is the
+/// `$Y_{cm}$` of the paper's Fig. 2.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;

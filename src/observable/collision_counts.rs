@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::{Collision, Observer, Partner};
 use crate::collision::Regime;
 
-/// Counts of collisions by partner and regime, and their rates.
+/// An observer that counts collisions by partner and regime, and knows their rates.
 ///
 /// ```
 /// use granular_edmd::observable::CollisionCounts;
@@ -27,7 +27,7 @@ pub struct CollisionCounts {
 }
 
 impl CollisionCounts {
-    /// Makes counts of which rates start at this absolute time.
+    /// Creates counts whose rates start at this absolute time.
     pub fn since(start: f64) -> Self {
         Self { start, ..Self::default() }
     }
@@ -59,8 +59,8 @@ impl CollisionCounts {
         }
     }
 
-    /// Returns the disk–disk collisions per disk and time until the absolute time `now`: each counts for both
-    /// partners.
+    /// Returns the disk–disk collisions per disk and time until the absolute time `now`. Each collision
+    /// counts for both partners.
     pub fn rate_per_disk(&self, disks: usize, now: f64) -> f64 {
         2.0 * self.disks as f64 / (disks as f64 * (now - self.start))
     }
@@ -100,7 +100,7 @@ impl TryFrom<RawCollisionCounts> for CollisionCounts {
     fn try_from(raw: RawCollisionCounts) -> Result<Self, Self::Error> {
         let RawCollisionCounts { start, disks, walls, sticking, sliding, contact_duration } = raw;
         crate::quantity::finite("start of the counts", start)?;
-        // In 128 bits, where sums of forged counts do not wrap.
+        // The sum has 128 bits, so that sums of forged counts do not wrap.
         let sum = |counts: &[u64]| counts.iter().map(|&count| u128::from(count)).sum::<u128>();
         let all = u128::from(disks) + walls.values().map(|&count| u128::from(count)).sum::<u128>();
         let regimes = sum(&[sticking, sliding, contact_duration]);

@@ -1,4 +1,4 @@
-//! A collision as an observer sees it.
+//! Collisions, as an observer sees them.
 
 use glam::DVec2;
 
@@ -16,14 +16,14 @@ pub enum Partner {
 /// A collision that has just happened.
 ///
 /// At a thermal wall the contact is that of the arriving disk, and the impulse is all that the disk received.
-/// The wall draws its rotation anew, too: only [`Self::energy_change`] contains that.
+/// The wall also draws a new rotation for the disk, which only [`Self::energy_change`] contains.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse};
 /// use granular_edmd::glam::DVec2;
 /// use granular_edmd::observable::{Collision, EnergyChange, Observer, Partner};
 ///
-/// // What an observer makes of a collision with the floor, without a simulation.
+/// // An observer sees a collision with the floor, without a simulation.
 /// let (contact, impulse) = (Contact::new(2.0, 0.0, 1.0, 1.0 / 3.0), Impulse::new(3.0, 0.0));
 /// let mut energy_change = EnergyChange::default();
 /// energy_change.on_collision(&Collision::new(0.5, 7, Partner::Wall(0), contact, impulse));
@@ -46,23 +46,23 @@ pub struct Collision {
     pub normal: DVec2,
     /// Position of the disk's center.
     pub position: DVec2,
-    /// Distance of the centers; for a wall, of the center and the wall.
+    /// Distance of the centers, or of the center and the wall.
     pub distance: f64,
-    /// The surfaces as they met.
+    /// The contact as the surfaces met.
     pub contact: Contact,
     /// The impulse on the disk.
     pub impulse: Impulse,
-    /// Change of the kinetic energy of the disk and a partner disk. A moving wall gives or takes energy; what
-    /// is lost in its frame is [`Impulse::energy_change`].
+    /// Change of the kinetic energy of the disk and of a partner disk. A moving wall gives or takes energy.
+    /// The change in the frame of the wall is [`Impulse::energy_change`].
     pub energy_change: f64,
 }
 
 impl Collision {
-    /// Makes a collision, for tests of observers; the engine fills all fields itself.
+    /// Creates a collision for tests of observers. The engine fills all fields itself.
     ///
-    /// The fields that are not given have plain values, to be set where they matter: the normal points up,
-    /// the position is the origin, the disks have radius 1/2 (a `distance` of 1, and of 1/2 to a wall), and
-    /// the `energy_change` is that of the impulse, as of two disks, or at a wall at rest.
+    /// The fields that are not given have plain values; set them where they matter. The normal points up, the
+    /// position is the origin, and the disks have radius 1/2 (a `distance` of 1, or of 1/2 to a wall). The
+    /// `energy_change` is that of the impulse, which is right for two disks and for a wall at rest.
     pub fn new(time: f64, disk: usize, partner: Partner, contact: Contact, impulse: Impulse) -> Self {
         let distance = match partner {
             Partner::Disk(_) => 1.0,
@@ -75,7 +75,7 @@ impl Collision {
 
     /// Returns the position of the partner: the center of a disk, or the point where a wall is touched.
     ///
-    /// At periodic sides the disk may touch the partner's image, whose position this is then.
+    /// At periodic sides, the disk may touch an image of the partner. The position is then that of the image.
     pub fn partner_position(&self) -> DVec2 {
         self.position - self.normal * self.distance
     }

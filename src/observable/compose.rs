@@ -1,13 +1,13 @@
-//! Observers and observables made of others.
+//! Compositions of observers and observables.
 //!
-//! An observer made of others tells all of them everything, but shows a sample only to those that asked for
-//! it. Its verdict is the first failure, else to stop if one of them says so.
+//! A composed observer passes all messages on to all its parts, but shows a sample only to those that asked
+//! for it. Its verdict is the first failure. Without a failure, it stops the run if one of its parts says so.
 
 use std::ops::ControlFlow;
 
 use super::{Collision, Moment, Observable, Observer, Snapshot, Verdict};
 
-/// Nobody watches: costs nothing.
+/// The observer that does nothing and costs nothing.
 impl Observer for () {}
 
 impl<T: Observer + ?Sized> Observer for &mut T {
@@ -111,7 +111,7 @@ impl<T: Observer> Observer for Vec<T> {
     }
 }
 
-/// One observer or none.
+/// An observer that may be absent.
 impl<T: Observer> Observer for Option<T> {
     fn on_start(&mut self, moment: &Moment) {
         self.as_mut_slice().on_start(moment);
@@ -135,24 +135,25 @@ impl<T: Observer> Observer for Option<T> {
     }
 }
 
-/// Shows the snapshot to an observer that asked for it, not to its neighbors who wait for later times.
+/// Shows the snapshot to an observer that asked for it, but not to its neighbors that wait for later times.
 fn sample_if_due<T: Observer>(observer: &mut T, snapshot: &Snapshot<'_>) {
     if observer.next_sample() <= snapshot.time() {
         observer.on_sample(snapshot);
     }
 }
 
-/// The earlier of two times; NaN if one is, where `f64::min` would hide a broken clock from the engine.
+/// Returns the earlier of two times, or NaN if one is NaN; `f64::min` would hide a broken clock from the
+/// engine.
 fn earlier(first: f64, second: f64) -> f64 {
     if first < second || first.is_nan() { first } else { second }
 }
 
-/// Stops if one of two says so.
+/// Decides to stop if one of two verdicts says so.
 fn either(first: ControlFlow<()>, second: ControlFlow<()>) -> ControlFlow<()> {
     if first.is_break() { first } else { second }
 }
 
-// A function cannot be generic over the length of a tuple.
+// A macro is needed, because a function cannot be generic over the length of a tuple.
 macro_rules! compose_tuple {
     ($($name:ident $index:tt),+) => {
         impl<$($name: Observer),+> Observer for ($($name,)+) {

@@ -1,4 +1,4 @@
-//! The traits of this floor, and what both sides of each promise.
+//! The traits of this module, and what both sides of each trait promise.
 
 use std::ops::ControlFlow;
 
@@ -9,9 +9,9 @@ use super::{Collision, Moment, Snapshot};
 /// # Contract
 /// `measure` depends on the snapshot alone: measured twice, the same snapshot gives the same value. It must
 /// not panic for a snapshot without disks, or of a domain without a lid, whose height is infinite. A value
-/// that cannot be told is NaN.
+/// that is not defined is NaN.
 ///
-/// The engine measures on copies: nothing that is done here reaches the run.
+/// The engine measures copies of the disks, so nothing that is done here reaches the run.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observable",
     label = "an `Observable` is expected here",
@@ -26,40 +26,42 @@ pub trait Observable {
     fn measure(&self, snapshot: &Snapshot<'_>) -> Self::Value;
 }
 
-/// An error that an observer ends a run with.
+/// An error with which an observer ends a run.
 pub type ObserverError = Box<dyn std::error::Error + Send + Sync>;
 
-/// An observer's answer to the question of whether the run goes on: go on, stop here, or fail.
+/// An observer's answer to the question whether the run goes on: go on, stop here, or fail.
 pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 
 /// A watcher of a run, told of what happens and shown samples at the times that it asks for.
 ///
-/// All methods have a default, which does nothing. All times are absolute, as in [`Simulation::time`](crate::Simulation::time).
+/// All methods have a default, which does nothing. All times are absolute, as in
+/// [`Simulation::time`](crate::Simulation::time).
 ///
 /// # What the engine guarantees
-/// 1. Each call of `run_until` begins with `on_start` and ends with `on_end`, in whichever way it ends: at
-///    its end, stopped, or with an error.
-/// 2. `on_collision` comes once for each collision, in the order of their times, after the disks have
+/// 1. Each call of `run_until` begins with `on_start` and ends with `on_end`, whether it comes to its end, is
+///    stopped, or fails.
+/// 2. `on_collision` is called once for each collision, in the order of their times, after the disks have
 ///    changed.
-/// 3. `on_sample` comes at the time that `next_sample` asked for, if that is not after the end of the run.
-///    The sample has seen all events up to and at its time. A time before the start of the run is sampled at
-///    the start.
-/// 4. `verdict` is asked after `on_start`, and after each collision, each sample and `on_end`. A run that is
-///    told to stop, or that a verdict fails, does no further event.
+/// 3. `on_sample` is called at the time that `next_sample` asked for, unless that is after the end of the
+///    run. The sample has seen all events up to and at its time. A time before the start of the run is
+///    sampled at the start.
+/// 4. `verdict` is called after `on_start`, and after each collision, each sample and `on_end`. If it stops
+///    or fails the run, no further event happens.
 /// 5. Whatever an observer does, the trajectory has the same bits as without it, as far as it goes.
 ///
-/// [`Simulation::step_until`](crate::Simulation::step_until) tells of collisions only: no start, samples or end. A verdict that
-/// fails ends it with an error; one that stops has no effect, since the caller takes each step.
+/// [`Simulation::step_until`](crate::Simulation::step_until) reports collisions only, and no start, samples
+/// or end. A verdict that fails ends it with an error. A verdict that stops has no effect, since the caller
+/// takes each step.
 ///
 /// # What an observer guarantees
-/// 1. `next_sample` is never NaN. It is infinite if no sample is wanted.
-/// 2. After a sample, it names a later time than that of the sample.
-/// 3. After `on_start`, it names no time before the start, but for rounding.
-/// 4. It changes in `on_start` and `on_sample` only: the engine asks after these, and does not see another
-///    change in time.
+/// 1. `next_sample` is never NaN. Its value is infinite if no sample is wanted.
+/// 2. After a sample, `next_sample` names a later time than that of the sample.
+/// 3. After `on_start`, `next_sample` names no time before the start, except by rounding.
+/// 4. The value of `next_sample` changes only in `on_start` and `on_sample`. The engine asks for it after
+///    these calls, and would notice another change too late.
 ///
 /// An observer that breaks the first or the second promise ends the run with an error, since the run would
-/// sample forever; one that breaks the third or the fourth gets samples at other times than it meant.
+/// sample forever. An observer that breaks the third or the fourth gets samples at other times than it meant.
 /// [`SampleTimes`](super::SampleTimes) keeps all four, and [`laws::check`](super::laws::check) tests them.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observer",
@@ -70,27 +72,27 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
     note = "lend an observer to a run as `&mut observer`, two as `&mut (&mut first, &mut second)`, none as `&mut ()`"
 )]
 pub trait Observer {
-    /// Is told that a run begins, or goes on.
+    /// Receives the message that a run begins, or goes on.
     fn on_start(&mut self, moment: &Moment) {
         let _ = moment;
     }
 
-    /// Is told that a collision has just happened.
+    /// Receives a collision that has just happened.
     fn on_collision(&mut self, collision: &Collision) {
         let _ = collision;
     }
 
-    /// Returns when the next sample is wanted; infinite for never.
+    /// Returns the time at which the next sample is wanted; infinite for never.
     fn next_sample(&self) -> f64 {
         f64::INFINITY
     }
 
-    /// Is shown the sample that it asked for.
+    /// Receives the sample that was asked for.
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         let _ = snapshot;
     }
 
-    /// Is told that the run ends, in whichever way.
+    /// Receives the message that the run ends, in whichever way.
     fn on_end(&mut self, moment: &Moment) {
         let _ = moment;
     }
@@ -98,8 +100,8 @@ pub trait Observer {
     /// Decides whether the run goes on: go on, stop it here, or fail.
     ///
     /// # Errors
-    /// If the observer cannot go on: a file that it writes is full, a quantity has left its range. The run
-    /// then fails, too.
+    /// If the observer cannot go on, because a disk is full or a quantity has left its range, for example.
+    /// The run then fails, too.
     fn verdict(&mut self) -> Verdict {
         Ok(ControlFlow::Continue(()))
     }

@@ -3,21 +3,21 @@
 use super::{Observable, Snapshot};
 use crate::Disk;
 
-/// Energies per disk.
+/// Mean energies per disk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct EnergyPerDisk {
-    /// `$\langle\tfrac12 m v^2\rangle$`.
+    /// Translational energy `$\langle\tfrac12 m v^2\rangle$`.
     pub translational: f64,
-    /// `$\langle\tfrac12 I\omega^2\rangle$`.
+    /// Rotational energy `$\langle\tfrac12 I\omega^2\rangle$`.
     pub rotational: f64,
-    /// `$\langle m g y\rangle$`, zero at height 0.
+    /// Potential energy `$\langle m g y\rangle$`, zero at height 0.
     pub potential: f64,
 }
 
 impl EnergyPerDisk {
-    /// Makes energies of these values.
+    /// Creates energies with these values.
     pub const fn new(translational: f64, rotational: f64, potential: f64) -> Self {
         Self { translational, rotational, potential }
     }
@@ -28,7 +28,7 @@ impl EnergyPerDisk {
     }
 }
 
-/// Translational, rotational and potential energy, averaged over the disks; NaN without disks.
+/// The translational, rotational and potential energy, averaged over the disks; NaN without disks.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;

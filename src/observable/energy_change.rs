@@ -1,16 +1,16 @@
-//! Energy change per collision: the paper's central quantity, measured.
+//! The energy change per collision, the paper's central quantity, as measured in a run.
 
 use std::collections::BTreeMap;
 
 use super::{Collision, Observer, Partner};
 use crate::statistics::BlockedMean;
 
-/// Mean change of kinetic energy per collision, `$\langle dE\rangle$`, for disk–disk collisions and for each
-/// wall.
+/// An observer of the mean change of kinetic energy per collision, `$\langle dE\rangle$`, for disk–disk
+/// collisions and for each wall.
 ///
-/// Collisions of one run are correlated, since the gas heats and cools: [`BlockedMean::estimate`] gives a
-/// mean with an error that knows of it. At a wall that moves, or is thermal, the energy change is what the
-/// disk gains or loses, the work of the wall included.
+/// Collisions of one run are correlated, since the gas heats and cools. [`BlockedMean::estimate`] gives a
+/// mean whose error accounts for that. At a moving or thermal wall, the energy change is what the disk gains
+/// or loses, including the work of the wall.
 ///
 /// ```
 /// use granular_edmd::observable::EnergyChange;
@@ -31,7 +31,7 @@ impl Default for EnergyChange {
     }
 }
 
-/// The mean over the collisions with a wall that was never touched.
+/// The mean over no collisions, for a wall that was never touched.
 static NEVER_TOUCHED: BlockedMean = BlockedMean::new();
 
 impl EnergyChange {

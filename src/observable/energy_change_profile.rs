@@ -1,28 +1,30 @@
-//! Energy change per collision beside the temperature where it happens.
+//! The energy change per collision, beside the temperature at the same height.
 
 use super::height_bins::HeightBins;
 use super::{Collision, Moment, Observer, Partner, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::statistics::BlockedMean;
 
-/// One layer of an [`EnergyChangeProfile`].
+/// A layer of an [`EnergyChangeProfile`].
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct EnergyChangeLayer {
-    /// Height of its middle.
+    /// Height of the layer's middle.
     pub height: f64,
-    /// Energy changes of the disk–disk collisions in it.
+    /// Energy changes of the disk–disk collisions in the layer.
     pub energy_change: BlockedMean,
-    /// `$T = \tfrac12 m v^2$` of the disks seen in it, in the frame of the container: its mean is the
-    /// translational temperature.
+    /// Values of `$T = \tfrac12 m v^2$` of the disks seen in the layer, in the frame of the container. Their
+    /// mean is the translational temperature.
     pub translational_temperature: BlockedMean,
-    /// `$T_{rot} = I\omega^2$` of the disks seen in it: its mean is the rotational temperature.
+    /// Values of `$T_{rot} = I\omega^2$` of the disks seen in the layer. Their mean is the rotational
+    /// temperature.
     pub rotational_temperature: BlockedMean,
 }
 
 impl EnergyChangeLayer {
-    /// Returns `$\langle dE\rangle/T$` in this layer; `None` before there are collisions and a temperature.
+    /// Returns `$\langle dE\rangle/T$` in this layer, or `None` before there are collisions and a
+    /// temperature.
     pub fn relative_energy_change(&self) -> Option<f64> {
         let temperature = self.translational_temperature.mean();
         (self.energy_change.count() > 0 && temperature > 0.0).then(|| self.energy_change.mean() / temperature)
@@ -31,7 +33,8 @@ impl EnergyChangeLayer {
 
 /// An observer of the energy change per disk–disk collision by height, with the temperatures there.
 ///
-/// The kinetic theory of a gas of one temperature can be compared with it, layer by layer and on average.
+/// The profile can be compared with the kinetic theory of a gas of one temperature, layer by layer and on
+/// average.
 ///
 /// ```
 /// use granular_edmd::observable::{EnergyChangeProfile, SampleTimes};
@@ -50,8 +53,8 @@ pub struct EnergyChangeProfile {
 }
 
 impl EnergyChangeProfile {
-    /// Makes a profile from the height `bottom` to `top` in this many layers, with temperatures sampled at
-    /// these times. Collisions and disks outside are left out.
+    /// Creates a profile with this many layers from the height `bottom` to `top`, with temperatures sampled
+    /// at these times. Collisions and disks outside are left out.
     ///
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of layers is not in `1..=2^20`.
@@ -67,13 +70,13 @@ impl EnergyChangeProfile {
     }
 
     /// Returns `$\langle dE/T(y)\rangle$`: the energy change over the local temperature, averaged over
-    /// collisions; `None` before there are collisions and a temperature in one layer.
+    /// collisions. The result is `None` before one layer has collisions and a temperature.
     pub fn relative_energy_change(&self) -> Option<f64> {
         self.over_collisions(EnergyChangeLayer::relative_energy_change)
     }
 
     /// Returns `$\langle T_{rot}(y)/T(y)\rangle$`: the ratio of the local temperatures, averaged over
-    /// collisions; `None` as above.
+    /// collisions. The result is `None` before one layer has collisions and a temperature.
     pub fn rotational_ratio(&self) -> Option<f64> {
         self.over_collisions(|layer| {
             let temperature = layer.translational_temperature.mean();

@@ -8,38 +8,40 @@ use crate::quantity::{accept, finite};
 use crate::statistics::Moments;
 use crate::{Disk, ParameterError};
 
-/// Most cells of a grid.
+/// Largest number of cells of a grid.
 const MOST_CELLS: usize = 1 << 22;
 
-/// The fields in one cell of a grid, averaged over all samples; made by [`Fields`]. All are 0 where no disk
-/// was seen.
+/// The fields in one cell of a grid, averaged over all samples; made by [`Fields`]. All fields are 0 where no
+/// disk was seen.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct FieldCell {
     /// Middle of the cell.
     pub center: DVec2,
-    /// Number of disks seen here, over all samples.
+    /// Number of disks seen in the cell, over all samples.
     pub count: u64,
     /// Disks per area.
     pub number_density: f64,
-    /// Area of the disks per area, each counted where its center is.
+    /// Area of the disks per area. Each disk counts in the cell of its center.
     pub packing_fraction: f64,
     /// Velocity of the flow, `$u = \langle mv\rangle/\langle m\rangle$`.
     pub velocity: DVec2,
     /// Mean angular velocity, `$\langle I\omega\rangle/\langle I\rangle$`.
     pub angular_velocity: f64,
-    /// `$T = \tfrac12\langle m|v-u|^2\rangle$`, per degree of freedom and about the flow.
+    /// Translational temperature `$T = \tfrac12\langle m|v-u|^2\rangle$`, per degree of freedom and about the
+    /// flow.
     pub translational_temperature: f64,
-    /// `$T_{rot} = \langle I(\omega-\bar\omega)^2\rangle$`, about the mean angular velocity.
+    /// Rotational temperature `$T_{rot} = \langle I(\omega-\bar\omega)^2\rangle$`, about the mean angular
+    /// velocity.
     pub rotational_temperature: f64,
 }
 
 /// An observer that averages density, flow and temperatures on a grid over samples: the convection rolls.
 ///
 /// A disk counts in the cell of its center. Temperatures are about the mean velocity *of the cell*, over all
-/// samples: a flow that is not steady over them, such as a roll that changes its sense, counts as
-/// temperature. With `$n$` disks seen in a cell they are too small by a factor `$1 - 1/n$`, for independent
+/// samples. A flow that changes between samples, such as a roll that reverses, counts as temperature. If
+/// `$n$` disks are seen in a cell, its temperatures are too small by a factor `$1 - 1/n$`, for independent
 /// samples.
 ///
 /// ```
@@ -73,10 +75,11 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// Makes a grid of `columns` times `rows` cells over a region; disks outside are left out.
+    /// Creates a grid of `columns` times `rows` cells over a region. Disks outside are left out.
     ///
     /// # Errors
-    /// If an edge of the region is not finite, it has no area, or the number of cells is not in `1..=2^22`.
+    /// If an edge of the region is not finite, the region has no area, or the number of cells is not in
+    /// `1..=2^22`.
     pub fn new(
         region: Region,
         columns: usize,
@@ -111,7 +114,8 @@ impl Fields {
         (self.columns, self.rows)
     }
 
-    /// Returns the fields in a cell, columns from the left and rows from below; `None` outside the grid.
+    /// Returns the fields in a cell, or `None` outside the grid. Columns count from the left and rows from
+    /// below.
     pub fn cell(&self, column: usize, row: usize) -> Option<FieldCell> {
         let inside = column < self.columns && row < self.rows;
         inside.then(|| self.averaged(column, row))
@@ -207,7 +211,7 @@ impl Sums {
         }
     }
 
-    /// Checks that sums read from a file can be those of disks.
+    /// Checks that sums from a file can be those of disks.
     #[cfg(feature = "serde")]
     fn check(&self) -> Result<(), ParameterError> {
         crate::quantity::non_negative("area of the disks in a cell", self.area)?;

@@ -3,7 +3,7 @@
 use crate::ParameterError;
 use crate::quantity::{accept, finite, positive};
 
-/// Most bins of a profile.
+/// Largest number of bins of a profile.
 const MOST_BINS: usize = 1 << 20;
 
 /// Equal bins between two heights.
@@ -32,7 +32,7 @@ impl HeightBins {
         Ok(self)
     }
 
-    /// Checks that there is something for each bin.
+    /// Checks that there are as many entries as bins.
     #[cfg(feature = "serde")]
     pub(super) fn check_count(&self, count: usize) -> Result<(), ParameterError> {
         accept(count == self.count, "number of values", "that of the bins", count as f64).map(|_| ())
@@ -56,14 +56,14 @@ impl HeightBins {
         self.edge(bin) + 0.5 * self.height
     }
 
-    /// Returns the bin of a height: the first for all heights below it, `count` or more for all above the
-    /// last.
+    /// Returns the bin of a height. All heights below the first bin count for it; heights above the last bin
+    /// give `count` or more.
     pub(super) fn at_or_above(&self, height: f64) -> usize {
-        // Casts saturate: a negative number becomes 0.
+        // The cast saturates: a negative number becomes 0.
         ((height - self.bottom) / self.height) as usize
     }
 
-    /// Returns the bin of a height, if it is in one.
+    /// Returns the bin of a height, if there is one.
     pub(super) fn find(&self, height: f64) -> Option<usize> {
         let bin = self.at_or_above(height);
         (height >= self.bottom && bin < self.count).then_some(bin)

@@ -1,4 +1,4 @@
-//! Packing fraction by height.
+//! Profiles of the packing fraction by height.
 
 use std::f64::consts::PI;
 
@@ -6,27 +6,27 @@ use super::height_bins::HeightBins;
 use super::{Moment, Observer, SampleTimes, Snapshot};
 use crate::{Disk, ParameterError};
 
-/// The bin with the largest packing fraction, and the emptiest below it; made by
+/// The bin with the largest packing fraction, and the least packing fraction below it; made by
 /// [`HeightProfile::densest_layer`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct DenseLayer {
     /// Height of the middle of the bin.
     pub height: f64,
-    /// Packing fraction there.
+    /// Packing fraction in the bin.
     pub packing_fraction: f64,
-    /// Least packing fraction of the bins below; that of the layer itself if there are none.
+    /// Least packing fraction of the bins below. If there are none, it is that of the bin itself.
     pub least_below: f64,
 }
 
 impl DenseLayer {
-    /// Makes a layer at this height with this packing fraction and the least one below it.
+    /// Creates a layer at this height with this packing fraction and the least one below it.
     pub const fn new(height: f64, packing_fraction: f64, least_below: f64) -> Self {
         Self { height, packing_fraction, least_below }
     }
 
-    /// Returns the densest layer of a profile, given as heights and packing fractions from the bottom up; the
-    /// lowest of equals.
+    /// Returns the densest layer of a profile, the lowest of equal ones. The profile gives heights and
+    /// packing fractions from the bottom up.
     ///
     /// ```
     /// use granular_edmd::observable::DenseLayer;
@@ -54,8 +54,8 @@ impl DenseLayer {
 /// \phi_k = \frac{1}{L_x\,\Delta y}\Big\langle\sum_i A_i(y_k, y_k + \Delta y)\Big\rangle.
 /// ```
 ///
-/// Disks are cut exactly at the edges of bins, so that a profile is smooth even with bins below a diameter.
-/// In the paper's box take bins of one diameter: they resolve a compact layer and average over its rows.
+/// Disks are cut exactly at the edges of bins, so that a profile is smooth even with bins smaller than a
+/// diameter. In the paper's box, bins of one diameter resolve a compact layer and average over its rows.
 ///
 /// ```
 /// use granular_edmd::boundary::Domain;
@@ -78,13 +78,13 @@ impl DenseLayer {
 pub struct HeightProfile {
     bins: HeightBins,
     sample_times: SampleTimes,
-    /// Sum over samples of the packing fraction.
+    /// Packing fractions, summed over the samples.
     sums: Vec<f64>,
     samples: u64,
 }
 
 impl HeightProfile {
-    /// Makes a profile from the height `bottom` to `top` in this many bins; disks outside are left out.
+    /// Creates a profile with this many bins from the height `bottom` to `top`. Disks outside are left out.
     ///
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of bins is not in `1..=2^20`.
@@ -98,15 +98,15 @@ impl HeightProfile {
         self.samples
     }
 
-    /// Iterates over the heights of the middles of the bins, and the mean packing fractions; 0 before the
-    /// first sample.
+    /// Iterates over the heights of the middles of the bins, with the mean packing fractions; these are 0
+    /// before the first sample.
     pub fn iter(&self) -> impl Iterator<Item = (f64, f64)> {
         let samples = self.samples.max(1) as f64;
         self.sums.iter().enumerate().map(move |(bin, sum)| (self.bins.middle(bin), sum / samples))
     }
 
-    /// Returns the bin with the largest packing fraction, the lowest of equals; `None` before the first
-    /// sample.
+    /// Returns the bin with the largest packing fraction, the lowest of equal ones, or `None` before the
+    /// first sample.
     pub fn densest_layer(&self) -> Option<DenseLayer> {
         DenseLayer::among(self.iter().take_while(|_| self.samples > 0))
     }
@@ -119,7 +119,7 @@ impl HeightProfile {
 
     fn add(&mut self, disk: &Disk, width: f64) {
         let (height, radius) = (disk.position().y, disk.radius());
-        // A disk outside lands at an end of the profile, with no area in the bin there.
+        // A disk outside lands at an end of the profile. It has no area in the bin there.
         let first = self.bins.at_or_above(height - radius);
         let last = self.bins.at_or_above(height + radius).min(self.bins.count() - 1);
         let mut below = area_below(self.bins.edge(first) - height, radius);
@@ -131,7 +131,7 @@ impl HeightProfile {
     }
 }
 
-/// Area of a disk below a line at this height above its center.
+/// Returns the area of a disk below a line at this height above its center.
 fn area_below(height: f64, radius: f64) -> f64 {
     let sine = (height / radius).clamp(-1.0, 1.0);
     radius * radius * (0.5 * PI + libm::asin(sine) + sine * (1.0 - sine * sine).sqrt())

@@ -1,7 +1,7 @@
-//! The contract of an observer, as a check for observers of one's own.
+//! Checks of an observer's contract, for observers of your own.
 //!
-//! Watching cannot change a trajectory, whatever an observer does: the engine shows copies. Left to the
-//! observer is its clock, which can hang a run or ask for samples that never come.
+//! An observer cannot change a trajectory, whatever it does, since the engine shows copies. The observer is
+//! responsible for its clock, which can hang a run or ask for samples that never come.
 
 use glam::DVec2;
 use thiserror::Error;
@@ -11,7 +11,7 @@ use crate::boundary::Domain;
 use crate::collision::{Contact, Impulse, Regime};
 use crate::{Disk, ParameterError};
 
-/// A promise of the [contract](Observer) that an observer breaks.
+/// A way in which an observer breaks its [contract](Observer).
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Violation {
@@ -21,7 +21,7 @@ pub enum Violation {
         /// Absolute time of the start or the sample before.
         after: f64,
     },
-    /// The run starts, and the next sample was before.
+    /// After the start of a run, the next sample is before the start.
     #[error("the run starts at {start}, and the next sample is before, at {next}")]
     BeforeStart {
         /// Absolute time of the start.
@@ -34,10 +34,10 @@ pub enum Violation {
     NotLater {
         /// Absolute time of the sample.
         sample: f64,
-        /// Absolute time of the next one.
+        /// Absolute time of the next sample.
         next: f64,
     },
-    /// The time of the next sample changed without a start or a sample, and the engine did not see it.
+    /// The time of the next sample changed without a start or a sample, so the engine did not see it.
     #[error("between two samples the next one moved from {before} to {next}")]
     Moved {
         /// Absolute time of the next sample after the start or the sample before.
@@ -47,25 +47,25 @@ pub enum Violation {
     },
 }
 
-/// Most samples in one run of the script.
+/// Largest number of samples in one run of the script.
 const SAMPLES: usize = 50;
 
-/// The system of the script.
+/// Number of disks in the script.
 const DISKS: usize = 3;
 const WALLS: usize = 4;
 const DOMAIN: Domain = Domain { left: 0.0, right: 10.0, bottom: 0.0, top: 10.0, periodic: false };
 const GRAVITY: f64 = 1.0;
 
-/// The rounding of a start, relative to it.
+/// Rounding of a start time, relative to it.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Checks that an observer keeps its contract in a few runs of a made-up system.
 ///
 /// The runs have three disks and four walls, collisions of each partner and regime, and up to fifty samples
-/// each, at the times that the observer asks for. The first starts at time 0, the second goes on where it
-/// ended, the third starts later and off the beat, and the last is another run from a time before 0. A run
-/// ends where the observer stops it, or fails it. The checked observer has seen all of this: make a new one
-/// for a measurement.
+/// each, at the times that the observer asks for. The first run starts at time 0, the second goes on where
+/// the first ended, the third starts later and off the beat, and the last is another run from a time
+/// before 0. A run ends where the observer stops it or fails. The checked observer has collected all of this,
+/// so make a new one for a measurement.
 ///
 /// # Errors
 /// The first promise that is broken.
@@ -93,7 +93,7 @@ pub fn check<O: Observer + ?Sized>(observer: &mut O) -> Result<(), Violation> {
     Script::new(observer, -0.73 * (1.0 + first_end)).run().map(|_| ())
 }
 
-/// A run that follows the wishes of an observer, as the engine does.
+/// A run that follows the requests of an observer, as the engine does.
 struct Script<'a, O: ?Sized> {
     observer: &'a mut O,
     now: f64,
@@ -107,7 +107,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         Self { observer, now: start, wanted: f64::INFINITY, collisions: 0 }
     }
 
-    /// Runs, and returns the time at the end.
+    /// Runs the script, and returns the time at the end.
     fn run(mut self) -> Result<f64, Violation> {
         self.observer.on_start(&self.moment());
         self.wanted = self.next_sample()?;
@@ -123,7 +123,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         Ok(self.now)
     }
 
-    /// Lets disks collide until the next sample, or for a while if none is wanted.
+    /// Lets disks collide until the next sample, or for a while if no sample is wanted.
     fn collide(&mut self) -> Result<bool, Violation> {
         let wait = if self.wanted.is_finite() { (self.wanted - self.now).max(0.0) } else { 1.0 };
         for _ in 0..3 {
@@ -143,7 +143,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         if !self.wanted.is_finite() {
             return Ok(true);
         }
-        // As the engine does: a time that is past by rounding is sampled now.
+        // The engine does the same: a sample time that has passed by rounding is sampled now.
         self.now = self.wanted.max(self.now);
         let disks: Vec<Disk> = (0..DISKS).filter_map(|index| disk(index, self.collisions).ok()).collect();
         self.observer.on_sample(&Snapshot::new(self.now, &disks, DOMAIN, GRAVITY));
@@ -160,7 +160,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         if next.is_nan() { Err(Violation::NotANumber { after: self.now }) } else { Ok(next) }
     }
 
-    /// Asks for the verdict, and checks that the clock stands as the engine knows it.
+    /// Asks for the verdict, and checks that the clock has not moved since the engine read it.
     fn goes_on(&mut self) -> Result<bool, Violation> {
         let goes_on = self.observer.verdict().is_ok_and(|verdict| verdict.is_continue());
         let next = self.next_sample()?;
@@ -172,7 +172,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
     }
 }
 
-/// One of three disks, at one of a few places.
+/// Returns one of three disks, at one of a few places.
 fn disk(index: usize, round: usize) -> Result<Disk, ParameterError> {
     let (place, turn) = ((1 + 3 * index) as f64, (round % 7) as f64);
     Disk::new(DVec2::new(place, 1.0 + turn), 0.5)?
@@ -180,7 +180,7 @@ fn disk(index: usize, round: usize) -> Result<Disk, ParameterError> {
         .with_angular_velocity(turn - 2.0)
 }
 
-/// A collision with each partner in turn.
+/// Returns a collision, with each partner in turn.
 fn collision(time: f64, number: usize) -> Collision {
     const REGIMES: [Regime; 4] =
         [Regime::Sticking, Regime::Sliding, Regime::ContactDuration, Regime::Unspecified];

@@ -1,4 +1,4 @@
-//! The beginning and the end of a run.
+//! Moments: the beginning and the end of a run.
 
 use crate::boundary::Domain;
 
@@ -24,7 +24,8 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// Makes a moment of a run with this many disks and walls. The engine makes them, and so may a test.
+    /// Creates a moment of a run with this many disks and walls. The engine creates moments, and tests may do
+    /// so.
     pub const fn new(time: f64, disk_count: usize, wall_count: usize, domain: Domain, gravity: f64) -> Self {
         Self { time, disk_count, wall_count, domain, gravity }
     }
@@ -39,7 +40,7 @@ impl Moment {
         self.disk_count
     }
 
-    /// Returns the number of walls: the index of a wall is below it.
+    /// Returns the number of walls. The indices of the walls are less than it.
     pub const fn wall_count(&self) -> usize {
         self.wall_count
     }
@@ -49,7 +50,7 @@ impl Moment {
         self.domain
     }
 
-    /// Returns gravity, pointing down.
+    /// Returns gravity, which points down.
     pub const fn gravity(&self) -> f64 {
         self.gravity
     }

@@ -4,19 +4,19 @@ use std::f64::consts::TAU;
 
 use super::{Observable, Snapshot};
 
-/// Order parameters `$\Psi_1$` and `$\Psi_2$` of a flow of one convection roll, and of two.
+/// The order parameters `$\Psi_1$` of one convection roll and `$\Psi_2$` of two.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct ConvectionOrder {
-    /// `$\Psi_1$`: one roll; positive if it turns clockwise.
+    /// Order parameter `$\Psi_1$` of one roll, positive if the roll turns clockwise.
     pub one_roll: f64,
-    /// `$\Psi_2$`: two rolls; positive if the flow goes up in the middle.
+    /// Order parameter `$\Psi_2$` of two rolls, positive if the flow goes up in the middle.
     pub two_rolls: f64,
 }
 
 impl ConvectionOrder {
-    /// Makes order parameters of these values.
+    /// Creates order parameters with these values.
     pub const fn new(one_roll: f64, two_rolls: f64) -> Self {
         Self { one_roll, two_rolls }
     }
@@ -29,8 +29,9 @@ impl ConvectionOrder {
 /// \Psi_2 = -\frac1N\sum_i v_{yi}\cos\frac{2\pi x_i}{L_x}.
 /// ```
 ///
-/// In a gas at rest each fluctuates with standard deviation `$\sqrt{T_y/2Nm}$`: a roll stands out if it is
-/// larger than that. Positions count from the left end of the domain; without disks both are 0.
+/// In a gas at rest, each of them fluctuates with the standard deviation `$\sqrt{T_y/2Nm}$`. A roll stands
+/// out if its order parameter is larger than that. Positions count from the left end of the domain. Both
+/// order parameters are 0 without disks.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;

@@ -3,29 +3,31 @@
 use crate::ParameterError;
 use crate::quantity::{finite, positive};
 
-/// Rounding of a time that was run to, and of a beat, relative to them: both are sums of an offset and an
-/// origin, each rounded a few times.
+/// Rounding of a time to which a run was sent, and of a beat, relative to them. Both are sums of an offset
+/// and an origin, each rounded a few times.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Equally spaced times of samples: a clock for observers.
+/// A clock for observers, with equally spaced times of samples.
 ///
-/// Its beats are the multiples of the interval, counted from time 0 ([`Self::every`]) or from a first time
-/// ([`Self::starting_at`]). They are multiples, not sums: the thousandth is as exact as the first.
+/// The beats of the clock are the multiples of the interval, counted from time 0 ([`Self::every`]) or from a
+/// first time ([`Self::starting_at`]). They are multiples, not sums, so the thousandth is as exact as the
+/// first.
 ///
 /// # When a run starts
-/// An observer hands the start of each run to [`Self::start_at`]. Beats that the start has passed, or falls
-/// on within rounding, are left out, so that a run of `$n$` intervals gives `$n$` samples, the first after
-/// one interval: from time 0, from another start, resumed from a checkpoint, or after a run to settle. Two
-/// exceptions:
+/// An observer passes the start of each run to [`Self::start_at`]. Beats before the start are left out, and
+/// so is a beat on the start, within rounding. A run of `$n$` intervals therefore gives `$n$` samples, the
+/// first after one interval. This holds for a run from time 0, from another start, from a checkpoint, or
+/// after a run to settle. There are two exceptions:
 /// - The first time of `starting_at` is a sample of a run that starts exactly there.
-/// - A clock that has run goes on: if the next run starts on its upcoming beat, within rounding, the sample
-///   is taken, since the run before ended too early for it. A run in pieces has the samples of a run in one.
+/// - A clock that has run before goes on. If the next run starts on the upcoming beat, within rounding, the
+///   sample is taken, since the previous run ended too early for it. A run in pieces thus has the samples of
+///   a run in one piece.
 ///
-/// A run that starts before the last beat is another run, for which the clock begins anew.
+/// A run that starts before the last beat counts as another run, for which the clock begins anew.
 ///
-/// To sample at a fixed phase of a vibrating base take a number of its periods as interval and the phase as
-/// first time. Compute the end of a run as a multiple, too (`count as f64 * interval`), or its last sample
-/// may lie one rounding behind it.
+/// To sample at a fixed phase of a vibrating base, take a number of its periods as the interval and the phase
+/// as the first time. Compute the end of a run as a multiple, too (`count as f64 * interval`). Otherwise, the
+/// last sample may lie one rounding after the end.
 ///
 /// ```
 /// use granular_edmd::observable::SampleTimes;
@@ -46,16 +48,16 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 #[cfg_attr(feature = "serde", serde(try_from = "RawSampleTimes"))]
 pub struct SampleTimes {
     interval: f64,
-    /// The first beat; without one, beats are counted from time 0 both ways.
+    /// The first beat. Without one, beats are counted from time 0 in both directions.
     first: Option<f64>,
     /// Number of the upcoming beat.
     beat: i64,
-    /// A run has started.
+    /// True once a run has started.
     started: bool,
 }
 
 impl SampleTimes {
-    /// Makes a clock that beats after each interval.
+    /// Creates a clock that beats after each interval.
     ///
     /// # Errors
     /// If the interval is not finite and positive.
@@ -78,9 +80,10 @@ impl SampleTimes {
         self.time_of(self.beat)
     }
 
-    /// Goes on to the first beat after this absolute time: to be called with the time of each sample.
+    /// Goes on to the first beat after this absolute time. Call this with the time of each sample.
     pub fn advance_past(&mut self, time: f64) {
-        // Twice as many at each further try: soon past, also where single intervals are lost in rounding.
+        // Each further attempt skips twice as many beats. This passes the time soon, even where single
+        // intervals are lost in rounding.
         let mut more = 1_i64;
         while self.beat < i64::MAX && self.upcoming() <= time {
             let skipped = ((time - self.upcoming()) / self.interval).floor().max(0.0);
@@ -89,7 +92,7 @@ impl SampleTimes {
         }
     }
 
-    /// Takes note that a run starts at this absolute time: to be called from
+    /// Notes that a run starts at this absolute time. Call this from
     /// [`Observer::on_start`](super::Observer::on_start).
     pub fn start_at(&mut self, time: f64) {
         if !time.is_finite() {
@@ -104,10 +107,11 @@ impl SampleTimes {
         self.started = true;
     }
 
-    /// Goes to the first beat of a run that no sample was taken of.
+    /// Goes to the first beat of a run of which no sample was taken yet.
     fn begin_anew(&mut self, time: f64, rounding: f64) {
         let Some(first) = self.first else {
-            // The cast saturates. It may miss by one of many beats, which the rounding makes up for.
+            // The cast saturates. For a large count, it may miss the beat by one; the rounding compensates
+            // for that.
             self.beat = (time / self.interval).floor() as i64;
             return self.advance_past(time + rounding);
         };

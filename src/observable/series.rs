@@ -1,4 +1,4 @@
-//! Values of an observable at set times.
+//! Series of the values of an observable at set times.
 
 use super::{Moment, Observable, Observer, SampleTimes, Snapshot};
 
@@ -32,7 +32,7 @@ pub struct Series<Q: Observable> {
 }
 
 impl<Q: Observable> Series<Q> {
-    /// Makes a series of `observable` at these times.
+    /// Creates a series of `observable` at these times.
     pub const fn new(observable: Q, times: SampleTimes) -> Self {
         Self { observable, sample_times: times, times: Vec::new(), values: Vec::new() }
     }

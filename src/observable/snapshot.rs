@@ -1,9 +1,9 @@
-//! The state of all disks at one time.
+//! Snapshots: the state of all disks at one time.
 
 use crate::Disk;
 use crate::boundary::Domain;
 
-/// The disks at one time, as copies: nothing that is done to them reaches the run.
+/// The disks at one time, as copies. Nothing that is done to them reaches the run.
 #[derive(Debug, Clone, Copy)]
 pub struct Snapshot<'a> {
     time: f64,
@@ -13,17 +13,17 @@ pub struct Snapshot<'a> {
 }
 
 impl<'a> Snapshot<'a> {
-    /// Makes a snapshot of `disks` at an absolute time. The engine makes them, and so may a test.
+    /// Creates a snapshot of `disks` at an absolute time. The engine creates snapshots, and tests may do so.
     pub const fn new(time: f64, disks: &'a [Disk], domain: Domain, gravity: f64) -> Self {
         Self { time, disks, domain, gravity }
     }
 
-    /// Returns the absolute time at which it was taken.
+    /// Returns the absolute time of the snapshot.
     pub const fn time(&self) -> f64 {
         self.time
     }
 
-    /// Returns the disks, in the order in which the simulation got them.
+    /// Returns the disks, in the order in which they were given to the simulation.
     pub const fn disks(&self) -> &'a [Disk] {
         self.disks
     }
@@ -33,7 +33,7 @@ impl<'a> Snapshot<'a> {
         self.domain
     }
 
-    /// Returns gravity, pointing down.
+    /// Returns gravity, which points down.
     pub const fn gravity(&self) -> f64 {
         self.gravity
     }

@@ -1,4 +1,4 @@
-//! Closures that stop a run.
+//! Observers from closures that stop a run.
 
 use std::ops::ControlFlow;
 
@@ -13,7 +13,7 @@ pub struct StopWhen<F> {
 
 /// Makes an observer that stops a run at the first collision for which the closure says so.
 ///
-/// A later run with the same observer goes on until a further collision meets the condition.
+/// A later run with the same observer goes on until another collision meets the condition.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse};
@@ -57,7 +57,7 @@ pub struct StopWhenSampled<F> {
 
 /// Makes an observer that stops a run at the first of these times for which the closure says so.
 ///
-/// A later run with the same observer goes on until a further sample meets the condition.
+/// A later run with the same observer goes on until another sample meets the condition.
 ///
 /// ```
 /// use granular_edmd::observable::{CenterOfMass, Observable, Observer, SampleTimes, Snapshot};

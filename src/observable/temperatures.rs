@@ -3,35 +3,36 @@
 use super::{Observable, Snapshot};
 use crate::Disk;
 
-/// Temperatures per degree of freedom, in units of energy.
+/// Granular temperatures per degree of freedom, in units of energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Temperature {
-    /// `$T_x = \langle m v_x^2\rangle$`.
+    /// Horizontal temperature `$T_x = \langle m v_x^2\rangle$`.
     pub horizontal: f64,
-    /// `$T_y = \langle m v_y^2\rangle$`.
+    /// Vertical temperature `$T_y = \langle m v_y^2\rangle$`.
     pub vertical: f64,
-    /// `$T_{rot} = \langle I\omega^2\rangle$`.
+    /// Rotational temperature `$T_{rot} = \langle I\omega^2\rangle$`.
     pub rotational: f64,
 }
 
 impl Temperature {
-    /// Makes temperatures of these values.
+    /// Creates temperatures with these values.
     pub const fn new(horizontal: f64, vertical: f64, rotational: f64) -> Self {
         Self { horizontal, vertical, rotational }
     }
 
-    /// Returns `$T = (T_x + T_y)/2$`.
+    /// Returns the translational temperature `$T = (T_x + T_y)/2$`.
     pub fn translational(&self) -> f64 {
         0.5 * (self.horizontal + self.vertical)
     }
 }
 
-/// Horizontal, vertical and rotational temperature over all disks, in the frame of the container; NaN without
-/// disks.
+/// The horizontal, vertical and rotational temperature over all disks, in the frame of the container; NaN
+/// without disks.
 ///
-/// The flow of convection rolls counts as temperature here: a small part (`$\Psi^2\ll T$`).
+/// The flow of convection rolls counts as temperature here, but contributes only a small part
+/// (`$\Psi^2\ll T$`).
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;
@@ -39,9 +40,9 @@ impl Temperature {
 /// use granular_edmd::boundary::Domain;
 /// use granular_edmd::observable::{Observable, Snapshot, Temperatures};
 ///
-/// let disks = [Disk::new(DVec2::ONE, 0.5)?.with_velocity(DVec2::new(1.0, 2.0))?.with_angular_velocity(4.0)?];
+/// let disk = Disk::new(DVec2::ONE, 0.5)?.with_velocity(DVec2::new(1.0, 2.0))?.with_angular_velocity(4.0)?;
 /// let domain = Domain::new(0.0, 4.0, 0.0, 6.0);
-/// let temperature = Temperatures.measure(&Snapshot::new(0.0, &disks, domain, 2.0));
+/// let temperature = Temperatures.measure(&Snapshot::new(0.0, &[disk], domain, 2.0));
 /// assert_eq!((temperature.horizontal, temperature.vertical, temperature.rotational), (1.0, 4.0, 2.0));
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```

@@ -3,15 +3,15 @@
 /// Returns the first time at which the gap `f(t) = value + rate·t + ½·acceleration·t²` is closed and closes
 /// further.
 ///
-/// `$t \ge 0$` is counted from the moment at which value and rate are given; the result is infinite only if
-/// it overflows.
-/// - An open gap counts at its first zero at which it falls, and there may be none. A gap that closes for an
-///   instant and opens again, as a double root does, may count or not: rounding decides.
+/// The time `$t \ge 0$` is counted from the moment at which value and rate are given. The result is infinite
+/// only if it overflows.
+/// - An open gap counts at the first zero at which it falls; there may be none. A gap that closes for an
+///   instant and opens again, as at a double root, may count or not: rounding decides.
 /// - A gap that is closed and closes further counts at once, at time 0.
-/// - A gap that is closed and opens counts when it closes next. If it never gets as far as zero, it counts
-///   when it is back at its first value.
+/// - A gap that is closed and opens counts when it closes next. If it never rises to zero, it counts when it
+///   is back at its first value.
 ///
-/// The numbers should be finite. The search uses `+ - * /` and the square root only, so its bits are the same
+/// The numbers should be finite. The search uses only `+ - * /` and the square root, so its bits are the same
 /// on every platform.
 ///
 /// ```
@@ -24,8 +24,8 @@
 /// ```
 #[inline]
 pub fn first_descent(value: f64, rate: f64, acceleration: f64) -> Option<f64> {
-    // A touch that was just resolved leaves the gap closed by rounding, but opening: it must not be found
-    // again.
+    // Rounding may leave the gap closed, but opening, after a touch that was just resolved. That touch must
+    // not be found again.
     if value <= 0.0 && rate < 0.0 {
         return Some(0.0);
     }
@@ -33,24 +33,26 @@ pub fn first_descent(value: f64, rate: f64, acceleration: f64) -> Option<f64> {
         return Some(descent_under_pull(value, rate, acceleration));
     }
     let discriminant = rate * rate - 2.0 * acceleration * value;
-    // Of the two zeros the first is (-rate - root) / acceleration. For a small acceleration, its numerator is
-    // the difference of two nearly equal numbers, and for none it is 0 / 0. Multiplied by the conjugate it is
-    // a sum of two positive numbers in the denominator, exact for straight flights too.
+    // The first of the two zeros is (-rate - root) / acceleration. For a small acceleration, the numerator is
+    // the difference of two nearly equal numbers; without acceleration, the zero is 0 / 0. Multiplied by the
+    // conjugate, the denominator is a sum of two positive numbers. This form is also exact for straight
+    // flights.
     (rate < 0.0 && discriminant >= 0.0).then(|| 2.0 * value / (discriminant.sqrt() - rate))
 }
 
-/// Returns the descent of a parabola that opens downward: there always is one.
+/// Returns the descent of a parabola that opens downward. There always is one.
 #[inline]
 fn descent_under_pull(value: f64, rate: f64, acceleration: f64) -> f64 {
     let discriminant = rate * rate - 2.0 * acceleration * value;
     if discriminant <= 0.0 {
-        // It is closed at its top still. Had it begun closed exactly, it would close as fast as it opened, at
-        // twice the time of its top. At the top itself the rate is zero, and a disk that bounces lower than
-        // rounding would stop there, with no rule that took its speed.
+        // The gap is still closed at the top of the parabola. A gap that began exactly at zero would close as
+        // fast as it opened, at twice the time of the top, so that time is returned. At the top itself the
+        // rate is zero: a disk that bounces lower than rounding would stop there, although no rule took its
+        // speed.
         return (-2.0 * rate / acceleration).max(0.0);
     }
     let root = discriminant.sqrt();
-    // One form of the zero for either sign of the rate: numbers of equal sign are added in both, so nothing
+    // Each sign of the rate has its own form of the zero. Both forms add numbers of equal sign, so nothing
     // cancels.
     if rate > 0.0 { (rate + root) / -acceleration } else { (2.0 * value / (root - rate)).max(0.0) }
 }

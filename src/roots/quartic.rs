@@ -5,23 +5,23 @@ use super::first_descent;
 /// Coefficients of a polynomial, from the constant term up.
 type Coefficients = [f64; 5];
 
-/// Largest coefficient that needs no scaling: its multiples in the derivatives stay finite.
+/// Largest coefficient that needs no scaling: multiples of it in the derivatives stay finite.
 const LARGEST: f64 = 1e300;
 
-/// Exact scale of larger coefficients, a power of two: 2⁻⁶⁰.
+/// Scale of larger coefficients: 2⁻⁶⁰, a power of two, so that scaling is exact.
 const SMALLER: f64 = 1.0 / (1u64 << 60) as f64;
 
 /// Returns the first time, not later than `end`, at which the gap `c₀ + c₁t + c₂t² + c₃t³ + c₄t⁴` is closed
 /// and closes further.
 ///
-/// The meaning is that of [`first_descent`], to which polynomials of degree two and less are passed on:
+/// The meaning is that of [`first_descent`], which handles polynomials of degree two and less:
 /// - An open gap counts at its first zero at which it falls.
 /// - A gap that is closed and closes further counts at once, at time 0.
-/// - A gap that is closed and opens counts when it closes next. As long as it has not been open, it counts
-///   when it falls back to its first value.
+/// - A gap that is closed and opens counts when it closes next. If it has not opened by then, it counts when
+///   it falls back to its first value.
 ///
-/// If a coefficient is not finite, there is no answer. `end` may be infinite. The search uses `+ - * /` and,
-/// for degree two, the square root only, so its bits are the same on every platform.
+/// The result is `None` if a coefficient is not finite. `end` may be infinite. The search uses only `+ - * /`
+/// and, for degree two, the square root, so its bits are the same on every platform.
 ///
 /// ```
 /// use granular_edmd::roots::first_descent_of_quartic;
@@ -52,11 +52,12 @@ pub fn first_descent_of_quartic(coefficients: &[f64; 5], end: f64) -> Option<f64
     search(&gap, end.min(bound_of_zeros(&gap)))
 }
 
-/// Looks for the descent on one stretch after the other between which the gap turns.
+/// Searches the stretches between the turns of the gap for the descent, one after the other.
 fn search(gap: &Coefficients, end: f64) -> Option<f64> {
     let slope = derivative(gap);
-    // A gap that begins closed is measured from its first value, with a constant term that is zero exactly: a
-    // bounce lower than rounding then ends as fast as it began. From the first opening on, zero is zero.
+    // A gap that begins closed is measured from its first value, so its constant term is exactly zero. A
+    // bounce lower than rounding then ends as fast as it began. Once the gap has opened, it is measured from
+    // zero.
     let mut measured = *gap;
     measured[0] = measured[0].max(0.0);
     let turns = turns(gap, end);
@@ -64,8 +65,8 @@ fn search(gap: &Coefficients, end: f64) -> Option<f64> {
         if value(gap, from) > 0.0 {
             measured = *gap;
         }
-        // The slope between two turns has one sign; the difference of the values at its ends may be lost to
-        // rounding.
+        // The slope has one sign between two turns. The difference of the values at the ends would not show
+        // it reliably, since rounding may swallow that difference.
         let falls = value(&slope, middle(from, to)) < 0.0;
         if !falls || value(&measured, to) > 0.0 {
             return None;
@@ -75,22 +76,22 @@ fn search(gap: &Coefficients, end: f64) -> Option<f64> {
     })
 }
 
-/// Tells whether the lowest power that there is falls.
+/// Tells whether the gap falls from the start: the sign of its lowest power decides.
 fn falls_from_the_start(gap: &Coefficients) -> bool {
     gap[1..].iter().find(|&&c| c != 0.0).is_some_and(|&c| c < 0.0)
 }
 
-/// Returns a time beyond all zeros of a polynomial and of its derivatives (Cauchy's bound, and the theorem of
-/// Gauss and Lucas: derivatives have theirs among those of the polynomial).
+/// Returns a time beyond all zeros of a polynomial and of its derivatives. The bound is Cauchy's; by the
+/// theorem of Gauss and Lucas, it also holds for the zeros of the derivatives.
 fn bound_of_zeros(polynomial: &Coefficients) -> f64 {
     let leading = polynomial.iter().rposition(|&c| c != 0.0).unwrap_or(0);
     let largest = polynomial[..leading].iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
-    // Finite, where a tiny leading coefficient puts a zero beyond all numbers: values out there may overflow,
-    // but at a finite time an infinite partial sum keeps its sign.
+    // A tiny leading coefficient can put a zero beyond all numbers, so the bound is cut to a finite one.
+    // Values out there may overflow, but at a finite time an infinite partial sum keeps its sign.
     (1.0 + largest / polynomial[leading].abs()).min(f64::MAX)
 }
 
-/// Evaluates by Horner's scheme.
+/// Evaluates a polynomial by Horner's scheme.
 fn value(polynomial: &Coefficients, time: f64) -> f64 {
     polynomial.iter().rev().fold(0.0, |sum, c| sum * time + c)
 }
@@ -100,11 +101,12 @@ fn derivative(&[_, c1, c2, c3, c4]: &Coefficients) -> Coefficients {
 }
 
 fn middle(low: f64, high: f64) -> f64 {
-    // Not half of the sum, which may overflow.
+    // Half of the sum is avoided, since the sum may overflow.
     low + 0.5 * (high - low)
 }
 
-/// Some times in order; those between the first and the last are where a polynomial changes its sign.
+/// Times in order, at most five. All but the first and the last are times at which a polynomial changes its
+/// sign.
 #[derive(Clone, Copy)]
 struct Marks {
     times: [f64; 5],
@@ -117,15 +119,15 @@ impl Marks {
         self.count += 1;
     }
 
-    /// The stretches of time between two marks.
+    /// Returns the stretches of time between neighboring marks.
     fn stretches(&self) -> impl Iterator<Item = (f64, f64)> {
         self.times[..self.count].windows(2).map(|pair| (pair[0], pair[1]))
     }
 
     /// Returns the changes of sign of a polynomial whose derivative changes its own at these marks.
     ///
-    /// Between two of them it is monotonic, and changes its sign once at most: none can be missed, however
-    /// close two are.
+    /// Between two marks the polynomial is monotonic, so it changes its sign at most once. No change can be
+    /// missed, however close two of them are.
     fn refined(&self, polynomial: &Coefficients) -> Self {
         let (start, end) = (self.times[0], self.times[self.count - 1]);
         let mut marks = Self { times: [start; 5], count: 1 };
@@ -139,8 +141,8 @@ impl Marks {
     }
 }
 
-/// Returns the times between 0 and `end` at which the polynomial turns: the zeros of its slope, from those of
-/// the slope's derivatives.
+/// Returns the times between 0 and `end` at which the polynomial turns. These are the zeros of its slope,
+/// found from the zeros of the slope's derivatives.
 fn turns(polynomial: &Coefficients, end: f64) -> Marks {
     let first = derivative(polynomial);
     let second = derivative(&first);
@@ -151,9 +153,9 @@ fn turns(polynomial: &Coefficients, end: f64) -> Marks {
 
 /// Returns the first number beyond a change of sign between `low` and `high`.
 ///
-/// By bisection. Newton's method would be faster, but at a double zero its slope is nothing but rounding, and
-/// it would leave the stretch. Here each step decides one bit. The far side of the change is returned, so
-/// that a search that ends there finds it again.
+/// The search halves the stretch, and each step decides one bit. Newton's method would need fewer steps, but
+/// at a double zero its slope is pure rounding, and it would leave the stretch. The far side of the change is
+/// returned, so that a search that ends at this time finds the change again.
 fn change_of_sign(polynomial: &Coefficients, mut low: f64, mut high: f64) -> f64 {
     let positive = value(polynomial, low) > 0.0;
     loop {

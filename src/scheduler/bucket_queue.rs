@@ -10,57 +10,58 @@ use super::entry::Entry;
 use crate::prefetch::prefetch;
 use piles::Piles;
 
-/// Events due within the time of one bucket. With so many in each there are few buckets, and the ends of all
-/// of them stay in the caches.
+/// Number of events that are due within the time of one bucket. With so many events in each, there are few
+/// buckets, and the ends of all of them stay in the caches.
 const EVENTS_PER_BUCKET: usize = 512;
 
-/// Events of a page for each disk: dealing out all disks anew is then shared by twice as many events.
+/// Number of events of a page for each disk, which share the cost of dealing out that disk anew.
 const EVENTS_PER_DISK: usize = 2;
 
-/// Events for each disk after which a page is turned at the latest. It was meant to last half as long, so its
-/// buckets are too wide.
+/// Number of events for each disk after which a page is turned at the latest. The page was meant to last half
+/// as long, so its buckets are too wide.
 const LONGEST_PAGE: usize = 2 * EVENTS_PER_DISK;
 
-/// Disks in the sample that estimates the density of events at first.
+/// Number of disks in the sample from which the density of events is first estimated.
 const SAMPLE: usize = 256;
 
-/// One in this many of the sample is due soon and counts in the estimate.
+/// Inverse of the part of the sample that is due soon and counts in the estimate.
 const SOON: usize = 8;
 
-/// Events between the present one and those that are named as upcoming.
+/// Number of events that are known in order ahead of the present one, and are named as upcoming.
 const SIGHT: usize = 48;
 
-/// A calendar: a page of equally wide buckets of time, and in each bucket, in no order, the disks due in it.
+/// A calendar: a page of equally wide buckets of time. Each bucket holds, in no order, the disks that are due
+/// in it.
 ///
 /// - A disk that gets a new time is written to the end of the bucket of that time. Its old entry stays where
 ///   it is.
-/// - A bucket is opened just before its time comes: old entries are dropped, and the others put in order.
+/// - A bucket is opened just before its time comes. Old entries are dropped, and the others are sorted.
 /// - A disk that becomes due within a bucket that is open already waits in a heap.
 /// - A disk that is due after the page is not written down. When the page is used up, all disks are dealt out
 ///   to a new one, whose buckets are as wide as the events of the last page suggest.
 ///
-/// So an event writes only to places that are in the caches, however many disks there are. The one exception
-/// is the time of its disk.
+/// An event thus writes only to places that are in the caches, however many disks there are. The one
+/// exception is the time of its disk.
 #[derive(Debug, Clone)]
 pub struct BucketQueue {
     /// The time of each disk.
     due: Vec<f64>,
     /// The disks of each bucket of the page.
     buckets: Piles,
-    /// Buckets before this one have been opened.
+    /// Number of buckets that have been opened: those before this one.
     opened: usize,
     /// The events of the open buckets, in order.
     open: Vec<Entry>,
-    /// The number of them that are over.
+    /// Number of open events that are over.
     over: usize,
-    /// The number of them that have been named as upcoming.
+    /// Number of open events that have been named as upcoming.
     named: usize,
-    /// Events that were set within the time of the open buckets after these had been opened.
+    /// Events that were set within the time of the open buckets, after these had been opened.
     late: BinaryHeap<Reverse<Entry>>,
-    /// The answer.
+    /// The answer to `earliest`.
     first: Entry,
     page: Page,
-    /// Events set since the page was turned.
+    /// Number of events set since the page was turned.
     set: usize,
 }
 
@@ -68,7 +69,7 @@ pub struct BucketQueue {
 #[derive(Debug, Clone, Copy)]
 struct Page {
     start: f64,
-    /// Buckets per time.
+    /// Number of buckets per time.
     rate: f64,
 }
 
@@ -76,8 +77,8 @@ impl Page {
     /// Returns the bucket of a time. Buckets follow each other without end, also beyond those of the page.
     #[inline]
     fn bucket(self, due: f64) -> usize {
-        // The cast saturates: times before the page belong to its first bucket, infinite ones to the last
-        // number.
+        // The cast saturates: times before the page belong to its first bucket, and infinite times to the
+        // bucket of the largest number.
         ((due - self.start) * self.rate) as usize
     }
 }
@@ -89,7 +90,7 @@ impl Default for BucketQueue {
 }
 
 impl BucketQueue {
-    /// Makes a scheduler of no disks.
+    /// Creates a scheduler without disks.
     pub const fn new() -> Self {
         Self {
             due: Vec::new(),
@@ -164,14 +165,16 @@ impl BucketQueue {
         let Self { due, open, page, .. } = self;
         let (from, bucket) = (open.len(), self.opened);
         self.buckets.take(bucket, |disks| {
-            // Their times lie anywhere in memory: asked for all at once, they come at the cost of few.
+            // The times of these disks lie anywhere in memory. Requested all at once, they come at the cost
+            // of few.
             for &disk in disks {
                 prefetch(due, disk as usize);
             }
             for &disk in disks {
                 let (disk, due) = (disk as usize, due[disk as usize]);
-                // An entry is out of date if the time of its disk has moved to another bucket. One that has
-                // moved within this bucket is here twice, with the same time: no harm.
+                // An entry is out of date if the time of its disk has moved to another bucket. A disk that
+                // got a new time within this bucket has two entries here, with the same time, which does no
+                // harm.
                 if page.bucket(due) == bucket {
                     open.push(Entry::new(disk, due));
                 }
@@ -216,7 +219,8 @@ impl BucketQueue {
             *wait = due - first;
             count += 1;
         }
-        // Only the earliest of them tell how dense events are: a disk at rest may wait as good as forever.
+        // Only the earliest times of the sample tell how dense events are. A disk at rest may wait almost
+        // forever.
         let (_, &mut wait, _) = waits.select_nth_unstable_by(count / SOON, f64::total_cmp);
         (stride * (count / SOON + 1)) as f64 / wait
     }

@@ -1,16 +1,16 @@
-//! The default scheduler: the faster of the others for the number of disks.
+//! The default scheduler: the faster one for the number of disks.
 
 use super::{BucketQueue, EventScheduler, TournamentTree};
 
 /// Number of disks from which on the processor's caches no longer hold a system.
 ///
-/// Above it an event waits for the memory, and work that spares memory pays: an order that is written page by
-/// page ([`BucketQueue`]), and requests for what the next events will need. Below it the same work is a loss.
-/// The place of the change is measured by `cargo bench --bench scaling`; it is flat, so one number serves
-/// both.
+/// Above it, an event waits for the memory, and work that spares memory pays: an order that is written page
+/// by page ([`BucketQueue`]), and early requests for what the next events will need. Below it, the same work
+/// is a loss. The number is measured by `cargo bench --bench scaling`. The optimum is flat, so one number
+/// serves both kinds of work.
 pub(crate) const LARGE_SYSTEM: usize = 30_000;
 
-/// A [`TournamentTree`] for fewer than 30 000 disks, a [`BucketQueue`] from there on.
+/// A [`TournamentTree`] for fewer than 30 000 disks, and a [`BucketQueue`] from there on.
 ///
 /// ```
 /// use granular_edmd::scheduler::{BySize, EventScheduler};
@@ -24,12 +24,12 @@ pub(crate) const LARGE_SYSTEM: usize = 30_000;
 pub struct BySize {
     tree: TournamentTree,
     queue: BucketQueue,
-    /// The queue is in use and the tree is empty, or else the other way round.
+    /// True if the queue is in use and the tree is empty; otherwise it is the other way round.
     is_large: bool,
 }
 
 impl BySize {
-    /// Makes a scheduler of no disks.
+    /// Creates a scheduler without disks.
     pub const fn new() -> Self {
         Self { tree: TournamentTree::new(), queue: BucketQueue::new(), is_large: false }
     }

@@ -1,8 +1,8 @@
-//! A disk and its time.
+//! Entries of schedulers: a disk and its time.
 
 use super::NOTHING_DUE;
 
-/// A disk and the time at which it is due, ordered by time and then by disk.
+/// A disk with the time at which it is due, ordered by time and then by disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Entry {
     /// The time as an integer, in the same order.
@@ -19,14 +19,14 @@ impl Default for Entry {
 }
 
 impl Entry {
-    /// The entry of no disk: after all others.
+    /// The entry of no disk, which comes after all others.
     pub(super) const EMPTY: Self = Self { order: u64::MAX - 1, disk: usize::MAX };
 
     #[inline]
     pub(super) fn new(disk: usize, due: f64) -> Self {
         // Adding 0 turns -0 into 0, so that both zeros are the same time. The bits of a positive float grow
-        // with it, those of a negative one with its magnitude: all are flipped there, and only the sign
-        // elsewhere.
+        // with the float, and those of a negative one with its magnitude. For a negative float, all bits are
+        // flipped; for a positive one, only the sign.
         let bits = (due + 0.0).to_bits();
         Self { order: if bits & SIGN == 0 { bits | SIGN } else { !bits }, disk }
     }
@@ -36,8 +36,8 @@ impl Entry {
         f64::from_bits(if self.order & SIGN == 0 { !self.order } else { self.order & !SIGN })
     }
 
-    /// Returns the answer of [`EventScheduler::earliest`](super::EventScheduler::earliest) if this is the
-    /// first.
+    /// Returns the answer of [`EventScheduler::earliest`](super::EventScheduler::earliest) for this entry as
+    /// the first.
     #[inline]
     pub(super) fn answer(self) -> (usize, f64) {
         if self == Self::EMPTY { NOTHING_DUE } else { (self.disk, self.due()) }

@@ -1,8 +1,8 @@
-//! The laws that a scheduler can break, as a check for schedulers of your own.
+//! Checks of the laws that a scheduler can break, for schedulers of your own.
 //!
-//! A wrong order of events does not crash: it gives a trajectory that is wrong. So a scheduler is tested for
-//! itself, against the plain [`LinearScan`], over scripts of operations that look random and are the same on
-//! every run.
+//! A wrong order of events does not crash; it gives a wrong trajectory. Therefore, a scheduler is tested
+//! separately, against the plain [`LinearScan`], with scripts of operations that look random and are the same
+//! on every run.
 
 mod script;
 
@@ -13,13 +13,14 @@ use thiserror::Error;
 use super::{EventScheduler, LinearScan, NOTHING_DUE};
 use script::{Operation, SCRIPTS, Script, Stage};
 
-/// A law that a scheduler breaks, and where.
+/// A law that a scheduler breaks, and the place in a script where it does.
 ///
-/// The scripts never change within a version: the same scheduler breaks the same law at the same step again.
+/// The scripts never change within a version, so the same scheduler breaks the same law at the same step
+/// again.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Violation {
-    /// The scheduler names another event than the earliest.
+    /// The scheduler names an event that is not the earliest.
     #[error(
         "script \"{script}\" of {disks} disks, step {step}, {after}: the earliest is {}, but {} is named",
         Answer(*expected), Answer(*given)
@@ -38,7 +39,7 @@ pub enum Violation {
         /// The answer that was given.
         given: (usize, f64),
     },
-    /// [`EventScheduler::upcoming`] changes what it should only add to.
+    /// [`EventScheduler::upcoming`] changes disks that it should only add to.
     #[error("script \"{script}\" of {disks} disks, step {step}: the look at upcoming disks removes others")]
     Removed {
         /// Name of the script.
@@ -50,13 +51,13 @@ pub enum Violation {
     },
 }
 
-/// Checks a scheduler against its contract, the one of [`EventScheduler`].
+/// Checks that a scheduler keeps the contract of [`EventScheduler`].
 ///
-/// `make` gives a fresh scheduler without disks; it is called for every script. The scripts have from none to
-/// some ten thousand disks, times that go on, come back, or are before the last answer, ties, both zeros,
-/// negative and infinite times, a single busy disk among many that wait, and resets to more, fewer and no
-/// disks. Now and then they ask for [`upcoming`](EventScheduler::upcoming) disks, which must not change the
-/// order.
+/// The closure `make` returns a fresh scheduler without disks, and is called for every script. The scripts
+/// have from none to some ten thousand disks. They contain times that go on, come back, or are before the
+/// last answer, ties, both zeros, negative and infinite times, a single busy disk among many that wait, and
+/// resets to more, fewer and no disks. Now and then they ask for [`upcoming`](EventScheduler::upcoming)
+/// disks, which must not change the order.
 ///
 /// # Errors
 /// The first law that is broken. A scheduler that panics is not caught.
@@ -94,7 +95,7 @@ pub fn check<S: EventScheduler>(mut make: impl FnMut() -> S) -> Result<(), Viola
     })
 }
 
-/// A script on its way, and the scheduler that is checked.
+/// A script in progress, and the scheduler that is checked.
 struct Performance<S> {
     script: &'static Script,
     disks: usize,
@@ -126,7 +127,7 @@ impl<S: EventScheduler> Performance<S> {
         Ok(())
     }
 
-    /// Checks the answer; `after` says what it follows.
+    /// Checks the answer. The closure `after` describes the last operation.
     fn compare(&self, after: impl FnOnce() -> String) -> Result<(), Violation> {
         let (expected, given) = (self.oracle.earliest(), self.scheduler.earliest());
         if expected == given {
@@ -138,7 +139,7 @@ impl<S: EventScheduler> Performance<S> {
 
     /// Asks for upcoming disks, as the engine does in large systems.
     fn look_ahead(&mut self) -> Result<(), Violation> {
-        // Any disks stand for those that the engine has in hand.
+        // Any disks can stand for those that the engine has collected already.
         let mut named = vec![usize::MAX, 0];
         self.scheduler.upcoming(&mut named);
         if !named.starts_with(&[usize::MAX, 0]) {
@@ -149,7 +150,7 @@ impl<S: EventScheduler> Performance<S> {
     }
 }
 
-/// An answer of a scheduler in words.
+/// An answer of a scheduler, displayed in words.
 struct Answer((usize, f64));
 
 impl fmt::Display for Answer {

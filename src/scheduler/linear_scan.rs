@@ -2,15 +2,15 @@
 
 use super::{EventScheduler, NOTHING_DUE};
 
-/// Looks through all times for the earliest at each call: slow, and plainly right. The oracle of all other
-/// schedulers.
+/// The obvious scheduler, which looks through all times for the earliest at each call. It is slow and plainly
+/// right, and serves as the oracle for all other schedulers.
 #[derive(Debug, Clone, Default)]
 pub struct LinearScan {
     due: Vec<f64>,
 }
 
 impl LinearScan {
-    /// Makes a scheduler of no disks.
+    /// Creates a scheduler without disks.
     pub const fn new() -> Self {
         Self { due: Vec::new() }
     }
@@ -29,7 +29,7 @@ impl EventScheduler for LinearScan {
     fn earliest(&self) -> (usize, f64) {
         let mut first = NOTHING_DUE;
         for (disk, &due) in self.due.iter().enumerate() {
-            // An infinite time is not before that of NOTHING_DUE, but its disk exists.
+            // An infinite time is not before that of `NOTHING_DUE`, but its disk exists.
             if due < first.1 || first.0 == usize::MAX {
                 first = (disk, due);
             }

@@ -5,13 +5,13 @@ use std::hint::select_unpredictable;
 use super::EventScheduler;
 use super::entry::Entry;
 
-/// Players of a match.
+/// Number of players of a match.
 const PLAYERS: usize = 4;
 
 /// A tournament in matches of four: the earliest of four disks goes on to the next round, until one is left.
 ///
-/// A change of one disk replays its matches, round by round. Each replay selects and does not branch, because
-/// no processor can foresee the winner of a match, and a branch that is foreseen wrongly costs more than the
+/// After a change of one disk, its matches are replayed, round by round. Each replay selects and does not
+/// branch: no processor can predict the winner of a match, and a mispredicted branch costs more than the
 /// whole match. Matches of four need half as many rounds as matches of two, and the best of the three others
 /// is found while the round below is still being played.
 #[derive(Debug, Clone, Default)]
@@ -24,11 +24,11 @@ pub struct TournamentTree {
 }
 
 impl Entry {
-    /// Returns the earlier of two; of equal times the smaller disk.
+    /// Returns the earlier of two entries. Of equal times, the smaller disk wins.
     #[inline]
     fn earlier(self, other: Self) -> Self {
-        // A comparison of the two as pairs would become a branch on some processors. The sum cannot overflow:
-        // no time has the largest order, which is why EMPTY has the one before it.
+        // A comparison of the two as pairs would become a branch on some processors. The sum cannot overflow,
+        // since no time has the largest order; for this reason, `EMPTY` has the order before it.
         let wins = other.order < self.order + u64::from(other.disk < self.disk);
         Self {
             order: select_unpredictable(wins, other.order, self.order),
@@ -38,12 +38,12 @@ impl Entry {
 }
 
 impl TournamentTree {
-    /// Makes a scheduler of no disks.
+    /// Creates a scheduler without disks.
     pub const fn new() -> Self {
         Self { matches: Vec::new(), rounds: Vec::new(), winner: Entry::EMPTY }
     }
 
-    /// Makes room for the matches of this many players, of their winners, and so on; nobody is seated yet.
+    /// Makes room for the matches of this many players, of their winners, and so on. All seats are empty.
     fn seat(&mut self, mut players: usize) {
         self.rounds.clear();
         let mut count = 0;

@@ -1,4 +1,4 @@
-//! Checks everything once, and makes a simulation of it.
+//! The builder, which checks all inputs once and makes a simulation of them.
 
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -17,13 +17,13 @@ use crate::disk::{MOST_DISKS, bounded};
 use crate::quantity::finite;
 use crate::scheduler::{BySize, EventScheduler};
 
-/// Most walls that a boundary can have.
+/// Largest number of walls of a boundary.
 const MOST_WALLS: usize = 1 << 16;
 
-/// Overlap, relative to the diameter, that counts as touching: rounding of positions.
+/// Overlap, relative to the diameter, that counts as touching. It is the rounding of positions.
 const TOUCHING: f64 = 1e-10;
 
-/// Parts of a simulation that is about to be made; see [`Simulation::builder`].
+/// The inputs of a simulation that is being built; see [`Simulation::builder`].
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct SimulationBuilder<R, B, S = BySize> {
@@ -37,8 +37,8 @@ pub struct SimulationBuilder<R, B, S = BySize> {
 }
 
 impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
-    /// Starts to describe a simulation: the rule of collisions between disks, which also serves walls without a rule of their own, and the
-    /// walls around them.
+    /// Starts to build a simulation from the rule of collisions between disks and the walls around them. The
+    /// rule also serves walls without their own rule.
     ///
     /// ```
     /// use granular_edmd::glam::DVec2;
@@ -69,41 +69,42 @@ impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S> {
-    /// The disks, at the start time.
+    /// Sets the disks, as they are at the start time.
     pub fn disks(mut self, disks: impl IntoIterator<Item = Disk>) -> Self {
         self.disks = disks.into_iter().collect();
         self
     }
 
-    /// Gravity, pointing down; 0 unless given, and negative to point up.
+    /// Sets gravity, which points down; 0 unless given, and negative to point up.
     pub const fn gravity(mut self, gravity: f64) -> Self {
         self.gravity = gravity;
         self
     }
 
-    /// Seed of the stochastic walls; 0 unless given. Without stochastic walls it has no effect.
+    /// Sets the seed of the stochastic walls; 0 unless given. Without stochastic walls, it has no effect.
     pub const fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
     }
 
-    /// The time at which the run starts; 0 unless given.
+    /// Sets the time at which the run starts; 0 unless given.
     pub const fn start_time(mut self, time: f64) -> Self {
         self.start_time = time;
         self
     }
 
-    /// Another scheduler: the trajectory is the same, bit for bit.
+    /// Sets another scheduler. The trajectory is the same, bit for bit.
     pub fn scheduler<T: EventScheduler>(self, scheduler: T) -> SimulationBuilder<R, B, T> {
         let Self { rule, boundary, scheduler: _, disks, gravity, seed, start_time } = self;
         SimulationBuilder { rule, boundary, scheduler, disks, gravity, seed, start_time }
     }
 
-    /// The simulation.
+    /// Builds the simulation.
     ///
     /// # Errors
-    /// If gravity or the start time is not finite, or gravity above 1e60 in magnitude, the domain is too small for the disks, or a disk is outside, overlaps
-    /// a wall or overlaps another disk; the error names it.
+    /// If gravity or the start time is not finite, or gravity is above 1e60 in magnitude. If the domain is
+    /// too small for the disks, or a disk is outside, overlaps a wall or overlaps another disk; the error
+    /// names it.
     pub fn build(self) -> Result<Simulation<R, B, S>, BuildError> {
         bounded("gravity", self.gravity)?;
         finite("start time", self.start_time)?;
@@ -134,7 +135,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
     }
 }
 
-/// Number of walls, and the neighbor cells, for disks that fit into the boundary at this time offset.
+/// Returns the number of walls and the neighbor cells, if the disks fit into the boundary at this time
+/// offset.
 pub(super) fn fit<B: Boundary + ?Sized>(
     boundary: &B,
     disks: &[Disk],
@@ -147,7 +149,7 @@ pub(super) fn fit<B: Boundary + ?Sized>(
     Ok((wall_count, cells))
 }
 
-/// Checks that time does not stand still at the start.
+/// Checks that times at the start are not too coarse, so that time cannot stand still.
 fn check_start(clock: &Clock, disks: &[Disk]) -> Result<(), BuildError> {
     match clock.coarseness(0.0) {
         Some(spacing) if !disks.is_empty() => {
@@ -157,7 +159,7 @@ fn check_start(clock: &Clock, disks: &[Disk]) -> Result<(), BuildError> {
     }
 }
 
-/// The number of walls, if the engine can number them.
+/// Returns the number of walls, if the engine can number them.
 pub(super) fn count_walls<B: Boundary + ?Sized>(boundary: &B) -> Result<usize, BuildError> {
     let count = boundary.wall_count();
     if count > MOST_WALLS {
@@ -166,16 +168,16 @@ pub(super) fn count_walls<B: Boundary + ?Sized>(boundary: &B) -> Result<usize, B
     Ok(count)
 }
 
-/// Neighbor cells that suit these disks.
+/// Returns neighbor cells that suit these disks.
 fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells, BuildError> {
     let diameter = 2.0 * disks.iter().map(Disk::radius).fold(0.0, f64::max);
     let domain = boundary.domain();
-    // Without disks any cells will do.
+    // Any cells will do without disks.
     let diameter = if diameter > 0.0 { diameter } else { 0.125 * domain.width() };
     if !(domain.width().is_finite() && domain.bottom.is_finite()) {
         return Err(BuildError::Domain { domain });
     }
-    // Walls that pass through each other leave no room.
+    // Walls that pass through each other leave no room for disks.
     let interior = boundary.interior();
     if !(interior.width() > 0.0 && interior.height() > 0.0) {
         let (width, height) = (interior.width(), interior.height());
@@ -190,7 +192,7 @@ fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk], offset: f64)
     let domain = boundary.domain();
     for (disk, state) in disks.iter().enumerate() {
         let (position, radius) = (state.position(), state.radius());
-        // A disk that is about to come in by the other one of two periodic sides may be beyond its own by rounding.
+        // A disk that is about to enter at the opposite periodic side may be beyond its own side by rounding.
         let slack = TOUCHING * radius;
         let inside = (domain.left - slack..=domain.right + slack).contains(&position.x)
             && (domain.bottom - slack..=domain.top + slack).contains(&position.y);

@@ -1,4 +1,4 @@
-//! Neighbor cells: a disk can only collide with disks in its own cell and the eight around it.
+//! Neighbor cells: a disk can only collide with disks in its own cell and the eight cells around it.
 
 mod block;
 mod cell_size;
@@ -18,7 +18,7 @@ pub(super) use grid::{Grid, Layout, Place};
 
 /// The disks in the cells of a grid.
 ///
-/// Ghosts are empty beyond walls; at periodic sides they mirror the cells of the opposite side.
+/// Ghost cells are empty beyond walls. At periodic sides, they mirror the cells of the opposite side.
 #[derive(Debug, Clone)]
 pub(super) struct Cells {
     grid: Grid,
@@ -28,7 +28,8 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// Cells for disks of at most this diameter at these positions; `None` if the domain is too small for them.
+    /// Creates cells for disks of at most this diameter at these positions, or `None` if the domain is too
+    /// small for them.
     pub(super) fn new<B: Boundary + ?Sized>(
         boundary: &B,
         diameter: f64,
@@ -43,7 +44,7 @@ impl Cells {
         Some(Self::filled(boundary, 0.5 * diameter, grid, places))
     }
 
-    /// Cells of this grid with the disks in these places.
+    /// Creates cells of this grid with the disks in these places.
     pub(super) fn filled<B: Boundary + ?Sized>(
         boundary: &B,
         largest_radius: f64,
@@ -83,7 +84,7 @@ impl Cells {
         self.contents.is_at_wall(self.grid.index(place))
     }
 
-    /// Writes a disk into its cell and the ghost of that.
+    /// Writes a disk into its cell, and into the ghost of that cell.
     #[inline]
     fn enter(&mut self, disk: usize) {
         let place = self.places[disk];
@@ -93,7 +94,7 @@ impl Cells {
         }
     }
 
-    /// Takes a disk out of its cell and the ghost of that.
+    /// Takes a disk out of its cell, and out of the ghost of that cell.
     #[inline]
     fn leave(&mut self, disk: usize) {
         let place = self.places[disk];
@@ -103,7 +104,7 @@ impl Cells {
         }
     }
 
-    /// Takes a disk to the cell that it leaves for; returns what that adds to its `x`.
+    /// Moves a disk to the cell that it enters by this exit. Returns the change of its `x` that goes with it.
     #[inline]
     pub(super) fn cross(&mut self, disk: usize, exit: Exit) -> f64 {
         self.leave(disk);
@@ -118,7 +119,7 @@ impl Cells {
         prefetch(&self.places, disk);
     }
 
-    /// Asks for the nine cells around a disk.
+    /// Requests the nine cells around a disk from memory.
     #[inline]
     pub(super) fn prefetch_around(&self, disk: usize) {
         let (center, stride) = (self.grid.index(self.places[disk]), self.grid.stride());
@@ -128,7 +129,8 @@ impl Cells {
         }
     }
 
-    /// Asks for the cells that a disk leaves and enters by `exit`, and those that then come within reach.
+    /// Requests from memory the cells that a disk leaves and enters by `exit`, and those that then come
+    /// within reach.
     #[inline]
     pub(super) fn prefetch_ahead(&self, disk: usize, exit: Exit) {
         let (from, to) = (self.places[disk], self.next_place(disk, exit));
@@ -139,13 +141,13 @@ impl Cells {
         }
     }
 
-    /// Room that [`Self::around`] and [`Self::ahead`] need.
+    /// Returns the room that [`Self::around`] and [`Self::ahead`] need.
     #[inline]
     pub(super) fn room(&self) -> usize {
         self.contents.room(9)
     }
 
-    /// Writes the disks in the nine cells around `disk` (itself included) to `found`; returns how many.
+    /// Writes the disks in the nine cells around `disk` (itself included) to `found`. Returns their number.
     #[inline]
     pub(super) fn around(&self, disk: usize, found: &mut [u32]) -> usize {
         let center = self.grid.index(self.places[disk]);
@@ -157,14 +159,15 @@ impl Cells {
         count
     }
 
-    /// The same for the three cells that come within reach of `place` when a disk has come there by `exit`.
+    /// Writes the disks in the three cells that come within reach of `place`, after a disk came there by
+    /// `exit`, to `found`. Returns their number.
     #[inline]
     pub(super) fn ahead(&self, place: Place, exit: Exit, found: &mut [u32]) -> usize {
         let (first, step) = self.three_ahead(place, exit);
         self.contents.gather(first, step, found, 0)
     }
 
-    /// The first of these three cells, and how far apart they are.
+    /// Returns the first of these three cells, and their distance in memory.
     #[inline]
     fn three_ahead(&self, place: Place, exit: Exit) -> (usize, usize) {
         let (right, up) = exit.direction();
@@ -175,7 +178,7 @@ impl Cells {
         (middle - step, step)
     }
 
-    /// The place that a disk is at when it has left its cell by `exit`.
+    /// Returns the place of a disk after it has left its cell by `exit`.
     #[inline]
     pub(super) fn next_place(&self, disk: usize, exit: Exit) -> Place {
         self.grid.neighbor(self.places[disk], exit.direction()).0

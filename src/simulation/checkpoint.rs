@@ -1,6 +1,7 @@
-//! Checkpoints: a run as data, to go on with later, bit for bit.
+//! Checkpoints: a run as data, from which it goes on later, bit for bit.
 //!
-//! This file is the format; `validation.rs` says which contents make a state, `resumption.rs` makes a run of them.
+//! This file contains the format. The file `validation.rs` decides which contents are a state, and
+//! `resumption.rs` makes a run of them.
 
 mod resumption;
 mod validation;
@@ -28,12 +29,12 @@ use crate::{Disk, Fingerprint};
 /// The mark of a checkpoint, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 3 };
 
-/// Everything that the future of a run depends on, except its rule and its walls.
+/// Everything on which the future of a run depends, except its rule and its walls.
 ///
-/// A resumed run continues bit for bit, also under another scheduler. A checkpoint is kept as bytes with a version and a
-/// checksum, in files of its own and inside any format of serde: what was cut, changed or made by another version is refused,
-/// never read as data. It knows the fingerprints of its rule and its boundary, and refuses others unless told to
-/// take them.
+/// A resumed run continues bit for bit, also under another scheduler. A checkpoint is kept as bytes with a
+/// version and a checksum, in its own files and inside any format of serde. Bytes that were cut, changed or
+/// made by another version are refused and never read as data. A checkpoint knows the fingerprints of its
+/// rule and its boundary, and refuses others unless told to take them.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -49,7 +50,8 @@ const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 3 };
 ///
 /// let bytes = first.checkpoint().to_bytes()?;
 /// let checkpoint = Checkpoint::from_bytes(&bytes)?;
-/// let mut second = Simulation::resume(&checkpoint, Elastic, container).scheduler(LinearScan::default()).build()?;
+/// let resumption = Simulation::resume(&checkpoint, Elastic, container);
+/// let mut second = resumption.scheduler(LinearScan::default()).build()?;
 ///
 /// first.run_until(10.0, &mut ())?;
 /// second.run_until(10.0, &mut ())?;
@@ -66,7 +68,8 @@ struct Saved {
     rule: Option<Fingerprint>,
     boundary: Option<Fingerprint>,
     domain: Domain,
-    /// One for each disk, or one for all if they are alike; at rest at the origin.
+    /// Kinds of the disks: one for each disk, or one for all if they are alike. Each is at rest at the
+    /// origin.
     kinds: Vec<Disk>,
     gravity: f64,
     trajectories: Vec<Trajectory>,
@@ -83,24 +86,24 @@ struct Saved {
     counters: Counters,
 }
 
-/// A checkpoint cannot be written, read or resumed.
+/// An error: a checkpoint cannot be written, read or resumed.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
     /// The file cannot be read or written.
     #[error("cannot {action} the checkpoint {}", .path.display())]
     Io {
-        /// The action: read or write.
+        /// The action that failed: read or write.
         action: &'static str,
         /// The file.
         path: PathBuf,
         /// The cause.
         source: io::Error,
     },
-    /// The file is something else.
+    /// The file is not a checkpoint.
     #[error("this is not a checkpoint: it does not begin as one")]
     NotACheckpoint,
-    /// Another version of the format.
+    /// The checkpoint has another version of the format.
     #[error("the checkpoint has format version {found}; this crate reads version {known}")]
     Version {
         /// The version of the file.
@@ -117,7 +120,7 @@ pub enum CheckpointError {
         /// The cause.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
-    /// The contents do not make a state.
+    /// The contents are not a possible state.
     #[error("the checkpoint is inconsistent: {0}")]
     Inconsistent(&'static str),
     /// The boundary has another domain than that of the run that was saved.
@@ -142,12 +145,12 @@ pub enum CheckpointError {
 }
 
 impl Checkpoint {
-    /// The absolute time at which it was taken.
+    /// Returns the absolute time at which the checkpoint was taken.
     pub fn time(&self) -> f64 {
         self.0.origin + self.0.now
     }
 
-    /// Number of disks.
+    /// Returns the number of disks.
     pub fn len(&self) -> usize {
         self.0.trajectories.len()
     }
@@ -157,7 +160,7 @@ impl Checkpoint {
         self.len() == 0
     }
 
-    /// The checkpoint as bytes: magic, version, checksum, contents.
+    /// Returns the checkpoint as bytes: magic, version, checksum, contents.
     ///
     /// # Errors
     /// If it cannot be encoded.
@@ -168,7 +171,7 @@ impl Checkpoint {
     /// Reads a checkpoint from bytes.
     ///
     /// # Errors
-    /// If they are not a checkpoint, of another version, cut, or changed.
+    /// If the bytes are not a checkpoint, are of another version, or were cut or changed.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
         let sealed = SEAL.open(bytes).map_err(|broken| match broken {
             Broken::Foreign => CheckpointError::NotACheckpoint,
@@ -180,10 +183,11 @@ impl Checkpoint {
         Ok(Self(saved))
     }
 
-    /// Writes the checkpoint to a file, whole or not at all: a reader never sees half of it, also with other writers beside.
+    /// Writes the checkpoint to a file, whole or not at all. A reader never sees half of it, even if others
+    /// write the same file.
     ///
     /// # Errors
-    /// If the file cannot be written; a file of that name is then as it was.
+    /// If the file cannot be written. An older file of that name is then as it was.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), CheckpointError> {
         write_whole(path.as_ref(), &self.to_bytes()?).map_err(failed("write", path.as_ref()))
     }
@@ -191,7 +195,7 @@ impl Checkpoint {
     /// Reads a checkpoint from a file.
     ///
     /// # Errors
-    /// If the file cannot be read, or as [`Self::from_bytes`].
+    /// If the file cannot be read, and the errors of [`Self::from_bytes`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CheckpointError> {
         Self::from_bytes(&std::fs::read(path.as_ref()).map_err(failed("read", path.as_ref()))?)
     }
@@ -206,7 +210,8 @@ fn contents(source: postcard::Error) -> CheckpointError {
     CheckpointError::Contents { source: Box::new(source) }
 }
 
-/// Writes the bytes of [`Checkpoint::to_bytes`]: text formats lose infinities, and any format could be read past its version.
+/// Writes the bytes of [`Checkpoint::to_bytes`]. Text formats lose infinities, and in any format fields could
+/// be read without the check of the version.
 impl Serialize for Checkpoint {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_bytes(&self.to_bytes().map_err(serde::ser::Error::custom)?)
@@ -219,7 +224,8 @@ impl<'de> Deserialize<'de> for Checkpoint {
     }
 }
 
-/// Takes the bytes of a checkpoint from formats with bytes, and from those that write them as a list of numbers.
+/// A visitor that takes the bytes of a checkpoint from formats with bytes, and from those that write them as
+/// a list of numbers.
 struct Sealed;
 
 impl<'de> de::Visitor<'de> for Sealed {
@@ -243,7 +249,7 @@ impl<'de> de::Visitor<'de> for Sealed {
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Takes a checkpoint of the run as it is now.
+    /// Takes a checkpoint of the run in its present state.
     pub fn checkpoint(&self) -> Checkpoint {
         let particles = &self.bodies.particles;
         Checkpoint(Saved {

@@ -1,4 +1,4 @@
-//! Changes for all disks at once: a new epoch, cells of another size, all events predicted anew.
+//! Changes for all disks at once: a new epoch, cells of another size, new predictions of all events.
 
 use super::Simulation;
 use super::cells::Cells;
@@ -9,7 +9,7 @@ use crate::collision::CollisionRule;
 use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Predicts every disk's next event from the present state alone.
+    /// Predicts the next event of every disk from the present state alone.
     pub(super) fn predict_all(&mut self) {
         self.make_room();
         for disk in 0..self.bodies.len() {
@@ -24,7 +24,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         due.clear();
         due.extend(self.bodies.particles.iter().map(|particle| particle.forecast.due()));
         self.scheduler.reset(&due);
-        // Kept, so that nothing is allocated again; in large systems memory counts for more.
+        // The memory is kept, so that nothing is allocated again. In large systems, the memory itself counts
+        // for more.
         if due.len() < LARGE_SYSTEM {
             self.scratch.due = due;
         }
@@ -42,7 +43,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(())
     }
 
-    /// Moves the epoch on by this much.
+    /// Moves the epoch on by this time.
     pub(super) fn shift_epoch(&mut self, by: f64) {
         self.bodies.shift(by);
         self.clock.shift(by);
@@ -50,9 +51,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.reset_scheduler();
     }
 
-    /// Changes to larger or smaller cells, if those suit what happened since the last epoch.
+    /// Changes to larger or smaller cells, if those suit the events since the last epoch.
     ///
-    /// The choice depends on the state alone: it is the same on every run. All events are predicted anew from the present then.
+    /// The choice depends on the state alone, so it is the same on every run. After a change, all events are
+    /// predicted anew from the present.
     #[cold]
     pub(super) fn adapt_cells(&mut self) {
         let tally =

@@ -9,14 +9,14 @@ use crate::ParameterError;
 use crate::collision::{Contact, Impulse};
 use crate::observable::{ObserverError, Partner};
 
-/// The disks, the boundary and the parameters do not fit together.
+/// An error: the disks, the boundary and the parameters do not fit together.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BuildError {
     /// A parameter is out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// Absolute times at the start are too far apart for disks so fast: time would stand still.
+    /// Times at the start are too coarse for disks so fast: time would stand still.
     #[error(
         "the run cannot start at time {start}: times there are {spacing:e} apart, too coarse for disks that go some tens of \
          diameters in {epoch:e}; start nearer to 0"
@@ -24,7 +24,7 @@ pub enum BuildError {
     StartTime {
         /// The start time asked for.
         start: f64,
-        /// Distance of the next number to it.
+        /// Distance to the next floating-point number.
         spacing: f64,
         /// Time in which a typical disk goes some tens of diameters.
         epoch: f64,
@@ -40,7 +40,7 @@ pub enum BuildError {
     /// There are more disks than the engine can number.
     #[error("{count} disks are too many: at most {most} are possible")]
     TooManyDisks {
-        /// Number of them.
+        /// Number of disks.
         count: usize,
         /// Largest number possible.
         most: usize,
@@ -48,7 +48,7 @@ pub enum BuildError {
     /// The boundary has more walls than the engine can number.
     #[error("{count} walls are too many: at most {most} are possible")]
     TooManyWalls {
-        /// Number of them.
+        /// Number of walls.
         count: usize,
         /// Largest number possible.
         most: usize,
@@ -56,53 +56,54 @@ pub enum BuildError {
     /// A disk is outside the boundary's domain.
     #[error("disk {disk} at ({x}, {y}) is outside the domain")]
     Outside {
-        /// Its index.
+        /// Index of the disk.
         disk: usize,
-        /// Its position.
+        /// Horizontal position of its center.
         x: f64,
-        /// Its position.
+        /// Vertical position of its center.
         y: f64,
     },
     /// A disk overlaps a wall.
     #[error("disk {disk} at ({x}, {y}) overlaps the wall {wall:?} by {depth}")]
     OverlapsWall {
-        /// Its index.
+        /// Index of the disk.
         disk: usize,
-        /// Its position.
+        /// Horizontal position of its center.
         x: f64,
-        /// Its position.
+        /// Vertical position of its center.
         y: f64,
         /// The wall's name.
         wall: String,
-        /// By how much.
+        /// Depth of the overlap.
         depth: f64,
     },
     /// Two disks overlap.
     #[error("disks {first} and {second} overlap by {depth}")]
     Overlap {
-        /// Index of the first.
+        /// Index of the first disk.
         first: usize,
-        /// Index of the second.
+        /// Index of the second disk.
         second: usize,
-        /// By how much.
+        /// Depth of the overlap.
         depth: f64,
     },
-    /// The domain has no area, or periodic sides too close for a disk not to meet its own image.
+    /// The domain has no area, or its periodic sides are so close that a disk could meet its own image.
     #[error("a domain of width {width} and height {height} is too small for disks of diameter {diameter}")]
     DomainTooSmall {
-        /// Its width.
+        /// Width of the domain.
         width: f64,
-        /// Its height.
+        /// Height of the domain.
         height: f64,
         /// Diameter of the largest disk.
         diameter: f64,
     },
 }
 
-/// Result of the engine's inner functions: errors in boxes, so that the usual answer comes back in registers.
+/// The result of the engine's inner functions. Errors are boxed, so that the usual answer comes back in
+/// registers.
 pub(super) type Outcome<T> = Result<T, Box<RunError>>;
 
-/// A run cannot go on. The simulation keeps the state that it had when it noticed.
+/// An error: a run cannot go on. The simulation keeps the state that it had when it noticed.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RunError {
@@ -114,7 +115,7 @@ pub enum RunError {
         /// The present.
         time: f64,
     },
-    /// Events pile up in vanishing time: inelastic collapse, or a disk that rests on a wall.
+    /// Events pile up in vanishing time, by an inelastic collapse or because a disk rests on a wall.
     #[error(
         "{events} events without progress at time {time}, the last of disk {disk}: an inelastic collapse, which the rule \
          ContactDuration may prevent, or a disk that is at rest on a wall, squeezed, or never pushed apart by its rule"
@@ -127,35 +128,35 @@ pub enum RunError {
         /// Number of events without progress.
         events: u64,
     },
-    /// A rule answered with an impulse that is not finite, or leads to a motion beyond 1e60.
+    /// A rule answered with an impulse that is not finite, or that leads to a motion beyond 1e60.
     #[error("the collision of {0}")]
     NotFinite(Box<FailedCollision>),
-    /// The boundary gave an answer that cannot be.
-    #[error("the boundary's answer for disk {disk} at time {time} cannot be: {fault}")]
+    /// The boundary gave an impossible answer.
+    #[error("the boundary gave an impossible answer for disk {disk} at time {time}: {fault}")]
     Boundary {
-        /// The disk that it was asked for.
+        /// The disk about which it was asked.
         disk: usize,
         /// The present.
         time: f64,
         /// The answer.
         fault: BoundaryFault,
     },
-    /// The scheduler named a disk that there is not, or a time that it was not given.
+    /// The scheduler named a disk that does not exist, or a time that was not set.
     #[error(
         "the scheduler names disk {disk}, due at the offset {due}, at time {time}; {}",
         .expected.map_or("there is no such disk".to_owned(), |expected| format!("it was set to {expected}"))
     )]
     Scheduler {
-        /// The disk that it named.
+        /// The disk that the scheduler named.
         disk: usize,
-        /// The offset that it named.
+        /// The offset that the scheduler named.
         due: f64,
-        /// The offset that it was given for this disk, if there is such a disk.
+        /// The offset that was last set for this disk, if there is such a disk.
         expected: Option<f64>,
         /// The present.
         time: f64,
     },
-    /// Absolute times are too far apart to go on: time would stand still.
+    /// Times are too coarse to go on: time would stand still.
     #[error(
         "the run cannot go on at time {time}: times there are {spacing:e} apart, too coarse for disks that go some tens of \
          diameters in {epoch:e}; the run is too late, or its disks have become too fast: does a rule or a wall add energy?"
@@ -163,12 +164,13 @@ pub enum RunError {
     TimeTooLate {
         /// The present.
         time: f64,
-        /// Distance of the next number to it.
+        /// Distance to the next floating-point number.
         spacing: f64,
         /// Time in which a typical disk goes some tens of diameters.
         epoch: f64,
     },
-    /// An observer asks for a sample at a time that is not a number, or, after a sample, not later.
+    /// An observer asks for a sample at a time that is not a number, or that is not later than the last
+    /// sample.
     #[error(
         "an observer asks for its next sample at time {next}, which is not after the last one, at time {time}"
     )]
@@ -183,18 +185,18 @@ pub enum RunError {
     Observer {
         /// The present.
         time: f64,
-        /// Its error.
+        /// The error of the observer.
         source: ObserverError,
     },
 }
 
-/// A collision whose outcome is no motion that the engine can go on with.
+/// A collision whose outcome is a motion with which the engine cannot go on.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct FailedCollision {
     /// The disk.
     pub disk: usize,
-    /// Its partner.
+    /// The partner of the disk.
     pub partner: Partner,
     /// Name of the wall, if the partner is one.
     pub wall: Option<String>,
@@ -202,9 +204,10 @@ pub struct FailedCollision {
     pub time: f64,
     /// The contact that the rule was asked about.
     pub contact: Contact,
-    /// The impulse that it answered.
+    /// The impulse that the rule answered.
     pub impulse: Impulse,
-    /// The reason that the rule gives, if it gives one: [`CollisionRule::explain`](crate::collision::CollisionRule::explain).
+    /// The reason that the rule gives, if it gives one; see
+    /// [`CollisionRule::explain`](crate::collision::CollisionRule::explain).
     pub explanation: Option<String>,
 }
 
@@ -231,16 +234,16 @@ impl fmt::Display for FailedCollision {
     }
 }
 
-/// An answer of a boundary that cannot be.
+/// An impossible answer of a boundary.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BoundaryFault {
-    /// A touch before the flight, after the end of the search, or with a wall that there is not.
+    /// A touch before the flight, after the end of the search, or with a wall that does not exist.
     #[error("a touch with wall {wall}, of {walls} walls from 0 on, {} after the start of the flight", -early_by)]
     Touch {
-        /// The wall that it named.
+        /// The wall that the boundary named.
         wall: usize,
-        /// Number of walls that it has.
+        /// Number of walls of the boundary.
         walls: usize,
         /// Time from the touch to the start of the flight; negative for a touch after the start.
         early_by: f64,
@@ -250,9 +253,9 @@ pub enum BoundaryFault {
     Surface {
         /// The wall.
         wall: usize,
-        /// Its normal.
+        /// The normal of the surface.
         normal: DVec2,
-        /// Its velocity.
+        /// The velocity of the surface.
         velocity: DVec2,
     },
 }

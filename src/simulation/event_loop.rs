@@ -1,8 +1,10 @@
 //! The event loop: which disk is next, what happens to it, and what follows.
 //!
-//! One collision, read from top to bottom: [`Simulation::next_due`] asks the scheduler, [`Simulation::advance`] goes there,
-//! [`Simulation::collide`] has the rule decide (`resolution.rs`) and kicks both disks, then finds what each does next and tells the
-//! scheduler (`forecasting.rs`). The arithmetic of meetings is in `prediction.rs`, epochs are in `epoch.rs`; none of these calls back.
+//! One collision reads from top to bottom. [`Simulation::next_due`] asks the scheduler, and
+//! [`Simulation::advance`] goes to the event. [`Simulation::collide`] lets the rule decide (`resolution.rs`)
+//! and kicks both disks. It then finds what each disk does next, and tells the scheduler (`forecasting.rs`).
+//! The arithmetic of meetings is in `prediction.rs`, and epochs are in `epoch.rs`. None of these files calls
+//! back.
 
 use glam::DVec2;
 
@@ -19,22 +21,25 @@ use crate::collision::{CollisionRule, Regime};
 use crate::observable::{Collision, Observer};
 use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
 
-/// Doublings after which two surfaces that a collision has left within rounding of each other are let be.
+/// Number of doublings of a push, after which two surfaces that a collision left within rounding of each
+/// other are left alone.
 const MOST_NUDGES: u32 = 24;
 
-/// Closing speed after a collision, in terms of the speeds of the disks, that is more than rounding: the rule wants it so.
+/// Closing speed after a collision, relative to the speeds of the disks, that is more than rounding: the rule
+/// wants the disks to close on.
 const WANTED: f64 = 1e-9;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// The disk whose event is next and its offset, if that is not after the offset `end`.
+    /// Returns the disk whose event is next and the offset of the event, if it is not after the offset `end`.
     #[inline]
     pub(super) fn next_due(&self, end: f64) -> Option<(usize, f64)> {
         let (disk, due) = self.scheduler.earliest();
-        // Not `due <= end`: a time that is not a number must come to light, not end the run.
+        // The comparison is not `due <= end`: a time that is not a number must be noticed, and not end the
+        // run.
         if due > end { None } else { Some((disk, due)) }
     }
 
-    /// Does the next event of `disk`; returns it if it is a collision.
+    /// Does the next event of `disk`, and returns it if it is a collision.
     #[inline]
     pub(super) fn advance<O: Observer + ?Sized>(
         &mut self,
@@ -45,12 +50,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let Some(&forecast) = self.bodies.forecast(disk) else {
             return Err(self.scheduler_fault(disk, due).into());
         };
-        // A scheduler that names an old time would take the run back, or past an event.
+        // A scheduler that names an old time would take the run back in time, or past an event.
         if forecast.due() != due || due < self.clock.now {
             return Err(self.scheduler_fault(disk, due).into());
         }
         if due > self.clock.epoch_length {
-            // The event is due all the same, at another offset: it comes up again.
+            // The event is still due, at another offset. The scheduler will name it again.
             self.move_epoch(due)?;
             self.adapt_cells();
             return Ok(None);
@@ -83,7 +88,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(None)
     }
 
-    /// Two disks collide.
+    /// Does a collision of two disks.
     #[inline]
     fn collide<O: Observer + ?Sized>(
         &mut self,
@@ -116,7 +121,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(Event::Collision { disk, partner })
     }
 
-    /// A disk collides with a wall.
+    /// Does a collision of a disk with a wall.
     fn collide_with_wall<O: Observer + ?Sized>(
         &mut self,
         disk: usize,
@@ -164,16 +169,18 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.counters.contact_duration_collisions += u64::from(by_contact_duration);
     }
 
-    /// Tells whether a disk can be kicked in this epoch; so are nearly all.
+    /// Tells whether a disk can be kicked in this epoch. Nearly all can.
     #[inline]
     fn is_tame(&self, kick: &Kick) -> bool {
-        // Not so for a velocity that is no number; rotation cannot go wrong alone, since its impulse moves the disk, too.
+        // The answer is no for a velocity that is not a number. Rotation cannot go wrong alone, since its
+        // impulse moves the disk, too.
         self.bodies.keeps_pace(kick.after.velocity, self.clock.epoch_length)
     }
 
     /// Begins a shorter epoch for the collision of two disks, or refuses it if its outcome is no motion.
     ///
-    /// The collision is worked out once more, so that the usual one need not be kept in memory for this.
+    /// The collision is computed once more, so that the usual collision need not be kept in memory for this
+    /// case.
     #[cold]
     #[inline(never)]
     fn prepare_for_pair(&mut self, disk: usize, partner: usize) -> Outcome<()> {
@@ -187,20 +194,23 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Begins a shorter epoch for disks that are about to become very fast.
     ///
-    /// The place of a disk at the epoch would be so far away that it lacked digits. So the epoch moves before the kick, not after.
+    /// The place of a fast disk at the epoch would be so far away that it lacked digits. For this reason, the
+    /// epoch moves before the kick and not after it.
     #[cold]
     #[inline(never)]
     fn begin_epoch_for(&mut self, kicks: &[Kick]) -> Outcome<()> {
         let lengths = kicks.iter().map(|kick| self.bodies.epoch_length_for(kick.after.velocity));
         let epoch_length = lengths.fold(self.clock.epoch_length, f64::min);
-        // Late times are so far apart that the present is not near any epoch for them: the kick would lose the place.
+        // Late times are so coarse that no epoch begins near the present. The kick would lose the place of
+        // the disk.
         Clock { epoch_length, ..self.clock }.check_coarseness(self.clock.now)?;
         self.shift_epoch(self.clock.exact_offset());
         self.clock.epoch_length = epoch_length;
         Ok(())
     }
 
-    /// Changes the motion of a disk, as all collisions do: predictions with it are out of date.
+    /// Changes the motion of a disk, as all collisions do. Predictions that involve the disk are then out of
+    /// date.
     #[inline]
     fn kick(&mut self, disk: usize, kick: &Kick) {
         self.bodies.kick(disk, kick.velocity, kick.angular_velocity, self.clock.now);
@@ -209,9 +219,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Makes two disks part that a collision has left with a closing speed of rounding, or none.
     ///
-    /// Velocities have digits relative to themselves, not to their difference: a rule that takes all of the closing speed
-    /// leaves some 1e-17 of it, of either sign, and disks that touch and close collide at once, again and again. So the speed is
-    /// raised, by as much on the scale of its rounding as it takes for the prediction to see them part.
+    /// The digits of velocities are relative to the velocities themselves, not to their difference. A rule
+    /// that takes all of the closing speed leaves some 1e-17 of it, of either sign, and disks that touch and
+    /// close collide at once, again and again. Therefore, the speed at which the disks part is raised on the
+    /// scale of its rounding, by just as much as the prediction needs to see them part.
     #[cold]
     #[inline(never)]
     fn part(&mut self, disk: usize, partner: usize, normal: DVec2, left: f64) {
@@ -226,15 +237,16 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 return;
             }
             let push = normal * (f64::from(1_u32 << doubling) * f64::EPSILON * speed);
-            // Shared as an impulse would be, so that momentum stays.
+            // The push is shared as an impulse would be, so that momentum is conserved.
             let total = masses[0] + masses[1];
             self.bodies.push(disk, push * (masses[0] / total), now);
             self.bodies.push(partner, -push * (masses[1] / total), now);
         }
     }
 
-    /// Makes a disk leave a wall that it parts from, but which the boundary takes it to approach, by a rounding of its speed: they
-    /// compute it in different ways. A disk that rests on a wall does not part from it.
+    /// Makes a disk leave a wall about which engine and boundary disagree. In the engine's arithmetic the
+    /// disk parts from the wall, and in the boundary's it approaches, by a rounding of its speed. A disk that
+    /// rests on a wall does not part from it, and is left alone.
     #[cold]
     #[inline(never)]
     fn leave_wall(&mut self, disk: usize, wall: usize, collision: &Collision) {
@@ -243,7 +255,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             if exit != Exit::Wall || exit_due > self.clock.now || usize::from(next) != wall {
                 return;
             }
-            // The speed relative to the wall has the rounding of what it is the difference of.
+            // The speed relative to the wall is a difference of speeds, and has their rounding.
             let fallen = self.bodies.fall(self.clock.now).1.length();
             let scale = f64::EPSILON * (self.bodies.speed(disk) + fallen);
             self.bodies.push(disk, collision.normal * (f64::from(1_u32 << doubling) * scale), self.clock.now);
@@ -251,14 +263,16 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Takes a disk to its next cell. Its trajectory does not change: only the cells ahead can hold an earlier partner.
+    /// Takes a disk to its next cell. Its trajectory does not change, so only the cells ahead can hold an
+    /// earlier partner.
     #[inline]
     fn cross(&mut self, disk: usize, exit: Exit) {
         self.counters.cell_crossings += 1;
         self.bodies.particles[disk].trajectory.position.x += self.cells.cross(disk, exit);
         self.make_room();
         let count = self.cells.ahead(self.cells.place(disk), exit, &mut self.scratch.found);
-        // Before the search for a partner: its branches are then decided, right or wrong, while that is still under way.
+        // The end of the flight comes before the search for a partner. The processor then resolves its
+        // branches, predicted right or wrong, while the search is still under way.
         self.end_flight(disk);
         let forecast = self.forecast(disk);
         let known = Earliest { due: forecast.collision_due, partner: forecast.partner };
@@ -286,7 +300,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         RunError::Boundary { disk, time: self.time(), fault }
     }
 
-    /// Asks the boundary once more for a touch that cannot be, to tell which it was.
+    /// Asks the boundary again for an impossible touch, in order to report it.
     #[cold]
     fn impossible_touch(&self, disk: usize) -> RunError {
         let (now, forecast) = (self.clock.now, self.forecast(disk));

@@ -1,6 +1,6 @@
-//! Events that a run is made of, as its caller sees them.
+//! The events of a run, as its caller sees them.
 
-/// A collision that [`Simulation::step_until`](crate::Simulation::step_until) did.
+/// A collision, as [`Simulation::step_until`](crate::Simulation::step_until) returns it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Event {
@@ -8,7 +8,7 @@ pub enum Event {
     Collision {
         /// The disk whose event it was.
         disk: usize,
-        /// Its partner.
+        /// The partner of the disk.
         partner: usize,
     },
     /// A disk collided with a wall.
@@ -20,21 +20,21 @@ pub enum Event {
     },
 }
 
-/// The cause that ended a run without an error.
+/// The reason why a run ended without an error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RunEnd {
     /// The run came to the end time.
     Time,
-    /// An observer stopped it: [`Observer::verdict`](crate::observable::Observer::verdict). It can go on from there, with the
-    /// same bits.
+    /// An observer stopped the run; see [`Observer::verdict`](crate::observable::Observer::verdict). The run
+    /// can go on from there, with the same bits.
     Observer,
 }
 
-/// Numbers of events since the simulation was built.
+/// The numbers of events since the simulation was built.
 ///
-/// The engine does five kinds of events: the two kinds of collisions are physics and are told to observers; passages, out-of-date
-/// predictions and horizons are bookkeeping that nobody but these counts sees.
+/// The engine does five kinds of events. The two kinds of collisions are physics, and observers are told of
+/// them. Cell crossings, outdated predictions and horizons are bookkeeping, which only these counts show.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
@@ -47,20 +47,21 @@ pub struct Counters {
     pub contact_duration_collisions: u64,
     /// Passages of a disk from one neighbor cell to another.
     pub cell_crossings: u64,
-    /// Predicted collisions whose partner had collided with another disk when they came up; they were predicted anew.
+    /// Predicted collisions whose partner had collided with another disk before they came up. They were
+    /// predicted anew.
     pub repredictions: u64,
-    /// Searches for a wall that found none so far ahead, and were taken up again.
+    /// Searches for a wall that found none up to their horizon, and were taken up again.
     pub horizons: u64,
-    /// Changes of the size of the neighbor cells; all events are predicted anew then.
+    /// Changes of the size of the neighbor cells. All events are then predicted anew.
     pub cell_resizes: u64,
-    /// Largest overlap of two disks at a collision: rounding, unless something is wrong.
+    /// Largest overlap of two disks at a collision. It is rounding, unless something is wrong.
     pub max_overlap: f64,
-    /// Largest overlap of a disk and a wall at a collision: rounding, unless something is wrong.
+    /// Largest overlap of a disk and a wall at a collision. It is rounding, unless something is wrong.
     pub max_wall_overlap: f64,
 }
 
 impl Counters {
-    /// Counts since `earlier`; the largest overlaps are those of the whole run.
+    /// Returns the counts since `earlier`. The largest overlaps are those of the whole run.
     #[must_use]
     pub const fn since(&self, earlier: &Self) -> Self {
         Self {
@@ -78,7 +79,7 @@ impl Counters {
         }
     }
 
-    /// Number of all events.
+    /// Returns the number of all events.
     pub const fn events(&self) -> u64 {
         self.collisions + self.wall_collisions + self.cell_crossings + self.repredictions + self.horizons
     }

@@ -1,4 +1,5 @@
-//! The next event of each disk: the search for its partner, the end of its flight, the word to the scheduler.
+//! Forecasts of the next event of each disk: the search for its partner, the end of its flight, the message
+//! to the scheduler.
 
 use std::hint::select_unpredictable;
 
@@ -12,7 +13,7 @@ use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::scheduler::EventScheduler;
 
-/// Epochs that a wall is searched for ahead: no search is endless.
+/// Number of epochs ahead in which a wall is searched for, so that no search is endless.
 pub(super) const HORIZON: f64 = 2.0;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
@@ -24,14 +25,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Finds the next event of a disk among all its neighbors.
     ///
-    /// One copy for all callers: the whole search is inlined into it.
+    /// The function is not inlined, since the whole search is inlined into it.
     #[inline(never)]
     pub(super) fn find_next(&mut self, disk: usize) {
         self.find_partner(disk);
         self.end_flight(disk);
     }
 
-    /// Finds another partner for a disk whose partner has collided meanwhile: its own flight in its cell ends as it did.
+    /// Finds another partner for a disk whose partner has collided with another one. The end of the disk's
+    /// own flight in its cell stays.
     #[inline(never)]
     pub(super) fn predict_partner(&mut self, disk: usize) {
         self.find_partner(disk);
@@ -55,9 +57,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         earliest_collision(&self.bodies, period, disk, found, count, self.clock.now, known)
     }
 
-    /// Takes `earliest` as the next collision of a disk whose next was `known` before.
+    /// Takes `earliest` as the next collision of a disk whose next collision was `known` before.
     ///
-    /// No branch on whether they are the same: that is known last of all, and a wrong guess would undo much.
+    /// The code does not branch on whether they are the same. The answer is known last of all, and a
+    /// misprediction would undo much work.
     #[inline]
     pub(super) fn expect_next(&mut self, disk: usize, earliest: Earliest, known: Earliest) {
         let nobody = earliest.partner as usize >= self.bodies.len();
@@ -73,8 +76,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.scheduler.set(disk, self.forecast(disk).due());
     }
 
-    /// Keeps the room for neighbors in step with the cells, which grow when one gets crowded: asked for wherever disks come into
-    /// cells.
+    /// Enlarges the room for neighbors with the cells, which grow when one of them gets crowded. This is
+    /// called wherever disks enter cells.
     #[inline]
     pub(super) fn make_room(&mut self) {
         let room = self.cells.room() + LANES;
@@ -83,7 +86,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Finds when the flight of a disk in its cell ends, and how.
+    /// Finds when and how the flight of a disk in its cell ends.
     #[inline]
     pub(super) fn end_flight(&mut self, disk: usize) {
         let (place, grid) = (self.cells.place(disk), self.cells.grid());

@@ -1,27 +1,30 @@
-//! Requests to the memory for what the next events will need.
+//! Early requests to the memory for the data that the next events will need.
 
 use super::cells::Cells;
 use super::state::Bodies;
 use crate::prefetch::prefetch;
 use crate::scheduler::EventScheduler;
 
-/// Disks named after a disk until what its event leads to is asked for, and as many more until what that leads to is.
+/// Number of disks that are named after a disk before the cells that its event needs are requested. After as
+/// many more, its neighbors there are requested.
 const LATER: usize = 12;
 
-/// The disks that last came into sight: each is asked for, then the cells that its event needs, then its neighbors there.
+/// The disks that last came into sight. Each is requested from memory first, then the cells that its event
+/// needs, and then its neighbors there.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lookahead {
-    /// The place where the next disk is written.
+    /// Place at which the next disk is written.
     next: usize,
     disks: [u32; 2 * LATER],
-    /// Room for the disks that come into sight.
+    /// Memory for the disks that come into sight.
     fresh: Vec<usize>,
 }
 
 impl Lookahead {
-    /// Asks for what the next events will need; `found` is room for the neighbors of a disk.
+    /// Requests from memory what the next events will need. The slice `found` is room for the neighbors of a
+    /// disk.
     ///
-    /// Worth it only where the caches do not hold the system anyway: it takes a quarter of the instructions.
+    /// The work pays only if the caches do not hold the system, since it takes many instructions.
     #[inline(never)]
     pub(super) fn look<S: EventScheduler + ?Sized>(
         &mut self,
@@ -32,7 +35,7 @@ impl Lookahead {
     ) {
         let mut fresh = std::mem::take(&mut self.fresh);
         scheduler.upcoming(&mut fresh);
-        // A scheduler of somebody else may name disks that there are not.
+        // A scheduler may name disks that do not exist.
         for disk in fresh.drain(..).filter(|&disk| disk < bodies.len()) {
             let (second, third) = self.note(disk);
             prefetch_disk(bodies, cells, disk);
@@ -42,7 +45,8 @@ impl Lookahead {
         self.fresh = fresh;
     }
 
-    /// Takes note of a disk; returns those that were named [`LATER`] and twice as many disks before.
+    /// Notes a disk. Returns the disk that was named [`LATER`] disks before, and the one that was named twice
+    /// as many before.
     #[inline]
     fn note(&mut self, disk: usize) -> (usize, usize) {
         let there = self.next % (2 * LATER);
@@ -53,14 +57,14 @@ impl Lookahead {
     }
 }
 
-/// Asks for the next event of a disk, and for its place.
+/// Requests the next event of a disk, and its place.
 #[inline]
 fn prefetch_disk(bodies: &Bodies, cells: &Cells, disk: usize) {
     prefetch(&bodies.particles, disk);
     cells.prefetch_place(disk);
 }
 
-/// Asks for the partner of a disk, or for the cells ahead of it.
+/// Requests the partner of a disk, or the cells ahead of it.
 #[inline]
 fn prefetch_cells(bodies: &Bodies, cells: &Cells, disk: usize) {
     let forecast = bodies.particles[disk].forecast;
@@ -74,7 +78,7 @@ fn prefetch_cells(bodies: &Bodies, cells: &Cells, disk: usize) {
     cells.prefetch_around(disk);
 }
 
-/// Asks for the trajectories of the disks that a disk may collide with.
+/// Requests the trajectories of the disks with which a disk may collide.
 #[inline]
 fn prefetch_neighbors(bodies: &Bodies, cells: &Cells, disk: usize, found: &mut [u32]) {
     let forecast = bodies.particles[disk].forecast;

@@ -1,15 +1,15 @@
-//! Predictions: the time at which two disks collide, and the time at which one leaves its cell.
+//! Predictions of the time at which two disks collide, and of the time at which a disk leaves its cell.
 
 use super::state::{Bodies, Earliest, Exit};
 use crate::boundary::Region;
 
-/// Pairs that are predicted side by side.
+/// Number of pairs that are predicted side by side.
 ///
-/// Each step of the arithmetic is written for all lanes at once, so that the compiler turns it into vector instructions
-/// and no branch depends on whether a pair approaches: such branches are coin tosses.
+/// Each step of the arithmetic is written for all lanes at once. The compiler turns it into vector
+/// instructions, and no branch depends on whether a pair approaches: such a branch is a coin toss.
 pub(super) const LANES: usize = 4;
 
-/// Relative positions and velocities of some pairs.
+/// The relative positions and velocities of some pairs.
 #[derive(Debug, Clone, Copy, Default)]
 struct Pairs {
     x: [f64; LANES],
@@ -20,17 +20,19 @@ struct Pairs {
 }
 
 impl Pairs {
-    /// The time until each pair touches; infinite for never.
+    /// Returns the time until each pair touches; infinite for never.
     ///
-    /// With the separation r, the relative velocity v and the contact distance σ the pair touches at the smaller root of
-    /// v² t² + 2 (r·v) t + (r² - σ²) = 0. The textbook root (-r·v - √d)/v² subtracts two numbers that are nearly equal when
-    /// the disks nearly touch, and divides by zero when they move alike. Multiplied out by its conjugate it is
-    /// (r² - σ²)/(√d - r·v): both terms below the line are positive while the pair approaches, so nothing cancels, and the gap
-    /// above it is as exact as the positions are.
+    /// With the separation r, the relative velocity v and the contact distance σ, the pair touches at the
+    /// smaller root of v² t² + 2 (r·v) t + (r² - σ²) = 0. The textbook root (-r·v - √d)/v² subtracts two
+    /// numbers that are nearly equal when the disks nearly touch, and divides by zero when they move alike.
+    /// Expanded by its conjugate, the root is (r² - σ²)/(√d - r·v). Both terms of the denominator are
+    /// positive while the pair approaches, so nothing cancels, and the gap in the numerator is as exact as
+    /// the positions are.
     ///
-    /// Stable event detection (Bannerman et al. 2014): a pair that touches or overlaps by rounding collides at once while it
-    /// approaches, never while it recedes. Were an overlap of 1e-16 a reason to wait for the other root, the disks would
-    /// pass through each other; were it a collision at any rate, the pair that has just collided would do so for ever.
+    /// The method is stable event detection (Bannerman et al. 2014). A pair that touches or overlaps by
+    /// rounding collides at once while it approaches, and never while it recedes. If an overlap of 1e-16 were
+    /// a reason to wait for the other root, the disks would pass through each other. If it were a collision
+    /// in any case, a pair that has just collided would collide forever.
     #[inline]
     fn wait(&self) -> [f64; LANES] {
         let mut wait = [0.0; LANES];
@@ -63,7 +65,7 @@ impl Best {
         Self { due: [known.due; LANES], partner: [u64::from(known.partner); LANES] }
     }
 
-    /// Takes what is earlier; of equal times the smaller partner.
+    /// Takes collisions that are earlier. Of equal times, the smaller partner wins.
     #[inline]
     fn improve(&mut self, due: [f64; LANES], partners: &[u32]) {
         for lane in 0..LANES {
@@ -75,10 +77,11 @@ impl Best {
         }
     }
 
-    /// The earliest of all lanes.
+    /// Returns the earliest collision of all lanes.
     #[inline]
     fn earliest(&self) -> Earliest {
-        // Time and partner as one number, in the order of both: times are not negative, so their bits are in order.
+        // Time and partner form one number in the order of both. Times are not negative, so their bits are in
+        // order.
         let rank =
             |lane: usize| (u128::from(self.due[lane].to_bits()) << 32) | u128::from(self.partner[lane]);
         let first = (1..LANES).fold(rank(0), |first, lane| first.min(rank(lane)));
@@ -86,7 +89,7 @@ impl Best {
     }
 }
 
-/// The shortest way around periodic sides; `period` is 0 if there are none.
+/// Returns the shortest way around periodic sides. The `period` is 0 if there are none.
 #[inline]
 pub(super) fn nearest_image(x: f64, period: f64) -> f64 {
     let half = 0.5 * period;
@@ -95,8 +98,8 @@ pub(super) fn nearest_image(x: f64, period: f64) -> f64 {
     x - back + forth
 }
 
-/// Tells whether two disks close, in the very arithmetic of [`earliest_collision`]: in another their rounding would differ, and a pair
-/// held for parting would be found to collide.
+/// Tells whether two disks close, in exactly the arithmetic of [`earliest_collision`]. Another arithmetic
+/// would round differently, and a pair that seems to part could be found to collide.
 #[inline]
 pub(super) fn are_closing(bodies: &Bodies, period: f64, disk: usize, partner: usize, now: f64) -> bool {
     let (mine, other) = (bodies.particles[disk].trajectory.row(), bodies.particles[partner].trajectory.row());
@@ -105,9 +108,11 @@ pub(super) fn are_closing(bodies: &Bodies, period: f64, disk: usize, partner: us
     x * velocity_x + y * velocity_y < 0.0
 }
 
-/// The earliest collision of `disk` with one of the first `count` of `candidates`, or `known` if that is earlier.
+/// Returns the earliest collision of `disk` with one of the first `count` of `candidates`, or `known` if that
+/// is earlier.
 ///
-/// The candidates may include the disk itself, which never meets itself; the room behind them is filled up with it.
+/// The candidates may include the disk itself, which never meets itself. The room behind the candidates is
+/// filled with the disk.
 #[inline]
 pub(super) fn earliest_collision(
     bodies: &Bodies,
@@ -168,7 +173,7 @@ fn scan(
     best.earliest()
 }
 
-/// The offset at which a disk leaves its cell, and the edge.
+/// Returns the offset at which a disk leaves its cell, and the edge.
 #[inline(always)]
 pub(super) fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64) -> (f64, Exit) {
     let (position, velocity) = (bodies.position(disk, now), bodies.velocity(disk, now));
@@ -182,7 +187,7 @@ pub(super) fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64)
         let (wait, down) = vertical_exit(below, above, -velocity.y, -bodies.gravity);
         (wait, !down)
     };
-    // A disk at rest where there is no edge gives 0/0 or inf/inf, which stands for never.
+    // A disk at rest without an edge in sight gives 0/0 or inf/inf, which stands for never.
     let sideways = if sideways.is_nan() { f64::INFINITY } else { sideways };
     let level = vertical < sideways;
     let wait = if level { vertical } else { sideways }.max(0.0);
@@ -190,12 +195,14 @@ pub(super) fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64)
     (now + wait, exit)
 }
 
-/// The time until a disk leaves its row, and whether it does through the edge above, for gravity that pulls down.
+/// Returns the time until a disk leaves its row, and whether it leaves through the edge above, for gravity
+/// that pulls down.
 ///
-/// There are three ways: up to the edge above, up and down again through the edge below, or straight down. They are told
-/// apart by selections of numbers and not by branches, for which of them it is, is a toss of a coin, and a wrong guess of the
-/// processor costs more than all three roots. Each root is that form of it in which nothing cancels: a distance over a sum of speeds
-/// where the disk goes straight to the edge, a sum of speeds over gravity where it turns back.
+/// There are three ways: up to the edge above, up and down again through the edge below, or straight down.
+/// They are told apart by selections of numbers and not by branches. The way is a coin toss, and a
+/// misprediction would cost more than all three roots. Each root has the form in which nothing cancels: a
+/// distance over a sum of speeds if the disk goes straight to the edge, and a sum of speeds over gravity if
+/// it turns back.
 #[inline(always)]
 fn vertical_exit(above: f64, below: f64, velocity: f64, gravity: f64) -> (f64, bool) {
     let (above, below) = (above.max(0.0), below.max(0.0));

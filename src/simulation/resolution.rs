@@ -1,4 +1,4 @@
-//! Collisions worked out: contact, impulse, and the change of each disk's motion. Nothing is changed here.
+//! Outcomes of collisions: contact, impulse, and the change of each disk's motion. Nothing is changed here.
 
 use glam::DVec2;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -12,19 +12,19 @@ use crate::disk::LARGEST;
 use crate::observable::{Collision, Partner};
 use crate::random::{normal, rayleigh};
 
-/// The largest difference from 1 of the length of a surface's normal.
+/// Largest difference of the length of a surface's normal from 1.
 const UNIT: f64 = 1e-9;
 
-/// Speed along the normal in terms of the relative speed, below which its sign may be a matter of rounding: that of the
-/// normal is as much larger than that of 1 as the vessel is than the disks.
+/// Speed along the normal, relative to the whole relative speed, below which rounding may decide its sign.
+/// The rounding of the normal exceeds that of 1 by as much as the vessel exceeds the disks.
 const GRAZING: f64 = 1e-6;
 
-/// The change of a disk's motion by a collision.
+/// The change of a disk's motion in a collision.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Kick {
     pub(super) velocity: DVec2,
     pub(super) angular_velocity: f64,
-    /// Motion after it, with the velocity in the free-fall frame.
+    /// Motion after the collision, with the velocity in the free-fall frame.
     pub(super) after: Body,
 }
 
@@ -38,16 +38,16 @@ impl Kick {
         }
     }
 
-    /// Tells whether it leads to a motion that the engine can go on with.
+    /// Tells whether the kick leads to a motion with which the engine can go on.
     pub(super) fn is_possible(&self) -> bool {
         let velocity = self.after.velocity.abs();
         velocity.x <= LARGEST && velocity.y <= LARGEST && self.after.angular_velocity.abs() <= LARGEST
     }
 }
 
-/// Works out the collision of two disks.
+/// Computes the collision of two disks.
 ///
-/// Inlined, so that what nobody looks at is not even computed.
+/// The function is inlined, so that unused results are not even computed.
 #[inline(always)]
 pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
     bodies: &Bodies,
@@ -81,7 +81,7 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
     (collision, [Kick::between(&first, &outcome.first), Kick::between(&second, &outcome.second)])
 }
 
-/// Works out the collision of a disk with a wall.
+/// Computes the collision of a disk with a wall.
 #[inline]
 pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     bodies: &Bodies,
@@ -134,20 +134,21 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     (collision, kick)
 }
 
-/// Tells whether two disks part so fast after a collision that no rounding can make it an approach; nearly all do.
+/// Tells whether two disks part so fast after a collision that no rounding can turn this into an approach.
+/// Nearly all do.
 #[inline]
 pub(super) fn is_parting(normal: DVec2, kicks: &[Kick; 2]) -> bool {
     let velocity = (kicks[0].after.velocity - kicks[1].after.velocity).abs();
     (kicks[0].after.velocity - kicks[1].after.velocity).dot(normal) > GRAZING * (velocity.x + velocity.y)
 }
 
-/// Tells whether a surface's normal is a unit vector and its velocity one that a disk may have.
+/// Tells whether a surface's normal is a unit vector, and its velocity one that a disk may have.
 pub(super) fn is_unit_and_finite(surface: &Surface<'_>) -> bool {
     let velocity = surface.velocity.abs();
     (surface.normal.length() - 1.0).abs() <= UNIT && velocity.x <= LARGEST && velocity.y <= LARGEST
 }
 
-/// The error of a collision whose outcome is no motion.
+/// Returns the error of a collision whose outcome is not a possible motion.
 #[cold]
 pub(super) fn failed<R: CollisionRule + ?Sized>(
     rule: &R,
@@ -160,7 +161,7 @@ pub(super) fn failed<R: CollisionRule + ?Sized>(
     RunError::NotFinite(Box::new(failed))
 }
 
-/// The motion in which a disk leaves a thermal wall.
+/// Returns the motion with which a disk leaves a thermal wall.
 fn emitted(
     thermal: &Thermal,
     arriving: &Body,

@@ -1,4 +1,4 @@
-//! The state of a run: the disks on their flights, what each does next, and the time.
+//! The state of a run: the disks on their flights, the next event of each, and the time.
 
 mod bodies;
 mod clock;

@@ -1,14 +1,14 @@
-//! Mean of correlated numbers with its error, without keeping the numbers.
+//! Means of correlated numbers with their errors, without keeping the numbers.
 
 use super::blocking::{BlockError, plateau};
 use super::{Estimate, RunningMean};
 
-/// Mean of correlated numbers that come one by one, with an error that knows of their correlation.
+/// The mean of correlated numbers that come one by one, with an error that accounts for their correlation.
 ///
-/// It keeps the scatter of blocks of 1, 2, 4, … numbers: memory grows with the logarithm of their count, and
-/// a number costs constant time on average. [`Self::estimate`] takes the error from the smallest blocks that
-/// are long enough, as [`block_average`](super::block_average) does of a series that is at hand: to the bit
-/// the same.
+/// The type keeps the scatter of blocks of 1, 2, 4, … numbers. Its memory grows with the logarithm of their
+/// count, and each number costs constant time on average. [`Self::estimate`] takes the error from the
+/// smallest blocks that are long enough. The result has the same bits as that of
+/// [`block_average`](super::block_average) for a series in memory.
 ///
 /// ```
 /// use granular_edmd::statistics::{BlockedMean, block_average};
@@ -21,7 +21,7 @@ use super::{Estimate, RunningMean};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(into = "Vec<Level>", try_from = "Vec<Level>"))]
 pub struct BlockedMean {
-    /// Blocks of one number, of two, of four, …: as far as there is one of them.
+    /// Blocks of one number, of two, of four, …, as far as there is at least one block of the size.
     levels: Vec<Level>,
 }
 
@@ -30,17 +30,18 @@ pub struct BlockedMean {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 struct Level {
     blocks: RunningMean,
-    /// The last block, if it waits for the one with which it makes a larger block.
+    /// The last block, while it waits for the one with which it makes a larger block.
     waiting: Option<f64>,
 }
 
 impl BlockedMean {
-    /// Makes a mean of no numbers yet.
+    /// Creates a mean of no numbers.
     pub const fn new() -> Self {
         Self { levels: Vec::new() }
     }
 
-    /// Makes a mean of no numbers yet with room for all that a run can have, so that a collision never allocates.
+    /// Creates a mean of no numbers with room for all numbers that a run can have, so that a collision never
+    /// allocates.
     pub(crate) fn with_room() -> Self {
         Self { levels: Vec::with_capacity(u64::BITS as usize) }
     }
@@ -65,17 +66,17 @@ impl BlockedMean {
         self.ungrouped().count()
     }
 
-    /// Returns their mean; 0 if there were none.
+    /// Returns the mean of the numbers; 0 if there were none.
     pub fn mean(&self) -> f64 {
         self.ungrouped().mean()
     }
 
-    /// Returns their sum.
+    /// Returns the sum of the numbers.
     pub fn sum(&self) -> f64 {
         self.ungrouped().sum()
     }
 
-    /// Returns mean and variance of the numbers themselves, which know nothing of correlation.
+    /// Returns mean and variance of the numbers themselves, without regard to their correlation.
     pub fn ungrouped(&self) -> RunningMean {
         self.levels.first().map_or_else(RunningMean::default, |level| level.blocks)
     }

@@ -4,16 +4,16 @@ use super::{BlockedMean, Estimate, RunningMean};
 use crate::ParameterError;
 use crate::quantity::accept;
 
-/// Largest sample: its square, summed over a series, stays finite.
+/// Largest sample. Its square, summed over a series, stays finite.
 const LARGEST: f64 = 1e100;
 
-/// Fewest blocks whose scatter tells something: their error is uncertain by a quarter.
+/// Smallest number of blocks with a meaningful scatter. The error of eight blocks is uncertain by a quarter.
 const FEWEST_BLOCKS: u64 = 8;
 
-/// Returns the mean of a time series, with an error that knows of its autocorrelation (Flyvbjerg & Petersen
-/// 1989).
+/// Returns the mean of a time series, with an error that accounts for its autocorrelation (Flyvbjerg &
+/// Petersen 1989).
 ///
-/// Neighbors are replaced by their mean again and again. The naive error of the blocked series,
+/// Pairs of neighbors are replaced by their mean, again and again. The naive error of the blocked series,
 ///
 /// ```math
 /// \epsilon_B^2 = \frac{1}{n_B(n_B-1)}\sum_i (x_i^{(B)}-\bar x)^2,
@@ -22,22 +22,23 @@ const FEWEST_BLOCKS: u64 = 8;
 /// grows with the block size `$B$` until blocks are independent. The error is that of the smallest blocks for
 /// which
 /// 1. `$B^3 > 2n(\epsilon_B/\epsilon_1)^4$`: shorter blocks leave a bias that is larger than the scatter of
-///    `$\epsilon_B$` itself, longer ones scatter more (Lee et al. 2011, Phys. Rev. E 83, 066706);
-/// 2. `$\epsilon_B$` has grown by no more than its own uncertainty since blocks of half the size, and by no
-///    more than one and a half of it since a quarter;
-/// 3. no larger blocks have an error that is larger by more than two of its uncertainties.
+///    `$\epsilon_B$` itself, and longer ones scatter more (Lee et al. 2011, Phys. Rev. E 83, 066706);
+/// 2. `$\epsilon_B$` is larger than for blocks of half the size by at most its own uncertainty, and than for
+///    blocks of a quarter of the size by at most one and a half times that;
+/// 3. no larger blocks have an error that is larger by more than twice its uncertainty.
 ///
-/// The first is right for one time of correlation. The others see a second, longer one, whose share of the
-/// variance is small: heat that comes and goes in a gas whose collisions are otherwise independent. Fewer
-/// than eight blocks are not asked, so that a series below some hundred [`Estimate::correlated_samples`] has
-/// no such blocks: the estimate is then not converged, and its error the largest found.
+/// The first condition suffices for a series with one correlation time. The others detect a second, longer
+/// one, whose share of the variance is small, such as heat that comes and goes in a gas whose collisions are
+/// otherwise independent. Sizes with fewer than eight blocks are not considered, so a series of less than
+/// some hundred [`Estimate::correlated_samples`] has no such blocks. The estimate is then not converged, and
+/// its error is the largest that was found.
 ///
 /// # Errors
 /// If there are fewer than two samples, or one is not finite or above 1e100 in size.
 ///
 /// ```
 /// use granular_edmd::statistics::block_average;
-/// // An uncorrelated sequence (the logistic map), each value held for 16 samples: 16 are worth one.
+/// // An uncorrelated sequence (the logistic map), each value repeated 16 times: 16 samples are worth one.
 /// let chaos = std::iter::successors(Some(0.3), |x| Some(4.0 * x * (1.0 - x)));
 /// let series: Vec<f64> = chaos.take(512).flat_map(|x| [x; 16]).collect();
 /// let average = block_average(&series)?;
@@ -54,32 +55,32 @@ pub fn block_average(samples: &[f64]) -> Result<Estimate, ParameterError> {
     Ok(samples.iter().copied().collect::<BlockedMean>().estimate())
 }
 
-/// The standard error that blocks of one size seem to have.
+/// The apparent standard error from blocks of one size.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BlockError {
     pub(super) error: f64,
-    /// Uncertainty of the error itself, relative to it.
+    /// Relative uncertainty of the error itself.
     uncertainty: f64,
     blocks: u64,
 }
 
 impl BlockError {
-    /// Takes the error of two blocks or more, as if they were independent.
+    /// Returns the error from two blocks or more, as if they were independent.
     pub(super) fn of(blocks: &RunningMean) -> Self {
         let count = blocks.count();
-        // That of a standard deviation of normal numbers.
+        // The uncertainty is that of a standard deviation of normal numbers.
         let uncertainty = 1.0 / (2.0 * (count - 1) as f64).sqrt();
         Self { error: blocks.standard_error(), uncertainty, blocks: count }
     }
 }
 
-/// Returns the error where it no longer grows with the size of the blocks, given for sizes 1, 2, 4, …; `None`
-/// if there is no such size.
+/// Returns the error of the smallest blocks for which it no longer grows, or `None` if there is no such size.
+/// The levels are for sizes 1, 2, 4, ….
 pub(super) fn plateau(levels: &[BlockError], samples: u64) -> Option<f64> {
     let known = levels.iter().take_while(|level| level.blocks >= FEWEST_BLOCKS).count();
     let levels = &levels[..known];
-    // Against blocks of half and of a quarter of the size: of two times of correlation the longer shows as a
-    // slow rise.
+    // The error is compared with blocks of half and of a quarter of the size. Of two correlation times, the
+    // longer one shows as a slow rise.
     let is_flat = |at: usize| {
         let here = levels[at];
         let tolerances = [1.0, 1.5].map(|factor| 1.0 + factor * here.uncertainty);
@@ -97,8 +98,8 @@ pub(super) fn plateau(levels: &[BlockError], samples: u64) -> Option<f64> {
     (1..known).find(is_plateau).map(|at| levels[at].error)
 }
 
-/// Decides that blocks of this size are long enough for a series with one time of correlation, if its error
-/// has grown to `growth` times that of independent samples.
+/// Decides whether blocks of this size are long enough for a series with one correlation time. The error of
+/// these blocks is `growth` times that of independent samples.
 fn is_long_enough(size: f64, samples: u64, growth: f64) -> bool {
     let squared = growth * growth;
     // Products of powers of two are exact, and the cube of 2^63 is far from overflow.

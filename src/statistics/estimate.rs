@@ -1,22 +1,22 @@
-//! A mean with its error, and what the error rests on.
+//! Estimates: a mean with its error, and the basis of the error.
 
 use std::fmt;
 
-/// Mean of samples with its standard error, and how far that error can be trusted.
+/// A mean of samples with its standard error, and how far that error can be trusted.
 ///
 /// The error of correlated samples is taken from blocks ([`BlockedMean`](super::BlockedMean),
 /// [`block_average`](super::block_average)). A series that is too short for that gives an estimate that is
-/// not converged: its error is then a lower bound. Samples that are independent, or are taken to be, give an
-/// estimate that says so.
+/// not converged: its error is then a lower bound. Samples that are independent, or are assumed to be, give
+/// an estimate that says so.
 ///
-/// Printed with a precision, the mean and the error have that many digits behind the point; without one, the
-/// error has two significant digits. What limits the error follows in words.
+/// Printed with a precision, the mean and the error have that many decimals. Without a precision, the error
+/// has two significant digits. The limits of the error follow in words.
 ///
 /// ```
 /// use granular_edmd::statistics::{RunningMean, block_average};
 /// let alternating: Vec<f64> = (0..1000).map(|k| f64::from(k % 2)).collect();
 /// assert_eq!(block_average(&alternating)?.to_string(), "0.50000 ± 0.00000");
-/// // A single jump: no series of this length tells how often there will be one.
+/// // A single jump: a series of this length does not show how often jumps occur.
 /// let jump: Vec<f64> = (0..64).map(|k| f64::from(k / 32)).collect();
 /// let estimate = block_average(&jump)?;
 /// assert!(!estimate.is_converged());
@@ -36,7 +36,7 @@ pub struct Estimate {
     basis: Basis,
 }
 
-/// Origin of an error.
+/// The basis of an error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Basis {
@@ -44,17 +44,17 @@ enum Basis {
     Independent,
     /// The scatter of blocks that are long enough.
     Blocks,
-    /// The largest scatter of blocks of which none is long enough.
+    /// The largest scatter of blocks, none of which is long enough.
     ShortBlocks,
 }
 
 impl Estimate {
-    /// Mean and error of independent samples.
+    /// Creates the mean and error of independent samples.
     pub(crate) fn independent(mean: f64, standard_error: f64, samples: u64) -> Self {
         Self::of(mean, standard_error, samples, 1.0, Basis::Independent)
     }
 
-    /// Mean and error of correlated samples, from blocks.
+    /// Creates the mean and error of correlated samples, from blocks.
     pub(super) fn blocked(
         mean: f64,
         standard_error: f64,
@@ -72,7 +72,8 @@ impl Estimate {
         Self { mean, standard_error, samples, correlated_samples, basis }
     }
 
-    /// The same error about another mean: of a ratio, whose error is that of its residuals.
+    /// Returns the same error about another mean. The error of a ratio, for example, is that of its
+    /// residuals.
     #[cfg(feature = "serde")]
     pub(crate) fn about(self, mean: f64) -> Self {
         Self { mean, ..self }
@@ -83,7 +84,7 @@ impl Estimate {
         self.mean
     }
 
-    /// Returns the standard error of the mean; NaN of fewer than two samples.
+    /// Returns the standard error of the mean; NaN for fewer than two samples.
     pub const fn standard_error(&self) -> f64 {
         self.standard_error
     }
@@ -93,8 +94,9 @@ impl Estimate {
         self.samples
     }
 
-    /// Returns how many consecutive samples tell as much as one independent sample, `$1 + 2\sum_k\rho_k$` for
-    /// autocorrelations `$\rho_k$`; 1 if the samples are taken as independent, or all are equal.
+    /// Returns how many consecutive samples are worth one independent sample, `$1 + 2\sum_k\rho_k$` for
+    /// autocorrelations `$\rho_k$`. The number is 1 if the samples are taken as independent, or if all are
+    /// equal.
     pub const fn correlated_samples(&self) -> f64 {
         self.correlated_samples
     }
@@ -105,8 +107,8 @@ impl Estimate {
         self.samples as f64 / self.correlated_samples.max(1.0)
     }
 
-    /// Returns true if the error can be taken at its word, and false if it is only a lower bound: a series
-    /// too short for its correlations, or fewer than two samples.
+    /// Returns true if the error can be trusted. Returns false if it is only a lower bound: the series is too
+    /// short for its correlations, or there are fewer than two samples.
     pub const fn is_converged(&self) -> bool {
         self.samples >= 2 && !matches!(self.basis, Basis::ShortBlocks)
     }
@@ -116,7 +118,7 @@ impl Estimate {
         matches!(self.basis, Basis::Independent)
     }
 
-    /// Decimals that show two digits of the error.
+    /// Returns the number of decimals that shows two digits of the error.
     fn decimals(&self) -> usize {
         const MOST: usize = 17;
         let mut shown = self.standard_error;
@@ -124,7 +126,7 @@ impl Estimate {
             return 5;
         }
         let mut decimals = 0;
-        // An error that prints as 9.95 or more has its two digits.
+        // An error of 9.95 or more prints with two digits already.
         while shown < 9.95 && decimals < MOST {
             shown *= 10.0;
             decimals += 1;
@@ -146,7 +148,7 @@ impl fmt::Display for Estimate {
     }
 }
 
-/// An estimate in files: numbers that cannot be told are absent, since not all formats know NaN.
+/// The form of an estimate in files. Numbers that are NaN are absent, since not all formats know NaN.
 #[cfg(feature = "serde")]
 mod serial {
     use super::{Basis, Estimate};

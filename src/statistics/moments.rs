@@ -1,10 +1,10 @@
 //! The one place where means and squared deviations are accumulated.
 
-/// Weighted mean of numbers, and the weighted sum of their squared deviations from it (Welford 1962, West
+/// The weighted mean of numbers, and the weighted sum of their squared deviations from it (Welford 1962, West
 /// 1979).
 ///
-/// The deviations are taken from the mean so far: the difference of a sum of squares and a squared sum would
-/// cancel the digits of a small variance about a large mean.
+/// The deviations are taken from the mean so far. The difference of a sum of squares and a squared sum would
+/// lose the digits of a small variance about a large mean.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawMoments"))]
@@ -15,7 +15,7 @@ pub(crate) struct Moments {
 }
 
 impl Moments {
-    /// Takes one more number, of a weight above zero.
+    /// Takes one more number, with a weight above zero.
     #[inline]
     pub(crate) fn push(&mut self, value: f64, weight: f64) {
         self.weight += weight;

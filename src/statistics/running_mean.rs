@@ -1,11 +1,11 @@
-//! Mean and variance, without keeping the numbers.
+//! Means and variances, without keeping the numbers.
 
 use super::{Estimate, Moments};
 
-/// Mean, variance and standard error of numbers that come one by one (Welford 1962).
+/// The mean, variance and standard error of numbers that come one by one (Welford 1962).
 ///
-/// The standard error is that of independent numbers; for correlated ones, as the samples or collisions of
-/// one run, it is too small: see [`BlockedMean`](super::BlockedMean).
+/// The standard error is that of independent numbers. It is too small for correlated numbers, such as the
+/// samples or collisions of one run; see [`BlockedMean`](super::BlockedMean).
 ///
 /// ```
 /// use granular_edmd::statistics::RunningMean;
@@ -31,27 +31,27 @@ impl RunningMean {
         self.0.weight as u64
     }
 
-    /// Returns their mean; 0 if there were none.
+    /// Returns the mean of the numbers; 0 if there were none.
     pub const fn mean(&self) -> f64 {
         self.0.mean
     }
 
-    /// Returns their sum.
+    /// Returns the sum of the numbers.
     pub fn sum(&self) -> f64 {
         self.0.mean * self.0.weight
     }
 
-    /// Returns their unbiased variance; 0 of fewer than two.
+    /// Returns the unbiased variance of the numbers; 0 for fewer than two.
     pub fn variance(&self) -> f64 {
         if self.0.weight < 2.0 { 0.0 } else { self.0.squares / (self.0.weight - 1.0) }
     }
 
-    /// Returns their standard deviation, `$\sqrt{\mathrm{variance}}$`.
+    /// Returns the standard deviation of the numbers, `$\sqrt{\mathrm{variance}}$`.
     pub fn standard_deviation(&self) -> f64 {
         self.variance().sqrt()
     }
 
-    /// Returns the standard error of the mean of independent numbers, `$\sqrt{\mathrm{variance}/n}$`; 0 of
+    /// Returns the standard error of the mean of independent numbers, `$\sqrt{\mathrm{variance}/n}$`; 0 for
     /// fewer than two.
     pub fn standard_error(&self) -> f64 {
         if self.0.weight < 2.0 { 0.0 } else { (self.variance() / self.0.weight).sqrt() }
@@ -100,7 +100,7 @@ impl TryFrom<RawRunningMean> for RunningMean {
     fn try_from(RawRunningMean { count, mean, squares }: RawRunningMean) -> Result<Self, Self::Error> {
         use super::moments::RawMoments;
         use crate::quantity::accept;
-        // Counts are kept as floating-point numbers, which are whole up to here.
+        // Counts are kept as floating-point numbers, which are exact up to this one.
         accept(count <= 1 << 53, "number of samples", "at most 2^53", count as f64)?;
         accept(count != 1 || squares == 0.0, "sum of squared deviations of one number", "0", squares)?;
         Moments::try_from(RawMoments { weight: count as f64, mean, squares }).map(Self)

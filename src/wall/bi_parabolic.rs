@@ -4,7 +4,7 @@ use super::oscillation::{Oscillation, is_even, piece};
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::{Fingerprint, ParameterError};
 
-/// Piecewise constant acceleration that mimics `$A\sin\omega t$` (paper, Sec. III): two parabolic arcs a
+/// Piecewise constant acceleration that mimics `$A\sin\omega t$` (paper, Sec. III): two parabolic arcs per
 /// period.
 ///
 /// With the half period `$H=\pi/\omega$` and `$s = t/H$`,
@@ -13,8 +13,9 @@ use crate::{Fingerprint, ParameterError};
 /// z(t) = 4A\,s(1-s)\quad (0\le s<1),\qquad z(t+H) = -z(t),
 /// ```
 ///
-/// so amplitude and period are those of the sine; the peak speed is `$4A/H = 4A\omega/\pi$` and the
-/// acceleration `$\mp 8A/H^2$`. Every contact is the root of a parabola: exact, no iteration.
+/// so amplitude and period are those of the sine. The peak speed is `$4A/H = 4A\omega/\pi$` and the
+/// acceleration is `$\mp 8A/H^2$`. Every contact is the root of a parabola, which is exact and needs no
+/// iteration.
 ///
 /// ```
 /// use granular_edmd::wall::{BiParabolic, WallMotion};
@@ -35,17 +36,17 @@ impl BiParabolic {
     /// Creates a motion of this amplitude `$A$` and angular frequency `$\omega$`.
     ///
     /// # Errors
-    /// If one is not finite and positive; use [`Fixed`](super::Fixed) for no motion.
+    /// If one is not finite and positive. For no motion, use [`Fixed`](super::Fixed).
     pub fn new(amplitude: f64, angular_frequency: f64) -> Result<Self, ParameterError> {
         Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
     }
 
-    /// Returns `$A$`.
+    /// Returns the amplitude `$A$`.
     pub const fn amplitude(&self) -> f64 {
         self.oscillation.amplitude()
     }
 
-    /// Returns `$\omega$`.
+    /// Returns the angular frequency `$\omega$`.
     pub const fn angular_frequency(&self) -> f64 {
         self.oscillation.angular_frequency()
     }
@@ -58,7 +59,7 @@ impl BiParabolic {
     }
 }
 
-/// One parabolic arc.
+/// An arc of the motion, which is a parabola.
 struct Arc {
     start: f64,
     end: f64,

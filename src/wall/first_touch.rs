@@ -1,27 +1,27 @@
-//! The one search for the first touch of a disk with a moving wall.
+//! The search for the first touch of a disk with a moving wall.
 
 use super::WallMotion;
 use crate::roots::first_descent;
 
-/// Rounding of a gap, relative to the lengths that it is the difference of.
+/// Rounding of a gap, relative to the lengths of which it is the difference.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Room for a step where there is none, in units of the rounding: a search must end.
+/// Least room for a step, in units of the rounding, so that a search ends.
 const LEAST_ROOM: f64 = 1e-3;
 
-/// Most steps of a search. A wall that sweeps over its reach in each period is met within a few periods, each
-/// a few tens of steps: so many are taken only under a wall that stays away from a large part of what it
-/// claims to reach.
+/// Largest number of steps of a search. A wall that sweeps over its reach in each period is met within a few
+/// periods, each of which takes a few tens of steps. More steps are needed only under a wall that stays away
+/// from a large part of its stated reach.
 const MOST_STEPS: u32 = 1 << 20;
 
-/// Most steps of a search that are as short as times can be told apart. A search that converges takes some of
-/// them at its end; more come from a motion whose pieces are too short, or whose bounds are too large, for
-/// its times.
+/// Largest number of steps so short that times can hardly be told apart. A search that converges takes some
+/// of them at its end. More of them come from a motion whose pieces are too short, or whose bounds are too
+/// large, for its times.
 const MOST_SHORT_STEPS: u32 = 1 << 10;
 
 /// A surface that approaches a wall: its height above the wall's place at rest, along the wall's normal.
 ///
-/// Its time is the phase of the motion that it approaches.
+/// Its times are phases of the wall's motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Approach {
     time: f64,
@@ -31,7 +31,7 @@ pub struct Approach {
 }
 
 impl Approach {
-    /// Creates a surface that at `time` has this height and velocity, and always this acceleration.
+    /// Creates a surface that has this height and velocity at `time`, and always this acceleration.
     #[inline]
     pub const fn new(time: f64, height: f64, velocity: f64, acceleration: f64) -> Self {
         Self { time, height, velocity, acceleration }
@@ -43,11 +43,11 @@ impl Approach {
         self.height + (self.velocity + 0.5 * self.acceleration * elapsed) * elapsed
     }
 
-    /// Tells whether the surface begins and ends above this height, and is no lower between.
+    /// Tells whether the surface begins and ends above this height, and is no lower in between.
     #[inline]
     pub(crate) fn stays_above(&self, height: f64, until: f64) -> bool {
-        // Pulled down it is highest in between, so its ends are enough; no branch, for most flights pass both
-        // tests.
+        // Under a downward pull the surface is higher in between than at its ends, so the ends are enough.
+        // The tests do not branch, since most flights pass both.
         (self.acceleration <= 0.0) & (self.height > height) & (self.height(until) > height)
     }
 
@@ -57,33 +57,33 @@ impl Approach {
     }
 }
 
-/// Returns the first time, not later than `until`, at which the surface touches the wall and closes.
+/// Returns the first time, not later than `until`, at which the surface touches the wall and closes further.
 ///
-/// On a piece with acceleration at most `$a_{max}$` the gap is never below the parabola with that
-/// acceleration: the search steps to its root, where the gap is still open, and repeats until the gap is
-/// closed. One step is exact where the acceleration is constant; elsewhere the steps shrink quadratically,
-/// down to the rounding of the gap. No contact is ever stepped over. A gap that is closed at the start counts
-/// only while it closes.
+/// On a piece on which the wall accelerates by at most `$a_{max}$`, the gap is never below the parabola with
+/// that acceleration. The search steps to the root of the parabola, where the gap is still open, and repeats
+/// until the gap is closed. One step is exact if the acceleration is constant. Otherwise, the steps shrink
+/// quadratically, down to the rounding of the gap. The search never steps over a contact. A gap that is
+/// closed at the start counts only while it closes.
 ///
-/// Flights beyond the reach of the wall are skipped, at the start and after a bounce. Within it the wall
-/// sweeps over every height in each period, so the search takes no more steps than some periods have, however
-/// fast the wall and long the flight. A surface that stays below the reach and outruns the wall, or that
-/// hovers in a reach which the wall never gets to, is followed from piece to piece: give such a search an
-/// end.
+/// Flights beyond the reach of the wall are skipped, at the start and after a bounce. Within the reach, the
+/// wall sweeps over every height in each period. The search therefore takes no more steps than some periods
+/// need, however fast the wall and long the flight. A surface may also stay below the reach and outrun the
+/// wall, or hover in a part of the reach that the wall never gets to. It is then followed from piece to
+/// piece: give such a search an end.
 ///
-/// # Walls whose place nobody can tell
-/// The search ends whatever the motion answers, and never lets the surface through unseen. In these cases the
-/// wall counts as everywhere within its reach, at every speed, so the touch is the first time at which the
-/// surface is within it:
-/// - Times are too far from each other to tell the pieces of the motion apart, or a piece ends before it
+/// # Walls whose place is unknown
+/// The search ends whatever the motion answers, and never lets the surface through unnoticed. In the
+/// following cases, the wall counts as everywhere within its reach and at every speed. The touch is then the
+/// first time at which the surface is within the reach:
+/// - Floating-point times are too coarse to tell the pieces of the motion apart, or a piece ends before it
 ///   begins.
 /// - The state or the bounds are not finite. A reach that is not finite counts as one without ends.
-/// - The search has taken more than a million steps, or more than a thousand that were as short as times can
-///   be told apart: the pieces are too short, or the bounds too large, for the times.
+/// - The search has taken more than a million steps, or more than a thousand steps that were hardly longer
+///   than the spacing of times. The pieces are too short, or the bounds too large, for the times.
 ///
-/// The gap then need not be closed at the touch. An engine that resolves it finds the number that is not
-/// finite, or a run without progress, and says so. A gap that is itself not a number counts as touched at
-/// once.
+/// The gap need not be closed at such a touch. An engine that resolves it finds the number that is not
+/// finite, or a run without progress, and reports that. A gap that is itself not a number counts as touched
+/// at once.
 ///
 /// ```
 /// use granular_edmd::wall::{Approach, Fixed, first_touch};
@@ -109,7 +109,7 @@ pub fn first_touch<M: WallMotion + ?Sized>(motion: &M, approach: &Approach, unti
     None
 }
 
-/// Counts steps: a search must end under any motion.
+/// A counter of steps, since a search must end under any motion.
 #[derive(Default)]
 struct Patience {
     steps: u32,
@@ -117,7 +117,7 @@ struct Patience {
 }
 
 impl Patience {
-    /// Counts a step, and tells whether there may be another.
+    /// Counts a step, and tells whether another one is allowed.
     #[inline]
     fn lasts(&mut self, from: f64, to: f64) -> bool {
         self.steps += 1;
@@ -143,7 +143,7 @@ struct Look {
     /// True if the bound is the acceleration itself.
     exact: bool,
     tolerance: f64,
-    /// End of the piece: not later than the time of the look where times cannot tell the pieces apart.
+    /// End of the piece. It is not later than this time if floating-point times cannot tell the pieces apart.
     until: f64,
     /// True if state, bounds and reach of the wall are finite.
     finite: bool,
@@ -153,20 +153,20 @@ struct Look {
 enum Step {
     /// The surfaces touch at this time.
     Touch(f64),
-    /// They do not touch before this time.
+    /// The surfaces do not touch before this time.
     Open(f64),
 }
 
 impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
     fn new(motion: &'a M, approach: &'a Approach) -> Self {
         let (low, high) = motion.reach();
-        // A wall that cannot say how far it reaches gets everywhere: no flight may be skipped above it.
+        // A wall without a finite reach counts as reaching everywhere, so that no flight above it is skipped.
         let is_told = low.is_finite() && high.is_finite();
         let reach = if is_told { (low, high) } else { (f64::NEG_INFINITY, f64::INFINITY) };
         Self { motion, approach, reach }
     }
 
-    /// Returns the first time from this one on at which the surface is no higher than the wall ever gets.
+    /// Returns the first time, from this one on, at which the surface is no higher than the wall ever gets.
     fn enters_reach(&self, time: f64) -> Option<f64> {
         let Approach { acceleration, .. } = *self.approach;
         let above = self.approach.height(time) - self.reach.1;
@@ -182,7 +182,7 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         if !is_resolved || gap.is_nan() || rate.is_nan() || (gap <= tolerance && rate < 0.0) {
             return Step::Touch(time);
         }
-        // So far away that its place overflows.
+        // The surface is so far away that its place overflows.
         if gap == f64::INFINITY {
             return Step::Open(f64::INFINITY);
         }
@@ -216,10 +216,10 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
 
     /// Returns the end of a bounce that begins at `start` and stays lower than rounding, if there is one.
     ///
-    /// The gap cannot tell when such a bounce is over, but the bounce is so short that the acceleration does
-    /// not change in it: it is a parabola over the gap that it starts from, and ends when that gap closes as
-    /// fast as it opened. If it ended before, bounces would lose speed that no rule takes; if after, each
-    /// would go deeper into the wall than the last.
+    /// The gap itself does not show when such a bounce is over. But the bounce is so short that the
+    /// acceleration does not change in it: the gap follows a parabola that starts from its present value, and
+    /// the bounce ends when the gap closes as fast as it opened. With an earlier end, bounces would lose
+    /// speed that no rule takes. With a later end, each bounce would go deeper into the wall than the last.
     fn low_bounce(&self, start: f64) -> Option<f64> {
         let first = self.look(start);
         let is_low = |pull: f64| first.rate * first.rate <= -2.0 * pull * first.tolerance;
@@ -236,10 +236,9 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         (is_low(pull) && end < first.until).then_some(end)
     }
 
-    /// Returns the acceleration of the gap in the time of a fall through the rounding, which cannot leave the
-    /// piece.
+    /// Returns the acceleration of the gap during a fall through the rounding, which cannot leave the piece.
     ///
-    /// From the change of the rate: the motion says no more than bounds of it.
+    /// The acceleration comes from the change of the rate, since the motion itself only gives bounds for it.
     fn pull_after(&self, start: f64, first: &Look) -> f64 {
         let fall = (-2.0 * first.tolerance / first.pull).sqrt();
         let soon = (start + fall.min(0.5 * (first.until - start))).max(start.next_up());
@@ -248,15 +247,15 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
 
     /// Returns a time, later than this one, until which the gap cannot have closed by more than `room`.
     ///
-    /// The room is the gap and its rounding: each step makes way, and the last ends in a gap closed by
-    /// rounding. A gap that is closed by more has next to none: nothing goes much deeper into a wall than it
-    /// is.
+    /// The room is the sum of the gap and its rounding, so that each step advances, and the last one ends in
+    /// a gap that is closed by rounding. A gap that is closed by more has almost no room, so that nothing
+    /// goes much deeper into a wall than it already is.
     fn still_open(time: f64, room: f64, rate: f64, pull: f64) -> f64 {
         first_descent(room, rate, pull).map_or(f64::INFINITY, |wait| (time + wait).max(time.next_up()))
     }
 
-    /// Returns the gap below which it counts as closed: rounding of the lengths, and of the time at this
-    /// speed.
+    /// Returns the gap below which the gap counts as closed: the rounding of the lengths, and of the time at
+    /// this speed.
     fn tolerance(&self, time: f64, rate: f64) -> f64 {
         let (low, high) = self.reach;
         let lengths = low.abs().max(high.abs()) + self.approach.height.abs();

@@ -1,9 +1,9 @@
-//! The wall that does not move.
+//! Walls that do not move.
 
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::Fingerprint;
 
-/// No motion.
+/// A wall motion that stays at its place.
 ///
 /// ```
 /// use granular_edmd::wall::{Fixed, WallMotion};

@@ -1,4 +1,4 @@
-//! References and owning pointers to a motion are that motion.
+//! Forwarding: a boxed or borrowed motion is a motion, too.
 
 use std::sync::Arc;
 

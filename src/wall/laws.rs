@@ -1,7 +1,7 @@
-//! The contract of a wall motion, as a check for motions of your own.
+//! Checks of a wall motion's contract, for motions of your own.
 //!
-//! [`check`] tries all of it on a stretch of phases, [`check_finite`] only that all answers are finite: the
-//! container asks the latter of every motion that it is given.
+//! [`check`] tests the whole contract on a stretch of phases. [`check_finite`] only tests that all answers
+//! are finite; the container does this with every motion that it is given.
 
 mod violation;
 
@@ -9,37 +9,38 @@ pub use violation::Violation;
 
 use super::{AccelerationBounds, WallMotion, WallState};
 
-/// Samples in a piece.
+/// Number of samples in a piece.
 const SAMPLES: u32 = 512;
 
-/// Most pieces that are followed.
+/// Largest number of pieces that are followed.
 const MOST_PIECES: u32 = 10_000;
 
-/// Rounding allowed, relative to the lengths and speeds that a number is made of.
+/// Allowed rounding, relative to the lengths and speeds of which a number is made.
 const ROUNDING: f64 = 256.0 * f64::EPSILON;
 
 /// Part of a piece between its last sample and its end, where the state may jump.
 const LAST: f64 = 1.0 / (1u64 << 20) as f64;
 
-/// Length of a piece that is nothing but rounding, relative to its phase.
+/// Length of a piece that is pure rounding, relative to its phase.
 const SHORT: f64 = 1e-9;
 
-/// Pieces in a row that must get further than rounding.
+/// Number of pieces in a row that must advance by more than rounding.
 const PIECES_IN_A_ROW: u32 = 8;
 
-/// Phases at which a motion without a period is looked at.
+/// Phases at which a motion without a period is tested.
 const PROBES: [f64; 9] = [0.0, 1e-3, 0.1, 1.0, 10.0, 1e2, 1e3, 1e4, 1e6];
 
 /// Checks that a motion keeps its contract between two phases.
 ///
-/// It samples each piece that begins between them: state finite and within reach, bounds that hold for the
-/// change of the velocity between samples, a displacement that is the integral of the velocity, pieces that
-/// go on, jumps only at their ends and only away from the disks, and a period that is one. A fault narrower
-/// than a five-hundredth of a piece can be missed: check a motion with one long piece on several short
-/// stretches. A stretch of more than ten thousand pieces is refused.
+/// The check samples each piece that begins between the phases. The state must be finite and within the
+/// reach, and the bounds must hold for the change of the velocity between samples. The displacement must be
+/// the integral of the velocity. Pieces must advance, and jumps may only be at their ends and away from the
+/// disks. The motion must repeat after its period. A fault narrower than a five-hundredth of a piece can be
+/// missed, so check a motion with one long piece on several short stretches. A stretch of more than ten
+/// thousand pieces is refused.
 ///
 /// # Errors
-/// The first violation that it finds.
+/// The first violation that the check finds.
 ///
 /// ```
 /// use granular_edmd::wall::{AccelerationBounds, Sinusoidal, WallMotion, WallState, laws};
@@ -81,12 +82,12 @@ pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(
     Err(Violation::ShortPieces { phase: from, until: phase, pieces: MOST_PIECES })
 }
 
-/// Checks that a motion gives finite numbers, and pieces that go on: what no run can do without.
+/// Checks that a motion gives finite numbers, and pieces that advance. No run can do without these.
 ///
-/// It looks at phases in the first period, or some between 0 and a million for a motion without a period.
+/// The phases are in the first period, or between 0 and a million for a motion without a period.
 ///
 /// # Errors
-/// The first violation that it finds.
+/// The first violation that the check finds.
 ///
 /// ```
 /// use granular_edmd::wall::{AccelerationBounds, Fixed, WallMotion, WallState, laws};
@@ -129,7 +130,7 @@ fn check_constants<M: WallMotion + ?Sized>(motion: &M) -> Result<(f64, f64), Vio
     }
 }
 
-/// Follows some pieces from this phase on, and looks at the middle of each, too.
+/// Follows some pieces from this phase on, and also checks the middle of each.
 fn row_of_pieces<M: WallMotion + ?Sized>(motion: &M, start: f64) -> Result<(), Violation> {
     let mut phase = start;
     for _ in 0..PIECES_IN_A_ROW {
@@ -141,7 +142,8 @@ fn row_of_pieces<M: WallMotion + ?Sized>(motion: &M, start: f64) -> Result<(), V
         finite_state(motion, phase + 0.5 * (until - phase))?;
         phase = until;
     }
-    // Two numbers for each piece: as short as these nobody can follow them.
+    // The row must advance by more than two floating-point numbers for each piece. No search can follow
+    // shorter pieces.
     let least = (0..2 * PIECES_IN_A_ROW).fold(start, |phase, _| phase.next_up());
     if phase <= least {
         return Err(Violation::ShortPieces { phase: start, until: phase, pieces: PIECES_IN_A_ROW });
@@ -156,7 +158,7 @@ fn finite_state<M: WallMotion + ?Sized>(motion: &M, phase: f64) -> Result<WallSt
     Ok(state)
 }
 
-/// Returns the bounds at this phase, if they are finite, in order, and hold for a while.
+/// Returns the bounds at this phase, if they are finite, in order, and hold for some time.
 fn finite_bounds<M: WallMotion + ?Sized>(motion: &M, phase: f64) -> Result<AccelerationBounds, Violation> {
     let bounds = motion.acceleration(phase);
     finite("lower bound of the acceleration", bounds.min, phase)?;
@@ -171,14 +173,14 @@ fn finite(quantity: &'static str, value: f64, phase: f64) -> Result<(), Violatio
     if value.is_finite() { Ok(()) } else { Err(Violation::NotFinite { quantity, phase, value }) }
 }
 
-/// A motion and its reach.
+/// A motion and its reach, under the check.
 struct Check<'a, M: ?Sized> {
     motion: &'a M,
     low: f64,
     high: f64,
 }
 
-/// A phase and the state at it.
+/// A phase, and the state at it.
 #[derive(Clone, Copy)]
 struct Sample {
     phase: f64,
@@ -215,7 +217,7 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         Ok(Sample { phase, state })
     }
 
-    /// Checks that an acceleration within the bounds leads from one state to the other.
+    /// Checks that an acceleration within the bounds can lead from one state to the other.
     fn change(&self, from: Sample, to: Sample, bounds: &AccelerationBounds) -> Result<(), Violation> {
         let wait = to.phase - from.phase;
         let gain = to.state.velocity - from.state.velocity;
@@ -226,8 +228,9 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         }
         let rise = to.state.displacement - from.state.displacement;
         let expected = 0.5 * (from.state.velocity + to.state.velocity) * wait;
-        // Between given velocities, the least and the most displacement belong to all of one bound first and
-        // then all of the other: triangles over the mean of the velocities, of this height at most.
+        // Given the velocities at both ends, the displacement is extreme if the acceleration takes first the
+        // one bound and then the other. It then differs from that of the mean velocity by the area of a
+        // triangle, which is at most this.
         let spread = 0.125 * (bounds.max - bounds.min) * wait * wait;
         if (rise - expected).abs() > spread + self.length_rounding(from, bounds) + slack * wait {
             return Err(Violation::Displacement { from: from.phase, to: to.phase, rise, expected });
@@ -248,11 +251,10 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         if jump > slack { Err(Violation::Jump { phase: until, jump }) } else { Ok(()) }
     }
 
-    /// Checks that all is the same some periods later, at a phase inside a piece of this length.
+    /// Checks that the motion is the same some periods later, at a phase inside a piece of this length.
     fn repeats(&self, phase: f64, length: f64) -> Result<(), Violation> {
         let Some(period) = self.motion.period() else { return Ok(()) };
-        // A piece that is nothing but the rounding of its ends may be elsewhere, or missing, in the next
-        // period.
+        // A piece that is pure rounding of its ends may be elsewhere, or missing, in the next period.
         if length < SHORT * (phase.abs() + period) {
             return Ok(());
         }
@@ -265,8 +267,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
             let changed = (then_bounds.min - bounds.min).abs().max((then_bounds.max - bounds.max).abs());
             let differs = moved > self.length_rounding(then, &bounds)
                 || gained > self.speed_rounding(then, &bounds)
-                // The ends of pieces are rounded, and bounds at them change with the third derivative, which
-                // nobody tells.
+                // The ends of pieces are rounded. The bounds at them change with the third derivative, which
+                // the motion does not tell.
                 || changed > 1e-6 * strength;
             if differs {
                 return Err(Violation::Period { phase, period, later });
@@ -275,25 +277,25 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         Ok(())
     }
 
-    /// Size of the motion.
+    /// Returns the size of the motion.
     fn length(&self) -> f64 {
         self.low.abs().max(self.high.abs())
     }
 
-    /// Returns the rounding of a displacement: of its terms, and of the phase at this speed.
+    /// Returns the rounding of a displacement: that of its terms, and that of the phase at this speed.
     fn length_rounding(&self, sample: Sample, bounds: &AccelerationBounds) -> f64 {
         let speed = sample.state.velocity.abs() + self.speed_scale(bounds);
         ROUNDING * (self.length() + speed * sample.phase.abs())
     }
 
-    /// Returns the rounding of a velocity: of its terms, and of the phase at this acceleration.
+    /// Returns the rounding of a velocity: that of its terms, and that of the phase at this acceleration.
     fn speed_rounding(&self, sample: Sample, bounds: &AccelerationBounds) -> f64 {
         let acceleration = bounds.min.abs().max(bounds.max.abs());
         let speed = sample.state.velocity.abs() + self.speed_scale(bounds);
         ROUNDING * (speed + acceleration * sample.phase.abs())
     }
 
-    /// Returns the speed that the acceleration gives over the length of the motion: the terms of a velocity
+    /// Returns the speed that the acceleration gives over the length of the motion. The terms of a velocity
     /// that passes zero are no smaller.
     fn speed_scale(&self, bounds: &AccelerationBounds) -> f64 {
         (bounds.min.abs().max(bounds.max.abs()) * (self.high - self.low)).sqrt()

@@ -1,11 +1,11 @@
-//! Amplitude and period, shared by all periodic motions.
+//! Amplitude and period, which all periodic motions share.
 
 use std::f64::consts::TAU;
 
 use crate::quantity::positive;
 use crate::{Fingerprint, ParameterError};
 
-/// Amplitude and period of a motion, cut into equal pieces of time.
+/// The amplitude and period of a motion that is cut into equal pieces of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawOscillation"))]
@@ -43,12 +43,12 @@ impl Oscillation {
     }
 }
 
-/// Returns the number of the piece of length `length` that `phase` lies in, and the phase at which it ends.
+/// Returns the number of the piece of length `length` in which `phase` lies, and the phase at which it ends.
 #[inline]
 pub(super) fn piece(phase: f64, length: f64) -> (f64, f64) {
     let mut number = (phase / length).floor();
-    // The end of a piece belongs to the next one. The quotient can round down to the piece before, which
-    // would end at the phase asked for: a search would make no step.
+    // The end of a piece belongs to the next one. The quotient may be rounded down to the piece before, which
+    // would end at the phase asked for, and a search would make no step.
     if phase >= (number + 1.0) * length {
         number += 1.0;
     }

@@ -1,4 +1,4 @@
-//! The wall that rises at constant speed and is back at once.
+//! The wall that rises at constant speed and returns at once.
 
 use super::oscillation::Oscillation;
 use super::stroke::{steady, stroke};
@@ -7,8 +7,8 @@ use crate::{Fingerprint, ParameterError};
 
 /// Sawtooth motion: from `$-A$` to `$A$` in one period at constant speed, then instantly back to `$-A$`.
 ///
-/// The speed is `$A\omega/\pi$`. A disk only ever meets the rising wall, as in the theory of fast vibrated
-/// gases.
+/// The speed is `$A\omega/\pi$`. A disk always meets the rising wall, as in the theory of gases on fast
+/// vibrating walls.
 ///
 /// ```
 /// use granular_edmd::wall::{Sawtooth, WallMotion};
@@ -34,12 +34,12 @@ impl Sawtooth {
         Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
     }
 
-    /// Returns `$A$`.
+    /// Returns the amplitude `$A$`.
     pub const fn amplitude(&self) -> f64 {
         self.oscillation.amplitude()
     }
 
-    /// Returns `$\omega$`.
+    /// Returns the angular frequency `$\omega$`.
     pub const fn angular_frequency(&self) -> f64 {
         self.oscillation.angular_frequency()
     }

@@ -4,8 +4,8 @@ use super::oscillation::{Oscillation, piece};
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::{Fingerprint, ParameterError};
 
-/// Pieces of a period on which the acceleration is bounded: a multiple of four, so that it is monotonic on
-/// each and the values at its ends are the bounds.
+/// Number of pieces of a period on which the acceleration is bounded. It is a multiple of four, so that the
+/// acceleration is monotonic on each piece and the values at its ends are the bounds.
 const PIECES: f64 = 16.0;
 
 /// Harmonic motion `$z(t) = A\sin\omega t$`.
@@ -33,12 +33,12 @@ impl Sinusoidal {
         Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
     }
 
-    /// Returns `$A$`.
+    /// Returns the amplitude `$A$`.
     pub const fn amplitude(&self) -> f64 {
         self.oscillation.amplitude()
     }
 
-    /// Returns `$\omega$`.
+    /// Returns the angular frequency `$\omega$`.
     pub const fn angular_frequency(&self) -> f64 {
         self.oscillation.angular_frequency()
     }

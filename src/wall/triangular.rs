@@ -33,12 +33,12 @@ impl Triangular {
         Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
     }
 
-    /// Returns `$A$`.
+    /// Returns the amplitude `$A$`.
     pub const fn amplitude(&self) -> f64 {
         self.oscillation.amplitude()
     }
 
-    /// Returns `$\omega$`.
+    /// Returns the angular frequency `$\omega$`.
     pub const fn angular_frequency(&self) -> f64 {
         self.oscillation.angular_frequency()
     }

@@ -100,7 +100,8 @@ fn k_means_reaches_the_best_partition_of_few_points() -> Outcome {
     Ok(())
 }
 
-/// One descent ends where every point is nearest to the center of its own cluster, and more of them end no worse.
+/// One descent ends where every point is nearest to the center of its own cluster. More descents end no
+/// worse.
 #[test]
 fn one_descent_ends_at_rest_and_more_end_no_worse() -> Outcome {
     let points = Random::new(1).cloud((0.0, 0.0), 1.0, 100);

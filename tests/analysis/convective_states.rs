@@ -23,7 +23,7 @@ use granular_edmd::{Simulation, initial};
 const DISKS: usize = 1000;
 const PERIOD: f64 = TAU / 10.0;
 
-/// All that a run is asked for, from its second half.
+/// The measured quantities of a run, from its second half.
 struct Measured {
     orders: Series<(OrderParameters, Temperatures)>,
     profile: HeightProfile,

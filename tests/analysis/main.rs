@@ -32,7 +32,7 @@ impl Random {
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Normal, by Box and Muller.
+    /// Returns a normal variable, by Box and Muller.
     fn normal(&mut self) -> f64 {
         (-2.0 * (1.0 - self.uniform()).ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
     }
@@ -49,7 +49,7 @@ fn figure_4(seed: u64, counts: [usize; 3]) -> Vec<DVec2> {
 
 #[test]
 fn block_error_is_that_of_an_autoregressive_series() -> Outcome {
-    // Exact: the error of the mean is sqrt((1 + rho)/(1 - rho)/n).
+    // The error of the mean is exactly sqrt((1 + rho)/(1 - rho)/n).
     for rho in [0.0_f64, 0.5, 0.9] {
         let (runs, samples) = (40, 1 << 14);
         let exact = ((1.0 + rho) / (1.0 - rho) / f64::from(samples)).sqrt();
@@ -64,12 +64,13 @@ fn block_error_is_that_of_an_autoregressive_series() -> Outcome {
             let average = block_average(&(0..samples).map(step).collect::<Vec<_>>())?;
             assert!(average.is_converged());
             assert!((average.standard_error() / exact - 1.0).abs() < 0.35, "{rho}: {average:?}");
-            // The naive error is known far better, so that their ratio is as uncertain.
+            // The naive error is known far better, so the uncertainty of their ratio is that of the blocked
+            // error.
             let growth = average.correlated_samples() * (1.0 - rho) / (1.0 + rho);
             assert!((growth.sqrt() - 1.0).abs() < 0.35, "{rho}: {average:?}");
             squares += (average.mean() / average.standard_error()).powi(2);
         }
-        // Mean of 40 squared normals: standard error 0.22, and 1/error^2 is biased up by a few per cent.
+        // Mean of 40 squared normals: standard error 0.22, and 1/error^2 is biased up by a few percent.
         let chi = squares / runs as f64;
         assert!((0.35..1.9).contains(&chi), "{rho}: {chi}");
     }
@@ -78,7 +79,7 @@ fn block_error_is_that_of_an_autoregressive_series() -> Outcome {
 
 #[test]
 fn the_block_taken_is_the_smallest_that_is_long_enough() -> Outcome {
-    // Of 300 independent samples: blocks of 8 are too short, 512 < 600, and blocks of 16 are not.
+    // With 300 independent samples, blocks of 8 are too short, since 512 < 600, and blocks of 16 are not.
     let mut random = Random::new(3);
     let samples: Vec<f64> = (0..300).map(|_| random.normal()).collect();
     let error = |block| {
@@ -95,7 +96,7 @@ fn short_constant_and_bad_series() -> Outcome {
     let constant = block_average(&[2.5; 100])?;
     assert_eq!((constant.mean(), constant.standard_error(), constant.correlated_samples()), (2.5, 0.0, 1.0));
     assert!(constant.is_converged());
-    // A single jump: nobody can tell how often there will be one.
+    // A single jump does not show how often jumps occur.
     let jump: Vec<f64> = (0..64).map(|k| f64::from(k / 32)).collect();
     let average = block_average(&jump)?;
     assert!(!average.is_converged() && (average.mean() - 0.5).abs() < 1e-15);
@@ -151,7 +152,7 @@ fn hysteresis_is_the_difference_of_ramps() -> Outcome {
     assert!(up.iter().all(|point| point.value == 12.5) && down.iter().all(|point| point.value == 7.5));
     let both = transitions(ramp(12.5).chain(ramp(7.5)))?;
     assert_eq!(both.iter().map(|point| point.value).collect::<Vec<_>>(), [7.5, 12.5]);
-    // The other lines have no hysteresis: what is open is error.
+    // The other lines have no hysteresis. What remains open is part of the error.
     let disagree = [(1.0, Conductive), (2.0, Conductive), (2.0, OneRoll), (3.0, OneRoll)];
     let found = transitions(disagree)?;
     assert_eq!((found.len(), found[0].value, found[0].error), (1, 2.0, 1.0));

@@ -28,7 +28,7 @@ fn clusters_of_figure_4_are_found_and_named() -> Outcome {
         ] {
             assert!((found.weight(state) - weight).abs() < 0.005, "{state} {}", found.weight(state));
         }
-        // Five standard errors of a mean of a hundred.
+        // The tolerance is five standard errors of a mean of a hundred.
         for (cluster, (x, y)) in found.clusters().iter().zip([FIGURE_4[1], FIGURE_4[2], FIGURE_4[0]]) {
             assert!((cluster.center() - DVec2::new(x, y)).length() < 5.0 * 1.4 * NOISE / 10.0);
         }
@@ -53,7 +53,7 @@ fn a_rare_visit_is_a_cluster_but_no_coexistence() -> Outcome {
 fn correlated_noise_of_a_gas_at_rest_is_conductive() -> Outcome {
     for seed in 0..5 {
         let mut random = Random::new(seed);
-        // Twenty samples tell as much as one: 25 independent ones in all.
+        // Twenty samples tell as much as one, so there are 25 independent ones in all.
         let (memory, mut state) = (0.905_f64, DVec2::ZERO);
         let points: Vec<DVec2> = (0..500)
             .map(|_| {

@@ -1,4 +1,4 @@
-//! The container: what it promises of its walls, one by one, in numbers that are exact.
+//! The container's promises about its walls, one by one, in numbers that are exact.
 
 use std::f64::consts::TAU;
 
@@ -74,7 +74,7 @@ fn separations_take_the_shortest_way_across_periodic_sides_only() {
     assert_eq!(Domain::new(-1.0, 9.0, -2.0, 5.0).separation(from, to), DVec2::new(-7.5, -2.0));
 }
 
-/// Each region ends where a disk in it just touches the wall, and is cleared by a little.
+/// Each touching region ends where a disk in it just touches the wall. Each clear one ends a little before.
 #[test]
 fn regions_near_a_wall_may_touch_it_and_others_may_not() {
     let container = moving(Wall::Floor, 0.25);
@@ -91,7 +91,7 @@ fn regions_near_a_wall_may_touch_it_and_others_may_not() {
     assert!(periodic.may_touch(&endless(0.5), RADIUS) && !periodic.may_touch(&endless(0.6), RADIUS));
 }
 
-/// From (4, 6), at time 2.
+/// Returns a flight from (4, 6) at time 2.
 fn flight(velocity: (f64, f64), acceleration: (f64, f64)) -> Flight {
     Flight::new(2.0, DVec2::new(4.0, 6.0), velocity.into(), acceleration.into(), RADIUS)
 }
@@ -151,7 +151,7 @@ fn surfaces_point_inward_and_say_what_they_do() {
     assert_eq!((thermal.temperature(), thermal.slip(), thermal.with_slip().slip()), (2.0, false, true));
 }
 
-/// All that a boundary says of times soon after this origin.
+/// Returns everything that a boundary answers about times soon after this origin.
 fn said(mut boundary: impl Boundary, origin: f64) -> String {
     boundary.set_time_origin(origin);
     let falling = Flight::new(0.25, DVec2::new(5.0, 2.0), DVec2::NEG_Y, DVec2::NEG_Y, RADIUS);

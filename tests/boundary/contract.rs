@@ -45,7 +45,7 @@ fn walls_that_move() {
     }
 }
 
-/// A wall of a hundredth of the disk's radius, and a domain far from the origin of places.
+/// The walls are a hundredth of the disk's radius, or the domain is far from the origin of places.
 #[test]
 fn disks_of_any_size() {
     let mut container = closed().with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0).unwrap()).unwrap();

@@ -1,4 +1,5 @@
-//! Boundaries: the container in exact numbers, the contract, which each planted fault breaks, names and fingerprints.
+//! Boundaries: the container in exact numbers, the contract, which each planted fault breaks, names and
+//! fingerprints.
 
 mod container;
 mod contract;

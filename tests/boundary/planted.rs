@@ -199,12 +199,12 @@ fn wrong_surfaces_are_caught() {
 
 #[test]
 fn a_boundary_that_ignores_the_time_origin_is_caught() {
-    // It is always where it is at time zero: the same flight finds it at the same offset, whatever the
+    // The floor is always where it is at time zero: the same flight finds it at the same offset, whatever the
     // origin.
     assert!(matches!(verdict(Fault::IgnoresTheOrigin), Violation::TimeOrigin { .. }));
 }
 
-/// A violation says what to look at: the numbers, and the flight.
+/// A violation names the numbers and the flight that show it.
 #[test]
 fn violations_name_their_numbers() {
     let text = verdict(Fault::WallTooLarge).to_string();

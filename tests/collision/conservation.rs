@@ -1,4 +1,4 @@
-//! Momentum and angular momentum: what an impulse at the contact point cannot change, whatever the rule.
+//! Momentum and angular momentum, which an impulse at the contact point cannot change under any rule.
 
 use glam::DVec2;
 use granular_edmd::Disk;
@@ -9,7 +9,8 @@ use proptest::prelude::*;
 use crate::kinematics::{EPSILON, angular_magnitude, angular_momentum, momentum, normal};
 use crate::rules::{config, law};
 
-/// Each component of each momentum is rounded a few times at its own size, before and after.
+/// Checks that momentum is conserved. Each component of each momentum is rounded a few times at its own size,
+/// before and after.
 fn momentum_is_conserved(before: (&Disk, &Disk), after: (&Disk, &Disk)) -> Result<(), TestCaseError> {
     let disks = [before.0, before.1, after.0, after.1];
     let magnitude: f64 = disks.iter().map(|disk| momentum(disk).length()).sum();
@@ -18,7 +19,7 @@ fn momentum_is_conserved(before: (&Disk, &Disk), after: (&Disk, &Disk)) -> Resul
     Ok(())
 }
 
-/// The same about `point`, with the arms of the centers as further factors.
+/// Checks the same for the angular momentum about `point`, with the arms of the centers as further factors.
 fn angular_momentum_is_conserved(
     point: DVec2,
     before: &[&Disk],
@@ -53,7 +54,7 @@ proptest! {
         all_is_conserved(&law.rule(), pair, way * far)?;
     }
 
-    /// Also a rule that breaks every other law.
+    /// Even a rule that breaks every other law conserves momentum.
     #[test]
     fn an_absurd_rule_conserves(pair in touching_pair(), push in -9.0..9.0, twist in -9.0..9.0, way in direction()) {
         let rule = from_fn(|contact: &Contact| {

@@ -25,7 +25,8 @@ fn expected_change(law: &Law, contact: &Contact) -> f64 {
 proptest! {
     #![proptest_config(config())]
 
-    /// Some ten products and differences of terms, none above the energy of the relative motion.
+    /// The loss consists of some ten products and differences of terms, none above the energy of the relative
+    /// motion.
     #[test]
     fn the_loss_is_that_of_the_formulas(law in law(), contact in contact()) {
         let change = law.rule().impulse(&contact).energy_change(&contact);
@@ -57,7 +58,7 @@ proptest! {
         prop_assert!((lost - change).abs() <= 32.0 * EPSILON * (before + after), "{lost} != {change}");
     }
 
-    /// Without inelasticity, and with no friction or full grip, nothing is lost.
+    /// Without inelasticity, and with no friction or full grip, no energy is lost.
     #[test]
     fn an_elastic_rule_loses_nothing(mut law in law(), contact in contact(), rough in any::<bool>()) {
         (law.normal_inelasticity, law.tangential_inelasticity) = (0.0, 0.0);
@@ -69,7 +70,7 @@ proptest! {
         prop_assert!(change.abs() <= 4.0 * EPSILON * laws::available_energy(&contact), "{change}");
     }
 
-    /// The cone of friction, and its edge when sliding.
+    /// The impulse lies in the cone of friction, and on its edge when the surfaces slide.
     #[test]
     fn the_impulse_stays_in_the_friction_cone(law in law(), contact in contact()) {
         let impulse = law.rule().impulse(&contact);

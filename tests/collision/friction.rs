@@ -48,7 +48,7 @@ fn the_parts_are_those_of_the_rule() {
     assert_eq!(restitution, Friction::new(0.25, 0.5));
 }
 
-/// Restitution 0 stops, 1 reverses.
+/// A restitution of 0 stops the surfaces, and a restitution of 1 reverses them.
 #[test]
 fn the_normal_impulse_of_a_restitution() {
     let contact = Contact::new(2.0, 0.5, 0.25, 0.125);

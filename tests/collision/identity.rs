@@ -1,4 +1,4 @@
-//! The identity of a rule and its words about itself, however it is held.
+//! The identity of a rule and its explanations, however the rule is held.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -53,7 +53,7 @@ fn frictional(normal: f64, tangential: f64, static_friction: f64, dynamic_fricti
         .unwrap()
 }
 
-/// Each parameter counts, and equal numbers of other rules do not make an equal rule.
+/// Every parameter counts, and equal numbers of other rules do not make an equal rule.
 #[test]
 fn different_rules_have_different_fingerprints() {
     let lasting = |rule, duration| ContactDuration::new(rule, duration).unwrap();

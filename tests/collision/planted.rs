@@ -91,7 +91,7 @@ fn more_friction_than_promised() {
     assert!(matches!(caught(rule, cone), Violation::OutsideFrictionCone { .. }));
 }
 
-/// Wrong by so little that the loss of the normal direction hides it from the balance of energy.
+/// The sign is wrong by so little that the loss of the normal direction hides it from the balance of energy.
 #[test]
 fn friction_of_the_wrong_sign() {
     let rule = || {
@@ -106,7 +106,7 @@ fn friction_of_the_wrong_sign() {
     assert_eq!(check_rule(&from_fn(rule()), &Promises::new()), Ok(()), "no other law is broken");
 }
 
-/// The sign of a number that is zero is one.
+/// The sign of a zero is one, not zero.
 #[test]
 fn friction_of_surfaces_that_do_not_slip() {
     let signum = rubbing(|contact, normal| 0.1 * normal * contact.slip_speed().signum());

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use crate::rules::config;
 
-/// Far above rounding, far below anything else.
+/// A step far above rounding and far below anything else.
 const STEP: f64 = 1e-9;
 
 fn rule(normal: f64, tangential: f64, static_friction: f64, dynamic_friction: f64) -> Frictional {
@@ -26,8 +26,8 @@ fn both_sides(rule: &Frictional, mass: f64, share: f64) -> (Contact, Contact) {
 proptest! {
     #![proptest_config(config())]
 
-    /// With one friction coefficient the impulse and the loss are continuous: a step of `STEP` in the slip
-    /// changes them by a few `STEP` of what there is.
+    /// The impulse and the loss are continuous under one friction coefficient. A step of `STEP` in the slip
+    /// changes them by a few `STEP` of their size.
     #[test]
     fn one_coefficient_joins_the_branches(
         normal in 0.0..=0.5,
@@ -45,8 +45,8 @@ proptest! {
         prop_assert!(jump.abs() <= 8.0 * STEP * laws::available_energy(&within), "{jump}");
     }
 
-    /// With less dynamic than static friction the impulse drops by their ratio, and neither side gains
-    /// energy.
+    /// The impulse drops by the ratio of the coefficients if dynamic friction is less than static friction.
+    /// Neither side gains energy.
     #[test]
     fn two_coefficients_drop(
         normal in 0.0..=0.5,
@@ -76,8 +76,8 @@ fn the_threshold_of_homogeneous_disks() {
     assert_eq!(regime(-STEP - limit), Regime::Sliding);
 }
 
-/// With Eq. (6) as printed, without the factor 1/3, the loss would jump by `$6\kappa^2 q_t(1-q_n)^2/(1-q_t)$`
-/// there: one of the reasons to read it as a misprint.
+/// The loss would jump by `$6\kappa^2 q_t(1-q_n)^2/(1-q_t)$` at the boundary, if Eq. (6) were right as
+/// printed, without the factor 1/3. This is one of the reasons to read it as a misprint.
 #[test]
 fn the_printed_loss_would_jump() {
     let (normal, tangential, friction) = (0.1, 0.2, 0.5);

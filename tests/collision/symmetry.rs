@@ -36,7 +36,7 @@ fn binary_fractions() -> impl Strategy<Value = DVec2> {
     (component.clone(), component).prop_map(DVec2::from)
 }
 
-/// A power of two: no product with it rounds.
+/// Returns a power of two. No product with it rounds.
 fn unit() -> impl Strategy<Value = f64> {
     (-20..20).prop_map(|exponent| f64::from(exponent).exp2())
 }

@@ -47,7 +47,7 @@ proptest! {
         prop_assert_eq!(check(&contact, impulse), Err(violation));
     }
 
-    /// From nothing to the full reversal, in the cone that just holds it.
+    /// The impulse goes from nothing to the full reversal, in the cone that just holds it.
     #[test]
     fn friction_passes(contact in contact(), normal in 1.0..=2.0, tangential in 0.0..=2.0) {
         let impulse = impulse(&contact, normal, tangential);
@@ -59,7 +59,7 @@ proptest! {
         }
     }
 
-    /// However small it is.
+    /// The push breaks the law, however small it is.
     #[test]
     fn a_push_along_the_slip_is_not_friction(contact in contact(), share in decades(-30.0, 0.0)) {
         let with = impulse(&contact, 1.0, -share);
@@ -121,14 +121,14 @@ fn messages_carry_the_numbers() {
     assert_eq!((*violation.contact(), violation.impulse()), (slipping, Impulse::new(0.5, -0.25)));
 }
 
-/// Equality breaks no law: nothing that happens to nothing.
+/// Equality breaks no law: nothing happens to surfaces at rest.
 #[test]
 fn surfaces_at_rest_may_stay_so() {
     let contact = Contact::new(0.0, 0.0, 0.5, 0.5 / 3.0);
     assert_eq!(check(&contact, Impulse::new(0.0, 0.0)), Ok(()));
 }
 
-/// The most that can be lost is all of it: what `$\mu v_n$` and `$\mu_t v_t$` take away.
+/// The available energy is what stopping the surfaces loses: what `$\mu v_n$` and `$\mu_t v_t$` take away.
 #[test]
 fn the_available_energy_is_what_stopping_loses() {
     let contact = Contact::new(2.0, 3.0, 0.5, 0.25);

@@ -77,15 +77,15 @@ proptest! {
         let size = momentum(&disk).length() + momentum(&bounced).length();
         prop_assert!((momentum(&bounced) - momentum(&disk) - kick).length() <= 8.0 * EPSILON * size);
         // The arm is taken from the center: the position of the disk is another matter.
-        let centred = |disk: &Disk| disk.with_position(DVec2::ZERO).unwrap();
-        let (disk, bounced) = (centred(&disk), centred(&bounced));
+        let centered = |disk: &Disk| disk.with_position(DVec2::ZERO).unwrap();
+        let (disk, bounced) = (centered(&disk), centered(&bounced));
         let touch = -normal * disk.radius();
         let change = angular_momentum(&bounced, touch) - angular_momentum(&disk, touch);
         let size = angular_magnitude(&bounced, touch) + angular_magnitude(&disk, touch);
         prop_assert!(change.abs() <= 16.0 * EPSILON * size);
     }
 
-    /// In the laboratory the wall's motion does the work `$\vec\Delta\cdot\vec V$` on top of the loss.
+    /// The wall's motion does the work `$\vec\Delta\cdot\vec V$` in the laboratory, on top of the loss.
     #[test]
     fn a_moving_wall_does_work(law in law(), (disk, normal, velocity) in disk_closing_on_wall()) {
         let encounter = collide_with_wall(&law.rule(), &disk, normal, velocity);

@@ -37,9 +37,11 @@ fn start(point: Point, base: BiParabolic, seed: u64) -> Result<Run, Box<dyn Erro
     Ok(Simulation::builder(rule, container).disks(disks).gravity(point.gravity).build()?)
 }
 
-/// Disks where the other program has them at its start: rows of 42 on the base, each disk a little off its site.
+/// Returns disks where the other program has them at its start: in rows of 42 on the base, each disk a little
+/// off its site.
 ///
-/// Dense states remember for long how they were piled up. Two codes that start alike can be compared at any time.
+/// Dense states remember for a long time how they were piled up. Two programs that start alike can be
+/// compared at any time.
 fn disks(seed: u64) -> Result<Vec<Disk>, ParameterError> {
     const COLUMNS: usize = 42;
     const ROW: f64 = 1.4;

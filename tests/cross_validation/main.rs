@@ -1,12 +1,13 @@
-//! The engine against a plain independent simulation of the same system, over a grid of friction, inelasticity and
-//! gravity.
+//! The engine against a plain independent simulation of the same system, over a grid of friction,
+//! inelasticity and gravity.
 //!
 //! ```text
 //! REFERENCE=path/of/the/program cargo test --release --test cross_validation -- --ignored --nocapture
 //! ```
 //!
-//! `REFERENCE` is a program that takes the flags `--k0`, `--q`, `--g`, `--tc`, `--seed`, `--periods`, ... and prints one
-//! `pt` and one `k=` line for each interval; see `reference.rs`. Nothing of it is part of this crate.
+//! `REFERENCE` is a program that takes the flags `--k0`, `--q`, `--g`, `--tc`, `--seed`, `--periods`, ... and
+//! prints one `pt` and one `k=` line for each interval; see `reference.rs`. Nothing of it is part of this
+//! crate.
 
 mod engine;
 mod means;
@@ -26,20 +27,21 @@ struct Point {
     gravity: f64,
 }
 
-/// Both codes have the same box, base and contact duration, the same distribution of initial states, and the same times
-/// of settling and sampling; their random numbers differ.
+/// Number of disks. Both programs have the same box, base and contact duration, the same distribution of
+/// initial states, and the same times of settling and sampling. Their random numbers differ.
 const DISKS: usize = 1000;
 const WIDTH: f64 = 60.0;
 const HEIGHT: f64 = 150.0;
 const CONTACT_DURATION: f64 = 1e-6;
-/// In oscillations.
+/// Time between two samples, in oscillations.
 const INTERVAL: u32 = 10;
 const SETTLE: u32 = 1500;
 const SAMPLES: u32 = 200;
-/// Independent runs of each code.
+/// Number of independent runs of each program.
 const RUNS: u64 = 6;
 
-/// Without friction and inelasticity nothing takes the energy away that the base gives: that point has no steady state.
+/// Returns the points of the grid. The point without friction and inelasticity is left out: nothing takes
+/// away the energy that the base gives, so it has no steady state.
 fn grid() -> Vec<Point> {
     let mut points = Vec::new();
     for gravity in [0.015_625, 0.002_025] {
@@ -82,16 +84,17 @@ fn runs(run: impl Fn(u64) -> Result<Means, Box<dyn Error>>) -> Result<Vec<Means>
     (1..=RUNS).map(run).collect()
 }
 
-/// In how many runs two rolls are stronger than one: where this is neither 0 nor all, runs took different branches.
+/// Returns the number of runs in which two rolls are stronger than one. If this is neither 0 nor all, runs
+/// took different branches.
 fn count_two_rolls(runs: &[Means]) -> usize {
     runs.iter().filter(|means| means.two_rolls > means.one_roll).count()
 }
 
-/// That the deviations of all points together are what chance makes them.
+/// Checks that the deviations of all points together are as large as chance makes them.
 ///
-/// Equal means make each deviation follow Student's t, and the sum of squares have a known mean and variance. Five
-/// standard deviations above, because the tail of t² is longer than a Gaussian's, is one chance in some thousands; an
-/// error of one standard error in each point would be as far out.
+/// If the means are equal, each deviation follows Student's t, and the sum of squares has a known mean and
+/// variance. Five standard deviations above the mean has a chance of one in some thousands, because the tail
+/// of t² is longer than a Gaussian's. An error of one standard error in each point would be as far out.
 fn judge(name: &str, comparisons: &[Comparison]) {
     let known: Vec<f64> = comparisons.iter().filter_map(Comparison::deviation).collect();
     let sum: f64 = known.iter().map(|deviation| deviation * deviation).sum();

@@ -1,4 +1,4 @@
-//! What is compared.
+//! The quantities that are compared.
 
 /// Means over the samples of a run.
 #[derive(Debug, Clone, Copy, Default)]
@@ -6,12 +6,12 @@ pub(crate) struct Means {
     pub(crate) height: f64,
     pub(crate) translational: f64,
     pub(crate) rotational: f64,
-    /// Of `$|\Psi_1|$`.
+    /// Mean of `$|\Psi_1|$`.
     pub(crate) one_roll: f64,
     pub(crate) two_rolls: f64,
     /// Disk–disk collisions per unit of time.
     pub(crate) rate: f64,
-    /// Mean energy change of those.
+    /// Mean energy change of these collisions.
     pub(crate) energy_change: f64,
 }
 
@@ -41,7 +41,7 @@ pub(crate) struct Interval {
     pub(crate) one_roll: f64,
     pub(crate) two_rolls: f64,
     pub(crate) collisions: f64,
-    /// Of all collisions together.
+    /// Energy change of all collisions together.
     pub(crate) energy_change: f64,
 }
 

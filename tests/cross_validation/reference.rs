@@ -1,4 +1,4 @@
-//! Runs of the other program, and what it prints.
+//! Runs of the other program, and its output.
 
 use std::error::Error;
 use std::process::Command;
@@ -8,8 +8,8 @@ use crate::{CONTACT_DURATION, DISKS, HEIGHT, INTERVAL, Point, SAMPLES, SETTLE, W
 
 /// Means over the sampled part of a run.
 ///
-/// The program counts collisions for each value of a friction ramp only. So each interval is a value of a ramp whose
-/// steps are far too small to matter.
+/// The program counts collisions only for each value of a friction ramp. Therefore, each interval is a value
+/// of a ramp whose steps are far too small to matter.
 pub(crate) fn run(program: &str, point: Point, seed: u64) -> Result<Means, Box<dyn Error>> {
     const STEP: f64 = 1e-10;
     let settling = SETTLE / INTERVAL;
@@ -38,7 +38,8 @@ pub(crate) fn run(program: &str, point: Point, seed: u64) -> Result<Means, Box<d
     Ok(Means::over(&intervals[settling as usize..], f64::from(INTERVAL) * std::f64::consts::TAU / 10.0))
 }
 
-/// A `pt` line has the state at the end of an interval, the `k=` line after it what happened in it.
+/// Reads the intervals. A `pt` line has the state at the end of an interval, and the `k=` line after it has
+/// the events in it.
 fn intervals(output: &str) -> Result<Vec<Interval>, Box<dyn Error>> {
     let mut intervals = Vec::new();
     let mut state = Interval::default();
@@ -54,7 +55,7 @@ fn intervals(output: &str) -> Result<Vec<Interval>, Box<dyn Error>> {
     Ok(intervals)
 }
 
-/// `pt`, friction, index, `$\Psi_1$`, `$\Psi_2$`, height, translational and rotational energy.
+/// Reads a state: `pt`, friction, index, `$\Psi_1$`, `$\Psi_2$`, height, translational and rotational energy.
 fn read_state(line: &str) -> Result<Interval, Box<dyn Error>> {
     let numbers: Vec<f64> = line.split_whitespace().skip(3).map(str::parse).collect::<Result<_, _>>()?;
     let [one_roll, two_rolls, height, translational, rotational] = numbers[..] else {

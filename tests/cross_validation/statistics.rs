@@ -6,10 +6,10 @@ use granular_edmd::statistics::RunningMean;
 
 use crate::means::Means;
 
-/// A quantity in both codes.
+/// A quantity in both programs.
 ///
-/// Its error comes from the scatter between independent runs, so that no time of correlation has to be known, however
-/// slow the flow is.
+/// The error comes from the scatter between independent runs, so that no correlation time has to be known,
+/// however slow the flow is.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Comparison {
     ours: RunningMean,
@@ -17,7 +17,7 @@ pub(crate) struct Comparison {
 }
 
 impl Comparison {
-    /// A quantity of as many runs of one code as of the other.
+    /// Compares a quantity in as many runs of one program as of the other.
     pub(crate) fn of(ours: &[Means], theirs: &[Means], quantity: fn(&Means) -> f64) -> Self {
         assert_eq!(ours.len(), theirs.len());
         Self { ours: ours.iter().map(quantity).collect(), theirs: theirs.iter().map(quantity).collect() }
@@ -28,13 +28,14 @@ impl Comparison {
         self.ours.standard_error().hypot(self.theirs.standard_error())
     }
 
-    /// The difference in standard errors: Student's t; `None` of what never changes, as spins without friction.
+    /// Returns the difference in standard errors, which is Student's t. It is `None` for what never changes,
+    /// such as spins without friction.
     pub(crate) fn deviation(&self) -> Option<f64> {
         (self.error() > 0.0).then(|| (self.ours.mean() - self.theirs.mean()) / self.error())
     }
 }
 
-/// Our mean, the standard error of the difference, and the difference in standard errors.
+/// Shows our mean, the standard error of the difference, and the difference in standard errors.
 impl fmt::Display for Comparison {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let digits = (1.0 - self.error().log10().floor()).clamp(0.0, 6.0) as usize;
@@ -46,8 +47,8 @@ impl fmt::Display for Comparison {
     }
 }
 
-/// Mean and standard deviation of the sum of `points` squares of Student's t with `freedom` degrees of freedom: t² has
-/// the F distribution with 1 and `freedom`.
+/// Returns the mean and standard deviation of the sum of `points` squares of Student's t with `freedom`
+/// degrees of freedom. The square t² has the F distribution with 1 and `freedom`.
 pub(crate) fn expected_sum(points: usize, freedom: u64) -> (f64, f64) {
     let (count, freedom) = (points as f64, freedom as f64);
     let mean = freedom / (freedom - 2.0);

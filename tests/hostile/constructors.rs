@@ -1,4 +1,5 @@
-//! Every public constructor over every kind of number: refused with an error that names the value, or fit to run.
+//! Every public constructor over every kind of number: refused with an error that names the value, or fit to
+//! run.
 
 use granular_edmd::analysis::{StateCriteria, distinct_clusters, thermal_noise};
 use granular_edmd::boundary::{Container, Region, Thermal, Wall};
@@ -171,7 +172,7 @@ fn each_number_is_taken_or_named() {
     }
 }
 
-/// Up to a hundred events of two disks: an error or a run, and finite numbers.
+/// Does up to a hundred events of two disks, and expects an error or a run with finite numbers.
 fn runs(container: &Container, gravity: f64, start: f64, speed: f64) {
     for count in 0..3 {
         let Ok(disks) = initial::lattice(container, count, 0.5) else { continue };
@@ -220,7 +221,7 @@ fn walls_of_any_motion_end_in_an_error_or_run() {
     }
 }
 
-/// Linear, not quadratic: a million disks are set up in seconds.
+/// The set-up is linear, not quadratic: a million disks are set up in seconds.
 #[test]
 #[ignore = "seconds in release, and half a gigabyte"]
 fn a_million_disks_are_set_up_in_seconds() {
@@ -247,7 +248,7 @@ fn more_disks_than_memory_holds_are_refused_at_once() {
     }
 }
 
-/// Whatever a plan varies: taken or refused, at once; and its text is read as what it is.
+/// Whatever a plan varies is taken or refused at once, and its text is read as what it is.
 #[test]
 #[cfg(feature = "serde")]
 fn plans_of_any_numbers_are_taken_or_refused() {

@@ -1,7 +1,7 @@
 //! Faults of the machine, for real: full disks, folders that cannot be written, processes killed at any
 //! moment.
 //!
-//! What the system does not permit (mounting, another user) is said and skipped.
+//! A test that the system does not permit (mounting, another user) is reported and skipped.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -38,7 +38,7 @@ fn own_plan() -> Plan<Mixture> {
     Plan::new(mixture(), Protocol::new(10, 80, 2), 5).unwrap().with_axis(axis).unwrap()
 }
 
-/// All files of a study but its log, which has the times.
+/// Returns all files of a study but its log, which contains times.
 fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut files = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -98,7 +98,7 @@ fn two_states() -> [Checkpoint; 2] {
     [first, run.checkpoint()]
 }
 
-/// A small file system of a test's own; `None` where it must not be made.
+/// A small file system of one test, or `None` where it cannot be made.
 struct Disk(Scratch);
 
 impl Disk {
@@ -202,7 +202,7 @@ fn a_disk_that_turns_read_only_keeps_what_it_has() {
     assert!(contents(&folder) == expected("read-only-disk-not", &plan()));
 }
 
-/// Permissions do not bind the superuser: the study is run as nobody.
+/// Permissions do not bind the superuser, so the study is run as the user "nobody".
 #[test]
 fn a_folder_of_somebody_else_is_an_error() {
     let scratch = Scratch::new("somebody-else");

@@ -1,4 +1,5 @@
-//! None, one and two of everything, and extreme numbers where they are not checked by name: an answer or an error, at once.
+//! Zero, one and two of everything, and extreme numbers where they are not checked by name. Each gives an
+//! answer or an error, at once.
 
 use granular_edmd::analysis::{
     ConvectiveRegime, KMeans, StateCriteria, distinct_clusters, line_average, plane_transitions,
@@ -21,10 +22,10 @@ use granular_edmd::{Disk, Simulation, initial};
 
 use crate::schedulers::SCHEDULERS;
 
-/// From the smallest number to the largest.
+/// Sizes from the smallest number to the largest.
 const SIZES: [f64; 12] = [5e-324, 1e-310, 1e-200, 1e-30, 1e-20, 1e-6, 0.5, 1.0, 1e6, 1e30, 1e200, f64::MAX];
 
-/// How many there may be of something.
+/// Counts of something.
 const COUNTS: [usize; 6] = [0, 1, 2, 3, 1 << 40, usize::MAX];
 
 fn times() -> SampleTimes {

@@ -49,7 +49,7 @@ fn damaged_records(name: &str, stride: usize) {
     }
 }
 
-/// A bit of nearly each byte, in turn.
+/// The test flips a bit of nearly each byte, in turn.
 #[test]
 fn flipped_bits_and_cuts_of_a_record_are_noticed() {
     damaged_records("flips", 9);
@@ -156,7 +156,7 @@ proptest! {
         prop_assert!(Checkpoint::from_bytes(&bytes).is_err());
     }
 
-    /// With a seal that is whole, whatever is behind it is decoded or refused.
+    /// Any bytes behind a seal that is whole are decoded or refused.
     #[test]
     fn any_sealed_bytes_are_decoded_or_refused(contents in prop::collection::vec(any::<u8>(), 0..400)) {
         let header = checkpoint().to_bytes().unwrap();

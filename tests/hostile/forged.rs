@@ -1,7 +1,7 @@
-//! Files whose checksum is right and whose contents are not: refused, or a state that runs on.
+//! Files whose checksum is right and whose contents are wrong. Each is refused, or is a state that runs on.
 //!
-//! What a forged state may cost is limited by the system: this test runs itself in a process with little
-//! memory and time.
+//! The system limits what a forged state may cost: this test runs itself in a process with little memory and
+//! time.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -27,7 +27,8 @@ use crate::specimens::{
     CONTENTS_AT, checkpoint, done_study, own_plan, plan, resume, run_steps, sealed, stopped_study,
 };
 
-/// What is written over the contents at each place: floats, and lengths and indices in their encoding.
+/// Returns the bytes that are written over the contents at each place: floats, and lengths and indices in
+/// their encoding.
 fn patterns() -> Vec<Vec<u8>> {
     let floats = [
         f64::NAN,
@@ -64,7 +65,7 @@ fn forged(file: &[u8], stride: usize) -> impl Iterator<Item = (usize, Vec<u8>)> 
     let contents = &file[CONTENTS_AT..];
     let places = (0..contents.len()).flat_map(|place| patterns().into_iter().map(move |with| (place, with)));
     let files = places.flat_map(|(place, with)| {
-        // In the place of as many bytes, and of one, as a longer length would be.
+        // The pattern replaces as many bytes, or a single one, as a longer length would.
         [place + with.len(), place + 1].map(|end| {
             let rest = &contents[end.min(contents.len())..];
             (place, sealed(file, &[&contents[..place], &with, rest].concat()))
@@ -78,7 +79,7 @@ static CASE: AtomicUsize = AtomicUsize::new(0);
 /// The file that is tried.
 static TRIED: Mutex<Vec<u8>> = Mutex::new(Vec::new());
 
-/// Ends the process with a word if one case takes too long, and leaves the file behind.
+/// Ends the process with a message if one case takes too long, and leaves the file.
 fn watch() {
     static STARTED: Once = Once::new();
     let watch = || {
@@ -112,13 +113,13 @@ fn none_panics(cases: impl Iterator<Item = (usize, Vec<u8>)>, mut check: impl Fn
     assert!(panics.is_empty(), "panics, with the first place of each: {panics:#?}");
 }
 
-/// Of how many forged files one is tried.
+/// Variable with the stride: one of so many forged files is tried.
 const STRIDE: &str = "GRANULAR_EDMD_HOSTILE_STRIDE";
 
-/// Number of events that each is run for.
+/// Variable with the number of events for which each run goes on.
 const EVENTS: &str = "GRANULAR_EDMD_HOSTILE_EVENTS";
 
-/// The one system that is forged.
+/// Variable with the only system that is forged.
 const ONLY: &str = "GRANULAR_EDMD_HOSTILE_ONLY";
 
 fn stride() -> usize {
@@ -135,7 +136,7 @@ fn bytes_behind_a_checkpoint_are_refused() {
     assert!(error.to_string().contains("something follows it"), "{error}");
 }
 
-/// The cells at walls reach to infinity: a disk that is deep in a wall, and fast, would take ages to come
+/// The cells at walls reach to infinity. A disk that is deep in a wall, and fast, would take ages to come
 /// back.
 #[test]
 fn a_disk_beyond_a_wall_is_refused() {
@@ -157,7 +158,7 @@ fn a_disk_beyond_a_wall_is_refused() {
     }
 }
 
-/// The file with a few places overwritten: by patterns, by what stands elsewhere in it, and by numbers near
+/// Returns the file with a few places overwritten: by patterns, by other parts of it, and by numbers near
 /// those that were there.
 fn edited(file: &[u8], seed: u64) -> Vec<u8> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
@@ -186,7 +187,8 @@ fn edited(file: &[u8], seed: u64) -> Vec<u8> {
     sealed(file, &contents)
 }
 
-/// A time in which no disk goes far: whatever a forged disk is like, a step in it does not take many epochs.
+/// Returns a time in which no disk goes far, so that a step in it does not take many epochs, whatever a
+/// forged disk is like.
 fn short_while(disks: &[Disk], gravity: f64) -> f64 {
     let diameter = disks.iter().map(|disk| 2.0 * disk.radius()).fold(f64::INFINITY, f64::min);
     let speed = disks.iter().map(|disk| disk.velocity().length()).fold(0.0, f64::max);
@@ -253,7 +255,7 @@ fn forge_records<E: Experiment>(name: &str, plan: &Plan<E>, look: impl Fn(&Recor
         fs::write(&path, bytes).unwrap();
         let Ok(Some(record)) = study.record(0, 1) else { return };
         look(&record);
-        // All values have records: this reads them and writes tables.
+        // All values have records, so this call reads them and writes tables.
         let _ = Study::<E>::open(&scratch.0).unwrap().run(&Control::default());
     });
 }

@@ -115,7 +115,7 @@ fn mixed(container: &Container) -> Vec<Disk> {
 }
 
 impl System {
-    /// The state some way in; that of a run which stalls before is a state, too.
+    /// Returns the state some way into the run. A run that stalls before also has a state.
     pub(crate) fn checkpoint(&self) -> Checkpoint {
         let container = (self.container)();
         let disks = (self.disks)(&container);

@@ -1,4 +1,4 @@
-//! What must hold after every event, seen from outside.
+//! The invariants that hold after every event, seen from outside.
 
 use granular_edmd::Disk;
 use granular_edmd::boundary::Boundary;
@@ -19,26 +19,29 @@ const ROUNDING: f64 = 1e-11;
 /// Overlap that counts as touching: the engine keeps positions to some 1e-14 of the way since the epoch.
 const TOUCHING: f64 = 1e-9;
 
-/// Rounding of a position for each unit of speed, summed up: a disk that a moving wall drives into a corner bounces 1e5 times at
-/// once, at speeds of thousands, and each bounce rounds its place to some 1e-16 of the way since the epoch.
+/// Rounding of a position for each unit of speed, summed up. A disk that a moving wall drives into a corner
+/// bounces 1e5 times at once, at speeds of thousands. Each bounce rounds its place to some 1e-16 of the way
+/// since the epoch.
 const CORNERING: f64 = 1e-11;
 
-/// Speed of the bounces that are lower than rounding.
+/// Speed of bounces that are lower than rounding.
 const RESTING: f64 = 1e-7;
 
-/// What the present time may be wrong by: it is given as a double, while the engine keeps more digits.
+/// Returns the possible error of the present time. The time is given as a double, while the engine keeps more
+/// digits.
 fn time_error(run: &Run) -> f64 {
     4.0 * f64::EPSILON * run.time().abs()
 }
 
-/// How far from the origin a disk is.
+/// Returns the distance from the origin to the farthest disk.
 pub(crate) fn farthest(run: &Run) -> f64 {
     run.disks().iter().map(|disk| disk.position().length()).fold(0.0, f64::max)
 }
 
-/// All disks are finite, inside the domain and the walls, and apart; none has been farther from the origin than `farthest`.
+/// Checks that all disks are finite, inside the domain and the walls, and apart. No disk has been farther
+/// from the origin than `farthest`.
 pub(crate) fn check_state(run: &Run, farthest: f64) -> Verdict {
-    // Disks that fall up out of an open box are where a height has fewer digits.
+    // A height has fewer digits where disks fall upward out of an open box.
     let touching = TOUCHING + 4.0 * f64::EPSILON * farthest;
     let mut boundary = run.boundary().clone();
     boundary.set_time_origin(run.time());
@@ -67,7 +70,7 @@ fn is_finite(disk: &Disk) -> bool {
     disk.position().is_finite() && disk.velocity().is_finite() && rotation.iter().all(|part| part.is_finite())
 }
 
-/// The disks before and after one event.
+/// The disks before and after an event.
 pub(crate) struct Change<'a> {
     pub(crate) run: &'a Run,
     pub(crate) walls: &'a Walls,
@@ -79,7 +82,7 @@ pub(crate) struct Change<'a> {
 }
 
 impl Change<'_> {
-    /// Velocity with which a disk came to the event.
+    /// Returns the velocity with which a disk came to the event.
     fn arriving(&self, disk: usize) -> DVec2 {
         self.before[disk].velocity() - DVec2::new(0.0, self.run.gravity() * self.elapsed)
     }
@@ -88,7 +91,7 @@ impl Change<'_> {
         time_error(self.run)
     }
 
-    /// Disks that do not collide fly freely: nothing else has touched them.
+    /// Checks that a disk without a collision flies freely: nothing else has touched it.
     pub(crate) fn check_flight(&self, disk: usize) -> Verdict {
         let (old, new) = (&self.before[disk], &self.after[disk]);
         let fall = DVec2::new(0.0, -0.5 * self.run.gravity() * self.elapsed * self.elapsed);
@@ -102,7 +105,7 @@ impl Change<'_> {
         Ok(())
     }
 
-    /// A disk has this velocity more than it came with.
+    /// Checks that the velocity of a disk has changed by this.
     fn check_velocity(&self, disk: usize, kick: DVec2) -> Verdict {
         let missed = (self.after[disk].velocity() - self.arriving(disk) - kick).length();
         let scale = self.before[disk].velocity().length() + self.after[disk].velocity().length();
@@ -111,7 +114,8 @@ impl Change<'_> {
         Ok(())
     }
 
-    /// A collision keeps momentum and angular momentum, and changes the energy by what it says and its law allows.
+    /// Checks that a collision conserves momentum and angular momentum, and changes the energy as it reports
+    /// and as its law allows.
     pub(crate) fn check_collision(&self, collision: &Collision) -> Verdict {
         prop_assert_eq!(collision.time, self.run.time());
         prop_assert!((collision.normal.length() - 1.0).abs() < ROUNDING, "{:?}", collision);
@@ -136,7 +140,7 @@ impl Change<'_> {
         }
     }
 
-    /// The disk got the impulse, at the point of contact.
+    /// Checks that the disk got the impulse at the point of contact.
     fn check_kick(&self, collision: &Collision, disk: usize, sign: f64) -> Verdict {
         let (normal, tangential) = (collision.impulse.normal(), collision.impulse.tangential());
         let impulse = collision.normal * normal + collision.normal.perp() * tangential;
@@ -149,7 +153,7 @@ impl Change<'_> {
         Ok(())
     }
 
-    /// The energy of these disks changes by what the collision says.
+    /// Checks that the energy of these disks changes as the collision reports.
     fn check_energy(&self, collision: &Collision, disks: &[usize]) -> Verdict {
         let (mut change, mut scale) = (0.0, f64::MIN_POSITIVE);
         for &disk in disks {
@@ -166,11 +170,11 @@ impl Change<'_> {
     }
 }
 
-/// The law allows the impulse; where it is elastic, nothing is lost either.
+/// Checks that the law allows the impulse, and that no energy is lost if the law is elastic.
 fn check_law(collision: &Collision, law: Law) -> Verdict {
     let contact = &collision.contact;
     if contact.closing_speed() <= 0.0 {
-        // Bounces lower than rounding: the partners are as good as at rest.
+        // In bounces lower than rounding, the partners are almost at rest.
         prop_assert!(contact.closing_speed() > -RESTING, "partners that part collide: {collision:?}");
         return Ok(());
     }

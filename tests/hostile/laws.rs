@@ -29,7 +29,7 @@ pub(crate) struct Law {
     tangential: f64,
     friction: f64,
     dynamic_share: f64,
-    /// Within the contact-duration model: its time, and whether the tangential response stays.
+    /// The contact-duration model around the rule: its time, and whether the tangential response stays.
     contact_duration: Option<(f64, bool)>,
 }
 

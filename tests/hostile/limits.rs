@@ -1,17 +1,17 @@
-//! Tests in processes of their own, which the system gives little.
+//! Tests in their own processes, which the system limits.
 
 use std::process::{Command, Output};
 
-/// What a process may use.
+/// The limits of a process.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
     pub(crate) memory_kib: u64,
     pub(crate) seconds: u64,
-    /// Size of a file: what is beyond cannot be written.
+    /// Largest size of a file. More cannot be written.
     pub(crate) file_kib: Option<u64>,
 }
 
-/// What became of a process.
+/// The end of a process.
 #[derive(Debug)]
 pub(crate) struct End(pub(crate) Output);
 
@@ -39,7 +39,7 @@ pub(crate) fn in_child(test: &str, limits: &Limits, variables: &[(&str, &str)]) 
     let executable = std::env::current_exe().unwrap();
     let mut command = Command::new("sh");
     command.arg("-c").arg(script).arg(executable).env("RUST_BACKTRACE", "0");
-    // The limits of the process are the limits of the child's children too; the cases are its own.
+    // The limits of the process also hold for its children. The cases are those of the child itself.
     command.envs(variables.iter().copied());
     End(command.output().unwrap())
 }

@@ -1,10 +1,10 @@
-//! What is seen of a run, and what ends it in the middle.
+//! The log of a run, which can also end the run in the middle.
 
 use std::ops::ControlFlow;
 
 use granular_edmd::observable::{Collision, Observer, Snapshot, Verdict};
 
-/// Collisions of one step, and some more.
+/// Number of collisions of one step that are kept, and some more.
 pub(crate) const KEPT: usize = 4;
 
 /// Counts the collisions, up to a budget, keeps the first ones, and takes one sample.

@@ -1,8 +1,8 @@
-//! Bad input and hostile runs: random simulations under every law that must hold, files of any contents, constructors over
-//! every kind of number, and faults of the machine.
+//! Bad input and hostile runs: random simulations under every law that must hold, files of any contents,
+//! constructors over every kind of number, and faults of the machine.
 //!
-//! The seeds are fixed. `PROPTEST_CASES` sets the number of cases, `PROPTEST_RNG_SEED` another seed: that is how these tests
-//! become runs of hours (docs/validation.md, “Hostile runs”).
+//! The seeds are fixed. `PROPTEST_CASES` sets the number of cases, and `PROPTEST_RNG_SEED` sets another seed.
+//! With them, these tests become runs of hours (docs/validation.md, “Hostile runs”).
 
 #[path = "../support/cases.rs"]
 mod cases;

@@ -1,5 +1,5 @@
-//! Random systems under random scripts: the laws hold after each event, and the bits are the same under every scheduler
-//! and through every checkpoint.
+//! Random systems under random scripts. The laws hold after each event, and the bits are the same under every
+//! scheduler and through every checkpoint.
 
 use proptest::prelude::*;
 

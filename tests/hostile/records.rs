@@ -1,4 +1,4 @@
-//! Records and values half done whose checksum is right, and which say what their study cannot have: each is
+//! Records and unfinished values with a right checksum and contents that their study cannot have. Each is
 //! named.
 
 use std::fs;
@@ -70,7 +70,7 @@ fn a_record_with_impossible_numbers_is_damaged() {
     fs::write(&record.path, &record.file).unwrap();
     let time = record.study.record(0, 1).unwrap().unwrap().state().time();
     for bad in [0.0, 2.0 * time, 1e300] {
-        // The state has a checksum of its own.
+        // The state has its own checksum.
         record.put(bad, time);
         record.assert_damaged("its contents make no sense");
     }
@@ -131,13 +131,13 @@ fn a_value_half_done_that_cannot_be_is_started_again() {
         assert!(fs::read(&finished).unwrap() == expected.file);
         fs::remove_file(&finished).unwrap();
     }
-    // As it was, it goes on.
+    // The unfinished value goes on in its original form.
     fs::write(&partial.path, &partial.file).unwrap();
     assert!(run_steps(&partial.study, u64::MAX).unwrap().redone.is_empty());
     assert!(fs::read(&finished).unwrap() == expected.file);
 }
 
-/// Its samples and its state would not be those of the step.
+/// The samples and the state of such a value would not be those of the step.
 #[test]
 fn a_value_half_done_at_another_step_is_started_again() {
     let partial = Specimen::partial("another-step");

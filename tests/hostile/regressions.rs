@@ -1,4 +1,4 @@
-//! What the random runs found, each as small as it gets.
+//! Findings of the random runs, each as small as possible.
 
 use std::cell::Cell;
 
@@ -16,7 +16,8 @@ fn disk(x: f64, y: f64, velocity: DVec2) -> Disk {
     Disk::new(DVec2::new(x, y), 0.5).unwrap().with_velocity(velocity).unwrap()
 }
 
-/// Without restitution nothing is left to bounce with but rounding: some 1e-15 of time an event, but never none.
+/// Without restitution, only rounding is left to bounce with. Each event takes some 1e-15 of time, and never
+/// none.
 #[test]
 fn a_disk_that_sticks_to_the_floor_under_a_contact_duration_stalls() {
     let still = Container::closed(9.6, 13.0).unwrap();
@@ -31,7 +32,7 @@ fn a_disk_that_sticks_to_the_floor_under_a_contact_duration_stalls() {
     }
 }
 
-/// The moment at which a disk comes in by the other side is rounded: the domain ends there, give or take rounding.
+/// The moment at which a disk enters at the other side is rounded, so the domain ends there up to rounding.
 #[test]
 fn a_disk_on_the_line_between_periodic_sides_is_inside_both_ways() {
     let container = Container::closed(15.5, 8.0).unwrap().with_periodic_sides();
@@ -39,13 +40,15 @@ fn a_disk_on_the_line_between_periodic_sides_is_inside_both_ways() {
         let disks = [disk(x, 4.0, DVec2::new(-1.0, 0.0)), disk(7.0, 4.0, DVec2::ZERO)];
         let mut run = Simulation::builder(Elastic, container.clone()).disks(disks).build().unwrap();
         run.run_until(100.0, &mut ()).unwrap();
-        // One after a way of 7.5, and then one each time that they have gone round the ring, less two diameters.
+        // The first collision comes after a way of 7.5. The others come each time that the disks have gone
+        // round the ring, less two diameters.
         assert_eq!(run.counters().collisions, 7, "{x}");
         run.set_boundary(container.clone()).unwrap();
     }
 }
 
-/// A disk at rest on a steadily moving lid bounces by rounding only, and each bounce rounds its height: it sinks, but by no more.
+/// A disk at rest on a steadily moving lid bounces by rounding only, and each bounce rounds its height. The
+/// disk sinks, but by no more than that.
 #[test]
 fn a_disk_at_rest_on_a_moving_wall_sinks_by_less_than_the_rounding_of_its_bounces() {
     let lids: [Box<dyn WallMotion + Send + Sync>; 4] = [
@@ -83,7 +86,8 @@ impl<M: WallMotion> WallMotion for Counting<M> {
     }
 }
 
-/// A disk that bounces off a fast wall is out of its reach for a million periods, and not one of these is looked at.
+/// A disk that bounces off a fast wall is out of its reach for a million periods. The search looks at none of
+/// these.
 #[test]
 fn a_search_takes_some_periods_of_a_wall_however_fast_it_is() {
     for frequency in [1e3, 1e6, 1e9] {

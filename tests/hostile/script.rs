@@ -1,4 +1,5 @@
-//! Random operations on a run, with all invariants checked after each event, and the trace that they leave.
+//! Random operations on a run, with all invariants checked after each event, and the trace that the run
+//! leaves.
 
 use granular_edmd::Disk;
 use granular_edmd::observable::Collision;
@@ -12,31 +13,33 @@ use crate::schedulers::SCHEDULERS;
 use crate::systems::{Run, System, gravity};
 use crate::walls::{Walls, walls};
 
-/// Collisions after which a run goes on no more.
+/// Number of collisions after which a run ends.
 const ENOUGH: usize = 10_000;
 
-/// Collisions of a case, after which it ends in the middle of a run: a disk at rest bounces up to 1e15 times in the time of
-/// one run. Twice as many as the guard lets pass without progress, so that it is the guard that ends what it should.
+/// Number of collisions of a case after which it ends in the middle of a run. A disk at rest bounces up to
+/// 1e15 times in the time of one run. The number is twice what the guard lets pass without progress, so that
+/// the guard ends what it should.
 const BUDGET: usize = 400_000;
 
 /// Longest time of a step.
 const STEP: f64 = 0.5;
 
-/// How deep one bounce may put a disk into a wall: the rounding of its height, which a disk at rest sums up.
+/// Depth by which one bounce may put a disk into a wall. It is the rounding of its height, which adds up for
+/// a disk at rest.
 const SINKING: f64 = 16.0 * f64::EPSILON;
 
 #[derive(Debug, Clone)]
 pub(crate) enum Operation {
     Steps(usize),
-    /// For this long at most, with a sample after each half, the half of that, and so on: so many.
+    /// A run of at most this time, with so many samples: after a half, after the half of that, and so on.
     Run(f64, u32),
     Rule(Law),
     Gravity(f64),
-    /// Other walls, which the disks may not fit into.
+    /// Other walls. The disks may not fit into them.
     Walls(Box<Walls>),
-    /// The walls that are there already.
+    /// The present walls, set again.
     SameWalls,
-    /// Save, and go on with what was saved where the interpreter says so.
+    /// A checkpoint, from which the run goes on if the interpreter says so.
     Checkpoint,
 }
 
@@ -53,7 +56,7 @@ pub(crate) fn script() -> impl Strategy<Value = Vec<Operation>> {
     prop::collection::vec(operation, 1..12)
 }
 
-/// One moment of a run, to the last bit.
+/// A moment of a run, to the last bit.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Frame {
     time: u64,
@@ -67,16 +70,16 @@ fn bits(disk: &Disk) -> [u64; 6] {
     [position.x, position.y, velocity.x, velocity.y, disk.angle(), disk.angular_velocity()].map(f64::to_bits)
 }
 
-/// Why a case ended before its script.
+/// The reason why a case ended before its script.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum End {
     /// Events piled up.
     Stalled(String),
     /// Absolute times became too coarse for a disk that a hot wall had made fast.
     TooLate(String),
-    /// It had as many collisions as it may.
+    /// The case had as many collisions as it may.
     Spent,
-    /// Nothing that may happen.
+    /// An end that may not happen.
     Other(String),
 }
 
@@ -95,12 +98,12 @@ pub(crate) struct Actor {
     run: Run,
     walls: Walls,
     law: Law,
-    /// Whether a checkpoint is also resumed, each time under the next scheduler.
+    /// True if a checkpoint is also resumed, each time under the next scheduler.
     resumes: bool,
     resumed: usize,
     /// Collisions that the case may still have.
     budget: usize,
-    /// How far from the origin a disk has been.
+    /// Largest distance of a disk from the origin so far.
     farthest: f64,
     pub(crate) trace: Vec<Frame>,
     pub(crate) end: Option<End>,
@@ -201,7 +204,8 @@ impl Actor {
         check_state(&self.run, self.farthest)
     }
 
-    /// Runs twice as long each time, as long as that is not too much: disks at rest bounce as often as rounding lets them.
+    /// Runs twice as long each time, as long as that is not too much: disks at rest bounce as often as
+    /// rounding lets them.
     fn run(&mut self, duration: f64, samples: u32) -> Result<(), TestCaseError> {
         if !self.clock_ticks()? || self.end.is_some() {
             return Ok(());
@@ -232,7 +236,8 @@ impl Actor {
         }
     }
 
-    /// Whether some steps go on to another time: a late clock is too coarse to be told when to stop instead.
+    /// Tells whether some steps go on to another time. A late clock is too coarse to be told when to stop
+    /// instead.
     fn clock_ticks(&mut self) -> Result<bool, TestCaseError> {
         let start = self.run.time();
         if start.abs() > 1e9 {
@@ -241,7 +246,7 @@ impl Actor {
         Ok(self.run.time() != start || start.abs() <= 1e9)
     }
 
-    /// Events may pile up where a rule is lossy; nothing else may end a run.
+    /// Checks the end of a run. Events may pile up where a rule is lossy; nothing else may end a run.
     fn fail(&mut self, end: End) -> Result<(), TestCaseError> {
         prop_assert!(!matches!(end, End::Other(_)), "{end:?}");
         self.film(None, 0);
@@ -263,7 +268,8 @@ impl Actor {
         self.check_state()
     }
 
-    /// Disks that are inside walls fit into them: except at times so late that nobody can say where a wall is.
+    /// Checks that disks inside walls fit into them, except at times so late that the place of a wall is
+    /// unknown.
     fn keep_walls(&mut self) -> Result<(), TestCaseError> {
         let bounces = self.run.counters().wall_collisions as f64;
         match self.run.set_boundary(self.walls.container()) {

@@ -1,4 +1,4 @@
-//! A small run and a small study, and what is written of them.
+//! A small run and a small study, and the files that they write.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Every kind of value that is read from files, with a field too many: refused, by name.
+//! Every kind of value that is read from files, with one field too many. Each is refused by name.
 
 use std::fmt::Debug;
 
@@ -23,7 +23,7 @@ use serde_json::{Value, json};
 
 use crate::specimens::{checkpoint, container, done_study, plan, resume};
 
-/// Gives each object of a value a field too many, in turn.
+/// Adds a superfluous field to each object of a value, in turn.
 fn with_intruders(value: &Value) -> Vec<Value> {
     match value {
         Value::Object(fields) => {
@@ -64,7 +64,8 @@ fn refuses_intruders<T: DeserializeOwned>(value: &Value) {
     for changed in intruders {
         let error = serde_json::from_value::<T>(changed.clone()).err().map(|error| error.to_string());
         let error = error.unwrap_or_else(|| panic!("{changed}"));
-        // Beside the name of a choice, a field is a second choice; beside the numbers of walls, it is no number.
+        // A field beside the name of a choice is a second choice. A field beside the numbers of walls is not
+        // a number.
         let reasons = ["intruder", "single key", "key to be a number"];
         assert!(reasons.iter().any(|reason| error.contains(reason)), "{error}: {changed}");
     }
@@ -160,7 +161,7 @@ fn plans_and_records_with_a_field_too_many_are_refused() {
     assert!(error.to_string().contains("damaged"), "{error}");
 }
 
-/// The same in TOML, at each place of a plan.
+/// The same holds in TOML, at each place of a plan.
 #[test]
 fn a_plan_in_toml_with_a_field_too_many_is_refused() {
     let text = plan().to_toml().unwrap();
@@ -172,7 +173,7 @@ fn a_plan_in_toml_with_a_field_too_many_is_refused() {
     }
 }
 
-/// Numbers deep in each other are refused; so is a plan that is too large, at once.
+/// Deeply nested values are refused at once, and so is a plan that is too large.
 #[test]
 fn plans_that_are_too_deep_or_too_long_are_refused_at_once() {
     let text = plan().to_toml().unwrap();

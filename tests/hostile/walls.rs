@@ -16,7 +16,7 @@ enum Shape {
     Sawtooth,
 }
 
-/// What a touch does.
+/// The response of a wall to a touch.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Conduct {
     /// The law of the disks.
@@ -25,7 +25,7 @@ pub(crate) enum Conduct {
     Thermal(Thermal),
 }
 
-/// One wall.
+/// A wall as data.
 #[derive(Debug, Clone, Copy)]
 struct Plan {
     shape: Shape,
@@ -46,7 +46,7 @@ pub(crate) struct Walls {
 
 const WALLS: [Wall; 4] = [Wall::Floor, Wall::Lid, Wall::Left, Wall::Right];
 
-/// No wall of these is ever faster.
+/// Highest speed of any of these walls.
 pub(crate) const FASTEST: f64 = 4.0 * LARGEST_AMPLITUDE * HIGHEST_FREQUENCY / std::f64::consts::PI;
 const LARGEST_AMPLITUDE: f64 = 0.3;
 const HIGHEST_FREQUENCY: f64 = 20.0;
@@ -65,7 +65,7 @@ impl Walls {
         })
     }
 
-    /// What the wall of this index does.
+    /// Returns the response of the wall of this index.
     pub(crate) fn conduct(&self, wall: usize) -> Conduct {
         let container = self.container();
         let place = WALLS.iter().position(|&kind| container.index(kind) == Some(wall));

@@ -1,4 +1,5 @@
-//! The kinetic floor: two roads to the mean energy change, the Monte Carlo average, and the paper's section II.
+//! The kinetic floor: two ways to the mean energy change, the Monte Carlo average, and the paper's section
+//! II.
 
 #[path = "../support/cases.rs"]
 mod cases;

@@ -1,4 +1,4 @@
-//! The mean energy loss per collision: two roads to it, and the paper's figures of it.
+//! The mean energy loss per collision: two ways to it, and the paper's figures of it.
 
 use crate::cases;
 use granular_edmd::collision::{
@@ -19,7 +19,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 type Outcome = Result<(), ParameterError>;
 
-/// Deterministic: a test of statistics must not draw again, and keeps its seed whatever is asked for.
+/// Returns a deterministic configuration. A test of statistics must not draw again, and keeps its seed
+/// whatever the environment asks for.
 fn config(cases: u32) -> Config {
     Config { cases, rng_seed: RngSeed::Fixed(20_050_729), ..cases::config(cases) }
 }
@@ -54,7 +55,7 @@ fn gases() -> impl Strategy<Value = Maxwellian> {
     )
 }
 
-/// How many standard errors the two roads are apart; rounding counts for nothing.
+/// Returns the distance of the two results in standard errors. Rounding does not count.
 fn distance(estimate: &Estimate, exact: f64, gas: &Maxwellian) -> f64 {
     let rounding = 1e-12 * (gas.translational_temperature() + gas.rotational_temperature());
     (estimate.mean() - exact) / estimate.standard_error().hypot(rounding)
@@ -74,8 +75,8 @@ fn distances(points: u32, samples: u64) -> Vec<f64> {
         .collect()
 }
 
-/// Over 200 points of the whole domain none is expected beyond 4 standard errors (probability 0.013), and if the
-/// errors are honest the mean square of the distances is 1 with a standard deviation of `sqrt(2/200)`, 0.1.
+/// Of 200 points over the whole domain, none is expected beyond 4 standard errors (probability 0.013). If the
+/// errors are honest, the mean square of the distances is 1 with a standard deviation of `sqrt(2/200)`, 0.1.
 #[test]
 fn monte_carlo_and_closed_form_agree() {
     let distances = distances(200, 1 << 16);
@@ -106,8 +107,9 @@ fn thermal(disk: Disk, rotational_temperature: f64, generator: &mut Xoshiro256Pl
     disk.with_velocity(velocity).unwrap().with_angular_velocity(spin).unwrap()
 }
 
-/// Two thermal disks in contact, collided; energies of the disks themselves, weighted with the rate of the collision.
-/// (The normal variables are sums of 12 uniform ones: moments up to the third are exact, and the fourth is 3 % low.)
+/// Two thermal disks in contact collide. The energies of the disks themselves are weighted with the rate of
+/// the collision. (The normal variables are sums of 12 uniform ones: moments up to the third are exact, and
+/// the fourth is 3 % low.)
 #[test]
 fn closed_form_is_the_mean_over_colliding_disks() -> Outcome {
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(11);
@@ -126,7 +128,8 @@ fn closed_form_is_the_mean_over_colliding_disks() -> Outcome {
             rate += weight;
             loss += weight * (energy(&one) + energy(&other) - energy(&before[0]) - energy(&before[1]));
         }
-        // A collision scatters by about as much as its mean: 0.003, and the same for the fourth moment.
+        // A collision scatters by about as much as its mean, which gives 0.003, and as much again for the
+        // fourth moment.
         let exact = mean_energy_change(&rule, &gas);
         assert!((loss / rate / exact - 1.0).abs() < 0.02, "{} and {exact}", loss / rate);
     }
@@ -180,7 +183,7 @@ fn variances_are_those_of_the_two_temperatures() -> Outcome {
     Ok(())
 }
 
-/// Where both inelasticities of a line meet, and at the corners of the plane, rounding must not lose them.
+/// Rounding must not lose the inelasticities where both of a line meet, or at the corners of the plane.
 #[test]
 fn iso_line_keeps_the_corners_of_the_plane() -> Outcome {
     let gas = Maxwellian::new(1.0)?;
@@ -191,7 +194,8 @@ fn iso_line_keeps_the_corners_of_the_plane() -> Outcome {
     Ok(())
 }
 
-/// Sliding that loses nothing has no friction of largest loss, with sticking that loses nothing either, or something.
+/// There is no friction of largest loss if sliding loses nothing, whether sticking loses nothing or
+/// something.
 #[test]
 fn without_dynamic_friction_there_is_no_largest_loss() -> Outcome {
     for tangential in [0.0, 0.1, 1.0] {
@@ -201,7 +205,8 @@ fn without_dynamic_friction_there_is_no_largest_loss() -> Outcome {
     Ok(())
 }
 
-/// With hot spins the loss at large friction has its maximum below `$q$` = 1/2, and just below it two inelasticities.
+/// The loss at large friction has its maximum below `$q$` = 1/2 if spins are hot. Just below the maximum
+/// there are two inelasticities.
 #[test]
 fn iso_line_finds_both_inelasticities() -> Outcome {
     let gas = Maxwellian::new(1.0)?.with_rotational_temperature(4.0)?;
@@ -213,7 +218,7 @@ fn iso_line_finds_both_inelasticities() -> Outcome {
     Ok(())
 }
 
-/// Any finite friction, up to the largest number and down to the smallest.
+/// The friction may be any finite number, from the smallest to the largest.
 #[test]
 fn sticking_fraction_is_finite_for_any_friction() -> Outcome {
     let gas = Maxwellian::new(1.0)?;
@@ -256,9 +261,9 @@ proptest! {
         prop_assert!((equal - unequal).abs() <= 1e-13, "{equal} {unequal}");
     }
 
-    /// The loss at the maximiser against a scan over eight decades of friction.
+    /// The loss at the maximizer against a scan over eight decades of friction.
     #[test]
-    fn no_friction_loses_more_than_the_maximiser(rule in rules(), gas in gases()) {
+    fn no_friction_loses_more_than_the_maximizer(rule in rules(), gas in gases()) {
         let ratio =
             if rule.static_friction() == 0.0 { 1.0 } else { rule.dynamic_friction() / rule.static_friction() };
         let at = |friction: f64| {

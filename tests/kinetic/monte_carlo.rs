@@ -1,4 +1,4 @@
-//! Promises of the Monte Carlo average that are not about physics: its bits, its stopping, its input.
+//! Promises of the Monte Carlo average beyond physics: its bits, its stopping, its input.
 
 use granular_edmd::ParameterError;
 use granular_edmd::collision::{Contact, Frictional, Impulse, from_fn};

@@ -1,4 +1,4 @@
-//! Figures and equations of the paper's section II, from the kinetic floor alone.
+//! Numbers and equations of the paper's section II, from the kinetic floor alone.
 
 use granular_edmd::ParameterError;
 use granular_edmd::collision::{CollisionRule, Contact, Frictional, Regime};
@@ -53,7 +53,8 @@ fn loss_is_largest_near_a_friction_of_0_3() -> Outcome {
     Ok(())
 }
 
-/// Spins that are colder than velocities move the maximum to smaller friction, dynamic friction below static to larger.
+/// Spins that are colder than velocities move the maximum to smaller friction, dynamic friction below static
+/// to larger.
 #[test]
 fn maximum_moves_with_the_other_parameters() -> Outcome {
     let gas = Maxwellian::new(1.0)?;
@@ -98,9 +99,10 @@ const TABLE_I: [Row; 8] = [
 /// Half of the last printed digit, and a little for numbers that lie exactly there.
 const HALF_DIGIT: f64 = 0.5e-3 + 1e-12;
 
-/// Both columns are printed to three decimals. A row agrees if some energy change that rounds to the printed one has
-/// an effective inelasticity that rounds to the printed one. For six rows the printed energy change itself does; -0.614
-/// gives 0.1894 (printed 0.190, which -0.6143 to -0.6145 give) and -0.137 gives 0.0355 (printed 0.035).
+/// Both columns are printed to three decimals. A row agrees if some energy change that rounds to the printed
+/// one has an effective inelasticity that rounds to the printed one. In six rows, the printed energy change
+/// itself has such an inelasticity. The value -0.614 gives 0.1894 (printed 0.190, which -0.6143 to -0.6145
+/// give), and -0.137 gives 0.0355 (printed 0.035).
 #[test]
 fn effective_inelasticities_of_table_1() -> Outcome {
     let mut direct = 0;
@@ -178,7 +180,8 @@ fn change_as_printed(friction: f64, q: f64) -> Result<f64, ParameterError> {
     Ok(change(friction, q)? - 4.0 * q * (1.0 - q) * sine)
 }
 
-/// With Eq. (6) as printed the maximum in friction that Fig. 1 shows is gone at q = 0.1 and 0.2; the rule has it.
+/// The maximum in friction that Fig. 1 shows is gone at q = 0.1 and 0.2 with Eq. (6) as printed. The rule has
+/// it.
 #[test]
 fn figure_1_was_not_drawn_with_equation_6_as_printed() -> Outcome {
     for q in [0.1, 0.2] {
@@ -191,7 +194,7 @@ fn figure_1_was_not_drawn_with_equation_6_as_printed() -> Outcome {
     Ok(())
 }
 
-/// Where lines of Table I meet the axis q = 0: a low friction and a high one, the re-entrance.
+/// Some lines of Table I meet the axis q = 0 twice, at a low friction and at a high one: the re-entrance.
 #[test]
 fn transition_lines_meet_the_axis_twice() -> Outcome {
     let frictions: Vec<f64> = (-300..=100).map(|step| 10f64.powf(f64::from(step) / 100.0)).collect();

@@ -33,17 +33,18 @@ fn packing_at(pressure: f64) -> f64 {
     low
 }
 
-/// Height of the center of mass at temperature 1 if the pressure were that of the local density: the weight above a height
-/// is the pressure there, and so is nTZ; a layer of ds disks per width is ds/n high.
+/// Returns the height of the center of mass at temperature 1, if the pressure were that of the local density.
+/// The pressure at a height is the weight above it, and is also nTZ. A layer of ds disks per width has the
+/// height ds/n.
 fn local_height() -> f64 {
     let (layers, column) = (1000, DISKS as f64 / WIDTH);
     let z = |k| henderson(packing_at(GRAVITY * column * (f64::from(k) + 0.5) / f64::from(layers)));
     0.5 + (0..layers).map(z).sum::<f64>() / f64::from(layers) / GRAVITY
 }
 
-/// What the first order in density takes from it because the density changes within a diameter, and ends at the base:
-/// the virial of pairs is `$(N/L)\tfrac12\int\cos^2\theta\,e^{-g\sigma\cos\theta/T}d\theta$` over half a turn, not
-/// `$\tfrac\pi4N/L$`.
+/// Returns the correction of first order in density. The density changes within a diameter, and ends at the
+/// base: the virial of pairs is `$(N/L)\tfrac12\int\cos^2\theta\,e^{-g\sigma\cos\theta/T}d\theta$` over half
+/// a turn, not `$\tfrac\pi4N/L$`.
 fn layering() -> f64 {
     let cosines = (0..1000).map(|k| (PI * ((f64::from(k) + 0.5) / 1000.0 - 0.5)).cos());
     let integral: f64 = cosines.map(|c| c * c * (1.0 - (-GRAVITY * c).exp())).sum::<f64>() * PI / 1000.0;
@@ -78,12 +79,12 @@ fn an_isothermal_atmosphere_has_its_height_temperature_and_virial() -> Outcome {
     let translational = average(|(temperature, _)| temperature.translational())?;
     let rotational = average(|(temperature, _)| temperature.rotational)?;
     println!("standard errors: Y {:.4}, T {:.4}", center.standard_error(), translational.standard_error());
-    // Standard errors 0.25 % of Y and 0.3 % of T; layers at the base are known to first order in density, the next is
-    // some 0.1 of 2 %.
+    // The standard errors are 0.25 % of Y and 0.3 % of T. Layers at the base are known to first order in
+    // density; the next order is some 0.1 of 2 %.
     assert!(agrees("Y", center.mean(), local_height() - layering(), 0.013));
     assert!(agrees("T", translational.mean(), 1.0, 0.015));
     assert!(agrees("T_rot", rotational.mean(), 1.0, 0.03));
-    // The virial theorem holds for the very run: N<m v_y^2> and the pairs balance N m g (<y> - radius).
+    // The virial theorem holds for each single run: N<m v_y^2> and the pairs balance N m g (<y> - radius).
     let virial = DISKS as f64 * vertical.mean() + pairs / (end - start);
     let weight = DISKS as f64 * GRAVITY * (center.mean() - 0.5);
     // Samples of v_y^2 and y between events: sqrt(2/(40 * 120 000)) = 0.1 % at most.

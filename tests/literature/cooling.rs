@@ -1,7 +1,7 @@
 //! Gases that cool, against the rate equations of a homogeneous Maxwellian gas.
 //!
-//! The gases are dilute and below the size at which vortices grow: with `$k = 2\pi/L$`, `$N < 4\pi/(n\sigma^2(1-r^2))$`; a
-//! smooth wall mirrors the flow, so boxes are twice as wide as high.
+//! The gases are dilute and below the size at which vortices grow: with `$k = 2\pi/L$`,
+//! `$N < 4\pi/(n\sigma^2(1-r^2))$`. A smooth wall mirrors the flow, so boxes are twice as wide as high.
 
 use std::f64::consts::PI;
 
@@ -16,8 +16,8 @@ use crate::{Outcome, agrees};
 /// Translational and rotational temperature.
 type Pair = [f64; 2];
 
-/// Means over gases of 200 disks of both temperatures after each of these numbers of collisions per disk, and of the
-/// time that it took.
+/// Returns means over gases of 200 disks: of both temperatures after each of these numbers of collisions per
+/// disk, and of the time that it took.
 fn cool<R: CollisionRule + Copy>(
     rule: R,
     rotational_temperature: f64,
@@ -41,7 +41,7 @@ fn cool<R: CollisionRule + Copy>(
     Ok(means.iter().map(|[time, t, r]| (time.mean(), [t.mean(), r.mean()])).collect())
 }
 
-/// Both temperatures after this many collisions per disk, from rates per collision (Runge and Kutta).
+/// Returns both temperatures after this many collisions per disk, from rates per collision (Runge and Kutta).
 fn integrate(rates: impl Fn(Pair) -> Pair, start: Pair, collisions: f64) -> Pair {
     let steps = 400;
     let step = collisions / f64::from(steps);
@@ -92,8 +92,9 @@ fn smooth_disks_cool_as_haff_says() -> Outcome {
     // The fourth cumulant, a_2 = -0.03 by direct simulation of the Boltzmann equation, slows the decay.
     let slope = 0.5 * loss * (1.0 - 3.0 * 0.0299 / 16.0) / (1.0 + 0.0299 / 16.0);
     for (tau, (time, [temperature, _])) in after.into_iter().zip(cooled) {
-        // 50 000 collisions at tau = 5, whose losses scatter by their mean: 0.5 % of ln T and less later; the fourth
-        // cumulant takes time to develop: 1 %. For the rate, walls and fluctuations of density add 1 %.
+        // There are 50 000 collisions at tau = 5, whose losses scatter by their mean: 0.5 % of ln T, and less
+        // later. The fourth cumulant takes time to develop: 1 %. For the rate, walls and fluctuations of
+        // density add 1 %.
         assert!(agrees("ln T", temperature.ln(), -slope * tau, 0.03));
         let haff = (1.0 + 0.25 * loss * rate * time).powi(-2);
         assert!(agrees("Haff", temperature, haff, 0.05));
@@ -112,11 +113,12 @@ fn rough_disks_cool_to_a_fixed_ratio() -> Outcome {
     let cooled = cool(Rough::from_restitution(normal, tangential)?, 1.0, &after, 80)?;
     for (tau, (_, [temperature, _])) in after.into_iter().zip(&cooled).take(3) {
         let [expected, _] = integrate(&rates, [1.0, 1.0], tau);
-        // 16 000 collisions at least, as above: 0.8 %; and 1 % of the theory.
+        // There are at least 16 000 collisions, as above: 0.8 %. The theory is good to 1 %.
         assert!(agrees("ln T", temperature.ln(), expected.ln(), 0.03));
     }
     let ratios: RunningMean = cooled[2..].iter().map(|(_, [t, r])| r / t).collect();
-    // 16 000 disks: sqrt(3/16 000) = 1.4 % of a ratio at once, 1 % of four a relaxation time apart.
+    // The 16 000 disks know a ratio at once to sqrt(3/16 000) = 1.4 %, and four ratios a relaxation time
+    // apart to 1 %.
     assert!(agrees("T_rot/T", ratios.mean(), 0.771, 0.04));
     Ok(())
 }
@@ -135,8 +137,8 @@ fn frictional_cooling(friction: f64, tolerance: f64) -> Outcome {
 
 #[test]
 fn frictional_disks_cool_as_the_averages_say() -> Outcome {
-    // 32 000 collisions at tau = 4: 0.6 % of ln T, and as much from exchange with spins; the theory, of velocities that
-    // stay Maxwellian, is good to 3 %.
+    // There are 32 000 collisions at tau = 4: 0.6 % of ln T, and as much from exchange with spins. The
+    // theory, which is of velocities that stay Maxwellian, is good to 3 %.
     frictional_cooling(1.0, 0.05)?;
     frictional_cooling(0.3, 0.05)
 }
@@ -152,8 +154,8 @@ fn rates_of_both_temperatures_add_up_to_the_closed_form() -> Outcome {
     Ok(())
 }
 
-/// Fourth cumulant `$a_2 = \langle v^4\rangle/2\langle v^2\rangle^2 - 1$` and `$d\ln T/d\tau$` of smooth disks that have
-/// cooled for 10 collisions each, over the next 8.
+/// Returns the fourth cumulant `$a_2 = \langle v^4\rangle/2\langle v^2\rangle^2 - 1$` and `$d\ln T/d\tau$` of
+/// smooth disks that have cooled for 10 collisions each, over the next 8.
 fn cumulant(restitution: f64, count: usize, gases: u64) -> Result<(f64, f64), Box<dyn std::error::Error>> {
     let [mut fourth, mut slope] = [RunningMean::default(); 2];
     let rule = Smooth::from_restitution(restitution)?;
@@ -172,7 +174,7 @@ fn cumulant(restitution: f64, count: usize, gases: u64) -> Result<(f64, f64), Bo
         }
         slope.push((end / start).ln() / 8.0);
     }
-    // Few disks at a known energy: as for velocities in equilibrium.
+    // The correction for few disks at a known energy is that for velocities in equilibrium.
     let degrees = 2.0 * count as f64 - 2.0;
     Ok((fourth.mean() * (degrees + 2.0) / degrees - 1.0, slope.mean()))
 }
@@ -180,8 +182,9 @@ fn cumulant(restitution: f64, count: usize, gases: u64) -> Result<(f64, f64), Bo
 #[test]
 #[ignore = "half a minute"]
 fn cooling_disks_have_the_fourth_cumulant_of_direct_simulation() -> Outcome {
-    // Direct simulation of the Boltzmann equation, 3e6 particles. Of 4e5 samples here half are independent: 0.005 of
-    // a_2, and 0.2 % of the slope. Very dilute: nearer to the size where vortices grow, a_2 is larger by up to 0.03.
+    // The expected values are from direct simulation of the Boltzmann equation with 3e6 particles. Of the 4e5
+    // samples here, half are independent: 0.005 of a_2, and 0.2 % of the slope. The gas is very dilute, since
+    // a_2 is larger by up to 0.03 near the size at which vortices grow.
     for (restitution, count, expected, slope) in
         [(0.8, 150, -0.026, -0.178_72), (0.6, 150, 0.0329, -0.322_61)]
     {

@@ -13,11 +13,12 @@ use granular_edmd::statistics::RunningMean;
 use crate::gas::{Gas, run_for};
 use crate::{Outcome, agrees};
 
-/// Packing fraction and Z of hard disks: the Padé approximant [4/5] of the virial series, good to 1e-3 (Clisby & McCoy
-/// 2006; Kolafa & Rottner 2006).
+/// Packing fractions and Z of hard disks, by the Padé approximant [4/5] of the virial series, which is good
+/// to 1e-3 (Clisby & McCoy 2006; Kolafa & Rottner 2006).
 const STATE: [(f64, f64); 3] = [(0.1, 1.236_14), (0.3, 2.063_26), (0.5, 4.106_3)];
 
-/// Pressure of a gas, from the impulses on its walls and from the momentum that flies and collides across the box.
+/// The pressure of a gas, from the impulses on its walls and from the momentum that flies and collides across
+/// the box.
 struct Pressures {
     walls: f64,
     virial: f64,
@@ -30,7 +31,7 @@ fn pressures(gas: &Gas, duration: f64) -> Result<Pressures, Box<dyn std::error::
     let mut simulation = gas.simulation(Elastic, 0.0)?;
     run_for(&mut simulation, 100.0, &mut ())?;
     let start = simulation.time();
-    // Energy and horizontal momentum are kept: 2N - 1 degrees of freedom.
+    // Energy and horizontal momentum are conserved, so there are 2N - 1 degrees of freedom.
     let count = gas.count as f64;
     let temperature = 2.0 * count * simulation.measure(&Energies).translational / (2.0 * count - 1.0);
     let (mut wall, mut pairs, mut vertical) = (0.0, 0.0, RunningMean::default());
@@ -54,7 +55,8 @@ fn pressures(gas: &Gas, duration: f64) -> Result<Pressures, Box<dyn std::error::
     })
 }
 
-/// Collisions per disk and time at temperature 1 (Enskog): the contact value of the pair distribution follows from Z.
+/// Returns the collisions per disk and time at temperature 1 (Enskog). The contact value of the pair
+/// distribution follows from Z.
 fn enskog_rate(density: f64, packing: f64, z: f64) -> f64 {
     2.0 * PI.sqrt() * density * (z - 1.0) / (2.0 * packing)
 }
@@ -63,7 +65,8 @@ fn equation_of_state(disks: usize, collisions_per_disk: f64, tolerance: f64) -> 
     for (packing, expected) in STATE {
         let gas = Gas::of(disks, packing, 1.0, 1);
         let measured = pressures(&gas, collisions_per_disk / enskog_rate(gas.density(), packing, expected))?;
-        // The walls push disks aside: the bulk is a little off the mean, and so is the Z that it must have.
+        // The walls push disks aside. The bulk density is a little off the mean, and so is the Z that belongs
+        // to it.
         let slope = |phi: f64| (1.0 + phi * phi / 8.0) / (1.0 - phi).powi(2);
         let expected = expected * slope(measured.bulk) / slope(packing);
         let ideal = 4.0 * measured.bulk / PI * measured.temperature;
@@ -76,15 +79,15 @@ fn equation_of_state(disks: usize, collisions_per_disk: f64, tolerance: f64) -> 
 
 #[test]
 fn equation_of_state_by_walls_and_by_virial() -> Outcome {
-    // 1e5 collisions and some 6000 touches of walls, whose impulses scatter by half their mean: 0.7 %; the density of
-    // the bulk fluctuates, too, and enters twice: 0.6 %.
+    // There are 1e5 collisions and some 6000 touches of walls, whose impulses scatter by half their mean: 0.7
+    // %. The density of the bulk fluctuates, too, and enters twice: 0.6 %.
     equation_of_state(500, 400.0, 0.03)
 }
 
 #[test]
 #[ignore = "quarter of a minute"]
 fn equation_of_state_to_half_a_percent() -> Outcome {
-    // Ten times as long and twice as wide: 0.15 %.
+    // The run is ten times as long and twice as wide: 0.15 %.
     equation_of_state(1000, 4000.0, 0.005)
 }
 
@@ -103,12 +106,12 @@ fn collision_rate_is_that_of_enskog() -> Outcome {
             inside += u32::from(matches!(c.partner, Partner::Disk(_)) && (bottom..top).contains(&middle));
         };
         simulation.run_until(start + duration, &mut (on_collision(watch), &mut profile))?;
-        // Collisions in the middle half, per disk there: walls do not matter.
+        // Only collisions in the middle half count, per disk there, so that walls do not matter.
         let bulk: f64 = profile.iter().map(|(_, packing)| packing).sum();
         let density = 4.0 * bulk / PI;
         let rate = 2.0 * f64::from(inside) / (density * gas.width * (top - bottom) * duration);
         let temperature = simulation.measure(&Temperatures).translational();
-        // 1e5 collisions: 0.3 %; the density of the bulk moves the contact value by as much.
+        // There are 1e5 collisions: 0.3 %. The density of the bulk moves the contact value by as much.
         let expected = enskog_rate(density, *packing, *z) * temperature.sqrt();
         assert!(agrees("collision rate", rate, expected, 0.02));
     }
@@ -130,8 +133,9 @@ fn velocities_are_maxwellian() -> Outcome {
                 square.push(velocity.length_squared().powi(2));
             }
         }
-        // With fixed energy and D = 2N - 1 degrees of freedom 3 D/(D + 2), and for the speed 2 D/(D + 2) of four
-        // <v_x^2>^2. 180 000 samples, half of them independent: sqrt(24/90 000) = 0.016, and 0.007 of 2.
+        // The expected values, for fixed energy and D = 2N - 1 degrees of freedom, are 3 D/(D + 2), and for
+        // the speed 2 D/(D + 2) of four <v_x^2>^2. Of 180 000 samples, half are independent: sqrt(24/90 000)
+        // = 0.016, and 0.007 of 2.
         let degrees = 2.0 * 300.0 - 1.0;
         let finite = degrees / (degrees + 2.0);
         let variance = second.mean().powi(2);
@@ -143,7 +147,8 @@ fn velocities_are_maxwellian() -> Outcome {
 
 #[test]
 fn collisions_sample_the_maxwell_averages() -> Outcome {
-    // Perfectly rough elastic disks share energy with their spins; what meets is watched, and a law of friction asked.
+    // Perfectly rough elastic disks share energy with their spins. The test watches what meets, and asks a
+    // law of friction about it.
     let gas = Gas::of(1000, 0.05, 1.0, 4);
     let mut simulation = gas.simulation(Rough::new(0.0, 0.0)?, 1.0)?;
     run_for(&mut simulation, 10.0, &mut ())?;
@@ -162,7 +167,8 @@ fn collisions_sample_the_maxwell_averages() -> Outcome {
     let energies = simulation.measure(&Energies);
     let temperature = 2.0 * (energies.translational + energies.rotational) / 3.0;
     let fraction = sticking_fraction(&law, &Maxwellian::new(temperature)?);
-    // 5e4 collisions; standard errors 0.45 % (exponential), 0.63 % (square of a normal variable), 0.5 % of 0.46.
+    // There are 5e4 collisions. The standard errors are 0.45 % (exponential), 0.63 % (square of a normal
+    // variable), and 0.5 % of 0.46.
     assert!(agrees("<v_n^2>", normal.mean(), 4.0 * temperature, 0.022));
     assert!(agrees("<v_t^2>", slip.mean(), 6.0 * temperature, 0.03));
     assert!(agrees("fraction that sticks", sticking.mean(), fraction, 0.025));
@@ -171,8 +177,8 @@ fn collisions_sample_the_maxwell_averages() -> Outcome {
 
 #[test]
 fn rough_elastic_disks_share_energy_with_their_spins() -> Outcome {
-    // T_rot/T = 2 (1 - D)/(2 + D) with D = exp(-2 tau/3) after tau collisions per disk, from spins at rest; true spins
-    // start far from normal, which slows this by 1-2 %.
+    // The theory is T_rot/T = 2 (1 - D)/(2 + D) with D = exp(-2 tau/3) after tau collisions per disk, from
+    // spins at rest. The true spins start far from normal, which slows this by 1-2 %.
     let mut ratios = [RunningMean::default(); 4];
     for seed in 0..5 {
         let mut simulation = Gas::of(1000, 0.02, 1.0, seed).simulation(Rough::new(0.0, 0.0)?, 0.0)?;
@@ -188,8 +194,8 @@ fn rough_elastic_disks_share_energy_with_their_spins() -> Outcome {
             ratios[3].push(now.rotational / now.translational());
         }
     }
-    // 5000 disks: sqrt(2/5000 + 1/5000) = 2.4 % of T_rot at once, from the start in excess to the 2 % of the theory;
-    // twenty times as many at equilibrium.
+    // The 5000 disks know T_rot at once to sqrt(2/5000 + 1/5000) = 2.4 %, in addition to the 2 % of the
+    // theory at the start. At equilibrium there are twenty times as many samples.
     for (tau, ratio) in [1.0, 2.0, 3.0_f64].into_iter().zip(&ratios) {
         let decay = (-2.0 * tau / 3.0).exp();
         assert!(agrees("T_rot/T", ratio.mean(), 2.0 * (1.0 - decay) / (2.0 + decay), 0.09));
@@ -200,7 +206,8 @@ fn rough_elastic_disks_share_energy_with_their_spins() -> Outcome {
 
 #[test]
 fn contact_duration_thins_collisions_as_computed() -> Outcome {
-    // The share, weighted with v_n^2, of collisions whose partners had no contact within t_c: exp(-2.25 omega t_c).
+    // The share, weighted with v_n^2, of collisions whose partners had no contact within t_c is exp(-2.25
+    // omega t_c).
     let gas = Gas::of(1000, 0.1, 1.0, 5);
     let mut simulation = gas.simulation(Elastic, 0.0)?;
     run_for(&mut simulation, 10.0, &mut ())?;
@@ -221,7 +228,8 @@ fn contact_duration_thins_collisions_as_computed() -> Outcome {
     let measured_rate = 1000.0 / (simulation.time() - start);
     for (kept, duration) in kept.into_iter().zip(durations) {
         let exponent = -f64::ln(kept / all) / (duration * measured_rate / rate);
-        // 5e5 collisions, 4.4 % and 11 % of which count, weights doubling the variance: 1 % and 0.6 %.
+        // There are 5e5 collisions, 4.4 % and 11 % of which count, and weights double the variance: 1 % and
+        // 0.6 %.
         assert!(agrees("thinning", exponent, 2.25, 0.06));
     }
     Ok(())

@@ -8,7 +8,7 @@ use granular_edmd::{Simulation, initial};
 
 use crate::Outcome;
 
-/// Height of the center of mass and its standard error.
+/// Returns the height of the center of mass and its standard error.
 fn height(friction: f64, base: Thermal) -> Result<(f64, f64), Box<dyn std::error::Error>> {
     let container = Container::open(25.0)?.with_temperature(Wall::Floor, base)?;
     let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 500, 0.5)?, 1.0, 1)?;
@@ -24,7 +24,7 @@ fn height(friction: f64, base: Thermal) -> Result<(f64, f64), Box<dyn std::error
 #[test]
 #[ignore = "minutes"]
 fn the_column_is_lowest_near_a_friction_of_0_3() -> Outcome {
-    // Heights of an independent simulation, each known to 0.3; ours to the error that is printed.
+    // The heights are from an independent simulation, each known to 0.3. Ours have the error that is printed.
     let slip = [(0.0, 43.3), (0.1, 21.9), (0.3, 18.0), (1.0, 22.5)];
     let full = [(0.0, 47.1), (0.1, 27.1), (0.3, 20.7), (1.0, 27.4)];
     for (base, expected) in [(Thermal::new(1.0)?.with_slip(), slip), (Thermal::new(1.0)?, full)] {

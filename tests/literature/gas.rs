@@ -20,18 +20,19 @@ pub(crate) struct Gas {
 }
 
 impl Gas {
-    /// A gas of this packing fraction (of the height that centers can have), `aspect` times as wide as high.
+    /// Creates a gas of this packing fraction (of the height that centers can have), `aspect` times as wide
+    /// as high.
     pub(crate) fn of(count: usize, packing_fraction: f64, aspect: f64, seed: u64) -> Self {
         let clear = (0.25 * PI * count as f64 / packing_fraction / aspect).sqrt();
         Self { count, width: aspect * clear, height: clear + 1.0, seed }
     }
 
-    /// Area that centers can have.
+    /// Returns the area that centers can have.
     pub(crate) fn area(&self) -> f64 {
         self.width * (self.height - 1.0)
     }
 
-    /// Disks per area that centers can have.
+    /// Returns the number of disks per area that centers can have.
     pub(crate) fn density(&self) -> f64 {
         self.count as f64 / self.area()
     }
@@ -41,7 +42,7 @@ impl Gas {
         Ok(container.with_rule(Wall::Floor, Elastic)?.with_rule(Wall::Lid, Elastic)?)
     }
 
-    /// The gas under this rule, spins at this temperature.
+    /// Returns a simulation of the gas under this rule, with spins at this temperature.
     pub(crate) fn simulation<R: CollisionRule>(
         &self,
         rule: R,
@@ -60,7 +61,7 @@ impl Gas {
     }
 }
 
-/// Spins of a Maxwellian: the velocities of another gas.
+/// Gives the disks the spins of a Maxwellian, from the velocities of another gas.
 fn with_spins(disks: Vec<Disk>, temperature: f64, seed: u64) -> Result<Vec<Disk>, ParameterError> {
     let other = initial::with_maxwellian_velocities(disks.clone(), temperature, seed + 1000)?;
     let spin = |(disk, other): (Disk, Disk)| {
@@ -69,7 +70,7 @@ fn with_spins(disks: Vec<Disk>, temperature: f64, seed: u64) -> Result<Vec<Disk>
     disks.into_iter().zip(other).map(spin).collect()
 }
 
-/// Runs until each disk had this many more collisions with others; samples are not taken.
+/// Runs until each disk has had this many more collisions with others. No samples are taken.
 pub(crate) fn run_for<R: CollisionRule, B: Boundary, O: Observer + ?Sized>(
     simulation: &mut Simulation<R, B>,
     collisions_per_disk: f64,

@@ -17,10 +17,10 @@ mod reversal;
 mod superball;
 mod thermal_walls;
 
-/// What a test ends with.
+/// The result of a test.
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
-/// Whether `measured` is `expected` up to this relative deviation; says what it was, for the table.
+/// Tells whether `measured` is `expected` up to this relative deviation. Prints both, for the table.
 fn agrees(what: &str, measured: f64, expected: f64, tolerance: f64) -> bool {
     let deviation = measured / expected - 1.0;
     println!(

@@ -47,7 +47,8 @@ fn a_gas_at_rest_has_the_noise_of_its_temperature() -> Outcome {
         one.push(order.one_roll);
         two.push(order.two_rolls);
     }
-    // 400 samples know a variance to sqrt(2/400) = 7 %, a deviation to 3.5 %; momentum at rest takes 1/N of it.
+    // With 400 samples, a variance is known to sqrt(2/400) = 7 %, and a deviation to 3.5 %. Momentum at rest
+    // takes 1/N of it.
     let noise = (1.0_f64 / 100.0).sqrt();
     assert!((one.standard_deviation() / noise - 1.0).abs() < 0.15, "{}", one.standard_deviation());
     assert!((two.standard_deviation() / noise - 1.0).abs() < 0.15, "{}", two.standard_deviation());

@@ -1,4 +1,4 @@
-//! What a fast vibrating plate does to a ball, and to a gas.
+//! The effect of a fast vibrating plate on a ball, and on a gas.
 
 use std::f64::consts::{FRAC_1_PI, TAU};
 
@@ -14,8 +14,8 @@ use granular_edmd::{Disk, Simulation, initial};
 
 use crate::{Outcome, agrees};
 
-/// Mean square velocity `$\langle U^2\rangle$` of the bi-parabolic plate: a third of the square of its largest velocity
-/// `$4A\omega/\pi$`.
+/// Returns the mean square velocity `$\langle U^2\rangle$` of the bi-parabolic plate: a third of the square
+/// of its largest velocity `$4A\omega/\pi$`.
 const fn mean_square_velocity(amplitude: f64, angular_frequency: f64) -> f64 {
     let largest = 4.0 * FRAC_1_PI * amplitude * angular_frequency;
     largest * largest / 3.0
@@ -35,23 +35,25 @@ fn the_plate_is_two_parabolas() -> Outcome {
 
 #[test]
 fn a_ball_on_a_fast_plate_has_the_energy_of_the_flux() -> Outcome {
-    // <v'^2> = (1 + 3r)/(1 - r) <U^2> over impacts: a plate that comes is met more often than one that goes.
+    // The theory is <v'^2> = (1 + 3r)/(1 - r) <U^2> over impacts: a plate that approaches is met more often
+    // than one that retreats.
     let restitution = 0.98;
     let container = Container::open(2000.0)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?;
     let rule = ContactDuration::new(Smooth::from_restitution(restitution)?, 1e-6)?;
-    // A large disk lives in one cell: only impacts are events.
+    // A large disk lives in one cell, so only impacts are events.
     let disk = Disk::new(DVec2::new(1000.0, 200.0), 100.0)?;
     let mut simulation = Simulation::builder(rule, container).disks([disk]).gravity(0.05).build()?;
     let mut square = RunningMean::default();
     let mut watch = on_collision(|c: &Collision| {
-        // The impulse is the sum of the speeds before and after, the energy tells their difference.
+        // The impulse gives the sum of the speeds before and after, and the energy gives their difference.
         let departure = 0.5 * c.impulse.normal() + c.energy_change / c.impulse.normal();
         square.push(departure * departure);
     });
     while simulation.counters().wall_collisions < 200_000 {
         simulation.step_until(simulation.time() + 1.0, &mut watch)?;
     }
-    // Speeds forget in 1/(1 - r^2) = 25 impacts, so that twice as many count as one: 1.6 %; impacts in chatter: 0.5 %.
+    // Speeds forget in 1/(1 - r^2) = 25 impacts, so that twice as many count as one: 1.6 %. Impacts in
+    // chatter add 0.5 %.
     let expected = (1.0 + 3.0 * restitution) / (1.0 - restitution) * mean_square_velocity(0.1, 10.0);
     assert!(agrees("<v'^2>", square.mean(), expected, 0.06));
     Ok(())
@@ -63,7 +65,7 @@ struct Shaken {
     temperature_error: f64,
     height: f64,
     height_error: f64,
-    /// Energy from the plate per time.
+    /// Energy from the plate per unit of time.
     power: f64,
 }
 
@@ -99,13 +101,13 @@ fn shaken(restitution: f64, amplitude: f64, duration: f64) -> Result<Shaken, Box
     })
 }
 
-/// Temperature of a dilute, nearly elastic gas on a fast plate with A omega = 1 (Kumaran 1998).
+/// Returns the temperature of a dilute, nearly elastic gas on a fast plate with A omega = 1 (Kumaran 1998).
 fn kumaran(restitution: f64) -> f64 {
     let loss = 1.0 - restitution * restitution;
     4.0 * 2.0_f64.sqrt() * FRAC_1_PI * mean_square_velocity(0.1, 10.0) * WIDTH / (DISKS as f64 * loss)
 }
 
-/// The power of a fast plate into a hot gas over it.
+/// Returns the power of a fast plate into a hot gas over it.
 fn power(temperature: f64) -> f64 {
     (8.0 * FRAC_1_PI / temperature).sqrt() * DISKS as f64 * GRAVITY * mean_square_velocity(0.1, 10.0)
 }
@@ -120,21 +122,23 @@ fn steady_state(restitution: f64, duration: f64, tolerance: f64) -> Outcome {
 
 #[test]
 fn a_shaken_gas_has_the_temperature_of_kumaran() -> Outcome {
-    // Standard errors 1 % of T and 2 % of the power; the theories are of first order in <U^2>/T, which is 0.11 here.
+    // The standard errors are 1 % of T and 2 % of the power. The theories are of first order in <U^2>/T,
+    // which is 0.11 here.
     steady_state(0.95, 2e4, 0.13)
 }
 
 #[test]
 #[ignore = "half a minute"]
 fn a_hot_shaken_gas_has_the_temperature_of_kumaran() -> Outcome {
-    // <U^2>/T is 0.045 and 0.022; an independent study found T within 2 %. The first has 4 % less power than the theory (300
-    // seeds); standard errors are 0.5 and 1.4 % of T and 0.3 and 1 % of the power.
+    // The values of <U^2>/T are 0.045 and 0.022; an independent study found T within 2 %. The first has 4 %
+    // less power than the theory (300 seeds). The standard errors are 0.5 and 1.4 % of T, and 0.3 and 1 % of
+    // the power.
     steady_state(0.98, 1e6, 0.06)?;
     steady_state(0.99, 1e6, 0.06)
 }
 
-/// Halves the amplitude and doubles the frequency: the same temperature and height within four standard errors, and
-/// within this tolerance, so that large errors do not hide a difference.
+/// Checks that half the amplitude and twice the frequency give the same temperature and height within four
+/// standard errors, and also within this tolerance, so that large errors do not hide a difference.
 fn only_the_velocity_matters(duration: f64, tolerance: f64) -> Outcome {
     let (one, half) = (shaken(0.95, 0.1, duration)?, shaken(0.95, 0.05, duration)?);
     let heat = (one.temperature - half.temperature) / one.temperature_error.hypot(half.temperature_error);

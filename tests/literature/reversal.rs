@@ -1,4 +1,4 @@
-//! Elastic disks that turn round go back the way they came.
+//! Elastic disks whose velocities are reversed go back the way they came.
 
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::{CollisionRule, Elastic, Rough};
@@ -11,7 +11,7 @@ fn reversed(disk: &Disk) -> Result<Disk, ParameterError> {
     disk.with_velocity(-disk.velocity())?.with_angular_velocity(-disk.angular_velocity())
 }
 
-/// Largest distance from the start after this many collisions per disk and as long a way back.
+/// Returns the largest distance from the start after this many collisions per disk and as long a way back.
 fn distance_after<R: CollisionRule + Copy>(
     rule: R,
     collisions_per_disk: f64,
@@ -30,8 +30,8 @@ fn distance_after<R: CollisionRule + Copy>(
 
 #[test]
 fn time_can_be_reversed() -> Outcome {
-    // Errors of 1e-16 grow by some e^4 for each collision of a disk: about 1e-13 after one and 1e-9 after four in the
-    // literature's gas, with a factor of 1000 to spare; lost after 12 to 16.
+    // Errors of 1e-16 grow by some e^4 for each collision of a disk. They are about 1e-13 after one and 1e-9
+    // after four in the literature's gas; the bounds leave a factor of 1000. The way is lost after 12 to 16.
     for (collisions, bound) in [(1.0, 1e-10), (4.0, 1e-6)] {
         let smooth = distance_after(Elastic, collisions)?;
         let rough = distance_after(Rough::new(0.0, 0.0)?, collisions)?;

@@ -8,7 +8,8 @@ use granular_edmd::{Disk, Simulation};
 
 use crate::Outcome;
 
-/// The lowest and highest height, relative to the start, at which a ball touches the sides in so many touches.
+/// Returns the lowest and highest height, relative to the start, at which a ball touches the sides in so many
+/// touches.
 fn range(rule: impl CollisionRule, touches: u64) -> Result<(f64, f64), Box<dyn std::error::Error>> {
     let height = 10_000.0;
     let disk = Disk::new(DVec2::new(30.0, height), 0.5)?.with_velocity(DVec2::new(1.4, 0.0))?;
@@ -27,8 +28,9 @@ fn range(rule: impl CollisionRule, touches: u64) -> Result<(f64, f64), Box<dyn s
 
 #[test]
 fn a_superball_between_no_slip_walls_stays_up() -> Outcome {
-    // Two touches are a rotation by 141 degrees of velocity and spin: an orbit of bounded height (Cox & Feres 2016,
-    // Chumley et al. 2018). Nothing here is random; the bounds are those of an independent study, for another start.
+    // Two touches are a rotation of velocity and spin by 141 degrees, which is an orbit of bounded height
+    // (Cox & Feres 2016, Chumley et al. 2018). Nothing here is random. The bounds are those of an independent
+    // study, for another start.
     let (low, high) = range(Rough::new(0.0, 0.0)?, 20_000)?;
     println!("no slip: {low:.2} to {high:.2}");
     assert!(low > -60.0 && high <= 0.0);

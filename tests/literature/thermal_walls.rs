@@ -1,4 +1,4 @@
-//! One disk between two thermal walls: a gas so dilute that disks never meet.
+//! A single disk between two thermal walls: a gas so dilute that disks never meet.
 
 use std::f64::consts::FRAC_2_PI;
 
@@ -30,12 +30,12 @@ fn a_knudsen_gas_conducts_heat_as_computed() -> Outcome {
         simulation.step_until(simulation.time() + 1.0, &mut watch)?;
     }
     let time = simulation.time();
-    // 1e5 round trips, whose times scatter by about their mean (their variance diverges, but only as a logarithm): 0.5 %;
-    // heat per round trip is 1.5 +- 2.2: 0.5 %.
+    // There are 1e5 round trips, whose times scatter by about their mean (their variance diverges, but only
+    // as a logarithm): 0.5 %. The heat per round trip is 1.5 ± 2.2: 0.5 %.
     let trips = FRAC_2_PI.sqrt() / (gap * (hot.powf(-0.5) + cold.powf(-0.5)));
     assert!(agrees("<v_y^2>", square / time, (hot * cold).sqrt(), 0.025));
     assert!(agrees("round trips", 0.5 * f64::from(touches) / time, trips, 0.025));
-    // Normal motion carries T, tangential motion and spin T/2 each.
+    // Normal motion carries T. Tangential motion and spin carry T/2 each.
     assert!(agrees("heat flux", heat / time, trips * 2.0 * (hot - cold), 0.03));
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! Observables of known states, observers against the bare list of collisions, their contract, and their files.
+//! Observables of known states, observers against the bare list of collisions, their contract, and their
+//! files.
 
 #[cfg(feature = "serde")]
 mod measurements;

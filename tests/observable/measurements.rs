@@ -1,4 +1,4 @@
-//! Measurements as data: written half way and read back, they end with the bits of one without interruption.
+//! Measurements as data: written halfway and read back, they end with the bits of a run without interruption.
 
 use granular_edmd::boundary::{Boundary, Container, Region, Wall};
 use granular_edmd::collision::{ContactDuration, Frictional};
@@ -68,7 +68,7 @@ fn binary<T: Serialize + DeserializeOwned>(value: &T) -> Result<T, Box<dyn std::
     Ok(postcard::from_bytes(&postcard::to_stdvec(value)?)?)
 }
 
-/// A run from time 0 to the end, whose observers and state pass through `through` half way.
+/// Runs from time 0 to the end. Halfway, observers and state go through `through`.
 fn measured(
     through: impl Fn(Watchers) -> Result<Watchers, Box<dyn std::error::Error>>,
 ) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
@@ -89,7 +89,8 @@ fn a_measurement_goes_on_with_the_same_bits() -> Outcome {
     let whole = measured(Ok)?;
     assert_eq!(measured(|watchers| json(&watchers))?, whole);
     assert_eq!(measured(|watchers| binary(&watchers))?, whole);
-    // In one, too: at most the rounding of the time to which the first half ran is between them.
+    // The same holds in a single run. It differs at most by the rounding of the time to which the first half
+    // ran.
     let mut run = simulation()?;
     let mut uncut = watchers()?;
     uncut.on_start(&Moment::new(0.0, run.len(), 4, run.boundary().domain(), run.gravity()));
@@ -106,11 +107,11 @@ fn means_and_estimates_survive_files() -> Outcome {
         assert_eq!((json(&running)?, json(&blocked)?), (running, blocked.clone()));
         assert_eq!((binary(&running)?, binary(&blocked)?), (running, blocked.clone()));
         for estimate in [running.estimate(), blocked.estimate()] {
-            // NaN is not equal to itself: as text.
+            // NaN is not equal to itself, so the values are compared as text.
             assert_eq!(format!("{:?}", json(&estimate)?), format!("{estimate:?}"));
             assert_eq!(format!("{:?}", binary(&estimate)?), format!("{estimate:?}"));
         }
-        // As many levels as the count has binary digits.
+        // There are as many levels as the count has binary digits.
         let levels = serde_json::to_value(&blocked)?.as_array().map(Vec::len);
         assert_eq!(levels, Some((u32::BITS - count.leading_zeros()) as usize));
     }

@@ -1,4 +1,5 @@
-//! The contract of observers: the clock, what those made of others pass on, stops, and the check of all that.
+//! The contract of observers: the clock, the messages that composed observers pass on, stops, and the check
+//! of all that.
 
 use std::ops::ControlFlow;
 
@@ -63,7 +64,7 @@ fn the_first_sample_comes_on_the_beat_and_not_at_the_start() -> Outcome {
     Ok(())
 }
 
-/// Intervals that are no binary fractions, at starts that are sums of them, each missed by some roundings.
+/// The intervals are not binary fractions, and the starts are sums of them, each missed by some roundings.
 #[test]
 fn a_run_of_some_intervals_has_as_many_samples() -> Outcome {
     for interval in [0.1, 1.0 / 3.0, 62.8, 1e-3] {
@@ -92,14 +93,14 @@ fn a_run_in_pieces_has_the_samples_of_a_run_in_one() -> Outcome {
     let mut time = 0.0;
     let mut pieces = Vec::new();
     while time < 30.0 {
-        // Sums miss the beats, which are multiples, on both sides.
+        // Sums miss the beats, which are multiples, in both directions.
         pieces.push((time, time + 0.1));
         time += 0.1;
     }
     let times = sampled(SampleTimes::every(0.1)?, &pieces);
     assert_eq!(times.len(), 300);
     assert!(times.iter().zip(&whole).all(|(one, other)| (one - other).abs() < 1e-13));
-    // A gap leaves out what lies in it, a run that starts again is another run.
+    // A gap leaves out the samples in it. A run that starts again is another run.
     let every = SampleTimes::every(1.0)?;
     assert_eq!(sampled(every, &[(0.0, 2.0), (10.0, 12.0)]), [1.0, 2.0, 11.0, 12.0]);
     assert_eq!(sampled(every, &[(0.0, 3.0), (0.0, 2.0)]), [1.0, 2.0, 3.0, 1.0, 2.0]);
@@ -162,7 +163,7 @@ fn tallies(verdicts: [Option<&'static str>; 6]) -> [Tally; 6] {
     verdicts.map(|verdict| Tally { wanted: Some(1.0), verdict, ..Tally::default() })
 }
 
-/// The verdict of all of them in one, in all ways to make one.
+/// Returns the verdict of all of them composed, in all ways to compose them.
 fn verdict_of(tallies: &mut [Tally; 6]) -> String {
     let [boxed, listed, other, optional, bare, late] = tallies;
     late.wanted = Some(2.0);

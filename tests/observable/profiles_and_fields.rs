@@ -105,7 +105,7 @@ fn a_sediment_has_nothing_below() -> Result<(), ParameterError> {
 
 #[test]
 fn a_swirl_is_flow_and_not_temperature() -> Result<(), Box<dyn std::error::Error>> {
-    // Uniform in each cell: two disks with u + c and u - c, spins w + d and w - d.
+    // The state is uniform in each cell: two disks with u + c and u - c, spins w + d and w - d.
     let region = Region::new(DVec2::ZERO, DVec2::new(60.0, 150.0));
     let mut fields = Fields::new(region, 6, 5, times()?)?;
     let flow = |column: i32, row: i32| DVec2::new(f64::from(row) - 2.0, 2.5 - f64::from(column)) * 1e3;
@@ -208,8 +208,8 @@ fn grids_without_extent_are_refused() -> Result<(), ParameterError> {
     Ok(())
 }
 
-/// Two roads to the mean energy change: over all collisions, and layer by layer; and at rest in the mean the layers have
-/// the temperature that the disks started with.
+/// Two ways lead to the mean energy change: over all collisions, and layer by layer. At rest in the mean, the
+/// layers have the temperature with which the disks started.
 #[test]
 fn energy_change_by_height_sums_up_to_that_of_all_collisions() -> Result<(), Box<dyn std::error::Error>> {
     use granular_edmd::kinetic::{Maxwellian, mean_energy_change};
@@ -233,8 +233,8 @@ fn energy_change_by_height_sums_up_to_that_of_all_collisions() -> Result<(), Box
     let sum: f64 = layers.map(BlockedMean::sum).sum();
     assert!((sum - all.disks().sum()).abs() < 1e-10 * sum.abs());
 
-    // Some ten collisions a disk, each pair losing 4 % of T: the gas cools by a fifth underway. The standard error of 5000
-    // collisions is 1.5 %; five of them.
+    // There are some ten collisions per disk, and each pair loses 4 % of T, so the gas cools by a fifth
+    // underway. The standard error of 5000 collisions is 1.5 %, and the bound is five of them.
     let ratio = profile.rotational_ratio().unwrap();
     let expected = mean_energy_change(&rule, &Maxwellian::new(1.0)?.with_rotational_temperature(ratio)?);
     let measured = profile.relative_energy_change().unwrap();

@@ -65,7 +65,7 @@ impl Liar {
         }
     }
 
-    /// The last of those disks for which nothing is before it.
+    /// Returns the last of those disks before which there is no other.
     fn last_by(&self, is_before: impl Fn(f64, f64) -> bool) -> (usize, f64) {
         let all = self.due.iter().copied().enumerate();
         all.reduce(|first, next| if is_before(first.1, next.1) { first } else { next }).unwrap_or(NOTHING_DUE)
@@ -111,7 +111,7 @@ impl EventScheduler for Liar {
         if self.fault == Fault::TakesWhatWasNamed {
             disks.clear();
         }
-        // Nobody needs to exist, and anybody may be named twice.
+        // The named disks need not exist, and may be named twice.
         disks.extend([usize::MAX, 3, 3]);
     }
 }
@@ -161,7 +161,7 @@ fn only_looking_ahead_is_blamed_for_what_it_does() {
     assert!(confused.contains("after a look at upcoming disks"), "{confused}");
 }
 
-/// Names disks that are not there, besides the right ones.
+/// A scheduler that names disks that do not exist, besides the right ones.
 #[derive(Default)]
 struct Ghosts(BucketQueue);
 

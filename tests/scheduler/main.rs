@@ -1,4 +1,5 @@
-//! Every scheduler against the obvious one: by the public check, and over scripts that are shrunk when they fail.
+//! Every scheduler against the obvious one: by the public check, and over scripts that are shrunk when they
+//! fail.
 
 #[path = "../support/cases.rs"]
 mod cases;
@@ -21,7 +22,7 @@ fn every_scheduler_keeps_the_laws() {
     }
 }
 
-/// References and boxes forward all four methods, the optional one too.
+/// References and boxes forward all four methods, including the optional one.
 #[test]
 fn a_borrowed_or_boxed_scheduler_is_the_same() {
     fn upcoming(mut scheduler: impl EventScheduler) -> Vec<usize> {
@@ -41,9 +42,9 @@ fn a_borrowed_or_boxed_scheduler_is_the_same() {
 #[derive(Debug, Clone)]
 enum Operation {
     Reset(Vec<f64>),
-    /// A disk (reduced to how many there are) and its time.
+    /// Sets a disk (reduced to how many there are) to a time.
     Set(usize, f64),
-    /// What the engine does most: the earliest disk gets a later time.
+    /// Gives the earliest disk a later time, as the engine mostly does.
     Postpone(f64),
 }
 
@@ -59,7 +60,7 @@ fn time() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// None, few, powers of two and their neighbors, many.
+/// Returns times of no disks, of few, of powers of two and their neighbors, and of many.
 fn times() -> impl Strategy<Value = Vec<f64>> {
     let count =
         prop_oneof![Just(0usize), Just(1), Just(2), 3..10usize, 15..18usize, 31..34usize, 60..200usize];
@@ -142,7 +143,7 @@ proptest! {
     }
 }
 
-/// What becomes of a disk: it is the first or any, and is due a while after the first, or again when it was before.
+/// A change of a disk, the first one or any. It is due a while after the first, or again when it was before.
 #[derive(Debug, Clone, Copy)]
 enum Change {
     First(f64),
@@ -162,8 +163,9 @@ fn change(disks: usize) -> impl Strategy<Value = Change> {
 proptest! {
     #![proptest_config(config(12))]
 
-    /// So many disks that they fill many buckets: old entries are left out, those that come back are found again,
-    /// those set within the time of an open bucket are not missed, and looking ahead changes nothing.
+    /// The disks are so many that they fill many buckets. Old entries are left out, those that come back are
+    /// found again, those set within the time of an open bucket are not missed, and looking ahead changes
+    /// nothing.
     #[test]
     fn the_bucket_queue_of_many_disks_is_the_linear_scan(
         changes in prop::collection::vec(change(4000), 0..12_000),
@@ -190,7 +192,8 @@ proptest! {
     }
 }
 
-/// One disk of many moves: the calendar is not dealt out anew for each of its events, or this would take minutes.
+/// A single disk of many moves. The calendar is not dealt out anew for each of its events, or this test would
+/// take minutes.
 #[test]
 fn a_bucket_queue_with_one_busy_disk_is_not_slow() {
     let mut queue = BucketQueue::new();
@@ -227,7 +230,8 @@ fn infinite_times_still_name_a_disk_and_ties_the_first() {
     }
 }
 
-/// More than a scheduler that chooses by size keeps in a tree, in lockstep with the tree.
+/// The disks are more than a scheduler that chooses by size keeps in a tree. They run in lockstep with the
+/// tree.
 #[test]
 fn many_disks_come_up_in_the_same_order() {
     let mut random = 1u64;

@@ -65,7 +65,7 @@ mod resumed {
     use granular_edmd::scheduler::TournamentTree;
     use granular_edmd::{Simulation, initial};
 
-    /// So many disks that the engine chooses the other scheduler, and looks ahead for what comes next.
+    /// The disks are so many that the engine chooses the other scheduler, and looks ahead.
     #[test]
     fn many_disks_resume_to_the_same_bits() {
         let container = Container::closed(3600.0, 60.0).unwrap();

@@ -1,4 +1,5 @@
-//! Exact balances: energy and momentum change by what collisions and gravity say, and nothing overlaps or escapes.
+//! Exact balances: energy and momentum change only by collisions and gravity, and nothing overlaps or
+//! escapes.
 
 use granular_edmd::Simulation;
 use granular_edmd::boundary::{Boundary, Wall};
@@ -109,7 +110,7 @@ fn the_base_carries_the_weight() {
         Partner::Disk(_) => 0.0,
     };
     let lift: f64 = log.0.iter().map(upward).sum();
-    // What is missing is the change of momentum of forty disks: some ten of 6000.
+    // The difference is the change of momentum of forty disks: some ten of 6000.
     assert!((lift / (40.0 * 0.5 * 300.0) - 1.0).abs() < 0.01, "{lift}");
     assert!(simulation.boundary().index(Wall::Floor).is_some());
     assert!(BiParabolic::new(0.1, 10.0).unwrap().period().is_some());

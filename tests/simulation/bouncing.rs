@@ -36,7 +36,8 @@ fn touches<R: granular_edmd::collision::CollisionRule>(
 
 #[test]
 fn a_lossy_ball_bounces_as_the_closed_form_says() {
-    // From height 1 with g = 1: bounce n comes 2 sqrt(2) r^n / (1 - r) before T = sqrt(2) (1 + r) / (1 - r).
+    // The formula is for height 1 and g = 1: bounce n comes 2 sqrt(2) r^n / (1 - r) before T = sqrt(2) (1 +
+    // r) / (1 - r).
     let r: f64 = 0.8;
     let last = 2.0_f64.sqrt() * (1.0 + r) / (1.0 - r);
     assert!((last - 12.727_922_061_358).abs() < 1e-11);
@@ -45,7 +46,7 @@ fn a_lossy_ball_bounces_as_the_closed_form_says() {
     for (n, (time, speed)) in (0..).zip(touches) {
         let left = 2.0 * 2.0_f64.sqrt() * r.powi(n + 1) / (1.0 - r);
         let closing = 2.0_f64.sqrt() * r.powi(n);
-        // Heights are rounded by some 1e-14: the slower the ball, the more that is in time and speed.
+        // Heights are rounded by some 1e-14. The slower the ball, the more this changes time and speed.
         let tolerance = 1e-11 + 1e-13 / closing;
         assert!((last - time - left).abs() < tolerance, "{n}: {} {left}", last - time);
         assert!((speed - closing).abs() < tolerance, "{n}: {speed} {closing}");
@@ -68,7 +69,7 @@ fn an_elastic_ball_bounces_for_ever_at_any_time() {
         assert!(log.0.len() > 3000);
         for (n, collision) in log.0.iter().enumerate() {
             let expected = start + fall * (2.0 * n as f64 + 1.0);
-            // Times are given in doubles: to their last digits, and no worse.
+            // Times are given in doubles. They are right to their last digits.
             let tolerance = 1e-12 * (1.0 + expected - start) + 2.0 * f64::EPSILON * expected.abs();
             assert!(
                 (collision.time - expected).abs() < tolerance,
@@ -165,7 +166,8 @@ fn a_disk_at_rest_on_the_floor_is_an_error_that_says_so() {
     assert!(error.to_string().contains("disk 0") && error.to_string().contains("at rest"), "{error}");
 }
 
-/// Its bounces become lower than rounding: none of them may go deeper into the floor than the one before.
+/// The bounces of the ball become lower than rounding. None of them may go deeper into the floor than the one
+/// before.
 #[test]
 fn a_lossy_ball_does_not_sink_into_a_floor_of_varying_acceleration() {
     for restitution in [0.0, 0.5, 0.9] {

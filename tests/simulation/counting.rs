@@ -1,4 +1,4 @@
-//! Counters, events and observers tell the same story, however long.
+//! Counters, events and observers agree, however long the run.
 
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::{Elastic, Frictional};
@@ -39,7 +39,7 @@ proptest! {
         let mut run = setup.simulation();
         let (mut told, mut stepped) = (Told::default(), Told::default());
         for _ in 0..5000 {
-            // Disks may come to rest: the run ends with an error then, and what it counted is as true.
+            // Disks may come to rest. The run then ends with an error, and its counts are still true.
             match run.step_until(setup.start + 300.0, &mut told).unwrap_or(None) {
                 Some(Event::Collision { disk, partner }) => {
                     prop_assert!(disk < run.len() && partner < run.len() && disk != partner);
@@ -65,7 +65,8 @@ proptest! {
     }
 }
 
-/// Between walls that are far away nothing happens: a search for them ends at its horizon, and that is what is counted.
+/// Nothing happens between walls that are far away. A search for them ends at its horizon, and only that is
+/// counted.
 #[test]
 fn a_slow_disk_near_a_far_wall_has_horizons_and_no_collisions() {
     let disk = |x: f64, velocity: DVec2| {
@@ -112,7 +113,7 @@ fn changes_of_the_cells_are_counted() {
     assert_eq!(run.counters().horizons, 0, "{:?}", run.counters());
 }
 
-/// Where nothing moves there is nothing to do, however late the end and near the walls.
+/// Nothing happens if nothing moves, however late the end and however near the walls.
 #[test]
 fn disks_at_rest_take_no_events() {
     let disk = |x: f64| Disk::new(DVec2::new(x, 0.6), 0.5).unwrap();

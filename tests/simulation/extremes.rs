@@ -1,4 +1,5 @@
-//! Systems of extreme numbers, and changes of everything between runs: an error that names its cause, or physics.
+//! Systems of extreme numbers, and changes of everything between runs. Each gives an error that names its
+//! cause, or physics.
 
 use granular_edmd::boundary::{Boundary, Container, Thermal, Wall};
 use granular_edmd::collision::{CollisionRule, Elastic, Frictional, Smooth};
@@ -88,8 +89,8 @@ fn short_while(run: &Run) -> f64 {
     (way / (speed + (run.gravity().abs() * way).sqrt())).min(1e100)
 }
 
-/// The depth to which disks are beyond the domain, in terms of their size, less what rounding of the time allows: a wall that
-/// moves is where it is at a time that is rounded, in which a disk goes some way.
+/// Returns the depth by which disks are beyond the domain, in terms of their size, less what the rounding of
+/// the time allows. A moving wall is where it is at a rounded time, and a disk goes some way in the rounding.
 fn deepest(run: &Run) -> f64 {
     let domain = run.boundary().domain();
     let rounding = 2.0 * f64::EPSILON * run.time().abs();
@@ -111,7 +112,7 @@ fn assert_sound(run: &Run, case: u64) {
     assert!(deepest(run) < 1e-6, "{case}: {:e} {:?} {:?}", deepest(run), run.counters(), run.disks());
 }
 
-/// Does some events, with a change now and then; all errors are clear ones.
+/// Does some events, with a change now and then. All errors must be clear ones.
 fn live(random: &mut Random, run: &mut Run, size: f64, case: u64) {
     for _ in 0..30 {
         for _ in 0..20 {

@@ -1,4 +1,4 @@
-//! What cannot be run is refused with an error that names it.
+//! Inputs that cannot be run. Each is refused with an error that names it.
 
 use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::Elastic;
@@ -124,7 +124,7 @@ fn none_one_and_two_disks_run() {
             assert_eq!(initial::random(&boundary, count, 0.5, 6.0, 1).unwrap().len(), count);
         }
     }
-    // No disk is too large for a narrow periodic box.
+    // Without disks, none is too large for a narrow periodic box.
     build(Container::closed(0.1, 0.1).unwrap().with_periodic_sides(), &[])
         .unwrap()
         .run_until(1.0, &mut ())
@@ -204,12 +204,12 @@ fn sampling_intervals_below_rounding_do_not_hang() {
     let times = SampleTimes::every(1e-30).unwrap().starting_at(1.0).unwrap();
     let mut series = Series::new(Energies, times);
     let mut simulation = build(closed(), &[at(2.0, 2.0)]).unwrap();
-    // Next to every double is a sample: the run is stopped after a few.
+    // There is a sample at almost every double, so the run is stopped after a few.
     let _ = simulation.run_until(1.0 + 4.0 * f64::EPSILON, &mut series);
     assert!(series.times().len() <= 5, "{:?}", series.times());
 }
 
-/// The present is an offset from an epoch: whatever both are, a run is at the time that it was sent to.
+/// The present is an offset from an epoch. Whatever both are, a run is at the time to which it was sent.
 #[test]
 fn odd_start_times_and_intervals_lose_no_sample() {
     for start in [0.1, -3.7, 1.0 / 3.0, 1e5 + 0.1, 12_345.678] {

@@ -1,4 +1,5 @@
-//! Times so late that they are far apart: refused or ended, never frozen; and late times that are allowed.
+//! Times so late that they are coarse: such a run is refused or ended, and never frozen. Late times that are
+//! allowed.
 
 use std::time::{Duration, Instant};
 
@@ -40,7 +41,7 @@ fn times_too_far_apart_are_refused_at_once() {
     }
 }
 
-/// Disks that become faster on the way: the run began in time, and ends with an error when it cannot go on.
+/// The disks become faster on the way: the run begins well, and ends with an error when it cannot go on.
 #[test]
 fn disks_that_become_too_fast_for_their_time_end_the_run() {
     let hot = |temperature| {
@@ -130,7 +131,8 @@ fn disks_stay_in_the_box_at_all_times_that_are_allowed() {
                 Ok(_) | Err(RunError::TimeTooLate { .. } | RunError::Stalled { .. }) => {}
                 Err(error) => panic!("{start:e} {case}: {error}"),
             }
-            // Walls are where they are at times that are rounded: a wall is missed by its speed times that.
+            // Walls are where they are at times that are rounded. A disk misses a wall by its speed times
+            // that rounding.
             let rounding = 16.0 * f64::EPSILON * start.abs() + 1e-12;
             assert!(watch.deepest < rounding, "{start:e} {case}: {:e}", watch.deepest);
             assert!(run.counters().max_wall_overlap < rounding, "{start:e} {case}: {:?}", run.counters());
@@ -139,7 +141,7 @@ fn disks_stay_in_the_box_at_all_times_that_are_allowed() {
     }
 }
 
-/// Seven disks, of which the first will reach the floor after going some diameters, and the others not before.
+/// Returns seven disks. The first will reach the floor after going some diameters, and the others not before.
 fn slow_disks(speed: f64, seed: u64) -> Vec<Disk> {
     let disk = |k: u32| {
         let shift = 1e-2 * seed as f64;
@@ -154,7 +156,7 @@ fn slow_disks(speed: f64, seed: u64) -> Vec<Disk> {
     (0..7).map(disk).collect()
 }
 
-/// A disk that a hot wall kicks late in the long epoch of slow ones keeps its place.
+/// A hot wall kicks a disk late in the long epoch of slow disks. The disk keeps its place.
 #[test]
 fn a_kick_late_in_a_long_epoch_moves_no_disk() {
     for (slow, temperature) in [(1e-9, 1.0), (1e-12, 1.0), (1e-6, 1e6), (1e-3, 1e10)] {
@@ -185,7 +187,8 @@ fn a_kick_late_in_a_long_epoch_moves_no_disk() {
     }
 }
 
-/// A hot wall at so late a time that the disk it kicks would be elsewhere at the next number: the run ends before the kick.
+/// A hot wall kicks a disk at so late a time that the disk would be elsewhere at the next number. The run
+/// ends before the kick.
 #[test]
 fn a_kick_too_fast_for_its_time_moves_no_disk() {
     for (start, slow, temperature) in
@@ -203,13 +206,14 @@ fn a_kick_too_fast_for_its_time_moves_no_disk() {
         for (before, after) in disks.iter().zip(run.disks()) {
             assert_eq!(before.velocity(), after.velocity());
             let expected = before.position() + flown * before.velocity();
-            // Times are rounded to 64 numbers in an epoch at least, in which disks go some tens of diameters.
+            // Times are rounded to at least 64 numbers in an epoch, in which disks go some tens of diameters.
             assert!((after.position() - expected).length() < 2.0, "{start:e}: {after:?} {expected}");
         }
     }
 }
 
-/// Gravity that is too strong for the present time: the next number after it is far below the floor.
+/// Gravity is too strong for the present time if the next time after it is far below the floor for a falling
+/// disk.
 #[test]
 fn gravity_too_strong_for_the_time_is_refused() {
     for (start, gravity) in [(1e7, 1e20), (1e12, 1e10), (1e12, -1e10), (1.0, 1e40)] {

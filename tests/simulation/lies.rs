@@ -1,4 +1,5 @@
-//! Rules, boundaries, schedulers and observers that break their contract: each is named, and the state is whole after it.
+//! Rules, boundaries, schedulers and observers that break their contract. Each is named, and the state is
+//! whole afterwards.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -21,7 +22,8 @@ fn disks() -> Vec<Disk> {
     initial::with_maxwellian_velocities(disks, 1.0, 3).unwrap()
 }
 
-/// After an error all disks are where they can be, and a checkpoint is a state to go on from, with honest parts.
+/// Asserts that all disks are at possible places after an error, and that a checkpoint is a state from which
+/// a run with honest parts goes on.
 fn assert_whole<R: CollisionRule, B: Boundary, S: EventScheduler>(run: &Simulation<R, B, S>) {
     let walls = walls();
     for disk in run.disks() {
@@ -137,7 +139,7 @@ fn touches_that_cannot_be_are_named() {
         let (run, end) = run_among_liars(lie, truths);
         let error = end.unwrap_err();
         if matches!(lie, Lie::Time(wait) if wait.abs() < 1e-70) && matches!(error, RunError::Stalled { .. }) {
-            // So short a time changes none: this is a touch at once, again and again.
+            // So short a time changes no position: this is a touch at once, again and again.
             continue;
         }
         let RunError::Boundary { fault: BoundaryFault::Touch { wall, walls, early_by, .. }, time, .. } =
@@ -226,7 +228,7 @@ fn too_many_walls_are_refused() {
     assert!(named.iter().all(|&wall| wall >= (1 << 16) - 4) && named.contains(&((1 << 16) - 1)));
 }
 
-/// What a scheduler answers in place of the truth.
+/// The false answer of a scheduler, from the true one.
 type Answer = fn((usize, f64)) -> (usize, f64);
 
 /// A scheduler that is wrong from some answer on.
@@ -279,7 +281,7 @@ fn schedulers_that_name_what_is_not_so_are_named() {
     }
 }
 
-/// A scheduler that forgets the times it is told: what it names has been done.
+/// The scheduler forgets the times that it was given. What it names has been done already.
 #[test]
 fn a_scheduler_that_names_an_old_time_is_named() {
     struct Forgetful(LinearScan, u32);
@@ -417,7 +419,7 @@ fn an_end_before_the_present_tells_no_observer() {
     assert_eq!((failing.starts, failing.ends), (0, 0));
 }
 
-/// A rule that fails at its so-manieth contact with this impulse.
+/// A rule that fails with this impulse after so many contacts.
 struct Failed {
     truths: Cell<u32>,
     impulse: fn(&Contact) -> Impulse,
@@ -480,7 +482,7 @@ fn an_outcome_that_is_no_motion_names_both_partners_the_contact_and_the_reason()
             };
             assert!(said.contains(&names) && said.contains("is too much"), "{said}");
             assert_whole(&run);
-            // An infinite velocity does not stay: the rule that is mended goes on.
+            // An infinite velocity does not stay. With the rule repaired, the run goes on.
             run.set_rule(Failed { truths: Cell::new(u32::MAX), impulse });
             run.run_until(50.0, &mut ()).unwrap();
             assert_whole(&run);
@@ -489,7 +491,7 @@ fn an_outcome_that_is_no_motion_names_both_partners_the_contact_and_the_reason()
     assert!(pairs > 10 && walls_named > 10, "{pairs} {walls_named}");
 }
 
-/// Changes that are finite each, and lead beyond all bounds together.
+/// The changes are finite each, and together lead beyond all bounds.
 #[test]
 fn velocities_that_grow_beyond_all_bounds_end_the_run() {
     let growing = granular_edmd::collision::from_fn(|contact: &Contact| {
@@ -526,7 +528,7 @@ impl<R: CollisionRule> CollisionRule for Strict<R> {
     }
 }
 
-/// A round drum whose wall turns: what touches it is carried along.
+/// A round drum whose wall turns and carries along what touches it.
 #[derive(Debug, Clone)]
 struct Drum {
     radius: f64,
@@ -568,7 +570,7 @@ impl Boundary for Drum {
     }
 }
 
-/// Does so many collisions, or as many as there are: disks at rest on a wall have no end of them.
+/// Does so many collisions, or as many as there are: disks at rest on a wall collide without end.
 fn take_steps<R: CollisionRule, B: Boundary>(run: &mut Simulation<R, B>, steps: usize) {
     for _ in 0..steps {
         if !matches!(run.step_until(200.0, &mut ()), Ok(Some(_))) {

@@ -1,7 +1,7 @@
 //! Very long runs: no drift of the energy, no overlap beyond rounding, and late times as good as early ones.
 //!
 //! ```text
-//! COLLISIONS=10000000 cargo test --release --test simulation -- --ignored --nocapture for_a_billion_collisions
+//! COLLISIONS=10000000 cargo test --release --test simulation -- --ignored --nocapture billion_collisions
 //! ```
 
 use granular_edmd::boundary::{Boundary, Container, Wall};
@@ -17,13 +17,13 @@ fn gas(start: f64) -> Simulation<Elastic> {
     elastic_gas_at(start, 1000, 50.0, 50.0, 0.002)
 }
 
-/// How many disk–disk collisions a long run has: 10⁹, or what the variable `COLLISIONS` says.
+/// Returns the number of disk–disk collisions of a long run: 10⁹, or the value of the variable `COLLISIONS`.
 fn wanted() -> u64 {
     std::env::var("COLLISIONS").map_or(1_000_000_000, |text| text.parse().unwrap())
 }
 
-/// Positions at the epoch stay below 512, far flights of the fastest disks included, with a last digit of 2⁻⁴⁴; a
-/// distance comes from four of them.
+/// Rounding of a distance. Positions at the epoch stay below 512, far flights of the fastest disks included,
+/// and have a last digit of 2⁻⁴⁴. A distance comes from four of them.
 const ROUNDING: f64 = 4.0 / (1_u64 << 44) as f64;
 
 /// Runs until this many collisions, and asserts energy and overlap at each hundredth of the way.
@@ -68,7 +68,8 @@ fn late_elastic_disks_keep_energy_and_distance_for_a_billion_collisions() {
 
 #[test]
 fn a_run_at_ten_million_has_the_digits_of_one_at_zero() {
-    // Between fixed walls nothing depends on the time: the same bits, although times have 23 binary digits fewer.
+    // Nothing depends on the time between fixed walls: the bits are the same, although times have 23 binary
+    // digits fewer.
     let after = |start: f64| {
         let mut simulation = gas(start);
         simulation.run_until(start + 64.0, &mut ()).unwrap();
@@ -82,7 +83,8 @@ fn a_run_at_ten_million_has_the_digits_of_one_at_zero() {
 
 #[test]
 fn disks_that_a_collision_makes_fast_keep_their_digits() {
-    // They creep towards each other for a million times, and their rule has them part at a speed of 123.4.
+    // The disks creep toward each other for a million units of time, and their rule has them part at a speed
+    // of 123.4.
     let burst = from_fn(|contact: &Contact| {
         Impulse::new(contact.normal_mass() * (contact.closing_speed() + 123.4), 0.0)
     });

@@ -1,5 +1,5 @@
-//! The engine: the same bits whoever watches and schedules, exact balances, closed forms, an independent simulation by
-//! brute force, and clear errors for what cannot be run.
+//! The engine: the same bits under any observer and scheduler, exact balances, closed forms, an independent
+//! simulation by brute force, and clear errors for what cannot be run.
 
 mod agreement;
 mod balances;

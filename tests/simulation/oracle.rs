@@ -1,4 +1,4 @@
-//! An independent simulation that has no cells, no slots and no frames: it tries all pairs and all walls at each event.
+//! An independent simulation without cells, slots and frames. It tries all pairs and all walls at each event.
 
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::{Elastic, Encounter, collide, collide_with_wall};
@@ -35,7 +35,7 @@ impl Naive {
         if self.periodic { vec![-WIDTH, 0.0, WIDTH] } else { vec![0.0] }
     }
 
-    /// When a pair meets, its second disk moved sideways by `image`.
+    /// Returns the time at which a pair meets, with its second disk moved sideways by `image`.
     fn pair(&self, i: usize, j: usize, image: f64) -> f64 {
         let (a, b) = (&self.disks[i], &self.disks[j]);
         let (r, v) = (b.position() + DVec2::new(image, 0.0) - a.position(), b.velocity() - a.velocity());
@@ -46,13 +46,14 @@ impl Naive {
         first_root(v.length_squared(), r.dot(v), (r.length() - contact) * (r.length() + contact))
     }
 
-    /// When a disk meets a wall with this normal and offset.
+    /// Returns the time at which a disk meets a wall with this normal and offset.
     fn wall(&self, i: usize, normal: DVec2, offset: f64) -> f64 {
         let disk = &self.disks[i];
         let gap = disk.position().dot(normal) - offset - disk.radius();
         let (rate, pull) = (disk.velocity().dot(normal), -self.gravity * normal.y);
         if pull < 0.0 {
-            // Up and down again: the later root. A disk that has just left the wall has a gap of rounding.
+            // The disk goes up and down again, so the later root counts. A disk that has just left the wall
+            // has a gap of rounding.
             let root = (rate * rate - 2.0 * pull * gap.max(0.0)).sqrt();
             return (rate + root) / -pull;
         }
@@ -65,7 +66,7 @@ impl Naive {
         if self.periodic { level.to_vec() } else { [level, sides].concat() }
     }
 
-    /// The next event: when, which disk, and its partner (an image of a disk, or a wall).
+    /// Returns the next event: its time, its disk, and its partner (an image of a disk, or a wall).
     fn next(&self) -> (f64, usize, Result<(usize, f64), usize>) {
         let mut first = (f64::INFINITY, 0, Err(0));
         for i in 0..self.disks.len() {
@@ -100,7 +101,7 @@ impl Naive {
         self.time += wait;
     }
 
-    /// Does the next event; returns its time and its partners in order (a wall counts from 1000).
+    /// Does the next event. Returns its time and its partners in order (a wall counts from 1000).
     fn step(&mut self) -> (f64, usize, usize) {
         let (wait, i, partner) = self.next();
         self.advance(wait);
@@ -143,7 +144,7 @@ proptest! {
     ) {
         let container = Container::closed(WIDTH, HEIGHT).unwrap();
         let boundary = if periodic { container.with_periodic_sides() } else { container };
-        // From grains of dust to stones of fifty (and five, and one) times their size.
+        // The disks go from grains of dust to stones of fifty (and five, and one) times their size.
         let radius = |k: usize| if k.is_multiple_of(5) { 2.5 } else { smallest * (1.0 + k as f64 / 40.0) };
         let disks = (0..30).map(|k| Disk::new(DVec2::ZERO, radius(k)).unwrap()).collect();
         let disks = initial::placed_at_random(&boundary, disks, HEIGHT, seed).unwrap();
@@ -151,7 +152,8 @@ proptest! {
         let mut naive = Naive { time: 0.0, gravity, periodic, disks: disks.clone() };
         let mut simulation = Simulation::builder(Elastic, boundary).disks(disks).gravity(gravity).build().unwrap();
         let mut log = Log(Vec::new());
-        // Short: a difference of rounding grows tenfold and more with each collision of a disk.
+        // The run is short, since a difference of rounding grows at least tenfold with each collision of a
+        // disk.
         while log.0.len() < 60 {
             simulation.step_until(simulation.time() + 1.0, &mut log).unwrap();
         }

@@ -28,7 +28,7 @@ fn container() -> Container {
 /// The bits of a collision's time, its partners, and the bits of its impulse.
 type Told = (u64, [usize; 2], u64);
 
-/// Every collision by the names that the disks had at first, and the disks after it in their first order.
+/// Returns every collision by the first names of the disks, and the disks after it in their first order.
 fn history(disks: &[Disk], order: &[usize], end: f64) -> (Vec<Told>, Vec<Disk>) {
     let rule = ContactDuration::new(Frictional::new(0.05, 0.2).unwrap(), 1e-5).unwrap();
     let listed = order.iter().map(|&disk| disks[disk]);
@@ -59,7 +59,7 @@ fn the_order_of_the_list_changes_no_bit() {
     for seed in 0..20 {
         let disks = disks(&container(), seed);
         let mut order: Vec<usize> = (0..disks.len()).collect();
-        // As long as rounding in collisions, whose partners change sides, has not grown.
+        // The time is so short that rounding in collisions, whose partners change sides, has not grown.
         let (expected, after) = history(&disks, &order, 0.7);
         assert!(expected.len() > 5);
         for _ in 0..5 {

@@ -1,4 +1,4 @@
-//! Disks that a collision has left touching part: none collides again at once for a rounding of its velocity.
+//! Disks that touch after a collision part. None collides again at once for a rounding of its velocity.
 
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::{CollisionRule, Contact, Frictional, Impulse, Smooth, from_fn};
@@ -26,7 +26,8 @@ fn unit(random: &mut Xoshiro256PlusPlus) -> DVec2 {
     }
 }
 
-/// Two disks in the middle of a box of this width that will collide obliquely, moving together at any velocity besides.
+/// Returns two disks in the middle of a box of this width, which will collide obliquely and move together at
+/// any velocity besides.
 fn pair(random: &mut Xoshiro256PlusPlus, width: f64, masses: [f64; 2]) -> [Disk; 2] {
     let middle = DVec2::splat(0.5 * width) + unit(random) * random.random_range(0.0..0.2) * width;
     let normal = unit(random);
@@ -104,7 +105,8 @@ fn a_disk_that_sticks_to_walls_slides_along_them() {
     }
 }
 
-/// Three may collapse by physics, at restitutions below 0.07; they do not at 0.3, however often they collide.
+/// Three disks may collapse by physics, at restitutions below 0.07. They do not at 0.3, however often they
+/// collide.
 #[test]
 fn three_disks_above_the_restitution_of_collapse_never_stall() {
     let mut random = generator(4);
@@ -141,7 +143,7 @@ fn what_makes_disks_part_changes_neither_momentum_nor_energy() {
             continue;
         }
         let after = run.disks();
-        // The closing speed is gone; all else stays.
+        // The closing speed is gone, and everything else stays.
         let normal = (after[0].position() - after[1].position()).normalize();
         let reduced = masses[0] * masses[1] / (masses[0] + masses[1]);
         let closing = (disks[1].velocity() - disks[0].velocity()).dot(normal);
@@ -156,7 +158,7 @@ fn what_makes_disks_part_changes_neither_momentum_nor_energy() {
     }
 }
 
-/// A rule that lets disks pass through each other wants them to close on: it is not overruled.
+/// A rule that lets disks pass through each other wants them to close on. The engine does not overrule it.
 #[test]
 fn a_rule_without_an_impulse_is_left_alone() {
     let ghost = from_fn(|_: &Contact| Impulse::new(0.0, 0.0));

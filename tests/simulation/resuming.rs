@@ -27,7 +27,7 @@ fn run<R: CollisionRule>(rule: R) -> Simulation<R> {
     run
 }
 
-/// A file of somebody else, with a checkpoint within.
+/// A user's own file, with a checkpoint inside.
 #[derive(Serialize, Deserialize)]
 struct Experiment {
     name: String,
@@ -141,7 +141,7 @@ fn another_rule_or_boundary_is_taken_on_purpose_only() {
     assert!(matches!(error, CheckpointError::Boundary(_)), "{error}");
 }
 
-/// A change of the boundary while the run is on, and in a run that is resumed, are the same.
+/// A change of the boundary during a run, and at a resumption, are the same.
 #[test]
 fn another_boundary_at_a_resumption_is_as_one_that_is_set() {
     let other = || {
@@ -175,7 +175,7 @@ fn only_two_parts_that_cannot_say_who_they_are_pass_for_each_other() {
     Simulation::resume(&known, closure(0.2), walls()).with_another_rule().build().unwrap();
     let unnamed = || walls().with_rule(Wall::Left, closure(0.1)).unwrap();
     assert!(matches!(refused(&known, &rule(), unnamed()), CheckpointError::AnotherBoundary));
-    // Of two unknown boundaries the domain is compared at any rate.
+    // The domain of two unknown boundaries is compared in any case.
     let builder = Simulation::builder(rule(), unnamed()).disks([]);
     let unnamed = builder.build().unwrap().checkpoint();
     let wider = Container::closed(13.0, 10.0).unwrap().with_rule(Wall::Left, closure(0.1)).unwrap();

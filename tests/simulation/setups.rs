@@ -48,7 +48,7 @@ pub(crate) fn setup() -> impl Strategy<Value = Setup> {
             Setup {
                 base,
                 periodic,
-                // What falls up needs a lid.
+                // Disks that fall upward need a lid.
                 open: open && gravity >= 0.0,
                 polydisperse,
                 gravity,
@@ -108,7 +108,7 @@ pub(crate) fn elastic_gas(count: usize, width: f64, height: f64, gravity: f64) -
     elastic_gas_at(0.0, count, width, height, gravity)
 }
 
-/// The same, started at this time.
+/// Returns the same gas, started at this time.
 pub(crate) fn elastic_gas_at(
     start: f64,
     count: usize,

@@ -1,4 +1,4 @@
-//! Single steps, and what they say.
+//! Single steps, and the events that they return.
 
 use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::{Elastic, Impulse, from_fn};

@@ -23,7 +23,7 @@ fn run(scheduler: Scheduler, start: f64) -> Run {
     builder.start_time(start).seed(5).scheduler(scheduler).build().unwrap()
 }
 
-/// Stops at each so-manieth collision and each so-manieth sample.
+/// An observer that stops after each so many collisions and samples.
 #[derive(Default)]
 struct Stopper {
     collisions: Vec<f64>,

@@ -1,4 +1,4 @@
-//! Thermal walls: what leaves them has the moments of the flux from a gas behind them.
+//! Thermal walls: disks that leave them have the moments of the flux from a gas behind them.
 
 use granular_edmd::Simulation;
 use granular_edmd::boundary::{Boundary, Container, Thermal, Wall};
@@ -8,8 +8,9 @@ use granular_edmd::observable::{Collision, on_collision};
 use granular_edmd::statistics::RunningMean;
 use granular_edmd::{Disk, initial};
 
-/// What leaves the floor of a box with a thermal floor of temperature 2: normal speed, tangential velocity, and the
-/// change of energy of each touch, of a disk of mass 3 alone in the box.
+/// Returns the motion of disks that leave the floor of a box with a thermal floor of temperature 2: the
+/// normal speed, the tangential velocity, and the change of energy of each touch. The box holds a single disk
+/// of mass 3.
 fn emitted(thermal: Thermal) -> (Vec<f64>, Vec<f64>) {
     let boundary = Container::closed(4.0, 4.0).unwrap().with_temperature(Wall::Floor, thermal).unwrap();
     let disk = Disk::new(DVec2::new(2.0, 2.0), 0.5).unwrap().with_mass(3.0).unwrap();
@@ -33,7 +34,7 @@ fn mean(values: &[f64], power: i32) -> RunningMean {
     values.iter().map(|value| value.powi(power)).collect()
 }
 
-/// Within five standard errors.
+/// Tells whether a mean is as expected, within five standard errors.
 fn is(mean: RunningMean, expected: f64) -> bool {
     (mean.mean() - expected).abs() < 5.0 * mean.standard_error()
 }
@@ -70,8 +71,8 @@ fn a_gas_takes_the_temperature_of_its_wall() {
         energies.push(disks.iter().map(Disk::translational_energy).sum::<f64>() / 40.0);
         spins.push(disks.iter().map(|disk| 2.0 * disk.rotational_energy()).sum::<f64>() / 40.0);
     }
-    // Fluctuations of a canonical gas, T/sqrt(40) for energy, sqrt(2/40) T for rotation, over 400 samples of which
-    // one in ten counts as independent.
+    // The fluctuations are those of a canonical gas: T/sqrt(40) for the energy and sqrt(2/40) T for the
+    // rotation, over 400 samples of which one in ten counts as independent.
     assert!((energies.mean() - 2.0).abs() < 0.12, "{}", energies.mean());
     assert!((spins.mean() - 2.0).abs() < 0.3, "{}", spins.mean());
 }
@@ -93,8 +94,8 @@ fn the_seed_decides() {
 
 #[test]
 fn a_disk_that_a_wall_makes_fast_keeps_its_digits() {
-    // It creeps for five million times, then flies a hundred million times as fast: counted from where it was when the run
-    // began, its place would have an error of 1e-7.
+    // The disk creeps for five million units of time, and then flies a hundred million times as fast. Counted
+    // from its place at the beginning of the run, its place would have an error of 1e-7.
     let walls = Container::closed(10.0, 10.0).unwrap();
     let walls = walls.with_temperature(Wall::Right, Thermal::new(1e4).unwrap()).unwrap();
     let disk = Disk::new(DVec2::new(5.0, 5.0), 0.5).unwrap().with_velocity(DVec2::new(1e-6, 0.0)).unwrap();

@@ -1,11 +1,11 @@
-//! How many random cases, and which.
+//! The number of random cases, and their choice.
 #![allow(dead_code, reason = "each target needs some of it")]
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-/// The same cases on every run and machine, unless the environment asks for more (`PROPTEST_CASES`) or others
-/// (`PROPTEST_RNG_SEED`).
+/// Returns a configuration with the same cases on every run and machine, unless the environment asks for more
+/// (`PROPTEST_CASES`) or others (`PROPTEST_RNG_SEED`).
 pub(crate) fn config(cases: u32) -> ProptestConfig {
     let asked = ProptestConfig::default();
     let rng_seed = match asked.rng_seed {

@@ -1,4 +1,4 @@
-//! Walls that pass the gate and go wrong later: no disk falls through the floor unseen.
+//! Walls that pass the check of the container and go wrong later. No disk falls through the floor unnoticed.
 
 use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::Smooth;
@@ -7,10 +7,10 @@ use granular_edmd::simulation::{RunEnd, RunError};
 use granular_edmd::wall::{AccelerationBounds, WallMotion, WallState, laws};
 use granular_edmd::{Disk, Simulation};
 
-/// Phases in which something is wrong: none of those that a container looks at.
+/// Phases in which something is wrong. The container looks at none of them.
 const BAD: std::ops::Range<f64> = 20.0..30.0;
 
-/// A floor at rest that may move by 0.1, as it says.
+/// A floor at rest that claims a reach of 0.1.
 #[derive(Debug, Clone, Copy)]
 enum Late {
     Displacement(f64),
@@ -28,7 +28,7 @@ impl WallMotion for Late {
         }
     }
     fn acceleration(&self, phase: f64) -> AccelerationBounds {
-        // Short enough that the gate, which follows a few pieces, does not come to the bad ones.
+        // The pieces are so short that the check, which follows a few of them, does not come to the bad ones.
         let until = phase + 1.0;
         match *self {
             Self::Bound(value) if BAD.contains(&phase) => AccelerationBounds::new(until, -value, value),
@@ -41,7 +41,7 @@ impl WallMotion for Late {
     }
 }
 
-/// Three disks that bounce on the floor until time 40, and where the lowest is then.
+/// Runs three disks that bounce on the floor until time 40. Returns how the run ended, and the least height.
 fn outcome(motion: Late) -> (Result<RunEnd, RunError>, f64) {
     let container = Container::closed(8.0, 9.0).unwrap().with_motion(Wall::Floor, motion).unwrap();
     let disks = [1.0, 3.0, 6.0].map(|x| Disk::new(DVec2::new(x, 2.0), 0.5).unwrap());
@@ -58,7 +58,8 @@ fn walls_that_go_wrong_late_end_the_run() {
         [Late::Displacement(value), Late::Velocity(value), Late::Bound(value), Late::Displacement(-value)]
     });
     for motion in numbers.concat().into_iter().chain([Late::Bound(1e300), Late::TinyPieces]) {
-        // A wall that nobody can follow counts as anywhere in its reach: disks turn back, and the run may go on.
+        // A wall that cannot be followed counts as anywhere in its reach. Disks turn back, and the run may go
+        // on.
         let may_go_on = matches!(motion, Late::Bound(1e300) | Late::TinyPieces);
         let (outcome, lowest) = outcome(motion);
         assert!(outcome.is_err() || may_go_on, "{motion:?}: {outcome:?}");

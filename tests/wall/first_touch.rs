@@ -13,7 +13,7 @@ use granular_edmd::wall::{
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// A motion that says no more of its acceleration than a bound that is three times too large, for all times.
+/// A motion that only gives a bound of its acceleration for all times, which is three times too large.
 struct Loose(Sinusoidal);
 
 impl WallMotion for Loose {
@@ -93,7 +93,7 @@ fn no_touch_is_missed_and_none_is_early() {
             let flight = Flight::random(&motion, &mut generator);
             let until = flight.start + 3.0 * PERIOD;
             let touch = first_touch(&motion, &flight.approach(), until);
-            // Open all the time before: at thousands of times, and down to rounding.
+            // The gap is open all the time before, at thousands of times, and down to rounding.
             let end = touch.unwrap_or(until);
             for k in 0..2000 {
                 let time = flight.start + (end - flight.start) * f64::from(k) / 2000.0;
@@ -118,7 +118,7 @@ fn no_touch_is_missed_and_none_is_early() {
 fn a_touching_start_counts_only_while_it_closes() {
     for (name, motion) in motions() {
         for k in 0..64 {
-            // Off the ends of the pieces, where the velocity jumps.
+            // The start is off the ends of the pieces, where the velocity jumps.
             let start = PERIOD * (f64::from(k) + 0.37) / 64.0;
             let wall = motion.state(start);
             let from = |rate: f64, depth: f64| Flight {
@@ -143,7 +143,7 @@ fn a_touching_start_counts_only_while_it_closes() {
 
 #[test]
 fn a_touch_does_not_repeat_itself() {
-    // As the engine does: turn the disk round where it touches, and ask again.
+    // The disk turns where it touches, and the search is asked again, as the engine does.
     for (name, motion) in motions() {
         let mut generator = Xoshiro256PlusPlus::seed_from_u64(5);
         for case in 0..300 {
@@ -208,7 +208,8 @@ fn late_times_cost_digits_of_time_and_nothing_else() {
     }
 }
 
-/// Values that no sane flight has: the search must end, and never answer with a time outside its limits.
+/// The flights have values that no sane flight has. The search must end, and never answer with a time outside
+/// its limits.
 #[test]
 fn hostile_flights_end() {
     let hostile = [
@@ -233,8 +234,8 @@ fn hostile_flights_end() {
                 for velocity in hostile {
                     for acceleration in [0.0, -1.0, 1.0, -1e140, 1e140, 1e-300, -1e-300, f64::NAN] {
                         let approach = Approach::new(start, height, velocity, acceleration);
-                        // A surface that outruns the wall from far below, or hovers in a reach that is too large, is
-                        // followed for as long as it takes.
+                        // A surface that outruns the wall from far below, or hovers in a reach that is too
+                        // large, is followed for as long as it takes.
                         let is_followed = height < -1.0 || name == "loose";
                         let end = if is_followed { start + 1e3 } else { f64::INFINITY };
                         for end in [start + 10.0, end] {
@@ -254,7 +255,7 @@ fn hostile_flights_end() {
 
 #[test]
 fn motions_that_break_their_contract_do_not_hang_the_search() {
-    /// Its pieces end before they begin.
+    /// A motion whose pieces end before they begin.
     struct Backward(f64);
     impl WallMotion for Backward {
         fn state(&self, _: f64) -> WallState {
@@ -273,8 +274,8 @@ fn motions_that_break_their_contract_do_not_hang_the_search() {
                 for end in [100.0, f64::INFINITY] {
                     let approach = Approach::new(1.0, height, velocity, -1.0);
                     let touch = first_touch(&Backward(backward), &approach, end);
-                    // Wherever the wall is, the surface is within its reach from the start, or nobody knows
-                    // where.
+                    // Wherever the wall is, the surface is within its reach from the start, or the reach is
+                    // unknown.
                     assert_eq!(touch, Some(1.0), "{backward} {height} {velocity}");
                 }
             }
@@ -324,7 +325,7 @@ fn a_search_without_an_end_ends_with_the_flight() {
 
 #[test]
 fn a_disk_that_hovers_just_above_the_reach_of_a_sine_ends() {
-    // It never touches, but for a moment in each period the gap is down to rounding.
+    // The disk never touches, but for a moment in each period the gap is down to rounding.
     let base = Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap();
     for above in [1e-15, 1e-16, 0.0, 1e-12, 1e-9] {
         let hovering = Approach::new(0.0, AMPLITUDE + above, 0.0, 0.0);

@@ -1,5 +1,5 @@
-//! Faults planted in a motion: the check names each, and the container refuses those that no run can do
-//! without.
+//! Faults planted in a motion: the check names each, and the container refuses those that would break every
+//! run.
 
 use std::error::Error;
 
@@ -114,8 +114,7 @@ fn verdict(fault: Fault) -> Result<(), Violation> {
 fn a_sound_motion_passes() {
     assert_eq!(verdict(Fault::None), Ok(()));
     assert_eq!(check_finite(&spoilt(Fault::None)), Ok(()));
-    // Bounds may be loose, and a wall may jump away from the disks where a piece ends, if it comes back
-    // slowly.
+    // Bounds may be loose. A wall may jump away from the disks where a piece ends, if it comes back slowly.
     assert_eq!(verdict(Fault::Bounds(1.0)), Ok(()));
 }
 
@@ -133,7 +132,7 @@ fn jumps_are_caught() {
     assert!(
         matches!(verdict(Fault::JumpAtEnd(1e-3)), Err(Violation::Jump { jump, .. }) if (jump - 1e-3).abs() < 1e-6)
     );
-    // Down is away from the disks; but then it is up again at the end of the period.
+    // A jump down is away from the disks, but then there is one up at the end of the period.
     assert!(matches!(verdict(Fault::JumpAtEnd(-1e-3)), Err(Violation::Jump { phase, .. }) if phase > 0.6));
     assert!(matches!(verdict(Fault::VelocityJumps), Err(Violation::Velocity { .. })));
 }
@@ -166,7 +165,7 @@ fn pieces_that_do_not_go_on_are_caught() {
     assert!(matches!(verdict(Fault::TinyPieces), Err(Violation::ShortPieces { .. })));
 }
 
-/// Each of these would let disks fall through the floor, or hang the search for a touch.
+/// Returns faults each of which would let disks fall through the floor, or hang the search for a touch.
 fn unusable() -> Vec<Fault> {
     let not_finite = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(|value| {
         [
@@ -196,7 +195,7 @@ fn numbers_that_are_not_finite_are_refused_by_the_container() {
         let violation = check_finite(&spoilt(fault)).unwrap_err();
         assert!(verdict(fault).is_err(), "{fault:?}");
         let error = Container::closed(8.0, 9.0).unwrap().with_motion(Wall::Floor, spoilt(fault)).unwrap_err();
-        // As text: a violation by NaN is not equal to itself.
+        // A violation by NaN is not equal to itself, so the violations are compared as text.
         let WallError::Motion { wall: Wall::Floor, violation: told } = error else {
             panic!("{fault:?}: {error}")
         };

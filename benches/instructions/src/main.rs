@@ -1,4 +1,5 @@
-//! A settled state, dilute or dense, that goes on for a few oscillations: what `.ci/instructions` counts.
+//! The run whose instructions `.ci/instructions` counts: a settled state, dilute or dense, that goes on for a
+//! few oscillations.
 
 #[path = "../../common/state.rs"]
 #[allow(dead_code, reason = "not all of it is needed here")]
@@ -21,7 +22,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Collisions of two disks in the part that is counted.
+/// Runs the program, and returns the number of collisions of two disks in the part that is counted.
 fn run() -> Outcome<u64> {
     let (state, settle, oscillations) = match std::env::args().nth(1).as_deref() {
         Some("dilute") => (DILUTE, 200, 200),
@@ -34,7 +35,7 @@ fn run() -> Outcome<u64> {
     Ok(run.counters().collisions - before)
 }
 
-/// The name by which callgrind finds it.
+/// Runs the part that is counted. Callgrind finds it by this name.
 #[inline(never)]
 fn counted_part(run: &mut Run, oscillations: u32) -> Outcome<()> {
     oscillate(run, oscillations)

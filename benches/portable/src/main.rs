@@ -1,7 +1,7 @@
-//! Two small runs through all that could differ between platforms, and the bits of their last states: what
-//! `.ci/portable` compares.
+//! The runs that `.ci/portable` compares between platforms: two small runs through everything that could
+//! differ, and the bits of their last states.
 //!
-//! Prints for each run its name, its collisions, and a hash of the state and of the checkpoint.
+//! The program prints for each run its name, its collisions, and a hash of the state and of the checkpoint.
 
 use std::error::Error;
 use std::process::ExitCode;
@@ -31,7 +31,8 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Unequal disks in a box whose floor, left side and lid move each in its own way, and whose right side is rough.
+/// Runs unequal disks in a box whose floor, left side and lid move each in its own way, and whose right side
+/// is rough.
 fn shaken_box() -> Outcome<String> {
     let container = || -> Outcome<Container> {
         Ok(Container::closed(20.0, 24.0)?
@@ -43,7 +44,7 @@ fn shaken_box() -> Outcome<String> {
     run(&container, 0.05, 0.0, 60.0)
 }
 
-/// Unequal disks between periodic sides over a thermal floor that heaves, at a late time.
+/// Runs unequal disks between periodic sides over a thermal floor that heaves, at a late time.
 fn heated_column() -> Outcome<String> {
     let container = || -> Outcome<Container> {
         Ok(Container::open(20.0)?
@@ -54,7 +55,8 @@ fn heated_column() -> Outcome<String> {
     run(&container, 0.2, 1e7, 100.0)
 }
 
-/// Runs for half of the time, goes through the bytes of a checkpoint to another scheduler, rule and gravity, and runs on.
+/// Runs for half of the time, goes through the bytes of a checkpoint to another scheduler, rule and gravity,
+/// and runs on.
 fn run(
     container: &dyn Fn() -> Outcome<Container>,
     gravity: f64,
@@ -84,7 +86,7 @@ fn rule(inelasticity: f64, friction: f64) -> Outcome<Rule> {
     Ok(ContactDuration::new(Frictional::new(inelasticity, friction)?, 1e-3)?)
 }
 
-/// Disks of three sizes, with masses and inertias of their own, on a lattice.
+/// Returns disks of three sizes, with various masses and inertias, on a lattice.
 fn disks(container: &Container) -> Outcome<Vec<Disk>> {
     let lattice = initial::with_maxwellian_velocities(initial::lattice(container, 180, 0.5)?, 1.0, 5)?;
     let unequal = lattice.iter().enumerate().map(|(index, disk)| {
@@ -98,7 +100,7 @@ fn disks(container: &Container) -> Outcome<Vec<Disk>> {
     unequal.collect()
 }
 
-/// Hash of all bits of time and disks.
+/// Returns a hash of all bits of the time and the disks.
 fn of_state<B: Boundary, S: EventScheduler>(run: &Simulation<Rule, B, S>) -> u64 {
     let mut bytes = run.time().to_bits().to_le_bytes().to_vec();
     for disk in run.disks() {
@@ -110,7 +112,7 @@ fn of_state<B: Boundary, S: EventScheduler>(run: &Simulation<Rule, B, S>) -> u64
     of_bytes(&bytes)
 }
 
-/// FNV-1a: a few lines, the same everywhere.
+/// Returns the FNV-1a hash, which takes a few lines and is the same everywhere.
 fn of_bytes(bytes: &[u8]) -> u64 {
     bytes
         .iter()

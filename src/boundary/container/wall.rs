@@ -1,4 +1,4 @@
-//! Walls of a container by their names, and errors about them.
+//! Names of a container's walls, and errors about walls.
 
 use std::fmt;
 
@@ -38,7 +38,7 @@ impl fmt::Display for Wall {
     }
 }
 
-/// A wall cannot be changed in this way.
+/// An error: a wall cannot be changed in this way.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall};
@@ -56,7 +56,7 @@ pub enum WallError {
         /// The wall asked for.
         wall: Wall,
     },
-    /// The motion answers with numbers that no run can do without.
+    /// The motion answers with numbers that would break every run.
     #[error("the motion of the wall \"{wall}\" cannot be used: {violation}")]
     Motion {
         /// The wall.

@@ -1,4 +1,4 @@
-//! One flight under trial, from its begin to its touch.
+//! A flight under trial, from its start to its touch.
 
 use glam::DVec2;
 
@@ -7,23 +7,25 @@ use super::trial::Trial;
 use crate::Flight;
 use crate::boundary::{Boundary, Surface, Touch};
 
-/// Samples along a flight.
+/// Number of samples along a flight.
 const SAMPLES: u32 = 200;
 
-/// Longest flight, in times that a disk takes across the domain.
+/// Longest flight, in units of the time that a disk takes across the domain.
 const LONGEST: f64 = 3.0;
 
-/// Part of the relative speed below which a touch is grazing: rounding decides when it comes, or whether.
+/// Fraction of the speeds below which a touch is grazing. Rounding decides when such a touch comes, or
+/// whether it comes at all.
 const GRAZING: f64 = 1e-2;
 
-/// Part of the radius by which a disk is moved to see where a wall is.
+/// Fraction of the radius by which a disk is moved to see where a wall is.
 const STEP: f64 = 1e-3;
 
-/// Error of a normal's length, and of its direction as told by the depths of disks that are moved along it.
+/// Largest errors of a normal: of its squared length, and of its direction, as the depths of moved disks show
+/// it.
 const UNIT: f64 = 1e-9;
 const SLOPE: f64 = 0.2;
 
-/// A touch that has been found, and how it meets the wall.
+/// A touch that was found, and how the disk meets the wall.
 struct Meeting {
     touch: Touch,
     place: DVec2,
@@ -35,7 +37,7 @@ struct Meeting {
     is_grazing: bool,
 }
 
-/// Checks a flight, and returns the next one, which begins where this one was turned back at a wall.
+/// Checks a flight, and returns the next one, which begins where a wall turned this one back.
 pub(super) fn check_flight<B: Boundary + ?Sized>(
     trial: &mut Trial<'_, B>,
     flight: &Flight,
@@ -54,7 +56,7 @@ pub(super) fn check_flight<B: Boundary + ?Sized>(
     Ok(Some(turned_back(trial, flight, &meeting)))
 }
 
-/// Returns how long a flight may last: until a periodic side at most, as flights of the engine do.
+/// Returns how long a flight may last. Like flights of the engine, it ends at a periodic side at the latest.
 fn longest<B: Boundary + ?Sized>(trial: &Trial<'_, B>, flight: &Flight) -> f64 {
     let longest = LONGEST * trial.length() / trial.speed();
     let (domain, start) = (trial.domain(), flight.time());
@@ -82,7 +84,7 @@ fn check_touch<B: Boundary + ?Sized>(
     Ok(())
 }
 
-/// Checks that a disk overlaps no wall, and is in the domain, on its way.
+/// Checks that a disk overlaps no wall and stays in the domain on its way.
 fn check_way<B: Boundary + ?Sized>(
     trial: &Trial<'_, B>,
     flight: &Flight,
@@ -129,7 +131,7 @@ fn check_place<B: Boundary + ?Sized>(
 }
 
 /// Checks that the normal is a unit vector, that a disk moved along it comes out of the wall, and that the
-/// wall has a velocity.
+/// velocity of the wall is finite.
 fn check_surface<B: Boundary + ?Sized>(
     trial: &Trial<'_, B>,
     touch: Touch,
@@ -147,7 +149,7 @@ fn check_surface<B: Boundary + ?Sized>(
     let step = STEP * trial.radius();
     let depth = |place: DVec2| trial.depth(place, 2.0 * step, time).map_or((wall, 0.0), |deepest| deepest);
     let (here, inward, outward) = (depth(place), depth(place - step * normal), depth(place + step * normal));
-    // In a corner another wall may be the deepest, and stay so.
+    // In a corner, another wall may be the deepest one, before the step and after it.
     let is_alone = here.0 == wall && outward.0 == wall;
     let comes_out = (here.1 - outward.1 - step).abs() <= SLOPE * step;
     let goes_in = inward.1 - here.1 >= (1.0 - SLOPE) * step;
@@ -158,7 +160,8 @@ fn check_surface<B: Boundary + ?Sized>(
     }
 }
 
-/// Checks that there is no touch when the flight ends before it, and one at once when it goes on from it.
+/// Checks that there is no touch if the flight ends before it, and that there is one at once if the flight
+/// goes on from it.
 fn check_limits<B: Boundary + ?Sized>(
     trial: &Trial<'_, B>,
     flight: &Flight,
@@ -175,7 +178,7 @@ fn check_limits<B: Boundary + ?Sized>(
         return Ok(());
     }
     let going_on = Flight::new(time, meeting.place, meeting.velocity, flight.acceleration(), flight.radius());
-    // The time in which the gap closes that rounding may have left open.
+    // Rounding may have left the gap open; it closes within this time.
     let soon = time + 4.0 * trial.rounding() / meeting.rate.abs();
     match trial.boundary.first_touch(&going_on, soon) {
         Some(again) if again.time >= time && again.time <= soon => Ok(()),
@@ -183,9 +186,9 @@ fn check_limits<B: Boundary + ?Sized>(
     }
 }
 
-/// Checks that the same flight, told from another time origin, touches at the same absolute time.
+/// Checks that the same flight, given relative to another time origin, touches at the same absolute time.
 ///
-/// A grazing touch, or one at the very end, may be there or not by rounding.
+/// Rounding decides whether a grazing touch, or one at the very end of the flight, is found.
 fn check_origin<B: Boundary + ?Sized>(
     trial: &mut Trial<'_, B>,
     flight: &Flight,
@@ -193,7 +196,7 @@ fn check_origin<B: Boundary + ?Sized>(
     meeting: Option<&Meeting>,
 ) -> Result<(), Violation> {
     let (origin, start) = (trial.origin(), flight.time());
-    // Earlier, so that no offset is negative.
+    // The other origin is earlier, so that no offset is negative.
     let shift = 0.37 * origin;
     let (position, velocity) = (flight.position(start), flight.velocity(start));
     let shifted = Flight::new(start + shift, position, velocity, flight.acceleration(), flight.radius());
@@ -201,7 +204,7 @@ fn check_origin<B: Boundary + ?Sized>(
     let found = trial.boundary.first_touch(&shifted, until + shift);
     let other = found.map(|touch| check_place(trial, &shifted, touch)).transpose();
     trial.set_origin(origin);
-    // As told from the first origin.
+    // The other touch, relative to the first origin.
     let other = other?
         .map(|other| Meeting { touch: Touch::new(other.touch.time - shift, other.touch.wall), ..other });
     let agree = match (meeting, &other) {
@@ -219,7 +222,8 @@ fn check_origin<B: Boundary + ?Sized>(
     if agree { Ok(()) } else { Err(Violation::TimeOrigin { origin, shift, before, after, flight: *flight }) }
 }
 
-/// Returns how far apart two answers to the same touch may be: as long as the gap takes through its rounding.
+/// Returns how far apart the times of the same touch may be: the time that the gap takes to close by its
+/// rounding.
 fn slack<B: Boundary + ?Sized>(trial: &Trial<'_, B>, meeting: &Meeting) -> f64 {
     4.0 * trial.rounding() / meeting.rate.abs()
 }

@@ -1,4 +1,4 @@
-//! One boundary under trial: places, sizes and the rounding that is allowed.
+//! A boundary under trial: places, sizes and the allowed rounding.
 
 use glam::DVec2;
 
@@ -7,13 +7,14 @@ use super::flight::check_flight;
 use crate::Flight;
 use crate::boundary::{Boundary, Domain, Region};
 
-/// Rounding allowed, relative to the size of the domain.
+/// Allowed rounding, relative to the size of the domain.
 const ROUNDING: f64 = 1e-9;
 
-/// Sizes of the regions around a touch, relative to the radius; the smallest holds the rounding of its place.
+/// Sizes of the regions around a touch, relative to the radius. The smallest region only contains the
+/// rounding of the place.
 const REGIONS: [f64; 3] = [0.0, 0.5, 5.0];
 
-/// A boundary, and what is tried with it.
+/// A boundary, and the numbers of its trial.
 pub(super) struct Trial<'a, B: ?Sized> {
     pub(super) boundary: &'a mut B,
     domain: Domain,
@@ -49,19 +50,19 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
         &self.domain
     }
 
-    /// Size of the domain: of a square of its width, if it is open above.
+    /// Returns the size of the domain. If the domain is open above, this is its width.
     pub(super) fn length(&self) -> f64 {
         let height = self.domain.height();
         if height.is_finite() { self.domain.width().max(height) } else { self.domain.width() }
     }
 
-    /// Depth of an overlap that is rounding: of places, and of times at the speed of disks and walls.
+    /// Returns the depth of an overlap that counts as rounding.
     pub(super) fn rounding(&self) -> f64 {
         let Domain { left, right, bottom, .. } = self.domain;
         ROUNDING * (self.length() + left.abs().max(right.abs()).max(bottom.abs()) + self.radius)
     }
 
-    /// Corners of the rectangle in which flights begin.
+    /// Returns the corners of the rectangle in which flights begin.
     pub(super) fn rectangle(&self) -> (DVec2, DVec2) {
         let Domain { left, right, bottom, top, .. } = self.domain;
         (DVec2::new(left, bottom), DVec2::new(right, top.min(bottom + self.length())))
@@ -72,12 +73,12 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
         self.origin = origin;
     }
 
-    /// Returns the wall that a disk larger by `more` overlaps at this place, and how deep.
+    /// Returns the wall that a disk larger by `more` overlaps at this place, and the depth.
     pub(super) fn depth(&self, place: DVec2, more: f64, time: f64) -> Option<(usize, f64)> {
         self.boundary.overlap(place, self.radius + more, time)
     }
 
-    /// Checks some flights in a row of a disk, turned back at each wall that it touches.
+    /// Checks some flights of a disk in a row. Each wall that the disk touches turns it back.
     pub(super) fn run(&mut self, origin: f64, first: Flight, flights: usize) -> Result<(), Violation> {
         self.set_origin(origin);
         let mut flight = first;
@@ -92,7 +93,7 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
         Ok(())
     }
 
-    /// Checks that the domain and the count of walls are still what they were.
+    /// Checks that the domain and the number of walls have not changed.
     fn check_constants(&self) -> Result<(), Violation> {
         let (now, walls) = (self.boundary.domain(), self.boundary.wall_count());
         if now != self.domain {
@@ -104,7 +105,7 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
         Ok(())
     }
 
-    /// Checks that every region that holds this place of a touch may be touched.
+    /// Checks that `may_touch` is true for every region that contains this place of a touch.
     pub(super) fn check_regions(&self, place: DVec2) -> Result<(), Violation> {
         for size in REGIONS.map(|size| DVec2::splat(size * self.radius + self.rounding())) {
             let around = Region::new(place - size, place + size);
@@ -119,7 +120,7 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
         Ok(())
     }
 
-    /// Returns a region like those of the engine: without an end where it comes near an edge of the domain.
+    /// Returns a region like those of the engine, which has no end where it comes near an edge of the domain.
     fn open_at_edges(&self, region: Region) -> Region {
         let Domain { left, right, bottom, top, periodic } = self.domain;
         let near = 2.0 * self.radius;

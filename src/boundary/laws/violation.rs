@@ -6,7 +6,7 @@ use thiserror::Error;
 use crate::Flight;
 use crate::boundary::{Domain, Region};
 
-/// Part of the contract that a boundary breaks. Times are offsets from the time origin.
+/// A way in which a boundary breaks its contract. Times are offsets from the time origin.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Violation {
@@ -32,15 +32,15 @@ pub enum Violation {
         /// The domain now.
         now: Domain,
     },
-    /// The count of walls changes.
+    /// The number of walls changes.
     #[error("there were {before} walls and are now {now}")]
     WallsChanged {
-        /// The count at first.
+        /// The number at first.
         before: usize,
-        /// The count now.
+        /// The number now.
         now: usize,
     },
-    /// No free place was found for a disk.
+    /// The check found no free place for a disk.
     #[error(
         "no place was found in the domain where a disk of radius {radius} overlaps no wall at time {time}"
     )]
@@ -50,7 +50,7 @@ pub enum Violation {
         /// The time.
         time: f64,
     },
-    /// A disk is let into a wall.
+    /// A disk gets into a wall without a touch.
     #[error(
         "a disk is {depth} deep in wall {wall} at time {time}, before a touch at {found:?}, on {flight:?}"
     )]
@@ -86,12 +86,12 @@ pub enum Violation {
         /// The flight.
         flight: Flight,
     },
-    /// A touch is of a wall that there is not.
+    /// A touch is with a wall that does not exist.
     #[error("a touch is of wall {wall}, but there are {count}, on {flight:?}")]
     TouchWall {
         /// Index of the wall.
         wall: usize,
-        /// Count of walls.
+        /// Number of walls.
         count: usize,
         /// The flight.
         flight: Flight,
@@ -118,7 +118,7 @@ pub enum Violation {
         /// The flight.
         flight: Flight,
     },
-    /// A disk that touches a wall and approaches it is not found to touch it.
+    /// A disk touches a wall and approaches it, but the touch is not found.
     #[error("wall {wall} is touched and approached, but no touch is found at once, on {flight:?}")]
     Missed {
         /// The wall.
@@ -157,12 +157,12 @@ pub enum Violation {
     Velocity {
         /// The wall.
         wall: usize,
-        /// Its velocity.
+        /// The velocity.
         velocity: DVec2,
         /// The time.
         time: f64,
     },
-    /// A region that holds a touch is said not to be touched.
+    /// `may_touch` is false for a region in which there is a touch.
     #[error("a disk of radius {radius} touches at {place}, but `may_touch` denies it for {region:?}")]
     MayTouch {
         /// The region.
@@ -172,7 +172,7 @@ pub enum Violation {
         /// Center of the disk at the touch.
         place: DVec2,
     },
-    /// The same flight told from another time origin touches at another time.
+    /// The same flight, given relative to another time origin, touches at another time.
     #[error(
         "with a time origin earlier than {origin} by {shift}, the touch is at time {after:?} and not \
          {before:?}, on {flight:?}"
@@ -182,9 +182,9 @@ pub enum Violation {
         origin: f64,
         /// Time by which the other origin is earlier.
         shift: f64,
-        /// Time of the touch from the one origin.
+        /// Time of the touch relative to the one origin.
         before: Option<f64>,
-        /// Time of the touch from the other origin, as an offset from the first.
+        /// Time of the touch found with the other origin, as an offset from the first.
         after: Option<f64>,
         /// The flight.
         flight: Flight,

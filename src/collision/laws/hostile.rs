@@ -1,30 +1,32 @@
-//! Contacts at the edges of what a rule can meet.
+//! Extreme contacts that a rule can meet.
 
 use crate::collision::Contact;
 
-/// Closing speeds: none, nearly none, and decades up to the largest speed that a disk may have.
+/// Closing speeds: zero, almost zero, and decades up to the largest speed that a disk may have.
 const CLOSING_SPEEDS: [f64; 14] =
     [0.0, 1e-300, 1e-60, 1e-30, 1e-12, 1e-6, 1e-3, 0.1, 1.0, 3.0, 1e3, 1e6, 1e12, 1e60];
 
-/// Slip speeds beside closing speeds: none, central, about where friction lets go, grazing.
+/// Slip speeds relative to the closing speed: none, central, near the end of sticking, grazing.
 const SLIP_RATIOS: [f64; 12] = [0.0, 1e-15, 1e-9, 1e-3, 0.1, 0.3, 1.0, 3.0, 10.0, 1e3, 1e9, 1e15];
 
-/// Slip speeds that do not know of the closing speed.
+/// Slip speeds that do not depend on the closing speed.
 const SLIP_SPEEDS: [f64; 4] = [1e-30, 1e-6, 1.0, 1e60];
 
-/// Reduced masses, of the lightest and the heaviest disks and between.
+/// Reduced masses of the lightest and the heaviest disks, and some between.
 const MASSES: [f64; 5] = [1e-30, 1e-3, 0.5, 1e3, 1e30];
 
-/// Tangential mass beside the normal one: all mass near the center, homogeneous, a ring, and the bound.
+/// Tangential masses relative to the normal one: all mass near the center, a homogeneous disk, a ring, and
+/// the bound.
 const MASS_RATIOS: [f64; 4] = [1e-6, 1.0 / 3.0, 0.5, 1.0];
 
-/// Times since the last collision: now, just before, before, never.
+/// Times since the last collision: none, very short, short, and infinite.
 const TIMES: [f64; 4] = [0.0, 1e-9, 1e-3, f64::INFINITY];
 
-/// Contacts that rules tend to forget, the same ones in the same order every time.
+/// Returns contacts that rules tend to forget, the same ones in the same order every time.
 ///
-/// Closing and slip speeds, masses and their ratio, over all decades that the engine accepts; slip of both
-/// signs and none, central and grazing, no closing speed, and partners that have just collided.
+/// The contacts cover closing and slip speeds, masses and mass ratios over all decades that the engine
+/// accepts. Among them are slips of both signs and none, central and grazing contacts, contacts without
+/// closing speed, and partners that have just collided.
 ///
 /// ```
 /// use granular_edmd::collision::laws::hostile_contacts;

@@ -1,4 +1,4 @@
-//! A rule against all laws at once.
+//! The check of a rule against all laws at once.
 
 use super::violation::same;
 use super::{
@@ -6,7 +6,7 @@ use super::{
 };
 use crate::collision::{CollisionRule, Contact, Impulse};
 
-/// Promises of a rule, beyond finite impulses that separate and repeat.
+/// The promises of a rule, beyond finite impulses that separate and repeat.
 ///
 /// ```
 /// use granular_edmd::collision::laws::{Promises, check_rule};
@@ -24,23 +24,23 @@ pub struct Promises {
 }
 
 impl Promises {
-    /// Energy is not gained; nothing is said of the tangential direction.
+    /// Promises that energy is not gained, and nothing about the tangential direction.
     pub const fn new() -> Self {
         Self { energy_gain: false, opposed_slip: false, static_friction: None }
     }
 
-    /// The same, with Coulomb friction: the impulse stays in the cone of this coefficient `$\kappa_s$`, and
-    /// opposes the slip.
+    /// Returns the same promises, with Coulomb friction: the impulse stays in the cone of this coefficient
+    /// `$\kappa_s$`, and opposes the slip.
     pub const fn with_friction(self, static_friction: f64) -> Self {
         Self { opposed_slip: true, static_friction: Some(static_friction), ..self }
     }
 
-    /// The same, with a tangential impulse that opposes the slip, in a cone or not.
+    /// Returns the same promises, with a tangential impulse that opposes the slip, in a cone or not.
     pub const fn with_opposed_slip(self) -> Self {
         Self { opposed_slip: true, ..self }
     }
 
-    /// The same for a rule that drives: energy may be gained.
+    /// Returns the same promises for a rule that drives: energy may be gained.
     pub const fn with_energy_gain(self) -> Self {
         Self { energy_gain: true, ..self }
     }
@@ -48,7 +48,7 @@ impl Promises {
     /// Checks that `impulse` keeps these promises.
     ///
     /// # Errors
-    /// The first that is broken.
+    /// The first promise that is broken.
     pub fn check(&self, contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
         if self.energy_gain { check_separation(contact, impulse) } else { check(contact, impulse) }?;
         if let Some(static_friction) = self.static_friction {
@@ -65,7 +65,7 @@ impl Default for Promises {
 }
 
 /// Checks that `rule` keeps its promises for all [`hostile_contacts`], and gives the same answers when it is
-/// asked again, in another order.
+/// asked again in another order.
 ///
 /// # Errors
 /// The first promise that is broken, with the contact and the impulse that break it.
@@ -76,7 +76,7 @@ pub fn check_rule<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> R
         promises.check(&contact, impulse)?;
         answers.push((contact, impulse));
     }
-    // Backward: a rule that remembers is asked for each contact with other ones in its memory.
+    // The second pass runs backward: a rule that remembers then has other contacts in its memory.
     for (contact, impulse) in answers.into_iter().rev() {
         let later = rule.impulse(&contact);
         if !same(impulse, later) {

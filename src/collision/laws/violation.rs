@@ -1,4 +1,4 @@
-//! The laws, as errors.
+//! Violations of the laws, as errors.
 
 use thiserror::Error;
 
@@ -8,7 +8,7 @@ use crate::collision::{Contact, Impulse, Regime};
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Violation {
-    /// The impulse has a component that is not a number, or infinite.
+    /// A component of the impulse is infinite or not a number.
     #[error("the impulse {impulse} is not finite ({contact})")]
     NotFinite {
         /// The contact.
@@ -36,7 +36,7 @@ pub enum Violation {
         /// The impulse that was given.
         impulse: Impulse,
     },
-    /// The tangential impulse pushes along the slip, or reverses it to more than it was.
+    /// The tangential impulse pushes along the slip, or reverses it to a faster one.
     #[error("the impulse {impulse} speeds the slip up, to {slip_speed:?} ({contact})")]
     SlipSpedUp {
         /// Slip speed after the collision.
@@ -58,7 +58,7 @@ pub enum Violation {
         /// The impulse that was given.
         impulse: Impulse,
     },
-    /// The rule answers the same contact in two ways.
+    /// The rule gives two answers to the same contact.
     #[error(
         "the same contact had the impulse {impulse} ({:?}), later {later} ({:?}): {contact}",
         impulse.regime(), later.regime()
@@ -74,7 +74,7 @@ pub enum Violation {
 }
 
 impl Violation {
-    /// The contact for which the law is broken.
+    /// Returns the contact for which the law is broken.
     pub const fn contact(&self) -> &Contact {
         match self {
             Self::NotFinite { contact, .. }
@@ -86,7 +86,7 @@ impl Violation {
         }
     }
 
-    /// The impulse that breaks it.
+    /// Returns the impulse that breaks the law.
     pub const fn impulse(&self) -> Impulse {
         match self {
             Self::NotFinite { impulse, .. }

@@ -6,7 +6,8 @@ use super::{derivative, first_descent_of_quartic, value};
 use crate::random::uniform;
 use crate::roots::first_descent;
 
-/// `scale` times the product of `(t - zero)`, or of `(t - zero)² + width²` for a pair that is not real.
+/// Returns `scale` times the product of `(t - zero)`, and of `(t - zero)² + width²` for each pair of zeros
+/// that are not real.
 fn product(scale: f64, zeros: &[f64], pairs: &[(f64, f64)]) -> [f64; 5] {
     let mut coefficients = [scale, 0.0, 0.0, 0.0, 0.0];
     let mut multiply = |factor: [f64; 3]| {
@@ -24,13 +25,13 @@ fn product(scale: f64, zeros: &[f64], pairs: &[(f64, f64)]) -> [f64; 5] {
     coefficients
 }
 
-/// Sizes of all terms at this time: rounding of the value is a part of it.
+/// Returns the summed size of all terms at this time. The rounding of the value is a fraction of it.
 fn size(coefficients: &[f64; 5], time: f64) -> f64 {
     value(&coefficients.map(f64::abs), time)
 }
 
-/// Steps along the gap and says what the search may not say: no answer where the gap falls through, or one
-/// where it is open.
+/// Steps along the gap and asserts what must not happen: no answer where the gap falls through zero, or an
+/// answer where the gap is open.
 fn compare(coefficients: &[f64; 5], end: f64) -> Option<f64> {
     let found = first_descent_of_quartic(coefficients, end);
     let rounding = |time: f64| 1e-12 * size(coefficients, time);
@@ -94,7 +95,7 @@ fn known_zeros_are_found_in_order() {
         let pairs = if zeros.len() < 3 { vec![(between(&mut generator, 0.0, 5.0), 0.3)] } else { Vec::new() };
         for scale in [1.0, -1.0, 1e-200, -1e200] {
             let coefficients = product(scale, &zeros, &pairs);
-            // The gap falls through every other zero; behind the last it has the sign of the scale.
+            // The gap falls through every other zero. Beyond the last zero it has the sign of the scale.
             let falling = (0..zeros.len()).filter(|k| (zeros.len() - k).is_multiple_of(2) == (scale > 0.0));
             let expected = falling.map(|k| zeros[k]).find(|&zero| zero > 0.0);
             let is_closing = coefficients[0] <= 0.0 && coefficients[1] < 0.0;
@@ -114,7 +115,7 @@ fn generator_index(generator: &mut Xoshiro256PlusPlus, count: u32) -> u32 {
     (uniform(generator) * f64::from(count)) as u32
 }
 
-/// Disks inside a circle, pulled down: the gap that is left at the touch is rounding.
+/// Disks fly inside a circle and are pulled down. The gap that is left at the touch is rounding.
 #[test]
 fn flights_in_a_circle_end_at_its_wall() {
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(3);
@@ -133,7 +134,7 @@ fn flights_in_a_circle_end_at_its_wall() {
         let time = compare(&gap, 1e3).unwrap();
         let place = r + (v + 0.5 * time * a) * time;
         assert!((place.length() - 1.0).abs() < 1e-13, "{case}: {}", place.length());
-        // An end at the descent still holds it, up to the rounding of the gap.
+        // A search that ends at the descent still finds it, up to the rounding of the gap.
         let again = first_descent_of_quartic(&gap, time).unwrap();
         assert!(again <= time && time - again < 1e-13 * (1.0 + time), "{case}: {time} {again}");
         assert_eq!(first_descent_of_quartic(&gap, time * (1.0 - 1e-9)), None);
@@ -148,10 +149,10 @@ fn closed_gaps_count_only_while_they_close() {
     assert_eq!(descent([0.0, 0.0, 0.0, 1.0, 1.0]), None);
     assert_eq!(descent([0.0, 0.0, 0.0, 0.0, 0.0]), None);
     assert_eq!(descent([0.0, 1.0, 0.0, -1.0, 0.0]), Some(1.0));
-    // Closed at its top still: it counts when it is back at its first value, not at the top.
+    // The gap is still closed at its top. It counts when it is back at its first value, not at the top.
     let (low, exact) = (descent([-1.0, 1.0, 0.0, -1.0, 0.0]).unwrap(), 1.0);
     assert!((low - exact).abs() < 1e-15, "{low}");
-    // A little more, and it opens.
+    // A little higher, and the gap opens.
     assert!((descent([-0.3, 1.0, 0.0, -1.0, 0.0]).unwrap() - 0.786_4).abs() < 1e-4);
 }
 
@@ -186,7 +187,7 @@ fn hostile_numbers_end() {
 }
 
 proptest! {
-    /// Degree two in disguise: a tiny quartic term must not move the descent of a parabola.
+    /// The quartic is of degree two in disguise: a tiny quartic term must not move the descent of a parabola.
     #[test]
     fn tiny_terms_do_not_matter(value in -1.0..10.0f64, rate in -3.0..3.0f64, acceleration in -3.0..-0.1f64) {
         let plain = first_descent(value, rate, acceleration).unwrap();

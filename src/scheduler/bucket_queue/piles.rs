@@ -1,17 +1,17 @@
-//! Piles of disks: written at their ends only, and read as a whole.
+//! Piles of disks, which are written at their ends only and read as a whole.
 
-/// Disks in a block: with the link to another block they fill four cache lines.
+/// Number of disks in a block. With the link to another block they fill four cache lines.
 const ROOM: usize = 63;
 
-/// Link to no block.
+/// The link of a block without a successor.
 const NOWHERE: u32 = u32::MAX;
 
-/// Piles of disks, in blocks from a common store: a block that has been read serves another pile.
+/// Piles of disks, in blocks from a common store. A block that has been read serves another pile.
 #[derive(Debug, Clone)]
 pub(super) struct Piles {
     ends: Vec<Pile>,
     blocks: Vec<Block>,
-    /// The first of the blocks that are in no pile.
+    /// The first of the free blocks, which are in no pile.
     free: u32,
 }
 
@@ -23,7 +23,7 @@ struct Pile {
 }
 
 impl Pile {
-    /// A pile without a block counts as one whose last block is full: the first disk asks for a block.
+    /// An empty pile. It counts as one whose last block is full, so the first disk asks for a block.
     const EMPTY: Self = Self { last: NOWHERE, count: ROOM as u32 };
 }
 
@@ -31,14 +31,14 @@ impl Pile {
 #[repr(align(64))]
 struct Block {
     disks: [u32; ROOM],
-    /// The block before it, or the next free one.
+    /// The block before this one in its pile, or the next free one.
     previous: u32,
 }
 
 impl Piles {
     pub(super) const NONE: Self = Self { ends: Vec::new(), blocks: Vec::new(), free: NOWHERE };
 
-    /// Empties everything, and makes this number of piles.
+    /// Empties everything, and makes this number of empty piles.
     pub(super) fn clear(&mut self, piles: usize) {
         self.ends.clear();
         self.ends.resize(piles, Pile::EMPTY);

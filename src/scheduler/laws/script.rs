@@ -1,4 +1,4 @@
-//! The scripts by which schedulers are checked.
+//! The scripts with which schedulers are checked.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::random::uniform;
 use crate::scheduler::LARGE_SYSTEM;
 
-/// One call of a scheduler.
+/// A call of a scheduler.
 #[derive(Debug, Clone)]
 pub(super) enum Operation {
     Reset(Vec<f64>),
@@ -24,25 +24,26 @@ impl fmt::Display for Operation {
     }
 }
 
-/// A kind of operations.
+/// A script: a kind of operations, repeated for some steps.
 pub(super) struct Script {
     pub(super) name: &'static str,
-    /// The numbers of disks to start with.
+    /// Numbers of disks at the start.
     pub(super) disks: &'static [usize],
     pub(super) steps: usize,
-    /// The first operation, for a number of disks.
+    /// Makes the first operation, for a number of disks.
     pub(super) start: fn(&mut Stage, usize) -> Operation,
-    /// The next operation, given the earliest disk and its time; there are disks.
+    /// Makes the next operation from the earliest disk and its time. There are disks.
     next: fn(&mut Stage, usize, f64) -> Operation,
 }
 
-/// None, few, powers of two and of four and their neighbors.
+/// Zero, few, and powers of two and of four with their neighbors.
 const FEW: &[usize] = &[0, 1, 2, 3, 4, 5, 15, 16, 17, 63, 64, 65, 130];
 
-/// So many that a scheduler which works in batches goes through several of them within the steps of a script.
+/// Enough disks that a scheduler which works in batches goes through several batches within the steps of a
+/// script.
 const SOME: &[usize] = &[600];
 
-/// More than a scheduler that chooses by size treats as few, and more than 16 bits count.
+/// More disks than a scheduler that chooses by size treats as few, and than 16 bits can count.
 const MANY: &[usize] = &[LARGE_SYSTEM + 40_000];
 
 pub(super) const SCRIPTS: [Script; 9] = [
@@ -57,7 +58,7 @@ pub(super) const SCRIPTS: [Script; 9] = [
     Script { name: "large and small", disks: MANY, steps: 12, start: spread, next: reset_to_few },
 ];
 
-/// Random numbers, and the times of the disks as they are and as they were.
+/// Random numbers, and the present and previous times of the disks.
 pub(super) struct Stage {
     generator: Xoshiro256PlusPlus,
     due: Vec<f64>,
@@ -70,7 +71,7 @@ impl Stage {
         Self { generator, due: Vec::new(), before: Vec::new() }
     }
 
-    /// Takes note of an operation.
+    /// Notes an operation.
     pub(super) fn note(&mut self, operation: &Operation) {
         match operation {
             Operation::Reset(due) => (self.due, self.before) = (due.clone(), due.clone()),
@@ -78,7 +79,7 @@ impl Stage {
         }
     }
 
-    /// Returns the next operation of a script; without disks there is only a reset.
+    /// Returns the next operation of a script. Without disks, only a reset is possible.
     pub(super) fn next(&mut self, script: &Script, (first, now): (usize, f64)) -> Operation {
         if self.due.is_empty() { few(self) } else { (script.next)(self, first, now) }
     }
@@ -95,7 +96,7 @@ impl Stage {
         self.below(self.due.len())
     }
 
-    /// Returns a time from here on: soon mostly, at once, in a while, or never.
+    /// Returns a time from now on: mostly soon, else at once, after a moment, or never.
     fn wait(&mut self) -> f64 {
         match self.below(40) {
             0 => f64::INFINITY,
@@ -109,7 +110,7 @@ impl Stage {
         200.0 * uniform(&mut self.generator) - 100.0
     }
 
-    /// Returns one of few times, both zeros among them.
+    /// Returns one of few times. Both zeros are among them.
     fn tied_time(&mut self) -> f64 {
         [-2.0, -1.0, -0.0, 0.0, 1.0, 2.0, f64::INFINITY][self.below(7)]
     }
@@ -159,8 +160,8 @@ fn few(stage: &mut Stage) -> Operation {
     extreme(stage, disks)
 }
 
-/// As in a run: the first disk gets a later time, now and then another one does, or has its time of before
-/// again.
+/// Makes the operations of a run: the first disk gets a later time. Now and then another disk does, or
+/// returns to its previous time.
 fn run(stage: &mut Stage, first: usize, now: f64) -> Operation {
     if !now.is_finite() {
         return to_and_fro(stage, first, now);
@@ -174,7 +175,7 @@ fn run(stage: &mut Stage, first: usize, now: f64) -> Operation {
     }
 }
 
-/// Any disk, or the first, to any time.
+/// Sets the first or any other disk to any time.
 fn to_and_fro(stage: &mut Stage, first: usize, _: f64) -> Operation {
     let other = stage.any_disk();
     Operation::Set([first, other][stage.below(2)], stage.spread_time())
@@ -190,7 +191,7 @@ fn to_extremes(stage: &mut Stage, first: usize, _: f64) -> Operation {
     Operation::Set([first, other][stage.below(2)], stage.extreme_time())
 }
 
-/// One disk is due again and again, in long steps, and all others never.
+/// Makes one disk busy in long steps, while all others never have an event.
 fn one_busy(stage: &mut Stage, first: usize, now: f64) -> Operation {
     if now < f64::INFINITY {
         Operation::Set(first, now + 1e6)
@@ -203,7 +204,7 @@ fn reset_often(stage: &mut Stage, first: usize, now: f64) -> Operation {
     if stage.below(4) == 0 { few(stage) } else { run(stage, first, now) }
 }
 
-/// Few disks after many, and many again.
+/// Resets to few disks after many, and back to many.
 fn reset_to_few(stage: &mut Stage, first: usize, now: f64) -> Operation {
     match stage.below(4) {
         0 => few(stage),
@@ -217,7 +218,7 @@ mod tests {
     use super::*;
     use crate::scheduler::{EventScheduler, LinearScan};
 
-    /// The contract promises as much.
+    /// The contract of schedulers promises this.
     #[test]
     fn no_script_sets_nan_or_a_disk_that_is_not_there() {
         for script in &SCRIPTS {

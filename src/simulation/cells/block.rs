@@ -1,24 +1,25 @@
-//! A few disks of a cell.
+//! Blocks: a few disks of a cell.
 
 use crate::disk::MOST_DISKS;
 
-/// Disks that a block has room for.
+/// Number of disks for which a block has room.
 pub(super) const SLOTS: usize = 4;
 
-/// In the first slot, above the number of the disk: how many slots are taken, [`CROWDED`] if more disks are elsewhere, and
-/// whether the disks can touch a wall.
+/// Bits of the number of a disk. In the first slot, the bits above hold the number of slots taken, or
+/// [`CROWDED`] if the cell has more disks elsewhere. The highest bit tells whether the disks can touch a
+/// wall.
 const DISK: u32 = (1 << 28) - 1;
 const ONE: u32 = DISK + 1;
 const AT_WALL: u32 = 1 << 31;
 
-/// In place of the number of disks.
+/// Value in place of the number of slots taken, if the cell has more disks elsewhere.
 pub(super) const CROWDED: usize = SLOTS + 1;
 
 const _: () = assert!(MOST_DISKS <= DISK as usize + 1);
 
-/// Up to four disks, filled from the first slot on; in all one load or store.
+/// Up to four disks, filled from the first slot on, in a single load or store.
 ///
-/// All that a cell is comes from one cache line: with the counts elsewhere a run of 10⁶ disks takes 7 % longer.
+/// All data of a cell come from one cache line. Large systems would be slower with the counts elsewhere.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(16))]
 pub(super) struct Block([u32; SLOTS]);
@@ -26,7 +27,7 @@ pub(super) struct Block([u32; SLOTS]);
 impl Block {
     pub(super) const EMPTY: Self = Self([0; SLOTS]);
 
-    /// Number of slots taken, or [`CROWDED`].
+    /// Returns the number of slots taken, or [`CROWDED`].
     #[inline]
     pub(super) fn count(&self) -> usize {
         ((self.0[0] & !AT_WALL) / ONE) as usize
@@ -41,13 +42,13 @@ impl Block {
         self.0[0] |= AT_WALL;
     }
 
-    /// A full block: whether more disks of its cell are elsewhere.
+    /// Notes in a full block whether more disks of its cell are elsewhere.
     pub(super) fn set_crowded(&mut self, crowded: bool) {
         let count = if crowded { CROWDED } else { SLOTS };
         self.0[0] = (self.0[0] & (DISK | AT_WALL)) + count as u32 * ONE;
     }
 
-    /// The disks, and behind them anything.
+    /// Returns the slots: the disks, followed by arbitrary numbers.
     #[inline]
     pub(super) fn slots(&self) -> [u32; SLOTS] {
         let [first, second, third, fourth] = self.0;
@@ -67,7 +68,7 @@ impl Block {
         self.0 = slots;
     }
 
-    /// The last disk takes the place of the one that leaves.
+    /// Removes a disk. The last disk of the block takes its place.
     #[inline]
     pub(super) fn remove(&mut self, disk: usize) {
         let mut slots = self.with(disk, self.last());
@@ -75,19 +76,19 @@ impl Block {
         self.0 = slots;
     }
 
-    /// Puts another disk in the place of one, if that is here.
+    /// Puts another disk in the place of one, if that one is here.
     #[inline]
     pub(super) fn replace(&mut self, disk: usize, by: u32) {
         self.0 = self.with(disk, by);
     }
 
-    /// The last disk of a block that is not empty.
+    /// Returns the last disk of a block that is not empty.
     #[inline]
     pub(super) fn last(&self) -> u32 {
         self.0[self.count().wrapping_sub(1) % SLOTS] & DISK
     }
 
-    /// Bits above the disk in the first slot.
+    /// Returns the bits above the disk in the first slot.
     #[inline]
     fn above(&self) -> u32 {
         self.0[0] & !DISK

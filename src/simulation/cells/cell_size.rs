@@ -1,8 +1,8 @@
 //! Sizes of neighbor cells.
 
-/// Size of the cells: small ones hold fewer neighbors, large ones are passed less often.
+/// The size of the cells. Small cells hold fewer neighbors, and large cells are left less often.
 ///
-/// Where disks crowd, the smallest are the fastest; in a dilute gas, the largest.
+/// The smallest cells are the best where disks crowd, and the largest in a dilute gas.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) enum CellSize {
@@ -12,7 +12,7 @@ pub(in crate::simulation) enum CellSize {
 }
 
 impl CellSize {
-    /// Size of a cell in diameters of the largest disk.
+    /// Returns the size of a cell in diameters of the largest disk.
     pub(in crate::simulation) const fn pitch(self) -> f64 {
         match self {
             Self::Small => 1.08,
@@ -21,9 +21,10 @@ impl CellSize {
         }
     }
 
-    /// The mesh that suits disks which passed so many cells while they collided so often.
+    /// Returns the size that suits disks which crossed so many cells while they collided so often.
     ///
-    /// The bounds are where runs of either mesh take as long, and far enough apart that none is changed to and fro.
+    /// The bounds are where runs with either size take equally long. They are far enough apart that no size
+    /// is changed to and fro.
     pub(in crate::simulation) fn suitable(self, cell_crossings: u64, collisions: u64) -> Self {
         let passed = cell_crossings as f64 / collisions as f64;
         match self {

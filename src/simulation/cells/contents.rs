@@ -3,26 +3,28 @@
 use super::block::{Block, CROWDED, SLOTS};
 use crate::prefetch::prefetch;
 
-/// Disks that may lie outside the blocks of their cells before all cells get more blocks: this many ...
+/// Number of disks that may lie outside the blocks of their cells before all cells get more blocks. One more
+/// is allowed for each [`CELLS`] cells.
 const FEW: usize = 16;
 
-/// ... and one more for each group of this many cells.
+/// Number of cells in a group. Each group allows for one more disk outside the blocks.
 const CELLS: usize = 1024;
 
 /// The disks of each cell, by the index of the cell.
 ///
-/// Every cell has the same number of blocks, filled from the first on. A disk for which its cell has no room goes to a list. The
-/// list is searched from end to end, but it is short, and only for cells that are marked to have disks there.
+/// Every cell has the same number of blocks, filled from the first on. A disk for which its cell has no room
+/// goes to a list. The list is searched from end to end, but it is short, and the search is only for cells
+/// that are marked as having disks there.
 #[derive(Debug, Clone)]
 pub(super) struct Contents {
     blocks: Vec<Block>,
-    /// Number of blocks in each cell.
+    /// Number of blocks of each cell.
     depth: usize,
     /// Disks that do not fit into the blocks of their cell, in no order.
     outside: Vec<Outside>,
 }
 
-/// A disk without room in its cell.
+/// A disk for which its cell has no room.
 #[derive(Debug, Clone, Copy)]
 struct Outside {
     cell: u32,
@@ -30,13 +32,13 @@ struct Outside {
 }
 
 impl Contents {
-    /// Makes this many empty cells of this many blocks.
+    /// Creates this many empty cells of this many blocks.
     pub(super) fn empty(cells: usize, depth: usize) -> Self {
         let outside = Vec::with_capacity(FEW + cells / CELLS);
         Self { blocks: vec![Block::EMPTY; cells * depth], depth, outside }
     }
 
-    /// Number of cells.
+    /// Returns the number of cells.
     fn cells(&self) -> usize {
         self.blocks.len() / self.depth
     }
@@ -77,7 +79,7 @@ impl Contents {
         self.mark_crowded(cell);
     }
 
-    /// The last disk of the cell takes the place of the one that leaves.
+    /// Removes a disk. The last disk of the cell takes its place.
     #[inline]
     pub(super) fn remove(&mut self, cell: usize, disk: usize) {
         match &mut self.blocks[cell * self.depth] {
@@ -98,7 +100,7 @@ impl Contents {
         self.replace(cell, disk, last);
     }
 
-    /// Takes a disk for which its cell had no room.
+    /// Removes a disk from the list of those for which their cells have no room, if one belongs to this cell.
     fn pop_outside(&mut self, cell: usize) -> Option<u32> {
         let there = self.outside.iter().rposition(|outside| outside.cell as usize == cell)?;
         let Outside { disk, .. } = self.outside.swap_remove(there);
@@ -106,7 +108,7 @@ impl Contents {
         Some(disk)
     }
 
-    /// Notes in the last block of a full cell whether disks of it are outside.
+    /// Notes in the last block of a full cell whether disks of the cell are outside.
     fn mark_crowded(&mut self, cell: usize) {
         let crowded = self.outside.iter().any(|outside| outside.cell as usize == cell);
         if let Some(last) = self.blocks_of(cell).last_mut() {
@@ -124,7 +126,7 @@ impl Contents {
         }
     }
 
-    /// Twice as many blocks in every cell.
+    /// Doubles the number of blocks in every cell.
     fn grow(&mut self) {
         let mut grown = Self::empty(self.cells(), 2 * self.depth);
         for (old, new) in self.blocks.chunks_exact(self.depth).zip(grown.blocks.chunks_exact_mut(grown.depth))
@@ -140,16 +142,16 @@ impl Contents {
         *self = grown;
     }
 
-    /// Room that so many cells need at most.
+    /// Returns the largest number of disks in so many cells, which is the room that they need.
     #[inline]
     pub(super) fn room(&self, cells: usize) -> usize {
         cells * self.depth * SLOTS + self.outside.len()
     }
 
-    /// Appends the disks of three cells, `step` apart, to the first `count` of those found.
+    /// Appends the disks of three cells, `step` apart, to the first `count` disks in `found`.
     #[inline(always)]
     pub(super) fn gather(&self, first: usize, step: usize, found: &mut [u32], count: usize) -> usize {
-        // Loops of a length that the compiler knows are unrolled.
+        // The compiler unrolls loops whose length it knows.
         match self.depth {
             1 => self.gather_blocks(1, first, step, found, count),
             2 => self.gather_blocks(2, first, step, found, count),
@@ -157,8 +159,9 @@ impl Contents {
         }
     }
 
-    /// All slots of a block are copied; the next goes on behind the last that is taken. There is a branch on whether a block is
-    /// full, which few are, and none on how many slots are taken.
+    /// Appends the disks of three cells with this number of blocks. All slots of a block are copied, and the
+    /// next block is written behind the last slot that is taken. The code branches on whether a block is
+    /// full, which is rare, but not on how many slots are taken.
     #[inline(always)]
     fn gather_blocks(
         &self,
@@ -194,7 +197,7 @@ impl Contents {
         count
     }
 
-    /// Asks for a cell.
+    /// Requests a cell from memory.
     #[inline]
     pub(super) fn prefetch(&self, cell: usize) {
         prefetch(&self.blocks, cell * self.depth);
@@ -210,13 +213,13 @@ mod tests {
 
     const DISKS: usize = 80;
 
-    /// The same on every run and machine.
+    /// The configuration of the property tests, which is the same on every run and machine.
     fn config() -> ProptestConfig {
         let rng_seed = RngSeed::Fixed(72_011_305);
         ProptestConfig { cases: 50, rng_seed, failure_persistence: None, ..ProptestConfig::default() }
     }
 
-    /// The disks of the three cells between the first and the last, in order.
+    /// Returns the disks of the three cells between the first and the last, in order.
     fn found(contents: &Contents) -> Vec<u32> {
         let mut found = vec![0; contents.room(3) + SLOTS];
         let count = contents.gather(1, 1, &mut found, 0);
@@ -232,7 +235,8 @@ mod tests {
     proptest! {
         #![proptest_config(config())]
 
-        /// However crowded: cells with room, cells whose disks are outside, all cells with more room, and empty ones again.
+        /// The test covers all degrees of crowding: cells with room, cells whose disks are outside, all cells
+        /// with more blocks, and empty cells again.
         #[test]
         fn cells_hold_the_disks_that_entered_and_did_not_leave(
             moves in prop::collection::vec((0..DISKS, 1..4usize), 0..400),

@@ -1,4 +1,4 @@
-//! The grid of neighbor cells: how large they are and where each is.
+//! The grid of neighbor cells: their sizes and their places.
 
 use glam::DVec2;
 
@@ -7,34 +7,36 @@ use crate::prefetch::prefetch;
 
 use super::cell_size::CellSize;
 
-/// Cells per disk at most; more would cost memory and save nothing.
+/// Largest number of cells per disk. More cells would cost memory and save nothing.
 pub(in crate::simulation) const CELLS_PER_DISK: f64 = 8.0;
 
-/// Cells that are always allowed.
+/// Number of cells that is always allowed.
 pub(in crate::simulation) const SPARE_CELLS: f64 = 4096.0;
 
-/// Least size of a cell in diameters: above 1 by more than rounding.
+/// Smallest size of a cell in diameters. It is above 1 by more than rounding.
 const LEAST_PITCH: f64 = 1.000_001;
 
-/// Columns and rows of cells, and around them a ring of ghosts, so that every cell has eight neighbors.
+/// The columns and rows of cells. A ring of ghosts surrounds them, so that every cell has eight neighbors.
 ///
-/// Cells of one column are next to each other in memory: a wide, low box is the usual large system, and what is near in it
-/// is then near in memory, too.
+/// Cells of one column are next to each other in memory. The usual large system is a wide, low box, in which
+/// near places are then near in memory, too.
 #[derive(Debug, Clone)]
 pub(in crate::simulation) struct Grid {
     pub(in crate::simulation) layout: Layout,
-    /// Cells in a column, ring included.
+    /// Number of cells in a column, ring included.
     stride: u32,
-    /// `column_edges[c - 1]` and `column_edges[c]` bound column `c`; infinite at walls.
+    /// Edges of the columns: `column_edges[c - 1]` and `column_edges[c]` bound column `c`. They are infinite
+    /// at walls.
     column_edges: Vec<f64>,
     row_edges: Vec<f64>,
-    /// Distance beyond its edges up to which a cell keeps its disks, so that fewer pass from one to another.
+    /// Distance beyond its edges up to which a cell keeps its disks, so that fewer of them pass from one cell
+    /// to another.
     margin: DVec2,
     /// Width of the domain if its sides are periodic, else 0.
     period: f64,
 }
 
-/// A cell by its column and row, ring included: the first real ones are 1.
+/// The column and row of a cell, ring included. The first real column and row are 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Place {
@@ -42,19 +44,19 @@ pub(in crate::simulation) struct Place {
     pub(in crate::simulation) row: u32,
 }
 
-/// The size of the grid.
+/// The dimensions of the grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Layout {
     pub(in crate::simulation) cell_size: CellSize,
     pub(in crate::simulation) columns: u32,
     pub(in crate::simulation) rows: u32,
-    /// Size of a cell; in an open container the rows grow from some height on.
+    /// Size of a cell. In an open container, the rows grow from some height on.
     pub(in crate::simulation) pitch: DVec2,
 }
 
 impl Layout {
-    /// The grid for `count` disks of at most this diameter; `None` if the domain is too small.
+    /// Returns the layout for `count` disks of at most this diameter, or `None` if the domain is too small.
     pub(in crate::simulation) fn new(
         domain: &Domain,
         diameter: f64,
@@ -73,7 +75,7 @@ impl Layout {
         let along = |length: f64, pitch: f64| (length / pitch).floor().max(1.0);
         let mut columns = along(width, pitch).min(most.floor());
         if domain.periodic && columns < 4.0 {
-            // With fewer columns a disk could meet a neighbor on both sides.
+            // With fewer columns, a disk could meet a neighbor on both sides.
             columns = 4.0;
             if width < columns * LEAST_PITCH * diameter {
                 return None;
@@ -86,18 +88,18 @@ impl Layout {
     }
 }
 
-/// Height of the even part of the grid of an open container.
+/// Returns the height of the even part of the grid of an open container.
 fn open_height(domain: &Domain, highest: f64, diameter: f64) -> f64 {
     2.0 * (highest - domain.bottom).max(0.0) + 64.0 * diameter
 }
 
 impl Grid {
-    /// The grid of this layout.
+    /// Creates the grid of this layout.
     pub(in crate::simulation) fn new(domain: &Domain, layout: Layout, diameter: f64) -> Self {
         let margin = margin(domain, &layout, diameter);
         let mut column_edges = edges(domain.left, layout.pitch.x, layout.columns, !domain.periodic);
         if domain.periodic {
-            // Beyond its sides there is no margin: disks stay in the domain.
+            // There is no margin beyond the periodic sides, since disks stay in the domain.
             column_edges[0] += margin.x;
             column_edges[layout.columns as usize] -= margin.x;
         }
@@ -111,13 +113,13 @@ impl Grid {
         }
     }
 
-    /// All cells but those of the ring.
+    /// Iterates over all cells but those of the ring.
     pub(in crate::simulation) fn places(&self) -> impl Iterator<Item = Place> + use<> {
         let Layout { columns, rows, .. } = self.layout;
         (1..=columns).flat_map(move |column| (1..=rows).map(move |row| Place { column, row }))
     }
 
-    /// Number of cells, ring included.
+    /// Returns the number of cells, ring included.
     pub(in crate::simulation) fn len(&self) -> usize {
         self.stride() * (self.layout.columns as usize + 2)
     }
@@ -126,7 +128,7 @@ impl Grid {
         self.layout.cell_size
     }
 
-    /// Cells in a column, ring included: how far apart in memory neighbors in a row are.
+    /// Returns the number of cells in a column, ring included. Neighbors in a row are so far apart in memory.
     #[inline]
     pub(in crate::simulation) fn stride(&self) -> usize {
         self.stride as usize
@@ -145,7 +147,7 @@ impl Grid {
         place.column as usize * self.stride as usize + place.row as usize
     }
 
-    /// The rectangle in which a cell keeps its disks; infinite beyond the walls.
+    /// Returns the rectangle in which a cell keeps its disks. It extends to infinity beyond the walls.
     #[inline]
     pub(in crate::simulation) fn region(&self, place: Place) -> Region {
         let (column, row) = (place.column as usize, place.row as usize);
@@ -155,19 +157,19 @@ impl Grid {
         }
     }
 
-    /// Asks for what [`Self::region`] needs: wide systems have many columns.
+    /// Requests from memory what [`Self::region`] needs, since wide systems have many columns.
     #[inline]
     pub(in crate::simulation) fn prefetch_region(&self, place: Place) {
         prefetch(&self.column_edges, place.column as usize);
     }
 
-    /// The width of the domain if its sides are periodic, else 0.
+    /// Returns the width of the domain if its sides are periodic, and 0 otherwise.
     #[inline]
     pub(in crate::simulation) fn period(&self) -> f64 {
         self.period
     }
 
-    /// The ghost that mirrors a cell at a periodic side, if it has one.
+    /// Returns the ghost that mirrors a cell at a periodic side, if the cell has one.
     #[inline]
     pub(in crate::simulation) fn mirror(&self, place: Place) -> Option<Place> {
         let columns = self.layout.columns;
@@ -179,7 +181,7 @@ impl Grid {
         }
     }
 
-    /// The neighbor so many columns to the right and rows up, and what going there adds to `x`.
+    /// Returns the neighbor so many columns to the right and rows up, and the change of `x` on the way there.
     #[inline]
     pub(in crate::simulation) fn neighbor(&self, place: Place, (right, up): (i32, i32)) -> (Place, f64) {
         let mut to =
@@ -196,13 +198,14 @@ impl Grid {
     }
 }
 
-/// Distance beyond its edges up to which a cell can keep disks that collide only with those in the cells around it.
+/// Returns the distance beyond its edges up to which a cell can keep its disks, if they shall collide only
+/// with those in the cells around it.
 ///
 /// A disk that turns back soon, or moves to and fro at an edge, then stays in its cell.
 fn margin(domain: &Domain, layout: &Layout, diameter: f64) -> DVec2 {
     let mut margin = (0.5 * (layout.pitch - LEAST_PITCH * diameter)).max(DVec2::ZERO);
     if domain.periodic && layout.columns < 6 {
-        // Neighbors could be more than half of a period apart.
+        // Neighbors could be more than half a period apart.
         margin.x = 0.0;
     }
     margin
@@ -217,8 +220,8 @@ fn edges(start: f64, pitch: f64, count: u32, walls: bool) -> Vec<f64> {
     edges
 }
 
-/// Edges of the rows. In an open container the upper half of them grows in proportion to the height: however high a disk
-/// flies, it does not share its cell with all others that are high.
+/// Returns the edges of the rows. In an open container, the upper half of the rows grows in proportion to the
+/// height. A disk that flies high then does not share its cell with all others that are high.
 fn row_edges(domain: &Domain, layout: &Layout) -> Vec<f64> {
     const GROWTH: f64 = 1.1;
     let mut edges = edges(domain.bottom, layout.pitch.y, layout.rows, true);

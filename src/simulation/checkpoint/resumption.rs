@@ -1,4 +1,4 @@
-//! From a checkpoint to a run.
+//! Resumption: the way from a checkpoint to a run.
 
 use super::validation::{check, check_numbers, check_places, suits};
 use super::{Checkpoint, CheckpointError, Saved};
@@ -24,11 +24,12 @@ pub struct Resumption<'a, R, B, S = BySize> {
 }
 
 impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
-    /// Begins to describe a run that goes on where the checkpoint was taken, with its gravity, random numbers and counters.
+    /// Starts to build a run that goes on where the checkpoint was taken, with its gravity, random numbers
+    /// and counters.
     ///
-    /// Rule and boundary are code, so they are given again: the same ones for the same future. Others are refused unless given on
-    /// purpose; only two parts that both have no fingerprint (closures, for example) cannot be told apart. [`Checkpoint`] has an
-    /// example.
+    /// Rule and boundary are code, so they are given again, and the same ones give the same future. Others
+    /// are refused unless they are given on purpose. Only two parts that both have no fingerprint (closures,
+    /// for example) cannot be told apart. [`Checkpoint`] has an example.
     pub const fn resume(checkpoint: &Checkpoint, rule: R, boundary: B) -> Resumption<'_, R, B> {
         let scheduler = BySize::new();
         Resumption { checkpoint, rule, boundary, scheduler, another_rule: false, another_boundary: false }
@@ -36,19 +37,20 @@ impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
 }
 
 impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, S> {
-    /// Takes another scheduler: the future is the same, bit for bit.
+    /// Takes another scheduler. The future is the same, bit for bit.
     pub fn scheduler<T: EventScheduler>(self, scheduler: T) -> Resumption<'a, R, B, T> {
         let Self { checkpoint, rule, boundary, another_rule, another_boundary, scheduler: _ } = self;
         Resumption { checkpoint, rule, boundary, scheduler, another_rule, another_boundary }
     }
 
-    /// Takes the rule on purpose, also if it is not that of the checkpoint: the next value of a ramp, for example.
+    /// Takes the rule on purpose, even if it is not that of the checkpoint: the next value of a ramp, for
+    /// example.
     pub const fn with_another_rule(mut self) -> Self {
         self.another_rule = true;
         self
     }
 
-    /// Takes the boundary on purpose, also if it is not that of the checkpoint.
+    /// Takes the boundary on purpose, even if it is not that of the checkpoint.
     ///
     /// All events are then predicted anew, as [`Simulation::set_boundary`] does.
     pub const fn with_another_boundary(mut self) -> Self {
@@ -56,14 +58,16 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         self
     }
 
-    /// Makes the run.
+    /// Builds the run.
     ///
     /// # Errors
-    /// If the checkpoint does not make a state, is of another rule or boundary that was not given on purpose, or
-    /// its disks do not fit into the one that was.
+    /// If the contents of the checkpoint are not a possible state, or if the checkpoint is of another rule or
+    /// boundary and this one was not given on purpose. If its disks do not fit into a boundary that was given
+    /// on purpose.
     pub fn build(self) -> Result<Simulation<R, B, S>, CheckpointError> {
         let saved = &self.checkpoint.0;
-        // A part that is known is never one that is not: only two unknown ones cannot be told apart.
+        // A part with a fingerprint never equals one without. Only two parts without fingerprints cannot be
+        // told apart.
         if !self.another_rule && saved.rule != self.rule.fingerprint() {
             return Err(CheckpointError::AnotherRule);
         }
@@ -87,12 +91,13 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         let cells = Cells::filled(&self.boundary, radius, grid, saved.places.clone());
         let mut run = self.run(bodies, cells, wall_count);
         run.make_room();
-        // Tells the boundary its origin and the scheduler its times.
+        // This call gives the boundary its origin and the scheduler its times.
         run.shift_epoch(0.0);
         Ok(run)
     }
 
-    /// A run in another boundary: the disks are taken as they are, and everything about the walls is found anew.
+    /// Builds a run in another boundary. The disks are taken as they are, and everything about the walls is
+    /// computed anew.
     fn build_anew(mut self) -> Result<Simulation<R, B, S>, CheckpointError> {
         let saved = &self.checkpoint.0;
         check_numbers(saved, usize::MAX)?;

@@ -1,8 +1,8 @@
-//! Checks that the contents of a checkpoint are a state that the engine can go on with.
+//! Checks that the contents of a checkpoint are a state from which the engine can go on.
 //!
-//! A checksum tells accidents, not intent: whoever computes it anew can write any numbers. So all of them pass the bounds of the
-//! constructors, and all events are where and when they can be; a run from here may be unphysical, but does not panic and
-//! does not hang.
+//! A checksum shows accidents, not intent: anyone can compute it anew over any numbers. Therefore, all
+//! numbers must pass the bounds of the constructors, and all events must be where and when they can be. A run
+//! from here may be unphysical, but it does not panic and does not hang.
 
 use super::{CheckpointError, Saved};
 use crate::boundary::Domain;
@@ -12,20 +12,21 @@ use crate::simulation::events::Counters;
 use crate::simulation::state::{Bodies, Exit, Forecast, Guard, Spin, Trajectory};
 use glam::DVec2;
 
-/// More events than any run has.
+/// A number of events above that of any run.
 const MOST_COUNTED: u64 = 1 << 60;
 
-/// The room that rounding has, in sizes of a cell, of the grid or of a disk: much more than it needs.
+/// Room for rounding, in sizes of a cell, of the grid or of a disk. It is much more than rounding needs.
 const SLACK: f64 = 1e-3;
 
-/// Epochs ahead within which a wall, or the horizon of its search, must lie: a collision may since have made epochs shorter.
+/// Number of epochs ahead within which a touch with a wall, or the horizon of its search, must lie. It is
+/// large, since a collision may have made epochs shorter after the search.
 const MOST_EPOCHS: f64 = 1e6;
 
 pub(super) fn check(valid: bool, what: &'static str) -> Result<(), CheckpointError> {
     if valid { Ok(()) } else { Err(CheckpointError::Inconsistent(what)) }
 }
 
-/// Checks all that does not need to know the cells.
+/// Checks everything for which the cells need not be known.
 pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), CheckpointError> {
     let count = saved.trajectories.len();
     let lengths = [saved.spins.len(), saved.forecasts.len(), saved.places.len()];
@@ -49,7 +50,7 @@ pub(super) fn check_places(saved: &Saved, grid: &Grid, bodies: &Bodies) -> Resul
     let disks = || saved.forecasts.iter().zip(&saved.places).enumerate();
     let inside = |(disk, (_, &place))| holds(grid, place, bodies.position(disk, saved.now));
     check(disks().all(inside), "a disk is outside its neighbor cell")?;
-    // The cells at walls have no end.
+    // The cells at walls extend to infinity.
     let within =
         |disk| is_within(&saved.domain, bodies.position(disk, saved.now), bodies.material(disk).radius);
     check((0..saved.places.len()).all(within), "a disk is outside the domain")?;
@@ -60,7 +61,8 @@ pub(super) fn check_places(saved: &Saved, grid: &Grid, bodies: &Bodies) -> Resul
     check(disks().all(meets), "a disk collides with one that it does not touch")
 }
 
-/// Tells whether the grid is one for the domain and disks of at most this diameter, and every disk is in it.
+/// Tells whether the grid suits the domain and disks of at most this diameter, and whether every disk is in
+/// it.
 pub(super) fn suits(saved: &Saved, diameter: f64) -> bool {
     let Layout { columns, rows, pitch, .. } = saved.layout;
     let most = 2.0 * (CELLS_PER_DISK * saved.places.len() as f64 + SPARE_CELLS);
@@ -79,12 +81,12 @@ pub(super) fn suits(saved: &Saved, diameter: f64) -> bool {
         && saved.places.iter().all(|&place| is_cell(&saved.layout, place))
 }
 
-/// Tells whether a place is one of the cells, not of the ring.
+/// Tells whether a place is one of the cells, and not of the ring.
 fn is_cell(layout: &Layout, place: Place) -> bool {
     (1..=layout.columns).contains(&place.column) && (1..=layout.rows).contains(&place.row)
 }
 
-/// Tells whether it is a power of two: others would not add up without rounding.
+/// Tells whether the length is a power of two. Other lengths would not add up without rounding.
 fn is_epoch_length(length: f64) -> bool {
     const FRACTION: u64 = (1 << 52) - 1;
     length.is_normal() && length > 0.0 && length.to_bits() & FRACTION == 0
@@ -98,7 +100,7 @@ fn is_trajectory(trajectory: &Trajectory) -> bool {
     is_bounded(trajectory.position) && is_bounded(trajectory.velocity)
 }
 
-/// Tells whether a rotation is bounded, and its last collision past or never.
+/// Tells whether a rotation is bounded, and its last collision is not in the future.
 fn is_spin(spin: &Spin, now: f64) -> bool {
     spin.angle.is_finite() && spin.angular_velocity.abs() <= LARGEST && spin.last_collision <= now
 }
@@ -129,13 +131,14 @@ fn are_forecasts(saved: &Saved, walls: usize) -> bool {
     })
 }
 
-/// Whether a disk at this position is in the domain, or beyond it by no more than its radius: much more than rounding.
+/// Tells whether a disk at this position is in the domain, or beyond it by no more than its radius. This is
+/// much more than rounding needs.
 fn is_within(domain: &Domain, position: DVec2, radius: f64) -> bool {
     let (low, high) = (DVec2::new(domain.left, domain.bottom), DVec2::new(domain.right, domain.top));
     position.cmpge(low - radius).all() && position.cmple(high + radius).all()
 }
 
-/// Tells whether a disk at this position belongs into this cell.
+/// Tells whether a disk at this position belongs in this cell.
 fn holds(grid: &Grid, place: Place, position: DVec2) -> bool {
     let (region, slack) = (grid.region(place), SLACK * grid.layout.pitch);
     position.is_finite()
@@ -143,7 +146,7 @@ fn holds(grid: &Grid, place: Place, position: DVec2) -> bool {
         && position.cmple(region.max + slack).all()
 }
 
-/// Tells whether the disks can be in their cells without overlaps.
+/// Tells whether there is room for the disks in their cells without overlaps.
 fn has_room(saved: &Saved, grid: &Grid, bodies: &Bodies) -> bool {
     let domain = &saved.domain;
     let mut cells = vec![(0.0, 0.0); grid.len()];
@@ -155,12 +158,14 @@ fn has_room(saved: &Saved, grid: &Grid, bodies: &Bodies) -> bool {
         let region = grid.region(place);
         let low = region.min.max(DVec2::new(domain.left, domain.bottom)) - *largest;
         let size = region.max.min(DVec2::new(domain.right, domain.top)) + *largest - low;
-        // The densest packing has an area fraction of 0.91; this is more than the slack of the cells.
+        // The densest packing has an area fraction of 0.91. The difference from 1 is more than the slack of
+        // the cells.
         *area <= size.x * size.y
     })
 }
 
-/// Tells whether the flight of a disk in its cell ends at the edge that it names, or at a wall that is not too far.
+/// Tells whether the flight of a disk in its cell ends at the edge that it names, or at a wall or horizon
+/// that is not too far.
 fn ends_where_it_can(
     saved: &Saved,
     grid: &Grid,
@@ -184,12 +189,13 @@ fn ends_where_it_can(
         Exit::Down => (position.y - region.min.y, pitch.y),
         _ => (position.y - region.max.y, pitch.y),
     };
-    // Open containers have rows that grow with the height.
+    // The rows of open containers grow with the height.
     let size = size.max(SLACK * position.y.abs());
     gap.abs() <= SLACK * size && is_cell(&grid.layout, grid.neighbor(place, exit.direction()).0)
 }
 
-/// Tells whether a disk touches its partner when it collides with it; a prediction out of date is made anew when it comes up.
+/// Tells whether a disk touches its partner when it collides with it. An outdated prediction passes, since it
+/// is made anew when it comes up.
 fn meets_its_partner(saved: &Saved, bodies: &Bodies, disk: usize, forecast: &Forecast) -> bool {
     let Forecast { collision_due, partner, partner_collisions, .. } = *forecast;
     let is_soon = collision_due - saved.now <= MOST_EPOCHS * saved.epoch_length;

@@ -1,10 +1,10 @@
-//! The moving disks, as the hot loop wants them.
+//! The moving disks, in the form that the hot loop needs.
 //!
-//! Trajectories are kept in the free-fall frame of a common epoch: the position that a disk would have had at the epoch
-//! (time offset 0) on its present flight, and its velocity there, gravity left out. All disks fall alike, so the
-//! relative motion of a pair is a straight line with no clock of its own: predicting a pair costs a subtraction and a
-//! root, and passing a cell changes nothing. The epoch moves on now and then ([`Bodies::shift`]), so that extrapolation
-//! stays short and times keep their digits.
+//! Trajectories are kept in the free-fall frame of a common epoch. They consist of the position that a disk
+//! would have had at the epoch (time offset 0) on its present flight, and of its velocity there, without
+//! gravity. All disks fall alike, so the relative motion of a pair is a straight line without its own clock.
+//! Predicting a pair costs a subtraction and a root, and passing a cell changes nothing. The epoch moves on
+//! now and then ([`Bodies::shift`]), so that extrapolation stays short and times keep their digits.
 
 use glam::DVec2;
 
@@ -13,7 +13,7 @@ use super::kinds::Kinds;
 use crate::Disk;
 use crate::collision::{Body, Material};
 
-/// A straight trajectory in the free-fall frame; one row is one 32-byte load.
+/// A straight trajectory in the free-fall frame. One row is one 32-byte load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(32))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -23,13 +23,13 @@ pub(in crate::simulation) struct Trajectory {
 }
 
 impl Trajectory {
-    /// Position in the free-fall frame at a time offset.
+    /// Returns the position in the free-fall frame at a time offset.
     #[inline]
     pub(in crate::simulation) fn at(&self, offset: f64) -> DVec2 {
         self.position + self.velocity * offset
     }
 
-    /// Position and velocity, for arithmetic on all four at once.
+    /// Returns position and velocity in a row, for arithmetic on all four numbers at once.
     #[inline]
     pub(in crate::simulation) fn row(&self) -> [f64; 4] {
         [self.position.x, self.position.y, self.velocity.x, self.velocity.y]
@@ -40,7 +40,7 @@ impl Trajectory {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Spin {
-    /// Angle at the epoch, on the present rotation.
+    /// Angle at the epoch, extrapolated with the present rotation.
     pub(in crate::simulation) angle: f64,
     pub(in crate::simulation) angular_velocity: f64,
     /// Time offset of the last collision with anything.
@@ -57,7 +57,8 @@ impl Spin {
     }
 }
 
-/// All that predictions look at, one cache line for a disk: large systems are slow for the lines that an event touches.
+/// All data of a disk that predictions need, in one cache line. The speed of large systems depends on the
+/// number of lines that an event touches.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(in crate::simulation) struct Particle {
@@ -66,7 +67,7 @@ pub(in crate::simulation) struct Particle {
 }
 
 impl Particle {
-    /// A particle with this trajectory whose next event is not known.
+    /// Creates a particle with this trajectory, whose next event is not known.
     fn new(trajectory: Trajectory) -> Self {
         Self { trajectory, forecast: Forecast::NEW }
     }
@@ -78,7 +79,7 @@ pub(in crate::simulation) struct Bodies {
     pub(in crate::simulation) spins: Vec<Spin>,
     pub(in crate::simulation) gravity: f64,
     kinds: Kinds,
-    /// The diameter in which the length of an epoch is measured.
+    /// Typical diameter, in which the length of an epoch is measured.
     pub(super) typical_diameter: f64,
 }
 
@@ -94,7 +95,7 @@ impl Bodies {
         Self { particles, spins, gravity, typical_diameter: kinds.typical_diameter(), kinds }
     }
 
-    /// Bodies that go on where they were saved; disks that are all alike are one.
+    /// Creates bodies that go on where they were saved. Disks that are all alike have a single kind.
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn restored(
         kinds: &[Disk],
@@ -108,7 +109,7 @@ impl Bodies {
         Self::of_kinds(Kinds::of(kinds), gravity, particles, spins)
     }
 
-    /// The kinds that [`Self::restored`] takes.
+    /// Returns the kinds that [`Self::restored`] takes.
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn kinds(&self) -> Vec<Disk> {
         self.kinds.disks()
@@ -122,13 +123,13 @@ impl Bodies {
         self.particles.len()
     }
 
-    /// The next event of a disk, if there is such a disk.
+    /// Returns the next event of a disk, if there is such a disk.
     #[inline]
     pub(in crate::simulation) fn forecast(&self, disk: usize) -> Option<&Forecast> {
         self.particles.get(disk).map(|particle| &particle.forecast)
     }
 
-    /// Speed in the free-fall frame: the scale of the rounding of a velocity.
+    /// Returns the speed in the free-fall frame, which is the scale of the rounding of a velocity.
     pub(in crate::simulation) fn speed(&self, disk: usize) -> f64 {
         self.particles[disk].trajectory.velocity.length()
     }
@@ -138,32 +139,32 @@ impl Bodies {
         &self.kinds.get(disk).material
     }
 
-    /// The diameter, if all disks have the same.
+    /// Returns the diameter, if all disks have the same one.
     #[inline]
     pub(in crate::simulation) fn common_diameter(&self) -> Option<f64> {
         self.kinds.common_diameter()
     }
 
-    /// Displacement and velocity that gravity has added by this time offset.
+    /// Returns the displacement and velocity that gravity has added by this time offset.
     #[inline]
     pub(in crate::simulation) fn fall(&self, offset: f64) -> (DVec2, DVec2) {
         let velocity = -self.gravity * offset;
         (DVec2::new(0.0, 0.5 * velocity * offset), DVec2::new(0.0, velocity))
     }
 
-    /// Position in the frame of the container.
+    /// Returns the position in the frame of the container.
     #[inline]
     pub(in crate::simulation) fn position(&self, disk: usize, offset: f64) -> DVec2 {
         self.particles[disk].trajectory.at(offset) + self.fall(offset).0
     }
 
-    /// Velocity in the frame of the container.
+    /// Returns the velocity in the frame of the container.
     #[inline]
     pub(in crate::simulation) fn velocity(&self, disk: usize, offset: f64) -> DVec2 {
         self.particles[disk].trajectory.velocity + self.fall(offset).1
     }
 
-    /// Motion as a collision of two disks sees it: velocities in the free-fall frame.
+    /// Returns the motion as a collision of two disks sees it, with velocities in the free-fall frame.
     #[inline]
     pub(in crate::simulation) fn body(&self, disk: usize) -> Body {
         Body {
@@ -172,7 +173,8 @@ impl Bodies {
         }
     }
 
-    /// A collision at this time offset changes the motion of `disk`; where it is stays as it was.
+    /// Changes the motion of `disk` by a collision at this time offset. Its place at that time stays as it
+    /// was.
     #[inline]
     pub(in crate::simulation) fn kick(
         &mut self,
@@ -188,13 +190,14 @@ impl Bodies {
         spin.last_collision = offset;
     }
 
-    /// Changes the velocity of `disk` at this time offset; where it is stays as it was.
+    /// Changes the velocity of `disk` at this time offset. Its place at that time stays as it was.
     #[inline]
     pub(in crate::simulation) fn push(&mut self, disk: usize, velocity: DVec2, offset: f64) {
         let trajectory = &mut self.particles[disk].trajectory;
         let before = trajectory.velocity;
         trajectory.velocity += velocity;
-        // By the change that is left after rounding, or the disk would jump.
+        // The position changes by the velocity change that is left after rounding. Otherwise, the disk would
+        // jump.
         trajectory.position -= (trajectory.velocity - before) * offset;
     }
 
@@ -203,7 +206,7 @@ impl Bodies {
         self.kinds.get(disk).disk.moment_of_inertia()
     }
 
-    /// The disk as the outside world knows it.
+    /// Returns the disk as the user sees it.
     pub(in crate::simulation) fn disk(&self, disk: usize, offset: f64) -> Disk {
         let spin = &self.spins[disk];
         self.kinds.get(disk).disk.with_motion(
@@ -214,12 +217,12 @@ impl Bodies {
         )
     }
 
-    /// All disks as the outside world knows them.
+    /// Returns all disks as the user sees them.
     pub(in crate::simulation) fn disks(&self, offset: f64) -> Vec<Disk> {
         (0..self.len()).map(|disk| self.disk(disk, offset)).collect()
     }
 
-    /// Moves the epoch by this much.
+    /// Moves the epoch on by this time.
     pub(in crate::simulation) fn shift(&mut self, by: f64) {
         let (fallen, gained) = self.fall(by);
         for Particle { trajectory, forecast } in &mut self.particles {
@@ -233,10 +236,10 @@ impl Bodies {
         }
     }
 
-    /// Gravity has another value from this offset on; motion at that time stays as it is.
+    /// Sets gravity to another value from this offset on. The motion at that time stays as it is.
     pub(in crate::simulation) fn set_gravity(&mut self, gravity: f64, offset: f64) {
         let gained = (gravity - self.gravity) * offset;
-        // The flight that leads to the same place and velocity under the other gravity.
+        // The new flight leads to the same place and velocity under the new gravity.
         for particle in &mut self.particles {
             particle.trajectory.velocity.y += gained;
             particle.trajectory.position.y -= 0.5 * gained * offset;

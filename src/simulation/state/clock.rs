@@ -3,13 +3,14 @@
 use super::guard::Guard;
 use crate::simulation::errors::{Outcome, RunError};
 
-/// Numbers that a run's latest times must tell apart in an epoch: a typical disk goes a diameter from one to the next.
+/// Number of floating-point times that an epoch must contain at least. A typical disk then goes at most about
+/// a diameter from one to the next.
 ///
-/// So few are enough, since epochs are powers of two, as the distance of these numbers is: adding one to the origin is exact, and
-/// walls that move do not jump.
+/// So few times suffice, because epochs are powers of two, and so are the distances between these times.
+/// Adding an epoch to the origin is therefore exact, and moving walls do not jump.
 const TIMES_IN_EPOCH: f64 = 64.0;
 
-/// Cell crossings and collisions of two disks, as they were when the epoch last moved.
+/// The numbers of cell crossings and of collisions of two disks when the epoch last moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Tally {
@@ -17,14 +18,14 @@ pub(in crate::simulation) struct Tally {
     pub(in crate::simulation) collisions: u64,
 }
 
-/// The present and the epoch that it is measured from.
+/// The present, and the epoch from which it is measured.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::simulation) struct Clock {
     /// The epoch: the absolute time of the offset 0.
     pub(in crate::simulation) origin: f64,
     /// The present, as an offset from the epoch.
     pub(in crate::simulation) now: f64,
-    /// The offset from which on the epoch moves.
+    /// The offset after which the epoch moves.
     pub(in crate::simulation) epoch_length: f64,
     pub(in crate::simulation) guard: Guard,
     pub(in crate::simulation) tally: Tally,
@@ -35,19 +36,19 @@ impl Clock {
         Self { origin, now: 0.0, epoch_length, guard: Guard::default(), tally: Tally::default() }
     }
 
-    /// The present in absolute time.
+    /// Returns the present in absolute time.
     #[inline]
     pub(in crate::simulation) fn time(&self) -> f64 {
         self.origin + self.now
     }
 
-    /// The largest difference by which the present may miss a time that was run to.
+    /// Returns the largest difference by which the present may miss a time to which the run was sent.
     pub(in crate::simulation) fn rounding(&self) -> f64 {
         4.0 * f64::EPSILON * (self.origin.abs() + self.now.abs())
     }
 
-    /// The distance of absolute times at the end of the epoch that begins at this offset, where that is too coarse: the epoch
-    /// could not be added to the origin, and time would stand still.
+    /// Returns the spacing of absolute times at the end of the epoch that begins at this offset, if it is too
+    /// coarse. The epoch could then not be added to the origin, and time would stand still.
     pub(in crate::simulation) fn coarseness(&self, offset: f64) -> Option<f64> {
         let end = (self.origin + offset).abs() + self.epoch_length;
         let spacing = end.next_up() - end;
@@ -66,20 +67,21 @@ impl Clock {
         }
     }
 
-    /// The whole epochs until an offset.
+    /// Returns the time of the whole epochs before an offset.
     pub(in crate::simulation) fn whole_epochs(&self, offset: f64) -> f64 {
         (offset / self.epoch_length).floor() * self.epoch_length
     }
 
-    /// The largest offset, not after the present, by which the epoch can move with nothing lost in rounding.
+    /// Returns the largest offset, not after the present, by which the epoch can move without any rounding.
     ///
-    /// Late origins have fewer digits than offsets. If the epoch moved to the present itself, its origin would be rounded, and a
-    /// wall that moves would jump by as much of its way: into a disk, at times. The difference of two numbers that are close
-    /// is exact, so this moves the origin to a number that it can be, and leaves the rest to the offset.
+    /// Late origins have fewer digits than offsets. If the epoch moved to the present itself, its origin
+    /// would be rounded. A moving wall would then jump by its way in that time, at times into a disk. The
+    /// difference of two close numbers is exact, so this offset moves the origin to a number that a float can
+    /// hold, and leaves the rest to the offset of the present.
     pub(in crate::simulation) fn exact_offset(&self) -> f64 {
         let nearest = self.time();
-        // Beyond twice the origin their difference need not be exact. Then times are no coarser than offsets, and the epoch
-        // may move to the present itself.
+        // At times beyond twice the origin, the difference below need not be exact. Times are then no coarser
+        // than offsets, and the epoch may move to the present itself.
         if self.now > self.origin.abs() {
             return self.now;
         }
@@ -87,13 +89,14 @@ impl Clock {
         if by <= self.now { by } else { nearest.next_down() - self.origin }
     }
 
-    /// Takes note of an event of so many disks; returns how many there were without progress, if too many.
+    /// Counts an event of a run with so many disks. Returns the number of events without progress, if there
+    /// were too many.
     #[inline]
     pub(in crate::simulation) fn watch(&mut self, disks: usize) -> Option<u64> {
         self.guard.watch(self.now, self.epoch_length, disks)
     }
 
-    /// Moves the epoch on.
+    /// Moves the epoch on by this time.
     pub(in crate::simulation) fn shift(&mut self, by: f64) {
         self.origin += by;
         self.now -= by;

@@ -1,6 +1,6 @@
 //! The next event of each disk.
 
-/// The earliest collision of a disk that is known.
+/// The earliest known collision of a disk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::simulation) struct Earliest {
     pub(in crate::simulation) due: f64,
@@ -11,7 +11,7 @@ impl Earliest {
     pub(in crate::simulation) const NONE: Self = Self { due: f64::INFINITY, partner: u32::MAX };
 }
 
-/// The end of a disk's flight in its cell.
+/// The way in which a disk's flight in its cell ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) enum Exit {
@@ -19,19 +19,20 @@ pub(in crate::simulation) enum Exit {
     Right,
     Down,
     Up,
-    /// The flight does not end yet: the search for a wall looked only so far ahead.
+    /// The flight does not end yet: the search for a wall went no further.
     Horizon,
     Wall,
-    /// The boundary answered with a touch that cannot be: the run ends when its turn comes.
+    /// The boundary answered with an impossible touch. The run ends when the turn of this event comes.
     Impossible,
 }
 
 impl Exit {
-    /// The edges by their axis (sideways, vertical) and sense (negative, positive).
+    /// The edges by axis (sideways, vertical) and sense (negative, positive).
     pub(in crate::simulation) const EDGES: [[Self; 2]; 2] =
         [[Self::Left, Self::Right], [Self::Down, Self::Up]];
 
-    /// Columns to the right and rows up; computed, since a branch on it would be a toss of a coin with four sides.
+    /// Returns the columns to the right and the rows up. They are computed, since a branch would be a coin
+    /// toss with four sides.
     #[inline]
     pub(in crate::simulation) fn direction(self) -> (i32, i32) {
         let right = i32::from(self == Self::Right) - i32::from(self == Self::Left);
@@ -46,21 +47,22 @@ impl Exit {
     }
 }
 
-/// The next event of a disk: a collision with the earliest partner known, or the end of its flight in its cell.
+/// The next event of a disk: a collision with the earliest partner known, or the end of its flight in its
+/// cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Forecast {
-    /// The offset at which it collides with `partner`, if neither collides before.
+    /// The offset at which the disk collides with `partner`, if neither collides before.
     pub(in crate::simulation) collision_due: f64,
-    /// The offset at which its flight in its cell ends.
+    /// The offset at which the flight of the disk in its cell ends.
     pub(in crate::simulation) exit_due: f64,
     pub(in crate::simulation) partner: u32,
-    /// The partner's count when this was predicted: if it differs, the prediction is out of date.
+    /// The partner's count when this was predicted. If the count differs now, the prediction is out of date.
     pub(in crate::simulation) partner_collisions: u32,
     /// The disk's own count of collisions with anything.
     pub(in crate::simulation) collisions: u32,
     pub(in crate::simulation) exit: Exit,
-    /// The wall, if the flight ends there.
+    /// The wall, if the flight ends at one.
     pub(in crate::simulation) wall: u16,
 }
 
@@ -75,19 +77,20 @@ impl Forecast {
         wall: 0,
     };
 
-    /// Tells whether the collision comes first. Of equal times it is the collision: disks come before walls and cells.
+    /// Tells whether the collision comes first. Of equal times, the collision wins, since disks come before
+    /// walls and cells.
     #[inline]
     pub(in crate::simulation) fn is_collision(&self) -> bool {
         self.collision_due <= self.exit_due
     }
 
-    /// The offset of the next event.
+    /// Returns the offset of the next event.
     #[inline]
     pub(in crate::simulation) fn due(&self) -> f64 {
         if self.is_collision() { self.collision_due } else { self.exit_due }
     }
 
-    /// Takes this as the next collision, with a partner that has collided so often.
+    /// Takes this as the next collision. Its partner has collided so often.
     #[inline]
     pub(in crate::simulation) fn set_collision(&mut self, earliest: Earliest, partner_collisions: u32) {
         self.collision_due = earliest.due;
@@ -95,13 +98,13 @@ impl Forecast {
         self.partner_collisions = partner_collisions;
     }
 
-    /// Counts a collision of the disk itself: predictions with it are out of date.
+    /// Counts a collision of the disk itself. Predictions with the disk are then out of date.
     #[inline]
     pub(in crate::simulation) fn count_collision(&mut self) {
         self.collisions = self.collisions.wrapping_add(1);
     }
 
-    /// Measures times from an epoch that is later by this much.
+    /// Measures times from an epoch that is later by this time.
     pub(in crate::simulation) fn shift(&mut self, by: f64) {
         self.collision_due -= by;
         self.exit_due -= by;

@@ -1,20 +1,22 @@
 //! The guard against runs that cannot progress.
 
-/// Events allowed while time advances by less than [`RESOLUTION`] epochs.
+/// Number of events that are allowed while time advances by less than [`RESOLUTION`] epochs.
 const PATIENCE: u64 = 200_000;
 
-/// Events allowed in addition for each disk: on a lattice, all may have an event at the same time.
+/// Number of events that are allowed in addition for each disk. On a lattice, all disks may have an event at
+/// the same time.
 const PATIENCE_PER_DISK: u64 = 20;
 
 /// Time that counts as progress, in epochs.
 ///
-/// A disk goes some tens of diameters in an epoch. If [`PATIENCE`] events advance time by less than this, an epoch takes 10¹³ events:
-/// days. The bound is not zero, since time does not quite stand still in such a run: a disk at rest on a wall bounces as high as
-/// rounding lets it. Nor is it larger, since a run under a contact duration of a ten-millionth of the time that a disk takes for a
-/// diameter makes progress, even if all disks bounce at once.
+/// A disk goes some tens of diameters in an epoch. If [`PATIENCE`] events advance time by less than this, an
+/// epoch takes 10¹³ events, and days. The bound is not zero, since time does not quite stand still in such a
+/// run: a disk at rest on a wall bounces as high as rounding lets it. The bound is not larger, either. Under
+/// a contact duration of a ten-millionth of the time that a disk takes for a diameter, a run makes progress
+/// even if all disks bounce at once.
 const RESOLUTION: f64 = 1.0 / (1u64 << 25) as f64;
 
-/// Counts events since time last progressed.
+/// A counter of events since time last progressed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Guard {
@@ -23,8 +25,8 @@ pub(in crate::simulation) struct Guard {
 }
 
 impl Guard {
-    /// Takes note of an event. If there were too many without progress, returns their number and counts from 0 again, so that
-    /// a caller who mends the cause can go on.
+    /// Counts an event. If there were too many without progress, returns their number and starts again from
+    /// 0, so that a caller who removes the cause can go on.
     #[inline]
     pub(in crate::simulation) fn watch(
         &mut self,
@@ -42,7 +44,7 @@ impl Guard {
         None
     }
 
-    /// Measures time from an epoch that is later by this much.
+    /// Measures time from an epoch that is later by this time.
     pub(in crate::simulation) fn shift(&mut self, by: f64) {
         self.since -= by;
     }

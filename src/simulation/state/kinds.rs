@@ -1,11 +1,11 @@
-//! The kinds of disks: what does not change about them.
+//! The kinds of disks: their constant properties.
 
 use glam::DVec2;
 
 use crate::Disk;
 use crate::collision::Material;
 
-/// Radius, mass and inertia of a disk: all that does not change.
+/// The constant properties of a disk: radius, mass and inertia.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Kind {
     /// A disk of this kind at rest at the origin.
@@ -20,7 +20,7 @@ impl Kind {
     }
 }
 
-/// One kind for all disks where they are equal, so that it stays in cache.
+/// One kind for all disks if they are equal, so that it stays in the cache; otherwise one for each.
 #[derive(Debug, Clone)]
 pub(super) enum Kinds {
     Same(Kind),
@@ -37,7 +37,7 @@ impl Kinds {
         }
     }
 
-    /// The median diameter, which does not depend on the order of the disks; 0 without disks.
+    /// Returns the median diameter, which does not depend on the order of the disks; 0 without disks.
     pub(super) fn typical_diameter(&self) -> f64 {
         match self {
             Self::Same(kind) => 2.0 * kind.material.radius,
@@ -50,7 +50,7 @@ impl Kinds {
         }
     }
 
-    /// One for each disk, or one for all.
+    /// Returns one disk for each, or one for all.
     #[cfg(feature = "serde")]
     pub(super) fn disks(&self) -> Vec<Disk> {
         match self {
@@ -66,7 +66,7 @@ impl Kinds {
         }
     }
 
-    /// The diameter, if all disks have the same.
+    /// Returns the diameter, if all disks have the same one.
     #[inline]
     pub(super) fn common_diameter(&self) -> Option<f64> {
         match self {

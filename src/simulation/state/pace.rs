@@ -1,17 +1,18 @@
-//! The length of an epoch, by the pace of the disks.
+//! The length of an epoch, which depends on the pace of the disks.
 
 use glam::DVec2;
 
 use super::bodies::Bodies;
 
-/// Diameters that a typical disk goes, or falls, in an epoch.
+/// Number of diameters that a typical disk goes, or falls, in an epoch.
 const DIAMETERS: f64 = 64.0;
 
-/// The factor by which a disk may be faster than a typical one before it decides how often the epoch moves.
+/// Factor by which a disk may be faster than a typical one before it decides how often the epoch moves.
 const FASTER: f64 = 16.0;
 
 impl Bodies {
-    /// The length of an epoch: a typical disk goes, or falls, some tens of diameters in it, and none [`FASTER`] times as far.
+    /// Returns the length of an epoch. A typical disk goes, or falls, some tens of diameters in it, and no
+    /// disk goes more than [`FASTER`] times as far.
     pub(in crate::simulation) fn epoch_length(&self) -> f64 {
         let squares = || self.particles.iter().map(|particle| particle.trajectory.velocity.length_squared());
         let typical = (squares().sum::<f64>() / self.len() as f64).sqrt();
@@ -26,33 +27,37 @@ impl Bodies {
         length
     }
 
-    /// Tells whether a disk of this velocity goes no further in an epoch of this length than any should. A collision can make a
-    /// disk faster than all were; its place at the epoch, so far away, would lack digits.
+    /// Tells whether a disk of this velocity goes no further in an epoch of this length than any disk should.
+    /// A collision can make a disk faster than all were. Its place at the epoch would be so far away that it
+    /// lacked digits.
     #[inline]
     pub(in crate::simulation) fn keeps_pace(&self, velocity: DVec2, epoch_length: f64) -> bool {
         let most = FASTER * DIAMETERS * self.typical_diameter;
         (velocity * epoch_length).length_squared() <= most * most
     }
 
-    /// The length of an epoch that suits a disk of this velocity, too.
+    /// Returns the length of an epoch that also suits a disk of this velocity.
     pub(in crate::simulation) fn epoch_length_for(&self, velocity: DVec2) -> f64 {
         self.epoch_length_at(velocity.length() / FASTER)
     }
 
-    /// A power of two, so that epochs add up without rounding.
+    /// Returns the length of an epoch for this speed. It is a power of two, so that epochs add up without
+    /// rounding.
     fn epoch_length_at(&self, speed: f64) -> f64 {
         let way = DIAMETERS * self.typical_diameter;
         let length = way / (speed + (self.gravity.abs() * way).sqrt());
-        // Without disks it is no number. Where all are at rest it is endless: nothing that a horizon would have to be looked past.
+        // The length is NaN without disks. It is infinite if all disks are at rest without gravity; no search
+        // for a wall then needs a horizon.
         if length > 0.0 { power_of_two_below(length) } else { 1.0 }
     }
 }
 
-/// The largest power of two that is not above a positive number, and not so small or large that its square is none.
+/// Returns the largest power of two that is not above a positive number. It is neither so small nor so large
+/// that its square would leave the range of floats.
 fn power_of_two_below(number: f64) -> f64 {
     const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
     let number = number.clamp(f64::from_bits((1023 - 900) << 52), f64::from_bits((1023 + 900) << 52));
-    // Without its fraction a float is its power of two: exact, where a logarithm would be rounded.
+    // A float without its fraction is its power of two. This is exact, whereas a logarithm would be rounded.
     f64::from_bits(number.to_bits() & EXPONENT)
 }
 

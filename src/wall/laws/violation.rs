@@ -2,16 +2,16 @@
 
 use thiserror::Error;
 
-/// Part of the contract that a motion breaks.
+/// A way in which a motion breaks its contract.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Violation {
     /// The reach is not two finite numbers in order.
     #[error("its reach from {low} to {high} must be finite and in order")]
     Reach {
-        /// Its lower end.
+        /// Lower end of the reach.
         low: f64,
-        /// Its upper end.
+        /// Upper end of the reach.
         high: f64,
     },
     /// The period is not finite and positive.
@@ -48,17 +48,17 @@ pub enum Violation {
         /// The end of the piece.
         until: f64,
     },
-    /// So many pieces in a row get so little further that no search can follow them.
+    /// The pieces in a row advance so little that no search can follow them.
     #[error("{pieces} pieces of its motion lead only from phase {phase} to {until}: they are too short")]
     ShortPieces {
         /// The phase at which the first begins.
         phase: f64,
         /// The phase at which the last ends.
         until: f64,
-        /// Count of the pieces.
+        /// Number of pieces.
         pieces: u32,
     },
-    /// The displacement is outside of the reach.
+    /// The displacement is outside the reach.
     #[error("at phase {phase} its displacement {displacement} is outside of its reach from {low} to {high}")]
     OutOfReach {
         /// The phase.

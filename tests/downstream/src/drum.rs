@@ -57,7 +57,7 @@ impl Boundary for Drum {
         let start = flight.time();
         let (r, v, a) = (flight.position(start), flight.velocity(start), flight.acceleration());
         let free = self.radius - flight.radius();
-        // What is left of the square of the radius, as a polynomial of the time.
+        // The square of the remaining radius, as a polynomial of the time.
         let gap = [
             (free - r.length()) * (free + r.length()),
             -2.0 * r.dot(v),

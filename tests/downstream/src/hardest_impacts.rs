@@ -7,7 +7,7 @@ use granular_edmd::observable::{Collision, Moment, Observer, Partner, SampleTime
 pub struct HardestImpacts {
     times: SampleTimes,
     present: Vec<f64>,
-    /// One row for each interval, one number for each wall.
+    /// The impacts: one row for each interval, one number for each wall.
     pub hardest: Vec<Vec<f64>>,
 }
 
@@ -25,7 +25,7 @@ impl Observer for HardestImpacts {
 
     fn on_collision(&mut self, collision: &Collision) {
         if let Partner::Wall(wall) = collision.partner {
-            // Single steps have no start that would tell how many walls there are.
+            // Single steps have no start that would tell the number of walls.
             self.present.resize(self.present.len().max(wall + 1), 0.0);
             self.present[wall] = self.present[wall].max(collision.impulse.normal());
         }

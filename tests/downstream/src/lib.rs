@@ -1,5 +1,5 @@
-//! What a user of the library brings along: a rule, a wall motion, a scheduler, an observable, observers and a boundary
-//! of one's own, written against the public API alone.
+//! Parts that a user of the library writes: a rule, a wall motion, a scheduler, an observable, observers and
+//! a boundary, against the public API alone.
 
 pub mod angular_momentum;
 pub mod drum;

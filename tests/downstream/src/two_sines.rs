@@ -3,8 +3,8 @@
 use granular_edmd::Fingerprint;
 use granular_edmd::wall::{AccelerationBounds, WallMotion, WallState};
 
-/// The sum of two sines whose frequencies need not fit together: it has no period, and all that it says of its
-/// acceleration is a bound for all times.
+/// The sum of two sines whose frequencies need not fit together. It has no period, and it only knows a bound
+/// of its acceleration for all times.
 #[derive(Debug, Clone, Copy)]
 pub struct TwoSines {
     pub amplitudes: [f64; 2],

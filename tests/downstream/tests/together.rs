@@ -1,4 +1,4 @@
-//! Everything at once, and everything boxed.
+//! All of the user's parts at once, and all of them boxed.
 
 use downstream::angular_momentum::AngularMomentum;
 use downstream::drum::Drum;

@@ -1,4 +1,4 @@
-//! Motions that no search could follow: it ends all the same, and lets nothing through.
+//! Motions that no search could follow. The search ends all the same, and lets nothing through.
 
 use granular_edmd::wall::{AccelerationBounds, Approach, WallMotion, WallState, first_touch};
 
@@ -33,7 +33,7 @@ fn approaches(start: f64) -> [Approach; 2] {
     [Approach::new(start, 0.5, 0.0, 0.0), Approach::new(start, 0.5, -0.1, 0.0)]
 }
 
-/// The search ends, and the surface that sinks has not got past the wall unseen.
+/// Checks that the search ends, and that the surface that sinks has not got past the wall unnoticed.
 fn is_stopped(liar: Liar) {
     for start in [0.0, 1.0, 1e9, -3.0] {
         let [hovering, sinking] = approaches(start);
@@ -77,8 +77,8 @@ fn a_reach_that_is_no_number_is_everywhere() {
     }
 }
 
-/// A disk must not fly on through a wall that cannot say where it is: whoever resolves the touch finds the
-/// NaN.
+/// A disk must not fly on through a wall that cannot say where it is. The engine finds the NaN when it
+/// resolves the touch.
 #[test]
 fn a_state_that_is_no_number_is_touched_at_once() {
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
@@ -88,7 +88,7 @@ fn a_state_that_is_no_number_is_touched_at_once() {
                 for approach in approaches(1.0) {
                     assert_eq!(first_touch(&liar, &approach, 9.0), Some(1.0), "{liar:?}");
                 }
-                // From above the reach, when it gets there.
+                // A disk from above the reach touches when it gets there.
                 let falling = Approach::new(0.0, 3.0, 0.0, -1.0);
                 assert_eq!(first_touch(&liar, &falling, 9.0), Some(2.0), "{liar:?}");
             }

@@ -6,8 +6,8 @@ use granular_edmd::wall::{Approach, Sinusoidal, Triangular, WallMotion, WallStat
 
 use super::{AMPLITUDE, FREQUENCY, Flight, Loose, PERIOD};
 
-/// A disk that leaves a sine so slowly that the whole bounce is lower than rounding: it ends when the gap
-/// closes as fast as it opened.
+/// A disk leaves a sine so slowly that the whole bounce is lower than rounding. It ends when the gap closes
+/// as fast as it opened.
 #[test]
 fn a_bounce_lower_than_rounding_takes_its_time() {
     let base = Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap();
@@ -23,7 +23,7 @@ fn a_bounce_lower_than_rounding_takes_its_time() {
     }
 }
 
-/// Beyond its top the wall falls away: a disk that leaves it slowly meets it again when it comes up, not
+/// The wall falls away beyond its top. A disk that leaves it slowly meets it again when it comes up, not
 /// before.
 #[test]
 fn a_wall_that_falls_away_is_not_touched_by_what_leaves_it() {
@@ -41,8 +41,8 @@ fn a_wall_that_falls_away_is_not_touched_by_what_leaves_it() {
     }
 }
 
-/// The wall falls away from the disk for a while, then less: what begins lower than rounding rises far above
-/// it.
+/// The wall falls away from the disk for a while, then less. A bounce that begins lower than rounding rises
+/// far above it.
 #[test]
 fn a_bounce_that_begins_low_may_rise() {
     let base = Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap();
@@ -54,7 +54,7 @@ fn a_bounce_that_begins_low_may_rise() {
     assert!(flight.gap(&base, touch).abs() < 1e-14);
 }
 
-/// Rounding of a late time moves a slow surface by little.
+/// The rounding of a late time moves a slow surface by little.
 #[test]
 fn a_slow_disk_above_the_top_of_a_late_wall_touches_it_when_it_is_there() {
     let base = Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap();

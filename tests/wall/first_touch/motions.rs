@@ -11,7 +11,7 @@ use granular_edmd::wall::{
 
 use super::{AMPLITUDE, FREQUENCY, Loose, PERIOD, motions};
 
-/// All that a motion says of a time.
+/// Returns everything that a motion answers about a time.
 fn said<M: WallMotion>(
     motion: M,
 ) -> (WallState, AccelerationBounds, (f64, f64), Option<f64>, Option<Fingerprint>) {
