@@ -1,10 +1,9 @@
 //! A study as data.
 
+mod text;
 mod validation;
 
-use std::fmt;
-
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::Serialize;
 use toml::Table;
 
 use super::errors::PlanError;
@@ -107,24 +106,6 @@ impl<E: Experiment> Plan<E> {
     /// If it is 0, or there are too many values then.
     pub fn with_repeats(self, repeats: usize) -> Result<Self, PlanError> {
         Self { repeats, ..self }.checked()
-    }
-
-    /// Reads a plan in TOML.
-    ///
-    /// # Errors
-    /// If it is not TOML, a field is unknown or missing, or a value is as it should not be; the error names
-    /// it.
-    pub fn from_toml(text: &str) -> Result<Self, PlanError> {
-        let raw: Raw<E> = toml::from_str(text).map_err(|error| PlanError::Toml(error.to_string()))?;
-        raw.checked()
-    }
-
-    /// Returns the plan in TOML.
-    ///
-    /// # Errors
-    /// If it cannot be written so.
-    pub fn to_toml(&self) -> Result<String, PlanError> {
-        toml::to_string(self).map_err(|error| PlanError::Toml(error.to_string()))
     }
 
     /// Returns how values are sampled.
@@ -249,13 +230,6 @@ impl<E: Experiment> Plan<E> {
     }
 }
 
-/// The plan as in its file.
-impl<E: Experiment> fmt::Display for Plan<E> {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(&self.to_toml().map_err(|_| fmt::Error)?)
-    }
-}
-
 /// Returns a seed for one of many things that need one.
 pub(super) fn derived_seed(seed: u64, index: u64) -> u64 {
     let bytes = [seed.to_le_bytes(), index.to_le_bytes()].concat();
@@ -263,41 +237,4 @@ pub(super) fn derived_seed(seed: u64, index: u64) -> u64 {
     let mut first = [0; 8];
     first.copy_from_slice(&hash.as_bytes()[..8]);
     u64::from_le_bytes(first)
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, rename = "Plan")]
-struct Raw<E> {
-    seed: u64,
-    #[serde(default = "one")]
-    repeats: usize,
-    experiment: E,
-    protocol: Protocol,
-    ramp: Option<Ramp>,
-    #[serde(default = "Vec::new")]
-    sweep: Vec<Axis>,
-}
-
-const fn one() -> usize {
-    1
-}
-
-impl<E: Experiment> Raw<E> {
-    fn checked(self) -> Result<Plan<E>, PlanError> {
-        let Self { seed, repeats, experiment, protocol, ramp, sweep } = self;
-        Plan { seed, repeats, experiment, protocol, ramp, sweep, tree: Table::new(), varied: Vec::new() }
-            .checked()
-    }
-}
-
-impl<'de, E: Experiment> Deserialize<'de> for Plan<E> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let told = |error: PlanError| {
-            let sources = std::iter::successors(std::error::Error::source(&error), |&source| source.source());
-            let told: Vec<String> =
-                std::iter::once(error.to_string()).chain(sources.map(ToString::to_string)).collect();
-            serde::de::Error::custom(told.join(": "))
-        };
-        Raw::deserialize(deserializer)?.checked().map_err(told)
-    }
 }
