@@ -114,8 +114,13 @@ impl<E: Experiment> Plan<E> {
     /// # Errors
     /// If it is not TOML, a field is unknown or missing, or a value is as it should not be; the error names it.
     pub fn from_toml(text: &str) -> Result<Self, PlanError> {
+        Self::from_toml_unproven(text)?.proven()
+    }
+
+    /// Reads a plan without a look at the experiment of each value: in large plans that takes seconds, and is done once only.
+    pub(super) fn from_toml_unproven(text: &str) -> Result<Self, PlanError> {
         let raw: Raw<E> = toml::from_str(text).map_err(|error| PlanError::Toml(error.to_string()))?;
-        raw.checked()
+        raw.plan().consistent()
     }
 
     /// Returns the plan in TOML.
@@ -243,7 +248,18 @@ impl<E: Experiment> Plan<E> {
     }
 
     /// Returns the plan, if it can be carried out.
-    fn checked(mut self) -> Result<Self, PlanError> {
+    fn checked(self) -> Result<Self, PlanError> {
+        self.consistent()?.proven()
+    }
+
+    /// Returns the plan, if the experiment takes the parameters of each value.
+    pub(super) fn proven(self) -> Result<Self, PlanError> {
+        self.check_experiments()?;
+        Ok(self)
+    }
+
+    /// Returns the plan, if its parts are each as they should be.
+    fn consistent(mut self) -> Result<Self, PlanError> {
         accept(self.seed <= LARGEST_SEED, "seed", "below 2^63", self.seed as f64)?;
         accept(self.repeats > 0, "number of repeats", "at least 1", self.repeats as f64)?;
         self.protocol.check()?;
@@ -255,7 +271,6 @@ impl<E: Experiment> Plan<E> {
         self.varied = self.varied().map(|name| whole_name(&self.tree, name)).collect::<Result<_, _>>()?;
         self.check_varied()?;
         self.try_names()?;
-        self.check_experiments()?;
         Ok(self)
     }
 
@@ -359,10 +374,9 @@ const fn one() -> usize {
 }
 
 impl<E: Experiment> Raw<E> {
-    fn checked(self) -> Result<Plan<E>, PlanError> {
+    fn plan(self) -> Plan<E> {
         let Self { seed, repeats, experiment, protocol, ramp, sweep } = self;
         Plan { seed, repeats, experiment, protocol, ramp, sweep, tree: Table::new(), varied: Vec::new() }
-            .checked()
     }
 }
 
@@ -374,6 +388,6 @@ impl<'de, E: Experiment> Deserialize<'de> for Plan<E> {
                 std::iter::once(error.to_string()).chain(sources.map(ToString::to_string)).collect();
             serde::de::Error::custom(told.join(": "))
         };
-        Raw::deserialize(deserializer)?.checked().map_err(told)
+        Raw::deserialize(deserializer)?.plan().checked().map_err(told)
     }
 }
