@@ -46,6 +46,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::boundary::{Boundary, Container};
 use crate::collision::{CollisionRule, Frictional};
 use crate::disk::bounded;
+use crate::instructions::Instructions;
 use crate::observable::{Moment, Observable, Observer, Snapshot};
 use crate::quantity::accept;
 use crate::scheduler::{BySize, EventScheduler};
@@ -93,6 +94,8 @@ pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     generator: Xoshiro256PlusPlus,
     counters: Counters,
     lookahead: Lookahead,
+    /// What predictions may use; the bits do not depend on it.
+    instructions: Instructions,
     scratch: Scratch,
 }
 

@@ -54,7 +54,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     pub(super) fn earliest_collision(&mut self, disk: usize, count: usize, known: Earliest) -> Earliest {
         let period = self.cells.grid().period();
         let found = &mut self.scratch.found;
-        earliest_collision(&self.bodies, period, disk, found, count, self.clock.now, known)
+        earliest_collision(self.instructions, &self.bodies, period, disk, found, count, self.clock.now, known)
     }
 
     /// Takes `earliest` as the next collision of a disk whose next collision was `known` before.
@@ -90,7 +90,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline]
     pub(super) fn end_flight(&mut self, disk: usize) {
         let (place, grid) = (self.cells.place(disk), self.cells.grid());
-        let (exit_due, exit) = cell_exit(&self.bodies, disk, &grid.region(place), self.clock.now);
+        let (exit_due, exit) = cell_exit(self.instructions, &self.bodies, disk, grid, place, self.clock.now);
         let at_wall = self.cells.is_at_wall(place);
         let forecast = self.forecast_mut(disk);
         (forecast.exit_due, forecast.exit) = (exit_due, exit);

@@ -1,7 +1,10 @@
 //! Predictions of the time at which two disks collide, and of the time at which a disk leaves its cell.
 
+use super::cells::{Grid, Place};
 use super::state::{Bodies, Earliest, Exit};
-use crate::boundary::Region;
+#[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+use crate::instructions::Level;
+use crate::instructions::{Instructions, compiled_for_each};
 
 /// Number of pairs that are predicted side by side.
 ///
@@ -108,13 +111,20 @@ pub(super) fn are_closing(bodies: &Bodies, period: f64, disk: usize, partner: us
     x * velocity_x + y * velocity_y < 0.0
 }
 
-/// Returns the earliest collision of `disk` with one of the first `count` of `candidates`, or `known` if that
-/// is earlier.
-///
-/// The candidates may include the disk itself, which never meets itself. The room behind the candidates is
-/// filled with the disk.
-#[inline]
-pub(super) fn earliest_collision(
+compiled_for_each! {
+    /// Returns the earliest collision of `disk` with one of the first `count` of `candidates`, or `known` if that
+    /// is earlier.
+    ///
+    /// The candidates may include the disk itself, which never meets itself. The room behind the candidates is
+    /// filled with the disk.
+    #[inline(never)]
+    earliest_collision(
+        bodies: &Bodies, period: f64, disk: usize, candidates: &mut [u32], count: usize, now: f64, known: Earliest
+    ) -> Earliest = search
+}
+
+#[inline(always)]
+fn search<const COPY: u8>(
     bodies: &Bodies,
     period: f64,
     disk: usize,
@@ -138,7 +148,7 @@ pub(super) fn earliest_collision(
     }
 }
 
-#[inline]
+#[inline(always)]
 fn scan(
     bodies: &Bodies,
     disk: usize,
@@ -173,9 +183,15 @@ fn scan(
     best.earliest()
 }
 
-/// Returns the offset at which a disk leaves its cell, and the edge.
+compiled_for_each! {
+    /// Returns the offset at which a disk leaves its cell, and the edge.
+    #[inline(always)]
+    cell_exit(bodies: &Bodies, disk: usize, grid: &Grid, place: Place, now: f64) -> (f64, Exit) = exit
+}
+
 #[inline(always)]
-pub(super) fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64) -> (f64, Exit) {
+fn exit<const COPY: u8>(bodies: &Bodies, disk: usize, grid: &Grid, place: Place, now: f64) -> (f64, Exit) {
+    let region = grid.region(place);
     let (position, velocity) = (bodies.position(disk, now), bodies.velocity(disk, now));
     let rightward = velocity.x > 0.0;
     let distance = if rightward { region.max.x - position.x } else { position.x - region.min.x };
