@@ -33,6 +33,36 @@ impl Instructions {
         known.into_iter().filter(|&level| level == Level::Built || has(level)).map(Self).collect()
     }
 
+    /// Does some work with these instructions, for what is large and called rarely.
+    ///
+    /// `work` is `#[inline(always)]` with all that is hot in it: what is not inlined has no vector instructions.
+    #[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+    #[allow(unsafe_code)]
+    pub(crate) fn run<T>(self, work: impl FnOnce() -> T) -> T {
+        #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+        fn avx2<T>(work: impl FnOnce() -> T) -> T {
+            work()
+        }
+
+        #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl,avx512dq,avx512bw,avx512cd")]
+        fn avx512<T>(work: impl FnOnce() -> T) -> T {
+            work()
+        }
+
+        match self.0 {
+            Level::Built => work(),
+            // SAFETY: the processor has what these two are compiled for, or there would be no such value.
+            Level::Avx2 => unsafe { avx2(work) },
+            Level::Avx512 => unsafe { avx512(work) },
+        }
+    }
+
+    /// Does some work with these instructions.
+    #[cfg(not(all(target_arch = "x86_64", not(target_feature = "avx2"))))]
+    pub(crate) fn run<T>(self, work: impl FnOnce() -> T) -> T {
+        work()
+    }
+
     #[inline]
     #[allow(dead_code, reason = "nobody asks where there is no choice")]
     pub(crate) fn level(self) -> Level {

@@ -177,7 +177,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.check_end(end)?;
         observer.on_start(&self.moment());
         let ended = match self.verdict_of(observer) {
-            Ok(ControlFlow::Continue(())) => self.sample_until(end, observer),
+            Ok(ControlFlow::Continue(())) => self.instructions.run(
+                #[inline(always)]
+                || self.sample_until(end, observer),
+            ),
             stopped => stopped.map(|_| RunEnd::Observer),
         };
         observer.on_end(&self.moment());
@@ -225,6 +228,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Goes from sample to sample until `end`.
+    #[inline(always)]
     fn sample_until<O: Observer + ?Sized>(&mut self, end: f64, observer: &mut O) -> Outcome<RunEnd> {
         loop {
             let sample = observer.next_sample();
@@ -252,7 +256,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Does all events until the next collision, or until the absolute time `stop`, and goes there.
-    #[inline]
+    #[inline(always)]
     fn collide_until<O: Observer + ?Sized>(&mut self, stop: f64, observer: &mut O) -> Outcome<Option<Event>> {
         // The epoch may move with each event, which changes the offset of `stop`.
         while let Some((disk, due)) = self.next_due(stop - self.clock.origin) {
