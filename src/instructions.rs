@@ -1,18 +1,18 @@
 //! Vector instructions that a processor may have beyond those that every processor of its kind has.
 //!
-//! A build for any x86-64 may take two numbers at a time for granted, but most processors take four. So the hot code is compiled
-//! for each of them, and [`Instructions`] says which copy runs. The arithmetic is the same in all: Rust never contracts a
-//! product and a sum, so the bits do not depend on the choice. Where the build itself is for a processor with AVX2, or for another
-//! architecture, there is one copy and no choice.
+//! A build for any x86-64 can rely on two numbers at a time only, but nearly all processors take four. So the
+//! hot code is compiled for each level, and [`Instructions`] names the level that this processor has. The
+//! arithmetic is the same in all copies, since Rust never contracts a product and a sum. So the bits do not
+//! depend on the level. A build for a processor with AVX2 or for another architecture has one copy only.
 
-/// Instructions that this processor has. No other value can be made, and [`compiled_for_each`] relies on it.
+/// Instructions that this processor has. No other value can be made.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Instructions(Level);
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(dead_code, reason = "not all are chosen from in all builds")]
 pub(crate) enum Level {
-    /// What the build takes for granted.
+    /// What the build relies on.
     Built,
     /// Four numbers at a time.
     Avx2,
@@ -21,21 +21,22 @@ pub(crate) enum Level {
 }
 
 impl Instructions {
-    /// The best that this processor has.
+    /// Returns the best that this processor has.
     pub(crate) fn detected() -> Self {
         [Level::Avx512, Level::Avx2].into_iter().find(|&level| has(level)).map_or(Self(Level::Built), Self)
     }
 
-    /// All that this processor has.
+    /// Returns all that this processor has.
     #[cfg(test)]
     pub(crate) fn all() -> Vec<Self> {
         let known = [Level::Built, Level::Avx2, Level::Avx512];
         known.into_iter().filter(|&level| level == Level::Built || has(level)).map(Self).collect()
     }
 
-    /// Does some work with these instructions, for what is large and called rarely.
+    /// Runs a long piece of work with these instructions.
     ///
-    /// `work` is `#[inline(always)]` with all that is hot in it: what is not inlined has no vector instructions.
+    /// `work` and all that is hot in it must be `#[inline(always)]`, since other code keeps to the level of
+    /// the build.
     #[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
     #[allow(unsafe_code)]
     pub(crate) fn run<T>(self, work: impl FnOnce() -> T) -> T {
@@ -51,18 +52,20 @@ impl Instructions {
 
         match self.0 {
             Level::Built => work(),
-            // SAFETY: the processor has what these two are compiled for, or there would be no such value.
+            // SAFETY: only `detected` and `all` make values, and the processor has the levels of these.
             Level::Avx2 => unsafe { avx2(work) },
             Level::Avx512 => unsafe { avx512(work) },
         }
     }
 
-    /// Does some work with these instructions.
+    /// Runs a long piece of work.
     #[cfg(not(all(target_arch = "x86_64", not(target_feature = "avx2"))))]
+    #[allow(clippy::unused_self, reason = "there is no choice here")]
     pub(crate) fn run<T>(self, work: impl FnOnce() -> T) -> T {
         work()
     }
 
+    /// Returns the level of these instructions.
     #[inline]
     #[allow(dead_code, reason = "nobody asks where there is no choice")]
     pub(crate) fn level(self) -> Level {
@@ -89,17 +92,18 @@ fn has(level: Level) -> bool {
     level == Level::Built
 }
 
-/// Makes a function that runs the copy of `$body` for the instructions that are its first argument.
+/// Makes a function that runs the copy of `$body` for the [`Instructions`] in its first argument.
 ///
-/// `$body` is `#[inline(always)]` with all that is hot in it: what is not inlined has no vector instructions. Its parameter, the
-/// number of the copy, makes the copies different functions, so that what each calls is inlined as if it were the only one. A
-/// macro and not a function that takes a closure, for what closures capture goes through memory: 5 % of the time of a run.
+/// `$body` and all that is hot in it must be `#[inline(always)]`, since other code keeps to the level of the
+/// build. Its parameter, the number of the copy, makes the copies different functions. The compiler then
+/// inlines what each calls as if it were the only caller. The attributes are those of the copy for the level
+/// of the build. A function that takes a closure would be slower, since captures go through memory.
 #[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
 macro_rules! compiled_for_each {
     ($(#[$attribute:meta])* $name:ident($($argument:ident: $type:ty),*) -> $output:ty = $body:ident) => {
         #[inline]
-        #[allow(unsafe_code)]
-        pub(super) fn $name(instructions: Instructions, $($argument: $type),*) -> $output {
+        #[allow(unsafe_code, clippy::too_many_arguments)]
+        pub(super) fn $name(instructions: $crate::instructions::Instructions, $($argument: $type),*) -> $output {
             $(#[$attribute])*
             fn built($($argument: $type),*) -> $output {
                 $body::<0>($($argument),*)
@@ -116,10 +120,10 @@ macro_rules! compiled_for_each {
             }
 
             match instructions.level() {
-                Level::Built => built($($argument),*),
-                // SAFETY: the processor has what these two are compiled for, or there would be no such value.
-                Level::Avx2 => unsafe { avx2($($argument),*) },
-                Level::Avx512 => unsafe { avx512($($argument),*) },
+                $crate::instructions::Level::Built => built($($argument),*),
+                // SAFETY: as in `Instructions::run`.
+                $crate::instructions::Level::Avx2 => unsafe { avx2($($argument),*) },
+                $crate::instructions::Level::Avx512 => unsafe { avx512($($argument),*) },
             }
         }
     };
@@ -129,7 +133,8 @@ macro_rules! compiled_for_each {
 macro_rules! compiled_for_each {
     ($(#[$attribute:meta])* $name:ident($($argument:ident: $type:ty),*) -> $output:ty = $body:ident) => {
         $(#[$attribute])*
-        pub(super) fn $name(_: Instructions, $($argument: $type),*) -> $output {
+        #[allow(clippy::too_many_arguments)]
+        pub(super) fn $name(_: $crate::instructions::Instructions, $($argument: $type),*) -> $output {
             $body::<0>($($argument),*)
         }
     };

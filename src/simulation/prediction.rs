@@ -2,9 +2,7 @@
 
 use super::cells::{Grid, Place};
 use super::state::{Bodies, Earliest, Exit};
-#[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
-use crate::instructions::Level;
-use crate::instructions::{Instructions, compiled_for_each};
+use crate::instructions::compiled_for_each;
 
 /// Number of pairs that are predicted side by side.
 ///
