@@ -57,7 +57,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     ];
     for (name, parameter, values, friction) in ramps {
         let plan = plan(&arguments.common, parameter, values, friction)?;
-        let Some(study) = studies::complete(&arguments.common.folder(name), &plan)? else {
+        let Some(study) = arguments.common.complete(name, &plan)? else {
             return Ok(());
         };
         let records: Vec<Record> = study.records().collect::<Result<_, _>>()?;

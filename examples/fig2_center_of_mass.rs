@@ -71,8 +71,7 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let name = if arguments.slip { "fig2_center_of_mass-slip" } else { "fig2_center_of_mass" };
-    let folder = arguments.common.folder(name);
-    let Some(study) = studies::complete(&folder, &arguments.plan()?)? else { return Ok(()) };
+    let Some(study) = arguments.common.complete(name, &arguments.plan()?)? else { return Ok(()) };
     let points = points(&study)?;
     print(&points);
     studies::write_png(figure(&points, arguments.slip), &study, "fig2_center_of_mass.png")

@@ -60,8 +60,7 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let name = if arguments.down { "fig3_order_parameters-down" } else { "fig3_order_parameters" };
-    let folder = arguments.common.folder(name);
-    let Some(study) = studies::complete(&folder, &arguments.plan()?)? else { return Ok(()) };
+    let Some(study) = arguments.common.complete(name, &arguments.plan()?)? else { return Ok(()) };
     let records: Vec<Record> = study.records().collect::<Result<_, _>>()?;
     print(&records);
     studies::write_png(figure(&records, &study), &study, "fig3_order_parameters.png")

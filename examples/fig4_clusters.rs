@@ -78,8 +78,7 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let folder = arguments.common.folder("fig4_clusters");
-    let Some(study) = studies::complete(&folder, &arguments.plan()?)? else { return Ok(()) };
+    let Some(study) = arguments.common.complete("fig4_clusters", &arguments.plan()?)? else { return Ok(()) };
     let runs: Vec<Run> = study.records().map(|record| Run::of(record?)).collect::<Result<_, _>>()?;
     runs.iter().for_each(print);
     let three = runs.iter().filter(|run| run.clusters() == 3).count();

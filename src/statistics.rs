@@ -6,6 +6,7 @@
 //! | mean of correlated numbers with its error, without keeping the numbers | [`BlockedMean`] |
 //! | the same for a series in memory | [`block_average`] |
 //! | a mean, its error, and what the error rests on | [`Estimate`] |
+//! | the mean of several runs together | [`Estimate::over_repeats`] |
 //!
 //! Collisions and samples of one run are correlated. A standard error that takes them as independent is too
 //! small, often by a factor of ten. The error of such a mean comes from blocks, and shows when the run was
@@ -26,6 +27,7 @@ mod blocked_mean;
 mod blocking;
 mod estimate;
 mod moments;
+mod repeats;
 mod running_mean;
 
 pub use blocked_mean::BlockedMean;

@@ -1,19 +1,22 @@
 //! Studies: many runs, planned as data, watched, stopped, resumed, spread over processes, and kept.
 //!
-//! An [`Experiment`] is what is studied: a serialisable type of your own, whose fields are the parameters and whose methods say
-//! what is simulated, what is measured, and which columns the tables have. A [`Plan`] says what is done with it: a
-//! [`Protocol`] to sample it, a [`Ramp`] of one parameter up or down, a sweep of independent ramps over the grid of its
-//! [`Axis`]es, and repeats. A [`Study`] is a plan in a folder. [`Study::run`] does what is not done yet, on all cores with the
-//! feature `rayon`, in any number of processes; each finished value is written at once, as a [`Record`].
+//! An [`Experiment`] is what is studied: a serializable type of your own, whose fields are the parameters and
+//! whose methods say what is simulated, what is measured, and which columns the tables have. A [`Plan`] says
+//! what is done with it: a [`Protocol`] to sample it, a [`Ramp`] of one parameter up or down, a sweep of
+//! independent ramps over the grid of its [`Axis`]es, and repeats. A [`Study`] is a plan in a folder.
+//! [`Study::run`] does what is not done yet, on all cores with the feature `rayon`, in any number of
+//! processes; each finished value is written at once, as a [`Record`].
 //!
 //! The paper's system is an experiment like any other: [`vibrated_box`].
 //!
 //! # Promises
-//! 1. A value is a function of plan, index and seed: the files of a complete study are the same bytes on any number of threads
-//!    and processes, and however often they were interrupted or killed. Only `log.jsonl`, which has the times, differs.
+//! 1. A value is a function of plan, index and seed: the files of a complete study are the same bytes on any
+//!    number of threads and processes, and however often they were interrupted or killed. Only `log.jsonl`,
+//!    which has the times, differs.
 //! 2. A file is whole or not there. A damaged one is named and done again, never read as data.
-//! 3. Any number of processes run a study at the same time, started at any time: each ramp is done by one of them. They need
-//!    a file system whose locks all of them see: local ones have that, as NFS has from version 4 on.
+//! 3. Any number of processes run a study at the same time, started at any time: each ramp is done by one of
+//!    them. They need a file system whose locks all of them see: local ones have that, as NFS has from
+//!    version 4 on.
 //! 4. A study writes into a folder that is empty or its own, and changes or removes no file but its own.
 //! 5. A run that cannot progress is an [`Outcome`] of its value: the study goes on.
 //!
@@ -22,7 +25,8 @@
 //! use granular_edmd::study::{Control, Course, Plan, Protocol, Ramp, Study};
 //!
 //! let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
-//! let experiment = VibratedBox::new(30, 10.0, base).with_height(30.0).with_gravity(0.0156).with_contact_duration(1e-4);
+//! let experiment = VibratedBox::new(30, 10.0, base).with_height(30.0).with_contact_duration(1e-4);
+//! let experiment = experiment.with_gravity(0.0156);
 //! let ramp = Ramp::new("friction", [0.01, 0.02], Course::Up);
 //! let plan = Plan::new(experiment, Protocol::new(10, 4, 5), 1)?.with_ramp(ramp)?;
 //!
@@ -51,8 +55,10 @@ mod lock;
 mod measurement;
 mod parameters;
 mod plan;
+mod point;
 mod protocol;
 mod ramp;
+mod reading;
 mod record;
 mod refinement;
 mod runner;
@@ -68,16 +74,15 @@ pub use errors::{PlanError, StudyError};
 pub use experiment::{Experiment, ExperimentError, Run};
 pub use parameters::Difference;
 pub use plan::Plan;
+pub use point::Point;
 pub use protocol::Protocol;
-pub use ramp::{Axis, Course, Leg, Ramp};
+pub use ramp::{Axis, Course, Leg, Ramp, Width};
 pub use record::{Outcome, Record};
 pub use refinement::Bracket;
 pub use scalar::Scalar;
 
 use folder::Folder;
-use record::{Contents, Origin};
-use refinement::Seen;
-use tables::Tables;
+use record::Origin;
 
 /// Version of this crate: another one may have other results.
 const CRATE_VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -120,11 +125,12 @@ impl<E: Experiment> Study<E> {
         Self::in_folder(folder, plan)
     }
 
-    /// Opens the study in a folder, or makes a new one: the same command starts a study and goes on with it, also in several
-    /// processes at the same time.
+    /// Opens the study in a folder, or makes a new one: the same command starts a study and goes on with it,
+    /// also in several processes at the same time.
     ///
     /// # Errors
-    /// If the folder holds a study with another plan, or other files and no study, or cannot be read or written.
+    /// If the folder holds a study with another plan, or other files and no study, or cannot be read or
+    /// written.
     pub fn open_or_create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
         let folder = Folder::new(folder.as_ref())?;
         if !folder.holds_study() {
@@ -169,75 +175,6 @@ impl<E: Experiment> Study<E> {
         &self.plan
     }
 
-    /// Returns the record of a value; `None` if it is not finished.
-    ///
-    /// # Errors
-    /// If the file is damaged, of another study, or cannot be read.
-    pub fn record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
-        let path = self.folder.record(ramp, value);
-        let Some(contents) = file::read_sealed::<Contents<_, _>>(&path)? else { return Ok(None) };
-        self.check_origin(&contents.origin, ramp, value, &path)?;
-        let spans = |at| self.plan.ramp().is_some_and(|ramp| ramp.spans(at));
-        if contents.at.is_some_and(|at| !spans(at)) {
-            return Err(file::damaged(&path, "it is outside the ramp"));
-        }
-        let record = Record { experiment: self.plan.experiment_at(ramp, contents.at)?, contents };
-        record.check(&self.plan).map_err(|reason| file::damaged(&path, reason))?;
-        Ok(Some(record))
-    }
-
-    /// Returns all finished records, ramp by ramp, read one by one.
-    pub fn records(&self) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
-        (0..self.plan.ramps()).flat_map(|ramp| self.ramp_records(ramp))
-    }
-
-    /// Returns all finished records of a ramp, read one by one.
-    pub fn ramp_records(&self, ramp: usize) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
-        let values = self.plan.values();
-        let own = (0..values).filter_map(move |value| self.record(ramp, value).transpose());
-        // Those of a refinement have no gaps, and their number is known at the end only.
-        let is_refined = self.plan.ramp().is_some_and(|ramp| ramp.refine().is_some());
-        let more = (values..)
-            .take_while(move |_| is_refined)
-            .map_while(move |value| self.record(ramp, value).transpose());
-        own.chain(more)
-    }
-
-    /// Returns the transitions that a refined ramp has bracketed; none before all of them are.
-    ///
-    /// # Errors
-    /// If a record is damaged, of another study, or cannot be read.
-    pub fn transitions(&self, ramp: usize) -> Result<Vec<Bracket>, StudyError> {
-        let seen: Vec<Seen> =
-            self.ramp_records(ramp).map(|record| Ok(record?.seen())).collect::<Result<_, StudyError>>()?;
-        Ok(self.plan.ramp().map_or_else(Vec::new, |ramp| ramp.brackets(&seen)))
-    }
-
-    /// Writes the tables of all records that there are; returns how many.
-    ///
-    /// A run does this when all is done; in between, it is for looking.
-    ///
-    /// # Errors
-    /// If a record is damaged, or a file cannot be read or written.
-    pub fn write_tables(&self) -> Result<usize, StudyError> {
-        let mut tables = Tables::new(&self.plan);
-        let mut finished = 0;
-        for ramp in 0..self.plan.ramps() {
-            let mut seen = Vec::new();
-            for record in self.ramp_records(ramp) {
-                let record = record?;
-                tables.add(&record);
-                seen.push(record.seen());
-                finished += 1;
-            }
-            tables
-                .add_transitions(ramp, &self.plan.ramp().map_or_else(Vec::new, |ramp| ramp.brackets(&seen)));
-        }
-        let tables = tables.finish();
-        self.folder.write_tables(tables.iter().map(|(name, text)| (name.as_str(), text.as_str())))?;
-        Ok(finished)
-    }
-
     /// Returns how far a ramp is.
     pub fn status(&self, ramp: usize) -> RampStatus {
         if self.folder.is_done(ramp) {
@@ -277,7 +214,7 @@ pub enum RampStatus {
     Done,
     /// A process does it now.
     Running,
-    /// It was begun, and nobody does it now.
+    /// A process has begun it, and nobody does it now.
     Begun,
     /// Nothing has been done of it.
     Waiting,

@@ -109,6 +109,12 @@ fn ramps_in_many_processes_are_a_study() {
         (code(&status), said(&status).as_str()),
         (Some(3), "4 ramps: 3 done, 0 running, 0 begun, 1 waiting\n")
     );
+    let json: serde_json::Value =
+        serde_json::from_slice(&scratch.runs(&["status", "many", "--json"]).stdout).unwrap();
+    let expected = serde_json::json!({
+        "ramps": 4, "done": [0, 1, 2], "running": [], "begun": [], "waiting": [3]
+    });
+    assert_eq!(json, expected);
     assert!(!scratch.0.join("many/values.csv").exists());
     assert_eq!(code(&scratch.runs(&["tables", "many"])), Some(0));
     assert!(scratch.0.join("many/values.csv").exists());

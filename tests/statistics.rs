@@ -172,3 +172,49 @@ fn two_digits_of_the_error_are_printed() {
     assert_eq!(printed(1.0), "-0.124 ± 0.022 (independent samples)");
     assert_eq!(printed(1e4), "10 ± 224 (independent samples)");
 }
+
+/// Estimates of the halves, quarters, … of one series together are that of the whole; their scatter over seeds is their error.
+#[test]
+fn the_error_of_repeats_together_is_that_of_one_long_run() {
+    for repeats in [1, 2, 4, 16] {
+        let together: Vec<Estimate> = (0..SEEDS)
+            .map(|seed| {
+                let run = |repeat| -> BlockedMean {
+                    Autoregressive::new(1000 * seed + repeat, 0.8).take(4096).collect()
+                };
+                Estimate::over_repeats((0..repeats).map(|repeat| run(repeat).estimate()))
+            })
+            .collect();
+        let means: RunningMean = together.iter().map(Estimate::mean).collect();
+        let errors: RunningMean = together.iter().map(Estimate::standard_error).collect();
+        let ratio = errors.mean() / means.standard_deviation();
+        // The larger of two errors is too large by some per cent.
+        assert!((0.8..1.45).contains(&ratio), "{repeats}: {ratio}");
+        // An autoregressive series of correlation 0.8: nine samples are worth one.
+        let worth: RunningMean = together.iter().map(Estimate::independent_samples).collect();
+        let expected = repeats as f64 * 4096.0 / 9.0;
+        assert!((0.55..1.35).contains(&(worth.mean() / expected)), "{repeats}: {}", worth.mean() / expected);
+        assert!(together.iter().all(|estimate| estimate.samples() == repeats * 4096));
+    }
+}
+
+#[test]
+fn repeats_without_samples_are_left_out() {
+    let none = BlockedMean::new().estimate();
+    let one: BlockedMean = [2.0].into_iter().collect();
+    let some: BlockedMean = [1.0, 2.0, 3.0, 4.0].into_iter().collect();
+    assert!(Estimate::over_repeats([]).mean().is_nan());
+    assert!(Estimate::over_repeats([none, none]).mean().is_nan());
+    assert_eq!(Estimate::over_repeats([none, some.estimate()]), some.estimate());
+    let both = Estimate::over_repeats([one.estimate(), some.estimate()]);
+    assert!((both.mean() - 2.4).abs() < 1e-15 && both.standard_error().is_finite() && both.samples() == 5);
+    assert!(!both.is_converged());
+    let many = Estimate::over_repeats(
+        [1.0, 2.0]
+            .repeat(4)
+            .into_iter()
+            .map(|level| [level; 2].into_iter().collect::<BlockedMean>().estimate()),
+    );
+    assert!(many.is_converged() && many.standard_error() > 0.1, "{many}");
+    assert!((many.independent_samples() - 7.0).abs() < 1.1, "{}", many.independent_samples());
+}

@@ -68,7 +68,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let parts = plan::parts(arguments.size, arguments.gravity, arguments.seed)?;
     if !arguments.draw {
         for part in &parts {
-            if studies::complete(&folder.join(part.folder), &part.plan)?.is_none() {
+            if studies::complete(&folder.join(part.folder), &part.plan, None)?.is_none() {
                 break;
             }
         }

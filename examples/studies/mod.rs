@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::Args;
+use clap::Parser;
 use granular_edmd::study::vibrated_box::{Base, VibratedBox};
-use granular_edmd::study::{Control, Experiment, Plan, Progress, Study};
+use granular_edmd::study::{Control, Experiment, Plan, Progress, RampStatus, Study, StudyError, Summary};
 use indicatif::{ProgressBar, ProgressStyle};
 use kuva::backend::png::PngBackend;
 use kuva::render::figure::Figure;
@@ -17,7 +17,7 @@ use kuva::render::figure::Figure;
 static STOP: AtomicBool = AtomicBool::new(false);
 
 /// Flags of all studies.
-#[derive(Args)]
+#[derive(Parser)]
 pub(crate) struct Common {
     /// Folder for the study, the picture and the tables.
     #[arg(long, default_value = "out")]
@@ -28,22 +28,30 @@ pub(crate) struct Common {
     /// Seed of all random numbers.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
+    /// Does this ramp alone, counted from 0: to share the work among processes.
+    #[arg(long)]
+    ramp: Option<usize>,
 }
 
 impl Common {
-    /// Where the study `name` is kept.
-    pub(crate) fn folder(&self, name: &str) -> PathBuf {
-        self.out.join(if self.quick { format!("{name}-quick") } else { name.to_owned() })
+    /// Does what is not done yet of a study in a folder of this name, or of one ramp of it; see [`complete`].
+    pub(crate) fn complete<E: Experiment>(
+        &self,
+        name: &str,
+        plan: &Plan<E>,
+    ) -> Result<Option<Study<E>>, Box<dyn Error>> {
+        let folder = self.out.join(if self.quick { format!("{name}-quick") } else { name.to_owned() });
+        complete(&folder, plan, self.ramp)
     }
 }
 
-/// The paper's vibrated box at this gravity, with the contact duration that our figures take.
+/// Returns the paper's vibrated box at this gravity, with the contact duration that our figures take.
 pub(crate) fn vibrated_box(gravity: f64) -> VibratedBox {
     let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
     VibratedBox::new(1000, 60.0, base).with_height(150.0).with_gravity(gravity).with_contact_duration(1e-4)
 }
 
-/// Says in one line what went wrong, if something did, and why.
+/// Ends the program; an error is told in one line with its reasons.
 pub(crate) fn end(result: Result<(), Box<dyn Error>>) -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -57,16 +65,34 @@ pub(crate) fn end(result: Result<(), Box<dyn Error>>) -> ExitCode {
     }
 }
 
-/// Does what is not done yet of a study, and returns it once it is complete; `None` if Ctrl-C came first.
+/// Does what is not done yet of a study, or of one ramp of it, and returns the study once all of it is
+/// complete.
 ///
-/// The same command starts a study and goes on with it. A second Ctrl-C ends the program at once: what was saved by then
-/// is kept.
+/// The same command starts a study and goes on with it. Ctrl-C stops with all that was done saved; a second
+/// one ends the program at once, with what was saved by then.
 pub(crate) fn complete<E: Experiment>(
     folder: &Path,
     plan: &Plan<E>,
+    ramp: Option<usize>,
 ) -> Result<Option<Study<E>>, Box<dyn Error>> {
     println!("study in {}:\n\n{plan}", folder.display());
     let study = Study::open_or_create(folder, plan)?;
+    let summary = watched(|control| match ramp {
+        Some(ramp) => study.run_ramp(ramp, control),
+        None => study.run(control),
+    })?;
+    for file in &summary.redone {
+        println!("{} was damaged and has been done again", file.display());
+    }
+    if (0..plan.ramps()).all(|ramp| study.status(ramp) == RampStatus::Done) {
+        return Ok(Some(study));
+    }
+    println!("{} of {} values are finished; the same command goes on", summary.finished, summary.total);
+    Ok(None)
+}
+
+/// Runs a study with a progress bar, until it is done or Ctrl-C comes.
+fn watched(run: impl FnOnce(&Control<'_>) -> Result<Summary, StudyError>) -> Result<Summary, Box<dyn Error>> {
     stop_on_ctrl_c()?;
     let bar = progress_bar()?;
     let show = |progress: &Progress| {
@@ -78,19 +104,12 @@ pub(crate) fn complete<E: Experiment>(
             bar.reset_eta();
         }
     };
-    let summary = study.run(&Control::default().with_progress(&show).with_interrupt(&STOP))?;
+    let summary = run(&Control::default().with_progress(&show).with_interrupt(&STOP))?;
     bar.finish_and_clear();
-    for file in &summary.redone {
-        println!("{} was damaged and has been done again", file.display());
-    }
-    if summary.is_complete() {
-        return Ok(Some(study));
-    }
-    println!("{} of {} values are finished; the same command goes on", summary.finished, summary.total);
-    Ok(None)
+    Ok(summary)
 }
 
-/// May be called more than once.
+/// Sets the handler of Ctrl-C, once; more calls do nothing.
 fn stop_on_ctrl_c() -> Result<(), ctrlc::Error> {
     let handler = || {
         if STOP.swap(true, Ordering::Relaxed) {
@@ -103,7 +122,7 @@ fn stop_on_ctrl_c() -> Result<(), ctrlc::Error> {
     }
 }
 
-/// Drawn on a terminal only.
+/// Returns a bar, which is drawn on a terminal only.
 fn progress_bar() -> Result<ProgressBar, Box<dyn Error>> {
     let style =
         ProgressStyle::with_template("{elapsed_precise} {wide_bar} {percent}% {per_sec}, {eta} left")?;

@@ -101,6 +101,12 @@ impl Estimate {
         self.correlated_samples
     }
 
+    /// Returns how many independent samples would tell as much: the samples over
+    /// [`correlated_samples`](Self::correlated_samples).
+    pub fn independent_samples(&self) -> f64 {
+        self.samples as f64 / self.correlated_samples.max(1.0)
+    }
+
     /// Returns true if the error can be trusted. Returns false if it is only a lower bound: the series is too
     /// short for its correlations, or there are fewer than two samples.
     pub const fn is_converged(&self) -> bool {

@@ -1,6 +1,7 @@
 //! The command line of a study: `new`, `check`, `run`, `status` and `tables`, for any experiment.
 //!
-//! The `main` of a program of your own is one call of [`main`]; the binary `granular-edmd` is that for the paper's box.
+//! The `main` of a program of your own is one call of [`main`]; the binary `granular-edmd` is that for the
+//! paper's box.
 //!
 //! ```no_run
 //! use granular_edmd::study::vibrated_box::{Base, VibratedBox};
@@ -11,6 +12,9 @@
 //!     cli::main(|| Plan::new(VibratedBox::new(100, 20.0, base), Protocol::new(100, 100, 10), 1))
 //! }
 //! ```
+//!
+//! `status --json` prints one object: the number of ramps, and the indices of those that are done, running, begun
+//! and waiting. Tables are CSV files with a first line of names; `columns.csv` has the units of all of them.
 //!
 //! | exit code | meaning |
 //! |---|---|
@@ -36,7 +40,8 @@ use watch::Watch;
 
 /// Plans, runs and reads studies: many runs of one experiment, in any number of processes.
 ///
-/// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 others do the rest, 130 stopped with all saved.
+/// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 others do the rest, 130 stopped with all
+/// saved.
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Arguments {
@@ -77,6 +82,9 @@ enum Command {
     Status {
         /// Folder of the study.
         folder: PathBuf,
+        /// Tells it as JSON, with the indices of the ramps.
+        #[arg(long)]
+        json: bool,
     },
     /// Writes the tables of what is done.
     Tables {
@@ -111,13 +119,14 @@ impl From<PlanError> for Failure {
     }
 }
 
-/// Does what the command line of the program says, with plans of this experiment; `example` is the plan that `new` writes.
+/// Does what the command line of the program says, with plans of this experiment; `example` is the plan that
+/// `new` writes.
 pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>) -> ExitCode {
     let ended = match Arguments::parse().command {
         Command::New { file } => new(example, file.as_deref()),
         Command::Check { plan } => check::<E>(&plan),
         Command::Run { plan, out, ramp, threads, no_wait } => run::<E>(&plan, &out, ramp, threads, no_wait),
-        Command::Status { folder } => status::<E>(&folder),
+        Command::Status { folder, json } => status::<E>(&folder, json),
         Command::Tables { folder } => tables::<E>(&folder),
     };
     match ended {
@@ -201,15 +210,25 @@ fn run<E: Experiment>(
     })
 }
 
-fn status<E: Experiment>(folder: &Path) -> Result<End, Failure> {
+fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
     let study = Study::<E>::open(folder)?;
     let ramps = study.plan().ramps();
     let all: Vec<RampStatus> = (0..ramps).map(|ramp| study.status(ramp)).collect();
-    let count = |wanted| all.iter().filter(|status| **status == wanted).count();
-    let [done, running] = [RampStatus::Done, RampStatus::Running].map(count);
-    let [begun, waiting] = [RampStatus::Begun, RampStatus::Waiting].map(count);
-    say(&format!("{ramps} ramps: {done} done, {running} running, {begun} begun, {waiting} waiting"));
-    Ok(if done == ramps { End::Done } else { End::Elsewhere })
+    let of = |wanted| (0..ramps).filter(|&ramp| all[ramp] == wanted).collect::<Vec<usize>>();
+    let found = [
+        ("done", of(RampStatus::Done)),
+        ("running", of(RampStatus::Running)),
+        ("begun", of(RampStatus::Begun)),
+        ("waiting", of(RampStatus::Waiting)),
+    ];
+    if json {
+        let lists = found.each_ref().map(|(name, ramps)| format!(r#""{name}":{ramps:?}"#));
+        say(&format!(r#"{{"ramps":{ramps},{}}}"#, lists.join(",")));
+    } else {
+        let counts = found.each_ref().map(|(name, ramps)| format!("{} {name}", ramps.len()));
+        say(&format!("{ramps} ramps: {}", counts.join(", ")));
+    }
+    Ok(if found[0].1.len() == ramps { End::Done } else { End::Elsewhere })
 }
 
 fn tables<E: Experiment>(folder: &Path) -> Result<End, Failure> {

@@ -9,14 +9,16 @@ use crate::statistics::Estimate;
 type OfSample<E> = Box<dyn Fn(&<E as Experiment>::Sample) -> Scalar + Send + Sync>;
 type OfRecord<E, T> = Box<dyn Fn(&Record<E>) -> T + Send + Sync>;
 
-/// A column of the tables of a study: its name, its unit, and its value as a function of a sample or of a record.
+/// A column of the tables of a study: its name, its unit, and its value as a function of a sample or of a
+/// record.
 ///
 /// ```
 /// use granular_edmd::study::{Column, vibrated_box::{Sample, VibratedBox}};
 /// // A row for each sample, and a mean with its error for each value.
 /// let height: Column<VibratedBox> = Column::sampled("height", "diameter", |sample: &Sample| sample.height);
 /// // A number for each value.
-/// let overlap: Column<VibratedBox> = Column::of_record("max_overlap", "diameter", |record| record.counters().max_overlap);
+/// let overlap: Column<VibratedBox> =
+///     Column::of_record("max_overlap", "diameter", |record| record.counters().max_overlap);
 /// assert_eq!((height.name(), overlap.unit()), ("height", "diameter"));
 /// ```
 pub struct Column<E: Experiment> {
@@ -34,8 +36,8 @@ pub(super) enum Kind<E: Experiment> {
 }
 
 impl<E: Experiment> Column<E> {
-    /// Makes a column of a quantity of each sample: its value in the table of samples, its mean, with error and number of
-    /// independent samples, in that of values.
+    /// Makes a column of a quantity of each sample: its value in the table of samples, its mean, with error
+    /// and number of independent samples, in that of values.
     pub fn sampled<T: Into<Scalar>>(
         name: &'static str,
         unit: &'static str,
@@ -96,6 +98,11 @@ impl<E: Experiment> Column<E> {
         self.in_values
     }
 
+    /// Returns whether its values have an error.
+    pub(super) const fn has_error(&self) -> bool {
+        !matches!(self.kind, Kind::Record(_))
+    }
+
     /// Returns the estimate of a record; `None` of a column that has no error.
     pub(super) fn estimate(&self, record: &Record<E>) -> Option<Estimate> {
         match &self.kind {
@@ -130,7 +137,8 @@ pub struct Table<E: Experiment> {
 }
 
 impl<E: Experiment> Table<E> {
-    /// Makes a table of this name, with these names and units of columns, whose rows are those of each record in turn.
+    /// Makes a table of this name, with these names and units of columns, whose rows are those of each record
+    /// in turn.
     ///
     /// A row has a number for each column: missing ones are NaN, and those beyond are left out.
     pub fn new(
@@ -165,7 +173,14 @@ impl<E: Experiment> fmt::Debug for Table<E> {
 
 /// Names of the tables that each study has, and of columns that each table has.
 const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
-const PLACE: [&str; 8] = ["ramp", "value", "leg", "repeat", "seed", "outcome", "samples", "not_converged"];
+const PLACE: [&str; 10] =
+    ["ramp", "point", "value", "leg", "repeat", "repeats", "seed", "outcome", "samples", "not_converged"];
+
+/// Returns the names of the columns that follow one of a mean: its error, and the number of independent
+/// samples.
+pub(super) fn error_names(name: &str) -> [String; 2] {
+    ["error", "independent_samples"].map(|ending| format!("{name}_{ending}"))
+}
 
 /// Checks that all names of an experiment's columns and tables can be told apart, and be names.
 pub(super) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanError> {
@@ -175,7 +190,10 @@ pub(super) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanErro
         columns.iter().filter(|column| is_in(column)).map(|column| column.name).collect()
     };
     check("column", &of(Column::is_in_samples), &[taken.as_slice(), &["time"]].concat())?;
-    check("column", &of(Column::is_in_values), &taken)?;
+    let with_errors = columns.iter().filter(|column| column.is_in_values() && column.has_error());
+    let errors: Vec<String> = with_errors.flat_map(|column| error_names(column.name)).collect();
+    let errors: Vec<&str> = errors.iter().map(String::as_str).collect();
+    check("column", &of(Column::is_in_values), &[taken.as_slice(), &errors].concat())?;
     for table in &tables {
         check("column", &table.columns.iter().map(|(name, _)| *name).collect::<Vec<_>>(), &taken)?;
     }

@@ -39,7 +39,8 @@ pub struct Control<'a> {
 }
 
 impl Default for Control<'_> {
-    /// Nobody watches, nothing stops it, values half done are saved every minute, and ramps that other processes do are waited for.
+    /// Makes the control of a study that nobody watches or stops: values half done are saved every minute,
+    /// and ramps that other processes do are waited for.
     fn default() -> Self {
         Self { progress: None, interrupt: None, save_interval: Duration::from_secs(60), waits: true }
     }
@@ -56,12 +57,14 @@ impl<'a> Control<'a> {
         Self { interrupt: Some(interrupt), ..self }
     }
 
-    /// Saves values half done after each interval of this length: that much is lost at most when the process is killed.
+    /// Saves values half done after each interval of this length: that much is lost at most when the process
+    /// is killed.
     pub fn with_save_interval(self, interval: Duration) -> Self {
         Self { save_interval: interval, ..self }
     }
 
-    /// Returns at once when all that is left is done by other processes, which may yet be killed; [`Summary::elsewhere`] names it.
+    /// Returns at once when all that is left is done by other processes, which may yet be killed;
+    /// [`Summary::elsewhere`] names it.
     pub fn without_waiting(self) -> Self {
         Self { waits: false, ..self }
     }

@@ -18,23 +18,24 @@ pub type ExperimentError = Box<dyn std::error::Error + Send + Sync>;
 /// The simulation of an experiment.
 pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundary>;
 
-/// A system to be studied, as the data of its parameters: what is simulated, what is measured, and what is told of it.
+/// A system to be studied, as the data of its parameters: what is simulated, what is measured, and what is
+/// told of it.
 ///
-/// A study is made of a serialisable type of your own. Its fields are the parameters: a [`Plan`](super::Plan) sets them by name
-/// (`"friction"`, `"base.amplitude"`), and its methods say what they mean. With `#[serde(deny_unknown_fields)]` a slip of
-/// the pen in a plan is told; without, it is told only of parameters that vary.
-/// [`VibratedBox`](super::vibrated_box::VibratedBox) is one such type.
+/// A study is made of a serializable type of your own. Its fields are the parameters: a [`Plan`](super::Plan)
+/// sets them by name (`"friction"`, `"base.amplitude"`), and its methods say what they mean. With
+/// `#[serde(deny_unknown_fields)]` a slip of the pen in a plan is told; without, it is told only of
+/// parameters that vary. [`VibratedBox`](super::vibrated_box::VibratedBox) is one such type.
 ///
 /// # Contract
-/// 1. All methods are functions of the parameters and their arguments: no clock, no other random numbers. This is
-///    what makes the files of a study the same bytes, however they come about.
-/// 2. [`rule`](Self::rule) and [`boundary`](Self::boundary) are what the simulation of [`build`](Self::build) has: a
-///    run is resumed with them.
+/// 1. All methods are functions of the parameters and their arguments: no clock, no other random numbers.
+///    This is what makes the files of a study the same bytes, however they come about.
+/// 2. [`rule`](Self::rule) and [`boundary`](Self::boundary) are what the simulation of [`build`](Self::build)
+///    has: a run is resumed with them.
 /// 3. Samples and observer read back as they were written, in a format that does not describe itself: no
 ///    `#[serde(untagged)]`, `flatten`, or `skip_serializing_if` in them. A study notices, and says so.
 ///
-/// A study guarantees: `sample` is called at the times of the protocol, in order; the observer has seen everything
-/// since the value has settled, and is kept, written and read back where a run is interrupted.
+/// A study guarantees: `sample` is called at the times of the protocol, in order; the observer has seen
+/// everything since the value has settled, and is kept, written and read back where a run is interrupted.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -81,8 +82,8 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
 /// # let folder = std::env::temp_dir().join(format!("granular-edmd-experiment-{}", std::process::id()));
 /// let study = Study::open_or_create(&folder, &plan)?;
 /// study.run(&Control::default())?;
-/// let last: Vec<f64> = study.records().map(|record| Ok(record?.samples()[4])).collect::<Result<_, ExperimentError>>()?;
-/// assert!(last[1] < last[0]);
+/// let last = |ramp| Ok::<_, ExperimentError>(study.record(ramp, 0)?.ok_or("not done")?.samples()[4]);
+/// assert!(last(1)? < last(0)?);
 /// # std::fs::remove_dir_all(&folder)?;
 /// # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
 /// ```
@@ -124,7 +125,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         0.0
     }
 
-    /// Returns the time of a cycle, the unit of a [`Protocol`](super::Protocol): the period of what drives the disks.
+    /// Returns the time of a cycle, the unit of a [`Protocol`](super::Protocol): the period of what drives
+    /// the disks.
     fn cycle(&self) -> f64 {
         1.0
     }
@@ -134,8 +136,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         Self::Observer::default()
     }
 
-    /// Returns the sample of this moment. The observer may be read and changed: emptied for the interval until the next sample,
-    /// or used to add up over all samples.
+    /// Returns the sample of this moment. The observer may be read and changed: emptied for the interval
+    /// until the next sample, or used to add up over all samples.
     fn sample(&self, snapshot: &Snapshot<'_>, observer: &mut Self::Observer) -> Self::Sample;
 
     /// Returns the columns of the tables, each said once: its name, its unit, and its value.
@@ -160,8 +162,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Takes a simulation of other parameters, those of the value before, to these ones.
     ///
-    /// Unless said otherwise, rule, walls and gravity become those of these parameters; walls that are the same, by their
-    /// fingerprint, stay.
+    /// Unless said otherwise, rule, walls and gravity become those of these parameters; walls that are the
+    /// same, by their fingerprint, stay.
     ///
     /// # Errors
     /// If the disks do not fit into the walls.
@@ -197,7 +199,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         true
     }
 
-    /// Checks what was read from a file, beyond its checksum, its place and its time: says why it cannot be of these parameters.
+    /// Checks what was read from a file, beyond its checksum, its place and its time: says why it cannot be
+    /// of these parameters.
     ///
     /// # Errors
     /// The reason, if there is one.

@@ -18,9 +18,11 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     write_whole(path, bytes).map_err(StudyError::io("write", path))
 }
 
-/// Writes a file that is not there yet, whole or not at all; returns false if there is one already, which stays.
+/// Writes a file that is not there yet, whole or not at all; returns false if there is one already, which
+/// stays.
 ///
-/// A link, unlike a rename, never takes the place of another file: of two writers one wins, also on file systems of a network.
+/// A link, unlike a rename, never takes the place of another file: of two writers one wins, also on file
+/// systems of a network.
 pub(super) fn publish(path: &Path, bytes: &[u8]) -> Result<bool, StudyError> {
     let draft = path.with_file_name(unique_name());
     write(&draft, bytes)?;
@@ -88,7 +90,8 @@ pub(super) fn remove(path: &Path) -> Result<(), StudyError> {
     }
 }
 
-/// Removes the temporary files that a killed process has left in a folder, and nothing else. The folder must be locked.
+/// Removes the temporary files that a killed process has left in a folder, and nothing else. The folder must
+/// be locked.
 pub(super) fn remove_temporaries(folder: &Path) -> Result<(), StudyError> {
     let cannot_read = || StudyError::io("read", folder);
     for entry in fs::read_dir(folder).map_err(cannot_read())? {

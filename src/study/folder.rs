@@ -1,7 +1,7 @@
 //! Where the files of a study are, and who may write them.
 //!
-//! Whoever writes into the folder of a study, or into that of a ramp, holds its lock; so a temporary file that is found
-//! under the lock has a writer that is dead.
+//! Whoever writes into the folder of a study, or into that of a ramp, holds its lock; so a temporary file
+//! that is found under the lock has a writer that is dead.
 
 use std::fs;
 use std::io::{self, Write};
@@ -91,7 +91,8 @@ impl Folder {
         file::publish(&self.root.join(README), ABOUT.as_bytes()).map(drop)
     }
 
-    /// Checks that there is nothing in the folder, or only what was there before a plan of ours came, or the plan.
+    /// Checks that there is nothing in the folder, or only what was there before a plan of ours came, or the
+    /// plan.
     fn check_free(&self) -> Result<(), StudyError> {
         let Some(stranger) = self.stranger()? else { return Ok(()) };
         // The plan may have come while the folder was read.

@@ -10,7 +10,8 @@ pub(super) const NAME: &str = "lock";
 
 /// The right to write into a folder; it ends with the process at the latest, however that ends.
 ///
-/// The file stays, and stays empty: to remove it would let two processes hold locks of two files of the same name.
+/// The file stays, and stays empty: to remove it would let two processes hold locks of two files of the same
+/// name.
 #[derive(Debug)]
 pub(super) struct Lock {
     file: File,
@@ -58,8 +59,8 @@ fn open(path: &Path) -> Result<File, StudyError> {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // Closing the file would not give the lock back while a process that was forked meanwhile, to start another
-        // program, has it open, too.
+        // Closing the file would not give the lock back while a process that was forked meanwhile, to start
+        // another program, has it open, too.
         let _ = self.file.unlock();
     }
 }

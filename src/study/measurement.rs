@@ -8,7 +8,7 @@ use super::{Plan, Protocol};
 use crate::Simulation;
 use crate::simulation::{Checkpoint, CheckpointError, Counters, RunEnd, RunError};
 
-/// Which value is to be done.
+/// The value that is to be done.
 pub(super) struct Value<'a, E: Experiment> {
     pub(super) plan: &'a Plan<E>,
     pub(super) origin: Origin,

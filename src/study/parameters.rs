@@ -1,4 +1,4 @@
-//! Parameters of any serialisable type, by name.
+//! Parameters of any serializable type, by name.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -39,7 +39,8 @@ pub(super) fn get<'a>(tree: &'a Table, name: &str) -> Option<&'a Value> {
     }
 }
 
-/// Sets a parameter by its whole name; returns false if one of the names before the last is not that of a group.
+/// Sets a parameter by its whole name; returns false if one of the names before the last is not that of a
+/// group.
 #[must_use]
 pub(super) fn set(tree: &mut Table, name: &str, to: &Scalar) -> bool {
     match name.split_once('.') {
@@ -74,7 +75,8 @@ pub(super) fn whole_name(tree: &Table, name: &str) -> Result<String, PlanError> 
     }
 }
 
-/// Sets a parameter of an experiment and reads it back, as it has become; an error says why there is none of this name.
+/// Sets a parameter of an experiment and reads it back, as it has become; an error says why there is none of
+/// this name.
 pub(super) fn probe<E: Serialize + DeserializeOwned>(
     base: &Table,
     parameter: &str,

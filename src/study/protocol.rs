@@ -31,27 +31,29 @@ const fn end() -> f64 {
 }
 
 impl Protocol {
-    /// Settle for `settle` cycles, then take `samples` samples, one at the end of each `every` cycles.
+    /// Makes the protocol that settles for `settle` cycles, then takes `samples` samples, one at the end of
+    /// each `every` cycles.
     pub const fn new(settle: u64, samples: u64, every: u64) -> Self {
         Self { settle, samples, every, phase: 1.0 }
     }
 
-    /// The same protocol with samples at this phase of their cycle, in `(0, 1]`; 1, its end, unless given.
+    /// Returns the same protocol with samples at this phase of their cycle, in `(0, 1]`; 1, its end, unless
+    /// given.
     pub const fn with_phase(self, phase: f64) -> Self {
         Self { phase, ..self }
     }
 
-    /// How many samples a value has.
+    /// Returns how many samples a value has.
     pub const fn samples(&self) -> u64 {
         self.samples
     }
 
-    /// How many cycles a value lasts.
+    /// Returns how many cycles a value lasts.
     pub const fn cycles(&self) -> u64 {
         self.settle.saturating_add(self.samples.saturating_mul(self.every))
     }
 
-    /// How many steps a value is done in: some without a sample to settle, then one for each sample.
+    /// Returns how many steps a value is done in: some without a sample to settle, then one for each sample.
     pub(super) const fn steps(&self) -> u64 {
         self.settling_steps() + self.samples
     }
@@ -60,7 +62,8 @@ impl Protocol {
         self.settle.div_ceil(self.every)
     }
 
-    /// The cycles from the start of a value to the end of the step of this number, which counts from 0.
+    /// Returns the cycles from the start of a value to the end of the step of this number, which counts from
+    /// 0.
     pub(super) fn end_of(&self, step: u64) -> u64 {
         let settling = self.settling_steps();
         if step < settling {
@@ -70,22 +73,22 @@ impl Protocol {
         }
     }
 
-    /// The cycles that this many steps take.
+    /// Returns the cycles that this many steps take.
     pub(super) fn cycles_of(&self, steps: u64) -> u64 {
         steps.checked_sub(1).map_or(0, |last| self.end_of(last))
     }
 
-    /// How many samples this many steps take.
+    /// Returns how many samples this many steps take.
     pub(super) const fn samples_of(&self, steps: u64) -> u64 {
         steps.saturating_sub(self.settling_steps())
     }
 
-    /// Whether a step ends with a sample.
+    /// Returns whether a step ends with a sample.
     pub(super) const fn is_sampled(&self, step: u64) -> bool {
         step >= self.settling_steps()
     }
 
-    /// How far before the end of its step a sample is taken, in cycles.
+    /// Returns how far before the end of its step a sample is taken, in cycles.
     pub(super) const fn lead(&self) -> f64 {
         1.0 - self.phase
     }

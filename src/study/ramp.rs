@@ -1,4 +1,4 @@
-//! Which values a parameter takes, one after the other or side by side.
+//! The values that a parameter takes, one after the other or side by side.
 
 use std::fmt;
 
@@ -55,7 +55,19 @@ pub struct Ramp {
     #[serde(default)]
     course: Course,
     #[serde(skip_serializing_if = "Option::is_none")]
-    refine: Option<f64>,
+    refine: Option<Width>,
+}
+
+/// Width to which a transition is bisected; in a plan `refine = { relative = 0.01 }`.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Width {
+    /// In the unit of the parameter.
+    Absolute(f64),
+    /// A share of the value itself, for parameters that go over orders of magnitude. All values must be
+    /// positive.
+    Relative(f64),
 }
 
 impl Ramp {
@@ -64,17 +76,18 @@ impl Ramp {
         Self { parameter: parameter.into(), values: values.into(), course, refine: None }
     }
 
-    /// Returns the same ramp with each transition between two of its values bisected until it is known to this width.
+    /// Returns the same ramp with each transition between two of its values bisected until it is known to
+    /// this width.
     ///
-    /// Transitions are changes of [`Experiment::state`](super::Experiment::state), of which two neighbours hold one. A ramp up
-    /// brackets them from below, one down from above. The values of a bisection come after those of the ramp, each from the
-    /// last state on the near side.
-    pub fn with_refinement(self, width: f64) -> Self {
+    /// Transitions are changes of [`Experiment::state`](super::Experiment::state). Only neighbors of
+    /// different states are looked between. A ramp up brackets transitions from below, one down from above.
+    /// The values of a bisection come after those of the ramp, each from the last state on the near side.
+    pub fn with_refinement(self, width: Width) -> Self {
         Self { refine: Some(width), ..self }
     }
 
     /// Returns the width to which transitions are bisected.
-    pub const fn refine(&self) -> Option<f64> {
+    pub const fn refine(&self) -> Option<Width> {
         self.refine
     }
 
@@ -89,17 +102,17 @@ impl Ramp {
         &self.parameter
     }
 
-    /// Its values in the order in which they come.
+    /// Returns its values in the order in which they come.
     pub fn path(&self) -> impl Iterator<Item = (Leg, f64)> {
         (0..self.len()).filter_map(|index| self.at(index))
     }
 
-    /// How many values come.
+    /// Returns how many values come.
     pub(super) fn len(&self) -> usize {
         self.ups() + self.downs()
     }
 
-    /// The value of this index, and the way to it.
+    /// Returns the value of this index, and the way to it.
     pub(super) fn at(&self, index: usize) -> Option<(Leg, f64)> {
         if index < self.ups() {
             return Some((Leg::Up, self.values[index]));
@@ -128,8 +141,11 @@ impl Ramp {
         if let Some(&value) = self.values.iter().find(|value| !value.is_finite()) {
             return Err(PlanError::NotFinite { parameter: parameter(), value });
         }
-        if let Some(width) = self.refine {
+        if let Some(Width::Absolute(width) | Width::Relative(width)) = self.refine {
             positive("width of a transition", width)?;
+        }
+        if let Some(Width::Relative(_)) = self.refine {
+            positive("value of a ramp with a relative width", self.values[0])?;
         }
         match self.values.windows(2).find(|pair| pair[0] >= pair[1]) {
             Some(pair) => {

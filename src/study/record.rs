@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::refinement::Seen;
-use super::{Experiment, Leg, Plan, Scalar, column::Column, parameters};
+use super::{Experiment, Leg, Plan, Scalar, parameters};
 use crate::simulation::{Checkpoint, Counters};
 use crate::statistics::{BlockedMean, Estimate};
 
@@ -17,13 +17,14 @@ const TIME_ROUNDING: f64 = 1e-12;
 pub enum Outcome {
     /// All samples were taken.
     Completed,
-    /// The observer ended the value: there are only the samples until then. The next value of the ramp starts from there.
+    /// The observer ended the value: there are only the samples until then. The next value of the ramp starts
+    /// from there.
     Stopped {
         /// When, since the start of the ramp.
         time: f64,
     },
-    /// Events piled up in vanishing time, as in an inelastic collapse: there are only the samples until then. The next
-    /// value of the ramp starts from the state in which this one did.
+    /// Events piled up in vanishing time, as in an inelastic collapse: there are only the samples until then.
+    /// The next value of the ramp starts from the state in which this one did.
     Stalled {
         /// When, since the start of the ramp.
         time: f64,
@@ -81,7 +82,7 @@ pub(super) struct Measured<S, O> {
     pub(super) observer: O,
 }
 
-/// Which study and place a file is of.
+/// The study and the place in it that a file belongs to.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Origin {
@@ -94,7 +95,8 @@ pub(super) struct Origin {
     pub(super) seed: u64,
 }
 
-/// A time, counted in whole cycles since one that was a time of its own: products of whole numbers do not drift.
+/// A time, counted in whole cycles since one that was a time of its own: products of whole numbers do not
+/// drift.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Cycles {
     /// Absolute time from which cycles are counted.
@@ -124,7 +126,7 @@ impl<E: Experiment> Record<E> {
         check(is_full || is_short, "its samples are not as many as in the protocol")?;
         let is_placed = match plan.step(origin.value) {
             Some((way, value)) => *leg == Some(way) && *at == Some(value),
-            None => plan.ramp().is_some_and(|ramp| ramp.refine().is_some()) || at.is_none(),
+            None => plan.is_refined() || at.is_none(),
         };
         check(is_placed, "it is on another way through the ramp")?;
         check_state(state, end.time(0.0, self.experiment.cycle()))?;
@@ -171,7 +173,8 @@ impl<E: Experiment> Record<E> {
         &self.experiment
     }
 
-    /// Returns a parameter of the experiment by its name, as in a [`Plan`]; `None` if it has none of this name.
+    /// Returns a parameter of the experiment by its name, as in a [`Plan`]; `None` if it has none of this
+    /// name.
     pub fn parameter(&self, name: &str) -> Option<Scalar> {
         let tree = parameters::tree(&self.experiment).ok()?;
         let name = parameters::whole_name(&tree, name).ok()?;
@@ -198,7 +201,8 @@ impl<E: Experiment> Record<E> {
         &self.contents.measured.observer
     }
 
-    /// Returns what happened in it, settling included; the largest overlap is that since the start of the ramp.
+    /// Returns what happened in it, settling included; the largest overlap is that since the start of the
+    /// ramp.
     pub const fn counters(&self) -> &Counters {
         &self.contents.counters
     }
@@ -218,10 +222,8 @@ impl<E: Experiment> Record<E> {
     /// Returns the mean of the column of this name; `None` if there is none, or none that has an error.
     pub fn estimate(&self, column: &str) -> Option<Estimate> {
         let columns = E::columns();
-        columns
-            .iter()
-            .filter(|known| known.name() == column)
-            .find_map(|known: &Column<E>| known.estimate(self))
+        let mut named = columns.iter().filter(|known| known.name() == column);
+        named.find_map(|known| known.estimate(self))
     }
 }
 

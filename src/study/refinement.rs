@@ -1,6 +1,8 @@
 //! The way through the values of a ramp: its own, then those that bracket transitions between states.
 
-use super::{Leg, Ramp};
+use std::ops::Range;
+
+use super::{Leg, Ramp, Width};
 
 /// A value that is done, as far as the way depends on it.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,7 +32,7 @@ pub struct Bracket {
     pub far: f64,
     /// The state on the side that was come from.
     pub from: String,
-    /// The state on the other side.
+    /// The state on the other side; empty if the record there shows none.
     pub to: String,
 }
 
@@ -40,57 +42,101 @@ impl Ramp {
         self.search(seen).err()
     }
 
-    /// Returns the transitions between the values that are done, as far as they are bracketed to the wanted width.
+    /// Returns the transitions between the values that are done, as far as they are bracketed to the wanted
+    /// width.
     pub(super) fn brackets(&self, seen: &[Seen]) -> Vec<Bracket> {
         self.search(seen).unwrap_or_default()
     }
 
     /// Returns all brackets, or the next value that they need.
-    ///
-    /// Each bisection starts from the last state on the near side, so that a bracket is that of the way on which it was come to.
     fn search(&self, seen: &[Seen]) -> Result<Vec<Bracket>, Step> {
         let own = self.len();
         if let Some((leg, at)) = self.at(seen.len()) {
             return Err(Step { leg: Some(leg), at: Some(at), before: seen.len().checked_sub(1) });
         }
-        let mut brackets = Vec::new();
-        let Some(width) = self.refine() else { return Ok(brackets) };
-        let mut rest = own..;
+        let Some(width) = self.refine() else { return Ok(Vec::new()) };
+        let mut search = Search { seen, width, halves: own..seen.len(), brackets: Vec::new() };
         for (near, far) in (0..own).zip(1..own) {
-            if let (Some(from), Some(to)) = (&seen[near].state, &seen[far].state)
-                && from != to
-            {
-                brackets.push(bisect(seen, near, far, width, &mut rest)?);
-            }
+            search.between(near, far)?;
         }
-        Ok(brackets)
+        Ok(search.brackets)
     }
 }
 
-/// Narrows a bracket with the values that were done for it, which `rest` counts; the next one, if it takes more.
-fn bisect(
-    seen: &[Seen],
-    mut near: usize,
-    mut far: usize,
-    width: f64,
-    rest: &mut std::ops::RangeFrom<usize>,
-) -> Result<Bracket, Step> {
-    let leg = seen[far].leg;
-    let from = seen[near].state.clone();
-    loop {
-        let [low, high] = [near, far].map(|index| seen[index].at.unwrap_or(f64::NAN));
-        let at = low + 0.5 * (high - low);
-        // Below the spacing of doubles there is nothing between.
-        if (high - low).abs() <= width || at == low || at == high || at.is_nan() {
-            let told = |state: Option<String>| state.unwrap_or_default();
-            let to = told(seen[far].state.clone());
-            return Ok(Bracket { leg, near: low, far: high, from: told(from), to });
+/// A search for transitions among the values that are done.
+struct Search<'a> {
+    seen: &'a [Seen],
+    width: Width,
+    /// The values of bisections that are not used yet.
+    halves: Range<usize>,
+    brackets: Vec<Bracket>,
+}
+
+impl Search<'_> {
+    /// Narrows the transitions between two neighbors of the ramp, in the order of the way; the next value, if
+    /// they need one more.
+    ///
+    /// Each value starts from the last state on the near side of its transition, so that a bracket belongs to
+    /// the way on which it was come to. Of several transitions the first is narrowed first: all other states
+    /// are beyond it.
+    fn between(&mut self, mut near: usize, far: usize) -> Result<(), Step> {
+        if self.seen[far].state.is_none() {
+            return Ok(());
         }
-        let index = rest.start;
-        let Some(found) = seen.get(index) else { return Err(Step { leg, at: Some(at), before: Some(near) }) };
-        rest.start += 1;
-        // A third state, or none, is beyond the first transition.
-        if found.state == from { near = index } else { far = index }
+        // The values beyond the transition, the closest last.
+        let mut beyond = vec![far];
+        while let Some(&far) = beyond.last() {
+            let [from, to] = [near, far].map(|index| &self.seen[index].state);
+            let is_transition = from.is_some() && from != to;
+            if let Some(at) = self.middle(near, far).filter(|_| is_transition) {
+                let index = self.half(Step { leg: self.seen[far].leg, at: Some(at), before: Some(near) })?;
+                if self.seen[index].state == *from {
+                    near = index;
+                } else {
+                    beyond.push(index);
+                }
+                continue;
+            }
+            if is_transition {
+                self.brackets.push(Bracket::of(&self.seen[near], &self.seen[far]));
+            }
+            near = far;
+            beyond.pop();
+        }
+        Ok(())
+    }
+
+    /// Returns the value between two others; `None` if they are close enough.
+    fn middle(&self, near: usize, far: usize) -> Option<f64> {
+        let [near, far] = [near, far].map(|index| self.seen[index].at.unwrap_or(f64::NAN));
+        let at = near + 0.5 * (far - near);
+        // Below the spacing of doubles there is nothing between.
+        let is_between = (near < at && at < far) || (far < at && at < near);
+        (is_between && !self.width.holds(near, far)).then_some(at)
+    }
+
+    /// Returns the index of the next value of a bisection; the step to it, if it is not done.
+    fn half(&mut self, step: Step) -> Result<usize, Step> {
+        self.halves.next().ok_or(step)
+    }
+}
+
+impl Bracket {
+    fn of(near: &Seen, far: &Seen) -> Self {
+        let at = |seen: &Seen| seen.at.unwrap_or(f64::NAN);
+        let state = |seen: &Seen| seen.state.clone().unwrap_or_default();
+        Self { leg: far.leg, near: at(near), far: at(far), from: state(near), to: state(far) }
+    }
+}
+
+impl Width {
+    /// Returns whether two values are as close as this.
+    fn holds(self, near: f64, far: f64) -> bool {
+        (far - near).abs()
+            <= match self {
+                Self::Absolute(width) => width,
+                Self::Relative(share) => share * near.abs().max(far.abs()),
+            }
     }
 }
 
@@ -99,12 +145,14 @@ mod tests {
     use super::*;
     use crate::study::Course;
 
-    /// Walks a ramp through states that change at these places on the way up and down.
-    fn walk(ramp: &Ramp, up: f64, down: f64) -> (Vec<Seen>, Vec<Option<usize>>) {
+    /// Walks a ramp through states that are a function of place and way.
+    fn walk_through<'a>(
+        ramp: &Ramp,
+        state: impl Fn(f64, Leg) -> Option<&'a str>,
+    ) -> (Vec<Seen>, Vec<Option<usize>>) {
         let (mut seen, mut before) = (Vec::new(), Vec::new());
         while let Some(step) = ramp.next(&seen) {
-            let is_beyond = step.at.unwrap() >= if step.leg == Some(Leg::Up) { up } else { down };
-            let state = Some(if is_beyond { "beyond" } else { "before" }.to_owned());
+            let state = state(step.at.unwrap(), step.leg.unwrap()).map(str::to_owned);
             before.push(step.before);
             seen.push(Seen { leg: step.leg, at: step.at, state });
             assert!(seen.len() < 100);
@@ -112,9 +160,20 @@ mod tests {
         (seen, before)
     }
 
+    /// Walks a ramp through two states that change at these places on the way up and down.
+    fn walk(ramp: &Ramp, up: f64, down: f64) -> (Vec<Seen>, Vec<Option<usize>>) {
+        walk_through(ramp, |at, leg| {
+            Some(if at >= if leg == Leg::Up { up } else { down } { "beyond" } else { "before" })
+        })
+    }
+
+    fn told(brackets: &[Bracket]) -> Vec<(&str, &str)> {
+        brackets.iter().map(|bracket| (bracket.from.as_str(), bracket.to.as_str())).collect()
+    }
+
     #[test]
     fn a_transition_is_bracketed_to_the_wanted_width() {
-        let ramp = Ramp::new("x", [0.0, 1.0, 2.0, 3.0], Course::Up).with_refinement(0.01);
+        let ramp = Ramp::new("x", [0.0, 1.0, 2.0, 3.0], Course::Up).with_refinement(Width::Absolute(0.01));
         let (seen, before) = walk(&ramp, 1.3, 1.3);
         let [bracket] = &ramp.brackets(&seen)[..] else { panic!("{seen:?}") };
         assert!(
@@ -127,8 +186,53 @@ mod tests {
     }
 
     #[test]
+    fn all_transitions_between_two_neighbors_are_found() {
+        let states = |at: f64, _| {
+            Some(["a", "b", "c", "d"][[0.3, 0.6, 0.61].iter().filter(|place| at > **place).count()])
+        };
+        for (course, expected) in [
+            (Course::Up, [("a", "b"), ("b", "c"), ("c", "d")]),
+            (Course::Down, [("d", "c"), ("c", "b"), ("b", "a")]),
+        ] {
+            let ramp = Ramp::new("x", [0.0, 1.0], course).with_refinement(Width::Absolute(0.002));
+            let (seen, _) = walk_through(&ramp, states);
+            let brackets = ramp.brackets(&seen);
+            assert_eq!(told(&brackets), expected);
+            assert!(brackets.iter().all(|bracket| (bracket.far - bracket.near).abs() <= 0.002));
+            assert!(seen.len() < 2 + 3 * 9, "bisections share their values");
+        }
+    }
+
+    #[test]
+    fn a_relative_width_is_finer_at_smaller_values() {
+        let ramp = Ramp::new("x", [0.01, 0.1, 1.0, 10.0], Course::Up).with_refinement(Width::Relative(0.01));
+        let states =
+            |at: f64, _| Some(["a", "b", "c"][[0.033, 4.4].iter().filter(|place| at > **place).count()]);
+        let brackets = ramp.brackets(&walk_through(&ramp, states).0);
+        assert_eq!(told(&brackets), [("a", "b"), ("b", "c")]);
+        for (bracket, at) in brackets.iter().zip([0.033, 4.4]) {
+            assert!(
+                bracket.near <= at && at < bracket.far && bracket.far - bracket.near <= 0.01 * bracket.far
+            );
+            assert!(bracket.far - bracket.near > 0.004 * at, "{bracket:?}");
+        }
+    }
+
+    /// A value that shows no state, as one that has stalled, is beyond the transition, and nothing is sought
+    /// beyond it.
+    #[test]
+    fn a_value_without_a_state_ends_a_search() {
+        let ramp = Ramp::new("x", [0.0, 1.0, 2.0], Course::Up).with_refinement(Width::Absolute(0.1));
+        let states = |at: f64, _| (!(0.4..0.9).contains(&at)).then_some(if at < 0.4 { "a" } else { "b" });
+        assert_eq!(told(&ramp.brackets(&walk_through(&ramp, states).0)), [("a", "")]);
+        let (seen, _) = walk_through(&ramp, |at, _| (at != 1.0).then_some(if at < 1.0 { "a" } else { "b" }));
+        assert_eq!((seen.len(), ramp.brackets(&seen)), (3, Vec::new()));
+    }
+
+    #[test]
     fn hysteresis_is_bracketed_from_both_sides() {
-        let ramp = Ramp::new("x", [0.0, 1.0, 2.0, 3.0], Course::UpAndDown).with_refinement(0.05);
+        let ramp =
+            Ramp::new("x", [0.0, 1.0, 2.0, 3.0], Course::UpAndDown).with_refinement(Width::Absolute(0.05));
         let (seen, _) = walk(&ramp, 1.3, 0.7);
         let [up, down] = &ramp.brackets(&seen)[..] else { panic!("{seen:?}") };
         assert!((up.near..=up.far).contains(&1.3) && up.leg == Some(Leg::Up));
@@ -140,9 +244,10 @@ mod tests {
     fn without_states_or_refinement_a_ramp_is_its_own_values() {
         let ramp = Ramp::new("x", [0.0, 1.0], Course::Up);
         assert_eq!(walk(&ramp, 0.5, 0.5).0.len(), 2);
-        let refined = ramp.with_refinement(0.1);
+        let refined = ramp.with_refinement(Width::Absolute(0.1));
         assert_eq!(walk(&refined, 9.0, 9.0).0.len(), 2);
-        let narrow = Ramp::new("x", [1.0, 1.0 + f64::EPSILON], Course::Up).with_refinement(1e-300);
+        let narrow =
+            Ramp::new("x", [1.0, 1.0 + f64::EPSILON], Course::Up).with_refinement(Width::Absolute(1e-300));
         assert_eq!(walk(&narrow, 1.0 + f64::EPSILON, 0.0).0.len(), 2);
     }
 }

@@ -53,7 +53,8 @@ impl Scalar {
         }
     }
 
-    /// Returns the same value in the kind of another one, where nothing is lost: 1.0 where there are integers.
+    /// Returns the same value in the kind of another one, where nothing is lost: 1.0 where there are
+    /// integers.
     pub(super) fn like(self, other: &toml::Value) -> Self {
         /// Beyond this size not all whole numbers are doubles.
         const EXACT: f64 = 9_007_199_254_740_992.0;

@@ -1,7 +1,7 @@
 //! The paper's system: equal disks in a box over a base that vibrates or is hot.
 //!
-//! [`VibratedBox`] is the experiment, an implementation of [`Experiment`] like one of your own. [`Sample`] is what is measured
-//! of it, and [`Convection`] what its records tell of the flow.
+//! [`VibratedBox`] is the experiment, an implementation of [`Experiment`] like one of your own. [`Sample`] is
+//! what is measured of it, and [`Convection`] what its records tell of the flow.
 
 mod base;
 mod convection;
@@ -28,9 +28,11 @@ const RADIUS: f64 = 0.5;
 /// Most disks of a study.
 const MOST_DISKS: usize = 1 << 24;
 
-/// A box of equal disks as data: how many, how they collide, what moves them. Diameter and mass of a disk are the units.
+/// A box of equal disks as data: how many, how they collide, what moves them. Diameter and mass of a disk are
+/// the units.
 ///
-/// Disks start on a lattice with Maxwellian velocities. Values are checked where the box enters a [`Plan`](super::Plan).
+/// Disks start on a lattice with Maxwellian velocities. Values are checked where the box enters a
+/// [`Plan`](super::Plan).
 ///
 /// ```
 /// use granular_edmd::study::vibrated_box::{Base, VibratedBox};
@@ -219,7 +221,8 @@ impl Experiment for VibratedBox {
         found.ok().map(|found| found.regime().to_string())
     }
 
-    /// The size of the box cannot change with the disks in place, and another frequency would make the base jump.
+    /// Returns false for the size of the box, which has the disks in it, and for a frequency, which would
+    /// make the base jump.
     fn can_be_ramped(parameter: &str) -> bool {
         let name = parameter.rsplit('.').next().unwrap_or(parameter);
         let fixed = ["disks", "width", "height", "sides", "angular_frequency", "slip", "initial_temperature"];

@@ -11,13 +11,18 @@ use std::time::Duration;
 
 use granular_edmd::simulation::Checkpoint;
 use granular_edmd::study::vibrated_box::{Base, VibratedBox};
-use granular_edmd::study::{Axis, Control, Plan, Protocol, Study};
+use granular_edmd::study::{Axis, Control, Experiment, Plan, Protocol, Study};
 
 use crate::limits::{Limits, in_child};
+use crate::mixture::{Mixture, mixture};
 use crate::report::report;
 use crate::specimens::{Scratch, checkpoint};
 
 const FOLDER: &str = "GRANULAR_EDMD_HOSTILE_FOLDER";
+
+/// The tests that a process of its own does: a study of the box, and one of an experiment of one's own.
+const CHILD: &str = "faults::child_runs_a_study";
+const OWN_CHILD: &str = "faults::child_runs_a_study_of_its_own";
 
 /// Three ramps of one value, with records of some kilobytes.
 fn plan() -> Plan<VibratedBox> {
@@ -25,6 +30,12 @@ fn plan() -> Plan<VibratedBox> {
     let experiment = VibratedBox::new(60, 12.0, base).with_height(20.0).with_contact_duration(1e-3);
     let axis = Axis::new("friction", [0.1, 0.2, 0.3]);
     Plan::new(experiment, Protocol::new(10, 20, 2), 5).unwrap().with_axis(axis).unwrap()
+}
+
+/// The same of an experiment of one's own.
+fn own_plan() -> Plan<Mixture> {
+    let axis = Axis::new("loss", [0.0, 0.1, 0.2]);
+    Plan::new(mixture(), Protocol::new(10, 80, 2), 5).unwrap().with_axis(axis).unwrap()
 }
 
 /// Returns all files of a study but its log, which contains times.
@@ -42,16 +53,16 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     files
 }
 
-fn expected(name: &str) -> BTreeMap<PathBuf, Vec<u8>> {
+fn expected<E: Experiment>(name: &str, plan: &Plan<E>) -> BTreeMap<PathBuf, Vec<u8>> {
     let scratch = Scratch::new(name);
-    let study = Study::create(&scratch.0, &plan()).unwrap();
+    let study = Study::create(&scratch.0, plan).unwrap();
     assert!(study.run(&Control::default()).unwrap().is_complete());
     contents(&scratch.0)
 }
 
 /// Runs the study in a folder, saving at every step.
-fn run(folder: &Path) -> Result<bool, String> {
-    let study = Study::open_or_create(folder, &plan()).map_err(|error| report(&error))?;
+fn run<E: Experiment>(folder: &Path, plan: &Plan<E>) -> Result<bool, String> {
+    let study = Study::open_or_create(folder, plan).map_err(|error| report(&error))?;
     let control = Control::default().with_save_interval(Duration::ZERO);
     study.run(&control).map(|summary| summary.is_complete()).map_err(|error| report(&error))
 }
@@ -60,7 +71,14 @@ fn run(folder: &Path) -> Result<bool, String> {
 #[ignore = "started by the tests of faults"]
 fn child_runs_a_study() {
     let Ok(folder) = std::env::var(FOLDER) else { return };
-    println!("the study ends with {:?}", run(Path::new(&folder)));
+    println!("the study ends with {:?}", run(Path::new(&folder), &plan()));
+}
+
+#[test]
+#[ignore = "started by the tests of faults"]
+fn child_runs_a_study_of_its_own() {
+    let Ok(folder) = std::env::var(FOLDER) else { return };
+    println!("the study ends with {:?}", run(Path::new(&folder), &own_plan()));
 }
 
 #[test]
@@ -114,29 +132,38 @@ impl Drop for Disk {
     }
 }
 
-#[test]
-fn a_study_survives_a_full_disk() {
-    let Some(disk) = Disk::new("full", "24k") else { return };
+fn survives_a_full_disk<E: Experiment>(name: &str, plan: &Plan<E>) {
+    let Some(disk) = Disk::new(name, "24k") else { return };
     let folder = disk.folder().join("study");
-    let error = run(&folder).unwrap_err();
+    let error = run(&folder, plan).unwrap_err();
     assert!(error.starts_with("cannot write") && error.contains("No space left"), "{error}");
     disk.remount("size=16m");
-    assert_eq!(run(&folder), Ok(true));
-    assert!(contents(&folder) == expected("full-not"));
+    assert_eq!(run(&folder, plan), Ok(true));
+    assert!(contents(&folder) == expected(&format!("{name}-not"), plan));
+}
+
+#[test]
+fn a_study_survives_a_full_disk() {
+    survives_a_full_disk("full", &plan());
+    survives_a_full_disk("full-own", &own_plan());
+}
+
+fn survives_a_limit<E: Experiment>(name: &str, plan: &Plan<E>, child: &str) {
+    let scratch = Scratch::new(name);
+    let folder = scratch.0.join("study");
+    let limits = Limits { memory_kib: 4 << 20, seconds: 100, file_kib: Some(2) };
+    let end = in_child(child, &limits, &[(FOLDER, folder.to_str().unwrap())]);
+    let said = end.said();
+    assert!(said.contains("Err(\"cannot write") && said.contains("File too large"), "{said}");
+    assert!(contents(&folder).keys().all(|name| name.extension().is_none_or(|ending| ending != "tmp")));
+    assert_eq!(run(&folder, plan), Ok(true));
+    assert!(contents(&folder) == expected(&format!("{name}-not"), plan));
 }
 
 #[test]
 fn a_study_survives_a_limit_of_the_file_size() {
-    let scratch = Scratch::new("limit");
-    let folder = scratch.0.join("study");
-    let limits = Limits { memory_kib: 4 << 20, seconds: 100, file_kib: Some(2) };
-    let variables = [(FOLDER, folder.to_str().unwrap())];
-    let end = in_child("faults::child_runs_a_study", &limits, &variables);
-    let said = end.said();
-    assert!(said.contains("Err(\"cannot write") && said.contains("File too large"), "{said}");
-    assert!(contents(&folder).keys().all(|name| name.extension().is_none_or(|ending| ending != "tmp")));
-    assert_eq!(run(&folder), Ok(true));
-    assert!(contents(&folder) == expected("limit-not"));
+    survives_a_limit("limit", &plan(), CHILD);
+    survives_a_limit("limit-own", &own_plan(), OWN_CHILD);
 }
 
 #[test]
@@ -159,20 +186,20 @@ fn a_checkpoint_survives_a_full_disk() {
 fn a_disk_that_turns_read_only_keeps_what_it_has() {
     let Some(disk) = Disk::new("read-only-disk", "16m") else { return };
     let folder = disk.folder().join("study");
-    assert_eq!(run(&folder), Ok(true));
+    assert_eq!(run(&folder, &plan()), Ok(true));
     fs::remove_file(folder.join("ramps/0001/0000.record")).unwrap();
     let path = disk.folder().join("state");
     let [old, new] = two_states();
     old.write(&path).unwrap();
     disk.remount("ro");
-    let error = run(&folder).unwrap_err();
+    let error = run(&folder, &plan()).unwrap_err();
     assert!(error.starts_with("cannot write") && error.contains("Read-only"), "{error}");
     assert_eq!(Study::<VibratedBox>::open(&folder).unwrap().records().map(Result::unwrap).count(), 2);
     assert!(report(&new.write(&path).unwrap_err()).contains("Read-only"));
     assert_eq!(Checkpoint::read(&path).unwrap(), old);
     disk.remount("rw");
-    assert_eq!(run(&folder), Ok(true));
-    assert!(contents(&folder) == expected("read-only-disk-not"));
+    assert_eq!(run(&folder, &plan()), Ok(true));
+    assert!(contents(&folder) == expected("read-only-disk-not", &plan()));
 }
 
 /// Permissions do not bind the superuser, so the study is run as the user "nobody".
@@ -180,13 +207,13 @@ fn a_disk_that_turns_read_only_keeps_what_it_has() {
 fn a_folder_of_somebody_else_is_an_error() {
     let scratch = Scratch::new("somebody-else");
     let folder = scratch.0.join("study");
-    assert_eq!(run(&folder), Ok(true));
+    assert_eq!(run(&folder, &plan()), Ok(true));
     let before = contents(&folder);
     let executable = std::env::current_exe().unwrap();
     let output = Command::new("setpriv")
         .args(["--reuid=65534", "--regid=65534", "--clear-groups"])
         .arg(&executable)
-        .args(["--exact", "faults::child_runs_a_study", "--ignored", "--nocapture"])
+        .args(["--exact", CHILD, "--ignored", "--nocapture"])
         .env(FOLDER, &folder)
         .output();
     match output {
@@ -215,16 +242,21 @@ fn start(test: &str, folder: &Path) -> std::process::Child {
 }
 
 /// Kills the study at random moments, then lets it end.
-fn killed(round: u64, kills: usize) -> BTreeMap<PathBuf, Vec<u8>> {
+fn killed<E: Experiment>(
+    plan: &Plan<E>,
+    child: &str,
+    round: u64,
+    kills: usize,
+) -> BTreeMap<PathBuf, Vec<u8>> {
     let scratch = Scratch::new(&format!("killed-{round}"));
     let folder = scratch.0.join("study");
     for delay in delays(round, 60).take(kills) {
-        let mut child = start("faults::child_runs_a_study", &folder);
+        let mut child = start(child, &folder);
         std::thread::sleep(delay);
         let _ = child.kill();
         child.wait().unwrap();
     }
-    assert_eq!(run(&folder), Ok(true));
+    assert_eq!(run(&folder, plan), Ok(true));
     contents(&folder)
 }
 
@@ -238,18 +270,19 @@ fn assert_same(found: &BTreeMap<PathBuf, Vec<u8>>, expected: &BTreeMap<PathBuf, 
 
 #[test]
 fn studies_killed_at_random_moments_end_with_the_same_bytes() {
-    let expected = expected("killed-not");
+    let (of_the_box, own) = (expected("killed-not", &plan()), expected("killed-own-not", &own_plan()));
     for round in 0..2 {
-        assert_same(&killed(round, 8), &expected);
+        assert_same(&killed(&plan(), CHILD, round, 8), &of_the_box);
+        assert_same(&killed(&own_plan(), OWN_CHILD, 2 + round, 8), &own);
     }
 }
 
 #[test]
 #[ignore = "a minute: the same at many more moments"]
 fn studies_killed_at_many_random_moments_end_with_the_same_bytes() {
-    let expected = expected("killed-often-not");
+    let expected = expected("killed-often-not", &plan());
     for round in 100..130 {
-        assert_same(&killed(round, 25), &expected);
+        assert_same(&killed(&plan(), CHILD, round, 25), &expected);
     }
 }
 

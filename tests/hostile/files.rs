@@ -8,7 +8,8 @@ use granular_edmd::study::{Plan, Study, StudyError};
 use proptest::prelude::*;
 
 use crate::cases::config;
-use crate::specimens::{CONTENTS_AT, Scratch, VERSION_AT, checkpoint, done_study, plan, sealed};
+use crate::mixture::Mixture;
+use crate::specimens::{CONTENTS_AT, Scratch, VERSION_AT, checkpoint, done_study, own_plan, plan, sealed};
 
 #[test]
 fn a_sealed_file_is_resealed_as_the_library_does() {
@@ -35,7 +36,7 @@ fn each_flipped_bit_and_each_cut_of_a_checkpoint_is_noticed() {
 }
 
 fn damaged_records(name: &str, stride: usize) {
-    let (scratch, study) = done_study(name);
+    let (scratch, study) = done_study(name, &plan());
     let path = scratch.0.join("ramps/0000/0000.record");
     let sound = fs::read(&path).unwrap();
     for (case, bytes) in damaged(&sound, stride).enumerate() {
@@ -166,6 +167,10 @@ proptest! {
     fn any_plan_is_read_or_refused(edits in prop::collection::vec(edit(), 1..6)) {
         let text = edited(&plan().to_toml().unwrap(), &edits);
         if let Ok(plan) = Plan::<VibratedBox>::from_toml(&text) {
+            prop_assert_eq!(Plan::from_toml(&plan.to_toml().unwrap()).unwrap(), plan);
+        }
+        let text = edited(&own_plan().to_toml().unwrap(), &edits);
+        if let Ok(plan) = Plan::<Mixture>::from_toml(&text) {
             prop_assert_eq!(Plan::from_toml(&plan.to_toml().unwrap()).unwrap(), plan);
         }
     }

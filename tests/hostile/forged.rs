@@ -17,13 +17,15 @@ use granular_edmd::boundary::Container;
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::{Checkpoint, CheckpointError};
-use granular_edmd::study::vibrated_box::{Convection, Sample, VibratedBox};
-use granular_edmd::study::{Control, Study};
+use granular_edmd::study::vibrated_box::{Convection, Sample};
+use granular_edmd::study::{Control, Experiment, Plan, Record, Study};
 use granular_edmd::{Disk, Simulation};
 
 use crate::forged_systems::{Run, SYSTEMS, System};
 use crate::limits::{Limits, in_child};
-use crate::specimens::{CONTENTS_AT, checkpoint, done_study, resume, run_steps, sealed, stopped_study};
+use crate::specimens::{
+    CONTENTS_AT, checkpoint, done_study, own_plan, plan, resume, run_steps, sealed, stopped_study,
+};
 
 /// Returns the bytes that are written over the contents at each place: floats, and lengths and indices in
 /// their encoding.
@@ -120,6 +122,10 @@ const EVENTS: &str = "GRANULAR_EDMD_HOSTILE_EVENTS";
 /// Variable with the only system that is forged.
 const ONLY: &str = "GRANULAR_EDMD_HOSTILE_ONLY";
 
+fn stride() -> usize {
+    std::env::var(STRIDE).map_or(1, |stride| stride.parse().unwrap())
+}
+
 const LITTLE: Limits = Limits { memory_kib: 1 << 20, seconds: 600, file_kib: None };
 
 #[test]
@@ -215,7 +221,7 @@ fn forge(system: &System, cases: impl Iterator<Item = (usize, Vec<u8>)>, events:
 #[test]
 #[ignore = "started by the test of forged checkpoints"]
 fn forged_checkpoints() {
-    let stride = std::env::var(STRIDE).map_or(1, |stride| stride.parse().unwrap());
+    let stride = stride();
     let events = std::env::var(EVENTS).map_or(3000, |events| events.parse().unwrap());
     let only = std::env::var(ONLY).ok();
     for system in SYSTEMS.iter().filter(|system| only.as_ref().is_none_or(|only| only == system.name)) {
@@ -229,30 +235,43 @@ fn forged_checkpoints() {
 #[test]
 #[ignore = "started by the test of forged records"]
 fn forged_records() {
-    let (scratch, study) = done_study("forged");
-    let path = scratch.0.join("ramps/0000/0001.record");
-    let file = fs::read(&path).unwrap();
-    let stride = std::env::var(STRIDE).map_or(1, |stride| stride.parse().unwrap());
-    none_panics(forged(&file, stride), |bytes| {
-        fs::write(&path, bytes).unwrap();
-        let Ok(Some(record)) = study.record(0, 1) else { return };
+    forge_records("forged", &plan(), |record| {
         let quantity = |sample: &Sample| sample.height;
         let _ = (record.mean(quantity), record.energy_change(), record.thermal_noise(), record.order());
         let _ = (record.densest_layer(), record.profile().count(), record.state().time());
         let _ = resume(record.state());
+    });
+    forge_records("forged-own", &own_plan(), |record| {
+        let _ = (record.mean(|sample| sample.angular_momentum), record.estimate("risen"), record.observer());
+    });
+}
+
+/// Reads all forgeries of a record; what is accepted is looked at, and takes part in the study.
+fn forge_records<E: Experiment>(name: &str, plan: &Plan<E>, look: impl Fn(&Record<E>)) {
+    let (scratch, study) = done_study(name, plan);
+    let path = scratch.0.join("ramps/0000/0001.record");
+    let file = fs::read(&path).unwrap();
+    none_panics(forged(&file, stride()), |bytes| {
+        fs::write(&path, bytes).unwrap();
+        let Ok(Some(record)) = study.record(0, 1) else { return };
+        look(&record);
         // All values have records, so this call reads them and writes tables.
-        let _ = Study::<VibratedBox>::open(&scratch.0).unwrap().run(&Control::default());
+        let _ = Study::<E>::open(&scratch.0).unwrap().run(&Control::default());
     });
 }
 
 #[test]
 #[ignore = "started by the test of forged values half done"]
 fn forged_partials() {
-    let (scratch, study) = stopped_study("forged-partials", 8);
+    forge_partials("forged-partials", &plan());
+    forge_partials("forged-own-partials", &own_plan());
+}
+
+fn forge_partials<E: Experiment>(name: &str, plan: &Plan<E>) {
+    let (scratch, study) = stopped_study(name, plan, 8);
     let path = scratch.0.join("ramps/0000/0001.partial");
     let file = fs::read(&path).unwrap();
-    let stride = std::env::var(STRIDE).map_or(1, |stride| stride.parse().unwrap());
-    none_panics(forged(&file, stride), |bytes| {
+    none_panics(forged(&file, stride()), |bytes| {
         fs::write(&path, bytes).unwrap();
         match run_steps(&study, 8) {
             Ok(summary) => assert!(summary.redone.iter().all(|redone| *redone == path)),

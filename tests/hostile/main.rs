@@ -21,6 +21,9 @@ mod laws;
 #[cfg(all(feature = "serde", unix))]
 mod limits;
 mod log;
+#[cfg(feature = "serde")]
+#[path = "../support/mixture.rs"]
+mod mixture;
 mod random_runs;
 #[cfg(feature = "serde")]
 mod records;

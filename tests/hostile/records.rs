@@ -26,12 +26,12 @@ impl Specimen {
 
     /// The second record of the small study.
     fn record(name: &str) -> Self {
-        Self::new(done_study(name), "0001.record")
+        Self::new(done_study(name, &plan()), "0001.record")
     }
 
     /// The small study, stopped on its way to the second value.
     fn partial(name: &str) -> Self {
-        Self::new(stopped_study(name, 8), "0001.partial")
+        Self::new(stopped_study(name, &plan(), 8), "0001.partial")
     }
 
     /// Writes the file with its contents changed, under a right checksum.

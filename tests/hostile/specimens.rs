@@ -15,6 +15,8 @@ use granular_edmd::study::{
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{Simulation, initial};
 
+use crate::mixture::{Mixture, mixture};
+
 pub(crate) type Rule = ContactDuration<Frictional>;
 type SmallRun = Simulation<Rule, Container, LinearScan>;
 
@@ -59,6 +61,12 @@ pub(crate) fn plan() -> Plan<VibratedBox> {
     Plan::new(experiment, Protocol::new(2, 3, 1), 5).unwrap().with_ramp(ramp).unwrap()
 }
 
+/// The same of an experiment of one's own.
+pub(crate) fn own_plan() -> Plan<Mixture> {
+    let ramp = Ramp::new("weight", [0.1, 0.2], Course::Up);
+    Plan::new(mixture(), Protocol::new(2, 3, 1), 5).unwrap().with_ramp(ramp).unwrap()
+}
+
 /// A folder of a test's own, removed with it.
 pub(crate) struct Scratch(pub(crate) PathBuf);
 
@@ -78,10 +86,10 @@ impl Drop for Scratch {
     }
 }
 
-/// The small study, stopped after so many steps.
-pub(crate) fn stopped_study(name: &str, steps: u64) -> (Scratch, Study<VibratedBox>) {
+/// A study, stopped after so many steps.
+pub(crate) fn stopped_study<E: Experiment>(name: &str, plan: &Plan<E>, steps: u64) -> (Scratch, Study<E>) {
     let scratch = Scratch::new(name);
-    let study = Study::create(&scratch.0, &plan()).unwrap();
+    let study = Study::create(&scratch.0, plan).unwrap();
     run_steps(&study, steps).unwrap();
     (scratch, study)
 }
@@ -93,10 +101,10 @@ pub(crate) fn run_steps<E: Experiment>(study: &Study<E>, steps: u64) -> Result<S
     study.run(&Control::default().with_progress(&progress).with_interrupt(&stop))
 }
 
-/// The small study, done.
-pub(crate) fn done_study(name: &str) -> (Scratch, Study<VibratedBox>) {
+/// A study, done.
+pub(crate) fn done_study<E: Experiment>(name: &str, plan: &Plan<E>) -> (Scratch, Study<E>) {
     let scratch = Scratch::new(name);
-    let study = Study::create(&scratch.0, &plan()).unwrap();
+    let study = Study::create(&scratch.0, plan).unwrap();
     assert!(study.run(&Control::default()).unwrap().is_complete());
     (scratch, study)
 }

@@ -147,7 +147,7 @@ fn plans_and_records_with_a_field_too_many_are_refused() {
         let experiment = VibratedBox::new(3, 4.0, base).with_height(3.0).with_contact_duration(1e-3);
         refuses(&Plan::new(experiment, Protocol::new(2, 3, 1), 5).unwrap());
     }
-    let (_scratch, study) = done_study("intruder");
+    let (_scratch, study) = done_study("intruder", &plan());
     let record = study.record(0, 1).unwrap().unwrap();
     refuses::<Sample>(&record.samples()[0]);
     let mut measurement = serde_json::to_value(record.observer()).unwrap();

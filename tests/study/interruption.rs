@@ -1,15 +1,15 @@
 //! The same bytes on any number of threads, and after any interruption.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use granular_edmd::study::{Control, Progress, Study};
 
-use crate::support::{AnyError, CHILD_FOLDER, Scratch, assert_same, done, small_plan, start};
+use crate::support::{CHILD_FOLDER, Scratch, assert_same, done, run_with_interruptions, small_plan, start};
 
 #[test]
 #[cfg(feature = "rayon")]
-fn threads_do_not_matter() -> Result<(), AnyError> {
+fn threads_do_not_matter() -> Result<(), crate::support::AnyError> {
     let (expected, _) = done(&small_plan(), "threads-any");
     for threads in [1, 2] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
@@ -20,32 +20,14 @@ fn threads_do_not_matter() -> Result<(), AnyError> {
 }
 
 #[test]
-fn an_interrupted_study_goes_on() -> Result<(), AnyError> {
+fn an_interrupted_study_goes_on() {
     let (expected, _) = done(&small_plan(), "interrupted-not");
     let scratch = Scratch::new("interrupted");
-    let stop = AtomicBool::new(false);
     let last = AtomicU64::new(0);
-    let mut runs = 0;
-    loop {
-        let study = Study::open_or_create(&scratch.0, &small_plan())?;
-        let steps = AtomicU64::new(0);
-        let progress = |progress: &Progress| {
-            last.store(progress.done, Ordering::Relaxed);
-            if steps.fetch_add(1, Ordering::Relaxed) > 16 {
-                stop.store(true, Ordering::Relaxed);
-            }
-        };
-        let control = Control::default().with_interrupt(&stop).with_progress(&progress);
-        stop.store(false, Ordering::Relaxed);
-        runs += 1;
-        if study.run(&control)?.is_complete() {
-            break;
-        }
-    }
-    assert!(runs > 2, "it was interrupted");
+    let watch = |progress: &Progress| last.store(progress.done, Ordering::Relaxed);
+    assert!(run_with_interruptions(&scratch.0, &small_plan(), |_| 16, watch) > 1);
     assert_eq!(last.into_inner(), 10 * 9, "three steps to settle, six samples");
     assert_same(&scratch.0, &expected.0);
-    Ok(())
 }
 
 /// What a killed process does; on its own it does nothing.

@@ -7,6 +7,8 @@ mod cases;
 mod damage;
 mod folders;
 mod interruption;
+#[path = "../support/mixture.rs"]
+mod mixture;
 mod own;
 mod plans;
 mod processes;

@@ -1,129 +1,19 @@
-//! An experiment of one's own: a drum that turns, with a rule of its own, a mixture of disks, and samples of variable length.
+//! Experiments of one's own: swept, ramped, recorded, resumed, and refused where they cannot be.
 
 use std::fs;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
 use granular_edmd::boundary::Container;
-use granular_edmd::collision::{CollisionRule, Contact, Impulse};
-use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{CollisionCounts, Observer, Snapshot};
+use granular_edmd::observable::{Observer, Snapshot};
 use granular_edmd::study::{
-    Axis, Column, Control, Course, Experiment, ExperimentError, Plan, PlanError, Progress, Protocol, Ramp,
-    Record, Scalar, Study, StudyError, Table,
+    Axis, Column, Control, Course, Experiment, ExperimentError, Plan, PlanError, Protocol, Ramp, Record,
+    Scalar, Study, StudyError,
 };
-use granular_edmd::{Disk, initial, quantity};
+use granular_edmd::{Disk, initial};
 use serde::{Deserialize, Serialize};
 
+use crate::mixture::{Mixture, Sticky, mixture};
 use crate::report::report;
-use crate::support::{AnyError, Scratch, assert_same, contents};
-
-/// Loses the more the faster: no fingerprint, as a closure has none.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Sticky {
-    loss: f64,
-}
-
-impl CollisionRule for Sticky {
-    fn impulse(&self, contact: &Contact) -> Impulse {
-        let restitution = 1.0 / (1.0 + self.loss * contact.closing_speed());
-        Impulse::new(contact.normal_impulse(restitution), 0.0)
-    }
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Mixture {
-    loss: f64,
-    disks: Counts,
-    /// Strength of the drive, with gravity: the cycle follows from both.
-    weight: f64,
-    #[serde(default)]
-    note: Option<String>,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Counts {
-    small: usize,
-    large: usize,
-}
-
-/// The heights of the large disks that are above the small ones: a list of any length.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Risen {
-    heights: Vec<f64>,
-    angular_momentum: f64,
-    collisions: u64,
-}
-
-impl Experiment for Mixture {
-    type Rule = Sticky;
-    type Boundary = Container;
-    type Observer = CollisionCounts;
-    type Sample = Risen;
-
-    fn rule(&self) -> Result<Sticky, ExperimentError> {
-        Ok(Sticky { loss: quantity::non_negative("loss", self.loss)? })
-    }
-
-    fn boundary(&self) -> Result<Container, ExperimentError> {
-        Ok(Container::closed(12.0, 12.0)?)
-    }
-
-    fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
-        let (small, large) = (Disk::new(DVec2::ZERO, 0.3)?, Disk::new(DVec2::ZERO, 0.6)?);
-        let disks = vec![small; self.disks.small].into_iter().chain(vec![large; self.disks.large]);
-        let disks = initial::placed_at_random(&self.boundary()?, disks.collect::<Vec<_>>(), 12.0, seed)?;
-        Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
-    }
-
-    fn gravity(&self) -> f64 {
-        self.weight
-    }
-
-    fn cycle(&self) -> f64 {
-        1.0 / (1.0 + self.weight)
-    }
-
-    fn sample(&self, snapshot: &Snapshot<'_>, observer: &mut CollisionCounts) -> Risen {
-        let middle = snapshot.mean(|disk| disk.position().y);
-        let large = snapshot.disks().iter().filter(|disk| disk.radius() > 0.5);
-        let heights = large.map(|disk| disk.position().y).filter(|height| *height > middle).collect();
-        let spin = |disk: &Disk| disk.mass() * disk.position().perp_dot(disk.velocity());
-        let counts = std::mem::take(observer);
-        Risen { heights, angular_momentum: snapshot.mean(spin), collisions: counts.disk_collisions() }
-    }
-
-    fn columns() -> Vec<Column<Self>> {
-        vec![
-            Column::sampled("risen", "1", |sample: &Risen| sample.heights.len()),
-            Column::sampled("angular_momentum", "mass diameter velocity", |sample: &Risen| {
-                sample.angular_momentum
-            }),
-            Column::sampled("collisions", "1", |sample: &Risen| sample.collisions).in_samples_only(),
-            Column::of_record("overlap", "diameter", |record| record.counters().max_overlap),
-        ]
-    }
-
-    /// Heavy or light: known beforehand, so that a test can say where the transition is.
-    fn state(record: &Record<Self>) -> Option<String> {
-        Some(if record.experiment().weight > 0.137 { "heavy" } else { "light" }.to_owned())
-    }
-
-    fn tables() -> Vec<Table<Self>> {
-        vec![Table::new("heights", &[("sample", "1"), ("height", "diameter")], |record| {
-            let heights = |(index, sample): (usize, &Risen)| -> Vec<Vec<f64>> {
-                sample.heights.iter().map(|height| vec![index as f64, *height]).collect()
-            };
-            record.samples().iter().enumerate().flat_map(heights).collect()
-        })]
-    }
-}
-
-pub(crate) fn mixture() -> Mixture {
-    Mixture { loss: 0.05, disks: Counts { small: 12, large: 4 }, weight: 0.1, note: None }
-}
+use crate::support::{AnyError, Scratch, assert_same, contents, run_with_interruptions};
 
 /// Coupled parameters: the weight is ramped, the loss and the mixture differ between ramps.
 fn plan() -> Plan<Mixture> {
@@ -167,25 +57,11 @@ fn an_own_experiment_is_swept_ramped_and_recorded() -> Result<(), AnyError> {
 }
 
 #[test]
-fn an_own_experiment_goes_on_with_the_same_bytes() -> Result<(), AnyError> {
+fn an_own_experiment_goes_on_with_the_same_bytes() {
     let (expected, _) = done("own-not-interrupted");
     let scratch = Scratch::new("own-interrupted");
-    let mut runs = 0;
-    loop {
-        let stop = AtomicBool::new(false);
-        let steps = std::sync::atomic::AtomicU64::new(0);
-        let progress =
-            |_: &Progress| stop.store(steps.fetch_add(1, Ordering::Relaxed) > 12, Ordering::Relaxed);
-        let control = Control::default().with_interrupt(&stop).with_progress(&progress);
-        let study = Study::open_or_create(&scratch.0, &plan())?;
-        runs += 1;
-        if study.run(&control.with_save_interval(Duration::ZERO))?.is_complete() {
-            break;
-        }
-    }
-    assert!(runs > 2, "it was interrupted");
+    assert!(run_with_interruptions(&scratch.0, &plan(), |_| 12, |_| {}) > 1);
     assert_same(&scratch.0, &expected.0);
-    Ok(())
 }
 
 #[test]

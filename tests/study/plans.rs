@@ -55,11 +55,7 @@ const REFUSED: [(&str, &str, &str); 19] = [
     ("disks = 30", "disks = 30\nmass = 2", "unknown field `mass`"),
     ("disks = 30", "disks = 0", "number of disks must be at least 1, but is 0"),
     ("disks = 30", "disks = 300000", "there is room for"),
-    (
-        "disks = 30\nwidth = 10.0\nheight = 30",
-        "disks = 9000000000000000000\nwidth = 10.0",
-        "but is 9000000000000000000",
-    ),
+    ("disks = 30\nwidth = 10.0\nheight = 30", "disks = 9000000000000000000\nwidth = 10.0", "but is 9e18"),
     ("disks = 30", "", "missing field `disks`"),
     ("width = 10.0", "width = -10.0", "width must be finite and positive, but is -10"),
     ("height = 30", "height = inf", "height must be finite and positive, but is inf"),

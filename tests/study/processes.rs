@@ -13,7 +13,7 @@ use granular_edmd::study::{Axis, Control, Plan, Progress, Protocol, RampStatus, 
 use crate::support::{AnyError, RAMP, SEED, Scratch, assert_same, contents, done, small_box, start};
 
 /// Six ramps of one value.
-fn plan(seed: u64) -> Plan<VibratedBox> {
+pub(crate) fn plan(seed: u64) -> Plan<VibratedBox> {
     Plan::new(small_box(), Protocol::new(25, 6, 10), seed)
         .and_then(|plan| plan.with_axis(Axis::new("friction", [0.0, 0.1, 0.2])))
         .and_then(|plan| plan.with_repeats(2))
@@ -100,7 +100,8 @@ fn of_two_plans_at_the_same_moment_one_wins_and_the_other_is_told() {
     }
 }
 
-/// Four processes at once on a fresh folder, some of which are killed; then one to finish what all of them left.
+/// Four processes at once on a fresh folder, some of which are killed; then one to finish what all of them
+/// left.
 fn killed(round: u64) -> BTreeMap<PathBuf, Vec<u8>> {
     let scratch = Scratch::new(&format!("many-killed-{round}"));
     let mut below = numbers(round);
@@ -178,24 +179,5 @@ fn a_ramp_that_somebody_does_is_left_to_them() -> Result<(), AnyError> {
     };
     assert!(study.run(&Control::default().with_progress(&look))?.is_complete());
     assert!(seen.into_inner());
-    Ok(())
-}
-
-#[test]
-fn repeats_have_seeds_of_their_own_and_a_table_of_their_means() -> Result<(), AnyError> {
-    let (scratch, study) = done(&plan(1), "repeats");
-    let [first, second] = [0, 1].map(|ramp| study.record(ramp, 0).unwrap().unwrap());
-    assert_eq!(first.experiment(), second.experiment());
-    assert_ne!(first.samples(), second.samples());
-    let mut points = csv::Reader::from_path(scratch.0.join("points.csv"))?;
-    let header = points.headers()?.clone();
-    let column = |name: &str| header.iter().position(|found| found == name).unwrap();
-    let rows: Vec<csv::StringRecord> = points.records().collect::<Result<_, _>>()?;
-    assert_eq!(rows.len(), 3);
-    let cell = |name: &str| rows[0][column(name)].parse::<f64>().unwrap();
-    let heights = [&first, &second].map(|record| record.mean(|sample| sample.height).mean());
-    assert!((cell("height") - 0.5 * (heights[0] + heights[1])).abs() < 1e-12);
-    assert!((cell("height_error") - 0.5 * (heights[0] - heights[1]).abs()).abs() < 1e-12);
-    assert_eq!(cell("repeats"), 2.0);
     Ok(())
 }

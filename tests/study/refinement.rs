@@ -1,23 +1,22 @@
 //! Transitions, bracketed and bisected along a ramp.
 
 use std::fs;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::Duration;
 
 use granular_edmd::study::vibrated_box::VibratedBox;
 use granular_edmd::study::{
-    Axis, Control, Course, Leg, Plan, Progress, Protocol, Ramp, Record, Study, StudyError,
+    Axis, Control, Course, Leg, Plan, Progress, Protocol, Ramp, Record, Study, StudyError, Width,
 };
 
-use crate::own::{Mixture, mixture};
+use crate::mixture::{Mixture, mixture};
 use crate::report::report;
-use crate::support::{AnyError, Scratch, assert_same, contents, small_box};
+use crate::support::{AnyError, Scratch, assert_same, contents, run_with_interruptions, small_box};
 
 const WIDTH: f64 = 0.002;
 
 /// Up and down over a transition at 0.137, for two losses.
 fn plan() -> Plan<Mixture> {
-    let ramp = Ramp::new("weight", [0.1, 0.15, 0.2, 0.25], Course::UpAndDown).with_refinement(WIDTH);
+    let ramp = Ramp::new("weight", [0.1, 0.15, 0.2, 0.25], Course::UpAndDown)
+        .with_refinement(Width::Absolute(WIDTH));
     Plan::new(mixture(), Protocol::new(2, 3, 1), 3)
         .and_then(|plan| plan.with_axis(Axis::new("loss", [0.0, 0.2])))
         .and_then(|plan| plan.with_ramp(ramp))
@@ -60,28 +59,13 @@ fn a_transition_is_bracketed_from_below_and_from_above() -> Result<(), AnyError>
 }
 
 #[test]
-fn an_interrupted_refinement_goes_on_with_the_same_bytes() -> Result<(), AnyError> {
+fn an_interrupted_refinement_goes_on_with_the_same_bytes() {
     let (expected, _) = done("refined-not-interrupted");
     let scratch = Scratch::new("refined-interrupted");
-    let mut runs = 0;
-    loop {
-        let (stop, steps) = (AtomicBool::new(false), AtomicU64::new(0));
-        let progress = |progress: &Progress| {
-            assert!(progress.done <= progress.total);
-            // Values that are known count as one: each run gets further than the one before.
-            let limit = 25 + 4 * runs;
-            stop.store(steps.fetch_add(1, Ordering::Relaxed) > limit, Ordering::Relaxed);
-        };
-        let control = Control::default().with_interrupt(&stop).with_progress(&progress);
-        let study = Study::open_or_create(&scratch.0, &plan())?;
-        if study.run(&control.with_save_interval(Duration::ZERO))?.is_complete() {
-            break;
-        }
-        runs += 1;
-    }
-    assert!(runs > 2, "it was interrupted");
+    let watch = |progress: &Progress| assert!(progress.done <= progress.total);
+    // Values that are known count as one step: each run gets further than the one before.
+    assert!(run_with_interruptions(&scratch.0, &plan(), |run| 25 + 4 * run, watch) > 2);
     assert_same(&scratch.0, &expected.0);
-    Ok(())
 }
 
 #[test]
@@ -95,7 +79,7 @@ fn a_damaged_value_of_a_refinement_is_done_again() -> Result<(), AnyError> {
         assert_eq!(study.run(&Control::default())?.redone, [path]);
         assert!(contents(&scratch.0) == before);
     }
-    // One of another half is told apart by its place.
+    // The record of another half is told apart by its place.
     let [first, second] = ["0007", "0008"].map(|value| scratch.0.join(format!("ramps/0000/{value}.record")));
     fs::copy(&first, &second)?;
     assert_eq!(study.run(&Control::default())?.redone, [second]);
@@ -118,9 +102,13 @@ fn the_states_of_the_box_are_its_convective_regimes() -> Result<(), AnyError> {
 
 #[test]
 fn a_width_that_cannot_be_is_refused() {
-    for width in [0.0, -1.0, f64::NAN] {
+    let numbers = [0.0, -1.0, f64::NAN];
+    for width in numbers.map(Width::Absolute).into_iter().chain(numbers.map(Width::Relative)) {
         let ramp = Ramp::new("weight", [0.1, 0.2], Course::Up).with_refinement(width);
         let error = Plan::new(mixture(), Protocol::new(1, 1, 1), 1).and_then(|plan| plan.with_ramp(ramp));
         assert!(report(&error.unwrap_err()).contains("width of a transition must be finite and positive"));
     }
+    let ramp = Ramp::new("weight", [0.0, 0.2], Course::Up).with_refinement(Width::Relative(0.01));
+    let error = Plan::new(mixture(), Protocol::new(1, 1, 1), 1).and_then(|plan| plan.with_ramp(ramp));
+    assert!(report(&error.unwrap_err()).contains("value of a ramp with a relative width must be"));
 }

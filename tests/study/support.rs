@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::Duration;
 
 use granular_edmd::study::vibrated_box::{Base, VibratedBox};
-use granular_edmd::study::{Axis, Control, Course, Plan, Protocol, Ramp, Study};
+use granular_edmd::study::{Axis, Control, Course, Experiment, Plan, Progress, Protocol, Ramp, Study};
 
 pub(crate) type AnyError = Box<dyn std::error::Error>;
 
@@ -46,7 +48,7 @@ impl Drop for Scratch {
     }
 }
 
-/// All files of a study but the log, which has the times.
+/// Returns all files of a study but the log, which has the times.
 pub(crate) fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut files = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
@@ -63,7 +65,7 @@ pub(crate) fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     files
 }
 
-/// The study of `specification`, done without a break.
+/// Does the study of a plan without a break.
 pub(crate) fn done(plan: &Plan<VibratedBox>, name: &str) -> (Scratch, Study<VibratedBox>) {
     let scratch = Scratch::new(name);
     let study = Study::create(&scratch.0, plan).unwrap();
@@ -79,16 +81,40 @@ pub(crate) fn assert_same(found: &Path, expected: &Path) {
     }
 }
 
+/// Runs a study again and again, each time interrupted after a number of steps that depends on the run, until
+/// it is complete; returns how often it was interrupted.
+pub(crate) fn run_with_interruptions<E: Experiment>(
+    folder: &Path,
+    plan: &Plan<E>,
+    steps: impl Fn(u64) -> u64 + Sync,
+    watch: impl Fn(&Progress) + Sync,
+) -> u64 {
+    for run in 0.. {
+        let (stop, done) = (AtomicBool::new(false), AtomicU64::new(0));
+        let progress = |progress: &Progress| {
+            watch(progress);
+            stop.store(done.fetch_add(1, Ordering::Relaxed) > steps(run), Ordering::Relaxed);
+        };
+        let control = Control::default().with_interrupt(&stop).with_progress(&progress);
+        let study = Study::open_or_create(folder, plan).unwrap();
+        if study.run(&control.with_save_interval(Duration::ZERO)).unwrap().is_complete() {
+            return run;
+        }
+    }
+    unreachable!("a study ends");
+}
+
 /// Name of a file that a killed process was writing.
 pub(crate) const TEMPORARY: &str = "granular-edmd-4711-0-0123456789abcdef.tmp";
 
 pub(crate) const CHILD_FOLDER: &str = "GRANULAR_EDMD_TEST_STUDY";
 
-/// Variables of the processes that tests start: the seed of the plan, and the ramp that is run, if it is one alone.
+/// Variables of the processes that tests start: the seed of the plan, and the ramp that is run, if it is one
+/// alone.
 pub(crate) const SEED: &str = "GRANULAR_EDMD_TEST_SEED";
 pub(crate) const RAMP: &str = "GRANULAR_EDMD_TEST_RAMP";
 
-/// A process that does an ignored test on a folder.
+/// Returns the command that does an ignored test on a folder.
 pub(crate) fn start(test: &str, folder: &Path) -> Command {
     let mut command = Command::new(std::env::current_exe().unwrap());
     command.args(["--exact", test, "--ignored"]).env(CHILD_FOLDER, folder);

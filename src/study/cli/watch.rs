@@ -32,7 +32,8 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Shows progress from now on, and stops when it is asked to; asked twice, it ends at once, with what was saved by then.
+    /// Shows progress from now on, and stops when it is asked to; asked twice, it ends at once, with what was
+    /// saved by then.
     pub(super) fn new() -> Result<Self, Box<dyn Error>> {
         ctrlc::set_handler(|| {
             if STOP.swap(true, Ordering::Relaxed) {

@@ -60,7 +60,7 @@ impl Base {
         BiParabolic::new(1.0, angular_frequency).ok().and_then(|motion| motion.period())
     }
 
-    /// This base under a container.
+    /// Returns the container over this base.
     pub(super) fn under(&self, container: Container) -> Result<Container, ExperimentError> {
         Ok(match *self {
             Self::BiParabolic { amplitude, angular_frequency } => {

@@ -24,8 +24,8 @@ pub trait Convection {
     /// Returns `$(\Psi_1, \Psi_2)$` of each sample.
     fn order(&self) -> Vec<ConvectionOrder>;
 
-    /// Returns the packing fraction by height, averaged over the samples: heights of the middles of bins of one diameter, and
-    /// fractions.
+    /// Returns the packing fraction by height, averaged over the samples: heights of the middles of bins of
+    /// one diameter, and fractions.
     fn profile(&self) -> impl Iterator<Item = (f64, f64)>;
 
     /// Returns the densest layer of the profile; `None` without samples.
@@ -34,7 +34,8 @@ pub trait Convection {
     /// Returns the mean energy change in a collision of two disks, each collision counting alike.
     fn energy_change(&self) -> Estimate;
 
-    /// Returns the standard deviation of `$\Psi_1$` and `$\Psi_2$` in a gas at rest of this temperature, `$\sqrt{T_y/2N}$`.
+    /// Returns the standard deviation of `$\Psi_1$` and `$\Psi_2$` in a gas at rest of this temperature,
+    /// `$\sqrt{T_y/2N}$`.
     fn thermal_noise(&self) -> f64;
 }
 

@@ -20,7 +20,7 @@ pub struct Sample {
     pub one_roll: f64,
     /// `$\Psi_2$`.
     pub two_rolls: f64,
-    /// Height of the centre of mass.
+    /// Height of the center of mass.
     pub height: f64,
     /// `$\langle\tfrac12 m v^2\rangle$`.
     pub translational_energy: f64,
@@ -70,8 +70,8 @@ impl Measurement {
         }
     }
 
-    /// Returns the packing fraction by height, averaged over the samples: heights of the middles of bins of one diameter, and
-    /// fractions.
+    /// Returns the packing fraction by height, averaged over the samples: heights of the middles of bins of
+    /// one diameter, and fractions.
     pub(super) fn profile(&self) -> impl Iterator<Item = (f64, f64)> {
         let samples = self.samples as f64;
         self.profile.iter().enumerate().map(move |(bin, sum)| (bin as f64 + 0.5, sum / samples))

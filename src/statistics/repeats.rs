@@ -1,0 +1,68 @@
+//! Estimates of several runs as one.
+
+use super::Estimate;
+
+/// Fewest repeats whose scatter tells an error for itself, as with blocks.
+const ENOUGH: usize = 8;
+
+impl Estimate {
+    /// Returns the estimate of several independent runs together, from that of each: as if their samples were
+    /// of one run.
+    ///
+    /// Each run counts by the number of its samples. The error is the larger of two: that which follows from
+    /// the errors of the runs, and that of the scatter of their means,
+    ///
+    /// ```math
+    /// \epsilon^2 = \max\left(\sum_i w_i^2\epsilon_i^2,\; \frac{1}{k-1}\sum_i w_i(\bar x_i-\bar x)^2\right),
+    /// \quad w_i = n_i/n .
+    /// ```
+    ///
+    /// The scatter sees what a run is too short to see, another sense of a roll for example; of two or three
+    /// runs it may be small by chance, and the errors of the runs are then the better ones. The estimate has
+    /// converged if those of all runs have, or if there are eight runs. Runs without samples are left out.
+    ///
+    /// ```
+    /// use granular_edmd::statistics::{Estimate, block_average};
+    /// let chaos = std::iter::successors(Some(0.3), |x| Some(4.0 * x * (1.0 - x)));
+    /// let chaos: Vec<f64> = chaos.take(4096).collect();
+    /// let runs = chaos.chunks(1024).map(block_average).collect::<Result<Vec<_>, _>>()?;
+    /// let together = Estimate::over_repeats(runs.iter().copied());
+    /// assert_eq!(together.samples(), 4096);
+    /// assert!(together.is_converged() && together.standard_error() < runs[0].standard_error());
+    ///
+    /// // Two runs that found different states: only their number counts, not that of their samples.
+    /// let run = |level: f64| chaos[..1024].iter().map(|x| level + 0.01 * x).collect::<Vec<_>>();
+    /// let together = Estimate::over_repeats([block_average(&run(0.0))?, block_average(&run(1.0))?]);
+    /// assert!((together.standard_error() - 0.5).abs() < 0.01);
+    /// assert!(together.independent_samples() < 1.1);
+    /// # Ok::<(), granular_edmd::ParameterError>(())
+    /// ```
+    pub fn over_repeats(runs: impl IntoIterator<Item = Self>) -> Self {
+        let runs: Vec<Self> = runs.into_iter().filter(|run| run.samples() > 0).collect();
+        if let [run] = runs[..] {
+            return run;
+        }
+        let samples: u64 = runs.iter().map(Self::samples).sum();
+        let weighted = |value: &dyn Fn(&Self) -> f64| -> f64 {
+            runs.iter().map(|run| run.samples() as f64 / samples as f64 * value(run)).sum()
+        };
+        let mean = weighted(&Self::mean);
+        let scatter = weighted(&|run| (run.mean() - mean).powi(2));
+        let between = scatter / (runs.len() as f64 - 1.0);
+        let within = weighted(&|run| run.samples() as f64 / samples as f64 * run.standard_error().powi(2));
+        // NaN, of a run of one sample, is no error.
+        let error = between.max(within).sqrt();
+        // The variance of all samples about their mean: that within the runs, and that between them.
+        let variance = weighted(&Self::variance) + scatter;
+        let naive = (variance / samples as f64).sqrt();
+        let growth = if naive > 0.0 { error / naive } else { 1.0 };
+        let converged = runs.len() >= ENOUGH || runs.iter().all(Self::is_converged);
+        Self::blocked(mean, error, samples, growth * growth, converged)
+    }
+
+    /// Returns the variance of the samples, as far as it is known.
+    fn variance(&self) -> f64 {
+        let naive = self.standard_error().powi(2) / self.correlated_samples();
+        if naive.is_finite() { naive * self.samples() as f64 } else { 0.0 }
+    }
+}

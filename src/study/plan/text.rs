@@ -1,0 +1,73 @@
+//! A plan as text: TOML, read through the same checks as a plan that a program makes.
+
+use std::fmt;
+
+use serde::{Deserialize, Deserializer};
+use toml::Table;
+
+use super::Plan;
+use crate::study::{Axis, Experiment, PlanError, Protocol, Ramp};
+
+impl<E: Experiment> Plan<E> {
+    /// Reads a plan in TOML.
+    ///
+    /// # Errors
+    /// If it is not TOML, a field is unknown or missing, or a value is as it should not be; the error names
+    /// it.
+    pub fn from_toml(text: &str) -> Result<Self, PlanError> {
+        let raw: Raw<E> = toml::from_str(text).map_err(|error| PlanError::Toml(error.to_string()))?;
+        raw.checked()
+    }
+
+    /// Returns the plan in TOML.
+    ///
+    /// # Errors
+    /// If it cannot be written so.
+    pub fn to_toml(&self) -> Result<String, PlanError> {
+        toml::to_string(self).map_err(|error| PlanError::Toml(error.to_string()))
+    }
+}
+
+/// The plan as in its file.
+impl<E: Experiment> fmt::Display for Plan<E> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.to_toml().map_err(|_| fmt::Error)?)
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename = "Plan")]
+struct Raw<E> {
+    seed: u64,
+    #[serde(default = "one")]
+    repeats: usize,
+    experiment: E,
+    protocol: Protocol,
+    ramp: Option<Ramp>,
+    #[serde(default = "Vec::new")]
+    sweep: Vec<Axis>,
+}
+
+const fn one() -> usize {
+    1
+}
+
+impl<E: Experiment> Raw<E> {
+    fn checked(self) -> Result<Plan<E>, PlanError> {
+        let Self { seed, repeats, experiment, protocol, ramp, sweep } = self;
+        Plan { seed, repeats, experiment, protocol, ramp, sweep, tree: Table::new(), varied: Vec::new() }
+            .checked()
+    }
+}
+
+impl<'de, E: Experiment> Deserialize<'de> for Plan<E> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let told = |error: PlanError| {
+            let sources = std::iter::successors(std::error::Error::source(&error), |&source| source.source());
+            let told: Vec<String> =
+                std::iter::once(error.to_string()).chain(sources.map(ToString::to_string)).collect();
+            serde::de::Error::custom(told.join(": "))
+        };
+        Raw::deserialize(deserializer)?.checked().map_err(told)
+    }
+}

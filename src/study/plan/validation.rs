@@ -1,0 +1,97 @@
+//! What a plan must be to be carried out: checked when it is made, before anything is run.
+
+use super::Plan;
+use crate::quantity::accept;
+use crate::study::parameters::{self, probe, whole_name};
+use crate::study::{Axis, Experiment, PlanError, Ramp, column};
+
+/// Most values of a study, all ramps together.
+const MOST_VALUES: usize = 1_000_000;
+
+/// Largest seed: a plan has no larger integers.
+const LARGEST_SEED: u64 = i64::MAX as u64;
+
+impl<E: Experiment> Plan<E> {
+    /// Returns the plan, if it can be carried out.
+    pub(super) fn checked(mut self) -> Result<Self, PlanError> {
+        accept(self.seed <= LARGEST_SEED, "seed", "below 2^63", self.seed as f64)?;
+        accept(self.repeats > 0, "number of repeats", "at least 1", self.repeats as f64)?;
+        self.protocol.check()?;
+        column::check_names::<E>(&self.varied().collect::<Vec<_>>())?;
+        self.tree = parameters::tree(&self.experiment)?;
+        self.ramp.iter().try_for_each(Ramp::check)?;
+        self.sweep.iter().try_for_each(Axis::check)?;
+        self.check_count()?;
+        self.varied = self.varied().map(|name| whole_name(&self.tree, name)).collect::<Result<_, _>>()?;
+        self.check_varied()?;
+        self.try_names()?;
+        self.check_experiments()?;
+        Ok(self)
+    }
+
+    /// Checks that no parameter varies twice, and that the ramped one can be.
+    fn check_varied(&self) -> Result<(), PlanError> {
+        let twice = self.varied.iter().enumerate().find(|&(index, name)| self.varied[..index].contains(name));
+        if let Some((_, parameter)) = twice {
+            return Err(PlanError::VariesTwice { parameter: parameter.clone() });
+        }
+        match (&self.ramp, self.varied.last()) {
+            (Some(ramp), Some(name)) if !E::can_be_ramped(name) => {
+                Err(PlanError::NotRampable { parameter: ramp.parameter().to_owned() })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Sets each parameter that varies for itself: that there is one of this name, and what its values
+    /// become.
+    fn try_names(&mut self) -> Result<(), PlanError> {
+        for (axis, name) in self.sweep.iter_mut().zip(&self.varied) {
+            let tried = axis.values().iter().map(|to| probe::<E>(&self.tree, axis.parameter(), name, to));
+            let values = tried.collect::<Result<_, _>>()?;
+            axis.set_values(values);
+        }
+        if let (Some(ramp), Some(name)) = (&self.ramp, self.varied.last())
+            && let Some((_, at)) = ramp.at(0)
+        {
+            probe::<E>(&self.tree, ramp.parameter(), name, &at.into())?;
+        }
+        Ok(())
+    }
+
+    fn check_count(&self) -> Result<(), PlanError> {
+        let lengths = self.sweep.iter().map(|axis| axis.values().len()).chain([self.values(), self.repeats]);
+        let count = lengths.map(|length| length as u128).fold(1_u128, u128::saturating_mul);
+        if count > MOST_VALUES as u128 {
+            return Err(PlanError::TooMany { count, most: MOST_VALUES });
+        }
+        Ok(())
+    }
+
+    /// Checks that the experiment takes the parameters of each value.
+    fn check_experiments(&self) -> Result<(), PlanError> {
+        self.experiment.check().map_err(|source| Self::refused(&[], source))?;
+        for ramp in (0..self.ramps()).step_by(self.repeats) {
+            for value in 0..self.values() {
+                let varied = self.parameters(ramp, value);
+                self.experiment_of(&varied)?.check().map_err(|source| Self::refused(&varied, source))?;
+            }
+        }
+        self.check_disks()
+    }
+
+    /// Checks that the disks fit in: at the first value of all axes, and at each value of each one.
+    fn check_disks(&self) -> Result<(), PlanError> {
+        let mut stride = self.ramps();
+        let mut ramps = vec![0];
+        for axis in &self.sweep {
+            stride /= axis.values().len();
+            ramps.extend((1..axis.values().len()).map(|index| index * stride));
+        }
+        for ramp in ramps {
+            let varied = self.parameters(ramp, 0);
+            self.experiment_of(&varied)?.disks(0).map_err(|source| Self::refused(&varied, source))?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,101 @@
+//! What is known of a study: records one by one, points, transitions, and all of it as tables.
+
+use super::errors::StudyError;
+use super::record::{Contents, Record};
+use super::refinement::{Bracket, Seen};
+use super::tables::Tables;
+use super::{Experiment, Point, Study, file};
+
+impl<E: Experiment> Study<E> {
+    /// Returns the record of a value; `None` if it is not finished.
+    ///
+    /// # Errors
+    /// If the file is damaged, of another study, or cannot be read.
+    pub fn record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
+        let path = self.folder.record(ramp, value);
+        let Some(contents) = file::read_sealed::<Contents<_, _>>(&path)? else { return Ok(None) };
+        self.check_origin(&contents.origin, ramp, value, &path)?;
+        let spans = |at| self.plan.ramp().is_some_and(|ramp| ramp.spans(at));
+        if contents.at.is_some_and(|at| !spans(at)) {
+            return Err(file::damaged(&path, "it is outside the ramp"));
+        }
+        let record = Record { experiment: self.plan.experiment_at(ramp, contents.at)?, contents };
+        record.check(&self.plan).map_err(|reason| file::damaged(&path, reason))?;
+        Ok(Some(record))
+    }
+
+    /// Returns all finished records, ramp by ramp, read one by one.
+    pub fn records(&self) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
+        (0..self.plan.ramps()).flat_map(|ramp| self.ramp_records(ramp))
+    }
+
+    /// Returns all finished records of a ramp, read one by one.
+    pub fn ramp_records(&self, ramp: usize) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
+        let values = self.plan.values();
+        let own = (0..values).filter_map(move |value| self.record(ramp, value).transpose());
+        // The values of a refinement have no gaps, and their number is known at the end only.
+        let is_refined = self.plan.is_refined();
+        let more = (values..)
+            .take_while(move |_| is_refined)
+            .map_while(move |value| self.record(ramp, value).transpose());
+        own.chain(more)
+    }
+
+    /// Returns a value of a point of the grid, with all repeats that are finished; `None` if none is.
+    ///
+    /// # Errors
+    /// If a record is damaged, of another study, or cannot be read.
+    pub fn point(&self, index: usize, value: usize) -> Result<Option<Point<E>>, StudyError> {
+        let repeats = self.plan.repeats();
+        let ramps = index * repeats..(index + 1) * repeats;
+        let records = ramps.filter_map(|ramp| self.record(ramp, value).transpose());
+        Ok(Point::of(index, value, records.collect::<Result<_, _>>()?))
+    }
+
+    /// Returns all values of all points of the grid of which a repeat is finished, read one by one.
+    ///
+    /// The values that a refinement adds are others in each repeat, and are not among them.
+    pub fn points(&self) -> impl Iterator<Item = Result<Point<E>, StudyError>> {
+        let values = move |index| (0..self.plan.values()).map(move |value| (index, value));
+        let places = (0..self.plan.points()).flat_map(values);
+        places.filter_map(|(index, value)| self.point(index, value).transpose())
+    }
+
+    /// Returns the transitions that a refined ramp has bracketed; none before all of them are.
+    ///
+    /// # Errors
+    /// If a record is damaged, of another study, or cannot be read.
+    pub fn transitions(&self, ramp: usize) -> Result<Vec<Bracket>, StudyError> {
+        let seen: Vec<Seen> =
+            self.ramp_records(ramp).map(|record| Ok(record?.seen())).collect::<Result<_, StudyError>>()?;
+        Ok(self.brackets(&seen))
+    }
+
+    fn brackets(&self, seen: &[Seen]) -> Vec<Bracket> {
+        self.plan.ramp().map_or_else(Vec::new, |ramp| ramp.brackets(seen))
+    }
+
+    /// Writes the tables of all records that there are; returns how many.
+    ///
+    /// A run does this when all is done; in between, it is for looking.
+    ///
+    /// # Errors
+    /// If a record is damaged, or a file cannot be read or written.
+    pub fn write_tables(&self) -> Result<usize, StudyError> {
+        let mut tables = Tables::new(&self.plan);
+        let mut finished = 0;
+        for ramp in 0..self.plan.ramps() {
+            let mut seen = Vec::new();
+            for record in self.ramp_records(ramp) {
+                let record = record?;
+                tables.add(&record);
+                seen.push(record.seen());
+                finished += 1;
+            }
+            tables.end_ramp(ramp, &self.brackets(&seen));
+        }
+        let tables = tables.finish();
+        self.folder.write_tables(tables.iter().map(|(name, text)| (name.as_str(), text.as_str())))?;
+        Ok(finished)
+    }
+}

@@ -1,0 +1,113 @@
+//! The columns of each table, by name and unit.
+
+use std::fmt::Write;
+
+use crate::study::column::{Column, error_names};
+use crate::study::{Experiment, Plan, Scalar, Table};
+
+/// Returns the table of the columns of all tables.
+pub(super) fn table<'a, E: Experiment + 'a>(
+    plan: &Plan<E>,
+    columns: &[Column<E>],
+    own: impl Iterator<Item = &'a Table<E>>,
+) -> String {
+    let mut tables = vec![("values", of_values(plan, columns)), ("samples", of_samples(plan, columns))];
+    if plan.repeats() > 1 {
+        tables.push(("points", of_points(plan, columns)));
+    }
+    if plan.is_refined() {
+        tables.push(("transitions", of_transitions(plan)));
+    }
+    tables.extend(own.map(|table| (table.name(), of_own(plan, table))));
+    let mut text = String::from("table,column,unit\n");
+    for (table, columns) in tables {
+        for Described { name, unit } in columns {
+            // Writing to a string does not fail.
+            let _ = writeln!(text, "{table},{name},{}", Scalar::from(unit));
+        }
+    }
+    text
+}
+
+/// Returns the first line of a table.
+pub(super) fn line(columns: Vec<Described>) -> String {
+    let names: Vec<String> = columns.into_iter().map(|column| column.name).collect();
+    format!("{}\n", names.join(","))
+}
+
+/// A column by name and unit.
+pub(super) struct Described {
+    name: String,
+    unit: &'static str,
+}
+
+fn described(name: impl Into<String>, unit: &'static str) -> Described {
+    Described { name: name.into(), unit }
+}
+
+/// Describes the first columns of all tables but that of points.
+fn place<E: Experiment>(plan: &Plan<E>) -> Vec<Described> {
+    let mut place: Vec<_> = ["ramp", "value", "leg"].map(|name| described(name, "")).into();
+    place.extend((plan.repeats() > 1).then(|| described("repeat", "")));
+    place.extend(plan.varied().map(|name| described(name, "")));
+    place
+}
+
+/// Describes the columns of the table of values. Its last column names those whose error is a lower bound,
+/// apart by spaces: they have too few samples for their correlations.
+pub(super) fn of_values<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -> Vec<Described> {
+    let mut all = place(plan);
+    all.extend(["seed", "outcome", "samples"].map(|name| described(name, "")));
+    for column in columns.iter().filter(|column| column.is_in_values()) {
+        if column.has_error() {
+            all.extend(of_estimate(column));
+        } else {
+            all.push(described(column.name(), column.unit()));
+        }
+    }
+    all.push(described("not_converged", ""));
+    all
+}
+
+pub(super) fn of_samples<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -> Vec<Described> {
+    let mut all = place(plan);
+    all.push(described("time", "time"));
+    let sampled = columns.iter().filter(|column| column.is_in_samples());
+    all.extend(sampled.map(|column| described(column.name(), column.unit())));
+    all
+}
+
+/// Describes the columns of the table of points: the repeats of each value together.
+pub(super) fn of_points<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -> Vec<Described> {
+    let mut all: Vec<_> = ["point", "value", "leg"].map(|name| described(name, "")).into();
+    all.extend(plan.varied().map(|name| described(name, "")));
+    all.push(described("repeats", ""));
+    let estimated = columns.iter().filter(|column| column.is_in_values() && column.has_error());
+    all.extend(estimated.flat_map(of_estimate));
+    all.push(described("not_converged", ""));
+    all
+}
+
+/// Describes a mean, its error, and the number of independent samples that they rest on.
+fn of_estimate<E: Experiment>(column: &Column<E>) -> [Described; 3] {
+    let (name, unit) = (column.name(), column.unit());
+    let [error, independent] = error_names(name);
+    [described(name, unit), described(error, unit), described(independent, "")]
+}
+
+/// Describes the columns of the table of transitions: the values of the ramped parameter and the states on
+/// both sides.
+pub(super) fn of_transitions<E: Experiment>(plan: &Plan<E>) -> Vec<Described> {
+    let mut all: Vec<_> = ["ramp", "leg"].map(|name| described(name, "")).into();
+    all.extend((plan.repeats() > 1).then(|| described("repeat", "")));
+    let swept = plan.varied().count() - usize::from(plan.ramp().is_some());
+    all.extend(plan.varied().take(swept).map(|name| described(name, "")));
+    all.extend(["near", "far", "from_state", "to_state"].map(|name| described(name, "")));
+    all
+}
+
+pub(super) fn of_own<E: Experiment>(plan: &Plan<E>, table: &Table<E>) -> Vec<Described> {
+    let mut all = place(plan);
+    all.extend(table.columns().iter().map(|(name, unit)| described(*name, unit)));
+    all
+}

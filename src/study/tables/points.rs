@@ -1,0 +1,54 @@
+//! The table of points: the repeats of each value together.
+
+use super::{append, append_estimate, not_converged};
+use crate::statistics::Estimate;
+use crate::study::{Experiment, Plan};
+
+/// The estimates of the repeats of one point: a list for each value, in it one for each repeat, with the
+/// names of columns.
+#[derive(Default)]
+pub(super) struct Repeats(Vec<Vec<Vec<(&'static str, Estimate)>>>);
+
+impl Repeats {
+    /// Adds the estimates of a value of one repeat.
+    pub(super) fn add(&mut self, value: usize, estimates: Vec<(&'static str, Estimate)>) {
+        if self.0.len() <= value {
+            self.0.resize_with(value + 1, Vec::new);
+        }
+        self.0[value].push(estimates);
+    }
+
+    /// Writes a row for each value of which a repeat is finished.
+    pub(super) fn write<E: Experiment>(self, plan: &Plan<E>, point: usize, table: &mut String) {
+        let done = self.0.iter().enumerate().filter(|(_, repeats)| !repeats.is_empty());
+        for (value, repeats) in done {
+            table.push_str(&row(plan, point, value, repeats));
+            table.push('\n');
+        }
+    }
+}
+
+fn row<E: Experiment>(
+    plan: &Plan<E>,
+    point: usize,
+    value: usize,
+    repeats: &[Vec<(&'static str, Estimate)>],
+) -> String {
+    let mut line = format!("{point},{value},");
+    if let Some(leg) = plan.leg(value) {
+        line.push_str(&leg.to_string());
+    }
+    for (_, parameter) in plan.parameters(point * plan.repeats(), value) {
+        append(&mut line, &parameter);
+    }
+    append(&mut line, &repeats.len());
+    let of_column = |column: usize| repeats.iter().map(move |estimates| estimates[column].1);
+    let names = repeats[0].iter().map(|(name, _)| *name).enumerate();
+    let together: Vec<(&str, Estimate)> =
+        names.map(|(column, name)| (name, Estimate::over_repeats(of_column(column)))).collect();
+    for (_, estimate) in &together {
+        append_estimate(&mut line, estimate);
+    }
+    append(&mut line, &not_converged(&together));
+    line
+}
