@@ -33,7 +33,8 @@ impl Instructions {
         known.into_iter().filter(|&level| level == Level::Built || has(level)).map(Self).collect()
     }
 
-    /// Runs a long piece of work with these instructions.
+    /// Runs a piece of work with these instructions: a long one, or one that captures two numbers at most.
+    /// More captures would go through memory.
     ///
     /// `work` and all that is hot in it must be `#[inline(always)]`, since other code keeps to the level of
     /// the build.
@@ -58,9 +59,10 @@ impl Instructions {
         }
     }
 
-    /// Runs a long piece of work.
+    /// Runs a piece of work. Not inlined, so that all callers share one copy.
     #[cfg(not(all(target_arch = "x86_64", not(target_feature = "avx2"))))]
     #[allow(clippy::unused_self, reason = "there is no choice here")]
+    #[inline(never)]
     pub(crate) fn run<T>(self, work: impl FnOnce() -> T) -> T {
         work()
     }
@@ -97,7 +99,7 @@ fn has(level: Level) -> bool {
 /// `$body` and all that is hot in it must be `#[inline(always)]`, since other code keeps to the level of the
 /// build. Its parameter, the number of the copy, makes the copies different functions. The compiler then
 /// inlines what each calls as if it were the only caller. The attributes are those of the copy for the level
-/// of the build. A function that takes a closure would be slower, since captures go through memory.
+/// of the build. [`Instructions::run`] would be slower, since so many captures go through memory.
 #[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
 macro_rules! compiled_for_each {
     ($(#[$attribute:meta])* $name:ident($($argument:ident: $type:ty),*) -> $output:ty = $body:ident) => {

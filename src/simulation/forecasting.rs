@@ -89,8 +89,16 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Finds when and how the flight of a disk in its cell ends.
     #[inline]
     pub(super) fn end_flight(&mut self, disk: usize) {
+        self.instructions.run(
+            #[inline(always)]
+            move || self.end_flight_here(disk),
+        );
+    }
+
+    #[inline(always)]
+    fn end_flight_here(&mut self, disk: usize) {
         let (place, grid) = (self.cells.place(disk), self.cells.grid());
-        let (exit_due, exit) = cell_exit(self.instructions, &self.bodies, disk, grid, place, self.clock.now);
+        let (exit_due, exit) = cell_exit(&self.bodies, disk, &grid.region(place), self.clock.now);
         let at_wall = self.cells.is_at_wall(place);
         let forecast = self.forecast_mut(disk);
         (forecast.exit_due, forecast.exit) = (exit_due, exit);

@@ -1,7 +1,7 @@
 //! Predictions of the time at which two disks collide, and of the time at which a disk leaves its cell.
 
-use super::cells::{Grid, Place};
 use super::state::{Bodies, Earliest, Exit};
+use crate::boundary::Region;
 use crate::instructions::compiled_for_each;
 
 /// Number of pairs that are predicted side by side.
@@ -181,15 +181,9 @@ fn scan(
     best.earliest()
 }
 
-compiled_for_each! {
-    /// Returns the offset at which a disk leaves its cell, and the edge.
-    #[inline(always)]
-    cell_exit(bodies: &Bodies, disk: usize, grid: &Grid, place: Place, now: f64) -> (f64, Exit) = exit
-}
-
+/// Returns the offset at which a disk leaves its cell, and the edge.
 #[inline(always)]
-fn exit<const COPY: u8>(bodies: &Bodies, disk: usize, grid: &Grid, place: Place, now: f64) -> (f64, Exit) {
-    let region = grid.region(place);
+pub(super) fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64) -> (f64, Exit) {
     let (position, velocity) = (bodies.position(disk, now), bodies.velocity(disk, now));
     let rightward = velocity.x > 0.0;
     let distance = if rightward { region.max.x - position.x } else { position.x - region.min.x };
