@@ -52,6 +52,7 @@ mod experiment;
 mod file;
 mod folder;
 mod lock;
+mod log;
 mod measurement;
 mod parameters;
 mod plan;
@@ -65,6 +66,7 @@ mod runner;
 mod scalar;
 mod tables;
 pub mod vibrated_box;
+mod workspace;
 
 use std::path::Path;
 
@@ -121,7 +123,8 @@ impl<E: Experiment> Study<E> {
             return Err(StudyError::Missing { path: folder.root().to_owned() });
         }
         let unreadable = |source| StudyError::Unreadable { path: folder.plan(), source };
-        let plan = Plan::from_toml(&folder.read_plan()?).map_err(unreadable)?;
+        // Its experiments were tried when it was put there.
+        let plan = Plan::from_toml_unproven(&folder.read_plan()?).map_err(unreadable)?;
         Self::in_folder(folder, plan)
     }
 
@@ -139,6 +142,17 @@ impl<E: Experiment> Study<E> {
         let study = Self::in_folder(folder, plan.clone())?;
         study.check_plan()?;
         Ok(study)
+    }
+
+    /// Does as [`Self::open_or_create`] with a plan whose experiments have not been tried: they are, unless they were when the
+    /// same plan was put into the folder. In large studies that takes seconds, and each of many processes would do it.
+    #[cfg(feature = "cli")]
+    fn open_or_create_unproven(folder: &Path, plan: Plan<E>) -> Result<Self, StudyError> {
+        let known = Folder::new(folder)?;
+        if known.holds_study() && known.read_plan()? == plan.to_toml()? {
+            return Self::in_folder(known, plan);
+        }
+        Self::open_or_create(folder, &plan.proven()?)
     }
 
     fn in_folder(folder: Folder, plan: Plan<E>) -> Result<Self, StudyError> {
@@ -181,7 +195,7 @@ impl<E: Experiment> Study<E> {
             RampStatus::Done
         } else if self.folder.is_taken(ramp) {
             RampStatus::Running
-        } else if self.folder.ramp(ramp).exists() {
+        } else if self.folder.is_begun(ramp) {
             RampStatus::Begun
         } else {
             RampStatus::Waiting

@@ -130,6 +130,33 @@ fn ramps_in_many_processes_are_a_study() {
     assert_eq!((code(&outside), said(&outside).lines().count()), (Some(1), 1));
 }
 
+#[test]
+fn a_prepared_folder_has_a_workflow_that_is_left_as_it_was_edited() {
+    let scratch = Scratch::new("prepared");
+    scratch.small_plan();
+    let arguments = ["prepare", "plan.toml", "--out", "study"];
+    assert_eq!(said(&scratch.runs(&arguments)), "4 ramps are prepared in study\n");
+    let path = scratch.0.join("study/workflow.toml");
+    let text = fs::read_to_string(&path).unwrap();
+    assert!(
+        text.contains(&format!("'{}' run plan.toml --out . ", env!("CARGO_BIN_EXE_granular-edmd"))),
+        "{text}"
+    );
+    fs::write(&path, "edited").unwrap();
+    assert_eq!(code(&scratch.runs(&arguments)), Some(0));
+    assert_eq!(fs::read_to_string(&path).unwrap(), "edited");
+    assert!(scratch.0.join("study/ramps/0003/value.json").exists());
+    let inside = scratch
+        .command(&["run", "plan.toml", "--out", ".", "--ramp", "0003"])
+        .current_dir(scratch.0.join("study"))
+        .output();
+    assert_eq!(code(&inside.unwrap()), Some(0));
+    assert!(
+        said(&scratch.runs(&["status", "study"]))
+            .starts_with("4 ramps: 1 done, 0 running, 0 begun, 3 waiting")
+    );
+}
+
 /// A signal stops a study with everything saved, and the same command goes on.
 #[test]
 #[cfg(unix)]

@@ -1,4 +1,4 @@
-//! The command line of a study: `new`, `check`, `run`, `status` and `tables`, for any experiment.
+//! The command line of a study: `new`, `check`, `prepare`, `run`, `status` and `tables`, for any experiment.
 //!
 //! The `main` of a program of your own is one call of [`main`]; the binary `granular-edmd` is that for the
 //! paper's box.
@@ -26,6 +26,7 @@
 
 mod template;
 mod watch;
+mod workflow;
 
 use std::error::Error;
 use std::fs;
@@ -60,6 +61,14 @@ enum Command {
     Check {
         /// The plan, in TOML.
         plan: PathBuf,
+    },
+    /// Makes a folder that `row` can work in: one for each ramp, and `workflow.toml`. A run needs none of it.
+    Prepare {
+        /// The plan, in TOML.
+        plan: PathBuf,
+        /// Folder of the study: empty, or one with this plan.
+        #[arg(long)]
+        out: PathBuf,
     },
     /// Does what is not done yet of a plan, beside any other process that does the same.
     Run {
@@ -109,7 +118,10 @@ enum Failure {
 
 impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Self {
-        Self::Run(error.into())
+        match error {
+            StudyError::Plan(error) => error.into(),
+            error => Self::Run(error.into()),
+        }
     }
 }
 
@@ -125,6 +137,7 @@ pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>)
     let ended = match Arguments::parse().command {
         Command::New { file } => new(example, file.as_deref()),
         Command::Check { plan } => check::<E>(&plan),
+        Command::Prepare { plan, out } => prepare::<E>(&plan, &out),
         Command::Run { plan, out, ramp, threads, no_wait } => run::<E>(&plan, &out, ramp, threads, no_wait),
         Command::Status { folder, json } => status::<E>(&folder, json),
         Command::Tables { folder } => tables::<E>(&folder),
@@ -165,18 +178,31 @@ fn new<E: Experiment>(
     Ok(End::Done)
 }
 
-fn read<E: Experiment>(path: &Path) -> Result<Plan<E>, Failure> {
-    let text = fs::read_to_string(path).map_err(StudyError::io("read", path))?;
-    Ok(Plan::from_toml(&text)?)
+fn read(path: &Path) -> Result<String, Failure> {
+    Ok(fs::read_to_string(path).map_err(StudyError::io("read", path))?)
+}
+
+/// Opens or makes the study of a plan in a folder.
+fn study<E: Experiment>(path: &Path, folder: &Path) -> Result<Study<E>, Failure> {
+    let plan = Plan::from_toml_unproven(&read(path)?)?;
+    Ok(Study::open_or_create_unproven(folder, plan)?)
 }
 
 fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
-    let plan = read::<E>(path)?;
+    let plan = Plan::<E>::from_toml(&read(path)?)?;
     let (ramps, values, cycles) = (plan.ramps(), plan.values(), plan.protocol().cycles());
     say(&format!(
         "{ramps} ramps of {values} values of {cycles} cycles, {} repeats among them",
         plan.repeats()
     ));
+    Ok(End::Done)
+}
+
+fn prepare<E: Experiment>(path: &Path, out: &Path) -> Result<End, Failure> {
+    let study = study::<E>(path, out)?;
+    study.prepare()?;
+    workflow::write(out)?;
+    say(&format!("{} ramps are prepared in {}", study.plan().ramps(), out.display()));
     Ok(End::Done)
 }
 
@@ -187,7 +213,7 @@ fn run<E: Experiment>(
     threads: Option<usize>,
     no_wait: bool,
 ) -> Result<End, Failure> {
-    let study = Study::open_or_create(out, &read::<E>(path)?)?;
+    let study = study::<E>(path, out)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
     let pool = pool.map_err(|error| Failure::Run(error.into()))?;
     let watch = Watch::new().map_err(Failure::Run)?;

@@ -36,6 +36,18 @@ pub(super) fn publish(path: &Path, bytes: &[u8]) -> Result<bool, StudyError> {
     published
 }
 
+/// Writes a file by way of another folder, whose lock is held, so that nobody removes it half written.
+///
+/// It is not asked to outlast a loss of power: the one who needs it compares it and writes it again.
+pub(super) fn move_in(by: &Path, path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
+    let draft = by.join(unique_name());
+    let written = fs::write(&draft, bytes).and_then(|()| fs::rename(&draft, path));
+    if written.is_err() {
+        let _ = fs::remove_file(&draft);
+    }
+    written.map_err(StudyError::io("write", path))
+}
+
 /// Writes data with magic, version and checksum; they must read back as they were written.
 pub(super) fn write_sealed<T: DeserializeOwned + Serialize>(
     path: &Path,

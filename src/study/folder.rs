@@ -4,12 +4,13 @@
 //! that is found under the lock has a writer that is dead.
 
 use std::fs;
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use super::errors::StudyError;
 use super::file;
 use super::lock::{self, Lock};
+use super::log;
 use crate::file::is_temporary;
 
 /// Told to a stranger in the folder of a study.
@@ -24,8 +25,10 @@ transitions.csv       a row for each transition that a refined ramp brackets
 columns.csv           the names and units of all columns of all tables
 ramps/R/V.record      value V of ramp R: samples, counts and last state, with a checksum; read by the library
 ramps/R/V.partial     a value half done
+ramps/R/value.json    the swept parameters of ramp R, if the study was prepared for an engine that goes by folders
 ramps/R/done          there once all values of ramp R have a record
 ramps/R/lock          locked while a process does ramp R
+done                  there once all ramps are done and in the tables
 log.jsonl             when values were finished, and the seconds that they took; not a result
 lock                  locked while a process makes the plan or the tables
 
@@ -142,6 +145,11 @@ impl Folder {
         Lock::is_taken(&self.ramp(ramp))
     }
 
+    /// Returns whether somebody has ever done something of a ramp; its folder may have been made beforehand.
+    pub(super) fn is_begun(&self, ramp: usize) -> bool {
+        self.ramp(ramp).join(lock::NAME).exists()
+    }
+
     pub(super) fn is_done(&self, ramp: usize) -> bool {
         self.done(ramp).exists()
     }
@@ -155,6 +163,26 @@ impl Folder {
     /// Takes back that a ramp is done.
     pub(super) fn mark_undone(&self, ramp: usize) -> Result<(), StudyError> {
         file::remove(&self.done(ramp))
+    }
+
+    /// Returns whether all ramps are done and the tables tell of all of them.
+    pub(super) fn is_complete(&self) -> bool {
+        self.complete().exists()
+    }
+
+    /// Says that the tables tell of all ramps.
+    pub(super) fn mark_complete(&self) -> Result<(), StudyError> {
+        let _lock = Lock::take(&self.root)?;
+        if self.is_complete() { Ok(()) } else { file::write(&self.complete(), b"") }
+    }
+
+    /// Takes back that the study is complete: a value comes that may not be in the tables.
+    pub(super) fn mark_incomplete(&self) -> Result<(), StudyError> {
+        file::remove(&self.complete())
+    }
+
+    fn complete(&self) -> PathBuf {
+        self.root.join("done")
     }
 
     /// Writes tables, by their names.
@@ -174,8 +202,6 @@ impl Folder {
     /// Adds a line to the log.
     pub(super) fn log(&self, line: &str) -> Result<(), StudyError> {
         let path = self.root.join("log.jsonl");
-        let file = fs::OpenOptions::new().append(true).create(true).open(&path);
-        file.and_then(|mut file| file.write_all(format!("{line}\n").as_bytes()))
-            .map_err(StudyError::io("write", &path))
+        log::append(&path, line).map_err(StudyError::io("write", &path))
     }
 }

@@ -15,8 +15,14 @@ impl<E: Experiment> Plan<E> {
     /// If it is not TOML, a field is unknown or missing, or a value is as it should not be; the error names
     /// it.
     pub fn from_toml(text: &str) -> Result<Self, PlanError> {
+        Self::from_toml_unproven(text)?.proven()
+    }
+
+    /// Reads a plan without a look at the experiment of each value, which takes seconds in large plans and is
+    /// done once only.
+    pub(in crate::study) fn from_toml_unproven(text: &str) -> Result<Self, PlanError> {
         let raw: Raw<E> = toml::from_str(text).map_err(|error| PlanError::Toml(error.to_string()))?;
-        raw.checked()
+        raw.plan().consistent()
     }
 
     /// Returns the plan in TOML.
@@ -53,10 +59,9 @@ const fn one() -> usize {
 }
 
 impl<E: Experiment> Raw<E> {
-    fn checked(self) -> Result<Plan<E>, PlanError> {
+    fn plan(self) -> Plan<E> {
         let Self { seed, repeats, experiment, protocol, ramp, sweep } = self;
         Plan { seed, repeats, experiment, protocol, ramp, sweep, tree: Table::new(), varied: Vec::new() }
-            .checked()
     }
 }
 
@@ -68,6 +73,6 @@ impl<'de, E: Experiment> Deserialize<'de> for Plan<E> {
                 std::iter::once(error.to_string()).chain(sources.map(ToString::to_string)).collect();
             serde::de::Error::custom(told.join(": "))
         };
-        Raw::deserialize(deserializer)?.checked().map_err(told)
+        Raw::deserialize(deserializer)?.plan().checked().map_err(told)
     }
 }

@@ -13,7 +13,18 @@ const LARGEST_SEED: u64 = i64::MAX as u64;
 
 impl<E: Experiment> Plan<E> {
     /// Returns the plan, if it can be carried out.
-    pub(super) fn checked(mut self) -> Result<Self, PlanError> {
+    pub(super) fn checked(self) -> Result<Self, PlanError> {
+        self.consistent()?.proven()
+    }
+
+    /// Returns the plan, if the experiment takes the parameters of each value.
+    pub(in crate::study) fn proven(self) -> Result<Self, PlanError> {
+        self.check_experiments()?;
+        Ok(self)
+    }
+
+    /// Returns the plan, if its parts are each as they should be.
+    pub(super) fn consistent(mut self) -> Result<Self, PlanError> {
         accept(self.seed <= LARGEST_SEED, "seed", "below 2^63", self.seed as f64)?;
         accept(self.repeats > 0, "number of repeats", "at least 1", self.repeats as f64)?;
         self.protocol.check()?;
@@ -25,7 +36,6 @@ impl<E: Experiment> Plan<E> {
         self.varied = self.varied().map(|name| whole_name(&self.tree, name)).collect::<Result<_, _>>()?;
         self.check_varied()?;
         self.try_names()?;
-        self.check_experiments()?;
         Ok(self)
     }
 

@@ -87,6 +87,7 @@ impl<E: Experiment> Shift<'_, E> {
             Pause::Failed(error) => active.failed(&error)?,
         };
         let path = study.folder.record(ramp, value);
+        study.folder.mark_incomplete()?;
         file::write_sealed::<Contents<E::Sample, E::Observer>>(&path, &record.contents)?;
         file::remove(&study.folder.partial(ramp, value))?;
         self.log(&record, started)?;

@@ -1,0 +1,69 @@
+//! The folder of a study as a workspace: a folder for each ramp, before anything is done, and a file that says which it is.
+
+use std::fmt::Write;
+use std::fs;
+
+use super::errors::StudyError;
+use super::lock::Lock;
+use super::{Experiment, Plan, Scalar, Study, file};
+
+/// Name of the file with the parameters of a ramp, in its folder.
+const VALUE: &str = "value.json";
+
+impl<E: Experiment> Study<E> {
+    /// Makes the folders of all ramps, each with its swept parameters in a file `value.json`, for engines that go by folders.
+    ///
+    /// A run needs none of it. It may be done at any time, beside runs, and again.
+    ///
+    /// # Errors
+    /// If the plan of the folder has changed, or files cannot be read or written.
+    pub fn prepare(&self) -> Result<(), StudyError> {
+        self.check_plan()?;
+        let root = self.folder();
+        let _lock = Lock::take(root)?;
+        for ramp in 0..self.plan().ramps() {
+            let folder = self.folder.ramp(ramp);
+            fs::create_dir_all(&folder).map_err(StudyError::io("create", &folder))?;
+            let (path, value) = (folder.join(VALUE), value(self.plan(), ramp));
+            if fs::read(&path).is_ok_and(|found| found == value.as_bytes()) {
+                continue;
+            }
+            // By way of the folder whose lock is held: whoever does the ramp removes what it finds half written in its own.
+            file::move_in(root, &path, value.as_bytes())?;
+        }
+        Ok(())
+    }
+}
+
+/// Returns what tells a ramp from the others, in JSON.
+fn value<E: Experiment>(plan: &Plan<E>, ramp: usize) -> String {
+    let mut fields = vec![("ramp", Scalar::from(ramp as u64))];
+    fields.extend((plan.repeats() > 1).then(|| ("repeat", Scalar::from((ramp % plan.repeats()) as u64))));
+    fields.extend(plan.parameters_at(ramp, None));
+    let fields: Vec<String> =
+        fields.iter().map(|(name, value)| format!("{}: {}", quoted(name), json(value))).collect();
+    format!("{{{}}}\n", fields.join(", "))
+}
+
+fn json(value: &Scalar) -> String {
+    match value {
+        Scalar::Text(text) => quoted(text),
+        other => other.to_string(),
+    }
+}
+
+fn quoted(text: &str) -> String {
+    let mut quoted = String::from('"');
+    for letter in text.chars() {
+        match letter {
+            '"' | '\\' => quoted.extend(['\\', letter]),
+            '\0'..' ' => {
+                // Writing to a string does not fail.
+                let _ = write!(quoted, "\\u{:04x}", u32::from(letter));
+            }
+            _ => quoted.push(letter),
+        }
+    }
+    quoted.push('"');
+    quoted
+}
