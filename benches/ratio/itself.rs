@@ -7,7 +7,7 @@ use super::{Speed, ours};
 use crate::common::Outcome;
 use crate::common::state::State;
 
-/// The variable that asks the program for one measurement: the state's numbers, the seed and the oscillations.
+/// The variable that asks for one measurement: the numbers of the state, the seed and the oscillations.
 const ONE: &str = "ONE_MEASUREMENT";
 
 /// This bench, built.

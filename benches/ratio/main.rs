@@ -71,7 +71,7 @@ fn run() -> Outcome<()> {
     Ok(())
 }
 
-/// Builds the programs: this crate for the processor at hand and without flags, and the reference if there is one.
+/// Builds the programs: this crate for the processor at hand and without flags, and the reference, if any.
 fn programs() -> Outcome<Vec<Program>> {
     if ask::is_test() {
         return Ok(vec![Program { name: "as built", measure: Box::new(ours) }]);
