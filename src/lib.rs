@@ -72,6 +72,7 @@ mod file;
 mod fingerprint;
 mod flight;
 pub mod initial;
+mod instructions;
 pub mod kinetic;
 pub mod observable;
 mod prefetch;

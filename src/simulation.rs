@@ -46,6 +46,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::boundary::{Boundary, Container};
 use crate::collision::{CollisionRule, Frictional};
 use crate::disk::bounded;
+use crate::instructions::Instructions;
 use crate::observable::{Moment, Observable, Observer, Snapshot};
 use crate::quantity::accept;
 use crate::scheduler::{BySize, EventScheduler};
@@ -93,6 +94,8 @@ pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     generator: Xoshiro256PlusPlus,
     counters: Counters,
     lookahead: Lookahead,
+    /// What predictions may use; the bits do not depend on it.
+    instructions: Instructions,
     scratch: Scratch,
 }
 
@@ -174,7 +177,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.check_end(end)?;
         observer.on_start(&self.moment());
         let ended = match self.verdict_of(observer) {
-            Ok(ControlFlow::Continue(())) => self.sample_until(end, observer),
+            Ok(ControlFlow::Continue(())) => self.instructions.run(
+                #[inline(always)]
+                || self.sample_until(end, observer),
+            ),
             stopped => stopped.map(|_| RunEnd::Observer),
         };
         observer.on_end(&self.moment());
@@ -222,6 +228,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Goes from sample to sample until `end`.
+    #[inline(always)]
     fn sample_until<O: Observer + ?Sized>(&mut self, end: f64, observer: &mut O) -> Outcome<RunEnd> {
         loop {
             let sample = observer.next_sample();
@@ -249,7 +256,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Does all events until the next collision, or until the absolute time `stop`, and goes there.
-    #[inline]
+    #[inline(always)]
     fn collide_until<O: Observer + ?Sized>(&mut self, stop: f64, observer: &mut O) -> Outcome<Option<Event>> {
         // The epoch may move with each event, which changes the offset of `stop`.
         while let Some((disk, due)) = self.next_due(stop - self.clock.origin) {

@@ -27,7 +27,7 @@ pub(crate) fn print_circumstances() {
     let wide = if cfg!(target_feature = "avx2") {
         "with AVX2"
     } else {
-        "without AVX2: RUSTFLAGS=\"-C target-cpu=native\" makes it faster"
+        "without AVX2: RUSTFLAGS=\"-C target-cpu=native\" makes it a little faster"
     };
     println!("Compiled {wide}. Load of the machine: {}.", load());
 }

@@ -1,12 +1,14 @@
 //! The speed of this crate as a multiple of that of a plain event-driven simulation of the same system.
 //!
 //! ```sh
-//! export RUSTFLAGS="-C target-cpu=native"
 //! REFERENCE=path/to/its/folder cargo bench --bench ratio          # a dilute and a dense state
 //! REFERENCE=path/to/its/folder GRID=1 cargo bench --bench ratio   # the κ–q plane of Fig. 5, both gravities
 //! ```
 //!
-//! Machines are noisy and no two are alike. Therefore, the two programs run in turn, and the median of the
+//! This crate is measured as users get it without flags of the compiler, and built for the processor at hand.
+//! The bench builds itself for both, whatever its own flags are.
+//!
+//! Machines are noisy and no two are alike. Therefore, the programs run in turn, and the median of the
 //! ratios of collisions of two disks per second counts. Each program starts from its own lattice, settles for
 //! so many oscillations of the base, and is measured for as many oscillations by the wall clock. `ROUNDS` and
 //! `OSCILLATIONS` change how often and how long it is measured. At a smaller gravity the measurement is
@@ -14,6 +16,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod itself;
 mod reference;
 
 use std::process::ExitCode;
@@ -23,14 +26,15 @@ use common::Outcome;
 use common::ask;
 use common::quartiles::Quartiles;
 use common::state::{DENSE, DILUTE, State, oscillate};
+use itself::Itself;
 use reference::Reference;
 
-/// The speed of one of the two programs in a run.
+/// The speed of one of the programs in a run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Speed {
     /// Number of collisions of two disks per second.
     per_second: f64,
-    /// Number of collisions of two disks per oscillation. The numbers of both programs are alike if they are
+    /// Number of collisions of two disks per oscillation. The numbers of all programs are alike if they are
     /// in the same state.
     per_oscillation: f64,
 }
@@ -42,23 +46,52 @@ struct Plan {
     states: Vec<State>,
 }
 
+/// Measures the speed in a state, from a seed, over so many oscillations.
+type Measure = Box<dyn Fn(&State, u64, u32) -> Outcome<Speed>>;
+
+/// A program that is measured.
+struct Program {
+    name: &'static str,
+    measure: Measure,
+}
+
 fn main() -> ExitCode {
-    common::report(run())
+    common::report(itself::asked_for().unwrap_or_else(run))
 }
 
 fn run() -> Outcome<()> {
     let plan = Plan::asked_for()?;
-    let reference = ask::path("REFERENCE").map(|folder| Reference::build(&folder)).transpose()?;
-    common::print_circumstances();
-    if reference.is_none() {
-        println!("For ratios, set REFERENCE to the folder of the simulation to compare with.");
-    }
+    let programs = programs()?;
+    println!("Load of the machine: {}.", common::load());
     print_head(&plan);
     for state in &plan.states {
-        let rounds = (0..plan.rounds).map(|round| measure(&plan, state, reference.as_ref(), round));
-        print_row(state, &rounds.collect::<Outcome<Vec<_>>>()?);
+        let rounds = (0..plan.rounds).map(|round| measure(&plan, state, &programs, round));
+        print_rows(state, &programs, &rounds.collect::<Outcome<Vec<_>>>()?);
     }
     Ok(())
+}
+
+/// Builds the programs: this crate for the processor at hand and without flags, and the reference, if any.
+fn programs() -> Outcome<Vec<Program>> {
+    if ask::is_test() {
+        return Ok(vec![Program { name: "as built", measure: Box::new(ours) }]);
+    }
+    let mut programs = Vec::new();
+    for (name, flags, folder) in
+        [("native", "-C target-cpu=native", "ratio-native"), ("no flags", "", "ratio-default")]
+    {
+        let itself = Itself::build(flags, folder)?;
+        let measure = move |state: &State, seed, oscillations| itself.measure(state, seed, oscillations);
+        programs.push(Program { name, measure: Box::new(measure) });
+    }
+    if let Some(folder) = ask::path("REFERENCE") {
+        let reference = Reference::build(&folder)?;
+        let measure = move |state: &State, seed, oscillations| reference.measure(state, seed, oscillations);
+        programs.push(Program { name: "reference", measure: Box::new(measure) });
+    } else {
+        println!("To compare with another simulation, set REFERENCE to its folder.");
+    }
+    Ok(programs)
 }
 
 impl Plan {
@@ -93,21 +126,15 @@ fn plane() -> Vec<State> {
     states
 }
 
-/// Measures both programs in turn. The first one to run changes from round to round.
-fn measure(
-    plan: &Plan,
-    state: &State,
-    reference: Option<&Reference>,
-    round: u32,
-) -> Outcome<(Speed, Option<Speed>)> {
+/// Measures all programs in turn. The first one to run changes from round to round.
+fn measure(plan: &Plan, state: &State, programs: &[Program], round: u32) -> Outcome<Vec<Speed>> {
     let (seed, oscillations) = (u64::from(round) + 1, plan.oscillations_at(state.gravity));
-    let theirs = || reference.map(|it| it.measure(state, seed, oscillations)).transpose();
-    if round.is_multiple_of(2) {
-        let ours = ours(state, seed, oscillations)?;
-        return Ok((ours, theirs()?));
-    }
-    let theirs = theirs()?;
-    Ok((ours(state, seed, oscillations)?, theirs))
+    let first = round as usize % programs.len();
+    let order = (first..programs.len()).chain(0..first);
+    let mut speeds =
+        order.map(|k| (programs[k].measure)(state, seed, oscillations)).collect::<Outcome<Vec<_>>>()?;
+    speeds.rotate_right(first);
+    Ok(speeds)
 }
 
 /// Runs this crate for so many oscillations to settle from the lattice, and for as many to measure.
@@ -126,28 +153,22 @@ fn print_head(plan: &Plan) {
         "Medians (and quartiles) of {rounds} rounds of {oscillations} oscillations, after as many to settle."
     );
     println!();
-    println!(
-        "| state | ratio | collisions per second | the reference's | per oscillation | the reference's |"
-    );
+    println!("| state | program | of native | of the reference | collisions per second | per oscillation |");
     println!("|---|---|---|---|---|---|");
 }
 
-fn print_row(state: &State, rounds: &[(Speed, Option<Speed>)]) {
-    let both = || rounds.iter().filter_map(|&(ours, theirs)| Some((ours, theirs?)));
-    let ratio = Quartiles::of(both().map(|(ours, theirs)| ours.per_second / theirs.per_second));
-    let ratio = if ratio.median.is_nan() { "–".to_owned() } else { ratio.to_string() };
-    let ours = columns(&rounds.iter().map(|round| round.0).collect::<Vec<_>>());
-    let theirs = columns(&both().map(|round| round.1).collect::<Vec<_>>());
-    println!("| {state} | {ratio} | {} | {} | {} | {} |", ours[0], theirs[0], ours[1], theirs[1]);
-}
-
-/// Returns the medians of both numbers, or dashes without measurements.
-fn columns(speeds: &[Speed]) -> [String; 2] {
-    let median = |number: fn(&Speed) -> f64| Quartiles::of(speeds.iter().map(number)).median;
-    let rate = median(|speed| speed.per_second) / 1e6;
-    let state = median(|speed| speed.per_oscillation);
-    if rate.is_nan() {
-        return ["–".to_owned(), "–".to_owned()];
+/// Prints a row for each program.
+fn print_rows(state: &State, programs: &[Program], rounds: &[Vec<Speed>]) {
+    let reference = programs.iter().position(|program| program.name == "reference");
+    for (k, Program { name, .. }) in programs.iter().enumerate() {
+        let median =
+            |number: fn(&Speed) -> f64| Quartiles::of(rounds.iter().map(|round| number(&round[k]))).median;
+        let (rate, level) = (median(|speed| speed.per_second) / 1e6, median(|speed| speed.per_oscillation));
+        let of = |other: usize| {
+            let ratios = rounds.iter().map(|round| round[k].per_second / round[other].per_second);
+            if other == k { "1".to_owned() } else { Quartiles::of(ratios).to_string() }
+        };
+        let of_reference = reference.map_or_else(|| "–".to_owned(), of);
+        println!("| {state} | {name} | {} | {of_reference} | {rate:.2} million | {level:.0} |", of(0));
     }
-    [format!("{rate:.2} million"), format!("{state:.0}")]
 }

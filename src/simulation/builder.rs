@@ -14,6 +14,7 @@ use crate::Disk;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::disk::{MOST_DISKS, bounded};
+use crate::instructions::Instructions;
 use crate::quantity::finite;
 use crate::scheduler::{BySize, EventScheduler};
 
@@ -128,6 +129,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
             generator: Xoshiro256PlusPlus::seed_from_u64(self.seed),
             counters: Counters::default(),
             lookahead: Lookahead::default(),
+            instructions: Instructions::detected(),
             scratch: Scratch::default(),
         };
         simulation.predict_all();

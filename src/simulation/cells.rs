@@ -127,7 +127,7 @@ impl Cells {
     }
 
     /// Returns the rectangle in which a disk keeps its neighbors, and whether it can touch a wall there.
-    #[inline]
+    #[inline(always)]
     pub(super) fn region(&self, disk: usize) -> (Region, bool) {
         let place = self.places[disk];
         match self.layers.as_ref().and_then(|layers| layers.of(disk)) {

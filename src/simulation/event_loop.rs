@@ -31,7 +31,7 @@ const WANTED: f64 = 1e-9;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the disk whose event is next and the offset of the event, if it is not after the offset `end`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn next_due(&self, end: f64) -> Option<(usize, f64)> {
         let (disk, due) = self.scheduler.earliest();
         // The comparison is not `due <= end`: a time that is not a number must be noticed, and not end the
@@ -40,7 +40,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Does the next event of `disk`, and returns it if it is a collision.
-    #[inline]
+    #[inline(always)]
     pub(super) fn advance<O: Observer + ?Sized>(
         &mut self,
         disk: usize,
@@ -89,7 +89,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Does a collision of two disks.
-    #[inline]
+    #[inline(always)]
     fn collide<O: Observer + ?Sized>(
         &mut self,
         disk: usize,
@@ -265,7 +265,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Takes a disk to its next cell. Its trajectory does not change, so only the cells ahead can hold an
     /// earlier partner.
-    #[inline]
+    #[inline(always)]
     fn cross(&mut self, disk: usize, exit: Exit) {
         if self.cells.is_large(disk) {
             return self.cross_large(disk, exit);

@@ -54,7 +54,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     pub(super) fn earliest_collision(&mut self, disk: usize, count: usize, known: Earliest) -> Earliest {
         let period = self.cells.grid().period();
         let found = &mut self.scratch.found;
-        earliest_collision(&self.bodies, period, disk, found, count, self.clock.now, known)
+        earliest_collision(self.instructions, &self.bodies, period, disk, found, count, self.clock.now, known)
     }
 
     /// Takes `earliest` as the next collision of a disk whose next collision was `known` before.
@@ -89,6 +89,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Finds when and how the flight of a disk in its cell ends.
     #[inline]
     pub(super) fn end_flight(&mut self, disk: usize) {
+        self.instructions.run(
+            #[inline(always)]
+            move || self.end_flight_here(disk),
+        );
+    }
+
+    #[inline(always)]
+    fn end_flight_here(&mut self, disk: usize) {
         let (region, at_wall) = self.cells.region(disk);
         let (exit_due, exit) = cell_exit(&self.bodies, disk, &region, self.clock.now);
         let forecast = self.forecast_mut(disk);
@@ -131,5 +139,45 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline]
     pub(super) fn forecast_mut(&mut self, disk: usize) -> &mut Forecast {
         &mut self.bodies.particles[disk].forecast
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::boundary::{Container, Thermal, Wall};
+    use crate::collision::Frictional;
+    use crate::disk::Disk;
+    use crate::error::ParameterError;
+    use crate::instructions::Instructions;
+    use crate::{Simulation, initial};
+
+    type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
+
+    #[test]
+    fn all_instructions_of_this_processor_give_the_same_bits() -> Outcome {
+        for (is_periodic, growth) in [(false, 0.0), (true, 0.0), (true, 0.001)] {
+            let states =
+                Instructions::all().into_iter().map(|which| state_after_a_run(which, is_periodic, growth));
+            let states = states.collect::<Outcome<Vec<_>>>()?;
+            assert!(states.iter().all(|state| *state == states[0]));
+        }
+        Ok(())
+    }
+
+    /// Returns the disks after a run with these instructions; radii grow by `growth` from disk to disk.
+    fn state_after_a_run(instructions: Instructions, is_periodic: bool, growth: f64) -> Outcome<Vec<Disk>> {
+        let container = Container::open(20.0)?.with_temperature(Wall::Floor, Thermal::new(2.0)?)?;
+        let container = if is_periodic { container.with_periodic_sides() } else { container };
+        let disks = initial::lattice(&container, 150, 0.5)?;
+        let disks = initial::with_maxwellian_velocities(disks, 0.5, 4)?.into_iter().enumerate();
+        let smaller = |(k, disk): (usize, Disk)| {
+            Disk::new(disk.position(), 0.3 + growth * k as f64)?.with_velocity(disk.velocity())
+        };
+        let disks = disks.map(smaller).collect::<Result<Vec<_>, ParameterError>>()?;
+        let mut run =
+            Simulation::builder(Frictional::new(0.02, 0.3)?, container).disks(disks).gravity(0.1).build()?;
+        run.instructions = instructions;
+        run.run_until(100.0, &mut ())?;
+        Ok(run.disks())
     }
 }

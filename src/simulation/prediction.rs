@@ -2,6 +2,7 @@
 
 use super::state::{Bodies, Earliest, Exit};
 use crate::boundary::Region;
+use crate::instructions::compiled_for_each;
 
 /// Number of pairs that are predicted side by side.
 ///
@@ -108,13 +109,20 @@ pub(super) fn are_closing(bodies: &Bodies, period: f64, disk: usize, partner: us
     x * velocity_x + y * velocity_y < 0.0
 }
 
-/// Returns the earliest collision of `disk` with one of the first `count` of `candidates`, or `known` if that
-/// is earlier.
-///
-/// The candidates may include the disk itself, which never meets itself. The room behind the candidates is
-/// filled with the disk.
-#[inline]
-pub(super) fn earliest_collision(
+compiled_for_each! {
+    /// Returns the earliest collision of `disk` with one of the first `count` of `candidates`, or `known` if that
+    /// is earlier.
+    ///
+    /// The candidates may include the disk itself, which never meets itself. The room behind the candidates is
+    /// filled with the disk.
+    #[inline(never)]
+    earliest_collision(
+        bodies: &Bodies, period: f64, disk: usize, candidates: &mut [u32], count: usize, now: f64, known: Earliest
+    ) -> Earliest = search
+}
+
+#[inline(always)]
+fn search<const COPY: u8>(
     bodies: &Bodies,
     period: f64,
     disk: usize,
@@ -141,7 +149,7 @@ pub(super) fn earliest_collision(
     }
 }
 
-#[inline]
+#[inline(always)]
 fn scan(
     bodies: &Bodies,
     disk: usize,

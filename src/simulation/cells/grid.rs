@@ -176,7 +176,7 @@ impl Grid {
     }
 
     /// Returns the rectangle in which a cell keeps its disks. It extends to infinity beyond the walls.
-    #[inline]
+    #[inline(always)]
     pub(in crate::simulation) fn region(&self, place: Place) -> Region {
         let (column, row) = (place.column as usize, place.row as usize);
         Region {

@@ -4,6 +4,7 @@ use super::validation::{check_numbers, check_places, grids};
 use super::{Checkpoint, CheckpointError, Saved};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
+use crate::instructions::Instructions;
 use crate::scheduler::{BySize, EventScheduler};
 use crate::simulation::builder::count_walls;
 use crate::simulation::cells::Cells;
@@ -129,6 +130,7 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
             generator: saved.generator.clone(),
             counters: saved.counters,
             lookahead: Lookahead::default(),
+            instructions: Instructions::detected(),
             scratch: Scratch::default(),
         }
     }

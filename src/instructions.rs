@@ -1,0 +1,145 @@
+//! Vector instructions that a processor may have beyond those that every processor of its kind has.
+//!
+//! A build for any x86-64 can rely on two numbers at a time only, but nearly all processors take four. So the
+//! hot code is compiled for each level, and [`Instructions`] names the level that this processor has. The
+//! arithmetic is the same in all copies, since Rust never contracts a product and a sum. So the bits do not
+//! depend on the level. A build for a processor with AVX2 or for another architecture has one copy only.
+
+/// Instructions that this processor has. No other value can be made.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Instructions(Level);
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(dead_code, reason = "not all are chosen from in all builds")]
+pub(crate) enum Level {
+    /// What the build relies on.
+    Built,
+    /// Four numbers at a time.
+    Avx2,
+    /// Four numbers at a time, and selections by masks.
+    Avx512,
+}
+
+impl Instructions {
+    /// Returns the best that this processor has.
+    pub(crate) fn detected() -> Self {
+        [Level::Avx512, Level::Avx2].into_iter().find(|&level| has(level)).map_or(Self(Level::Built), Self)
+    }
+
+    /// Returns all that this processor has.
+    #[cfg(test)]
+    pub(crate) fn all() -> Vec<Self> {
+        let known = [Level::Built, Level::Avx2, Level::Avx512];
+        known.into_iter().filter(|&level| level == Level::Built || has(level)).map(Self).collect()
+    }
+
+    /// Runs a piece of work with these instructions: a long one, or one that captures two numbers at most.
+    /// More captures would go through memory.
+    ///
+    /// `work` and all that is hot in it must be `#[inline(always)]`, since other code keeps to the level of
+    /// the build.
+    #[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+    #[allow(unsafe_code)]
+    pub(crate) fn run<T>(self, work: impl FnOnce() -> T) -> T {
+        #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+        fn avx2<T>(work: impl FnOnce() -> T) -> T {
+            work()
+        }
+
+        #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl,avx512dq,avx512bw,avx512cd")]
+        fn avx512<T>(work: impl FnOnce() -> T) -> T {
+            work()
+        }
+
+        match self.0 {
+            Level::Built => work(),
+            // SAFETY: only `detected` and `all` make values, and the processor has the levels of these.
+            Level::Avx2 => unsafe { avx2(work) },
+            Level::Avx512 => unsafe { avx512(work) },
+        }
+    }
+
+    /// Runs a piece of work. Not inlined, so that all callers share one copy.
+    #[cfg(not(all(target_arch = "x86_64", not(target_feature = "avx2"))))]
+    #[allow(clippy::unused_self, reason = "there is no choice here")]
+    #[inline(never)]
+    pub(crate) fn run<T>(self, work: impl FnOnce() -> T) -> T {
+        work()
+    }
+
+    /// Returns the level of these instructions.
+    #[inline]
+    #[allow(dead_code, reason = "nobody asks where there is no choice")]
+    pub(crate) fn level(self) -> Level {
+        self.0
+    }
+}
+
+/// Tells whether this processor has what the copy for a level is compiled for.
+#[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+fn has(level: Level) -> bool {
+    use std::arch::is_x86_feature_detected as has;
+    let avx2 = has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt");
+    let avx512 =
+        has!("avx512f") && has!("avx512vl") && has!("avx512dq") && has!("avx512bw") && has!("avx512cd");
+    match level {
+        Level::Built => true,
+        Level::Avx2 => avx2,
+        Level::Avx512 => avx2 && avx512,
+    }
+}
+
+#[cfg(not(all(target_arch = "x86_64", not(target_feature = "avx2"))))]
+fn has(level: Level) -> bool {
+    level == Level::Built
+}
+
+/// Makes a function that runs the copy of `$body` for the [`Instructions`] in its first argument.
+///
+/// `$body` and all that is hot in it must be `#[inline(always)]`, since other code keeps to the level of the
+/// build. Its parameter, the number of the copy, makes the copies different functions. The compiler then
+/// inlines what each calls as if it were the only caller. The attributes are those of the copy for the level
+/// of the build. [`Instructions::run`] would be slower, since so many captures go through memory.
+#[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+macro_rules! compiled_for_each {
+    ($(#[$attribute:meta])* $name:ident($($argument:ident: $type:ty),*) -> $output:ty = $body:ident) => {
+        #[inline]
+        #[allow(unsafe_code, clippy::too_many_arguments)]
+        pub(super) fn $name(instructions: $crate::instructions::Instructions, $($argument: $type),*) -> $output {
+            $(#[$attribute])*
+            fn built($($argument: $type),*) -> $output {
+                $body::<0>($($argument),*)
+            }
+
+            #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+            fn avx2($($argument: $type),*) -> $output {
+                $body::<1>($($argument),*)
+            }
+
+            #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl,avx512dq,avx512bw,avx512cd")]
+            fn avx512($($argument: $type),*) -> $output {
+                $body::<2>($($argument),*)
+            }
+
+            match instructions.level() {
+                $crate::instructions::Level::Built => built($($argument),*),
+                // SAFETY: as in `Instructions::run`.
+                $crate::instructions::Level::Avx2 => unsafe { avx2($($argument),*) },
+                $crate::instructions::Level::Avx512 => unsafe { avx512($($argument),*) },
+            }
+        }
+    };
+}
+
+#[cfg(not(all(target_arch = "x86_64", not(target_feature = "avx2"))))]
+macro_rules! compiled_for_each {
+    ($(#[$attribute:meta])* $name:ident($($argument:ident: $type:ty),*) -> $output:ty = $body:ident) => {
+        $(#[$attribute])*
+        #[allow(clippy::too_many_arguments)]
+        pub(super) fn $name(_: $crate::instructions::Instructions, $($argument: $type),*) -> $output {
+            $body::<0>($($argument),*)
+        }
+    };
+}
+
+pub(crate) use compiled_for_each;
