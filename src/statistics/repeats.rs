@@ -47,9 +47,11 @@ impl Estimate {
             runs.iter().map(|run| run.samples() as f64 / samples as f64 * value(run)).sum()
         };
         let mean = weighted(&Self::mean);
-        let scatter = weighted(&|run| (run.mean() - mean).powi(2));
+        let scatter = weighted(&|run| (run.mean() - mean) * (run.mean() - mean));
         let between = scatter / (runs.len() as f64 - 1.0);
-        let within = weighted(&|run| run.samples() as f64 / samples as f64 * run.standard_error().powi(2));
+        let within = weighted(&|run| {
+            run.samples() as f64 / samples as f64 * run.standard_error() * run.standard_error()
+        });
         // NaN, of a run of one sample, is no error.
         let error = between.max(within).sqrt();
         // The variance of all samples about their mean: that within the runs, and that between them.
@@ -62,7 +64,7 @@ impl Estimate {
 
     /// Returns the variance of the samples, as far as it is known.
     fn variance(&self) -> f64 {
-        let naive = self.standard_error().powi(2) / self.correlated_samples();
+        let naive = self.standard_error() * self.standard_error() / self.correlated_samples();
         if naive.is_finite() { naive * self.samples() as f64 } else { 0.0 }
     }
 }

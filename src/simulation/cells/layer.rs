@@ -3,6 +3,8 @@
 //! A large disk has two: a *home*, as large as the disk, in which others look for it, and a *cell*, much smaller, until whose
 //! end it keeps its partners. Were the home all it had, it would have to know all small disks within the whole of it.
 
+use std::f64::consts::SQRT_2;
+
 use super::cell_size::CellSize;
 use super::contents::Contents;
 use super::grid::{Grid, Layout, Place};
@@ -52,8 +54,12 @@ impl LayerLayout {
         // Small cells have few partners, and are passed often; no smaller than those that they reach into.
         let suitable =
             (FREE_PATHS * cell_size.pitch() * free_path).max(cell_size.pitch() * classes[0].largest);
-        let doublings = (homes.pitch.max_element() / suitable).log2().round().clamp(0.0, f64::from(FINEST));
-        Some(Self { cells: homes, doublings: 0 }.finer(doublings as u32))
+        let mut layout = Self { cells: homes, doublings: 0 };
+        // The nearest of the sizes that there are, by their ratio.
+        while layout.cells.pitch.max_element() > SQRT_2 * suitable && layout.doublings < FINEST {
+            layout = layout.finer(1);
+        }
+        Some(layout)
     }
 
     /// Returns the same homes with cells that are finer by so many doublings.

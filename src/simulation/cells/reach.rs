@@ -110,11 +110,10 @@ fn within(edges: &[f64], low: f64, high: f64) -> Span {
 
 /// The spaces that hold numbers from `low` to `high`, between edges of the same distance, after the last of which the first follows.
 fn around(edges: &[f64], low: f64, high: f64) -> Span {
-    let count = edges.len() - 1;
-    let (start, pitch) = (edges[0], (edges[count] - edges[0]) / count as f64);
-    let space = |x: f64| ((x - start) / pitch).floor() as i64;
-    let within = (space(high) - space(low) + 1).min(count as i64);
-    Span { first: space(low).rem_euclid(count as i64) as u32, count: within as u32 }
+    let (start, end, count) = (edges[0], edges[edges.len() - 1], (edges.len() - 1) as f64);
+    let space = |x: f64| ((x - start) / (end - start) * count).floor();
+    let within = (space(high) - space(low) + 1.0).min(count);
+    Span { first: space(low).rem_euclid(count) as u32, count: within as u32 }
 }
 
 #[cfg(test)]

@@ -116,8 +116,8 @@ mod tests {
         let mut generator = Xoshiro256PlusPlus::seed_from_u64(1);
         for _ in 0..100_000 {
             let sign = if generator.random() { 1.0 } else { -1.0 };
-            let origin = sign * f64::powi(2.0, generator.random_range(-30..30)) * generator.random::<f64>();
-            let now = f64::powi(2.0, generator.random_range(-30..30)) * generator.random::<f64>();
+            let mut size = || libm::scalbn(generator.random(), generator.random_range(-30..30));
+            let (origin, now) = (sign * size(), size());
             let mut clock = Clock { now, ..Clock::new(origin, 1.0) };
             let (time, by) = (clock.time(), clock.exact_offset());
             clock.shift(by);
