@@ -186,7 +186,8 @@ fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells
         return Err(BuildError::DomainTooSmall { width, height, diameter });
     }
     let too_small = BuildError::DomainTooSmall { width: domain.width(), height: domain.height(), diameter };
-    Cells::new(boundary, diameter, CellSize::Medium, disks.iter().map(Disk::position)).ok_or(too_small)
+    let places = disks.iter().map(|disk| (disk.position(), disk.radius()));
+    Cells::new(boundary, CellSize::Medium, places).ok_or(too_small)
 }
 
 /// Checks that all disks are inside the domain and none overlaps a wall at this time offset.

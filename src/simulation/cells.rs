@@ -4,60 +4,100 @@ mod block;
 mod cell_size;
 mod contents;
 mod grid;
+mod layer;
+mod layers;
+mod reach;
+mod size_class;
 
 use glam::DVec2;
 
 use super::state::Exit;
-use crate::boundary::Boundary;
+use crate::boundary::{Boundary, Region};
 use crate::prefetch::prefetch;
 pub(super) use cell_size::CellSize;
 use contents::Contents;
+pub(super) use grid::{CELLS_PER_DISK, Grid, Layout, Place, SPARE_CELLS};
 #[cfg(feature = "serde")]
-pub(super) use grid::{CELLS_PER_DISK, SPARE_CELLS};
-pub(super) use grid::{Grid, Layout, Place};
+pub(super) use layers::Grids;
+pub(super) use layers::Layouts;
+use layers::{Layers, layouts};
+use size_class::classes;
 
 /// The disks in the cells of a grid.
 ///
-/// Ghost cells are empty beyond walls. At periodic sides, they mirror the cells of the opposite side.
+/// Ghosts are empty beyond walls; at periodic sides they mirror the cells of the opposite side. Where disks differ in size, the
+/// grid is that of the smallest class, and each larger class has a layer above it.
 #[derive(Debug, Clone)]
 pub(super) struct Cells {
     grid: Grid,
     contents: Contents,
-    /// Column and row of each disk.
+    /// Column and row of each disk, in the grid of its class.
     pub(super) places: Vec<Place>,
+    layers: Option<Box<Layers>>,
 }
 
 impl Cells {
-    /// Creates cells for disks of at most this diameter at these positions, or `None` if the domain is too
-    /// small for them.
+    /// Creates cells for disks at these positions, with these radii; `None` if the domain is too small for them.
     pub(super) fn new<B: Boundary + ?Sized>(
         boundary: &B,
-        diameter: f64,
         cell_size: CellSize,
-        positions: impl ExactSizeIterator<Item = DVec2> + Clone,
+        disks: impl ExactSizeIterator<Item = (DVec2, f64)> + Clone,
     ) -> Option<Self> {
         let domain = boundary.domain();
-        let highest = positions.clone().map(|position| position.y).fold(domain.bottom, f64::max);
-        let layout = Layout::new(&domain, diameter, cell_size, positions.len(), highest)?;
-        let grid = Grid::new(&domain, layout, diameter);
-        let places = positions.map(|position| grid.place_of(position)).collect();
-        Some(Self::filled(boundary, 0.5 * diameter, grid, places))
+        let diameters = disks.clone().map(|(_, radius)| 2.0 * radius);
+        let highest = disks.clone().map(|(position, _)| position.y).fold(domain.bottom, f64::max);
+        let classes = classes(diameters.clone());
+        // Any cells do without disks.
+        let largest = classes.last().map_or(0.125 * domain.width(), |class| class.largest);
+        let most = CELLS_PER_DISK * disks.len() as f64 + SPARE_CELLS;
+        let single = Layout::new(&domain, largest, cell_size, most, highest)?;
+        // Where the sides are periodic and too close, all disks share the cells of the largest.
+        let layered = if classes.len() > 1 { layouts(&domain, &classes, cell_size, highest) } else { None };
+        let layouts = layered.unwrap_or(Layouts { smallest: single, larger: Vec::new() });
+        let mut cells = Self::empty(boundary, &layouts, diameters)?;
+        cells.places =
+            (0..).zip(disks).map(|(disk, (position, _))| cells.grid_of(disk).place_of(position)).collect();
+        cells.fill();
+        Some(cells)
     }
 
-    /// Creates cells of this grid with the disks in these places.
+    /// Creates cells of these layouts with the disks in these places.
+    #[cfg(feature = "serde")]
     pub(super) fn filled<B: Boundary + ?Sized>(
         boundary: &B,
-        largest_radius: f64,
-        grid: Grid,
+        layouts: &Layouts,
+        diameters: impl Iterator<Item = f64> + Clone,
         places: Vec<Place>,
-    ) -> Self {
+    ) -> Option<Self> {
+        let mut cells = Self::empty(boundary, layouts, diameters)?;
+        cells.places = places;
+        cells.fill();
+        Some(cells)
+    }
+
+    fn empty<B: Boundary + ?Sized>(
+        boundary: &B,
+        layouts: &Layouts,
+        diameters: impl Iterator<Item = f64> + Clone,
+    ) -> Option<Self> {
+        let domain = boundary.domain();
+        let classes = layouts.classes(&domain, diameters.clone())?;
+        let grid = Grid::new(&domain, layouts.smallest, classes[0].largest);
         let contents = Contents::empty(grid.len(), 1);
-        let mut cells = Self { grid, contents, places };
-        cells.mark_walls(boundary, largest_radius);
-        for disk in 0..cells.places.len() {
-            cells.enter(disk);
+        let layers = (!layouts.larger.is_empty()).then(|| {
+            let mut layers = Layers::empty(&domain, &grid, &classes, &layouts.larger, diameters);
+            layers.mark_walls(boundary, &classes);
+            Box::new(layers)
+        });
+        let mut cells = Self { grid, contents, places: Vec::new(), layers };
+        cells.mark_walls(boundary, 0.5 * classes[0].largest);
+        Some(cells)
+    }
+
+    fn fill(&mut self) {
+        for disk in 0..self.places.len() {
+            self.enter(disk);
         }
-        cells
     }
 
     fn mark_walls<B: Boundary + ?Sized>(&mut self, boundary: &B, largest_radius: f64) {
@@ -68,25 +108,50 @@ impl Cells {
         }
     }
 
+    /// Returns the layouts of all cells.
+    #[cfg(feature = "serde")]
+    pub(super) fn layouts(&self) -> Layouts {
+        let larger = self.layers.as_ref().map_or_else(Vec::new, |layers| layers.layouts());
+        Layouts { smallest: self.grid.layout, larger }
+    }
+
+    /// Tells whether a disk is of a larger class than the smallest.
+    #[inline]
+    pub(super) fn is_large(&self, disk: usize) -> bool {
+        self.layers.as_ref().is_some_and(|layers| layers.of(disk).is_some())
+    }
+
+    /// Returns the grid in which a disk is.
+    fn grid_of(&self, disk: usize) -> &Grid {
+        self.layers.as_ref().and_then(|layers| layers.of(disk)).map_or(&self.grid, |layer| &layer.grid)
+    }
+
+    /// Returns the rectangle in which a disk keeps its neighbors, and whether it can touch a wall there.
+    #[inline(always)]
+    pub(super) fn region(&self, disk: usize) -> (Region, bool) {
+        let place = self.places[disk];
+        match self.layers.as_ref().and_then(|layers| layers.of(disk)) {
+            None => (self.grid.region(place), self.contents.is_at_wall(self.grid.index(place))),
+            Some(layer) => (layer.grid.region(place), layer.is_at_wall(place)),
+        }
+    }
+
     #[inline]
     pub(super) fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    #[inline]
-    pub(super) fn place(&self, disk: usize) -> Place {
-        self.places[disk]
-    }
-
-    /// Tells whether disks in this cell can touch a wall.
-    #[inline]
-    pub(super) fn is_at_wall(&self, place: Place) -> bool {
-        self.contents.is_at_wall(self.grid.index(place))
+    /// Writes a disk into its cell, of whatever class it is.
+    fn enter(&mut self, disk: usize) {
+        match self.layers.as_mut().and_then(|layers| layers.of_mut(disk)) {
+            None => self.enter_cell(disk),
+            Some(layer) => layer.enter(disk, self.places[disk]),
+        }
     }
 
     /// Writes a disk into its cell, and into the ghost of that cell.
     #[inline]
-    fn enter(&mut self, disk: usize) {
+    fn enter_cell(&mut self, disk: usize) {
         let place = self.places[disk];
         self.contents.push(self.grid.index(place), disk);
         if let Some(ghost) = self.grid.mirror(place) {
@@ -110,7 +175,18 @@ impl Cells {
         self.leave(disk);
         let (place, shift) = self.grid.neighbor(self.places[disk], exit.direction());
         self.places[disk] = place;
-        self.enter(disk);
+        self.enter_cell(disk);
+        shift
+    }
+
+    /// Does the same for a disk of a larger class.
+    pub(super) fn cross_large(&mut self, disk: usize, exit: Exit) -> f64 {
+        let from = self.places[disk];
+        let (to, shift) = self.grid_of(disk).neighbor(from, exit.direction());
+        if let Some(layer) = self.layers.as_mut().and_then(|layers| layers.of_mut(disk)) {
+            layer.cross(disk, from, to);
+        }
+        self.places[disk] = to;
         shift
     }
 
@@ -122,6 +198,9 @@ impl Cells {
     /// Requests the nine cells around a disk from memory.
     #[inline]
     pub(super) fn prefetch_around(&self, disk: usize) {
+        if self.is_large(disk) {
+            return;
+        }
         let (center, stride) = (self.grid.index(self.places[disk]), self.grid.stride());
         for middle in [center - stride, center, center + stride] {
             self.contents.prefetch(middle - 1);
@@ -144,13 +223,24 @@ impl Cells {
     /// Returns the room that [`Self::around`] and [`Self::ahead`] need.
     #[inline]
     pub(super) fn room(&self) -> usize {
-        self.contents.room(9)
+        // A disk is in one cell and one ghost at most; the first of several layers may see all disks.
+        if self.layers.is_some() { self.places.len() + self.contents.room(9) } else { self.contents.room(9) }
     }
 
-    /// Writes the disks in the nine cells around `disk` (itself included) to `found`. Returns their number.
+    /// Writes the disks that `disk` may touch before it leaves its cell (itself included) to `found`. Returns
+    /// their number.
     #[inline]
     pub(super) fn around(&self, disk: usize, found: &mut [u32]) -> usize {
-        let center = self.grid.index(self.places[disk]);
+        match &self.layers {
+            None => self.around_cell(self.places[disk], found),
+            Some(layers) => self.around_in_layers(layers, disk, found),
+        }
+    }
+
+    /// Writes the disks in the nine cells around a place.
+    #[inline]
+    fn around_cell(&self, place: Place, found: &mut [u32]) -> usize {
+        let center = self.grid.index(place);
         let stride = self.grid.stride();
         let mut count = 0;
         for first in [center - stride - 1, center - 1, center + stride - 1] {
@@ -159,12 +249,39 @@ impl Cells {
         count
     }
 
-    /// Writes the disks in the three cells that come within reach of `place`, after a disk came there by
+    fn around_in_layers(&self, layers: &Layers, disk: usize, found: &mut [u32]) -> usize {
+        let place = self.places[disk];
+        match layers.of(disk) {
+            None => {
+                let count = self.around_cell(place, found);
+                layers.gather_above(place, found, count)
+            }
+            Some(layer) => layers.gather_around(layer, &self.contents, place, found),
+        }
+    }
+
+    /// Writes the disks that come within reach of a disk of the smallest class, after it came to its cell by
     /// `exit`, to `found`. Returns their number.
     #[inline]
-    pub(super) fn ahead(&self, place: Place, exit: Exit, found: &mut [u32]) -> usize {
+    pub(super) fn ahead(&self, disk: usize, exit: Exit, found: &mut [u32]) -> usize {
+        self.ahead_of(self.places[disk], exit, found)
+    }
+
+    /// Does the same for a disk that will have left its cell by `exit`.
+    #[inline]
+    pub(super) fn ahead_of_next(&self, disk: usize, exit: Exit, found: &mut [u32]) -> usize {
+        self.ahead_of(self.next_place(disk, exit), exit, found)
+    }
+
+    #[inline]
+    fn ahead_of(&self, place: Place, exit: Exit, found: &mut [u32]) -> usize {
         let (first, step) = self.three_ahead(place, exit);
-        self.contents.gather(first, step, found, 0)
+        let count = self.contents.gather(first, step, found, 0);
+        match &self.layers {
+            None => count,
+            // Which of the larger disks were within reach before is not worth finding out: they are few.
+            Some(layers) => layers.gather_above(place, found, count),
+        }
     }
 
     /// Returns the first of these three cells, and their distance in memory.
@@ -180,7 +297,7 @@ impl Cells {
 
     /// Returns the place of a disk after it has left its cell by `exit`.
     #[inline]
-    pub(super) fn next_place(&self, disk: usize, exit: Exit) -> Place {
+    fn next_place(&self, disk: usize, exit: Exit) -> Place {
         self.grid.neighbor(self.places[disk], exit.direction()).0
     }
 }

@@ -17,7 +17,7 @@ use thiserror::Error;
 pub use resumption::Resumption;
 
 use super::Simulation;
-use super::cells::{Layout, Place};
+use super::cells::{Layouts, Place};
 use super::events::Counters;
 use super::state::{Forecast, Guard, Spin, Tally, Trajectory};
 use crate::boundary::{Boundary, Domain};
@@ -75,7 +75,7 @@ struct Saved {
     trajectories: Vec<Trajectory>,
     spins: Vec<Spin>,
     forecasts: Vec<Forecast>,
-    layout: Layout,
+    layouts: Layouts,
     places: Vec<Place>,
     generator: Xoshiro256PlusPlus,
     origin: f64,
@@ -261,7 +261,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             trajectories: particles.iter().map(|particle| particle.trajectory).collect(),
             spins: self.bodies.spins.clone(),
             forecasts: particles.iter().map(|particle| particle.forecast).collect(),
-            layout: self.cells.grid().layout,
+            layouts: self.cells.layouts(),
             places: self.cells.places.clone(),
             generator: self.generator.clone(),
             origin: self.clock.origin,

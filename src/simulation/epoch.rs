@@ -66,9 +66,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if suitable == size {
             return;
         }
-        let positions = (0..self.bodies.len()).map(|disk| self.bodies.position(disk, self.clock.now));
-        let diameter = 2.0 * self.bodies.largest_radius();
-        if let Some(cells) = Cells::new(&self.boundary, diameter, suitable, positions) {
+        let (bodies, now) = (&self.bodies, self.clock.now);
+        let disks = (0..bodies.len()).map(|disk| (bodies.position(disk, now), bodies.material(disk).radius));
+        if let Some(cells) = Cells::new(&self.boundary, suitable, disks) {
             self.cells = cells;
             self.counters.cell_resizes += 1;
             self.predict_all();

@@ -267,10 +267,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// earlier partner.
     #[inline(always)]
     fn cross(&mut self, disk: usize, exit: Exit) {
+        if self.cells.is_large(disk) {
+            return self.cross_large(disk, exit);
+        }
         self.counters.cell_crossings += 1;
         self.bodies.particles[disk].trajectory.position.x += self.cells.cross(disk, exit);
         self.make_room();
-        let count = self.cells.ahead(self.cells.place(disk), exit, &mut self.scratch.found);
+        let count = self.cells.ahead(disk, exit, &mut self.scratch.found);
         // The end of the flight comes before the search for a partner. The processor then resolves its
         // branches, predicted right or wrong, while the search is still under way.
         self.end_flight(disk);
@@ -279,6 +282,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let earliest = self.earliest_collision(disk, count, known);
         self.expect_next(disk, earliest, known);
         self.schedule(disk);
+    }
+
+    /// Takes a disk of a larger class to its next cell. Its cells are small and its neighbors many: all are searched.
+    #[inline(never)]
+    fn cross_large(&mut self, disk: usize, exit: Exit) {
+        self.counters.cell_crossings += 1;
+        self.bodies.particles[disk].trajectory.position.x += self.cells.cross_large(disk, exit);
+        self.make_room();
+        self.predict(disk);
     }
 
     #[inline]

@@ -97,9 +97,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     #[inline(always)]
     fn end_flight_here(&mut self, disk: usize) {
-        let (place, grid) = (self.cells.place(disk), self.cells.grid());
-        let (exit_due, exit) = cell_exit(&self.bodies, disk, &grid.region(place), self.clock.now);
-        let at_wall = self.cells.is_at_wall(place);
+        let (region, at_wall) = self.cells.region(disk);
+        let (exit_due, exit) = cell_exit(&self.bodies, disk, &region, self.clock.now);
         let forecast = self.forecast_mut(disk);
         (forecast.exit_due, forecast.exit) = (exit_due, exit);
         if at_wall {

@@ -67,6 +67,9 @@ fn prefetch_disk(bodies: &Bodies, cells: &Cells, disk: usize) {
 /// Requests the partner of a disk, or the cells ahead of it.
 #[inline]
 fn prefetch_cells(bodies: &Bodies, cells: &Cells, disk: usize) {
+    if cells.is_large(disk) {
+        return;
+    }
     let forecast = bodies.particles[disk].forecast;
     if !forecast.is_collision() {
         return cells.prefetch_ahead(disk, forecast.exit);
@@ -81,6 +84,10 @@ fn prefetch_cells(bodies: &Bodies, cells: &Cells, disk: usize) {
 /// Requests the trajectories of the disks with which a disk may collide.
 #[inline]
 fn prefetch_neighbors(bodies: &Bodies, cells: &Cells, disk: usize, found: &mut [u32]) {
+    // Large disks are few, and their neighbors many.
+    if cells.is_large(disk) {
+        return;
+    }
     let forecast = bodies.particles[disk].forecast;
     let count = if forecast.is_collision() {
         if (forecast.partner as usize) < bodies.len() {
@@ -91,7 +98,7 @@ fn prefetch_neighbors(bodies: &Bodies, cells: &Cells, disk: usize, found: &mut [
         if !forecast.exit.is_passage() {
             return;
         }
-        cells.ahead(cells.next_place(disk, forecast.exit), forecast.exit, found)
+        cells.ahead_of_next(disk, forecast.exit, found)
     };
     for &neighbor in &found[..count] {
         prefetch(&bodies.particles, neighbor as usize);

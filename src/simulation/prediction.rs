@@ -138,9 +138,12 @@ fn search<const COPY: u8>(
         (Some(diameter), false) => {
             scan(bodies, disk, candidates, now, known, |_| diameter, |x| nearest_image(x, period))
         }
-        (None, _) => {
-            let radius = bodies.material(disk).radius;
-            let contact = |other: usize| radius + bodies.material(other).radius;
+        (None, is_walled) => {
+            let radius = bodies.radius(disk);
+            let contact = |other: usize| radius + bodies.radius(other);
+            if is_walled {
+                return scan(bodies, disk, candidates, now, known, contact, |x| x);
+            }
             scan(bodies, disk, candidates, now, known, contact, |x| nearest_image(x, period))
         }
     }

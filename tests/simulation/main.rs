@@ -13,6 +13,7 @@ mod inputs;
 mod late_times;
 mod lies;
 mod long_runs;
+mod mixtures;
 mod oracle;
 mod order;
 mod parting;

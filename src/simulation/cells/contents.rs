@@ -187,6 +187,32 @@ impl Contents {
         count
     }
 
+    /// Appends the disks of cells that follow each other to the first `count` of those found.
+    #[inline]
+    pub(super) fn gather_run(
+        &self,
+        first: usize,
+        cells: usize,
+        found: &mut [u32],
+        mut count: usize,
+    ) -> usize {
+        for (k, blocks) in
+            self.blocks[first * self.depth..(first + cells) * self.depth].chunks_exact(self.depth).enumerate()
+        {
+            for block in blocks {
+                found[count..count + SLOTS].copy_from_slice(&block.slots());
+                count += block.count();
+                if block.count() < SLOTS {
+                    break;
+                }
+                if block.count() == CROWDED {
+                    count = self.gather_outside(first + k, found, count - 1);
+                }
+            }
+        }
+        count
+    }
+
     #[cold]
     #[inline(never)]
     fn gather_outside(&self, cell: usize, found: &mut [u32], mut count: usize) -> usize {

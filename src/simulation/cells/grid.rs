@@ -14,7 +14,7 @@ pub(in crate::simulation) const CELLS_PER_DISK: f64 = 8.0;
 pub(in crate::simulation) const SPARE_CELLS: f64 = 4096.0;
 
 /// Smallest size of a cell in diameters. It is above 1 by more than rounding.
-const LEAST_PITCH: f64 = 1.000_001;
+pub(super) const LEAST_PITCH: f64 = 1.000_001;
 
 /// The columns and rows of cells. A ring of ghosts surrounds them, so that every cell has eight neighbors.
 ///
@@ -56,12 +56,13 @@ pub(in crate::simulation) struct Layout {
 }
 
 impl Layout {
-    /// Returns the layout for `count` disks of at most this diameter, or `None` if the domain is too small.
+    /// Returns the layout of at most so many cells for disks of at most this diameter, or `None` if the domain is
+    /// too small.
     pub(in crate::simulation) fn new(
         domain: &Domain,
         diameter: f64,
         cell_size: CellSize,
-        count: usize,
+        most: f64,
         highest: f64,
     ) -> Option<Self> {
         let width = domain.width();
@@ -70,7 +71,6 @@ impl Layout {
         } else {
             2.0 * open_height(domain, highest, diameter)
         };
-        let most = CELLS_PER_DISK * count as f64 + SPARE_CELLS;
         let pitch = (cell_size.pitch() * diameter).max((width * height / most).sqrt());
         let along = |length: f64, pitch: f64| (length / pitch).floor().max(1.0);
         let mut columns = along(width, pitch).min(most.floor());
@@ -111,6 +111,34 @@ impl Grid {
             period: if domain.periodic { domain.width() } else { 0.0 },
             layout,
         }
+    }
+
+    /// Creates the grid of this layout with cells that keep no disks beyond their edges.
+    pub(in crate::simulation) fn without_margin(domain: &Domain, layout: Layout) -> Self {
+        Self::new(domain, layout, f64::INFINITY)
+    }
+
+    /// Returns the edges of the columns and of the rows.
+    pub(super) fn edges(&self) -> [Vec<f64>; 2] {
+        let mut columns = self.column_edges.clone();
+        if self.period > 0.0 {
+            columns[0] -= self.margin.x;
+            columns[self.layout.columns as usize] += self.margin.x;
+        }
+        [columns, self.row_edges.clone()]
+    }
+
+    /// Returns between which numbers the disks of each column, and of each row, are.
+    pub(super) fn ranges(&self) -> [Vec<(f64, f64)>; 2] {
+        let range = |edges: &[f64], margin: f64| {
+            edges.windows(2).map(|pair| (pair[0] - margin, pair[1] + margin)).collect()
+        };
+        [range(&self.column_edges, self.margin.x), range(&self.row_edges, self.margin.y)]
+    }
+
+    /// Returns the distance beyond its edges up to which a cell keeps its disks.
+    pub(super) fn margin(&self) -> DVec2 {
+        self.margin
     }
 
     /// Iterates over all cells but those of the ring.

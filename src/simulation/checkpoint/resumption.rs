@@ -1,13 +1,13 @@
 //! Resumption: the way from a checkpoint to a run.
 
-use super::validation::{check, check_numbers, check_places, suits};
+use super::validation::{check_numbers, check_places, grids};
 use super::{Checkpoint, CheckpointError, Saved};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::instructions::Instructions;
 use crate::scheduler::{BySize, EventScheduler};
 use crate::simulation::builder::count_walls;
-use crate::simulation::cells::{Cells, Grid};
+use crate::simulation::cells::Cells;
 use crate::simulation::lookahead::Lookahead;
 use crate::simulation::state::{Bodies, Clock};
 use crate::simulation::{Scratch, Simulation};
@@ -85,11 +85,11 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         let wall_count = count_walls(&self.boundary)?;
         check_numbers(saved, wall_count)?;
         let bodies = bodies_of(saved);
-        let radius = bodies.largest_radius();
-        check(suits(saved, 2.0 * radius), "its neighbor cells are not those of the domain")?;
-        let grid = Grid::new(&given, saved.layout, 2.0 * radius);
-        check_places(saved, &grid, &bodies)?;
-        let cells = Cells::filled(&self.boundary, radius, grid, saved.places.clone());
+        let misfit = || CheckpointError::Inconsistent("its neighbor cells are not those of the domain");
+        check_places(saved, &grids(saved, &bodies).ok_or_else(misfit)?, &bodies)?;
+        let diameters = (0..bodies.len()).map(|disk| 2.0 * bodies.material(disk).radius);
+        let cells = Cells::filled(&self.boundary, &saved.layouts, diameters, saved.places.clone());
+        let cells = cells.ok_or_else(misfit)?;
         let mut run = self.run(bodies, cells, wall_count);
         run.make_room();
         // This call gives the boundary its origin and the scheduler its times.

@@ -4,10 +4,12 @@
 //! numbers must pass the bounds of the constructors, and all events must be where and when they can be. A run
 //! from here may be unphysical, but it does not panic and does not hang.
 
+use std::collections::HashMap;
+
 use super::{CheckpointError, Saved};
 use crate::boundary::Domain;
 use crate::disk::LARGEST;
-use crate::simulation::cells::{CELLS_PER_DISK, Grid, Layout, Place, SPARE_CELLS};
+use crate::simulation::cells::{CELLS_PER_DISK, Grid, Grids, Layout, Place, SPARE_CELLS};
 use crate::simulation::events::Counters;
 use crate::simulation::state::{Bodies, Exit, Forecast, Guard, Spin, Trajectory};
 use glam::DVec2;
@@ -46,25 +48,44 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
 }
 
 /// Checks that all disks are where they belong, and their events where they can be.
-pub(super) fn check_places(saved: &Saved, grid: &Grid, bodies: &Bodies) -> Result<(), CheckpointError> {
+pub(super) fn check_places(saved: &Saved, grids: &Grids, bodies: &Bodies) -> Result<(), CheckpointError> {
     let disks = || saved.forecasts.iter().zip(&saved.places).enumerate();
-    let inside = |(disk, (_, &place))| holds(grid, place, bodies.position(disk, saved.now));
+    let inside = |(disk, (_, &place))| holds(grids.of(disk), place, bodies.position(disk, saved.now));
     check(disks().all(inside), "a disk is outside its neighbor cell")?;
     // The cells at walls extend to infinity.
     let within =
         |disk| is_within(&saved.domain, bodies.position(disk, saved.now), bodies.material(disk).radius);
     check((0..saved.places.len()).all(within), "a disk is outside the domain")?;
-    check(has_room(saved, grid, bodies), "the disks of a cell overlap")?;
-    let ends = |(disk, (forecast, &place))| ends_where_it_can(saved, grid, bodies, disk, forecast, place);
+    check(has_room(saved, grids, bodies), "the disks of a cell overlap")?;
+    let ends =
+        |(disk, (forecast, &place))| ends_where_it_can(saved, grids.of(disk), bodies, disk, forecast, place);
     check(disks().all(ends), "a disk leaves its neighbor cell where it is not")?;
     let meets = |(disk, (forecast, _))| meets_its_partner(saved, bodies, disk, forecast);
     check(disks().all(meets), "a disk collides with one that it does not touch")
 }
 
-/// Tells whether the grid suits the domain and disks of at most this diameter, and whether every disk is in
-/// it.
-pub(super) fn suits(saved: &Saved, diameter: f64) -> bool {
-    let Layout { columns, rows, pitch, .. } = saved.layout;
+/// Returns the grids of all classes of disks, if they suit the domain and the disks, and every disk is in its own.
+pub(super) fn grids(saved: &Saved, bodies: &Bodies) -> Option<Grids> {
+    let layouts = &saved.layouts;
+    let diameters = (0..bodies.len()).map(|disk| 2.0 * bodies.material(disk).radius);
+    let classes = layouts.classes(&saved.domain, diameters.clone())?;
+    let smallest = classes[0].largest;
+    let suits = suits(saved, &layouts.smallest, smallest)
+        && layouts.larger.iter().zip(&classes[1..]).all(|(layer, class)| {
+            layer.homes().is_some_and(|homes| suits(saved, &homes, class.largest))
+                && layer.is_narrow_enough(&saved.domain, &layouts.smallest, smallest, class.largest)
+        });
+    if !suits {
+        return None;
+    }
+    let grids = Grids::new(&saved.domain, layouts, &classes, diameters);
+    let is_placed = |(disk, &place)| is_cell(&grids.of(disk).layout, place);
+    saved.places.iter().enumerate().all(is_placed).then_some(grids)
+}
+
+/// Tells whether the cells suit the domain and disks of at most this diameter.
+fn suits(saved: &Saved, layout: &Layout, diameter: f64) -> bool {
+    let Layout { columns, rows, pitch, .. } = *layout;
     let most = 2.0 * (CELLS_PER_DISK * saved.places.len() as f64 + SPARE_CELLS);
     let covers = |count: u32, pitch: f64, length: f64| {
         length.is_infinite() || (f64::from(count) * pitch / length - 1.0).abs() < SLACK
@@ -78,7 +99,6 @@ pub(super) fn suits(saved: &Saved, diameter: f64) -> bool {
         && wide(columns, pitch.x)
         && wide(rows, pitch.y)
         && pitch.is_finite()
-        && saved.places.iter().all(|&place| is_cell(&saved.layout, place))
 }
 
 /// Tells whether a place is one of the cells, and not of the ring.
@@ -147,12 +167,14 @@ fn holds(grid: &Grid, place: Place, position: DVec2) -> bool {
 }
 
 /// Tells whether there is room for the disks in their cells without overlaps.
-fn has_room(saved: &Saved, grid: &Grid, bodies: &Bodies) -> bool {
+fn has_room(saved: &Saved, grids: &Grids, bodies: &Bodies) -> bool {
     let domain = &saved.domain;
-    let mut cells = vec![(0.0, 0.0); grid.len()];
+    let mut cells: HashMap<(u8, usize), (f64, f64)> = HashMap::new();
     saved.places.iter().enumerate().all(|(disk, &place)| {
         let radius = bodies.material(disk).radius;
-        let (area, largest): &mut (f64, f64) = &mut cells[grid.index(place)];
+        let grid = grids.of(disk);
+        let (area, largest): &mut (f64, f64) =
+            cells.entry((grids.class(disk), grid.index(place))).or_default();
         *area += std::f64::consts::PI * radius * radius;
         *largest = largest.max(radius);
         let region = grid.region(place);

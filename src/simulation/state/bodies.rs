@@ -115,10 +115,6 @@ impl Bodies {
         self.kinds.disks()
     }
 
-    pub(in crate::simulation) fn largest_radius(&self) -> f64 {
-        self.kinds.largest_radius()
-    }
-
     pub(in crate::simulation) fn len(&self) -> usize {
         self.particles.len()
     }
@@ -132,6 +128,11 @@ impl Bodies {
     /// Returns the speed in the free-fall frame, which is the scale of the rounding of a velocity.
     pub(in crate::simulation) fn speed(&self, disk: usize) -> f64 {
         self.particles[disk].trajectory.velocity.length()
+    }
+
+    #[inline]
+    pub(in crate::simulation) fn radius(&self, disk: usize) -> f64 {
+        self.kinds.radius(disk)
     }
 
     #[inline]

@@ -24,7 +24,11 @@ impl Kind {
 #[derive(Debug, Clone)]
 pub(super) enum Kinds {
     Same(Kind),
-    Each(Vec<Kind>),
+    /// The kind of each disk; the radii apart, since every prediction needs them.
+    Each {
+        kinds: Vec<Kind>,
+        radii: Vec<f64>,
+    },
 }
 
 impl Kinds {
@@ -33,7 +37,10 @@ impl Kinds {
             Some((first, rest)) if rest.iter().all(|disk| is_alike(disk, first)) => {
                 Self::Same(Kind::of(first))
             }
-            _ => Self::Each(disks.iter().map(Kind::of).collect()),
+            _ => Self::Each {
+                kinds: disks.iter().map(Kind::of).collect(),
+                radii: disks.iter().map(Disk::radius).collect(),
+            },
         }
     }
 
@@ -41,9 +48,9 @@ impl Kinds {
     pub(super) fn typical_diameter(&self) -> f64 {
         match self {
             Self::Same(kind) => 2.0 * kind.material.radius,
-            Self::Each(each) if each.is_empty() => 0.0,
-            Self::Each(each) => {
-                let mut radii: Vec<f64> = each.iter().map(|kind| kind.material.radius).collect();
+            Self::Each { radii, .. } if radii.is_empty() => 0.0,
+            Self::Each { radii, .. } => {
+                let mut radii = radii.clone();
                 let middle = radii.len() / 2;
                 2.0 * *radii.select_nth_unstable_by(middle, f64::total_cmp).1
             }
@@ -55,14 +62,7 @@ impl Kinds {
     pub(super) fn disks(&self) -> Vec<Disk> {
         match self {
             Self::Same(kind) => vec![kind.disk],
-            Self::Each(each) => each.iter().map(|kind| kind.disk).collect(),
-        }
-    }
-
-    pub(super) fn largest_radius(&self) -> f64 {
-        match self {
-            Self::Same(kind) => kind.disk.radius(),
-            Self::Each(each) => each.iter().map(|kind| kind.disk.radius()).fold(0.0, f64::max),
+            Self::Each { kinds, .. } => kinds.iter().map(|kind| kind.disk).collect(),
         }
     }
 
@@ -71,7 +71,15 @@ impl Kinds {
     pub(super) fn common_diameter(&self) -> Option<f64> {
         match self {
             Self::Same(kind) => Some(2.0 * kind.material.radius),
-            Self::Each(_) => None,
+            Self::Each { .. } => None,
+        }
+    }
+
+    #[inline]
+    pub(super) fn radius(&self, disk: usize) -> f64 {
+        match self {
+            Self::Same(kind) => kind.material.radius,
+            Self::Each { radii, .. } => radii[disk],
         }
     }
 
@@ -79,7 +87,7 @@ impl Kinds {
     pub(super) fn get(&self, disk: usize) -> &Kind {
         match self {
             Self::Same(kind) => kind,
-            Self::Each(each) => &each[disk],
+            Self::Each { kinds, .. } => &kinds[disk],
         }
     }
 }

@@ -1,0 +1,198 @@
+//! The cells of a class of disks that are larger than others.
+//!
+//! A large disk has two: a *home*, as large as the disk, in which others look for it, and a *cell*, much smaller, until whose
+//! end it keeps its partners. Were the home all it had, it would have to know all small disks within the whole of it.
+
+use super::cell_size::CellSize;
+use super::contents::Contents;
+use super::grid::{Grid, Layout, Place};
+use super::reach::{Homes, Reach};
+use super::size_class::SizeClass;
+use crate::boundary::{Boundary, Domain, Region};
+
+/// Homes per disk at most: empty ones are looked into, too.
+const HOMES_PER_DISK: f64 = 4.0;
+
+/// Homes that are always allowed.
+const SPARE_HOMES: f64 = 16.0;
+
+/// Size of a cell in free paths, for cells as large as a disk of the smallest class.
+const FREE_PATHS: f64 = 3.0;
+
+/// Doublings by which cells are finer than homes, at most.
+const FINEST: u32 = 10;
+
+/// The place of the cells of a class: how many there are, and how many make a home.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(in crate::simulation) struct LayerLayout {
+    /// The cells.
+    pub(in crate::simulation) cells: Layout,
+    /// Cells along the side of a home, as a power of two.
+    pub(in crate::simulation) doublings: u32,
+}
+
+impl LayerLayout {
+    /// Returns the layout for one of several classes of disks; `None` if the domain is too small.
+    pub(super) fn new(
+        domain: &Domain,
+        classes: &[SizeClass],
+        class: usize,
+        cell_size: CellSize,
+        highest: f64,
+    ) -> Option<Self> {
+        let SizeClass { largest, count, .. } = classes[class];
+        let most = HOMES_PER_DISK * count as f64 + SPARE_HOMES;
+        let homes = Layout::new(domain, largest, cell_size, most, highest)?;
+        let height = domain.height().min(highest - domain.bottom + largest);
+        let density = |class: &SizeClass| class.count as f64 / (domain.width() * height);
+        // The way from one collision to the next, but for a factor of order 1.
+        let free_path =
+            1.0 / classes.iter().map(|other| density(other) * (largest + other.largest)).sum::<f64>();
+        // Small cells have few partners, and are passed often; no smaller than those that they reach into.
+        let suitable =
+            (FREE_PATHS * cell_size.pitch() * free_path).max(cell_size.pitch() * classes[0].largest);
+        let doublings = (homes.pitch.max_element() / suitable).log2().round().clamp(0.0, f64::from(FINEST));
+        Some(Self { cells: homes, doublings: 0 }.finer(doublings as u32))
+    }
+
+    /// Returns the same homes with cells that are finer by so many doublings.
+    fn finer(self, doublings: u32) -> Self {
+        let Layout { columns, rows, pitch, .. } = self.cells;
+        let cells = Layout {
+            columns: columns << doublings,
+            rows: rows << doublings,
+            pitch: pitch / f64::from(1_u32 << doublings),
+            ..self.cells
+        };
+        Self { cells, doublings: self.doublings + doublings }
+    }
+
+    /// Returns the layout of the homes, if these cells make whole ones.
+    #[cfg(feature = "serde")]
+    pub(in crate::simulation) fn homes(&self) -> Option<Layout> {
+        let Self { cells: Layout { columns, rows, pitch, cell_size }, doublings } = *self;
+        let side = 1_u32.checked_shl(doublings).filter(|_| doublings <= FINEST)?;
+        let whole = columns % side == 0 && rows % side == 0;
+        let pitch = pitch * f64::from(side);
+        whole.then_some(Layout { columns: columns / side, rows: rows / side, pitch, cell_size })
+    }
+
+    /// Tells whether disks in these cells meet each other and those in the smallest ones at one image only.
+    #[cfg(feature = "serde")]
+    pub(in crate::simulation) fn is_narrow_enough(
+        &self,
+        domain: &Domain,
+        smallest: &Layout,
+        smallest_diameter: f64,
+        diameter: f64,
+    ) -> bool {
+        let grid = Grid::new(domain, *smallest, smallest_diameter);
+        !domain.periodic
+            || self.cells.pitch.x <= super::layers::widest(domain, &grid, smallest_diameter, diameter)
+    }
+
+    /// Returns the same homes with cells at most this wide, if they can be.
+    pub(super) fn narrower(self, width: f64) -> Option<Self> {
+        let mut layout = self;
+        while layout.cells.pitch.x > width {
+            if layout.doublings >= FINEST {
+                return None;
+            }
+            layout = layout.finer(1);
+        }
+        Some(layout)
+    }
+}
+
+/// The disks of a class in their homes, and what matters to them.
+#[derive(Debug, Clone)]
+pub(super) struct Layer {
+    pub(super) layout: LayerLayout,
+    pub(super) grid: Grid,
+    contents: Contents,
+    /// Homes of each class that a disk of this one may touch; the smallest class first.
+    reaches: Vec<Reach>,
+}
+
+impl Layer {
+    /// A layer without disks, which knows no others yet.
+    pub(super) fn empty(domain: &Domain, layout: LayerLayout) -> Self {
+        let grid = Grid::without_margin(domain, layout.cells);
+        let homes = (layout.cells.columns as usize * layout.cells.rows as usize) >> (2 * layout.doublings);
+        Self { layout, grid, contents: Contents::empty(homes, 1), reaches: Vec::new() }
+    }
+
+    pub(super) fn set_reaches(&mut self, reaches: Vec<Reach>) {
+        self.reaches = reaches;
+    }
+
+    /// Homes in a column.
+    fn stride(&self) -> usize {
+        self.layout.cells.rows as usize >> self.layout.doublings
+    }
+
+    pub(super) fn homes(&self) -> Homes<'_> {
+        Homes { grid: &self.grid, cells: 1 << self.layout.doublings, stride: self.stride(), first: 0 }
+    }
+
+    fn home(&self, place: Place) -> usize {
+        let home = |cell: u32| ((cell - 1) >> self.layout.doublings) as usize;
+        home(place.column) * self.stride() + home(place.row)
+    }
+
+    pub(super) fn mark_walls<B: Boundary + ?Sized>(&mut self, boundary: &B, largest_radius: f64) {
+        let Layout { columns, rows, .. } = self.layout.cells;
+        let side = 1 << self.layout.doublings;
+        for column in (1..=columns).step_by(side) {
+            for row in (1..=rows).step_by(side) {
+                let last = Place { column: column + side as u32 - 1, row: row + side as u32 - 1 };
+                let first = Place { column, row };
+                let region = Region::new(self.grid.region(first).min, self.grid.region(last).max);
+                if boundary.may_touch(&region, largest_radius) {
+                    self.contents.mark_wall(self.home(first));
+                }
+            }
+        }
+    }
+
+    pub(super) fn is_at_wall(&self, place: Place) -> bool {
+        self.contents.is_at_wall(self.home(place))
+    }
+
+    pub(super) fn enter(&mut self, disk: usize, place: Place) {
+        self.contents.push(self.home(place), disk);
+    }
+
+    /// Takes a disk from one cell to another.
+    pub(super) fn cross(&mut self, disk: usize, from: Place, to: Place) {
+        let (old, new) = (self.home(from), self.home(to));
+        if old != new {
+            self.contents.remove(old, disk);
+            self.contents.push(new, disk);
+        }
+    }
+
+    /// Appends the disks of this class within a reach to those found.
+    #[inline]
+    pub(super) fn gather(&self, reach: &Reach, place: Place, found: &mut [u32], count: usize) -> usize {
+        gather(&self.contents, reach, place, found, count)
+    }
+
+    pub(super) fn reach(&self, class: usize) -> &Reach {
+        &self.reaches[class]
+    }
+}
+
+/// Appends the disks in the homes within reach of a place to those found.
+#[inline]
+pub(super) fn gather(
+    contents: &Contents,
+    reach: &Reach,
+    place: Place,
+    found: &mut [u32],
+    mut count: usize,
+) -> usize {
+    reach.for_each_run(place, |first, homes| count = contents.gather_run(first, homes, found, count));
+    count
+}
