@@ -1,20 +1,22 @@
 //! Boundaries: the walls around the disks, and what a touch does.
 //!
-//! [`Container`] is the rectangular box of the paper and its relatives: side walls or periodic sides, a floor
-//! that is fixed, moving or thermal, a lid or an open top, each wall with a rule of its own if wanted. A
-//! geometry of your own implements [`Boundary`]; [`roots`](crate::roots) has the numerics that it needs, and
-//! [`laws`] checks it.
+//! [`Container`] is the rectangular box of the paper and its relatives: side walls or periodic sides, a
+//! floor that is fixed, moving or thermal, a lid or an open top, each wall with a rule of its own if
+//! wanted. [`Obstacles`] puts fixed round obstacles into any boundary. A geometry of your own implements
+//! [`Boundary`]; [`roots`](crate::roots) has the numerics that it needs, and [`laws`] checks it.
 
 mod container;
 mod domain;
 mod forward;
 pub mod laws;
+mod obstacles;
 mod plane;
 mod surface;
 mod touch;
 
 pub use container::{Container, Wall, WallError};
 pub use domain::{Domain, Region};
+pub use obstacles::Obstacles;
 pub use surface::{Response, Surface, Thermal};
 pub use touch::Touch;
 

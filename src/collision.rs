@@ -1,10 +1,10 @@
 //! Collision rules: the outcome when two disks, or a disk and a wall, touch.
 //!
-//! A rule is a pure function from a [`Contact`] (how fast the surfaces close and slip, and the masses that
-//! resist) to an [`Impulse`]. The engine applies the impulse to one partner at the contact point, and its
-//! opposite to the other. Momentum, angular momentum and Galilean invariance therefore hold for *any* rule. A
-//! rule can only get energy, separation and friction wrong, and [`laws`] checks those. A wall is a partner of
-//! infinite mass, so one rule serves disks and walls.
+//! A rule is a pure function from a [`Contact`] (how fast the surfaces close and slip, the masses that
+//! resist, the kinds and radii of the partners) to an [`Impulse`]. The engine applies the impulse to one
+//! partner at the contact point, and its opposite to the other. Momentum, angular momentum and Galilean
+//! invariance therefore hold for *any* rule. A rule can only get energy, separation and friction wrong, and
+//! [`laws`] checks those. A wall is a partner of infinite mass, so one rule serves disks and walls.
 //!
 //! | rule | energy loss | source |
 //! |---|---|---|
@@ -13,6 +13,7 @@
 //! | [`Rough`] | normal and tangential restitution, no Coulomb limit | paper, Eqs. (3), (4) |
 //! | [`Elastic`] | none | |
 //! | [`ContactDuration`] | an adaptor: contacts soon after another lose nothing | Luding and McNamara 1998 |
+//! | [`RulesByKind`] | a table: one rule for each pair of kinds | |
 //! | [`from_fn`] | yours, as a closure | |
 //!
 //! # A rule of your own
@@ -55,6 +56,7 @@ mod impulse;
 mod inelasticity;
 pub mod laws;
 mod rough;
+mod rules_by_kind;
 mod smooth;
 
 pub(crate) use body::{Body, Material, collide_bodies};
@@ -67,6 +69,7 @@ pub use frictional::Frictional;
 pub use from_fn::{FromFn, from_fn};
 pub use impulse::{Impulse, Regime};
 pub use rough::Rough;
+pub use rules_by_kind::RulesByKind;
 pub use smooth::Smooth;
 
 use crate::Fingerprint;
@@ -78,7 +81,8 @@ use crate::Fingerprint;
 /// The engine guarantees of the contact:
 /// - the closing speed is finite and not negative; it may be zero;
 /// - the slip speed is finite, of either sign or zero;
-/// - the masses are finite and positive, the tangential one not above the normal one.
+/// - the masses are finite and positive, the tangential one not above the normal one;
+/// - the radii are positive, and only that of a wall is infinite.
 ///
 /// The rule guarantees:
 /// 1. The same contact gets the same impulse every time, to the bit; a rule that needs history finds it in

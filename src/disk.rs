@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::ParameterError;
 use crate::quantity::{accept, finite, positive};
+use crate::{Kind, ParameterError};
 
 /// Range of a radius or a mass. Products of a few of them stay finite and normal.
 const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
@@ -14,7 +14,7 @@ pub(crate) const MOST_DISKS: usize = 1 << 28;
 /// Largest magnitude of a component of a position or velocity, and of an angular velocity.
 pub(crate) const LARGEST: f64 = 1e60;
 
-/// A rotating hard disk: position, velocity, angle, angular velocity, radius, mass and inertia factor.
+/// A rotating hard disk: position, velocity, angle, angular velocity, radius, mass, inertia factor and kind.
 ///
 /// The moment of inertia is `$I = \beta m R^2$`, with `$\beta = 1/2$` unless another factor is given.
 /// Lengths, times and masses are in any consistent units; the paper takes the diameter and the mass of a disk
@@ -42,13 +42,15 @@ pub struct Disk {
     radius: f64,
     mass: f64,
     inertia_factor: f64,
+    kind: Kind,
+    image: [i32; 2],
 }
 
 impl Disk {
     /// Inertia factor of a homogeneous disk: `$\beta = 1/2$` in `$I = \beta m R^2$`.
     pub const HOMOGENEOUS_INERTIA_FACTOR: f64 = 0.5;
 
-    /// Creates a homogeneous disk of mass 1 at rest.
+    /// Creates a homogeneous disk of mass 1 at rest, of [`Kind::DEFAULT`].
     ///
     /// # Errors
     /// If the position is not finite or above 1e60 in magnitude, or the radius is not in `[1e-30, 1e30]`.
@@ -61,6 +63,8 @@ impl Disk {
             radius: scale("radius", radius)?,
             mass: 1.0,
             inertia_factor: Self::HOMOGENEOUS_INERTIA_FACTOR,
+            kind: Kind::DEFAULT,
+            image: [0; 2],
         })
     }
 
@@ -115,6 +119,16 @@ impl Disk {
         Ok(Self { inertia_factor, ..self })
     }
 
+    /// Returns the same disk as one of this kind.
+    pub const fn with_kind(self, kind: Kind) -> Self {
+        Self { kind, ..self }
+    }
+
+    /// Returns the same disk after it has passed so many periods to the right and up.
+    pub const fn with_image(self, image: [i32; 2]) -> Self {
+        Self { image, ..self }
+    }
+
     /// Returns the position of the center.
     pub const fn position(&self) -> DVec2 {
         self.position
@@ -150,6 +164,20 @@ impl Disk {
         self.inertia_factor
     }
 
+    /// Returns the kind.
+    pub const fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// Returns how many periods the disk has passed to the right and up, less those to the left and
+    /// down. Each passage counts one, whatever the period was at that time.
+    ///
+    /// At periodic sides and ends, [`Domain::unwrapped`](crate::boundary::Domain::unwrapped) makes a
+    /// position of it.
+    pub const fn image(&self) -> [i32; 2] {
+        self.image
+    }
+
     /// Returns the moment of inertia about the center, `$I = \beta m R^2$`.
     pub fn moment_of_inertia(&self) -> f64 {
         self.inertia_factor * self.mass * self.radius * self.radius
@@ -163,6 +191,14 @@ impl Disk {
     /// Returns the kinetic energy of the rotation, `$\tfrac12 I \omega^2$`.
     pub fn rotational_energy(&self) -> f64 {
         0.5 * self.moment_of_inertia() * self.angular_velocity * self.angular_velocity
+    }
+
+    /// Returns a disk at rest at the origin. The numbers are those of a disk that has passed the checks.
+    #[inline]
+    pub(crate) const fn at_rest(radius: f64, mass: f64, inertia_factor: f64, kind: Kind) -> Self {
+        let (position, velocity) = (DVec2::ZERO, DVec2::ZERO);
+        let (angle, angular_velocity, image) = (0.0, 0.0, [0; 2]);
+        Self { position, velocity, angle, angular_velocity, radius, mass, inertia_factor, kind, image }
     }
 
     /// Returns the disk with the motion that the engine computed for it. The engine has its own checks, so
@@ -203,6 +239,10 @@ struct RawDisk {
     radius: f64,
     mass: f64,
     inertia_factor: f64,
+    #[serde(default)]
+    kind: Kind,
+    #[serde(default)]
+    image: [i32; 2],
 }
 
 #[cfg(feature = "serde")]
@@ -216,5 +256,6 @@ impl TryFrom<RawDisk> for Disk {
             .with_angular_velocity(raw.angular_velocity)?
             .with_mass(raw.mass)?
             .with_inertia_factor(raw.inertia_factor)
+            .map(|disk| disk.with_kind(raw.kind).with_image(raw.image))
     }
 }

@@ -1,15 +1,33 @@
 //! Initial states: the positions and velocities at which disks start.
 //!
+//! | function | disks | where |
+//! |---|---|---|
+//! | [`lattice`] | equal ones | a square lattice |
+//! | [`placed_in_rows`] | any | rows, small ones on top of each other |
+//! | [`random`], [`placed_at_random`] | equal ones, any | random places, up to an area fraction of 0.5 |
+//! | [`packed_at_random`] | any | random places, up to an area fraction of 0.8 |
+//!
+//! [`Radii`] draws radii from distributions, [`homogeneous`] makes disks of them, and
+//! [`with_maxwellian_velocities`] sets them in motion. Around disks that have a place already, others are
+//! placed in a boundary with [`Obstacles`](crate::boundary::Obstacles).
+//!
 //! No disk is placed into a wall: [`Boundary::overlap`](crate::boundary::Boundary::overlap) is `None` for
 //! each at time 0. The functions therefore work in a boundary of any shape, also in one that fills only a
 //! part of its interior.
 
+mod bins;
 mod lattice;
+mod packed;
+mod radii;
 mod random;
+mod rows;
 mod velocities;
 
 pub use lattice::lattice;
+pub use packed::packed_at_random;
+pub use radii::{Radii, homogeneous};
 pub use random::{placed_at_random, random};
+pub use rows::placed_in_rows;
 pub use velocities::with_maxwellian_velocities;
 
 use thiserror::Error;
@@ -18,6 +36,7 @@ use crate::ParameterError;
 use crate::boundary::Domain;
 use crate::disk::MOST_DISKS;
 use crate::quantity::accept;
+use crate::simulation::BuildError;
 
 /// An error: the disks do not fit, or cannot be placed.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -36,6 +55,23 @@ pub enum PlacementError {
         /// Radius of the disks.
         radius: f64,
     },
+    /// The disks jam before they are packed.
+    #[error("the disks jam at the area fraction {reached:.4}: they would need {wanted:.4}")]
+    Jammed {
+        /// Area of all disks over that of the room when they had jammed.
+        reached: f64,
+        /// Area of all disks over that of the room if they were packed.
+        wanted: f64,
+    },
+    /// The engine, which moves the disks while they are packed, refuses them or the boundary.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// The engine could not go on while the disks were packed, since the boundary breaks its contract.
+    #[error("while disks were packed, {reason}")]
+    Run {
+        /// Message of the engine.
+        reason: String,
+    },
 }
 
 /// Checks that so many disks can be numbered. An open container has room for any number, and a mistyped one
@@ -44,14 +80,18 @@ fn countable(count: usize) -> Result<(), ParameterError> {
     accept(count <= MOST_DISKS, "number of disks", "at most 2^28", count as f64).map(|_| ())
 }
 
+/// Returns the distances of neighbors to try, in diameters, from loose to close.
+fn spacings() -> impl Iterator<Item = f64> {
+    const LOOSE: f64 = 1.4;
+    const CLOSE: f64 = 1.000_1;
+    (0..=40).map(|k| LOOSE + (CLOSE - LOOSE) * f64::from(k) / 40.0)
+}
+
 /// Returns the rectangle in which a center may lie. An open top stays open.
 fn room(interior: &Domain, radius: f64) -> Domain {
-    let side = if interior.periodic { 0.0 } else { radius };
-    let room = Domain::new(
-        interior.left + side,
-        interior.right - side,
-        interior.bottom + radius,
-        interior.top - radius,
-    );
-    if interior.periodic { room.with_periodic_sides() } else { room }
+    let side = if interior.periodic_sides { 0.0 } else { radius };
+    let end = if interior.periodic_ends { 0.0 } else { radius };
+    let room =
+        Domain::new(interior.left + side, interior.right - side, interior.bottom + end, interior.top - end);
+    Domain { periodic_sides: interior.periodic_sides, periodic_ends: interior.periodic_ends, ..room }
 }

@@ -12,7 +12,7 @@ pub(crate) struct Instructions(Level);
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(dead_code, reason = "not all are chosen from in all builds")]
 pub(crate) enum Level {
-    /// What the build relies on.
+    /// Those that the build relies on.
     Built,
     /// Four numbers at a time.
     Avx2,

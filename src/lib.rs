@@ -37,12 +37,13 @@
 //! | [`study`] (feature `serde`) | studies of your own experiments: plans, ramps, sweeps, records |
 //! | [`analysis`] | convective states, clusters, transitions |
 //! | [`kinetic`] | ⟨dE⟩ by closed form and Monte Carlo, effective inelasticity; needs no simulation |
+//! | [`initial`] | where everything starts: lattices, random places, dense packings, radii |
 //! | [`simulation`] | the engine: builder, event loop, checkpoints |
 //! | [`observable`] | what is measured, and when |
 //! | [`scheduler`] | which event is next |
 //! | [`boundary`], [`wall`] | the walls around the disks, and how they move |
 //! | [`collision`] | what a collision does |
-//! | [`initial`], [`Disk`] | where everything starts |
+//! | [`Disk`] | one grain |
 //! | [`statistics`] | means, and errors of correlated samples |
 //!
 //! Imports run downward in this order only.
@@ -73,6 +74,7 @@ mod fingerprint;
 mod flight;
 pub mod initial;
 mod instructions;
+mod kind;
 pub mod kinetic;
 pub mod observable;
 mod prefetch;
@@ -94,4 +96,5 @@ pub use error::ParameterError;
 pub use fingerprint::Fingerprint;
 pub use flight::Flight;
 pub use glam;
+pub use kind::Kind;
 pub use simulation::Simulation;

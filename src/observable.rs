@@ -11,6 +11,7 @@
 //! | [`CenterOfMass`] | position of the center of mass |
 //! | [`Energies`] | translational, rotational and potential energy per disk |
 //! | [`Temperatures`] | horizontal, vertical and rotational temperature |
+//! | [`OfKind`] | any of these, of disks of one kind |
 //! | [`from_fn`] | the result of a closure |
 //!
 //! | observer | keeps |
@@ -21,6 +22,7 @@
 //! | [`CollisionCounts`] | counts by partner and regime, and rates |
 //! | [`HeightProfile`] | packing fraction by height |
 //! | [`Fields`] | density, flow and temperatures on a grid |
+//! | [`OfKind`], [`BetweenKinds`] | what an observer keeps, of disks of one kind, of collisions between two |
 //! | [`on_collision`], [`on_sample`] | whatever a closure keeps |
 //! | [`stop_when`], [`stop_when_sampled`] | nothing: they stop the run when a closure says so |
 //!
@@ -64,6 +66,7 @@
 //! bits as in a run without interruption. JSON keeps the bits if its reader rounds correctly (serde_json's
 //! `float_roundtrip`).
 
+mod by_kind;
 mod center_of_mass;
 mod collision_counts;
 mod collision_event;
@@ -85,6 +88,7 @@ mod snapshot;
 mod stop;
 mod temperatures;
 
+pub use by_kind::{BetweenKinds, OfKind};
 pub use center_of_mass::CenterOfMass;
 pub use collision_counts::CollisionCounts;
 pub use collision_event::{Collision, Partner};

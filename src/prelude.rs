@@ -5,14 +5,15 @@
 
 pub use crate::boundary::{Boundary, Container, Domain, Region, Response, Surface, Thermal, Touch, Wall};
 pub use crate::collision::{
-    CollisionRule, Contact, ContactDuration, Elastic, Friction, Frictional, Impulse, Regime, Rough, Smooth,
+    CollisionRule, Contact, ContactDuration, Elastic, Friction, Frictional, Impulse, Regime, Rough,
+    RulesByKind, Smooth,
 };
 pub use crate::glam::DVec2;
 pub use crate::initial;
 pub use crate::observable::{
-    CenterOfMass, Collision, CollisionCounts, Energies, EnergyChange, Moment, Observable, Observer,
-    OrderParameters, Partner, SampleTimes, Series, Snapshot, Temperatures, Verdict, on_collision, on_sample,
-    stop_when,
+    BetweenKinds, CenterOfMass, Collision, CollisionCounts, Energies, EnergyChange, Moment, Observable,
+    Observer, OfKind, OrderParameters, Partner, SampleTimes, Series, Snapshot, Temperatures, Verdict,
+    on_collision, on_sample, stop_when,
 };
 pub use crate::scheduler::EventScheduler;
 pub use crate::simulation::{
@@ -22,4 +23,4 @@ pub use crate::statistics::Estimate;
 pub use crate::wall::{
     AccelerationBounds, BiParabolic, Fixed, Sawtooth, Sinusoidal, Triangular, WallMotion, WallState,
 };
-pub use crate::{Disk, Fingerprint, Flight, ParameterError};
+pub use crate::{Disk, Fingerprint, Flight, Kind, ParameterError};

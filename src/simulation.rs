@@ -94,7 +94,7 @@ pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     generator: Xoshiro256PlusPlus,
     counters: Counters,
     lookahead: Lookahead,
-    /// What predictions may use; the bits do not depend on it.
+    /// Instructions that predictions may use; the bits do not depend on them.
     instructions: Instructions,
     scratch: Scratch,
 }

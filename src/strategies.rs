@@ -45,7 +45,7 @@ use crate::boundary::{Container, Thermal, Wall};
 use crate::collision::{CollisionRule, Contact, Elastic, collide};
 use crate::simulation::BuildError;
 use crate::wall::{BiParabolic, Sinusoidal};
-use crate::{Disk, Simulation, initial};
+use crate::{Disk, Kind, Simulation, initial};
 
 /// Returns positive numbers, spread evenly over the decades from `$10^\text{low}$` to `$10^\text{high}$`.
 ///
@@ -92,7 +92,8 @@ pub fn direction() -> impl Strategy<Value = DVec2> {
 
 /// Returns contacts as a rule sees them: they close, and the partners have never collided before.
 ///
-/// The tangential mass is at most the normal one, and can be a thousandth of it.
+/// The tangential mass is at most the normal one, and can be a thousandth of it. The partners are of the
+/// kinds 0 to 2, or one is a wall.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Elastic, laws};
@@ -112,7 +113,17 @@ pub fn contact() -> impl Strategy<Value = Contact> {
         decades(-12.0, 12.0),
         prop_oneof![4 => decades(-3.0, 0.0), 1 => Just(1.0 / 3.0)],
     )
-        .prop_map(|(closing, slip, mass, ratio)| Contact::new(closing, slip, mass, (mass * ratio).min(mass)))
+        .prop_flat_map(|(closing, slip, mass, ratio)| {
+            let contact = Contact::new(closing, slip, mass, (mass * ratio).min(mass));
+            partners().prop_map(move |(kinds, radii)| contact.with_kinds(kinds).with_radii(radii))
+        })
+}
+
+/// Returns the kinds and radii of two disks, or of a disk and a wall.
+fn partners() -> impl Strategy<Value = ([Kind; 2], [f64; 2])> {
+    let disk = || ((0..3_u16).prop_map(Kind::new), decades(-6.0, 6.0));
+    let other = prop_oneof![3 => disk(), 1 => (Just(Kind::WALL), Just(f64::INFINITY))];
+    (disk(), other).prop_map(|(disk, other)| ([disk.0, other.0], [disk.1, other.1]))
 }
 
 fn closing_speed() -> impl Strategy<Value = f64> {

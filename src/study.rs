@@ -144,8 +144,9 @@ impl<E: Experiment> Study<E> {
         Ok(study)
     }
 
-    /// Does as [`Self::open_or_create`] with a plan whose experiments have not been tried: they are, unless they were when the
-    /// same plan was put into the folder. In large studies that takes seconds, and each of many processes would do it.
+    /// Does as [`Self::open_or_create`] with a plan whose experiments have not been tried: they are, unless
+    /// they were when the same plan was put into the folder. In large studies that takes seconds, and each
+    /// of many processes would do it.
     #[cfg(feature = "cli")]
     fn open_or_create_unproven(folder: &Path, plan: Plan<E>) -> Result<Self, StudyError> {
         let known = Folder::new(folder)?;
@@ -220,7 +221,7 @@ impl<E: Experiment> Study<E> {
     }
 }
 
-/// How far a ramp is.
+/// Progress of a ramp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RampStatus {

@@ -173,7 +173,8 @@ fn two_digits_of_the_error_are_printed() {
     assert_eq!(printed(1e4), "10 ± 224 (independent samples)");
 }
 
-/// Estimates of the halves, quarters, … of one series together are that of the whole; their scatter over seeds is their error.
+/// Estimates of the halves, quarters, … of one series together are that of the whole; their scatter over
+/// seeds is their error.
 #[test]
 fn the_error_of_repeats_together_is_that_of_one_long_run() {
     for repeats in [1, 2, 4, 16] {

@@ -14,12 +14,12 @@ use super::{Boundary, Domain, Region, Surface, Thermal, Touch};
 use crate::collision::CollisionRule;
 use crate::quantity::positive;
 use crate::wall::{WallMotion, laws};
-use crate::{Fingerprint, Flight, ParameterError};
+use crate::{Fingerprint, Flight, Kind, ParameterError};
 
 /// A rectangular container with its lower left corner at the origin: the paper's box and its relatives.
 ///
 /// All walls are fixed at first, and follow the rule of the disks. Each wall can be given a motion along its
-/// normal (which points inward), its own rule, or a temperature.
+/// normal (which points inward), its own rule, a temperature, or a kind.
 ///
 /// ```
 /// use granular_edmd::boundary::{Boundary, Container, Thermal, Wall};
@@ -75,12 +75,46 @@ impl Container {
         Ok(container)
     }
 
+    /// Creates a container without walls: a disk that leaves on one side enters on the other, and so above
+    /// and below.
+    ///
+    /// # Errors
+    /// If the width or the height is not finite and positive.
+    ///
+    /// ```
+    /// use granular_edmd::boundary::{Boundary, Container};
+    /// let container = Container::periodic(20.0, 30.0)?;
+    /// assert_eq!(container.wall_count(), 0);
+    /// assert!(container.domain().periodic_sides && container.domain().periodic_ends);
+    /// # Ok::<(), granular_edmd::ParameterError>(())
+    /// ```
+    pub fn periodic(width: f64, height: f64) -> Result<Self, ParameterError> {
+        let width = positive("width", width)?;
+        let height = positive("height", height)?;
+        Ok(Self { width, height, walls: Vec::new(), planes: Vec::new() })
+    }
+
     /// Returns the same container with periodic sides: a disk that leaves on one side enters on the other.
     pub fn with_periodic_sides(mut self) -> Self {
         for wall in [Wall::Left, Wall::Right] {
             self.remove(wall);
         }
         self
+    }
+
+    /// Returns the same container with periodic ends: a disk that leaves above enters below, and the other
+    /// way. Gravity then drives the disks on and on, as in a pipe.
+    ///
+    /// # Errors
+    /// If the container is open above.
+    pub fn with_periodic_ends(mut self) -> Result<Self, WallError> {
+        if self.height.is_infinite() {
+            return Err(WallError::Missing { wall: Wall::Lid });
+        }
+        for wall in [Wall::Floor, Wall::Lid] {
+            self.remove(wall);
+        }
+        Ok(self)
     }
 
     /// Returns the same container with a wall that moves along its normal. The normal points inward.
@@ -118,6 +152,15 @@ impl Container {
     /// If the container has no such wall.
     pub fn with_temperature(mut self, wall: Wall, thermal: Thermal) -> Result<Self, WallError> {
         self.plane_mut(wall)?.set_conduct(Conduct::Thermal(thermal));
+        Ok(self)
+    }
+
+    /// Returns the same container with a wall of this kind, which rules find in the contact.
+    ///
+    /// # Errors
+    /// If the container has no such wall.
+    pub fn with_kind(mut self, wall: Wall, kind: Kind) -> Result<Self, WallError> {
+        self.plane_mut(wall)?.set_kind(kind);
         Ok(self)
     }
 
@@ -165,9 +208,10 @@ impl Container {
 }
 
 impl Container {
-    /// Makes the sides of a rectangle periodic if the container's sides are periodic.
+    /// Makes a rectangle periodic where the container has no walls.
     fn with_sides(&self, domain: Domain) -> Domain {
-        if self.index(Wall::Left).is_none() { domain.with_periodic_sides() } else { domain }
+        let domain = if self.index(Wall::Left).is_none() { domain.with_periodic_sides() } else { domain };
+        if self.index(Wall::Floor).is_none() { domain.with_periodic_ends() } else { domain }
     }
 }
 

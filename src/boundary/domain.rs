@@ -2,7 +2,10 @@
 
 use glam::DVec2;
 
-/// The rectangle that holds the centers of all disks. Its left and right sides may be the same line.
+use crate::Disk;
+
+/// The rectangle that holds the centers of all disks. Its left and right sides may be the same line, and so
+/// may its ends above and below.
 ///
 /// ```
 /// use granular_edmd::boundary::Domain;
@@ -24,20 +27,29 @@ pub struct Domain {
     /// Upper end; infinite without a lid.
     pub top: f64,
     /// True if a disk that leaves on one side enters on the other.
-    pub periodic: bool,
+    pub periodic_sides: bool,
+    /// True if a disk that leaves above enters below, and the other way.
+    pub periodic_ends: bool,
 }
 
 impl Domain {
     /// Creates a rectangle with walls at its sides; the top may be infinite.
     #[inline]
     pub const fn new(left: f64, right: f64, bottom: f64, top: f64) -> Self {
-        Self { left, right, bottom, top, periodic: false }
+        Self { left, right, bottom, top, periodic_sides: false, periodic_ends: false }
     }
 
     /// Returns the same rectangle with periodic sides: a disk that leaves on one side enters on the other.
     #[must_use]
     pub const fn with_periodic_sides(self) -> Self {
-        Self { periodic: true, ..self }
+        Self { periodic_sides: true, ..self }
+    }
+
+    /// Returns the same rectangle with periodic ends: a disk that leaves above enters below, and the other
+    /// way.
+    #[must_use]
+    pub const fn with_periodic_ends(self) -> Self {
+        Self { periodic_ends: true, ..self }
     }
 
     /// Returns the width, `$L_x$`.
@@ -50,13 +62,52 @@ impl Domain {
         self.top - self.bottom
     }
 
-    /// Returns the vector from `from` to `to`, by the shortest way if the sides are periodic.
+    /// Returns the width and the height after which the rectangle repeats itself; 0 where it does not.
+    #[inline]
+    pub fn periods(&self) -> DVec2 {
+        let width = if self.periodic_sides { self.width() } else { 0.0 };
+        DVec2::new(width, if self.periodic_ends { self.height() } else { 0.0 })
+    }
+
+    /// Returns the vector from `from` to `to`, by the shortest way where the rectangle is periodic.
     pub fn separation(&self, from: DVec2, to: DVec2) -> DVec2 {
         let mut separation = to - from;
-        if self.periodic {
+        if self.periodic_sides {
             separation.x -= self.width() * (separation.x / self.width()).round();
         }
+        if self.periodic_ends {
+            separation.y -= self.height() * (separation.y / self.height()).round();
+        }
         separation
+    }
+
+    /// Returns the same place in the rectangle, where it is periodic.
+    pub(crate) fn wrapped(&self, place: DVec2) -> DVec2 {
+        let mut place = place;
+        if self.periodic_sides {
+            place.x = self.left + (place.x - self.left).rem_euclid(self.width());
+        }
+        if self.periodic_ends {
+            place.y = self.bottom + (place.y - self.bottom).rem_euclid(self.height());
+        }
+        place
+    }
+
+    /// Returns the unwrapped position of a disk: where it would be if it had not been taken back at
+    /// periodic sides and ends. Displacements are differences of these.
+    ///
+    /// ```
+    /// use granular_edmd::Disk;
+    /// use granular_edmd::boundary::Domain;
+    /// use granular_edmd::glam::DVec2;
+    /// let domain = Domain::new(0.0, 10.0, 0.0, 5.0).with_periodic_sides();
+    /// let disk = Disk::new(DVec2::new(1.0, 2.0), 0.5)?.with_image([3, 0]);
+    /// assert_eq!(domain.unwrapped(&disk), DVec2::new(31.0, 2.0));
+    /// # Ok::<(), granular_edmd::ParameterError>(())
+    /// ```
+    pub fn unwrapped(&self, disk: &Disk) -> DVec2 {
+        let [right, up] = disk.image();
+        disk.position() + self.periods() * DVec2::new(f64::from(right), f64::from(up))
     }
 }
 

@@ -90,7 +90,8 @@ fn check_rectangles(domain: &Domain, interior: &Domain) -> Result<(), Violation>
         && interior.right <= domain.right
         && domain.bottom <= interior.bottom
         && interior.top <= domain.top
-        && domain.periodic == interior.periodic;
+        && domain.periodic_sides == interior.periodic_sides
+        && domain.periodic_ends == interior.periodic_ends;
     if is_inside { Ok(()) } else { Err(Violation::Interior { interior: *interior, domain: *domain }) }
 }
 

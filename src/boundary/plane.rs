@@ -9,7 +9,7 @@ use super::Region;
 use super::surface::{Response, Surface, Thermal};
 use crate::collision::CollisionRule;
 use crate::wall::{Approach, Fixed, WallMotion, first_touch};
-use crate::{Fingerprint, Flight};
+use crate::{Fingerprint, Flight, Kind};
 
 /// A straight wall: the disks stay on one side of a line.
 #[derive(Clone)]
@@ -22,6 +22,7 @@ pub(super) struct Plane {
     /// Upper end of the motion's reach.
     highest: f64,
     conduct: Conduct,
+    kind: Kind,
     /// Phase of the motion at the time origin.
     phase: f64,
 }
@@ -47,7 +48,8 @@ impl fmt::Debug for Plane {
 
 impl Plane {
     pub(super) fn new(normal: DVec2, place: f64) -> Self {
-        Self { normal, place, motion: Arc::new(Fixed), highest: 0.0, conduct: Conduct::Shared, phase: 0.0 }
+        let (motion, conduct, kind) = (Arc::new(Fixed), Conduct::Shared, Kind::WALL);
+        Self { normal, place, motion, highest: 0.0, conduct, kind, phase: 0.0 }
     }
 
     pub(super) fn set_motion(&mut self, motion: Arc<dyn WallMotion + Send + Sync>) {
@@ -57,6 +59,10 @@ impl Plane {
 
     pub(super) fn set_conduct(&mut self, conduct: Conduct) {
         self.conduct = conduct;
+    }
+
+    pub(super) fn set_kind(&mut self, kind: Kind) {
+        self.kind = kind;
     }
 
     pub(super) fn set_time_origin(&mut self, origin: f64) {
@@ -111,7 +117,7 @@ impl Plane {
             Conduct::Thermal(thermal) => Response::Thermal(*thermal),
         };
         let velocity = self.normal * self.motion.state(time + self.phase).velocity;
-        Surface::new(self.normal, velocity).with_response(response)
+        Surface::new(self.normal, velocity).with_response(response).with_kind(self.kind)
     }
 
     /// Tells whether a disk is so near that it overlaps the wall at some time of the motion.
@@ -129,7 +135,8 @@ impl Plane {
     /// Returns the fingerprint of motion and response, if both have one. The container adds the place of the
     /// wall.
     pub(super) fn fingerprint(&self) -> Option<Fingerprint> {
-        let plane = Fingerprint::of("Plane").part(self.motion.fingerprint()?);
+        let kind = f64::from(self.kind.number());
+        let plane = Fingerprint::of("Plane").part(self.motion.fingerprint()?).number(kind);
         Some(plane.part(match &self.conduct {
             Conduct::Shared => Fingerprint::of("Shared"),
             Conduct::Rule(rule) => Fingerprint::of("Rule").part(rule.fingerprint()?),

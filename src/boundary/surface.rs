@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use crate::collision::CollisionRule;
 use crate::quantity::{Checked, Quantity, Range};
-use crate::{Fingerprint, ParameterError};
+use crate::{Fingerprint, Kind, ParameterError};
 
 /// The surface of a wall at the point of a touch.
 ///
@@ -28,13 +28,16 @@ pub struct Surface<'a> {
     pub velocity: DVec2,
     /// Response to the touch.
     pub response: Response<'a>,
+    /// Kind of the wall, which rules find in the contact.
+    pub kind: Kind,
 }
 
 impl<'a> Surface<'a> {
-    /// Creates a surface with this unit normal and this velocity, under the rule of the disks.
+    /// Creates a surface with this unit normal and this velocity, under the rule of the disks and of
+    /// [`Kind::WALL`].
     #[inline]
     pub const fn new(normal: DVec2, velocity: DVec2) -> Self {
-        Self { normal, velocity, response: Response::Shared }
+        Self { normal, velocity, response: Response::Shared, kind: Kind::WALL }
     }
 
     /// Returns the same surface with another response.
@@ -42,6 +45,13 @@ impl<'a> Surface<'a> {
     #[inline]
     pub const fn with_response(self, response: Response<'a>) -> Self {
         Self { response, ..self }
+    }
+
+    /// Returns the same surface of another kind.
+    #[must_use]
+    #[inline]
+    pub const fn with_kind(self, kind: Kind) -> Self {
+        Self { kind, ..self }
     }
 }
 

@@ -3,23 +3,26 @@
 use glam::DVec2;
 
 use super::{CollisionRule, Contact, Impulse};
-use crate::Disk;
+use crate::{Disk, Kind};
 
-/// The constant properties of a body in a collision: how far its surface is, and how it resists.
+/// The constant properties of a body in a collision: its kind, how far its surface is, and how it resists.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Material {
+    /// Distance from the center, about which the body turns, to the surface; 0 for a wall.
     pub(crate) radius: f64,
     pub(crate) inverse_mass: f64,
     /// Velocity of the contact point per tangential impulse, `$(1 + 1/\beta)/m$`.
     tangential_compliance: f64,
     /// Angular velocity per tangential impulse, `$1/(\beta m R)$`.
     spin_response: f64,
+    pub(crate) kind: Kind,
 }
 
 impl Material {
-    /// A wall, which takes any impulse and does not change its motion.
-    pub(crate) const WALL: Self =
-        Self { radius: 0.0, inverse_mass: 0.0, tangential_compliance: 0.0, spin_response: 0.0 };
+    /// Returns that of a wall, which takes any impulse and does not change its motion.
+    pub(crate) const fn of_wall(kind: Kind) -> Self {
+        Self { radius: 0.0, inverse_mass: 0.0, tangential_compliance: 0.0, spin_response: 0.0, kind }
+    }
 
     pub(crate) fn of(disk: &Disk) -> Self {
         let (mass, factor) = (disk.mass(), disk.inertia_factor());
@@ -28,7 +31,14 @@ impl Material {
             inverse_mass: 1.0 / mass,
             tangential_compliance: (1.0 + 1.0 / factor) / mass,
             spin_response: 1.0 / (factor * mass * disk.radius()),
+            kind: disk.kind(),
         }
+    }
+
+    /// Returns the radius of the surface; infinite for a wall.
+    #[inline]
+    fn radius_of_curvature(&self) -> f64 {
+        if self.radius > 0.0 { self.radius } else { f64::INFINITY }
     }
 }
 
@@ -60,6 +70,8 @@ fn contact(normal: DVec2, first: (&Body, &Material), second: (&Body, &Material))
         1.0 / (first.1.tangential_compliance + second.1.tangential_compliance),
     );
     Contact::new(closing, approach.dot(normal.perp()) + surface, normal_mass, tangential_mass)
+        .with_kinds([first.1.kind, second.1.kind])
+        .with_radii([first.1, second.1].map(Material::radius_of_curvature))
 }
 
 /// Returns `body` after an impulse along the normal and its perpendicular. Both partners of a collision turn

@@ -2,13 +2,18 @@
 
 use std::fmt;
 
-/// A contact of two surfaces: how fast they close and slip, and the masses that resist.
+use crate::Kind;
+
+/// A contact of two surfaces: how fast they close and slip, the masses that resist, and what the partners
+/// are.
 ///
 /// With `$\hat n$` from partner 2 to partner 1 and `$\vec v = \vec v_{C2} - \vec v_{C1}$` the relative
 /// velocity of the points in contact, the closing speed is `$v_n = \vec v\cdot\hat n$` and the slip speed
 /// `$v_t = \vec v\cdot\hat t$`. An impulse `$\Delta_n$` changes `$v_n$` by `$-\Delta_n/\mu$`, and
 /// `$\Delta_t$` changes `$v_t$` by `$-\Delta_t/\mu_t$`, where `$1/\mu = \sum 1/m_i$` and
 /// `$1/\mu_t = \sum (1 + 1/\beta_i)/m_i$` (for homogeneous disks `$\mu_t = \mu/3$`).
+///
+/// A wall is a partner of infinite mass and infinite radius.
 ///
 /// ```
 /// use granular_edmd::collision::Contact;
@@ -23,10 +28,13 @@ pub struct Contact {
     normal_mass: f64,
     tangential_mass: f64,
     time_since_last_collision: f64,
+    kinds: [Kind; 2],
+    radii: [f64; 2],
 }
 
 impl Contact {
-    /// Creates a contact of partners that have never collided before.
+    /// Creates a contact of partners that have never collided before: disks of radius 1/2 and of the
+    /// default kind.
     #[inline]
     pub const fn new(closing_speed: f64, slip_speed: f64, normal_mass: f64, tangential_mass: f64) -> Self {
         Self {
@@ -35,6 +43,8 @@ impl Contact {
             normal_mass,
             tangential_mass,
             time_since_last_collision: f64::INFINITY,
+            kinds: [Kind::DEFAULT; 2],
+            radii: [0.5; 2],
         }
     }
 
@@ -42,6 +52,18 @@ impl Contact {
     #[inline]
     pub const fn with_time_since_last_collision(self, time: f64) -> Self {
         Self { time_since_last_collision: time, ..self }
+    }
+
+    /// Returns the same contact between partners of these kinds.
+    #[inline]
+    pub const fn with_kinds(self, kinds: [Kind; 2]) -> Self {
+        Self { kinds, ..self }
+    }
+
+    /// Returns the same contact between partners of these radii; infinite for a wall.
+    #[inline]
+    pub const fn with_radii(self, radii: [f64; 2]) -> Self {
+        Self { radii, ..self }
     }
 
     /// Returns the speed `$v_n$` at which the surfaces approach, positive in a collision.
@@ -74,6 +96,42 @@ impl Contact {
         self.time_since_last_collision
     }
 
+    /// Returns the kinds of both partners.
+    #[inline]
+    pub const fn kinds(&self) -> [Kind; 2] {
+        self.kinds
+    }
+
+    /// Tells whether one partner is of the first kind and the other of the second.
+    #[inline]
+    pub fn is_between(&self, first: Kind, second: Kind) -> bool {
+        self.kinds == [first, second] || self.kinds == [second, first]
+    }
+
+    /// Returns the radii of both partners; that of a wall is infinite.
+    #[inline]
+    pub const fn radii(&self) -> [f64; 2] {
+        self.radii
+    }
+
+    /// Returns the effective radius, `$R_\text{eff} = R_1R_2/(R_1 + R_2)$`; at a wall, it is the radius of
+    /// the disk.
+    ///
+    /// The laws of Hertz for elastic and viscoelastic grains need it.
+    ///
+    /// ```
+    /// use granular_edmd::collision::Contact;
+    /// let contact = Contact::new(2.0, 0.0, 0.5, 0.5 / 3.0);
+    /// assert_eq!(contact.effective_radius(), 0.25);
+    /// assert_eq!(contact.with_radii([0.5, f64::INFINITY]).effective_radius(), 0.5);
+    /// ```
+    #[inline]
+    pub const fn effective_radius(&self) -> f64 {
+        let [first, second] = self.radii;
+        // The form is the same for either order of the partners, and has a limit for a wall.
+        if first < second { first / (1.0 + first / second) } else { second / (1.0 + second / first) }
+    }
+
     /// Returns the normal impulse of a restitution `$r_n$`: `$\Delta_n = (1 + r_n)\,\mu\,v_n$` (paper, Eqs.
     /// (1), (3)).
     ///
@@ -93,12 +151,13 @@ impl Contact {
 
 impl fmt::Display for Contact {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { closing_speed, slip_speed, normal_mass, tangential_mass, time_since_last_collision } =
-            self;
+        let Self { closing_speed, slip_speed, normal_mass, tangential_mass, .. } = self;
+        let (since, [first, second], [one, other]) = (self.time_since_last_collision, self.radii, self.kinds);
         write!(
             formatter,
             "closing speed {closing_speed:?}, slip speed {slip_speed:?}, normal mass {normal_mass:?}, \
-             tangential mass {tangential_mass:?}, time since the last collision {time_since_last_collision:?}"
+             tangential mass {tangential_mass:?}, time since the last collision {since:?}, \
+             radii {first:?} and {second:?}, kinds {one} and {other}"
         )
     }
 }

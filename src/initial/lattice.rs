@@ -2,16 +2,10 @@
 
 use glam::DVec2;
 
-use super::{PlacementError, countable, room};
+use super::{PlacementError, countable, room, spacings};
 use crate::boundary::{Boundary, Domain};
 use crate::quantity::positive;
 use crate::{Disk, ParameterError};
-
-/// Least distance of neighbors, in diameters.
-const CLOSE: f64 = 1.000_1;
-
-/// Largest distance of neighbors, in diameters.
-const LOOSE: f64 = 1.4;
 
 /// Returns `count` equal disks at rest on a square lattice in the lower part of the boundary, row by row from
 /// the floor up and from left to right.
@@ -38,9 +32,8 @@ pub fn lattice<B: Boundary + ?Sized>(
     positive("radius", radius)?;
     countable(count)?;
     let room = room(&boundary.interior(), radius);
-    let spacings = (0..=40).map(|k| LOOSE + (CLOSE - LOOSE) * f64::from(k) / 40.0);
     let mut most = 0;
-    for spacing in spacings {
+    for spacing in spacings() {
         let sites = sites(&room, 2.0 * radius * spacing, count);
         let disks = free_disks(boundary, sites, radius, count)?;
         if disks.len() == count {
@@ -54,11 +47,14 @@ pub fn lattice<B: Boundary + ?Sized>(
 /// Returns the sites of a square lattice with at least this spacing, row by row from the bottom.
 fn sites(room: &Domain, spacing: f64, count: usize) -> impl Iterator<Item = DVec2> {
     let intervals = (room.width() / spacing).floor().max(0.0);
-    let columns = if room.periodic { intervals } else { intervals + 1.0 };
+    let columns = if room.periodic_sides { intervals } else { intervals + 1.0 };
     let columns = if room.width() < 0.0 { 0.0 } else { columns };
     let pitch = if intervals > 0.0 { room.width() / intervals } else { 0.0 };
-    let rows = ((room.top - room.bottom) / spacing).floor() + 1.0;
-    let rows = rows.clamp(0.0, (count as f64 / columns.max(1.0)).ceil() + 8.0);
+    let rows = ((room.top - room.bottom) / spacing).floor();
+    // At periodic ends, a row at the top would be the first one again.
+    let rows = if room.periodic_ends { rows } else { rows + 1.0 };
+    // Under an open top the rows must end somewhere; obstacles may take many of them.
+    let rows = rows.clamp(0.0, 4.0 * (count as f64 / columns.max(1.0)).ceil() + 100.0);
     let (left, bottom) = (room.left, room.bottom);
     let spots = (0..rows as u64).flat_map(move |row| (0..columns as u64).map(move |column| (row, column)));
     spots.map(move |(row, column)| DVec2::new(left + column as f64 * pitch, bottom + row as f64 * spacing))

@@ -1,11 +1,10 @@
 //! Disks at random places.
 
-use std::collections::HashMap;
-
 use glam::DVec2;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use super::bins::Bins;
 use super::{PlacementError, countable, room};
 use crate::Disk;
 use crate::boundary::{Boundary, Domain};
@@ -77,8 +76,9 @@ pub fn placed_at_random<B: Boundary + ?Sized>(
     let mut bins = Bins::new(&boundary.domain(), 2.0 * largest, disks.len());
     let (count, mut placed) = (disks.len(), Vec::with_capacity(disks.len()));
     for disk in disks {
-        let trial = (0..TRIALS).find_map(|_| {
-            let site = random_site(&boundary.interior(), disk.radius(), below, &mut generator);
+        let room = room_below(&boundary.interior(), disk.radius(), below);
+        let trial = room.iter().flat_map(|room| std::iter::repeat_n(room, TRIALS)).find_map(|room| {
+            let site = random_site(room, &mut generator);
             let inside = boundary.overlap(site, disk.radius(), 0.0).is_none();
             (inside && bins.is_free(site, disk.radius(), &placed)).then_some(site)
         });
@@ -91,49 +91,23 @@ pub fn placed_at_random<B: Boundary + ?Sized>(
     Ok(placed)
 }
 
-/// Returns a random place in the interior, such that the disk's edge is below the height `below`.
-fn random_site(interior: &Domain, radius: f64, below: f64, generator: &mut Xoshiro256PlusPlus) -> DVec2 {
-    let room = room(interior, radius);
-    let top = room.top.min(below - radius);
+/// Returns the rectangle for the center of a disk whose edge is below the height `below`; `None` if the
+/// disk is too large, also for its own image at periodic sides or ends.
+fn room_below(interior: &Domain, radius: f64, below: f64) -> Option<Domain> {
+    let whole = room(interior, radius);
+    let is_cut = below < interior.top;
+    // Below a height, the ends are no longer periodic.
+    let bottom = if is_cut { interior.bottom + radius } else { whole.bottom };
+    let room = Domain { bottom, top: whole.top.min(below - if is_cut { radius } else { 0.0 }), ..whole };
+    let fits = |period: f64| period == 0.0 || 2.0 * radius <= period;
+    let DVec2 { x, y } = interior.periods();
+    (room.width() >= 0.0 && room.height() >= 0.0 && fits(x) && fits(y)).then_some(room)
+}
+
+/// Returns a random place in a rectangle.
+fn random_site(room: &Domain, generator: &mut Xoshiro256PlusPlus) -> DVec2 {
     DVec2::new(
         room.left + room.width() * uniform(generator),
-        room.bottom + (top - room.bottom).max(0.0) * uniform(generator),
+        room.bottom + room.height() * uniform(generator),
     )
-}
-
-/// Square bins for finding the disks near a place.
-struct Bins {
-    domain: Domain,
-    size: f64,
-    columns: usize,
-    disks: HashMap<(usize, i64), Vec<usize>>,
-}
-
-impl Bins {
-    fn new(domain: &Domain, diameter: f64, count: usize) -> Self {
-        let finest = domain.width() / (4 * count + 4) as f64;
-        let columns = (domain.width() / diameter.max(finest)).floor().max(1.0);
-        let size = domain.width() / columns;
-        Self { domain: *domain, size, columns: columns as usize, disks: HashMap::new() }
-    }
-
-    fn bin(&self, site: DVec2) -> (usize, i64) {
-        let column = ((site.x - self.domain.left) / self.size).floor().max(0.0) as usize;
-        (column.min(self.columns - 1), ((site.y - self.domain.bottom) / self.size).floor() as i64)
-    }
-
-    fn add(&mut self, site: DVec2, disk: usize) {
-        self.disks.entry(self.bin(site)).or_default().push(disk);
-    }
-
-    fn is_free(&self, site: DVec2, radius: f64, placed: &[Disk]) -> bool {
-        let (column, row) = self.bin(site);
-        let columns = [column + self.columns - 1, column, column + 1].map(|c| c % self.columns);
-        let rows = [row.saturating_sub(1), row, row.saturating_add(1)];
-        let near = columns.into_iter().flat_map(|c| rows.map(|r| (c, r)));
-        near.filter_map(|bin| self.disks.get(&bin)).flatten().all(|&other| {
-            let contact = radius + placed[other].radius();
-            self.domain.separation(site, placed[other].position()).length_squared() > contact * contact
-        })
-    }
 }

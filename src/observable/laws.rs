@@ -53,7 +53,7 @@ const SAMPLES: usize = 50;
 /// Number of disks in the script.
 const DISKS: usize = 3;
 const WALLS: usize = 4;
-const DOMAIN: Domain = Domain { left: 0.0, right: 10.0, bottom: 0.0, top: 10.0, periodic: false };
+const DOMAIN: Domain = Domain::new(0.0, 10.0, 0.0, 10.0);
 const GRAVITY: f64 = 1.0;
 
 /// Rounding of a start time, relative to it.

@@ -38,6 +38,12 @@ impl<'a> Snapshot<'a> {
         self.gravity
     }
 
+    /// Returns a snapshot of other disks, such as a choice of these, in the same place at the same time.
+    #[must_use]
+    pub const fn with_disks<'b>(&self, disks: &'b [Disk]) -> Snapshot<'b> {
+        Snapshot { time: self.time, disks, domain: self.domain, gravity: self.gravity }
+    }
+
     /// Returns the mean of a quantity over the disks; NaN without disks.
     pub fn mean(&self, quantity: impl Fn(&Disk) -> f64) -> f64 {
         self.disks.iter().map(quantity).sum::<f64>() / self.disks.len() as f64

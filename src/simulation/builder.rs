@@ -176,7 +176,8 @@ fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells
     let domain = boundary.domain();
     // Any cells will do without disks.
     let diameter = if diameter > 0.0 { diameter } else { 0.125 * domain.width() };
-    if !(domain.width().is_finite() && domain.bottom.is_finite()) {
+    let is_bounded = domain.width().is_finite() && domain.bottom.is_finite();
+    if !is_bounded || (domain.periodic_ends && !domain.height().is_finite()) {
         return Err(BuildError::Domain { domain });
     }
     // Walls that pass through each other leave no room for disks.
@@ -222,12 +223,15 @@ fn check_overlaps<B: Boundary + ?Sized>(
     let mut found = vec![0; cells.room()];
     for first in 0..disks.len() {
         let count = cells.around(first, &mut found);
-        for &second in found[..count].iter().filter(|&&second| (second as usize) < first) {
+        // A large disk does not look into itself: a small one inside must find it.
+        let is_asked = |second: usize| second < first || (second > first && cells.is_large(second));
+        for &second in found[..count].iter().filter(|&&second| is_asked(second as usize)) {
             let (a, b) = (&disks[second as usize], &disks[first]);
             let contact = a.radius() + b.radius();
             let depth = contact - domain.separation(a.position(), b.position()).length();
             if depth > TOUCHING * contact {
-                return Err(BuildError::Overlap { first: second as usize, second: first, depth });
+                let (second, first) = (first.max(second as usize), first.min(second as usize));
+                return Err(BuildError::Overlap { first, second, depth });
             }
         }
     }

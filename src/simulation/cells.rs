@@ -3,9 +3,13 @@
 mod block;
 mod cell_size;
 mod contents;
+mod cost;
+mod crowd;
+mod edges;
 mod grid;
 mod layer;
 mod layers;
+mod prefetching;
 mod reach;
 mod size_class;
 
@@ -13,9 +17,10 @@ use glam::DVec2;
 
 use super::state::Exit;
 use crate::boundary::{Boundary, Region};
-use crate::prefetch::prefetch;
 pub(super) use cell_size::CellSize;
 use contents::Contents;
+#[cfg(feature = "serde")]
+pub(super) use grid::FEWEST;
 pub(super) use grid::{CELLS_PER_DISK, Grid, Layout, Place, SPARE_CELLS};
 #[cfg(feature = "serde")]
 pub(super) use layers::Grids;
@@ -25,8 +30,9 @@ use size_class::classes;
 
 /// The disks in the cells of a grid.
 ///
-/// Ghosts are empty beyond walls; at periodic sides they mirror the cells of the opposite side. Where disks differ in size, the
-/// grid is that of the smallest class, and each larger class has a layer above it.
+/// Ghosts are empty beyond walls; at periodic sides and ends they mirror the cells of the opposite side.
+/// Where disks differ in size, the grid is that of the smallest class, and each larger class has a layer
+/// above it.
 #[derive(Debug, Clone)]
 pub(super) struct Cells {
     grid: Grid,
@@ -37,7 +43,8 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// Creates cells for disks at these positions, with these radii; `None` if the domain is too small for them.
+    /// Creates cells for disks at these positions, with these radii; `None` if the domain is too small for
+    /// them.
     pub(super) fn new<B: Boundary + ?Sized>(
         boundary: &B,
         cell_size: CellSize,
@@ -51,7 +58,7 @@ impl Cells {
         let largest = classes.last().map_or(0.125 * domain.width(), |class| class.largest);
         let most = CELLS_PER_DISK * disks.len() as f64 + SPARE_CELLS;
         let single = Layout::new(&domain, largest, cell_size, most, highest)?;
-        // Where the sides are periodic and too close, all disks share the cells of the largest.
+        // Where sides or ends are periodic and too close, all disks share the cells of the largest.
         let layered = if classes.len() > 1 { layouts(&domain, &classes, cell_size, highest) } else { None };
         let layouts = layered.unwrap_or(Layouts { smallest: single, larger: Vec::new() });
         let mut cells = Self::empty(boundary, &layouts, diameters)?;
@@ -83,7 +90,7 @@ impl Cells {
         let domain = boundary.domain();
         let classes = layouts.classes(&domain, diameters.clone())?;
         let grid = Grid::new(&domain, layouts.smallest, classes[0].largest);
-        let contents = Contents::empty(grid.len(), 1);
+        let contents = Contents::empty(grid.len());
         let layers = (!layouts.larger.is_empty()).then(|| {
             let mut layers = Layers::empty(&domain, &grid, &classes, &layouts.larger, diameters);
             layers.mark_walls(boundary, &classes);
@@ -143,9 +150,9 @@ impl Cells {
 
     /// Writes a disk into its cell, of whatever class it is.
     fn enter(&mut self, disk: usize) {
-        match self.layers.as_mut().and_then(|layers| layers.of_mut(disk)) {
+        match self.layers.as_mut().filter(|layers| layers.of(disk).is_some()) {
             None => self.enter_cell(disk),
-            Some(layer) => layer.enter(disk, self.places[disk]),
+            Some(layers) => layers.enter(disk, self.places[disk]),
         }
     }
 
@@ -154,8 +161,10 @@ impl Cells {
     fn enter_cell(&mut self, disk: usize) {
         let place = self.places[disk];
         self.contents.push(self.grid.index(place), disk);
-        if let Some(ghost) = self.grid.mirror(place) {
-            self.contents.push(self.grid.index(ghost), disk);
+        if self.grid.is_periodic() {
+            for ghost in self.grid.mirrors(place) {
+                self.contents.push(self.grid.index(ghost), disk);
+            }
         }
     }
 
@@ -164,60 +173,32 @@ impl Cells {
     fn leave(&mut self, disk: usize) {
         let place = self.places[disk];
         self.contents.remove(self.grid.index(place), disk);
-        if let Some(ghost) = self.grid.mirror(place) {
-            self.contents.remove(self.grid.index(ghost), disk);
+        if self.grid.is_periodic() {
+            for ghost in self.grid.mirrors(place) {
+                self.contents.remove(self.grid.index(ghost), disk);
+            }
         }
     }
 
-    /// Moves a disk to the cell that it enters by this exit. Returns the change of its `x` that goes with it.
+    /// Moves a disk to the cell that it enters by this exit. Returns the number of periods passed.
     #[inline]
-    pub(super) fn cross(&mut self, disk: usize, exit: Exit) -> f64 {
+    pub(super) fn cross(&mut self, disk: usize, exit: Exit) -> [i32; 2] {
         self.leave(disk);
-        let (place, shift) = self.grid.neighbor(self.places[disk], exit.direction());
+        let (place, passed) = self.grid.neighbor(self.places[disk], exit.direction());
         self.places[disk] = place;
         self.enter_cell(disk);
-        shift
+        passed
     }
 
     /// Does the same for a disk of a larger class.
-    pub(super) fn cross_large(&mut self, disk: usize, exit: Exit) -> f64 {
+    pub(super) fn cross_large(&mut self, disk: usize, exit: Exit) -> [i32; 2] {
         let from = self.places[disk];
-        let (to, shift) = self.grid_of(disk).neighbor(from, exit.direction());
-        if let Some(layer) = self.layers.as_mut().and_then(|layers| layers.of_mut(disk)) {
-            layer.cross(disk, from, to);
+        let (to, passed) = self.grid_of(disk).neighbor(from, exit.direction());
+        if let Some(layers) = &mut self.layers {
+            layers.cross(disk, from, to);
         }
         self.places[disk] = to;
-        shift
-    }
-
-    #[inline]
-    pub(super) fn prefetch_place(&self, disk: usize) {
-        prefetch(&self.places, disk);
-    }
-
-    /// Requests the nine cells around a disk from memory.
-    #[inline]
-    pub(super) fn prefetch_around(&self, disk: usize) {
-        if self.is_large(disk) {
-            return;
-        }
-        let (center, stride) = (self.grid.index(self.places[disk]), self.grid.stride());
-        for middle in [center - stride, center, center + stride] {
-            self.contents.prefetch(middle - 1);
-            self.contents.prefetch(middle + 1);
-        }
-    }
-
-    /// Requests from memory the cells that a disk leaves and enters by `exit`, and those that then come
-    /// within reach.
-    #[inline]
-    pub(super) fn prefetch_ahead(&self, disk: usize, exit: Exit) {
-        let (from, to) = (self.places[disk], self.next_place(disk, exit));
-        self.grid.prefetch_region(to);
-        let (first, step) = self.three_ahead(to, exit);
-        for cell in [self.grid.index(from), self.grid.index(to), first, first + step, first + 2 * step] {
-            self.contents.prefetch(cell);
-        }
+        passed
     }
 
     /// Returns the room that [`Self::around`] and [`Self::ahead`] need.
@@ -251,13 +232,20 @@ impl Cells {
 
     fn around_in_layers(&self, layers: &Layers, disk: usize, found: &mut [u32]) -> usize {
         let place = self.places[disk];
-        match layers.of(disk) {
-            None => {
-                let count = self.around_cell(place, found);
-                layers.gather_above(place, found, count)
-            }
-            Some(layer) => layers.gather_around(layer, &self.contents, place, found),
+        if layers.of(disk).is_some() {
+            return layers.gather(&self.contents, disk, place, None, found);
         }
+        let count = self.around_cell(place, found);
+        layers.gather_visitors(self.grid.index(place), found, count)
+    }
+
+    /// Writes the disks that come within reach of a disk of a larger class, after it came to its cell by
+    /// `exit`, to `found`, with some that were before. Returns their number.
+    pub(super) fn ahead_of_large(&self, disk: usize, exit: Exit, found: &mut [u32]) -> usize {
+        let Some(layers) = &self.layers else { return 0 };
+        let (place, (right, up)) = (self.places[disk], exit.direction());
+        let (before, _) = self.grid_of(disk).neighbor(place, (-right, -up));
+        layers.gather(&self.contents, disk, place, (!layers.is_narrow()).then_some(before), found)
     }
 
     /// Writes the disks that come within reach of a disk of the smallest class, after it came to its cell by
@@ -280,7 +268,7 @@ impl Cells {
         match &self.layers {
             None => count,
             // Which of the larger disks were within reach before is not worth finding out: they are few.
-            Some(layers) => layers.gather_above(place, found, count),
+            Some(layers) => layers.gather_visitors(self.grid.index(place), found, count),
         }
     }
 

@@ -27,7 +27,7 @@ use crate::scheduler::EventScheduler;
 use crate::{Disk, Fingerprint};
 
 /// The mark of a checkpoint, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 3 };
+const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 4 };
 
 /// Everything on which the future of a run depends, except its rule and its walls.
 ///
@@ -68,12 +68,13 @@ struct Saved {
     rule: Option<Fingerprint>,
     boundary: Option<Fingerprint>,
     domain: Domain,
-    /// Kinds of the disks: one for each disk, or one for all if they are alike. Each is at rest at the
-    /// origin.
-    kinds: Vec<Disk>,
+    /// Radius, mass, inertia and kind of each disk, or of all if they are alike: disks at rest at the origin.
+    models: Vec<Disk>,
     gravity: f64,
     trajectories: Vec<Trajectory>,
     spins: Vec<Spin>,
+    /// Numbers of periods that each disk has passed; empty if none has passed any.
+    images: Vec<[i32; 2]>,
     forecasts: Vec<Forecast>,
     layouts: Layouts,
     places: Vec<Place>,
@@ -256,10 +257,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             rule: self.rule.fingerprint(),
             boundary: self.boundary.fingerprint(),
             domain: self.boundary.domain(),
-            kinds: self.bodies.kinds(),
+            models: self.bodies.models(),
             gravity: self.bodies.gravity,
             trajectories: particles.iter().map(|particle| particle.trajectory).collect(),
             spins: self.bodies.spins.clone(),
+            images: self.bodies.images().to_vec(),
             forecasts: particles.iter().map(|particle| particle.forecast).collect(),
             layouts: self.cells.layouts(),
             places: self.cells.places.clone(),

@@ -67,7 +67,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             return;
         }
         let (bodies, now) = (&self.bodies, self.clock.now);
-        let disks = (0..bodies.len()).map(|disk| (bodies.position(disk, now), bodies.material(disk).radius));
+        let disks = (0..bodies.len()).map(|disk| (bodies.position(disk, now), bodies.radius(disk)));
         if let Some(cells) = Cells::new(&self.boundary, suitable, disks) {
             self.cells = cells;
             self.counters.cell_resizes += 1;

@@ -96,12 +96,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         partner: usize,
         observer: &mut O,
     ) -> Outcome<Event> {
-        let period = self.cells.grid().period();
-        let (collision, kicks) = resolve_pair(&self.bodies, &self.rule, period, &self.clock, disk, partner);
+        let periods = self.cells.grid().periods();
+        let (collision, kicks) = resolve_pair(&self.bodies, &self.rule, periods, &self.clock, disk, partner);
         if !(self.is_tame(&kicks[0]) & self.is_tame(&kicks[1])) {
             self.prepare_for_pair(disk, partner)?;
         }
-        let touching = self.bodies.material(disk).radius + self.bodies.material(partner).radius;
+        let touching = self.bodies.radius(disk) + self.bodies.radius(partner);
         self.counters.collisions += 1;
         self.counters.max_overlap = self.counters.max_overlap.max(touching - collision.distance);
         self.count_regime(&collision);
@@ -146,7 +146,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             };
             return Err(error.into());
         }
-        if let Some((_, depth)) = self.boundary.overlap(position, self.bodies.material(disk).radius, now) {
+        if let Some((_, depth)) = self.boundary.overlap(position, self.bodies.radius(disk), now) {
             self.counters.max_wall_overlap = self.counters.max_wall_overlap.max(depth);
         }
         if !self.is_tame(&kick) {
@@ -184,8 +184,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[cold]
     #[inline(never)]
     fn prepare_for_pair(&mut self, disk: usize, partner: usize) -> Outcome<()> {
-        let period = self.cells.grid().period();
-        let (collision, kicks) = resolve_pair(&self.bodies, &self.rule, period, &self.clock, disk, partner);
+        let periods = self.cells.grid().periods();
+        let (collision, kicks) = resolve_pair(&self.bodies, &self.rule, periods, &self.clock, disk, partner);
         if !kicks.iter().all(Kick::is_possible) {
             return Err(failed(&self.rule, &collision, None).into());
         }
@@ -227,13 +227,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline(never)]
     fn part(&mut self, disk: usize, partner: usize, normal: DVec2, left: f64) {
         let masses = [disk, partner].map(|disk| self.bodies.material(disk).inverse_mass);
-        let (period, now) = (self.cells.grid().period(), self.clock.now);
+        let (periods, now) = (self.cells.grid().periods(), self.clock.now);
         let speed = self.bodies.speed(disk) + self.bodies.speed(partner);
         if left > WANTED * speed {
             return;
         }
         for doubling in 0..MOST_NUDGES {
-            if !are_closing(&self.bodies, period, disk, partner, now) {
+            if !are_closing(&self.bodies, periods, disk, partner, now) {
                 return;
             }
             let push = normal * (f64::from(1_u32 << doubling) * f64::EPSILON * speed);
@@ -271,9 +271,16 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             return self.cross_large(disk, exit);
         }
         self.counters.cell_crossings += 1;
-        self.bodies.particles[disk].trajectory.position.x += self.cells.cross(disk, exit);
+        let passed = self.cells.cross(disk, exit);
+        self.bodies.bring_back(disk, passed, self.cells.grid().periods());
         self.make_room();
         let count = self.cells.ahead(disk, exit, &mut self.scratch.found);
+        self.go_on(disk, count);
+    }
+
+    /// Predicts the next event of a disk that has come to a cell, with so many disks ahead of it there.
+    #[inline(always)]
+    fn go_on(&mut self, disk: usize, count: usize) {
         // The end of the flight comes before the search for a partner. The processor then resolves its
         // branches, predicted right or wrong, while the search is still under way.
         self.end_flight(disk);
@@ -284,13 +291,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.schedule(disk);
     }
 
-    /// Takes a disk of a larger class to its next cell. Its cells are small and its neighbors many: all are searched.
+    /// Takes a disk of a larger class to its next cell.
     #[inline(never)]
     fn cross_large(&mut self, disk: usize, exit: Exit) {
         self.counters.cell_crossings += 1;
-        self.bodies.particles[disk].trajectory.position.x += self.cells.cross_large(disk, exit);
+        let passed = self.cells.cross_large(disk, exit);
+        self.bodies.bring_back(disk, passed, self.cells.grid().periods());
         self.make_room();
-        self.predict(disk);
+        let count = self.cells.ahead_of_large(disk, exit, &mut self.scratch.found);
+        self.go_on(disk, count);
     }
 
     #[inline]

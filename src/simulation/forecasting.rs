@@ -52,9 +52,18 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     #[inline]
     pub(super) fn earliest_collision(&mut self, disk: usize, count: usize, known: Earliest) -> Earliest {
-        let period = self.cells.grid().period();
+        let periods = self.cells.grid().periods();
         let found = &mut self.scratch.found;
-        earliest_collision(self.instructions, &self.bodies, period, disk, found, count, self.clock.now, known)
+        earliest_collision(
+            self.instructions,
+            &self.bodies,
+            periods,
+            disk,
+            found,
+            count,
+            self.clock.now,
+            known,
+        )
     }
 
     /// Takes `earliest` as the next collision of a disk whose next collision was `known` before.
@@ -128,7 +137,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let now = self.clock.now;
         let acceleration = DVec2::new(0.0, -self.bodies.gravity);
         let (position, velocity) = (self.bodies.position(disk, now), self.bodies.velocity(disk, now));
-        Flight::new(now, position, velocity, acceleration, self.bodies.material(disk).radius)
+        Flight::new(now, position, velocity, acceleration, self.bodies.radius(disk))
     }
 
     #[inline]
@@ -144,12 +153,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec2;
+
+    use crate::Simulation;
     use crate::boundary::{Container, Thermal, Wall};
     use crate::collision::Frictional;
     use crate::disk::Disk;
     use crate::error::ParameterError;
     use crate::instructions::Instructions;
-    use crate::{Simulation, initial};
 
     type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
 
@@ -168,12 +179,12 @@ mod tests {
     fn state_after_a_run(instructions: Instructions, is_periodic: bool, growth: f64) -> Outcome<Vec<Disk>> {
         let container = Container::open(20.0)?.with_temperature(Wall::Floor, Thermal::new(2.0)?)?;
         let container = if is_periodic { container.with_periodic_sides() } else { container };
-        let disks = initial::lattice(&container, 150, 0.5)?;
-        let disks = initial::with_maxwellian_velocities(disks, 0.5, 4)?.into_iter().enumerate();
-        let smaller = |(k, disk): (usize, Disk)| {
-            Disk::new(disk.position(), 0.3 + growth * k as f64)?.with_velocity(disk.velocity())
+        let disk = |k: u32| {
+            let place = DVec2::new(0.7 + 1.3 * f64::from(k % 15), 0.7 + 1.3 * f64::from(k / 15));
+            let velocity = DVec2::new(libm::sin(f64::from(k)), libm::cos(f64::from(7 * k)));
+            Disk::new(place, 0.3 + growth * f64::from(k))?.with_velocity(velocity)
         };
-        let disks = disks.map(smaller).collect::<Result<Vec<_>, ParameterError>>()?;
+        let disks = (0..150).map(disk).collect::<Result<Vec<_>, ParameterError>>()?;
         let mut run =
             Simulation::builder(Frictional::new(0.02, 0.3)?, container).disks(disks).gravity(0.1).build()?;
         run.instructions = instructions;

@@ -67,12 +67,13 @@ fn prefetch_disk(bodies: &Bodies, cells: &Cells, disk: usize) {
 /// Requests the partner of a disk, or the cells ahead of it.
 #[inline]
 fn prefetch_cells(bodies: &Bodies, cells: &Cells, disk: usize) {
-    if cells.is_large(disk) {
-        return;
-    }
     let forecast = bodies.particles[disk].forecast;
     if !forecast.is_collision() {
-        return cells.prefetch_ahead(disk, forecast.exit);
+        // The cells ahead of a large disk are not worth finding out: it passes few.
+        if !cells.is_large(disk) {
+            cells.prefetch_ahead(disk, forecast.exit);
+        }
+        return;
     }
     let partner = forecast.partner as usize;
     prefetch_disk(bodies, cells, partner);
@@ -84,10 +85,6 @@ fn prefetch_cells(bodies: &Bodies, cells: &Cells, disk: usize) {
 /// Requests the trajectories of the disks with which a disk may collide.
 #[inline]
 fn prefetch_neighbors(bodies: &Bodies, cells: &Cells, disk: usize, found: &mut [u32]) {
-    // Large disks are few, and their neighbors many.
-    if cells.is_large(disk) {
-        return;
-    }
     let forecast = bodies.particles[disk].forecast;
     let count = if forecast.is_collision() {
         if (forecast.partner as usize) < bodies.len() {
@@ -95,7 +92,7 @@ fn prefetch_neighbors(bodies: &Bodies, cells: &Cells, disk: usize, found: &mut [
         }
         cells.around(disk, found)
     } else {
-        if !forecast.exit.is_passage() {
+        if !forecast.exit.is_passage() | cells.is_large(disk) {
             return;
         }
         cells.ahead_of_next(disk, forecast.exit, found)

@@ -1,5 +1,7 @@
 //! Predictions of the time at which two disks collide, and of the time at which a disk leaves its cell.
 
+use glam::DVec2;
+
 use super::state::{Bodies, Earliest, Exit};
 use crate::boundary::Region;
 use crate::instructions::compiled_for_each;
@@ -90,7 +92,7 @@ impl Best {
     }
 }
 
-/// Returns the shortest way around periodic sides. The `period` is 0 if there are none.
+/// Returns the shortest way where places repeat themselves after a `period`; 0 if they do not.
 #[inline]
 pub(super) fn nearest_image(x: f64, period: f64) -> f64 {
     let half = 0.5 * period;
@@ -102,29 +104,30 @@ pub(super) fn nearest_image(x: f64, period: f64) -> f64 {
 /// Tells whether two disks close, in exactly the arithmetic of [`earliest_collision`]. Another arithmetic
 /// would round differently, and a pair that seems to part could be found to collide.
 #[inline]
-pub(super) fn are_closing(bodies: &Bodies, period: f64, disk: usize, partner: usize, now: f64) -> bool {
+pub(super) fn are_closing(bodies: &Bodies, periods: DVec2, disk: usize, partner: usize, now: f64) -> bool {
     let (mine, other) = (bodies.particles[disk].trajectory.row(), bodies.particles[partner].trajectory.row());
     let [x, y, velocity_x, velocity_y]: [f64; 4] = std::array::from_fn(|k| other[k] - mine[k]);
-    let (x, y) = (nearest_image(x + velocity_x * now, period), y + velocity_y * now);
+    let (x, y) = (x + velocity_x * now, y + velocity_y * now);
+    let (x, y) = (nearest_image(x, periods.x), nearest_image(y, periods.y));
     x * velocity_x + y * velocity_y < 0.0
 }
 
 compiled_for_each! {
-    /// Returns the earliest collision of `disk` with one of the first `count` of `candidates`, or `known` if that
-    /// is earlier.
+    /// Returns the earliest collision of `disk` with one of the first `count` of `candidates`, or `known`
+    /// if that is earlier.
     ///
-    /// The candidates may include the disk itself, which never meets itself. The room behind the candidates is
-    /// filled with the disk.
+    /// The candidates may include the disk itself, which never meets itself. The room behind the candidates
+    /// is filled with the disk.
     #[inline(never)]
     earliest_collision(
-        bodies: &Bodies, period: f64, disk: usize, candidates: &mut [u32], count: usize, now: f64, known: Earliest
+        bodies: &Bodies, periods: DVec2, disk: usize, candidates: &mut [u32], count: usize, now: f64, known: Earliest
     ) -> Earliest = search
 }
 
 #[inline(always)]
 fn search<const COPY: u8>(
     bodies: &Bodies,
-    period: f64,
+    periods: DVec2,
     disk: usize,
     candidates: &mut [u32],
     count: usize,
@@ -133,18 +136,17 @@ fn search<const COPY: u8>(
 ) -> Earliest {
     candidates[count..count + LANES].copy_from_slice(&[disk as u32; LANES]);
     let candidates = &candidates[..count.next_multiple_of(LANES)];
-    match (bodies.common_diameter(), period == 0.0) {
-        (Some(diameter), true) => scan(bodies, disk, candidates, now, known, |_| diameter, |x| x),
-        (Some(diameter), false) => {
-            scan(bodies, disk, candidates, now, known, |_| diameter, |x| nearest_image(x, period))
-        }
+    let image = |x: f64, y: f64| (nearest_image(x, periods.x), nearest_image(y, periods.y));
+    match (bodies.common_diameter(), periods == DVec2::ZERO) {
+        (Some(diameter), true) => scan(bodies, disk, candidates, now, known, |_| diameter, |x, y| (x, y)),
+        (Some(diameter), false) => scan(bodies, disk, candidates, now, known, |_| diameter, image),
         (None, is_walled) => {
             let radius = bodies.radius(disk);
             let contact = |other: usize| radius + bodies.radius(other);
             if is_walled {
-                return scan(bodies, disk, candidates, now, known, contact, |x| x);
+                return scan(bodies, disk, candidates, now, known, contact, |x, y| (x, y));
             }
-            scan(bodies, disk, candidates, now, known, contact, |x| nearest_image(x, period))
+            scan(bodies, disk, candidates, now, known, contact, image)
         }
     }
 }
@@ -157,7 +159,7 @@ fn scan(
     now: f64,
     known: Earliest,
     contact: impl Fn(usize) -> f64,
-    image: impl Fn(f64) -> f64,
+    image: impl Fn(f64, f64) -> (f64, f64),
 ) -> Earliest {
     let mine = bodies.particles[disk].trajectory.row();
     let mut best = Best::new(known);
@@ -174,8 +176,9 @@ fn scan(
             pairs.velocity_y[lane] = velocity_y;
         }
         for (lane, &candidate) in lanes.iter().enumerate() {
-            pairs.x[lane] = image(pairs.x[lane] + pairs.velocity_x[lane] * now);
-            pairs.y[lane] += pairs.velocity_y[lane] * now;
+            let x = pairs.x[lane] + pairs.velocity_x[lane] * now;
+            let y = pairs.y[lane] + pairs.velocity_y[lane] * now;
+            (pairs.x[lane], pairs.y[lane]) = image(x, y);
             let contact = contact(candidate as usize);
             pairs.contact_squared[lane] = contact * contact;
         }

@@ -52,7 +52,7 @@ impl Kick {
 pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
     bodies: &Bodies,
     rule: &R,
-    period: f64,
+    periods: DVec2,
     clock: &Clock,
     disk: usize,
     partner: usize,
@@ -60,13 +60,16 @@ pub(super) fn resolve_pair<R: CollisionRule + ?Sized>(
     let offset = clock.now;
     let here = bodies.particles[disk].trajectory.at(offset);
     let mut separation = here - bodies.particles[partner].trajectory.at(offset);
-    separation.x = nearest_image(separation.x, period);
+    if periods != DVec2::ZERO {
+        separation.x = nearest_image(separation.x, periods.x);
+        separation.y = nearest_image(separation.y, periods.y);
+    }
     let distance = separation.length();
     let normal = if distance > 0.0 { separation / distance } else { DVec2::Y };
     let since = offset - bodies.spins[disk].last_collision.max(bodies.spins[partner].last_collision);
     let (first, second) = (bodies.body(disk), bodies.body(partner));
     let (material, other) = (bodies.material(disk), bodies.material(partner));
-    let outcome = collide_bodies(rule, normal, since, (&first, material), (&second, other));
+    let outcome = collide_bodies(rule, normal, since, (&first, &material), (&second, &other));
     let collision = Collision {
         time: clock.time(),
         disk,
@@ -90,7 +93,7 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     surface: &Surface<'_>,
     clock: &Clock,
     disk: usize,
-    wall: usize,
+    index: usize,
 ) -> (Collision, Kick) {
     let offset = clock.now;
     let material = bodies.material(disk);
@@ -98,8 +101,9 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     let arriving = Body { velocity: bodies.velocity(disk, offset), ..bodies.body(disk) };
     let since = offset - bodies.spins[disk].last_collision;
     let partner = Body { velocity: surface.velocity, angular_velocity: 0.0 };
+    let (partner, wall) = (&partner, &Material::of_wall(surface.kind));
     let against = |rule: &dyn CollisionRule| {
-        collide_bodies(rule, surface.normal, since, (&arriving, material), (&partner, &Material::WALL))
+        collide_bodies(rule, surface.normal, since, (&arriving, &material), (partner, wall))
     };
     let (leaving, contact, impulse) = match surface.response {
         Response::Thermal(thermal) => {
@@ -113,18 +117,18 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
             (outcome.first, outcome.contact, outcome.impulse)
         }
         Response::Shared => {
-            let wall = (&partner, &Material::WALL);
-            let outcome = collide_bodies(rule, surface.normal, since, (&arriving, material), wall);
+            let outcome =
+                collide_bodies(rule, surface.normal, since, (&arriving, &material), (partner, wall));
             (outcome.first, outcome.contact, outcome.impulse)
         }
     };
     let collision = Collision {
         time: clock.time(),
         disk,
-        partner: Partner::Wall(wall),
+        partner: Partner::Wall(index),
         normal: surface.normal,
         position: bodies.position(disk, offset),
-        distance: material.radius,
+        distance: bodies.radius(disk),
         contact,
         impulse,
         energy_change: kinetic_energy(&leaving, mass, inertia) - kinetic_energy(&arriving, mass, inertia),

@@ -4,8 +4,8 @@ mod bodies;
 mod clock;
 mod forecast;
 mod guard;
-mod kinds;
 mod pace;
+mod properties;
 
 pub(super) use bodies::Bodies;
 #[cfg(feature = "serde")]

@@ -13,8 +13,9 @@
 //! }
 //! ```
 //!
-//! `status --json` prints one object: the number of ramps, and the indices of those that are done, running, begun
-//! and waiting. Tables are CSV files with a first line of names; `columns.csv` has the units of all of them.
+//! `status --json` prints one object: the number of ramps, and the indices of those that are done, running,
+//! begun and waiting. Tables are CSV files with a first line of names; `columns.csv` has the units of all
+//! of them.
 //!
 //! | exit code | meaning |
 //! |---|---|

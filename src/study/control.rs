@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
-/// How far a study is.
+/// Progress of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
@@ -19,7 +19,7 @@ pub struct Progress {
     pub total: u64,
 }
 
-/// How a study is watched and stopped; nothing here has an influence on results.
+/// Means to watch and stop a study; nothing here has an influence on results.
 ///
 /// ```
 /// use granular_edmd::study::{Control, Progress};

@@ -93,13 +93,13 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
     note = "implement `study::Experiment` for the type whose fields are your parameters"
 )]
 pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
-    /// What a collision does.
+    /// Rule of the collisions.
     type Rule: CollisionRule;
     /// The walls.
     type Boundary: Boundary;
-    /// What watches the collisions; `()` for nobody.
+    /// Observer of the collisions; `()` for none.
     type Observer: Observer + Default + Serialize + DeserializeOwned;
-    /// What is kept of each moment of sampling: numbers, lists, anything that can be written.
+    /// Data kept of each moment of sampling: numbers, lists, anything that can be written.
     type Sample: Serialize + DeserializeOwned;
 
     /// Returns the rule of these parameters.

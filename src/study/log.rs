@@ -6,13 +6,14 @@ use std::path::Path;
 
 /// Adds a line to a file, under the lock of that file.
 ///
-/// Without it, two hosts that append over a network write to the same place. A line that was cut short by a kill or a full disk
-/// goes first: every line is whole.
+/// Without it, two hosts that append over a network write to the same place. A line that was cut short by a
+/// kill or a full disk goes first: every line is whole.
 pub(super) fn append(path: &Path, line: &str) -> io::Result<()> {
     let mut file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
     file.lock()?;
     let written = to_last_line_end(&mut file).and_then(|()| file.write_all(format!("{line}\n").as_bytes()));
-    // Closing the file would not give the lock back while a process that was forked meanwhile has it open, too.
+    // Closing the file would not give the lock back while a process that was forked meanwhile has it open,
+    // too.
     let _ = file.unlock();
     written
 }

@@ -22,7 +22,7 @@ pub(super) struct Value<'a, E: Experiment> {
 pub(super) type Partial<E> =
     (Origin, Work<<E as Experiment>::Sample, <E as Experiment>::Observer>, Checkpoint);
 
-/// What has been done of a value.
+/// Part of a value that has been done.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Work<S, O> {

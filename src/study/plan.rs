@@ -12,7 +12,7 @@ use super::refinement::{Seen, Step};
 use super::{Axis, Experiment, Leg, Protocol, Ramp, Scalar};
 use crate::quantity::accept;
 
-/// What a study does, as data: an experiment, how each value is sampled, what is ramped, what is swept, and
+/// Plan of a study, as data: an experiment, how each value is sampled, what is ramped, what is swept, and
 /// how often.
 ///
 /// The axes of the sweep span a grid. Each of its points is a ramp, independent of all others, and is done as

@@ -20,7 +20,7 @@ pub enum Course {
     UpAndDown,
 }
 
-/// Whether a value was come to from below or from above.
+/// Direction from which a ramp comes to a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Leg {

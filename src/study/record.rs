@@ -10,7 +10,7 @@ use crate::statistics::{BlockedMean, Estimate};
 /// Rounding of a time that was run to, relative to it.
 const TIME_ROUNDING: f64 = 1e-12;
 
-/// How a value ended.
+/// Way in which a value ended.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -28,14 +28,14 @@ pub enum Outcome {
     Stalled {
         /// When, since the start of the ramp.
         time: f64,
-        /// What the engine said.
+        /// Message of the engine.
         reason: String,
     },
     /// The engine gave up for another reason; else as stalled.
     Failed {
         /// When, since the start of the ramp.
         time: f64,
-        /// What the engine said.
+        /// Message of the engine.
         reason: String,
     },
 }
@@ -74,7 +74,7 @@ pub(super) struct Contents<S, O> {
     pub(super) state: Checkpoint,
 }
 
-/// What was measured of a value.
+/// Results of a value.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Measured<S, O> {
     pub(super) times: Vec<f64>,

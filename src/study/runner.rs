@@ -17,7 +17,7 @@ use super::refinement::Step;
 /// Time between two looks at ramps that others do.
 const PATIENCE: Duration = Duration::from_millis(100);
 
-/// What all threads of a running study share.
+/// Data that all threads of a running study share.
 struct Shift<'a, E: Experiment> {
     study: &'a Study<E>,
     control: &'a Control<'a>,
@@ -67,7 +67,8 @@ impl<E: Experiment> Study<E> {
         let is_whole = ramps.len() == self.plan().ramps();
         let shift = Shift::new(self, control, ramps.len());
         let elsewhere = shift.all(ramps)?;
-        // A run of the whole study brings back lost tables; one of many tasks that finds all done leaves them.
+        // A run of the whole study brings back lost tables; one of many tasks that finds all done leaves
+        // them.
         if elsewhere.is_empty() && self.is_done(last) && (is_whole || !self.folder.is_complete()) {
             self.write_tables()?;
             self.folder.mark_complete()?;

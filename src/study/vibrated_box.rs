@@ -76,7 +76,7 @@ pub struct VibratedBox {
     /// The sides.
     #[serde(default)]
     pub sides: Sides,
-    /// What moves the disks.
+    /// Source of the motion of the disks.
     pub base: Base,
 }
 

@@ -1,4 +1,5 @@
-//! The folder of a study as a workspace: a folder for each ramp, before anything is done, and a file that says which it is.
+//! The folder of a study as a workspace: a folder for each ramp, before anything is done, and a file that
+//! says which it is.
 
 use std::fmt::Write;
 use std::fs;
@@ -11,7 +12,8 @@ use super::{Experiment, Plan, Scalar, Study, file};
 const VALUE: &str = "value.json";
 
 impl<E: Experiment> Study<E> {
-    /// Makes the folders of all ramps, each with its swept parameters in a file `value.json`, for engines that go by folders.
+    /// Makes the folders of all ramps, each with its swept parameters in a file `value.json`, for engines
+    /// that go by folders.
     ///
     /// A run needs none of it. It may be done at any time, beside runs, and again.
     ///
@@ -28,7 +30,8 @@ impl<E: Experiment> Study<E> {
             if fs::read(&path).is_ok_and(|found| found == value.as_bytes()) {
                 continue;
             }
-            // By way of the folder whose lock is held: whoever does the ramp removes what it finds half written in its own.
+            // By way of the folder whose lock is held: whoever does the ramp removes what it finds half
+            // written in its own.
             file::move_in(root, &path, value.as_bytes())?;
         }
         Ok(())

@@ -5,4 +5,5 @@ mod container;
 mod contract;
 mod fingerprints;
 mod names;
+mod obstacles;
 mod planted;

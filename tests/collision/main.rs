@@ -11,6 +11,7 @@ mod energy;
 mod files;
 mod friction;
 mod identity;
+mod kinds;
 mod kinematics;
 mod parameters;
 mod planted;

@@ -85,7 +85,8 @@ proptest! {
 /// The end of each message: a contact of closing speed 1 and this slip speed.
 fn of_contact(slip: &str) -> String {
     let masses = "normal mass 0.5, tangential mass 0.125";
-    format!("(closing speed 1.0, slip speed {slip}, {masses}, time since the last collision inf)")
+    let partners = "radii 0.5 and 0.5, kinds 0 and 0";
+    format!("(closing speed 1.0, slip speed {slip}, {masses}, time since the last collision inf, {partners})")
 }
 
 #[test]

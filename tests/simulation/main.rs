@@ -8,15 +8,19 @@ mod bouncing;
 mod cases;
 mod changes;
 mod counting;
+mod crowds;
 mod extremes;
 mod inputs;
+mod kinds;
 mod late_times;
 mod lies;
 mod long_runs;
+mod mixture_oracle;
 mod mixtures;
 mod oracle;
 mod order;
 mod parting;
+mod periodic;
 #[cfg(feature = "serde")]
 mod resuming;
 #[path = "../support/schedulers.rs"]

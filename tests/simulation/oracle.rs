@@ -15,7 +15,7 @@ const HEIGHT: f64 = 24.0;
 struct Naive {
     time: f64,
     gravity: f64,
-    periodic: bool,
+    periodic: [bool; 2],
     disks: Vec<Disk>,
 }
 
@@ -31,14 +31,17 @@ fn first_root(a: f64, b: f64, c: f64) -> f64 {
 }
 
 impl Naive {
-    fn images(&self) -> Vec<f64> {
-        if self.periodic { vec![-WIDTH, 0.0, WIDTH] } else { vec![0.0] }
+    fn images(&self) -> Vec<DVec2> {
+        let along = |is_periodic: bool| if is_periodic { vec![-1.0, 0.0, 1.0] } else { vec![0.0] };
+        let [columns, rows] = self.periodic.map(along);
+        let image = |&x: &f64| rows.iter().map(move |y| DVec2::new(x * WIDTH, y * HEIGHT));
+        columns.iter().flat_map(image).collect()
     }
 
-    /// Returns the time at which a pair meets, with its second disk moved sideways by `image`.
-    fn pair(&self, i: usize, j: usize, image: f64) -> f64 {
+    /// Returns the time at which a pair meets, with its second disk moved by `image`.
+    fn pair(&self, i: usize, j: usize, image: DVec2) -> f64 {
         let (a, b) = (&self.disks[i], &self.disks[j]);
-        let (r, v) = (b.position() + DVec2::new(image, 0.0) - a.position(), b.velocity() - a.velocity());
+        let (r, v) = (b.position() + image - a.position(), b.velocity() - a.velocity());
         let contact = a.radius() + b.radius();
         if r.dot(v) >= 0.0 {
             return f64::INFINITY;
@@ -63,18 +66,19 @@ impl Naive {
     fn walls(&self) -> Vec<(DVec2, f64)> {
         let level = [(DVec2::Y, 0.0), (DVec2::NEG_Y, -HEIGHT)];
         let sides = [(DVec2::X, 0.0), (DVec2::NEG_X, -WIDTH)];
-        if self.periodic { level.to_vec() } else { [level, sides].concat() }
+        let walls = |walls: [_; 2], is_periodic: bool| if is_periodic { Vec::new() } else { walls.to_vec() };
+        [walls(level, self.periodic[1]), walls(sides, self.periodic[0])].concat()
     }
 
-    /// Returns the next event: its time, its disk, and its partner (an image of a disk, or a wall).
-    fn next(&self) -> (f64, usize, Result<(usize, f64), usize>) {
+    /// Returns the next event: its time, its disk, and its partner (a disk or a wall).
+    fn next(&self) -> (f64, usize, Result<usize, usize>) {
         let mut first = (f64::INFINITY, 0, Err(0));
         for i in 0..self.disks.len() {
             for j in 0..i {
                 for image in self.images() {
                     let wait = self.pair(i, j, image);
                     if wait < first.0 {
-                        first = (wait, i, Ok((j, image)));
+                        first = (wait, i, Ok(j));
                     }
                 }
             }
@@ -92,8 +96,11 @@ impl Naive {
         let fall = DVec2::new(0.0, -self.gravity);
         for disk in &mut self.disks {
             let mut position = disk.position() + wait * (disk.velocity() + 0.5 * wait * fall);
-            if self.periodic {
+            if self.periodic[0] {
                 position.x = position.x.rem_euclid(WIDTH);
+            }
+            if self.periodic[1] {
+                position.y = position.y.rem_euclid(HEIGHT);
             }
             *disk =
                 disk.with_velocity(disk.velocity() + wait * fall).unwrap().with_position(position).unwrap();
@@ -106,11 +113,12 @@ impl Naive {
         let (wait, i, partner) = self.next();
         self.advance(wait);
         match partner {
-            Ok((j, _)) => {
+            Ok(j) => {
                 let (a, b) = (self.disks[i], self.disks[j]);
-                let mut shift = b.position().x - a.position().x;
-                shift = if self.periodic { WIDTH * (shift / WIDTH).round() } else { 0.0 };
-                let near = b.with_position(b.position() - DVec2::new(shift, 0.0)).unwrap();
+                let turns = ((b.position() - a.position()) / DVec2::new(WIDTH, HEIGHT)).round();
+                let [x, y] = self.periodic.map(f64::from);
+                let shift = turns * DVec2::new(x * WIDTH, y * HEIGHT);
+                let near = b.with_position(b.position() - shift).unwrap();
                 let Encounter { first: a, second: near, .. } = collide(&Elastic, &a, &near);
                 self.disks[i] = a;
                 self.disks[j] = near.with_position(b.position()).unwrap();
@@ -137,13 +145,14 @@ proptest! {
 
     #[test]
     fn the_engine_does_what_brute_force_does(
-        periodic in any::<bool>(),
+        periodic in any::<[bool; 2]>(),
         gravity in prop_oneof![Just(0.0), Just(0.1), Just(1.0)],
         smallest in prop_oneof![Just(0.5), Just(0.05), Just(0.01)],
         seed in any::<u64>(),
     ) {
         let container = Container::closed(WIDTH, HEIGHT).unwrap();
-        let boundary = if periodic { container.with_periodic_sides() } else { container };
+        let boundary = if periodic[0] { container.with_periodic_sides() } else { container };
+        let boundary = if periodic[1] { boundary.with_periodic_ends().unwrap() } else { boundary };
         // The disks go from grains of dust to stones of fifty (and five, and one) times their size.
         let radius = |k: usize| if k.is_multiple_of(5) { 2.5 } else { smallest * (1.0 + k as f64 / 40.0) };
         let disks = (0..30).map(|k| Disk::new(DVec2::ZERO, radius(k)).unwrap()).collect();

@@ -192,7 +192,8 @@ fn a_prepared_study_waits_and_its_folders_say_what_they_are() -> Result<(), AnyE
     Ok(())
 }
 
-/// One of many tasks leaves the tables alone when nothing was done; a run of the whole study brings them back.
+/// One of many tasks leaves the tables alone when nothing was done; a run of the whole study brings them
+/// back.
 #[test]
 fn tables_that_tell_of_all_are_written_again_by_whole_runs_and_after_new_values() -> Result<(), AnyError> {
     let (scratch, study) = done(&plan(1), "tables-again");

@@ -1,5 +1,5 @@
-//! The runs that `.ci/portable` compares between platforms: two small runs through everything that could
-//! differ, and the bits of their last states.
+//! The runs that `.ci/portable` compares between platforms: two small runs and a packing, through everything
+//! that could differ, and the bits of their last states.
 //!
 //! The program prints for each run its name, its collisions, and a hash of the state and of the checkpoint.
 
@@ -9,6 +9,7 @@ use std::process::ExitCode;
 use granular_edmd::boundary::{Boundary, Container, Thermal, Wall};
 use granular_edmd::collision::{ContactDuration, Frictional, Rough};
 use granular_edmd::glam::DVec2;
+use granular_edmd::initial::Radii;
 use granular_edmd::scheduler::{BucketQueue, EventScheduler, TournamentTree};
 use granular_edmd::simulation::Checkpoint;
 use granular_edmd::wall::{BiParabolic, Sinusoidal, Triangular};
@@ -18,7 +19,8 @@ type Outcome<T> = Result<T, Box<dyn Error>>;
 type Rule = ContactDuration<Frictional>;
 
 fn main() -> ExitCode {
-    let runs = [("box", shaken_box as fn() -> Outcome<String>), ("column", heated_column)];
+    let runs =
+        [("box", shaken_box as fn() -> Outcome<String>), ("column", heated_column), ("packing", packing)];
     for (name, run) in runs {
         match run() {
             Ok(line) => println!("{name} {line}"),
@@ -53,6 +55,27 @@ fn heated_column() -> Outcome<String> {
             .with_temperature(Wall::Floor, Thermal::new(1.0)?)?)
     };
     run(&container, 0.2, 1e7, 100.0)
+}
+
+/// Packs disks with radii of all distributions, and sets them in motion. There is no run and no checkpoint,
+/// so the numbers are those of the disks and of their places.
+fn packing() -> Outcome<String> {
+    let radii = [
+        Radii::uniform(0.3, 0.5)?,
+        Radii::log_normal(0.4, 0.3, 0.2, 0.8)?,
+        Radii::power_law(2.5, 0.2, 1.0)?,
+        Radii::two_sizes(0.5, 0.7, 0.5)?,
+    ];
+    let radii = radii.iter().zip(1..).flat_map(|(radii, seed)| radii.draw(40, seed));
+    let disks = initial::homogeneous(radii, 1.0)?;
+    let area: f64 = disks.iter().map(|disk| std::f64::consts::PI * disk.radius() * disk.radius()).sum();
+    let container = Container::open(12.0)?.with_periodic_sides();
+    let disks = initial::packed_at_random(&container, disks, area / (0.8 * 12.0), 1)?;
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
+    let rule = rule(0.02, 0.1)?;
+    let run = Simulation::builder(rule, container).disks(disks.iter().copied()).build()?;
+    let bytes: Vec<u8> = disks.iter().flat_map(|disk| disk.radius().to_bits().to_le_bytes()).collect();
+    Ok(format!("{} {:016x} {:016x}", disks.len(), of_state(&run), of_bytes(&bytes)))
 }
 
 /// Runs for half of the time, goes through the bytes of a checkpoint to another scheduler, rule and gravity,

@@ -56,16 +56,25 @@ pub(super) fn check_flight<B: Boundary + ?Sized>(
     Ok(Some(turned_back(trial, flight, &meeting)))
 }
 
-/// Returns how long a flight may last. Like flights of the engine, it ends at a periodic side at the latest.
+/// Returns how long a flight may last. Like flights of the engine, it ends at a periodic side or end at
+/// the latest.
 fn longest<B: Boundary + ?Sized>(trial: &Trial<'_, B>, flight: &Flight) -> f64 {
     let longest = LONGEST * trial.length() / trial.speed();
     let (domain, start) = (trial.domain(), flight.time());
-    if !domain.periodic {
-        return longest;
+    let (place, velocity) = (flight.position(start), flight.velocity(start));
+    let mut longest = longest;
+    if domain.periodic_sides {
+        let side = if velocity.x > 0.0 { domain.right - place.x } else { place.x - domain.left };
+        longest = longest.min((side / velocity.x.abs()).max(0.0));
     }
-    let (x, speed) = (flight.position(start).x, flight.velocity(start).x);
-    let side = if speed > 0.0 { domain.right - x } else { x - domain.left };
-    longest.min((side / speed.abs()).max(0.0))
+    if domain.periodic_ends {
+        // No flight of this length leaves the domain, whichever way it turns: |v| t + |a| t² / 2 is at most
+        // the way.
+        let way = (domain.top - place.y).min(place.y - domain.bottom).max(0.0);
+        let (speed, pull) = (velocity.y.abs(), flight.acceleration().y.abs());
+        longest = longest.min(2.0 * way / (speed + (speed * speed + 2.0 * pull * way).sqrt()));
+    }
+    longest
 }
 
 fn check_touch<B: Boundary + ?Sized>(

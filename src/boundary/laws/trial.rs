@@ -122,18 +122,18 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
 
     /// Returns a region like those of the engine, which has no end where it comes near an edge of the domain.
     fn open_at_edges(&self, region: Region) -> Region {
-        let Domain { left, right, bottom, top, periodic } = self.domain;
+        let Domain { left, right, bottom, top, periodic_sides, periodic_ends } = self.domain;
         let near = 2.0 * self.radius;
         let open = |is_near: bool, edge: f64, end: f64| if is_near { end } else { edge };
         let Region { min, max } = region;
         Region::new(
             DVec2::new(
-                open(!periodic && min.x < left + near, min.x, f64::NEG_INFINITY),
-                open(min.y < bottom + near, min.y, f64::NEG_INFINITY),
+                open(!periodic_sides && min.x < left + near, min.x, f64::NEG_INFINITY),
+                open(!periodic_ends && min.y < bottom + near, min.y, f64::NEG_INFINITY),
             ),
             DVec2::new(
-                open(!periodic && max.x > right - near, max.x, f64::INFINITY),
-                open(max.y > top - near, max.y, f64::INFINITY),
+                open(!periodic_sides && max.x > right - near, max.x, f64::INFINITY),
+                open(!periodic_ends && max.y > top - near, max.y, f64::INFINITY),
             ),
         )
     }

@@ -1,5 +1,6 @@
 //! Extreme contacts that a rule can meet.
 
+use crate::Kind;
 use crate::collision::Contact;
 
 /// Closing speeds: zero, almost zero, and decades up to the largest speed that a disk may have.
@@ -22,11 +23,23 @@ const MASS_RATIOS: [f64; 4] = [1e-6, 1.0 / 3.0, 0.5, 1.0];
 /// Times since the last collision: none, very short, short, and infinite.
 const TIMES: [f64; 4] = [0.0, 1e-9, 1e-3, f64::INFINITY];
 
+/// Partners: two disks, alike and as different as can be, and a disk and a wall.
+const PARTNERS: [([Kind; 2], [f64; 2]); 7] = [
+    ([Kind::DEFAULT; 2], [0.5; 2]),
+    ([Kind::DEFAULT, Kind::WALL], [0.5, f64::INFINITY]),
+    ([Kind::DEFAULT, Kind::new(1)], [1e-30, 1e30]),
+    ([Kind::new(1), Kind::new(1)], [1e30; 2]),
+    ([Kind::new(1), Kind::DEFAULT], [0.1, 1.0]),
+    ([Kind::DEFAULT, Kind::WALL], [1e30, f64::INFINITY]),
+    ([Kind::new(1), Kind::WALL], [1e-30, f64::INFINITY]),
+];
+
 /// Returns contacts that rules tend to forget, the same ones in the same order every time.
 ///
 /// The contacts cover closing and slip speeds, masses and mass ratios over all decades that the engine
 /// accepts. Among them are slips of both signs and none, central and grazing contacts, contacts without
-/// closing speed, and partners that have just collided.
+/// closing speed, and partners that have just collided. The partners are disks of the kinds 0 and 1 and
+/// walls, of all radii that there can be, in turn.
 ///
 /// ```
 /// use granular_edmd::collision::laws::hostile_contacts;
@@ -35,12 +48,16 @@ const TIMES: [f64; 4] = [0.0, 1e-9, 1e-3, f64::INFINITY];
 /// assert!(hostile_contacts().all(|contact| contact.tangential_mass() <= contact.normal_mass()));
 /// ```
 pub fn hostile_contacts() -> impl Iterator<Item = Contact> {
-    speeds().flat_map(|(closing, slip)| {
+    let contacts = speeds().flat_map(|(closing, slip)| {
         masses().flat_map(move |(normal, tangential)| {
             let contact = Contact::new(closing, slip, normal, tangential);
             TIMES.into_iter().map(move |time| contact.with_time_since_last_collision(time))
         })
-    })
+    });
+    // Their number has no factor in common with those of masses and times, so each meets all of these.
+    contacts
+        .zip(PARTNERS.into_iter().cycle())
+        .map(|(contact, (kinds, radii))| contact.with_kinds(kinds).with_radii(radii))
 }
 
 fn speeds() -> impl Iterator<Item = (f64, f64)> {

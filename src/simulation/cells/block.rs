@@ -6,13 +6,13 @@ use crate::disk::MOST_DISKS;
 pub(super) const SLOTS: usize = 4;
 
 /// Bits of the number of a disk. In the first slot, the bits above hold the number of slots taken, or
-/// [`CROWDED`] if the cell has more disks elsewhere. The highest bit tells whether the disks can touch a
+/// [`CROWDED`] if the last slot links to more disks. The highest bit tells whether the disks can touch a
 /// wall.
 const DISK: u32 = (1 << 28) - 1;
 const ONE: u32 = DISK + 1;
 const AT_WALL: u32 = 1 << 31;
 
-/// Value in place of the number of slots taken, if the cell has more disks elsewhere.
+/// Value in place of the number of slots taken, if the last slot links to more disks.
 pub(super) const CROWDED: usize = SLOTS + 1;
 
 const _: () = assert!(MOST_DISKS <= DISK as usize + 1);
@@ -42,9 +42,24 @@ impl Block {
         self.0[0] |= AT_WALL;
     }
 
-    /// Notes in a full block whether more disks of its cell are elsewhere.
-    pub(super) fn set_crowded(&mut self, crowded: bool) {
-        let count = if crowded { CROWDED } else { SLOTS };
+    /// Returns the crowd that holds the other disks of the cell, if there is one. Its number is in the last
+    /// slot.
+    pub(super) fn crowd(&self) -> Option<u32> {
+        (self.count() == CROWDED).then_some(self.0[SLOTS - 1])
+    }
+
+    /// Puts this crowd in the place of the last disk, or of another crowd.
+    pub(super) fn set_crowd(&mut self, crowd: u32) {
+        self.0[SLOTS - 1] = crowd;
+        self.set_count(CROWDED);
+    }
+
+    /// Leaves the disks before the crowd.
+    pub(super) fn end_crowd(&mut self) {
+        self.set_count(SLOTS - 1);
+    }
+
+    fn set_count(&mut self, count: usize) {
         self.0[0] = (self.0[0] & (DISK | AT_WALL)) + count as u32 * ONE;
     }
 
@@ -76,10 +91,15 @@ impl Block {
         self.0 = slots;
     }
 
-    /// Puts another disk in the place of one, if that one is here.
-    #[inline]
-    pub(super) fn replace(&mut self, disk: usize, by: u32) {
-        self.0 = self.with(disk, by);
+    /// Puts another disk in the place of one, if that one is before the crowd. Tells whether it was.
+    pub(super) fn replace(&mut self, disk: u32, by: u32) -> bool {
+        let is_here = self.slots()[..SLOTS - 1].contains(&disk);
+        if is_here {
+            let crowd = self.0[SLOTS - 1];
+            self.0 = self.with(disk as usize, by);
+            self.0[SLOTS - 1] = crowd;
+        }
+        is_here
     }
 
     /// Returns the last disk of a block that is not empty.

@@ -6,6 +6,7 @@ use crate::boundary::{Domain, Region};
 use crate::prefetch::prefetch;
 
 use super::cell_size::CellSize;
+use super::edges::{edges, row_edges, widen};
 
 /// Largest number of cells per disk. More cells would cost memory and save nothing.
 pub(in crate::simulation) const CELLS_PER_DISK: f64 = 8.0;
@@ -15,6 +16,10 @@ pub(in crate::simulation) const SPARE_CELLS: f64 = 4096.0;
 
 /// Smallest size of a cell in diameters. It is above 1 by more than rounding.
 pub(super) const LEAST_PITCH: f64 = 1.000_001;
+
+/// Fewest columns at periodic sides, and rows at periodic ends. With fewer, a disk could meet a neighbor on
+/// both sides.
+pub(in crate::simulation) const FEWEST: f64 = 4.0;
 
 /// The columns and rows of cells. A ring of ghosts surrounds them, so that every cell has eight neighbors.
 ///
@@ -32,8 +37,10 @@ pub(in crate::simulation) struct Grid {
     /// Distance beyond its edges up to which a cell keeps its disks, so that fewer of them pass from one cell
     /// to another.
     margin: DVec2,
-    /// Width of the domain if its sides are periodic, else 0.
-    period: f64,
+    /// Width and height after which the domain repeats itself; 0 where it does not.
+    periods: DVec2,
+    /// Tells whether one of the periods is not 0, in a form that costs little to ask.
+    is_periodic: bool,
 }
 
 /// The column and row of a cell, ring included. The first real column and row are 1.
@@ -56,8 +63,8 @@ pub(in crate::simulation) struct Layout {
 }
 
 impl Layout {
-    /// Returns the layout of at most so many cells for disks of at most this diameter, or `None` if the domain is
-    /// too small.
+    /// Returns the layout of at most so many cells for disks of at most this diameter, or `None` if the
+    /// domain is too small.
     pub(in crate::simulation) fn new(
         domain: &Domain,
         diameter: f64,
@@ -74,14 +81,18 @@ impl Layout {
         let pitch = (cell_size.pitch() * diameter).max((width * height / most).sqrt());
         let along = |length: f64, pitch: f64| (length / pitch).floor().max(1.0);
         let mut columns = along(width, pitch).min(most.floor());
-        if domain.periodic && columns < 4.0 {
-            // With fewer columns, a disk could meet a neighbor on both sides.
-            columns = 4.0;
-            if width < columns * LEAST_PITCH * diameter {
-                return None;
-            }
+        if domain.periodic_sides {
+            columns = columns.max(FEWEST);
         }
-        let rows = along(height, pitch).min((most / columns).max(1.0).floor());
+        let mut rows = along(height, pitch).min((most / columns).max(1.0).floor());
+        if domain.periodic_ends {
+            rows = rows.max(FEWEST);
+        }
+        let is_wide =
+            |is_periodic: bool, length: f64| !is_periodic || length >= FEWEST * LEAST_PITCH * diameter;
+        if !(is_wide(domain.periodic_sides, width) && is_wide(domain.periodic_ends, height)) {
+            return None;
+        }
         let valid = width > 0.0 && height > 0.0 && width.is_finite() && height.is_finite();
         let pitch = DVec2::new(width / columns, height / rows);
         valid.then_some(Self { cell_size, columns: columns as u32, rows: rows as u32, pitch })
@@ -97,20 +108,18 @@ impl Grid {
     /// Creates the grid of this layout.
     pub(in crate::simulation) fn new(domain: &Domain, layout: Layout, diameter: f64) -> Self {
         let margin = margin(domain, &layout, diameter);
-        let mut column_edges = edges(domain.left, layout.pitch.x, layout.columns, !domain.periodic);
-        if domain.periodic {
-            // There is no margin beyond the periodic sides, since disks stay in the domain.
-            column_edges[0] += margin.x;
-            column_edges[layout.columns as usize] -= margin.x;
+        let mut column_edges = edges(domain.left, layout.pitch.x, layout.columns, !domain.periodic_sides);
+        let mut row_edges = row_edges(domain, &layout);
+        // There is no margin beyond periodic sides and ends, since disks stay in the domain.
+        if domain.periodic_sides {
+            widen(&mut column_edges, -margin.x);
         }
-        Self {
-            stride: layout.rows + 2,
-            column_edges,
-            row_edges: row_edges(domain, &layout),
-            margin,
-            period: if domain.periodic { domain.width() } else { 0.0 },
-            layout,
+        if domain.periodic_ends {
+            widen(&mut row_edges, -margin.y);
         }
+        let (stride, periods) = (layout.rows + 2, domain.periods());
+        let is_periodic = periods != DVec2::ZERO;
+        Self { layout, stride, column_edges, row_edges, margin, periods, is_periodic }
     }
 
     /// Creates the grid of this layout with cells that keep no disks beyond their edges.
@@ -120,12 +129,14 @@ impl Grid {
 
     /// Returns the edges of the columns and of the rows.
     pub(super) fn edges(&self) -> [Vec<f64>; 2] {
-        let mut columns = self.column_edges.clone();
-        if self.period > 0.0 {
-            columns[0] -= self.margin.x;
-            columns[self.layout.columns as usize] += self.margin.x;
+        let (mut columns, mut rows) = (self.column_edges.clone(), self.row_edges.clone());
+        if self.periods.x > 0.0 {
+            widen(&mut columns, self.margin.x);
         }
-        [columns, self.row_edges.clone()]
+        if self.periods.y > 0.0 {
+            widen(&mut rows, self.margin.y);
+        }
+        [columns, rows]
     }
 
     /// Returns between which numbers the disks of each column, and of each row, are.
@@ -191,38 +202,68 @@ impl Grid {
         prefetch(&self.column_edges, place.column as usize);
     }
 
-    /// Returns the width of the domain if its sides are periodic, and 0 otherwise.
+    /// Returns the width and the height after which the domain repeats itself; 0 where it does not.
     #[inline]
-    pub(in crate::simulation) fn period(&self) -> f64 {
-        self.period
+    pub(in crate::simulation) fn periods(&self) -> DVec2 {
+        self.periods
     }
 
-    /// Returns the ghost that mirrors a cell at a periodic side, if the cell has one.
+    /// Tells whether the domain repeats itself in some direction.
     #[inline]
-    pub(in crate::simulation) fn mirror(&self, place: Place) -> Option<Place> {
-        let columns = self.layout.columns;
-        match place.column {
-            _ if self.period == 0.0 => None,
-            1 => Some(Place { column: columns + 1, ..place }),
-            column if column == columns => Some(Place { column: 0, ..place }),
-            _ => None,
-        }
+    pub(in crate::simulation) fn is_periodic(&self) -> bool {
+        self.is_periodic
     }
 
-    /// Returns the neighbor so many columns to the right and rows up, and the change of `x` on the way there.
+    /// Returns the ghosts that mirror a cell at periodic sides and ends: beside it, above or below, and
+    /// across the corner.
     #[inline]
-    pub(in crate::simulation) fn neighbor(&self, place: Place, (right, up): (i32, i32)) -> (Place, f64) {
+    pub(in crate::simulation) fn mirrors(&self, place: Place) -> impl Iterator<Item = Place> + use<> {
+        let Layout { columns, rows, .. } = self.layout;
+        let column = opposite(place.column, columns).filter(|_| self.periods.x > 0.0);
+        let row = opposite(place.row, rows).filter(|_| self.periods.y > 0.0);
+        let beside = column.map(|column| Place { column, ..place });
+        let above = row.map(|row| Place { row, ..place });
+        let across = column.zip(row).map(|(column, row)| Place { column, row });
+        [beside, above, across].into_iter().flatten()
+    }
+
+    /// Returns the neighbor so many columns to the right and rows up, and the number of periods passed on
+    /// the way.
+    #[inline]
+    pub(in crate::simulation) fn neighbor(&self, place: Place, (right, up): (i32, i32)) -> (Place, [i32; 2]) {
         let mut to =
             Place { column: place.column.wrapping_add_signed(right), row: place.row.wrapping_add_signed(up) };
-        let mut shift = 0.0;
-        if self.period > 0.0 {
-            if to.column == 0 {
-                (to.column, shift) = (self.layout.columns, self.period);
-            } else if to.column > self.layout.columns {
-                (to.column, shift) = (1, -self.period);
+        let mut passed = [0; 2];
+        if self.is_periodic {
+            if self.periods.x > 0.0 {
+                (to.column, passed[0]) = brought_back(to.column, self.layout.columns);
+            }
+            if self.periods.y > 0.0 {
+                (to.row, passed[1]) = brought_back(to.row, self.layout.rows);
             }
         }
-        (to, shift)
+        (to, passed)
+    }
+}
+
+/// Returns the place in the ring that mirrors the first or the last of so many columns or rows.
+#[inline]
+fn opposite(line: u32, count: u32) -> Option<u32> {
+    match line {
+        1 => Some(count + 1),
+        line if line == count => Some(0),
+        _ => None,
+    }
+}
+
+/// Brings a column or row of the ring back among those that it mirrors. Returns it, and the number of
+/// periods passed.
+#[inline]
+fn brought_back(line: u32, count: u32) -> (u32, i32) {
+    match line {
+        0 => (count, -1),
+        line if line > count => (1, 1),
+        line => (line, 0),
     }
 }
 
@@ -232,33 +273,12 @@ impl Grid {
 /// A disk that turns back soon, or moves to and fro at an edge, then stays in its cell.
 fn margin(domain: &Domain, layout: &Layout, diameter: f64) -> DVec2 {
     let mut margin = (0.5 * (layout.pitch - LEAST_PITCH * diameter)).max(DVec2::ZERO);
-    if domain.periodic && layout.columns < 6 {
-        // Neighbors could be more than half a period apart.
+    // Neighbors could be more than half a period apart.
+    if domain.periodic_sides && layout.columns < 6 {
         margin.x = 0.0;
     }
+    if domain.periodic_ends && layout.rows < 6 {
+        margin.y = 0.0;
+    }
     margin
-}
-
-fn edges(start: f64, pitch: f64, count: u32, walls: bool) -> Vec<f64> {
-    let mut edges: Vec<f64> = (0..=count).map(|k| start + f64::from(k) * pitch).collect();
-    if walls {
-        edges[0] = f64::NEG_INFINITY;
-        edges[count as usize] = f64::INFINITY;
-    }
-    edges
-}
-
-/// Returns the edges of the rows. In an open container, the upper half of the rows grows in proportion to the
-/// height. A disk that flies high then does not share its cell with all others that are high.
-fn row_edges(domain: &Domain, layout: &Layout) -> Vec<f64> {
-    const GROWTH: f64 = 1.1;
-    let mut edges = edges(domain.bottom, layout.pitch.y, layout.rows, true);
-    if domain.top.is_infinite() {
-        let even = (layout.rows as usize / 2).max(1);
-        for row in even + 1..edges.len() - 1 {
-            let height = edges[row - 1] - domain.bottom.min(edges[row - 1]);
-            edges[row] = edges[row - 1] + (height * (GROWTH - 1.0)).max(layout.pitch.y);
-        }
-    }
-    edges
 }

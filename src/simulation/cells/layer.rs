@@ -1,9 +1,12 @@
 //! The cells of a class of disks that are larger than others.
 //!
-//! A large disk has two: a *home*, as large as the disk, in which others look for it, and a *cell*, much smaller, until whose
-//! end it keeps its partners. Were the home all it had, it would have to know all small disks within the whole of it.
+//! A large disk has two: a *home*, as large as the disk, in which others look for it, and a *cell*, much
+//! smaller, until whose end it keeps its partners. Were the home all it had, it would have to know all
+//! small disks within the whole of it.
 
 use std::f64::consts::SQRT_2;
+
+use glam::DVec2;
 
 use super::cell_size::CellSize;
 use super::contents::Contents;
@@ -19,10 +22,13 @@ const HOMES_PER_DISK: f64 = 4.0;
 const SPARE_HOMES: f64 = 16.0;
 
 /// Size of a cell in free paths, for cells as large as a disk of the smallest class.
-const FREE_PATHS: f64 = 3.0;
+pub(super) const FREE_PATHS: f64 = 3.0;
 
 /// Doublings by which cells are finer than homes, at most.
 const FINEST: u32 = 10;
+
+/// Columns or rows from which on cells get no finer.
+const MOST_LINES: u32 = 1 << 20;
 
 /// The place of the cells of a class: how many there are, and how many make a home.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,10 +62,20 @@ impl LayerLayout {
             (FREE_PATHS * cell_size.pitch() * free_path).max(cell_size.pitch() * classes[0].largest);
         let mut layout = Self { cells: homes, doublings: 0 };
         // The nearest of the sizes that there are, by their ratio.
-        while layout.cells.pitch.max_element() > SQRT_2 * suitable && layout.doublings < FINEST {
+        while layout.cells.pitch.max_element() > SQRT_2 * suitable && layout.can_be_finer() {
             layout = layout.finer(1);
         }
         Some(layout)
+    }
+
+    /// Tells whether there may be twice as many columns and rows: there are tables of these.
+    fn can_be_finer(&self) -> bool {
+        self.doublings < FINEST && self.cells.columns.max(self.cells.rows) < MOST_LINES
+    }
+
+    /// Returns the width and height of a home.
+    pub(super) fn home_size(&self) -> DVec2 {
+        self.cells.pitch * f64::from(1_u32 << self.doublings)
     }
 
     /// Returns the same homes with cells that are finer by so many doublings.
@@ -94,15 +110,15 @@ impl LayerLayout {
         diameter: f64,
     ) -> bool {
         let grid = Grid::new(domain, *smallest, smallest_diameter);
-        !domain.periodic
-            || self.cells.pitch.x <= super::layers::widest(domain, &grid, smallest_diameter, diameter)
+        let widest = super::layers::widest(domain, &grid, smallest_diameter, diameter);
+        self.cells.pitch.cmple(widest).all()
     }
 
-    /// Returns the same homes with cells at most this wide, if they can be.
-    pub(super) fn narrower(self, width: f64) -> Option<Self> {
+    /// Returns the same homes with cells at most this wide and high, if they can be.
+    pub(super) fn narrower(self, widest: DVec2) -> Option<Self> {
         let mut layout = self;
-        while layout.cells.pitch.x > width {
-            if layout.doublings >= FINEST {
+        while layout.cells.pitch.cmpgt(widest).any() {
+            if !layout.can_be_finer() {
                 return None;
             }
             layout = layout.finer(1);
@@ -116,8 +132,9 @@ impl LayerLayout {
 pub(super) struct Layer {
     pub(super) layout: LayerLayout,
     pub(super) grid: Grid,
-    contents: Contents,
-    /// Homes of each class that a disk of this one may touch; the smallest class first.
+    pub(super) contents: Contents,
+    /// Homes of each smaller class that a disk of this one may touch, the smallest class first, and last
+    /// those of its own.
     reaches: Vec<Reach>,
 }
 
@@ -126,11 +143,16 @@ impl Layer {
     pub(super) fn empty(domain: &Domain, layout: LayerLayout) -> Self {
         let grid = Grid::without_margin(domain, layout.cells);
         let homes = (layout.cells.columns as usize * layout.cells.rows as usize) >> (2 * layout.doublings);
-        Self { layout, grid, contents: Contents::empty(homes, 1), reaches: Vec::new() }
+        Self { layout, grid, contents: Contents::empty(homes), reaches: Vec::new() }
     }
 
     pub(super) fn set_reaches(&mut self, reaches: Vec<Reach>) {
         self.reaches = reaches;
+    }
+
+    /// Returns the number of homes.
+    pub(super) fn len(&self) -> usize {
+        (self.layout.cells.columns as usize * self.layout.cells.rows as usize) >> (2 * self.layout.doublings)
     }
 
     /// Homes in a column.
@@ -142,7 +164,7 @@ impl Layer {
         Homes { grid: &self.grid, cells: 1 << self.layout.doublings, stride: self.stride(), first: 0 }
     }
 
-    fn home(&self, place: Place) -> usize {
+    pub(super) fn home(&self, place: Place) -> usize {
         let home = |cell: u32| ((cell - 1) >> self.layout.doublings) as usize;
         home(place.column) * self.stride() + home(place.row)
     }
@@ -179,26 +201,11 @@ impl Layer {
         }
     }
 
-    /// Appends the disks of this class within a reach to those found.
-    #[inline]
-    pub(super) fn gather(&self, reach: &Reach, place: Place, found: &mut [u32], count: usize) -> usize {
-        gather(&self.contents, reach, place, found, count)
+    /// Returns the reaches to all smaller classes, and that to its own.
+    pub(super) fn reaches(&self) -> (&[Reach], Option<&Reach>) {
+        match self.reaches.split_last() {
+            Some((own, smaller)) => (smaller, Some(own)),
+            None => (&[], None),
+        }
     }
-
-    pub(super) fn reach(&self, class: usize) -> &Reach {
-        &self.reaches[class]
-    }
-}
-
-/// Appends the disks in the homes within reach of a place to those found.
-#[inline]
-pub(super) fn gather(
-    contents: &Contents,
-    reach: &Reach,
-    place: Place,
-    found: &mut [u32],
-    mut count: usize,
-) -> usize {
-    reach.for_each_run(place, |first, homes| count = contents.gather_run(first, homes, found, count));
-    count
 }

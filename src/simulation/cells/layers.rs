@@ -1,17 +1,29 @@
-//! Disks of several sizes: the smallest class has the cells of the engine, each larger one a layer of its own above them.
+//! Disks of several sizes: the smallest class has the cells of the engine, each larger one a layer of its
+//! own above them.
+
+use glam::DVec2;
 
 use super::cell_size::CellSize;
+use super::contents::Contents;
 use super::grid::{Grid, LEAST_PITCH, Layout, Place};
-use super::layer::{Layer, LayerLayout, gather};
+use super::layer::{Layer, LayerLayout};
 use super::reach::{Distances, Homes, Reach};
 use super::size_class::{SizeClass, class_of, classes, together};
 use crate::boundary::{Boundary, Domain};
 
-/// Cells per disk of the smallest class at most.
-const CELLS_PER_SMALL_DISK: f64 = 6.0;
+/// Returns how many cells there may be for each disk of the smallest class.
+///
+/// Few are best in a dilute gas, but too few where disks crowd in a part of the domain. The sizes of cells
+/// differ by less than would make a run go to and fro between two of them.
+const fn cells_per_small_disk(cell_size: CellSize) -> f64 {
+    match cell_size {
+        CellSize::Small | CellSize::Medium => 6.0,
+        CellSize::Large => 2.0,
+    }
+}
 
 /// Cells of the smallest class that are always allowed.
-const SPARE_SMALL_CELLS: f64 = 64.0;
+pub(super) const SPARE_SMALL_CELLS: f64 = 64.0;
 
 /// The layers of all classes but the smallest.
 #[derive(Debug, Clone)]
@@ -19,8 +31,11 @@ pub(super) struct Layers {
     /// Class of each disk.
     classes: Vec<u8>,
     larger: Vec<Layer>,
-    /// For each layer, its homes that a disk of the smallest class may touch.
-    upward: Vec<Reach>,
+    /// For each home of each class, the smallest class first: the larger disks that reach it from their
+    /// cells.
+    visitors: Vec<Contents>,
+    /// True if disks that go from cell to cell must look at all partners again.
+    is_narrow: bool,
 }
 
 /// Returns the layouts of the cells of these classes; `None` if the domain is too narrow for them.
@@ -32,28 +47,28 @@ pub(super) fn layouts(
 ) -> Option<Layouts> {
     let SizeClass { largest: diameter, count, .. } = classes[0];
     // Large disks look into many of these cells: fewer than where all disks have the same.
-    let most = CELLS_PER_SMALL_DISK * count as f64 + SPARE_SMALL_CELLS;
+    let most = cells_per_small_disk(cell_size) * count as f64 + SPARE_SMALL_CELLS;
     let smallest = Layout::new(domain, diameter, cell_size, most, highest)?;
     let grid = Grid::new(domain, smallest, diameter);
     let layout = |class: usize| {
         let layout = LayerLayout::new(domain, classes, class, cell_size, highest)?;
-        let widest = widest(domain, &grid, diameter, classes[class].largest);
-        if domain.periodic { layout.narrower(widest) } else { Some(layout) }
+        layout.narrower(widest(domain, &grid, diameter, classes[class].largest))
     };
     let larger: Option<Vec<LayerLayout>> = (1..classes.len()).map(layout).collect();
     Some(Layouts { smallest, larger: larger? })
 }
 
-/// Returns how wide a cell of a class may be at periodic sides.
+/// Returns how wide and high a cell of a class may be; infinite where nothing is periodic.
 ///
-/// Two disks meet at the image that is nearest now, if both can move in their cells and no other image comes nearer: their
-/// distance now is at most that at which they touch and the widths of both cells, and that must be less than half a period.
-pub(super) fn widest(domain: &Domain, grid: &Grid, smallest: f64, diameter: f64) -> f64 {
-    let half = 0.5 * domain.width();
-    let small_cell = grid.layout.pitch.x + 2.0 * grid.margin().x;
+/// Two disks meet at the image that is nearest now, if both can move in their cells and no other image
+/// comes nearer: their distance now is at most that at which they touch and the widths of both cells, and
+/// that must be less than half a period.
+pub(super) fn widest(domain: &Domain, grid: &Grid, smallest: f64, diameter: f64) -> DVec2 {
+    let half = 0.5 * domain.periods();
+    let small_cell = grid.layout.pitch + 2.0 * grid.margin();
     let beside_equal = 0.5 * (half - LEAST_PITCH * diameter);
     let beside_small = half - 0.5 * LEAST_PITCH * (diameter + smallest) - small_cell;
-    beside_equal.min(beside_small)
+    DVec2::select(half.cmpgt(DVec2::ZERO), beside_equal.min(beside_small), DVec2::INFINITY)
 }
 
 impl Layers {
@@ -69,20 +84,24 @@ impl Layers {
         let distances = |a: usize, b: usize| Distances {
             most: 0.5 * LEAST_PITCH * (classes[a].largest + classes[b].largest),
             // Less, by more than the depth to which rounding can press disks into each other.
-            least: 0.5 / LEAST_PITCH * (classes[a].smallest + classes[b].smallest),
+            // Disks of the same class have no homes that small.
+            least: if a == b { 0.0 } else { 0.5 / LEAST_PITCH * (classes[a].smallest + classes[b].smallest) },
         };
         let homes = |class: usize| match class {
             0 => homes_of(grid),
             class => larger[class - 1].homes(),
         };
-        let reach = |from: &Grid, a: usize, b: usize| Reach::new(from, &homes(b), distances(a, b));
-        let upward = (1..classes.len()).map(|class| reach(grid, 0, class)).collect();
-        let among = |a: usize| (0..classes.len()).map(|b| reach(&larger[a - 1].grid, a, b)).collect();
+        let reach = |a: usize, b: usize| Reach::new(&larger[a - 1].grid, &homes(b), distances(a, b));
+        let among = |a: usize| (0..=a).map(|b| reach(a, b)).collect();
         let reaches: Vec<Vec<Reach>> = (1..classes.len()).map(among).collect();
+        let visitors = std::iter::once(grid.len()).chain(larger.iter().map(Layer::len)).map(Contents::empty);
+        let visitors = visitors.collect();
+        let is_narrow = !are_homes_narrow(domain, &larger, classes);
         for (layer, reaches) in larger.iter_mut().zip(reaches) {
             layer.set_reaches(reaches);
         }
-        Self { classes: diameters.map(|diameter| class_of(classes, diameter)).collect(), larger, upward }
+        let classes = diameters.map(|diameter| class_of(classes, diameter)).collect();
+        Self { classes, larger, visitors, is_narrow }
     }
 
     pub(super) fn mark_walls<B: Boundary + ?Sized>(&mut self, boundary: &B, classes: &[SizeClass]) {
@@ -102,32 +121,86 @@ impl Layers {
         self.larger.get(usize::from(self.classes[disk]).wrapping_sub(1))
     }
 
-    pub(super) fn of_mut(&mut self, disk: usize) -> Option<&mut Layer> {
-        self.larger.get_mut(usize::from(self.classes[disk]).wrapping_sub(1))
+    /// Tells whether disks that go from cell to cell must look at all partners again.
+    pub(super) fn is_narrow(&self) -> bool {
+        self.is_narrow
     }
 
-    /// Appends the larger disks that one of the smallest class may touch to those found.
-    pub(super) fn gather_above(&self, place: Place, found: &mut [u32], mut count: usize) -> usize {
-        for (layer, reach) in self.larger.iter().zip(&self.upward) {
-            count = layer.gather(reach, place, found, count);
+    /// Writes a disk of a larger class into its home, and into all homes that it reaches.
+    pub(super) fn enter(&mut self, disk: usize, place: Place) {
+        let Some(layer) = self.larger.get_mut(usize::from(self.classes[disk]).wrapping_sub(1)) else {
+            return;
+        };
+        layer.enter(disk, place);
+        for (visitors, reach) in self.visitors.iter_mut().zip(layer.reaches().0) {
+            reach.for_each_run(place, |first, count| visitors.push_to_run(first, count, disk));
         }
-        count
     }
 
-    /// Writes the disks that one of a layer may touch to `found`; returns how many.
-    pub(super) fn gather_around(
+    /// Takes a disk of a larger class from one cell to another.
+    pub(super) fn cross(&mut self, disk: usize, from: Place, to: Place) {
+        let Some(layer) = self.larger.get_mut(usize::from(self.classes[disk]).wrapping_sub(1)) else {
+            return;
+        };
+        layer.cross(disk, from, to);
+        for (visitors, reach) in self.visitors.iter_mut().zip(layer.reaches().0) {
+            reach.for_each_run_beyond(from, to, |first, count| visitors.remove_from_run(first, count, disk));
+            reach.for_each_run_beyond(to, from, |first, count| visitors.push_to_run(first, count, disk));
+        }
+    }
+
+    /// Appends the larger disks that one of the smallest class in this cell may touch to those found.
+    #[inline(always)]
+    pub(super) fn gather_visitors(&self, cell: usize, found: &mut [u32], count: usize) -> usize {
+        self.visitors[0].gather_cell(cell, found, count)
+    }
+
+    /// Requests from memory what [`Self::gather_visitors`] needs.
+    pub(super) fn prefetch_visitors(&self, cell: usize) {
+        self.visitors[0].prefetch(cell);
+    }
+
+    /// Writes the disks that one of a larger class may touch to `found`; returns how many. Those of smaller
+    /// classes that it could touch `before`, too, are left out.
+    pub(super) fn gather(
         &self,
-        layer: &Layer,
-        smallest: &super::Contents,
+        smallest: &Contents,
+        disk: usize,
         place: Place,
+        before: Option<Place>,
         found: &mut [u32],
     ) -> usize {
-        let mut count = gather(smallest, layer.reach(0), place, found, 0);
-        for (class, other) in self.larger.iter().enumerate() {
-            count = other.gather(layer.reach(class + 1), place, found, count);
+        let class = usize::from(self.classes[disk]);
+        let Some(layer) = self.larger.get(class.wrapping_sub(1)) else { return 0 };
+        let (smaller, own) = layer.reaches();
+        let mut count = 0;
+        let contents = std::iter::once(smallest).chain(self.larger.iter().map(|layer| &layer.contents));
+        for (contents, reach) in contents.zip(smaller) {
+            let act = |first, homes| count = contents.gather_run(first, homes, found, count);
+            match before {
+                Some(before) => reach.for_each_run_beyond(place, before, act),
+                None => reach.for_each_run(place, act),
+            }
         }
-        count
+        if let Some(own) = own {
+            own.for_each_run(place, |first, homes| {
+                count = layer.contents.gather_run(first, homes, found, count);
+            });
+        }
+        self.visitors[class].gather_cell(layer.home(place), found, count)
     }
+}
+
+/// Tells whether disks of one class in their homes and of a larger one in their cells are less than half a
+/// period apart as long as they are in each other's reach. Then they go on meeting at the same image.
+fn are_homes_narrow(domain: &Domain, larger: &[Layer], classes: &[SizeClass]) -> bool {
+    let touching = |a: usize, b: usize| 0.5 * LEAST_PITCH * (classes[a + 1].largest + classes[b + 1].largest);
+    let half = 0.5 * domain.periods();
+    let is_narrow = |a: usize, b: usize| {
+        let apart = larger[a].layout.home_size() + larger[b].layout.cells.pitch + touching(a, b);
+        (half.cmpeq(DVec2::ZERO) | apart.cmplt(half)).all()
+    };
+    (1..larger.len()).all(|b| (0..b).all(|a| is_narrow(a, b)))
 }
 
 /// The cells of the smallest class, each the home of its disks.

@@ -9,6 +9,18 @@ struct Span {
     count: u32,
 }
 
+impl Span {
+    const EMPTY: Self = Self { first: 0, count: 0 };
+
+    fn between(first: u32, behind: u32) -> Self {
+        Self { first, count: behind.saturating_sub(first) }
+    }
+
+    fn behind(self) -> u32 {
+        self.first + self.count
+    }
+}
+
 /// The homes of a class of disks: rectangles of one or more cells of a grid.
 pub(super) struct Homes<'a> {
     pub(super) grid: &'a Grid,
@@ -20,7 +32,7 @@ pub(super) struct Homes<'a> {
     pub(super) first: usize,
 }
 
-/// How near the disks of two classes can be.
+/// Distances of the centers of disks of two classes that touch.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Distances {
     /// The distance of the centers of the largest disks when they touch.
@@ -38,6 +50,8 @@ pub(super) struct Reach {
     rows: Vec<[Span; 2]>,
     /// Number of columns of homes, after which periodic sides begin anew.
     period: u32,
+    /// The same for rows. At periodic ends, rows are counted on beyond it.
+    period_rows: u32,
     stride: usize,
     first: usize,
 }
@@ -48,7 +62,7 @@ impl Reach {
         let [columns, rows] = homes.grid.edges().map(|edges| every(homes.cells, &edges));
         let margin = homes.grid.margin();
         let [from_columns, from_rows] = from.ranges();
-        let is_periodic = homes.grid.period() > 0.0;
+        let periods = homes.grid.periods();
         // A square in the circle that the nearest centers lie on.
         let hole = distances.least * std::f64::consts::FRAC_1_SQRT_2;
         let spans = |edges: &[f64], range: &(f64, f64), margin: f64, is_periodic: bool| {
@@ -57,32 +71,105 @@ impl Reach {
             let outer = if is_periodic { around(edges, low, high) } else { between(edges, low, high) };
             [outer, within(edges, range.1 - hole + margin, range.0 + hole - margin)]
         };
+        let row_spans = |range: &(f64, f64)| {
+            let [outer, hole] = spans(&rows, range, margin.y, periods.y > 0.0);
+            [outer, hole_within(outer, hole, rows.len() as u32 - 1)]
+        };
         Self {
-            columns: from_columns.iter().map(|range| spans(&columns, range, margin.x, is_periodic)).collect(),
-            rows: from_rows.iter().map(|range| spans(&rows, range, margin.y, false)).collect(),
+            columns: from_columns
+                .iter()
+                .map(|range| spans(&columns, range, margin.x, periods.x > 0.0))
+                .collect(),
+            rows: from_rows.iter().map(row_spans).collect(),
             period: columns.len() as u32 - 1,
+            period_rows: rows.len() as u32 - 1,
             stride: homes.stride,
             first: homes.first,
         }
     }
 
-    /// Does something with the homes within reach of a place, given the index of the first of some that follow each other in
-    /// memory, and their number.
+    /// Does something with the homes within reach of a place, given the index of the first of some that
+    /// follow each other in memory, and their number.
     #[inline]
     pub(super) fn for_each_run(&self, place: Place, mut act: impl FnMut(usize, usize)) {
-        let [columns, hole_columns] = self.columns[place.column as usize - 1];
-        let [rows, hole_rows] = self.rows[place.row as usize - 1];
-        for k in columns.first..columns.first + columns.count {
-            let column = if k >= self.period { k - self.period } else { k };
-            let start = self.first + column as usize * self.stride;
-            if column.wrapping_sub(hole_columns.first) < hole_columns.count && hole_rows.count > 0 {
-                let behind = hole_rows.first + hole_rows.count;
-                act(start + rows.first as usize, (hole_rows.first - rows.first) as usize);
-                act(start + behind as usize, (rows.first + rows.count - behind) as usize);
-            } else {
+        for column in self.columns_of(place) {
+            for rows in self.rows_of(place, column) {
+                self.act_on(column, rows, &mut act);
+            }
+        }
+    }
+
+    /// Does the same with the homes within reach of one place, but not of another.
+    pub(super) fn for_each_run_beyond(&self, place: Place, other: Place, mut act: impl FnMut(usize, usize)) {
+        for column in self.columns_of(place) {
+            let beyond = self.rows_of(other, column).map(|rows| self.aligned(rows, place, other));
+            for rows in self.rows_of(place, column) {
+                let mut first = rows.first;
+                for inside in beyond.into_iter().filter(|inside| inside.count > 0) {
+                    let before = Span::between(first, rows.behind().min(inside.first));
+                    self.act_on(column, before, &mut act);
+                    first = first.max(inside.behind());
+                }
+                self.act_on(column, Span::between(first, rows.behind()), &mut act);
+            }
+        }
+    }
+
+    /// Counts the rows of another place from where those of this place are counted from, if periodic ends
+    /// lie between.
+    fn aligned(&self, rows: Span, place: Place, other: Place) -> Span {
+        let first = |place: Place| i64::from(self.rows[place.row as usize - 1][0].first);
+        let (ahead, period) = (first(place) - first(other), i64::from(self.period_rows));
+        let turns = if 2 * ahead > period { 1 } else { -i64::from(2 * ahead < -period) };
+        // A span that would begin before the first row reaches no row of this place there.
+        let start = i64::from(rows.first) + turns * period;
+        Span::between(start.max(0) as u32, (start + i64::from(rows.count)).max(0) as u32)
+    }
+
+    #[inline]
+    fn act_on(&self, column: u32, rows: Span, act: &mut impl FnMut(usize, usize)) {
+        let start = self.first + column as usize * self.stride;
+        if rows.behind() <= self.period_rows {
+            if rows.count > 0 {
+                act(start + rows.first as usize, rows.count as usize);
+            }
+            return;
+        }
+        // The span goes on at the other end.
+        for rows in [
+            Span::between(rows.first, self.period_rows),
+            Span::between(
+                rows.first.max(self.period_rows) - self.period_rows,
+                rows.behind() - self.period_rows,
+            ),
+        ] {
+            if rows.count > 0 {
                 act(start + rows.first as usize, rows.count as usize);
             }
         }
+    }
+
+    /// Iterates over the columns of homes within reach of a place.
+    #[inline]
+    fn columns_of(&self, place: Place) -> impl Iterator<Item = u32> + use<> {
+        let ([columns, _], period) = (self.columns[place.column as usize - 1], self.period);
+        (columns.first..columns.behind()).map(move |k| if k >= period { k - period } else { k })
+    }
+
+    /// Returns the homes of a column within reach of a place: those below the hole, and those above it.
+    #[inline]
+    fn rows_of(&self, place: Place, column: u32) -> [Span; 2] {
+        let [columns, hole_columns] = self.columns[place.column as usize - 1];
+        let [rows, hole_rows] = self.rows[place.row as usize - 1];
+        let turn = if column < columns.first { self.period } else { 0 };
+        if column + turn - columns.first >= columns.count {
+            return [Span::EMPTY; 2];
+        }
+        if column.wrapping_sub(hole_columns.first) < hole_columns.count && hole_rows.count > 0 {
+            let below = Span::between(rows.first, hole_rows.first);
+            return [below, Span::between(hole_rows.behind(), rows.behind())];
+        }
+        [rows, Span::EMPTY]
     }
 }
 
@@ -108,7 +195,16 @@ fn within(edges: &[f64], low: f64, high: f64) -> Span {
     Span { first: first as u32 + 1, count: count as u32 }
 }
 
-/// The spaces that hold numbers from `low` to `high`, between edges of the same distance, after the last of which the first follows.
+/// Counts the rows of a hole from where those around it are counted from. A hole that is not among them is
+/// none.
+fn hole_within(outer: Span, hole: Span, period: u32) -> Span {
+    let first = if hole.first < outer.first { hole.first + period } else { hole.first };
+    let hole = Span { first, count: hole.count };
+    if hole.behind() <= outer.behind() { hole } else { Span::EMPTY }
+}
+
+/// The spaces that hold numbers from `low` to `high`, between edges of the same distance, after the last of
+/// which the first follows.
 fn around(edges: &[f64], low: f64, high: f64) -> Span {
     let (start, end, count) = (edges[0], edges[edges.len() - 1], (edges.len() - 1) as f64);
     let space = |x: f64| ((x - start) / (end - start) * count).floor();
@@ -118,7 +214,56 @@ fn around(edges: &[f64], low: f64, high: f64) -> Span {
 
 #[cfg(test)]
 mod tests {
-    use super::{around, between, within};
+    use std::collections::BTreeSet;
+
+    use super::{Distances, Homes, Reach, around, between, within};
+    use crate::boundary::{Boundary, Container};
+    use crate::simulation::cells::cell_size::CellSize;
+    use crate::simulation::cells::grid::{Grid, Layout, Place};
+
+    /// Returns a grid of cells of this size on a square of 60.
+    fn grid(container: &Container, pitch: f64) -> Grid {
+        let count = (60.0 / pitch).round() as u32;
+        let pitch = glam::DVec2::splat(60.0 / f64::from(count));
+        let layout = Layout { cell_size: CellSize::Small, columns: count, rows: count, pitch };
+        Grid::without_margin(&container.domain(), layout)
+    }
+
+    fn homes_within(reach: &Reach, place: Place, other: Option<Place>) -> BTreeSet<usize> {
+        let mut homes = BTreeSet::new();
+        let mut add = |first: usize, count: usize| {
+            for home in first..first + count {
+                assert!(homes.insert(home), "{home} is named twice");
+            }
+        };
+        match other {
+            Some(other) => reach.for_each_run_beyond(place, other, &mut add),
+            None => reach.for_each_run(place, &mut add),
+        }
+        homes
+    }
+
+    #[test]
+    fn what_comes_within_reach_is_what_was_not_there_before() {
+        let walled = Container::closed(60.0, 60.0).unwrap();
+        let periodic = Container::periodic(60.0, 60.0).unwrap();
+        for container in [walled.clone(), walled.with_periodic_sides(), periodic] {
+            let (from, small) = (grid(&container, 5.0), grid(&container, 1.5));
+            let homes = Homes { grid: &small, cells: 1, stride: 40, first: 3 };
+            let reach = Reach::new(&from, &homes, Distances { most: 11.0, least: 10.9 });
+            for place in from.places() {
+                let here = homes_within(&reach, place, None);
+                for direction in [(1, 0), (-1, 0), (0, 1), (0, -1)] {
+                    let (other, _) = from.neighbor(place, direction);
+                    if (1..=12).contains(&other.column) && (1..=12).contains(&other.row) {
+                        let there = homes_within(&reach, other, None);
+                        let beyond = homes_within(&reach, place, Some(other));
+                        assert_eq!(beyond, &here - &there, "{place:?} {other:?}");
+                    }
+                }
+            }
+        }
+    }
 
     #[test]
     fn spans_hold_what_lies_between_and_no_more() {

@@ -87,7 +87,7 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         let bodies = bodies_of(saved);
         let misfit = || CheckpointError::Inconsistent("its neighbor cells are not those of the domain");
         check_places(saved, &grids(saved, &bodies).ok_or_else(misfit)?, &bodies)?;
-        let diameters = (0..bodies.len()).map(|disk| 2.0 * bodies.material(disk).radius);
+        let diameters = (0..bodies.len()).map(|disk| 2.0 * bodies.radius(disk));
         let cells = Cells::filled(&self.boundary, &saved.layouts, diameters, saved.places.clone());
         let cells = cells.ok_or_else(misfit)?;
         let mut run = self.run(bodies, cells, wall_count);
@@ -137,6 +137,6 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
 }
 
 fn bodies_of(saved: &Saved) -> Bodies {
-    let Saved { kinds, gravity, trajectories, forecasts, spins, .. } = saved;
-    Bodies::restored(kinds, *gravity, trajectories, forecasts, spins.clone())
+    let Saved { models, gravity, trajectories, forecasts, spins, images, .. } = saved;
+    Bodies::restored(models, *gravity, trajectories, forecasts, spins.clone(), images.clone())
 }

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use super::{CheckpointError, Saved};
 use crate::boundary::Domain;
 use crate::disk::LARGEST;
-use crate::simulation::cells::{CELLS_PER_DISK, Grid, Grids, Layout, Place, SPARE_CELLS};
+use crate::simulation::cells::{CELLS_PER_DISK, FEWEST, Grid, Grids, Layout, Place, SPARE_CELLS};
 use crate::simulation::events::Counters;
 use crate::simulation::state::{Bodies, Exit, Forecast, Guard, Spin, Trajectory};
 use glam::DVec2;
@@ -33,7 +33,8 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     let count = saved.trajectories.len();
     let lengths = [saved.spins.len(), saved.forecasts.len(), saved.places.len()];
     check(lengths.iter().all(|&length| length == count), "its parts differ in length")?;
-    check([1, count].contains(&saved.kinds.len()), "its disks are of too many kinds, or of none")?;
+    check([0, count].contains(&saved.images.len()), "its images are of other disks")?;
+    check([1, count].contains(&saved.models.len()), "its disks have too many models, or none")?;
     let times = [saved.origin, saved.now, saved.epoch_length, saved.gravity];
     check(times.iter().all(|time| time.is_finite()), "a time is not finite")?;
     check(saved.gravity.abs() <= LARGEST, "its gravity is beyond all bounds")?;
@@ -53,8 +54,7 @@ pub(super) fn check_places(saved: &Saved, grids: &Grids, bodies: &Bodies) -> Res
     let inside = |(disk, (_, &place))| holds(grids.of(disk), place, bodies.position(disk, saved.now));
     check(disks().all(inside), "a disk is outside its neighbor cell")?;
     // The cells at walls extend to infinity.
-    let within =
-        |disk| is_within(&saved.domain, bodies.position(disk, saved.now), bodies.material(disk).radius);
+    let within = |disk| is_within(&saved.domain, bodies.position(disk, saved.now), bodies.radius(disk));
     check((0..saved.places.len()).all(within), "a disk is outside the domain")?;
     check(has_room(saved, grids, bodies), "the disks of a cell overlap")?;
     let ends =
@@ -64,10 +64,11 @@ pub(super) fn check_places(saved: &Saved, grids: &Grids, bodies: &Bodies) -> Res
     check(disks().all(meets), "a disk collides with one that it does not touch")
 }
 
-/// Returns the grids of all classes of disks, if they suit the domain and the disks, and every disk is in its own.
+/// Returns the grids of all classes of disks, if they suit the domain and the disks, and every disk is in
+/// its own.
 pub(super) fn grids(saved: &Saved, bodies: &Bodies) -> Option<Grids> {
     let layouts = &saved.layouts;
-    let diameters = (0..bodies.len()).map(|disk| 2.0 * bodies.material(disk).radius);
+    let diameters = (0..bodies.len()).map(|disk| 2.0 * bodies.radius(disk));
     let classes = layouts.classes(&saved.domain, diameters.clone())?;
     let smallest = classes[0].largest;
     let suits = suits(saved, &layouts.smallest, smallest)
@@ -93,7 +94,8 @@ fn suits(saved: &Saved, layout: &Layout, diameter: f64) -> bool {
     let wide = |count: u32, pitch: f64| count == 1 || pitch > diameter;
     columns.min(rows) > 0
         && f64::from(columns) * f64::from(rows) <= most
-        && (columns >= 4 || !saved.domain.periodic)
+        && (f64::from(columns) >= FEWEST || !saved.domain.periodic_sides)
+        && (f64::from(rows) >= FEWEST || !saved.domain.periodic_ends)
         && covers(columns, pitch.x, saved.domain.width())
         && covers(rows, pitch.y, saved.domain.height())
         && wide(columns, pitch.x)
@@ -171,7 +173,7 @@ fn has_room(saved: &Saved, grids: &Grids, bodies: &Bodies) -> bool {
     let domain = &saved.domain;
     let mut cells: HashMap<(u8, usize), (f64, f64)> = HashMap::new();
     saved.places.iter().enumerate().all(|(disk, &place)| {
-        let radius = bodies.material(disk).radius;
+        let radius = bodies.radius(disk);
         let grid = grids.of(disk);
         let (area, largest): &mut (f64, f64) =
             cells.entry((grids.class(disk), grid.index(place))).or_default();
@@ -228,6 +230,6 @@ fn meets_its_partner(saved: &Saved, bodies: &Bodies, disk: usize, forecast: &For
     }
     let here = bodies.position(disk, collision_due);
     let distance = saved.domain.separation(bodies.position(partner, collision_due), here).length();
-    let touching = bodies.material(disk).radius + bodies.material(partner).radius;
+    let touching = bodies.radius(disk) + bodies.radius(partner);
     (distance - touching).abs() <= SLACK * touching
 }

@@ -9,7 +9,7 @@
 use glam::DVec2;
 
 use super::forecast::Forecast;
-use super::kinds::Kinds;
+use super::properties::Properties;
 use crate::Disk;
 use crate::collision::{Body, Material};
 
@@ -78,7 +78,9 @@ pub(in crate::simulation) struct Bodies {
     pub(in crate::simulation) particles: Vec<Particle>,
     pub(in crate::simulation) spins: Vec<Spin>,
     pub(in crate::simulation) gravity: f64,
-    kinds: Kinds,
+    properties: Properties,
+    /// Numbers of periods that each disk has passed; empty as long as none has passed any.
+    images: Vec<[i32; 2]>,
     /// Typical diameter, in which the length of an epoch is measured.
     pub(super) typical_diameter: f64,
 }
@@ -88,31 +90,40 @@ impl Bodies {
         let trajectory = |disk: &Disk| Trajectory { position: disk.position(), velocity: disk.velocity() };
         let particles = disks.iter().map(trajectory).map(Particle::new).collect();
         let spins = disks.iter().map(Spin::of).collect();
-        Self::of_kinds(Kinds::of(disks), gravity, particles, spins)
+        let has_passed = disks.iter().any(|disk| disk.image() != [0; 2]);
+        let images = if has_passed { disks.iter().map(Disk::image).collect() } else { Vec::new() };
+        let properties = Properties::of(disks);
+        let typical_diameter = properties.typical_diameter();
+        Self { particles, spins, gravity, properties, images, typical_diameter }
     }
 
-    fn of_kinds(kinds: Kinds, gravity: f64, particles: Vec<Particle>, spins: Vec<Spin>) -> Self {
-        Self { particles, spins, gravity, typical_diameter: kinds.typical_diameter(), kinds }
-    }
-
-    /// Creates bodies that go on where they were saved. Disks that are all alike have a single kind.
+    /// Creates bodies that go on where they were saved. Disks that are all alike have a single model.
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn restored(
-        kinds: &[Disk],
+        models: &[Disk],
         gravity: f64,
         trajectories: &[Trajectory],
         forecasts: &[Forecast],
         spins: Vec<Spin>,
+        images: Vec<[i32; 2]>,
     ) -> Self {
         let particle = |(&trajectory, &forecast)| Particle { trajectory, forecast };
         let particles = trajectories.iter().zip(forecasts).map(particle).collect();
-        Self::of_kinds(Kinds::of(kinds), gravity, particles, spins)
+        let properties = Properties::of(models);
+        let typical_diameter = properties.typical_diameter();
+        Self { particles, spins, gravity, properties, images, typical_diameter }
     }
 
-    /// Returns the kinds that [`Self::restored`] takes.
+    /// Returns the images that [`Self::restored`] takes.
     #[cfg(feature = "serde")]
-    pub(in crate::simulation) fn kinds(&self) -> Vec<Disk> {
-        self.kinds.disks()
+    pub(in crate::simulation) fn images(&self) -> &[[i32; 2]] {
+        &self.images
+    }
+
+    /// Returns the models that [`Self::restored`] takes.
+    #[cfg(feature = "serde")]
+    pub(in crate::simulation) fn models(&self) -> Vec<Disk> {
+        self.properties.models()
     }
 
     pub(in crate::simulation) fn len(&self) -> usize {
@@ -132,18 +143,18 @@ impl Bodies {
 
     #[inline]
     pub(in crate::simulation) fn radius(&self, disk: usize) -> f64 {
-        self.kinds.radius(disk)
+        self.properties.radius(disk)
     }
 
     #[inline]
-    pub(in crate::simulation) fn material(&self, disk: usize) -> &Material {
-        &self.kinds.get(disk).material
+    pub(in crate::simulation) fn material(&self, disk: usize) -> Material {
+        self.properties.material(disk)
     }
 
     /// Returns the diameter, if all disks have the same one.
     #[inline]
     pub(in crate::simulation) fn common_diameter(&self) -> Option<f64> {
-        self.kinds.common_diameter()
+        self.properties.common_diameter()
     }
 
     /// Returns the displacement and velocity that gravity has added by this time offset.
@@ -202,15 +213,32 @@ impl Bodies {
         trajectory.position -= (trajectory.velocity - before) * offset;
     }
 
+    /// Brings a disk that has passed so many periods back into the domain.
+    #[inline]
+    pub(in crate::simulation) fn bring_back(&mut self, disk: usize, passed: [i32; 2], periods: DVec2) {
+        if passed != [0; 2] {
+            self.bring_back_by(disk, passed, periods);
+        }
+    }
+
+    #[cold]
+    fn bring_back_by(&mut self, disk: usize, passed: [i32; 2], periods: DVec2) {
+        self.particles[disk].trajectory.position -= periods * DVec2::from(passed.map(f64::from));
+        self.images.resize(self.particles.len(), [0; 2]);
+        let image = &mut self.images[disk];
+        *image = [image[0].wrapping_add(passed[0]), image[1].wrapping_add(passed[1])];
+    }
+
     #[inline]
     pub(in crate::simulation) fn moment_of_inertia(&self, disk: usize) -> f64 {
-        self.kinds.get(disk).disk.moment_of_inertia()
+        self.properties.model(disk).moment_of_inertia()
     }
 
     /// Returns the disk as the user sees it.
     pub(in crate::simulation) fn disk(&self, disk: usize, offset: f64) -> Disk {
         let spin = &self.spins[disk];
-        self.kinds.get(disk).disk.with_motion(
+        let image = self.images.get(disk).copied().unwrap_or_default();
+        self.properties.model(disk).with_image(image).with_motion(
             self.position(disk, offset),
             self.velocity(disk, offset),
             spin.angle + spin.angular_velocity * offset,

@@ -24,7 +24,7 @@ pub(super) fn is_stopped() -> bool {
     STOP.load(Ordering::Relaxed)
 }
 
-/// What is shown while a study runs.
+/// Display of a running study.
 pub(super) struct Watch {
     /// On a terminal.
     bar: Option<ProgressBar>,

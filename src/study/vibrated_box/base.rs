@@ -30,7 +30,7 @@ pub enum Base {
     Thermal {
         /// `$T_0$`.
         temperature: f64,
-        /// Whether tangential and angular velocity are left as they are.
+        /// True if tangential and angular velocity stay as they are.
         #[serde(default)]
         slip: bool,
     },

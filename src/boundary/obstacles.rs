@@ -1,0 +1,170 @@
+//! Fixed round obstacles inside another boundary.
+
+use std::borrow::Cow;
+
+use glam::DVec2;
+
+use super::{Boundary, Domain, Region, Surface, Touch};
+use crate::roots::first_descent_of_quartic;
+use crate::{Disk, Fingerprint, Flight};
+
+/// A boundary with fixed round obstacles inside, such as pegs.
+///
+/// Each obstacle has place, radius and kind of a disk, and follows the rule of the disks, as a partner of
+/// infinite mass that is at rest. Obstacles may overlap each other and the walls. They are the last walls of
+/// the boundary, in the order in which they are given. Each touch asks all of them, so that hundreds of them
+/// are slow.
+///
+/// [Initial states](crate::initial) leave obstacles out. So a disk that is placed by hand is an obstacle
+/// while the others are placed around it.
+///
+/// ```
+/// use granular_edmd::boundary::{Boundary, Container, Obstacles};
+/// use granular_edmd::glam::DVec2;
+/// use granular_edmd::{Disk, initial};
+///
+/// // An intruder on the floor, and a thousand grains around and above it.
+/// let container = Container::closed(60.0, 150.0)?;
+/// let intruder = Disk::new(DVec2::new(30.0, 4.0), 4.0)?.with_mass(64.0)?;
+/// let mut disks = initial::lattice(&Obstacles::new(container.clone(), [intruder]), 1000, 0.5)?;
+/// disks.push(intruder);
+///
+/// // Two pegs that stay where they are.
+/// let pegs = [Disk::new(DVec2::new(20.0, 9.0), 1.0)?, Disk::new(DVec2::new(40.0, 9.0), 1.0)?];
+/// let board = Obstacles::new(container, pegs);
+/// assert_eq!((board.wall_count(), board.wall_name(5)), (6, "obstacle 1".into()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Obstacles<B> {
+    boundary: B,
+    obstacles: Vec<Disk>,
+}
+
+impl<B: Boundary> Obstacles<B> {
+    /// Puts obstacles into a boundary, with place, radius and kind of these disks.
+    ///
+    /// Where the boundary is periodic, an obstacle outside is taken back into the domain.
+    pub fn new(boundary: B, obstacles: impl IntoIterator<Item = Disk>) -> Self {
+        let domain = boundary.domain();
+        // A place that is no place of a disk stays outside.
+        let inside = |disk: Disk| disk.with_position(domain.wrapped(disk.position())).unwrap_or(disk);
+        Self { obstacles: obstacles.into_iter().map(inside).collect(), boundary }
+    }
+
+    /// Returns the boundary without the obstacles.
+    pub const fn boundary(&self) -> &B {
+        &self.boundary
+    }
+
+    /// Returns the obstacles.
+    pub fn obstacles(&self) -> &[Disk] {
+        &self.obstacles
+    }
+
+    /// Returns the places at which an obstacle is seen: several where the domain is periodic.
+    fn images(&self, obstacle: &Disk) -> impl Iterator<Item = DVec2> {
+        let (place, periods) = (obstacle.position(), self.boundary.domain().periods());
+        let shifts = |period: f64| [0.0, -period, period].into_iter().take(if period > 0.0 { 3 } else { 1 });
+        shifts(periods.x).flat_map(move |x| shifts(periods.y).map(move |y| place + DVec2::new(x, y)))
+    }
+}
+
+/// Returns when a flight first touches a disk at this place, so many radii away, not later than `until`.
+fn first_meeting(flight: &Flight, place: DVec2, contact: f64, until: f64) -> Option<f64> {
+    let (start, wait) = (flight.time(), until - flight.time());
+    let (r, v, a) = (flight.position(start) - place, flight.velocity(start), flight.acceleration());
+    let (distance, way) = (r.length(), (v.length() + 0.5 * a.length() * wait) * wait);
+    // Most flights end far from most obstacles. Rounding must not end a flight that touches.
+    if distance - contact > 1.001 * way {
+        return None;
+    }
+    // The square of the distance less that of the contact, as a polynomial of the time.
+    let gap = [
+        (distance - contact) * (distance + contact),
+        2.0 * r.dot(v),
+        v.length_squared() + r.dot(a),
+        v.dot(a),
+        0.25 * a.length_squared(),
+    ];
+    Some((start + first_descent_of_quartic(&gap, wait)?).min(until))
+}
+
+impl<B: Boundary> Boundary for Obstacles<B> {
+    fn domain(&self) -> Domain {
+        self.boundary.domain()
+    }
+
+    fn interior(&self) -> Domain {
+        self.boundary.interior()
+    }
+
+    fn wall_count(&self) -> usize {
+        self.boundary.wall_count() + self.obstacles.len()
+    }
+
+    fn wall_name(&self, wall: usize) -> Cow<'_, str> {
+        match wall.checked_sub(self.boundary.wall_count()) {
+            Some(obstacle) if obstacle < self.obstacles.len() => format!("obstacle {obstacle}").into(),
+            _ => self.boundary.wall_name(wall),
+        }
+    }
+
+    fn set_time_origin(&mut self, origin: f64) {
+        self.boundary.set_time_origin(origin);
+    }
+
+    fn may_touch(&self, region: &Region, radius: f64) -> bool {
+        let is_near = |place: DVec2, contact: f64| {
+            let nearest = place.clamp(region.min, region.max);
+            // Regions are those of centers; rounding may not hide a touch at their edges.
+            nearest.distance(place) <= 1.001 * contact
+        };
+        self.boundary.may_touch(region, radius)
+            || self
+                .obstacles
+                .iter()
+                .any(|obstacle| self.images(obstacle).any(|place| is_near(place, radius + obstacle.radius())))
+    }
+
+    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+        let mut first = self.boundary.first_touch(flight, until);
+        for (index, obstacle) in self.obstacles.iter().enumerate() {
+            for place in self.images(obstacle) {
+                let until = first.map_or(until, |touch| touch.time);
+                let meeting = first_meeting(flight, place, flight.radius() + obstacle.radius(), until);
+                if let Some(time) = meeting.filter(|&time| first.is_none_or(|touch| time < touch.time)) {
+                    first = Some(Touch::new(time, self.boundary.wall_count() + index));
+                }
+            }
+        }
+        first
+    }
+
+    fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
+        let Some(index) = wall.checked_sub(self.boundary.wall_count()) else {
+            return self.boundary.surface(wall, position, time);
+        };
+        let obstacle = &self.obstacles[index];
+        let away = self.domain().separation(obstacle.position(), position);
+        Surface::new(away.normalize_or(DVec2::Y), DVec2::ZERO).with_kind(obstacle.kind())
+    }
+
+    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+        let depth = |(index, obstacle): (usize, &Disk)| {
+            let distance = self.domain().separation(obstacle.position(), position).length();
+            (self.boundary.wall_count() + index, radius + obstacle.radius() - distance)
+        };
+        let others = self.obstacles.iter().enumerate().map(depth).filter(|&(_, depth)| depth > 0.0);
+        let all = self.boundary.overlap(position, radius, time).into_iter().chain(others);
+        all.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let with = Fingerprint::of("Obstacles").part(self.boundary.fingerprint()?);
+        Some(self.obstacles.iter().fold(with, |all, obstacle| {
+            let DVec2 { x, y } = obstacle.position();
+            all.number(x).number(y).number(obstacle.radius()).number(f64::from(obstacle.kind().number()))
+        }))
+    }
+}

@@ -1,0 +1,133 @@
+//! A table of rules by the kinds of both partners.
+
+use super::{CollisionRule, Contact, Impulse};
+use crate::{Fingerprint, Kind};
+
+/// A rule for each pair of kinds, and one for all other pairs: what other codes call pair coefficients.
+///
+/// The order of the partners does not matter. Walls are partners, too: [`Kind::WALL`] unless they were
+/// given another kind ([`Container::with_kind`](crate::boundary::Container::with_kind)). A wall with a rule
+/// of its own does not ask the table. Rules of several types go into the table as
+/// [`BoxedRule`](crate::simulation::BoxedRule), or as an enum of your own, which can also be serialized.
+///
+/// ```
+/// use granular_edmd::Kind;
+/// use granular_edmd::collision::{CollisionRule, Contact, Frictional, RulesByKind};
+///
+/// const GLASS: Kind = Kind::new(0);
+/// const STEEL: Kind = Kind::new(1);
+/// let rules = RulesByKind::new(Frictional::new(0.05, 0.1)?)
+///     .with(STEEL, STEEL, Frictional::new(0.02, 0.05)?)
+///     .with(STEEL, Kind::WALL, Frictional::new(0.0, 0.3)?);
+///
+/// let contact = Contact::new(1.0, 0.0, 0.5, 0.5 / 3.0).with_kinds([Kind::WALL, STEEL]);
+/// assert_eq!(rules.impulse(&contact).normal(), 1.0);
+/// assert_eq!(rules.rule(GLASS, STEEL), &Frictional::new(0.05, 0.1)?);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawRulesByKind<R>"))]
+pub struct RulesByKind<R> {
+    otherwise: R,
+    /// Ordered by kinds, each pair once.
+    pairs: Vec<PairRule<R>>,
+}
+
+/// The rule of a pair of kinds, the smaller kind first.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+struct PairRule<R> {
+    kinds: [Kind; 2],
+    rule: R,
+}
+
+impl<R> RulesByKind<R> {
+    /// Creates a table with one rule for all pairs.
+    pub const fn new(otherwise: R) -> Self {
+        Self { otherwise, pairs: Vec::new() }
+    }
+
+    /// Returns the same table with this rule for a pair of kinds, in place of an earlier one.
+    pub fn with(mut self, first: Kind, second: Kind, rule: R) -> Self {
+        let kinds = ordered([first, second]);
+        match self.place(kinds) {
+            Ok(there) => self.pairs[there].rule = rule,
+            Err(there) => self.pairs.insert(there, PairRule { kinds, rule }),
+        }
+        self
+    }
+
+    /// Returns the rule of a pair of kinds.
+    #[inline]
+    pub fn rule(&self, first: Kind, second: Kind) -> &R {
+        self.place(ordered([first, second])).map_or(&self.otherwise, |there| &self.pairs[there].rule)
+    }
+
+    /// Returns where a pair is, or would be, in the list.
+    #[inline]
+    fn place(&self, kinds: [Kind; 2]) -> Result<usize, usize> {
+        self.pairs.binary_search_by_key(&kinds, |pair| pair.kinds)
+    }
+
+    fn rule_of(&self, contact: &Contact) -> &R {
+        let [first, second] = contact.kinds();
+        self.rule(first, second)
+    }
+}
+
+#[inline]
+fn ordered([first, second]: [Kind; 2]) -> [Kind; 2] {
+    if second < first { [second, first] } else { [first, second] }
+}
+
+impl<R: CollisionRule> CollisionRule for RulesByKind<R> {
+    #[inline]
+    fn impulse(&self, contact: &Contact) -> Impulse {
+        self.rule_of(contact).impulse(contact)
+    }
+
+    fn explain(&self, contact: &Contact) -> Option<String> {
+        self.rule_of(contact).explain(contact)
+    }
+
+    /// Returns `None` if one of the rules has no fingerprint: two such tables could not be told apart.
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let table = Fingerprint::of("RulesByKind").part(self.otherwise.fingerprint()?);
+        self.pairs.iter().try_fold(table, |table, PairRule { kinds, rule }| {
+            let [first, second] = kinds.map(|kind| f64::from(kind.number()));
+            Some(table.number(first).number(second).part(rule.fingerprint()?))
+        })
+    }
+}
+
+/// The table as files hold it: the pairs in any order.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "RulesByKind")]
+struct RawRulesByKind<R> {
+    otherwise: R,
+    #[serde(default = "Vec::new")]
+    pairs: Vec<PairRule<R>>,
+}
+
+#[cfg(feature = "serde")]
+impl<R> TryFrom<RawRulesByKind<R>> for RulesByKind<R> {
+    type Error = crate::ParameterError;
+
+    fn try_from(raw: RawRulesByKind<R>) -> Result<Self, crate::ParameterError> {
+        let (given, mut table) = (raw.pairs.len(), Self::new(raw.otherwise));
+        for PairRule { kinds: [first, second], rule } in raw.pairs {
+            table = table.with(first, second, rule);
+        }
+        let differ = table.pairs.len();
+        let requirement = "as many as there are different pairs";
+        crate::quantity::accept(
+            given == differ,
+            "number of rules for pairs of kinds",
+            requirement,
+            given as f64,
+        )?;
+        Ok(table)
+    }
+}

@@ -1,0 +1,106 @@
+//! Disks packed at random.
+
+mod enclosure;
+mod packing;
+
+use std::f64::consts::PI;
+
+use super::{PlacementError, countable};
+use crate::Disk;
+use crate::boundary::Boundary;
+use crate::quantity::{accept, positive};
+use enclosure::Enclosure;
+use packing::Packing;
+
+/// Number of steps of growth after which disks count as jammed if too little has changed.
+const PATIENCE: usize = 100;
+
+/// Share of the missing area that must be gained in these steps.
+const LEAST_GAIN: f64 = 0.05;
+
+/// Factor by which packed disks are larger than the real ones, so that rounding lets none overlap.
+const APART: f64 = 1e-9;
+
+/// Returns these disks, of any mix of radii, packed at random below the height `below` (the lid, if that is
+/// lower).
+///
+/// Small disks are placed at random, and move and collide without loss. Again and again each of them
+/// grows into the room that it finds, until it has its radius. Two sizes reach an area fraction of 0.8
+/// and more without order. Equal disks crystallize above 0.7, as they do in any packing: they form grains
+/// with walls between them. The disks have the same order, radii, masses and velocities as before.
+///
+/// Places are taken in the interior of the boundary, in which walls must not move. Around a disk that has
+/// its place already, the others are packed in [`Obstacles`](crate::boundary::Obstacles).
+///
+/// Source: similar to B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. **60**, 561 (1990), where
+/// all disks grow at the same rate all the time.
+///
+/// # Errors
+/// If the height is not finite and positive, there are more than 2²⁸ disks, or the disks do not find room or
+/// jam. The error of a jam names the area fraction of the disks in the rectangle of the interior below the
+/// height. If a periodic boundary is too narrow for the engine, or the boundary breaks its contract.
+///
+/// ```
+/// use std::f64::consts::PI;
+/// use granular_edmd::boundary::{Container, Obstacles};
+/// use granular_edmd::glam::DVec2;
+/// use granular_edmd::initial::{self, Radii};
+/// use granular_edmd::Disk;
+///
+/// // Two sizes around an intruder, at the area fraction 0.8.
+/// let container = Container::open(24.0)?;
+/// let intruder = Disk::new(DVec2::new(12.0, 6.0), 3.0)?;
+/// let disks = initial::homogeneous(Radii::two_sizes(0.5, 0.7, 0.5)?.draw(300, 1), 1.0)?;
+/// let area: f64 = disks.iter().chain([&intruder]).map(|disk| PI * disk.radius() * disk.radius()).sum();
+/// let height = area / (0.8 * container.width());
+/// let around = Obstacles::new(container, [intruder]);
+/// let packed = initial::packed_at_random(&around, disks, height, 1)?;
+/// assert!(packed.iter().all(|disk| disk.position().y + disk.radius() <= height));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn packed_at_random<B: Boundary + ?Sized>(
+    boundary: &B,
+    disks: Vec<Disk>,
+    below: f64,
+    seed: u64,
+) -> Result<Vec<Disk>, PlacementError> {
+    positive("height", below)?;
+    countable(disks.len())?;
+    if disks.is_empty() {
+        return Ok(disks);
+    }
+    let room = Enclosure::new(boundary, below);
+    let area = room.domain().width() * room.domain().height();
+    accept(area > 0.0, "area of the room for the disks", "positive", area)?;
+    let wider = |disk: &Disk| Disk::new(disk.position(), disk.radius() * (1.0 + APART));
+    let wider = disks.iter().map(wider).collect::<Result<Vec<_>, _>>()?;
+    let packing = grown(&room, &wider, area, seed)?;
+    let packed = disks.iter().zip(packing.places()).map(|(disk, place)| disk.with_position(place));
+    Ok(packed.collect::<Result<_, _>>()?)
+}
+
+/// Lets the disks move and grow by turns until all have their radii, or jam in a room of this area.
+fn grown<'a, B: Boundary + ?Sized>(
+    room: &Enclosure<B>,
+    disks: &'a [Disk],
+    area: f64,
+    seed: u64,
+) -> Result<Packing<'a>, PlacementError> {
+    let wanted = disks.iter().map(|disk| PI * disk.radius() * disk.radius()).sum::<f64>() / area;
+    accept(wanted < 1.0, "area fraction of the disks", "less than 1", wanted)?;
+    let mut packing = Packing::begin(room, disks, wanted, seed)?;
+    let (mut steps, mut before) = (0, f64::INFINITY);
+    while !packing.is_done() {
+        packing.stir(room)?;
+        packing.grow(room)?;
+        steps += 1;
+        if steps % PATIENCE == 0 {
+            let missing = packing.missing();
+            if missing > (1.0 - LEAST_GAIN) * before {
+                return Err(PlacementError::Jammed { reached: (1.0 - missing) * wanted, wanted });
+            }
+            before = missing;
+        }
+    }
+    Ok(packing)
+}

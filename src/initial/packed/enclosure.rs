@@ -1,0 +1,130 @@
+//! The boundary in which disks are packed.
+
+use std::borrow::Cow;
+
+use glam::DVec2;
+
+use crate::Flight;
+use crate::boundary::{Boundary, Domain, Region, Response, Surface, Touch};
+use crate::roots::first_descent;
+
+/// A boundary with a rectangle inside, which the disks do not leave.
+///
+/// The rectangle keeps disks out of the reach of moving walls, and has a lid where the boundary has none. All
+/// walls follow the rule of the disks.
+pub(super) struct Enclosure<'a, B: ?Sized> {
+    boundary: &'a B,
+    room: Domain,
+}
+
+// Written out, because a derived one would require it of the boundary.
+impl<B: ?Sized> Clone for Enclosure<'_, B> {
+    fn clone(&self) -> Self {
+        Self { boundary: self.boundary, room: self.room }
+    }
+}
+
+impl<'a, B: Boundary + ?Sized> Enclosure<'a, B> {
+    /// Encloses the interior of the boundary below a height. A lid below periodic ends makes an end of them.
+    pub(super) fn new(boundary: &'a B, below: f64) -> Self {
+        let interior = boundary.interior();
+        let periodic_ends = interior.periodic_ends && below >= interior.top;
+        Self { boundary, room: Domain { top: interior.top.min(below), periodic_ends, ..interior } }
+    }
+
+    /// Returns normal and place of each side of the rectangle that there is.
+    fn sides(&self) -> impl Iterator<Item = (DVec2, f64)> {
+        let Domain { left, right, bottom, top, periodic_sides, periodic_ends } = self.room;
+        let ends = [(DVec2::Y, bottom), (DVec2::NEG_Y, -top)];
+        let sides = [(DVec2::X, left), (DVec2::NEG_X, -right)];
+        let ends = ends.into_iter().filter(move |_| !periodic_ends);
+        ends.chain(sides.into_iter().filter(move |_| !periodic_sides))
+    }
+}
+
+impl<B: Boundary + ?Sized> Boundary for Enclosure<'_, B> {
+    fn domain(&self) -> Domain {
+        self.room
+    }
+
+    fn wall_count(&self) -> usize {
+        self.sides().count() + self.boundary.wall_count()
+    }
+
+    fn wall_name(&self, wall: usize) -> Cow<'_, str> {
+        let sides = self.sides().count();
+        if wall < sides { "the edge of the interior".into() } else { self.boundary.wall_name(wall - sides) }
+    }
+
+    fn set_time_origin(&mut self, _origin: f64) {}
+
+    fn may_touch(&self, region: &Region, radius: f64) -> bool {
+        let corners = [region.min, region.max];
+        let is_near = |(normal, place): (DVec2, f64)| {
+            // A zero component of the normal must not be multiplied by an infinite edge.
+            let along =
+                |corner: DVec2| if normal.x == 0.0 { normal.y * corner.y } else { normal.x * corner.x };
+            corners.map(along).into_iter().any(|height| height - place <= radius)
+        };
+        self.sides().any(is_near) || self.boundary.may_touch(region, radius)
+    }
+
+    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+        let start = flight.time();
+        let (position, velocity) = (flight.position(start), flight.velocity(start));
+        let side = |(wall, (normal, place)): (usize, (DVec2, f64))| {
+            let gap = position.dot(normal) - place - flight.radius();
+            let wait = first_descent(gap, velocity.dot(normal), flight.acceleration().dot(normal))?;
+            (start + wait <= until).then(|| Touch::new(start + wait, wall))
+        };
+        let own = self.sides().enumerate().filter_map(side).min_by(|a, b| a.time.total_cmp(&b.time));
+        let until = own.map_or(until, |touch| touch.time);
+        let other =
+            self.boundary.first_touch(flight, until).filter(|other| other.time < until || own.is_none());
+        other.map(|touch| Touch::new(touch.time, touch.wall + self.sides().count())).or(own)
+    }
+
+    fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
+        match self.sides().nth(wall) {
+            Some((normal, _)) => Surface::new(normal, DVec2::ZERO),
+            None => self
+                .boundary
+                .surface(wall - self.sides().count(), position, time)
+                .with_response(Response::Shared),
+        }
+    }
+
+    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+        let count = self.sides().count();
+        let depths = self.sides().map(|(normal, place)| radius + place - position.dot(normal)).enumerate();
+        let own = depths.filter(|&(_, depth)| depth > 0.0).max_by(|a, b| a.1.total_cmp(&b.1));
+        own.or_else(|| {
+            self.boundary.overlap(position, radius, time).map(|(wall, depth)| (wall + count, depth))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Enclosure;
+    use crate::boundary::{Container, Obstacles, Wall, laws};
+    use crate::glam::DVec2;
+    use crate::wall::BiParabolic;
+    use crate::{Disk, ParameterError};
+
+    #[test]
+    fn enclosures_keep_the_contract() -> Result<(), Box<dyn std::error::Error>> {
+        let base = BiParabolic::new(0.1, 10.0)?;
+        let peg = |x: f64| -> Result<Disk, ParameterError> { Disk::new(DVec2::new(x, 3.0), 0.8) };
+        for container in [
+            Container::open(8.0)?.with_motion(Wall::Floor, base)?,
+            Container::closed(8.0, 5.0)?.with_periodic_sides(),
+            Container::periodic(8.0, 6.0)?,
+            Container::periodic(8.0, 20.0)?,
+        ] {
+            let board = Obstacles::new(container, [peg(2.0)?, peg(7.5)?]);
+            assert_eq!(laws::check(&mut Enclosure::new(&board, 6.0), 0.3, 1.0, 1), Ok(()));
+        }
+        Ok(())
+    }
+}

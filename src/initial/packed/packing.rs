@@ -1,0 +1,167 @@
+//! Disks that move and grow.
+
+use glam::DVec2;
+
+use super::Enclosure;
+use crate::boundary::{Boundary, Domain};
+use crate::collision::Elastic;
+use crate::initial::bins::Bins;
+use crate::initial::{PlacementError, placed_at_random, with_maxwellian_velocities};
+use crate::observable::{Collision, stop_when};
+use crate::{Disk, ParameterError, Simulation};
+
+/// Area fraction at which the disks begin to grow. Random places are found soon, at any mix of radii.
+const START: f64 = 0.35;
+
+/// Factor by which disks begin smaller at the next attempt, where obstacles leave less room than it seems.
+const SMALLER: f64 = 0.7;
+
+/// Number of attempts to find random places.
+const ATTEMPTS: i32 = 8;
+
+/// Collisions for each disk between two steps of growth. Fewer of them end sooner, but not as dense.
+const COLLISIONS: usize = 4;
+
+/// Longest time between two steps, in which a largest disk goes its radius.
+const LONGEST: f64 = 1.0;
+
+/// Least mass, in units of that of the largest disk.
+const LEAST_MASS: f64 = 1e-20;
+
+/// Share of a gap that a disk may grow into, so that it touches nothing.
+const SHARE: f64 = 0.99;
+
+/// Disks on their way to their radii.
+pub(super) struct Packing<'a> {
+    /// The disks with the radii that they shall have.
+    full: &'a [Disk],
+    /// The disks as they are by now.
+    grown: Vec<Disk>,
+}
+
+impl<'a> Packing<'a> {
+    /// Places the disks at random, so much smaller that they find room.
+    pub(super) fn begin<B: Boundary + ?Sized>(
+        room: &Enclosure<B>,
+        full: &'a [Disk],
+        fraction: f64,
+        seed: u64,
+    ) -> Result<Self, PlacementError> {
+        let mut scale = (START / fraction).sqrt().min(1.0);
+        for _ in 1..ATTEMPTS {
+            match placed(room, full, scale, seed) {
+                Err(PlacementError::NoRoom { .. }) => scale *= SMALLER,
+                other => return Ok(Self { full, grown: other? }),
+            }
+        }
+        Ok(Self { full, grown: placed(room, full, scale, seed)? })
+    }
+
+    /// Tells whether all disks have their radii.
+    pub(super) fn is_done(&self) -> bool {
+        self.grown.iter().zip(self.full).all(|(disk, full)| disk.radius() >= full.radius())
+    }
+
+    /// Returns the share of the disks' area that is missing.
+    pub(super) fn missing(&self) -> f64 {
+        let largest = largest(self.full);
+        let area = |disk: &Disk| (disk.radius() / largest) * (disk.radius() / largest);
+        1.0 - self.grown.iter().map(area).sum::<f64>() / self.full.iter().map(area).sum::<f64>()
+    }
+
+    /// Returns the places of the disks.
+    pub(super) fn places(&self) -> impl Iterator<Item = DVec2> {
+        self.grown.iter().map(Disk::position)
+    }
+
+    /// Lets the disks move and collide for a while.
+    pub(super) fn stir<B: Boundary + ?Sized>(&mut self, room: &Enclosure<B>) -> Result<(), PlacementError> {
+        let disks = self.grown.iter().copied();
+        let mut run = Simulation::builder(Elastic, room.clone()).disks(disks).build()?;
+        let mut left = COLLISIONS * self.grown.len();
+        let mut enough = stop_when(|_: &Collision| {
+            left -= 1;
+            left == 0
+        });
+        let ended = run.run_until(LONGEST, &mut enough);
+        ended.map_err(|error| PlacementError::Run { reason: error.to_string() })?;
+        self.grown = run.disks();
+        Ok(())
+    }
+
+    /// Lets each disk grow into the room around it.
+    pub(super) fn grow<B: Boundary + ?Sized>(&mut self, room: &Enclosure<B>) -> Result<(), ParameterError> {
+        let domain = room.domain();
+        let mut bins = Bins::new(&domain, 2.0 * largest(self.full), self.grown.len());
+        for (index, disk) in self.grown.iter().enumerate() {
+            bins.add(disk.position(), index);
+        }
+        for index in 0..self.grown.len() {
+            let disk = self.grown[index];
+            let radius = self.free_radius(index, &domain, &bins);
+            let radius = radius.min(radius_inside(room, disk.position(), radius));
+            // Disks that grow later see this disk as it is now, so that no two grow into the same gap.
+            if radius > disk.radius() {
+                self.grown[index] = resized(&disk, radius)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the radius at which a disk leaves its neighbors room to grow, too, and at most its own.
+    fn free_radius(&self, index: usize, domain: &Domain, bins: &Bins) -> f64 {
+        let (disk, full) = (&self.grown[index], self.full[index].radius());
+        let most = |other: usize| {
+            let (neighbor, neighbor_full) = (&self.grown[other], self.full[other].radius());
+            let is_growing = neighbor.radius() < neighbor_full;
+            let share = if is_growing { full / (full + neighbor_full) } else { 1.0 };
+            let distance = domain.separation(disk.position(), neighbor.position()).length();
+            disk.radius() + SHARE * share * (distance - disk.radius() - neighbor.radius())
+        };
+        if disk.radius() >= full {
+            return full;
+        }
+        bins.near(disk.position()).filter(|&other| other != index).map(most).fold(full, f64::min)
+    }
+}
+
+/// Returns the disks in motion at random places, with this scale of their radii. The largest come first.
+fn placed<B: Boundary + ?Sized>(
+    room: &Enclosure<B>,
+    full: &[Disk],
+    scale: f64,
+    seed: u64,
+) -> Result<Vec<Disk>, PlacementError> {
+    let largest = largest(full);
+    let mut order: Vec<usize> = (0..full.len()).collect();
+    order.sort_by(|&a, &b| full[b].radius().total_cmp(&full[a].radius()));
+    let small = |&index: &usize| {
+        let radius = full[index].radius();
+        let mass = (radius / largest) * (radius / largest);
+        Disk::new(DVec2::ZERO, scale * radius)?.with_mass(mass.max(LEAST_MASS))
+    };
+    let disks = order.iter().map(small).collect::<Result<Vec<_>, _>>()?;
+    let disks = placed_at_random(room, disks, room.domain().top, seed)?;
+    // At this temperature a largest disk goes its radius in a unit of time.
+    let moving = with_maxwellian_velocities(disks, largest * largest, seed)?;
+    let mut placed = moving.clone();
+    for (index, disk) in order.into_iter().zip(moving) {
+        placed[index] = disk;
+    }
+    Ok(placed)
+}
+
+/// Returns the largest radius, up to this one, with which a disk at this place overlaps no wall.
+fn radius_inside<B: Boundary + ?Sized>(room: &Enclosure<B>, place: DVec2, radius: f64) -> f64 {
+    let Some((_, depth)) = room.overlap(place, radius, 0.0) else { return radius };
+    let free = radius - depth / SHARE;
+    if room.overlap(place, free, 0.0).is_none() { free } else { 0.0 }
+}
+
+fn resized(disk: &Disk, radius: f64) -> Result<Disk, ParameterError> {
+    Disk::new(disk.position(), radius)?.with_velocity(disk.velocity())?.with_mass(disk.mass())
+}
+
+fn largest(disks: &[Disk]) -> f64 {
+    disks.iter().map(Disk::radius).fold(0.0, f64::max)
+}

@@ -1,0 +1,171 @@
+//! Radii drawn from distributions.
+
+use glam::DVec2;
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use crate::quantity::{accept, positive};
+use crate::random::uniform;
+use crate::{Disk, ParameterError};
+
+/// Largest distance from the median of log-normal radii, in standard deviations. No generator of doubles
+/// comes as far.
+const FARTHEST: f64 = 9.0;
+
+/// A distribution of radii within bounds. The same seed gives the same radii on all platforms.
+///
+/// ```
+/// use granular_edmd::boundary::Container;
+/// use granular_edmd::initial::{self, Radii};
+///
+/// let radii = Radii::log_normal(0.5, 0.3, 0.2, 1.2)?.draw(500, 42);
+/// let disks = initial::homogeneous(radii, 1.0)?;
+/// let disks = initial::placed_at_random(&Container::closed(60.0, 60.0)?, disks, 40.0, 42)?;
+/// assert!(disks.iter().all(|disk| (0.2..=1.2).contains(&disk.radius())));
+/// assert!(disks.iter().all(|disk| disk.mass() == 4.0 * disk.radius() * disk.radius()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Radii {
+    law: Law,
+    smallest: f64,
+    largest: f64,
+}
+
+/// The density between the bounds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Law {
+    Uniform,
+    LogNormal { median: f64, deviation: f64 },
+    Power { exponent: f64 },
+    TwoSizes { share: f64 },
+}
+
+impl Radii {
+    /// Takes radii between these bounds, all equally likely.
+    ///
+    /// # Errors
+    /// If a bound is not finite and positive, or the largest is below the smallest.
+    pub fn uniform(smallest: f64, largest: f64) -> Result<Self, ParameterError> {
+        Self::within(Law::Uniform, smallest, largest)
+    }
+
+    /// Takes log-normal radii, cut at these bounds. The logarithm of the radius has this standard deviation.
+    ///
+    /// The density is `$\propto R^{-1}\,e^{-\ln^2(R/R_0)/2\sigma^2}$` for the median `$R_0$` of the uncut
+    /// distribution and the deviation `$\sigma$`.
+    ///
+    /// # Errors
+    /// If a number is not finite and positive, or the median is not between the bounds.
+    pub fn log_normal(
+        median: f64,
+        deviation: f64,
+        smallest: f64,
+        largest: f64,
+    ) -> Result<Self, ParameterError> {
+        let deviation = positive("deviation of log-normal radii", deviation)?;
+        let is_inside = smallest <= median && median <= largest;
+        let median = accept(is_inside, "median radius", "between the smallest and the largest", median)?;
+        Self::within(Law::LogNormal { median, deviation }, smallest, largest)
+    }
+
+    /// Takes radii of the density `$\propto R^{-\alpha}$` between these bounds, for this exponent
+    /// `$\alpha$`.
+    ///
+    /// # Errors
+    /// If a bound is not finite and positive, the largest is below the smallest, or the exponent is not in
+    /// [0, 10].
+    pub fn power_law(exponent: f64, smallest: f64, largest: f64) -> Result<Self, ParameterError> {
+        let is_known = (0.0..=10.0).contains(&exponent);
+        let exponent = accept(is_known, "exponent of radii", "in [0, 10]", exponent)?;
+        Self::within(Law::Power { exponent }, smallest, largest)
+    }
+
+    /// Takes two radii. This share of all disks is large, rounded to a whole number, and no more or less.
+    ///
+    /// # Errors
+    /// If a radius is not finite and positive, the large one is below the small one, or the share is not in
+    /// [0, 1].
+    pub fn two_sizes(small: f64, large: f64, share: f64) -> Result<Self, ParameterError> {
+        let share = accept((0.0..=1.0).contains(&share), "share of large disks", "in [0, 1]", share)?;
+        Self::within(Law::TwoSizes { share }, small, large)
+    }
+
+    fn within(law: Law, smallest: f64, largest: f64) -> Result<Self, ParameterError> {
+        let (smallest, largest) =
+            (positive("smallest radius", smallest)?, positive("largest radius", largest)?);
+        accept(smallest <= largest, "largest radius", "no less than the smallest", largest)?;
+        Ok(Self { law, smallest, largest })
+    }
+
+    /// Draws so many radii, in an order at random.
+    pub fn draw(&self, count: usize, seed: u64) -> Vec<f64> {
+        let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let mut uniform = || uniform(&mut generator);
+        if let Law::TwoSizes { share } = self.law {
+            return self.two(count, (share * count as f64).round() as usize, &mut uniform);
+        }
+        let draws = (0..count).map(|_| self.one(&mut uniform));
+        draws.map(|radius| radius.clamp(self.smallest, self.largest)).collect()
+    }
+
+    /// Draws `large` large radii among `count`.
+    fn two(&self, count: usize, large: usize, uniform: &mut impl FnMut() -> f64) -> Vec<f64> {
+        let mut left = large;
+        let mut is_large = |open: usize| {
+            let taken = uniform() * (open as f64) < left as f64;
+            left -= usize::from(taken);
+            taken
+        };
+        (1..=count).rev().map(|open| if is_large(open) { self.largest } else { self.smallest }).collect()
+    }
+
+    /// Draws one radius, which rounding may put beyond a bound.
+    fn one(&self, uniform: &mut impl FnMut() -> f64) -> f64 {
+        let span = libm::log(self.largest / self.smallest);
+        match self.law {
+            Law::LogNormal { median, deviation } => self.log_normal_radius(median, deviation, uniform),
+            Law::Power { exponent: 1.0 } => self.smallest * libm::exp(span * uniform()),
+            Law::Power { exponent } => {
+                // The distribution function, inverted in logarithms, which do not overflow.
+                let power = 1.0 - exponent;
+                let share = libm::log1p(uniform() * libm::expm1(power * span));
+                self.smallest * libm::exp(share / power)
+            }
+            Law::Uniform | Law::TwoSizes { .. } => self.smallest + (self.largest - self.smallest) * uniform(),
+        }
+    }
+
+    /// Draws by rejection from a uniform logarithm. Since the median is within the bounds, one draw in eight
+    /// is taken at least, however close or far they are.
+    fn log_normal_radius(&self, median: f64, deviation: f64, uniform: &mut impl FnMut() -> f64) -> f64 {
+        let least = (libm::log(self.smallest / median) / deviation).max(-FARTHEST);
+        let most = (libm::log(self.largest / median) / deviation).min(FARTHEST);
+        loop {
+            let normal = least + (most - least) * uniform();
+            if uniform() < libm::exp(-0.5 * normal * normal) {
+                return median * libm::exp(deviation * normal);
+            }
+        }
+    }
+}
+
+/// Returns homogeneous disks of these radii, all at rest at the origin, for the functions that place disks.
+///
+/// Masses go with the area, `$m = m_1 (2R)^2$`, where `mass` is the mass `$m_1$` of a disk of diameter 1. For
+/// equal masses, take [`Disk::new`] and [`Disk::with_mass`].
+///
+/// # Errors
+/// If a radius or a mass is not in `[1e-30, 1e30]`.
+///
+/// ```
+/// use granular_edmd::initial;
+/// let disks = initial::homogeneous([0.5, 1.0], 1.0)?;
+/// assert_eq!([disks[0].mass(), disks[1].mass()], [1.0, 4.0]);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+pub fn homogeneous(radii: impl IntoIterator<Item = f64>, mass: f64) -> Result<Vec<Disk>, ParameterError> {
+    let disk =
+        |radius: f64| Disk::new(DVec2::ZERO, radius)?.with_mass(mass * (2.0 * radius) * (2.0 * radius));
+    radii.into_iter().map(disk).collect()
+}

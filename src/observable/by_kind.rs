@@ -1,0 +1,165 @@
+//! Observables and observers of disks of one kind, and of collisions between two.
+
+use super::{Collision, Moment, Observable, Observer, Partner, Snapshot, Verdict};
+use crate::{Disk, Kind};
+
+/// An observable or observer that sees only disks of one kind.
+///
+/// Snapshots hold only these disks, in their order. Of the collisions, those are passed on in which a disk
+/// of the kind takes part. A [`Moment`] is passed on as it is; its number of disks is that of all.
+///
+/// ```
+/// use granular_edmd::glam::DVec2;
+/// use granular_edmd::boundary::Domain;
+/// use granular_edmd::observable::{CenterOfMass, Observable, OfKind, Snapshot};
+/// use granular_edmd::{Disk, Kind};
+///
+/// const INTRUDER: Kind = Kind::new(1);
+/// let disks = [
+///     Disk::new(DVec2::new(1.0, 1.0), 0.5)?,
+///     Disk::new(DVec2::new(3.0, 5.0), 0.5)?.with_kind(INTRUDER),
+/// ];
+/// let snapshot = Snapshot::new(0.0, &disks, Domain::new(0.0, 4.0, 0.0, 6.0), 1.0);
+/// assert_eq!(OfKind::new(INTRUDER, CenterOfMass).measure(&snapshot).y, 5.0);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct OfKind<T> {
+    kind: Kind,
+    inner: T,
+}
+
+impl<T> OfKind<T> {
+    /// Shows `inner` only disks of this kind.
+    pub const fn new(kind: Kind, inner: T) -> Self {
+        Self { kind, inner }
+    }
+
+    /// Returns the kind.
+    pub const fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// Returns the observable or observer inside.
+    pub const fn inner(&self) -> &T {
+        &self.inner
+    }
+
+    /// Takes the observable or observer out.
+    pub fn into_inner(self) -> T {
+        self.inner
+    }
+
+    fn chosen(&self, snapshot: &Snapshot<'_>) -> Vec<Disk> {
+        snapshot.disks().iter().filter(|disk| disk.kind() == self.kind).copied().collect()
+    }
+}
+
+impl<T: Observable> Observable for OfKind<T> {
+    type Value = T::Value;
+
+    fn measure(&self, snapshot: &Snapshot<'_>) -> T::Value {
+        self.inner.measure(&snapshot.with_disks(&self.chosen(snapshot)))
+    }
+}
+
+impl<T: Observer> Observer for OfKind<T> {
+    fn on_start(&mut self, moment: &Moment) {
+        self.inner.on_start(moment);
+    }
+    #[inline]
+    fn on_collision(&mut self, collision: &Collision) {
+        let [disk, partner] = collision.contact.kinds();
+        // A wall may be of the same kind as disks.
+        let is_disk = matches!(collision.partner, Partner::Disk(_));
+        if disk == self.kind || (is_disk && partner == self.kind) {
+            self.inner.on_collision(collision);
+        }
+    }
+    fn next_sample(&self) -> f64 {
+        self.inner.next_sample()
+    }
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        self.inner.on_sample(&snapshot.with_disks(&self.chosen(snapshot)));
+    }
+    fn on_end(&mut self, moment: &Moment) {
+        self.inner.on_end(moment);
+    }
+    #[inline]
+    fn verdict(&mut self) -> Verdict {
+        self.inner.verdict()
+    }
+}
+
+/// An observer that is told only of collisions between two kinds, in either order; of disks, or of a disk
+/// and a wall.
+///
+/// Samples are passed on as they are.
+///
+/// ```
+/// use granular_edmd::Kind;
+/// use granular_edmd::collision::{Contact, Impulse};
+/// use granular_edmd::observable::{BetweenKinds, Collision, EnergyChange, Observer, Partner};
+///
+/// let (small, large) = (Kind::new(0), Kind::new(1));
+/// let mut mixed = BetweenKinds::new(small, large, EnergyChange::default());
+/// for kinds in [[small, small], [large, small], [small, large]] {
+///     let contact = Contact::new(2.0, 0.0, 0.5, 0.5 / 3.0).with_kinds(kinds);
+///     mixed.on_collision(&Collision::new(0.5, 7, Partner::Disk(8), contact, Impulse::new(1.5, 0.0)));
+/// }
+/// assert_eq!(mixed.inner().disks().count(), 2);
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct BetweenKinds<T> {
+    kinds: [Kind; 2],
+    inner: T,
+}
+
+impl<T> BetweenKinds<T> {
+    /// Tells `inner` only of collisions between these kinds, which may be the same.
+    pub const fn new(first: Kind, second: Kind, inner: T) -> Self {
+        Self { kinds: [first, second], inner }
+    }
+
+    /// Returns the two kinds.
+    pub const fn kinds(&self) -> [Kind; 2] {
+        self.kinds
+    }
+
+    /// Returns the observer inside.
+    pub const fn inner(&self) -> &T {
+        &self.inner
+    }
+
+    /// Takes the observer out.
+    pub fn into_inner(self) -> T {
+        self.inner
+    }
+}
+
+impl<T: Observer> Observer for BetweenKinds<T> {
+    fn on_start(&mut self, moment: &Moment) {
+        self.inner.on_start(moment);
+    }
+    #[inline]
+    fn on_collision(&mut self, collision: &Collision) {
+        if collision.contact.is_between(self.kinds[0], self.kinds[1]) {
+            self.inner.on_collision(collision);
+        }
+    }
+    fn next_sample(&self) -> f64 {
+        self.inner.next_sample()
+    }
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        self.inner.on_sample(snapshot);
+    }
+    fn on_end(&mut self, moment: &Moment) {
+        self.inner.on_end(moment);
+    }
+    #[inline]
+    fn verdict(&mut self) -> Verdict {
+        self.inner.verdict()
+    }
+}

@@ -1,0 +1,37 @@
+//! The edges of columns and rows.
+
+use super::grid::Layout;
+use crate::boundary::Domain;
+
+/// Moves the outermost edges out by a margin.
+pub(super) fn widen(edges: &mut [f64], margin: f64) {
+    if let [first, .., last] = edges {
+        *first -= margin;
+        *last += margin;
+    }
+}
+
+/// Returns so many edges at equal distances; the first and the last are infinite at walls.
+pub(super) fn edges(start: f64, pitch: f64, count: u32, walls: bool) -> Vec<f64> {
+    let mut edges: Vec<f64> = (0..=count).map(|k| start + f64::from(k) * pitch).collect();
+    if walls {
+        edges[0] = f64::NEG_INFINITY;
+        edges[count as usize] = f64::INFINITY;
+    }
+    edges
+}
+
+/// Returns the edges of the rows. In an open container, the upper half of the rows grows in proportion to the
+/// height. A disk that flies high then does not share its cell with all others that are high.
+pub(super) fn row_edges(domain: &Domain, layout: &Layout) -> Vec<f64> {
+    const GROWTH: f64 = 1.1;
+    let mut edges = edges(domain.bottom, layout.pitch.y, layout.rows, !domain.periodic_ends);
+    if domain.top.is_infinite() {
+        let even = (layout.rows as usize / 2).max(1);
+        for row in even + 1..edges.len() - 1 {
+            let height = edges[row - 1] - domain.bottom.min(edges[row - 1]);
+            edges[row] = edges[row - 1] + (height * (GROWTH - 1.0)).max(layout.pitch.y);
+        }
+    }
+    edges
+}

@@ -1,0 +1,121 @@
+//! The constant properties of the disks: radius, mass, inertia and kind.
+
+use crate::collision::Material;
+use crate::{Disk, Kind};
+
+/// The properties of all disks: one for all if they are equal, so that they stay in the cache.
+#[derive(Debug, Clone)]
+pub(super) enum Properties {
+    Same {
+        /// A disk at rest at the origin.
+        model: Disk,
+        material: Material,
+    },
+    Each {
+        /// The radii, apart from the rest since every prediction needs them.
+        radii: Vec<f64>,
+        /// The diameter, if all disks have the same one.
+        common_diameter: Option<f64>,
+        others: Vec<Others>,
+    },
+}
+
+/// The properties of a disk besides its radius.
+///
+/// A [`Material`] takes twice the memory. The divisions that make one of these cost less than loading it
+/// would.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Others {
+    mass: f64,
+    inertia_factor: f64,
+    kind: Kind,
+}
+
+impl Others {
+    const fn of(disk: &Disk) -> Self {
+        Self { mass: disk.mass(), inertia_factor: disk.inertia_factor(), kind: disk.kind() }
+    }
+
+    #[inline]
+    const fn model(&self, radius: f64) -> Disk {
+        Disk::at_rest(radius, self.mass, self.inertia_factor, self.kind)
+    }
+}
+
+impl Properties {
+    pub(super) fn of(disks: &[Disk]) -> Self {
+        match disks.split_first() {
+            Some((first, rest)) if rest.iter().all(|disk| is_alike(disk, first)) => {
+                let model = Others::of(first).model(first.radius());
+                Self::Same { model, material: Material::of(&model) }
+            }
+            _ => {
+                let radii: Vec<f64> = disks.iter().map(Disk::radius).collect();
+                let is_common = radii.windows(2).all(|pair| pair[0] == pair[1]);
+                let common_diameter = radii.first().filter(|_| is_common).map(|radius| 2.0 * radius);
+                Self::Each { radii, common_diameter, others: disks.iter().map(Others::of).collect() }
+            }
+        }
+    }
+
+    /// Returns the median diameter, which does not depend on the order of the disks; 0 without disks.
+    pub(super) fn typical_diameter(&self) -> f64 {
+        match self {
+            Self::Same { model, .. } => 2.0 * model.radius(),
+            Self::Each { radii, .. } if radii.is_empty() => 0.0,
+            Self::Each { radii, .. } => {
+                let mut radii = radii.clone();
+                let middle = radii.len() / 2;
+                2.0 * *radii.select_nth_unstable_by(middle, f64::total_cmp).1
+            }
+        }
+    }
+
+    /// Returns a model for each disk, or one for all.
+    #[cfg(feature = "serde")]
+    pub(super) fn models(&self) -> Vec<Disk> {
+        match self {
+            Self::Same { model, .. } => vec![*model],
+            Self::Each { radii, .. } => (0..radii.len()).map(|disk| self.model(disk)).collect(),
+        }
+    }
+
+    /// Returns the diameter, if all disks have the same one.
+    #[inline]
+    pub(super) fn common_diameter(&self) -> Option<f64> {
+        match self {
+            Self::Same { material, .. } => Some(2.0 * material.radius),
+            Self::Each { common_diameter, .. } => *common_diameter,
+        }
+    }
+
+    #[inline]
+    pub(super) fn radius(&self, disk: usize) -> f64 {
+        match self {
+            Self::Same { material, .. } => material.radius,
+            Self::Each { radii, .. } => radii[disk],
+        }
+    }
+
+    /// Returns a disk with the same properties, at rest at the origin.
+    #[inline]
+    pub(super) fn model(&self, disk: usize) -> Disk {
+        match self {
+            Self::Same { model, .. } => *model,
+            Self::Each { radii, others, .. } => others[disk].model(radii[disk]),
+        }
+    }
+
+    #[inline]
+    pub(super) fn material(&self, disk: usize) -> Material {
+        match self {
+            Self::Same { material, .. } => *material,
+            Self::Each { radii, others, .. } => Material::of(&others[disk].model(radii[disk])),
+        }
+    }
+}
+
+fn is_alike(disk: &Disk, other: &Disk) -> bool {
+    let numbers = |disk: &Disk| [disk.radius(), disk.mass(), disk.inertia_factor()];
+    numbers(disk) == numbers(other) && disk.kind() == other.kind()
+}

@@ -1,0 +1,85 @@
+//! Round obstacles inside another boundary.
+
+use granular_edmd::boundary::{Boundary, Container, Obstacles, Wall, laws};
+use granular_edmd::collision::Elastic;
+use granular_edmd::glam::DVec2;
+use granular_edmd::wall::BiParabolic;
+use granular_edmd::{Disk, Kind, Simulation, initial};
+
+fn peg(x: f64, y: f64, radius: f64) -> Disk {
+    Disk::new(DVec2::new(x, y), radius).unwrap()
+}
+
+fn pegs() -> [Disk; 4] {
+    // Two of them overlap, one sticks in the floor, one is near a side.
+    [peg(5.0, 6.0, 1.0), peg(5.5, 7.0, 1.0), peg(8.0, 0.0, 0.7), peg(11.5, 5.0, 0.4)]
+}
+
+#[test]
+fn obstacles_keep_the_contract() {
+    let moving = Container::closed(12.0, 9.0)
+        .unwrap()
+        .with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0).unwrap())
+        .unwrap();
+    let periodic = Container::open(12.0).unwrap().with_periodic_sides();
+    for container in [moving, periodic, Container::periodic(12.0, 9.0).unwrap()] {
+        for seed in 0..4 {
+            let mut board = Obstacles::new(container.clone(), pegs());
+            assert_eq!(laws::check(&mut board, 0.5, 1.0, seed), Ok(()));
+        }
+    }
+}
+
+/// A gas between pegs keeps its energy, and no disk comes into a peg, also through periodic sides and ends.
+#[test]
+fn a_gas_flows_around_obstacles() {
+    let board = || Obstacles::new(Container::periodic(12.0, 12.0).unwrap(), pegs());
+    let disks = initial::random(&board(), 40, 0.4, 12.0, 1).unwrap();
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
+    let energy = |disks: &[Disk]| disks.iter().map(Disk::translational_energy).sum::<f64>();
+    let mut run = Simulation::builder(Elastic, board()).disks(disks.clone()).build().unwrap();
+    for time in 1..=200 {
+        run.run_until(f64::from(time), &mut ()).unwrap();
+        for disk in run.disks() {
+            let depth = board().overlap(disk.position(), disk.radius(), 0.0).map_or(0.0, |(_, depth)| depth);
+            assert!(depth < 1e-10, "{disk:?} is in an obstacle by {depth}");
+        }
+    }
+    assert!((energy(&run.disks()) / energy(&disks) - 1.0).abs() < 1e-10);
+    assert!(run.counters().wall_collisions > 100, "{:?}", run.counters());
+}
+
+/// A disk that falls centrally on a peg bounces on it as on a floor: from height h it takes sqrt(2h/g).
+#[test]
+fn a_disk_bounces_on_a_peg() {
+    let board = Obstacles::new(Container::open(10.0).unwrap(), [peg(5.0, 2.0, 1.0)]);
+    let disk = peg(5.0, 5.5, 0.5);
+    let mut run = Simulation::builder(Elastic, board).disks([disk]).gravity(1.0).build().unwrap();
+    run.run_until(4.0, &mut ()).unwrap();
+    assert_eq!(run.counters().wall_collisions, 1);
+    assert!((run.disk(0).unwrap().position() - disk.position()).length() < 1e-12);
+}
+
+#[test]
+fn obstacles_have_names_kinds_and_a_fingerprint() {
+    let container = || Container::open(10.0).unwrap();
+    let board = Obstacles::new(container(), [peg(5.0, 2.0, 1.0).with_kind(Kind::new(7))]);
+    assert_eq!((board.wall_count(), board.wall_name(3)), (4, "obstacle 0".into()));
+    assert_eq!((board.wall_name(0), board.wall_name(9)), ("floor".into(), "wall 9".into()));
+    assert_eq!(board.surface(3, DVec2::new(5.0, 4.0), 0.0).kind, Kind::new(7));
+    assert_eq!(board.overlap(DVec2::new(5.0, 3.0), 0.5, 0.0), Some((3, 0.5)));
+    assert_eq!((board.boundary().width(), board.obstacles().len()), (10.0, 1));
+    let other = Obstacles::new(container(), [peg(5.0, 2.0, 1.5)]);
+    assert_ne!(board.fingerprint(), other.fingerprint());
+}
+
+/// An obstacle that lies some periods outside is where it would be seen inside.
+#[test]
+fn obstacles_are_taken_back_into_a_periodic_domain() {
+    for x in [25.0, -15.0, 5.0] {
+        let peg = Disk::new(DVec2::new(x, 45.0), 1.0).unwrap();
+        let mut board = Obstacles::new(Container::periodic(10.0, 10.0).unwrap(), [peg]);
+        assert_eq!(board.obstacles()[0].position(), DVec2::new(5.0, 5.0));
+        assert_eq!(laws::check(&mut board, 0.5, 1.0, 3), Ok(()));
+    }
+}

@@ -1,0 +1,176 @@
+//! Mixtures of any sizes against brute force: between two events all pairs are looked at, and none may have
+//! met.
+
+use granular_edmd::boundary::{Boundary, Container, Domain, Wall};
+use granular_edmd::collision::Elastic;
+use granular_edmd::glam::DVec2;
+use granular_edmd::simulation::Event;
+use granular_edmd::wall::BiParabolic;
+use granular_edmd::{Disk, Simulation, initial};
+use rand::{Rng, RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// Depth of an overlap that is rounding, relative to the distance at which the disks touch.
+///
+/// A place is rounded to 1e-16 of the domain, which is at most some 1e4 times as wide as the smallest disks.
+const ROUNDING: f64 = 1e-9;
+
+#[derive(Debug, Clone, Copy)]
+enum Sides {
+    Closed,
+    Open,
+    /// Periodic sides, ends, or both.
+    Periodic(bool, bool),
+}
+
+/// What a system is made of.
+#[derive(Debug)]
+struct Mixture {
+    sides: Sides,
+    radii: Vec<f64>,
+    /// Width in diameters of the largest disk, if that is not too narrow.
+    width: f64,
+    filling: f64,
+    gravity: f64,
+    seed: u64,
+}
+
+impl Mixture {
+    fn random(seed: u64) -> Self {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let ratio = 1000.0_f64.powf(random.random());
+        let count = random.random_range(2..70);
+        let law = random.random_range(0..4);
+        let sides = match random.random_range(0..6) {
+            0 => Sides::Closed,
+            1 => Sides::Open,
+            2 | 3 => Sides::Periodic(true, false),
+            4 => Sides::Periodic(false, true),
+            _ => Sides::Periodic(true, true),
+        };
+        let gravity = [0.0, 0.05, 0.0, -0.02][random.random_range(0..4)];
+        Self {
+            sides,
+            radii: (0..count).map(|k| 0.5 * size(law, ratio, k, &mut random)).collect(),
+            width: 4.05 * 5.0_f64.powf(random.random()),
+            filling: random.random_range(0.02..0.5),
+            gravity: match sides {
+                // What flies out of an open container must fall back.
+                Sides::Open => 0.05,
+                // What falls forever, without friction, loses the digits of its place.
+                Sides::Periodic(_, true) => 0.0,
+                _ => gravity,
+            },
+            seed,
+        }
+    }
+
+    fn build(&self) -> Simulation<Elastic> {
+        let area: f64 = self.radii.iter().map(|radius| std::f64::consts::PI * radius * radius).sum();
+        let largest = self.radii.iter().copied().fold(0.0, f64::max);
+        let width = self.width * 2.0 * largest;
+        let lowest = if matches!(self.sides, Sides::Periodic(_, true)) { 8.1 } else { 2.1 };
+        let mut height = (area / self.filling / width).max(lowest * largest);
+        loop {
+            let container = self.container(width, height);
+            if let Ok(disks) = initial::placed_at_random(&container, self.disks(), height, self.seed) {
+                let disks = initial::with_maxwellian_velocities(disks, 1.0, self.seed).unwrap();
+                let builder = Simulation::builder(Elastic, container).disks(disks);
+                return builder.gravity(self.gravity).build().unwrap();
+            }
+            height *= 1.2;
+        }
+    }
+
+    fn disks(&self) -> Vec<Disk> {
+        let mut radii = self.radii.clone();
+        radii.sort_by(|a, b| b.total_cmp(a));
+        let disk = |radius: f64| Disk::new(DVec2::ZERO, radius).unwrap().with_mass(4.0 * radius * radius);
+        radii.into_iter().map(|radius| disk(radius).unwrap()).collect()
+    }
+
+    fn container(&self, width: f64, height: f64) -> Container {
+        let base = BiParabolic::new(0.1, 10.0).unwrap();
+        let closed = Container::closed(width, height).unwrap();
+        match self.sides {
+            Sides::Closed => closed,
+            Sides::Open => Container::open(width).unwrap().with_motion(Wall::Floor, base).unwrap(),
+            Sides::Periodic(true, true) => Container::periodic(width, height).unwrap(),
+            Sides::Periodic(true, false) => closed.with_periodic_sides(),
+            Sides::Periodic(false, ends) => {
+                assert!(ends);
+                closed.with_periodic_ends().unwrap()
+            }
+        }
+    }
+}
+
+/// Returns a size from 1 to `ratio`: two sizes, one intruder, a power law, or all alike.
+fn size(law: u32, ratio: f64, k: usize, random: &mut impl Rng) -> f64 {
+    match law {
+        0 if random.random::<f64>() < 0.1 => ratio,
+        1 if k == 0 => ratio,
+        2 => (1.0 - random.random::<f64>() * (1.0 - ratio.powi(-2))).powf(-0.5),
+        3 => ratio.powf(random.random()),
+        _ => 1.0,
+    }
+}
+
+/// Runs a random mixture for so many events, and looks at all pairs at each.
+fn check(seed: u64, events: u32) {
+    let mixture = Mixture::random(seed);
+    let mut run = mixture.build();
+    let domain = run.boundary().domain();
+    for _ in 0..events {
+        let (before, since) = (run.disks(), run.time());
+        let event = run.step_until(since + 1e3, &mut ()).unwrap();
+        let passed = run.time() - since;
+        for (k, a) in before.iter().enumerate() {
+            for (other, b) in before[..k].iter().enumerate() {
+                let (nearest, touching) = (nearest_within(&domain, a, b, passed), a.radius() + b.radius());
+                assert!(nearest > touching * (1.0 - ROUNDING), "{k}, {other} met: {nearest} {mixture:?}");
+            }
+        }
+        match event {
+            Some(Event::Collision { disk, partner }) => {
+                let (a, b) = (run.disk(disk).unwrap(), run.disk(partner).unwrap());
+                let gap = domain.separation(a.position(), b.position()).length() - a.radius() - b.radius();
+                assert!(gap.abs() < ROUNDING * (a.radius() + b.radius()), "no touch: {gap:e} {mixture:?}");
+            }
+            Some(_) => {}
+            None => return,
+        }
+    }
+}
+
+/// Returns the least distance of two disks in this time, at any image. All disks fall alike.
+fn nearest_within(domain: &Domain, a: &Disk, b: &Disk, passed: f64) -> f64 {
+    let (place, velocity) = (b.position() - a.position(), b.velocity() - a.velocity());
+    let along = |period: f64| if period > 0.0 { vec![-period, 0.0, period] } else { vec![0.0] };
+    let (columns, rows) = (along(domain.periods().x), along(domain.periods().y));
+    let images = columns.iter().flat_map(|&x| rows.iter().map(move |&y| DVec2::new(x, y)));
+    let distance = |image: DVec2| {
+        let place = place + image;
+        let nearest =
+            (-place.dot(velocity) / velocity.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, passed);
+        (place + velocity * nearest).length()
+    };
+    images.map(distance).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn no_pair_meets_unseen() {
+    for seed in 0..200 {
+        check(seed, 300);
+    }
+}
+
+/// The same for thousands of mixtures. `MIXTURES` says how many.
+#[test]
+#[ignore = "takes minutes"]
+fn no_pair_meets_unseen_in_thousands_of_mixtures() {
+    let mixtures = std::env::var("MIXTURES").ok().and_then(|text| text.parse().ok()).unwrap_or(4000);
+    for seed in 1000..1000 + mixtures {
+        check(seed, 4000);
+    }
+}
