@@ -1,0 +1,277 @@
+//! The Brazil nut: a large disk among small ones, in a shaken box.
+//!
+//! An intruder of the same density starts on the floor and rises, carried by the flow between the rough
+//! walls; at the top it may dive again. A heavy one starts on top and sinks. 600 grains of diameter 1 lie
+//! some twenty layers deep, and the floor shakes them with `A = 1`, `ω = 2`, `g = 1`, that is, an
+//! acceleration of 4 g.
+//!
+//! ```text
+//! cargo run --release --example brazil_nut
+//! cargo run --release --example brazil_nut -- --sizes 3,8 --heavy 6 --out nuts
+//! ```
+//!
+//! The example writes `brazil_nut.png` and `brazil_nut.csv`. Literature: A. Rosato et al., Phys. Rev. Lett.
+//! 58, 1038 (1987); J. B. Knight et al., Phys. Rev. Lett. 70, 3728 (1993) for the flow; D. C. Hong et al.,
+//! Phys. Rev. Lett. 86, 3423 (2001) for disks that sink.
+
+mod common;
+
+use std::error::Error;
+use std::f64::consts::TAU;
+use std::fs;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+use granular_edmd::Kind;
+use granular_edmd::boundary::Obstacles;
+use granular_edmd::glam::DVec2;
+use granular_edmd::prelude::*;
+use kuva::prelude::{Layout, LinePlot, Plot, ScatterPlot};
+
+use common::command_line::{self, Failure, non_negative, positive};
+use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
+
+/// A large disk among small ones, in a shaken box: how high it is over time.
+#[derive(Parser)]
+struct Arguments {
+    /// Diameters of the intruders that start on the floor, in diameters of a grain.
+    #[arg(long, value_delimiter = ',', default_value = "2,4,6", value_parser = positive)]
+    sizes: Vec<f64>,
+    /// Density of one more intruder, of diameter 4, that starts on top if it is above 1; 0 for none.
+    #[arg(long, default_value_t = 4.0, value_parser = non_negative)]
+    heavy: f64,
+    /// Oscillations of the floor.
+    #[arg(long, default_value_t = 500, value_parser = clap::value_parser!(u32).range(4..=1_000_000))]
+    oscillations: u32,
+    /// Seed of the initial velocities.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Runs for 20 oscillations at most.
+    #[arg(long)]
+    quick: bool,
+    /// Folder for the results.
+    #[arg(long, default_value = "out")]
+    out: PathBuf,
+    /// File for the heights as JSON.
+    #[arg(long)]
+    json: Option<PathBuf>,
+}
+
+const INTRUDER: Kind = Kind::new(1);
+const GRAINS: usize = 600;
+const WIDTH: f64 = 30.0;
+
+/// Diameter of the largest intruder.
+const LARGEST: f64 = 16.0;
+
+/// Height below which the grains are packed at first.
+const PACKED: f64 = 24.0;
+
+/// Samples per oscillation, and the number of them that make a point of the picture.
+const SAMPLES: u32 = 20;
+const POINT: usize = 2 * SAMPLES as usize;
+
+/// An intruder and what it did.
+struct Nut {
+    diameter: f64,
+    density: f64,
+    /// Oscillations, height of the intruder, mean height of the grains.
+    heights: Vec<[f64; 3]>,
+    start: Vec<Disk>,
+    /// The time at which the intruder was highest, in oscillations, and the disks at that time.
+    highest: (f64, Vec<Disk>),
+}
+
+fn main() -> ExitCode {
+    match run(&command_line::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let out = &arguments.out;
+    fs::create_dir_all(out)
+        .map_err(|error| Failure::run(format_args!("--out {}: {error}", out.display())))?;
+    let light = arguments.sizes.iter().map(|&diameter| (diameter, 1.0));
+    let heavy = (arguments.heavy > 0.0).then_some((4.0, arguments.heavy));
+    let mut nuts = Vec::new();
+    for (diameter, density) in light.chain(heavy) {
+        if diameter > LARGEST {
+            let message = format!("--sizes {diameter}: the box has room for a diameter of {LARGEST}");
+            return Err(Failure::usage(message));
+        }
+        let nut = shaken(arguments, diameter, density).map_err(Failure::run)?;
+        println!("{nut}");
+        nuts.push(nut);
+    }
+    write(arguments, &nuts).map_err(Failure::run)
+}
+
+/// Shakes an intruder among the grains, and returns its way.
+fn shaken(arguments: &Arguments, diameter: f64, density: f64) -> Result<Nut, Box<dyn Error>> {
+    let floor = Sinusoidal::new(1.0, 2.0)?;
+    let container = Container::open(WIDTH)?.with_motion(Wall::Floor, floor)?;
+    let start = initial_disks(&container, diameter, density, arguments.seed)?;
+    // Grains lie on each other for moments; they need a contact duration.
+    let rule = ContactDuration::new(Frictional::new(0.05, 0.3)?, 1e-3)?;
+    let mut simulation = Simulation::builder(rule, container).disks(start.clone()).gravity(1.0).build()?;
+
+    let heights = (OfKind::new(INTRUDER, CenterOfMass), OfKind::new(Kind::DEFAULT, CenterOfMass));
+    let period = TAU / 2.0;
+    let mut series = Series::new(heights, SampleTimes::every(period / f64::from(SAMPLES))?);
+    let (mut top, mut highest) = (0.0, (0.0, start.clone()));
+    let mut watch = on_sample(SampleTimes::every(period)?, |snapshot: &Snapshot<'_>| {
+        let height = OfKind::new(INTRUDER, CenterOfMass).measure(snapshot).y;
+        if height > top {
+            (top, highest) = (height, (snapshot.time() / period, snapshot.disks().to_vec()));
+        }
+    });
+    let oscillations = if arguments.quick { arguments.oscillations.min(20) } else { arguments.oscillations };
+    simulation.run_until(period * f64::from(oscillations), &mut (&mut series, &mut watch))?;
+
+    let point = |(k, part): (usize, &[(DVec2, DVec2)])| {
+        let mean = |of: fn(&(DVec2, DVec2)) -> f64| part.iter().map(of).sum::<f64>() / POINT as f64;
+        [2.0 * (k as f64 + 0.5), mean(|heights| heights.0.y), mean(|heights| heights.1.y)]
+    };
+    let heights = series.values().chunks_exact(POINT).enumerate().map(point).collect();
+    Ok(Nut { diameter, density, heights, start, highest })
+}
+
+/// Returns the intruder, on the floor or on top if it is heavy, and the grains around it, packed at random.
+fn initial_disks(
+    container: &Container,
+    diameter: f64,
+    density: f64,
+    seed: u64,
+) -> Result<Vec<Disk>, Box<dyn Error>> {
+    let radius = 0.5 * diameter;
+    let height = if density > 1.0 { PACKED + 1.0 + radius } else { 1.01 + radius };
+    let intruder = Disk::new(DVec2::new(0.5 * WIDTH, height), radius)?;
+    let intruder = intruder.with_mass(density * diameter * diameter)?.with_kind(INTRUDER);
+    let around = Obstacles::new(container.clone(), [intruder]);
+    let grains = initial::homogeneous([0.5; GRAINS], 1.0)?;
+    let mut disks = initial::packed_at_random(&around, grains, PACKED, seed)?;
+    disks.push(intruder);
+    Ok(initial::with_maxwellian_velocities(disks, 0.1, seed)?)
+}
+
+impl std::fmt::Display for Nut {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [first, .., last] = self.heights.as_slice() else {
+            return formatter.write_str("too short a run");
+        };
+        let highest = self.heights.iter().map(|[_, nut, _]| *nut).fold(0.0, f64::max);
+        write!(
+            formatter,
+            "diameter {}, density {}: height {:.1} at first, {highest:.1} at most, {:.1} in the end (the grains: {:.1})",
+            self.diameter, self.density, first[1], last[1], last[2]
+        )
+    }
+}
+
+fn write(arguments: &Arguments, nuts: &[Nut]) -> Result<(), Box<dyn Error>> {
+    let (picture, path) = (arguments.out.join("brazil_nut.png"), arguments.out.join("brazil_nut.csv"));
+    let mut table = csv::Writer::from_path(&path)?;
+    table.write_record(["diameter", "density", "oscillations", "intruder_height", "grain_height"])?;
+    for nut in nuts {
+        for heights in &nut.heights {
+            table.serialize((nut.diameter, nut.density, heights))?;
+        }
+    }
+    table.flush()?;
+    fs::write(&picture, draw(nuts)?)?;
+    println!("wrote {} and {}", picture.display(), path.display());
+    if let Some(path) = &arguments.json {
+        let nut = |nut: &Nut| serde_json::json!({ "diameter": nut.diameter, "density": nut.density, "heights": nut.heights });
+        let text = serde_json::to_string_pretty(&nuts.iter().map(nut).collect::<Vec<_>>())?;
+        fs::write(path, text).map_err(|error| format!("--json {}: {error}", path.display()))?;
+        println!("wrote {}", path.display());
+    }
+    Ok(())
+}
+
+/// Space between a panel's edge and its axes: left, right, top, bottom.
+const MARGINS: [f64; 4] = [52.0, 14.0, 24.0, 44.0];
+const HEADER: f64 = 56.0;
+const HEIGHT: f64 = 420.0;
+
+/// Height of the part of the box that is shown.
+const SHOWN: f64 = 32.0;
+
+const COLORS: [&str; 4] = [BLUE, ORANGE, GREEN, INK];
+
+/// Draws an intruder at first and at its highest, and all heights over time.
+fn draw(nuts: &[Nut]) -> Result<Vec<u8>, Box<dyn Error>> {
+    let unit = (HEIGHT - MARGINS[2] - MARGINS[3]) / SHOWN;
+    let frame = WIDTH * unit + MARGINS[0] + MARGINS[1];
+    let mut sheet = Sheet::new(2.0 * frame + 560.0, HEADER + HEIGHT + 8.0);
+    sheet.text(MARGINS[0], 28.0, 19, INK, "A large disk among small ones, in a shaken box");
+    sheet.text(
+        MARGINS[0],
+        47.0,
+        12,
+        QUIET,
+        "600 grains, A = 1, ω = 2, g = 1, q = 0.05, κ = 0.3, rough walls",
+    );
+    let Some(shown) = nuts.get(nuts.len() / 3) else { return Err("no intruder to draw".into()) };
+    let (time, highest) = &shown.highest;
+    let later = format!("highest, after {time:.0} oscillations");
+    for (k, (disks, when)) in [(&shown.start, "at first"), (highest, &later)].into_iter().enumerate() {
+        let place = Place { x: k as f64 * frame, y: HEADER, width: frame, height: HEIGHT };
+        let layout = sheet::axes((0.0, WIDTH), (0.0, SHOWN)).with_show_grid(false).with_box_axes();
+        sheet.panel(place, MARGINS, faces(disks, unit), layout.with_x_label("x").with_y_label("height"));
+        sheet.text(
+            place.x + MARGINS[0],
+            HEADER + 16.0,
+            12,
+            INK,
+            &format!("diameter {}, {when}", shown.diameter),
+        );
+    }
+    let place = Place { x: 2.0 * frame, y: HEADER, width: 560.0, height: HEIGHT };
+    let names: Vec<String> = nuts.iter().map(Nut::name).collect();
+    let names: Vec<_> = COLORS.into_iter().cycle().zip(names.iter().map(String::as_str)).collect();
+    sheet.key(place.x + MARGINS[0], HEADER + 16.0, &names);
+    sheet.panel(place, MARGINS, lines(nuts), heights(nuts));
+    Ok(sheet.png(1.6)?)
+}
+
+impl Nut {
+    fn name(&self) -> String {
+        let Self { diameter, density, .. } = self;
+        if *density == 1.0 {
+            format!("diameter {diameter}")
+        } else {
+            format!("{diameter}, density {density}")
+        }
+    }
+}
+
+fn faces(disks: &[Disk], unit: f64) -> Vec<Plot> {
+    let color = |disk: &Disk| if disk.kind() == INTRUDER { ORANGE.to_owned() } else { "#8d96a0".to_owned() };
+    let centers = disks.iter().map(|disk| (disk.position().x, disk.position().y));
+    let faces = ScatterPlot::new().with_data(centers).with_colors(disks.iter().map(color));
+    vec![faces.with_sizes(disks.iter().map(|disk| (disk.radius() * unit - 0.4).max(0.5))).into()]
+}
+
+fn lines(nuts: &[Nut]) -> Vec<Plot> {
+    let line = |(nut, color): (&Nut, &str)| {
+        let points = nut.heights.iter().map(|[time, height, _]| (*time, *height));
+        LinePlot::new().with_data(points.collect::<Vec<_>>()).with_color(color).with_stroke_width(1.8).into()
+    };
+    let grains =
+        nuts.first().map(|nut| nut.heights.iter().map(|[time, _, grains]| (*time, *grains)).collect());
+    let middle = grains.map(|points: Vec<_>| {
+        LinePlot::new().with_data(points).with_color(QUIET).with_stroke_width(1.0).with_dashed().into()
+    });
+    nuts.iter().zip(COLORS.into_iter().cycle()).map(line).chain(middle).collect()
+}
+
+fn heights(nuts: &[Nut]) -> Layout {
+    let last =
+        nuts.iter().filter_map(|nut| nut.heights.last()).map(|[time, ..]| time + 1.0).fold(1.0, f64::max);
+    let layout = sheet::axes((0.0, last), (0.0, SHOWN)).with_show_grid(true);
+    layout.with_x_label("oscillations").with_y_label("height of the intruder (dashed: mean of the grains)")
+}
