@@ -84,16 +84,11 @@ struct Nut {
 }
 
 fn main() -> ExitCode {
-    match run(&command_line::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
-    }
+    command_line::main(run)
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let out = &arguments.out;
-    fs::create_dir_all(out)
-        .map_err(|error| Failure::run(format_args!("--out {}: {error}", out.display())))?;
+    command_line::make_folder(&arguments.out)?;
     let light = arguments.sizes.iter().map(|&diameter| (diameter, 1.0));
     let heavy = (arguments.heavy > 0.0).then_some((4.0, arguments.heavy));
     let mut nuts = Vec::new();

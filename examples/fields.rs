@@ -59,16 +59,12 @@ const FINE: (usize, usize) = (24, 60);
 const COARSE: (usize, usize) = (10, 25);
 
 fn main() -> ExitCode {
-    match run(&command_line::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
-    }
+    command_line::main(run)
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = &arguments.out;
-    fs::create_dir_all(out)
-        .map_err(|error| Failure::run(format_args!("--out {}: {error}", out.display())))?;
+    command_line::make_folder(out)?;
     let start = Instant::now();
     let (fine, coarse) = measured(arguments).map_err(Failure::run)?;
     println!("{} samples in {:.1} s", fine.samples(), start.elapsed().as_secs_f64());

@@ -82,7 +82,7 @@ impl Boundary for Drum {
     }
 }
 
-/// What is kept of each sample.
+/// The numbers that are kept of each sample.
 #[derive(Serialize, Deserialize)]
 struct Flow {
     /// Angular momentum of a disk about the middle, its own spin included.

@@ -82,7 +82,8 @@ use crate::Fingerprint;
 /// - the closing speed is finite and not negative; it may be zero;
 /// - the slip speed is finite, of either sign or zero;
 /// - the masses are finite and positive, the tangential one not above the normal one;
-/// - the radii are positive, and only that of a wall is infinite.
+/// - the radii of disks are finite and positive, that of a wall is infinite if it is straight, negative if
+///   it is hollow, and never zero.
 ///
 /// The rule guarantees:
 /// 1. The same contact gets the same impulse every time, to the bit; a rule that needs history finds it in

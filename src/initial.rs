@@ -87,6 +87,12 @@ fn spacings() -> impl Iterator<Item = f64> {
     (0..=40).map(|k| LOOSE + (CLOSE - LOOSE) * f64::from(k) / 40.0)
 }
 
+/// Cuts the interior of a boundary at a height. A cut below periodic ends makes ends of them.
+fn cut(interior: Domain, below: f64) -> Domain {
+    let periodic_ends = interior.periodic_ends && below >= interior.top;
+    Domain { top: interior.top.min(below), periodic_ends, ..interior }
+}
+
 /// Returns the rectangle in which a center may lie. An open top stays open.
 fn room(interior: &Domain, radius: f64) -> Domain {
     let side = if interior.periodic_sides { 0.0 } else { radius };

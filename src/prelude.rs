@@ -3,13 +3,15 @@
 //! The prelude holds everything that a run needs, and everything that a rule, a wall motion, a boundary, a
 //! scheduler, an observable or an observer of your own is made of.
 
-pub use crate::boundary::{Boundary, Container, Domain, Region, Response, Surface, Thermal, Touch, Wall};
+pub use crate::boundary::{
+    Boundary, Container, Domain, Obstacles, Region, Response, Surface, Thermal, Touch, Wall,
+};
 pub use crate::collision::{
     CollisionRule, Contact, ContactDuration, Elastic, Friction, Frictional, Impulse, Regime, Rough,
     RulesByKind, Smooth,
 };
 pub use crate::glam::DVec2;
-pub use crate::initial;
+pub use crate::initial::{self, Radii};
 pub use crate::observable::{
     BetweenKinds, CenterOfMass, Collision, CollisionCounts, Energies, EnergyChange, Moment, Observable,
     Observer, OfKind, OrderParameters, Partner, SampleTimes, Series, Snapshot, Temperatures, Verdict,

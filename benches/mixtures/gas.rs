@@ -5,17 +5,11 @@ use std::time::Instant;
 
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::Elastic;
-use granular_edmd::glam::DVec2;
 use granular_edmd::{Disk, Simulation, initial};
-use rand::{RngExt, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::common::Outcome;
 
 const AREA_FRACTION: f64 = 0.4;
-
-/// Gap between disks at the start, relative to the distance at which they touch.
-const GAP: f64 = 1e-6;
 
 /// A gas that runs.
 pub(crate) struct Gas(Simulation<Elastic>);
@@ -64,56 +58,6 @@ pub(crate) fn side_for(radii: &[f64]) -> f64 {
 /// Places disks one after the other at random, the largest first.
 fn placed(mut radii: Vec<f64>, side: f64) -> Outcome<Vec<Disk>> {
     radii.sort_by(|a, b| b.total_cmp(a));
-    let mut generator = Xoshiro256PlusPlus::seed_from_u64(7);
-    let mut bins = Bins::new(side, radii[radii.len() / 2]);
-    let place = |radius: f64| {
-        let mut random = || radius + (side - 2.0 * radius) * generator.random::<f64>();
-        let position = std::iter::repeat_with(|| DVec2::new(random(), random()));
-        let free = position.take(1_000_000).find(|&position| bins.is_free(position, radius));
-        let position = free.ok_or("there is no room for the disks")?;
-        bins.add(position, radius);
-        Ok(Disk::new(position, radius)?.with_mass(4.0 * radius * radius)?)
-    };
-    radii.into_iter().map(place).collect()
-}
-
-/// The disks that lie at least partly in each of some squares.
-struct Bins {
-    squares: Vec<Vec<(DVec2, f64)>>,
-    count: usize,
-    side: f64,
-}
-
-impl Bins {
-    fn new(side: f64, radius: f64) -> Self {
-        let count = (side / (2.0 * radius)).ceil().max(1.0);
-        Self {
-            squares: vec![Vec::new(); (count * count) as usize],
-            count: count as usize,
-            side: side / count,
-        }
-    }
-
-    /// Returns the squares in which a disk lies.
-    fn squares_of(&self, position: DVec2, radius: f64) -> impl Iterator<Item = usize> + use<> {
-        let (count, reach) = (self.count, radius * (1.0 + GAP));
-        let (side, last) = (self.side, count - 1);
-        let span = move |x: f64| ((x - reach) / side) as usize..=(((x + reach) / side) as usize).min(last);
-        let (columns, rows) = (span(position.x), span(position.y));
-        columns.flat_map(move |column| rows.clone().map(move |row| column * count + row))
-    }
-
-    fn is_free(&self, position: DVec2, radius: f64) -> bool {
-        self.squares_of(position, radius).all(|square| {
-            let touches =
-                |&(other, size): &(DVec2, f64)| other.distance(position) < (size + radius) * (1.0 + GAP);
-            !self.squares[square].iter().any(touches)
-        })
-    }
-
-    fn add(&mut self, position: DVec2, radius: f64) {
-        for square in self.squares_of(position, radius) {
-            self.squares[square].push((position, radius));
-        }
-    }
+    let disks = initial::homogeneous(radii, 1.0)?;
+    Ok(initial::placed_at_random(&Container::closed(side, side)?, disks, side, 7)?)
 }

@@ -107,7 +107,7 @@ impl fmt::Display for Ratios {
 }
 
 fn compare(plan: &Plan, mixture: Mixture) -> Outcome<Ratios> {
-    let (radii, small) = (mixture.radii(), mixture.small());
+    let (radii, small) = (mixture.radii()?, mixture.small()?);
     let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
     let equal = vec![smallest; radii.len()];
     let side = side_for(&radii);

@@ -1,15 +1,14 @@
 //! Mixtures of sizes, by a seeded generator.
 
-use std::f64::consts::TAU;
 use std::fmt;
 
-use rand::{RngExt, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus;
+use granular_edmd::ParameterError;
+use granular_edmd::initial::Radii;
 
 /// Radius of the smallest disks.
 const SMALLEST: f64 = 0.5;
 
-/// Which disks a mixture consists of.
+/// The sizes of the disks of a mixture.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Sizes {
     /// A single large disk.
@@ -33,31 +32,23 @@ pub(crate) enum Distribution {
     Uniform,
     /// The smallest and largest are three standard deviations from the median.
     LogNormal,
-    /// As r⁻³: each octave takes the same area.
+    /// The density goes as r⁻³: each octave takes the same area.
     PowerLaw,
 }
 
 impl Distribution {
     pub(crate) const ALL: [Self; 3] = [Self::Uniform, Self::LogNormal, Self::PowerLaw];
 
-    /// Returns a radius in terms of the smallest.
-    fn sample(self, ratio: f64, generator: &mut Xoshiro256PlusPlus) -> f64 {
+    fn radii(self, ratio: f64) -> Result<Radii, ParameterError> {
+        let largest = ratio * SMALLEST;
         match self {
-            Self::Uniform => 1.0 + (ratio - 1.0) * generator.random::<f64>(),
-            Self::LogNormal => loop {
-                let radius = (ratio.ln() * (0.5 + normal(generator) / 6.0)).exp();
-                if (1.0..=ratio).contains(&radius) {
-                    return radius;
-                }
-            },
-            Self::PowerLaw => (1.0 - generator.random::<f64>() * (1.0 - ratio.powi(-2))).powf(-0.5),
+            Self::Uniform => Radii::uniform(SMALLEST, largest),
+            Self::LogNormal => {
+                Radii::log_normal(ratio.sqrt() * SMALLEST, ratio.ln() / 6.0, SMALLEST, largest)
+            }
+            Self::PowerLaw => Radii::power_law(3.0, SMALLEST, largest),
         }
     }
-}
-
-fn normal(generator: &mut Xoshiro256PlusPlus) -> f64 {
-    let (u, v): (f64, f64) = (1.0 - generator.random::<f64>(), generator.random());
-    (-2.0 * u.ln()).sqrt() * (TAU * v).cos()
 }
 
 /// A mixture of so many disks.
@@ -71,28 +62,26 @@ pub(crate) struct Mixture {
 
 impl Mixture {
     /// Returns the radii of all disks.
-    pub(crate) fn radii(&self) -> Vec<f64> {
+    pub(crate) fn radii(&self) -> Result<Vec<f64>, ParameterError> {
         let Self { sizes, ratio, disks } = *self;
         let large = match sizes {
             Sizes::Intruder => 1,
             Sizes::Few => disks / 100,
             Sizes::HalfOfTheArea => (disks as f64 / (1.0 + ratio * ratio)).round().max(1.0) as usize,
             Sizes::Many(distribution) => {
-                let mut generator = Xoshiro256PlusPlus::seed_from_u64(3);
-                return (0..disks).map(|_| SMALLEST * distribution.sample(ratio, &mut generator)).collect();
+                return Ok(distribution.radii(ratio)?.draw(disks, 3));
             }
         };
         let radius = |k| if k < large { SMALLEST * ratio } else { SMALLEST };
-        (0..disks).map(radius).collect()
+        Ok((0..disks).map(radius).collect())
     }
-}
 
-impl Mixture {
     /// Returns the radii of the small disks of a mixture of two sizes.
-    pub(crate) fn small(&self) -> Option<Vec<f64>> {
-        let is_small = |radius: &f64| *radius == SMALLEST;
-        let of_two = !matches!(self.sizes, Sizes::Many(_));
-        of_two.then(|| self.radii().into_iter().filter(is_small).collect())
+    pub(crate) fn small(&self) -> Result<Option<Vec<f64>>, ParameterError> {
+        if matches!(self.sizes, Sizes::Many(_)) {
+            return Ok(None);
+        }
+        Ok(Some(self.radii()?.into_iter().filter(|&radius| radius == SMALLEST).collect()))
     }
 }
 

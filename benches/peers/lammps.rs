@@ -11,7 +11,7 @@ use super::Means;
 use crate::common::Outcome;
 use crate::common::state::State;
 
-/// How soft the disks are.
+/// The stiffness of the disks.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Contacts {
     pub(crate) name: &'static str,

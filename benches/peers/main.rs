@@ -48,7 +48,7 @@ const LONGER: u32 = 100;
 /// Interval of samples in oscillations. They go through all phases of the base.
 const INTERVAL: f64 = 0.26;
 
-/// What a program found, and how long it took.
+/// The result of a program, and the time that it took.
 pub(crate) struct Means {
     /// Seconds for an oscillation of the base.
     seconds: f64,

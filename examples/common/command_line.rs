@@ -1,6 +1,8 @@
 //! The command line of the examples, and errors in one line.
 
 use std::fmt::Display;
+use std::fs;
+use std::path::Path;
 use std::process::{ExitCode, exit};
 
 use clap::Parser;
@@ -36,8 +38,21 @@ impl Failure {
     }
 }
 
+/// Parses the command line, runs an example and reports its failure, if any.
+pub(crate) fn main<A: Parser>(run: impl FnOnce(&A) -> Result<(), Failure>) -> ExitCode {
+    match run(&parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+/// Makes the folder for the results, if there is none.
+pub(crate) fn make_folder(out: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(out).map_err(|error| Failure::run(format_args!("--out {}: {error}", out.display())))
+}
+
 /// Parses the command line. A mistake ends the program with one line and exit code 2.
-pub(crate) fn parse<A: Parser>() -> A {
+fn parse<A: Parser>() -> A {
     A::try_parse().unwrap_or_else(|error| {
         if !error.use_stderr() {
             error.exit();

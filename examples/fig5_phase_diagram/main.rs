@@ -41,7 +41,7 @@ struct Arguments {
     /// Gravity, one of the paper's two.
     #[arg(long, value_enum, default_value = "0.015625")]
     gravity: Gravity,
-    /// How much is done.
+    /// The size of the diagram.
     #[arg(long, value_enum, default_value = "full")]
     size: Size,
     /// Draw what is there, and do no more: also while another process does.

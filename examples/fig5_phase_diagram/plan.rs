@@ -13,7 +13,7 @@ pub(crate) enum Size {
     Quick,
     /// All frictions and inelasticities, 6000 oscillations each: half an hour on two cores.
     Coarse,
-    /// As in the paper, 100 000 oscillations each, all ramps up and down: about ten hours.
+    /// The paper's: 100 000 oscillations each, all ramps up and down: about ten hours.
     Full,
 }
 

@@ -1,4 +1,4 @@
-//! What the examples that run studies share: progress, Ctrl-C, and pictures.
+//! Parts that the examples that run studies share: progress, Ctrl-C, and pictures.
 #![allow(dead_code, reason = "each example takes what it needs")]
 
 use std::error::Error;

@@ -181,7 +181,7 @@ impl fmt::Display for Base {
 pub(crate) enum Sides {
     /// Walls with the friction and inelasticity of the disks.
     Walls,
-    /// What leaves on one side enters on the other.
+    /// A disk that leaves on one side enters on the other.
     Periodic,
 }
 

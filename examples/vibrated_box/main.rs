@@ -23,14 +23,10 @@ use crate::common::command_line::{self, Failure};
 use crate::experiment::Outcome;
 
 fn main() -> ExitCode {
-    let arguments: Arguments = command_line::parse();
-    match check(&arguments)
-        .and_then(|()| experiment::run(&arguments))
-        .and_then(|outcome| write(&arguments, &outcome))
-    {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
-    }
+    command_line::main(|arguments: &Arguments| {
+        check(arguments)?;
+        write(arguments, &experiment::run(arguments)?)
+    })
 }
 
 /// Checks everything that can be known to fail before a long run.
@@ -50,7 +46,7 @@ fn check(arguments: &Arguments) -> Result<(), Failure> {
     {
         return Err(Failure::run(format_args!("--json: there is no folder {}", folder.display())));
     }
-    fs::create_dir_all(out).map_err(|error| Failure::run(format_args!("--out {}: {error}", out.display())))
+    command_line::make_folder(out)
 }
 
 /// Writes all results.

@@ -76,7 +76,7 @@ impl Container {
     }
 
     /// Creates a container without walls: a disk that leaves on one side enters on the other, and so above
-    /// and below.
+    /// and below. A simulation needs a width and a height of four diameters of the largest disk.
     ///
     /// # Errors
     /// If the width or the height is not finite and positive.
@@ -95,6 +95,7 @@ impl Container {
     }
 
     /// Returns the same container with periodic sides: a disk that leaves on one side enters on the other.
+    /// A simulation needs a width of four diameters of the largest disk.
     pub fn with_periodic_sides(mut self) -> Self {
         for wall in [Wall::Left, Wall::Right] {
             self.remove(wall);

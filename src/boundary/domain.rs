@@ -25,6 +25,7 @@ pub struct Domain {
     /// Lower end.
     pub bottom: f64,
     /// Upper end; infinite without a lid.
+    #[cfg_attr(feature = "serde", serde(with = "open_top", default = "open_top::open"))]
     pub top: f64,
     /// True if a disk that leaves on one side enters on the other.
     pub periodic_sides: bool,
@@ -108,6 +109,33 @@ impl Domain {
     pub fn unwrapped(&self, disk: &Disk) -> DVec2 {
         let [right, up] = disk.image();
         disk.position() + self.periods() * DVec2::new(f64::from(right), f64::from(up))
+    }
+}
+
+/// The upper end in files. Text formats have no infinite numbers: there, an open top is none.
+#[cfg(feature = "serde")]
+mod open_top {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) const fn open() -> f64 {
+        f64::INFINITY
+    }
+
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes fields by reference")]
+    pub(super) fn serialize<S: Serializer>(top: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+        if serializer.is_human_readable() {
+            Some(*top).filter(|top| top.is_finite()).serialize(serializer)
+        } else {
+            top.serialize(serializer)
+        }
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+        if deserializer.is_human_readable() {
+            Ok(Option::deserialize(deserializer)?.unwrap_or_else(open))
+        } else {
+            f64::deserialize(deserializer)
+        }
     }
 }
 

@@ -147,7 +147,8 @@ impl<B: Boundary> Boundary for Obstacles<B> {
         };
         let obstacle = &self.obstacles[index];
         let away = self.domain().separation(obstacle.position(), position);
-        Surface::new(away.normalize_or(DVec2::Y), DVec2::ZERO).with_kind(obstacle.kind())
+        let surface = Surface::new(away.normalize_or(DVec2::Y), DVec2::ZERO);
+        surface.with_kind(obstacle.kind()).with_radius(obstacle.radius())
     }
 
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {

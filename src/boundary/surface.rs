@@ -30,14 +30,17 @@ pub struct Surface<'a> {
     pub response: Response<'a>,
     /// Kind of the wall, which rules find in the contact.
     pub kind: Kind,
+    /// Radius of the surface, which rules find in the contact: infinite if it is straight, negative if it is
+    /// hollow.
+    pub radius: f64,
 }
 
 impl<'a> Surface<'a> {
-    /// Creates a surface with this unit normal and this velocity, under the rule of the disks and of
+    /// Creates a straight surface with this unit normal and this velocity, under the rule of the disks and of
     /// [`Kind::WALL`].
     #[inline]
     pub const fn new(normal: DVec2, velocity: DVec2) -> Self {
-        Self { normal, velocity, response: Response::Shared, kind: Kind::WALL }
+        Self { normal, velocity, response: Response::Shared, kind: Kind::WALL, radius: f64::INFINITY }
     }
 
     /// Returns the same surface with another response.
@@ -52,6 +55,21 @@ impl<'a> Surface<'a> {
     #[inline]
     pub const fn with_kind(self, kind: Kind) -> Self {
         Self { kind, ..self }
+    }
+
+    /// Returns the same surface with this radius: positive for the outside of a circle, negative for its
+    /// inside.
+    ///
+    /// ```
+    /// use granular_edmd::boundary::Surface;
+    /// use granular_edmd::glam::DVec2;
+    /// assert_eq!(Surface::new(DVec2::Y, DVec2::ZERO).radius, f64::INFINITY);
+    /// assert_eq!(Surface::new(DVec2::Y, DVec2::ZERO).with_radius(-10.0).radius, -10.0);
+    /// ```
+    #[must_use]
+    #[inline]
+    pub const fn with_radius(self, radius: f64) -> Self {
+        Self { radius, ..self }
     }
 }
 

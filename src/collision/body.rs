@@ -9,6 +9,8 @@ use crate::{Disk, Kind};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Material {
     /// Distance from the center, about which the body turns, to the surface; 0 for a wall.
+    arm: f64,
+    /// Radius of the surface, which rules are told; infinite for a straight wall.
     pub(crate) radius: f64,
     pub(crate) inverse_mass: f64,
     /// Velocity of the contact point per tangential impulse, `$(1 + 1/\beta)/m$`.
@@ -20,25 +22,21 @@ pub(crate) struct Material {
 
 impl Material {
     /// Returns that of a wall, which takes any impulse and does not change its motion.
-    pub(crate) const fn of_wall(kind: Kind) -> Self {
-        Self { radius: 0.0, inverse_mass: 0.0, tangential_compliance: 0.0, spin_response: 0.0, kind }
+    pub(crate) const fn of_wall(kind: Kind, radius: f64) -> Self {
+        let (inverse_mass, tangential_compliance, spin_response) = (0.0, 0.0, 0.0);
+        Self { arm: 0.0, radius, inverse_mass, tangential_compliance, spin_response, kind }
     }
 
     pub(crate) fn of(disk: &Disk) -> Self {
         let (mass, factor) = (disk.mass(), disk.inertia_factor());
         Self {
+            arm: disk.radius(),
             radius: disk.radius(),
             inverse_mass: 1.0 / mass,
             tangential_compliance: (1.0 + 1.0 / factor) / mass,
             spin_response: 1.0 / (factor * mass * disk.radius()),
             kind: disk.kind(),
         }
-    }
-
-    /// Returns the radius of the surface; infinite for a wall.
-    #[inline]
-    fn radius_of_curvature(&self) -> f64 {
-        if self.radius > 0.0 { self.radius } else { f64::INFINITY }
     }
 }
 
@@ -64,14 +62,14 @@ fn contact(normal: DVec2, first: (&Body, &Material), second: (&Body, &Material))
     // roots of a negative speed. The comparison is also false for NaN, and always gives the same zero;
     // `f64::max` may give either zero, depending on the processor.
     let closing = if closing > 0.0 { closing } else { 0.0 };
-    let surface = second.1.radius * second.0.angular_velocity + first.1.radius * first.0.angular_velocity;
+    let surface = second.1.arm * second.0.angular_velocity + first.1.arm * first.0.angular_velocity;
     let (normal_mass, tangential_mass) = (
         1.0 / (first.1.inverse_mass + second.1.inverse_mass),
         1.0 / (first.1.tangential_compliance + second.1.tangential_compliance),
     );
     Contact::new(closing, approach.dot(normal.perp()) + surface, normal_mass, tangential_mass)
         .with_kinds([first.1.kind, second.1.kind])
-        .with_radii([first.1, second.1].map(Material::radius_of_curvature))
+        .with_radii([first.1.radius, second.1.radius])
 }
 
 /// Returns `body` after an impulse along the normal and its perpendicular. Both partners of a collision turn

@@ -13,7 +13,8 @@ use crate::Kind;
 /// `$\Delta_t$` changes `$v_t$` by `$-\Delta_t/\mu_t$`, where `$1/\mu = \sum 1/m_i$` and
 /// `$1/\mu_t = \sum (1 + 1/\beta_i)/m_i$` (for homogeneous disks `$\mu_t = \mu/3$`).
 ///
-/// A wall is a partner of infinite mass and infinite radius.
+/// A wall is a partner of infinite mass. The radius of a straight one is infinite, that of a hollow one
+/// negative.
 ///
 /// ```
 /// use granular_edmd::collision::Contact;
@@ -60,7 +61,8 @@ impl Contact {
         Self { kinds, ..self }
     }
 
-    /// Returns the same contact between partners of these radii; infinite for a wall.
+    /// Returns the same contact between partners of these radii; infinite for a straight wall, negative for a
+    /// hollow one.
     #[inline]
     pub const fn with_radii(self, radii: [f64; 2]) -> Self {
         Self { radii, ..self }
@@ -108,14 +110,14 @@ impl Contact {
         self.kinds == [first, second] || self.kinds == [second, first]
     }
 
-    /// Returns the radii of both partners; that of a wall is infinite.
+    /// Returns the radii of both partners: infinite for a straight wall, negative for a hollow one.
     #[inline]
     pub const fn radii(&self) -> [f64; 2] {
         self.radii
     }
 
-    /// Returns the effective radius, `$R_\text{eff} = R_1R_2/(R_1 + R_2)$`; at a wall, it is the radius of
-    /// the disk.
+    /// Returns the effective radius, `$R_\text{eff} = R_1R_2/(R_1 + R_2)$`; at a straight wall, it is the
+    /// radius of the disk, in a hollow one more.
     ///
     /// The laws of Hertz for elastic and viscoelastic grains need it.
     ///
@@ -124,12 +126,17 @@ impl Contact {
     /// let contact = Contact::new(2.0, 0.0, 0.5, 0.5 / 3.0);
     /// assert_eq!(contact.effective_radius(), 0.25);
     /// assert_eq!(contact.with_radii([0.5, f64::INFINITY]).effective_radius(), 0.5);
+    /// assert_eq!(contact.with_radii([0.5, -1.0]).effective_radius(), 1.0);
     /// ```
     #[inline]
     pub const fn effective_radius(&self) -> f64 {
         let [first, second] = self.radii;
         // The form is the same for either order of the partners, and has a limit for a wall.
-        if first < second { first / (1.0 + first / second) } else { second / (1.0 + second / first) }
+        if first.abs() < second.abs() {
+            first / (1.0 + first / second)
+        } else {
+            second / (1.0 + second / first)
+        }
     }
 
     /// Returns the normal impulse of a restitution `$r_n$`: `$\Delta_n = (1 + r_n)\,\mu\,v_n$` (paper, Eqs.

@@ -72,7 +72,7 @@ pub fn collide<R: CollisionRule + ?Sized>(rule: &R, first: &Disk, second: &Disk)
 /// Lets a disk collide under `rule` with a wall that moves at `wall_velocity`, as a simulation does.
 ///
 /// The unit vector `normal` points from the wall to the disk. The closing speed of a disk that leaves is
-/// zero. The wall is of [`Kind::WALL`].
+/// zero. The wall is straight, and of [`Kind::WALL`].
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;
@@ -92,8 +92,13 @@ pub fn collide_with_wall<R: CollisionRule + ?Sized>(
 ) -> WallEncounter {
     let arriving = (&Body::of(disk), &Material::of(disk));
     let wall = Body { velocity: wall_velocity, angular_velocity: 0.0 };
-    let outcome =
-        collide_bodies(rule, normal, f64::INFINITY, arriving, (&wall, &Material::of_wall(Kind::WALL)));
+    let outcome = collide_bodies(
+        rule,
+        normal,
+        f64::INFINITY,
+        arriving,
+        (&wall, &Material::of_wall(Kind::WALL, f64::INFINITY)),
+    );
     WallEncounter { disk: moved(disk, outcome.first), contact: outcome.contact, impulse: outcome.impulse }
 }
 

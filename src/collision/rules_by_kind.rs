@@ -113,21 +113,18 @@ struct RawRulesByKind<R> {
 
 #[cfg(feature = "serde")]
 impl<R> TryFrom<RawRulesByKind<R>> for RulesByKind<R> {
-    type Error = crate::ParameterError;
+    type Error = String;
 
-    fn try_from(raw: RawRulesByKind<R>) -> Result<Self, crate::ParameterError> {
-        let (given, mut table) = (raw.pairs.len(), Self::new(raw.otherwise));
-        for PairRule { kinds: [first, second], rule } in raw.pairs {
-            table = table.with(first, second, rule);
+    fn try_from(raw: RawRulesByKind<R>) -> Result<Self, String> {
+        let mut table = Self::new(raw.otherwise);
+        for PairRule { kinds, rule } in raw.pairs {
+            let kinds = ordered(kinds);
+            let Err(there) = table.place(kinds) else {
+                let [first, second] = kinds;
+                return Err(format!("two rules for the kinds {first} and {second}"));
+            };
+            table.pairs.insert(there, PairRule { kinds, rule });
         }
-        let differ = table.pairs.len();
-        let requirement = "as many as there are different pairs";
-        crate::quantity::accept(
-            given == differ,
-            "number of rules for pairs of kinds",
-            requirement,
-            given as f64,
-        )?;
         Ok(table)
     }
 }

@@ -1,4 +1,4 @@
-//! Bins for finding the disks near a place.
+//! Squares for finding the disks near a place.
 
 use std::collections::HashMap;
 
@@ -7,54 +7,120 @@ use glam::DVec2;
 use crate::Disk;
 use crate::boundary::Domain;
 
-/// Bins for finding the disks near a place.
+/// Factor by which disks reach further than their radii, so that rounding hides no neighbor.
+const MARGIN: f64 = 1.0 + 1e-9;
+
+/// Squares for finding the disks near a place.
+///
+/// A disk is entered in all squares that it reaches. Their side is the root of the mean square of the
+/// diameters. So there are a few entries for each disk, and a few disks in each square, at any mix of radii.
 pub(super) struct Bins {
     domain: Domain,
-    size: DVec2,
-    columns: usize,
-    /// Number of rows, after which periodic ends begin anew.
-    rows: Option<i64>,
-    disks: HashMap<(usize, i64), Vec<usize>>,
+    columns: Axis,
+    rows: Axis,
+    disks: HashMap<(i64, i64), Vec<usize>>,
 }
 
 impl Bins {
-    /// Makes empty bins that are at least as wide as this diameter, for so many disks.
-    pub(super) fn new(domain: &Domain, diameter: f64, count: usize) -> Self {
-        let finest = domain.width() / (4 * count + 4) as f64;
-        let columns = (domain.width() / diameter.max(finest)).floor().max(1.0);
-        let width = domain.width() / columns;
-        let rows = domain.periodic_ends.then(|| (domain.height() / width).floor().max(1.0));
-        let size = DVec2::new(width, rows.map_or(width, |rows| domain.height() / rows));
-        let (columns, rows) = (columns as usize, rows.map(|rows| rows as i64));
-        Self { domain: *domain, size, columns, rows, disks: HashMap::new() }
+    /// Makes empty squares for disks of these radii.
+    pub(super) fn new(domain: &Domain, radii: impl ExactSizeIterator<Item = f64>) -> Self {
+        let count = radii.len().max(1) as f64;
+        let squares: f64 = radii.map(|radius| 4.0 * radius * radius).sum();
+        let side = if squares > 0.0 { (squares / count).sqrt() } else { 1.0 };
+        let Domain { left, right, bottom, top, .. } = *domain;
+        let columns = Axis::new(domain.periodic_sides.then_some((left, right)), side);
+        let rows = Axis::new(domain.periodic_ends.then_some((bottom, top)), side);
+        Self { domain: *domain, columns, rows, disks: HashMap::new() }
     }
 
-    fn bin(&self, site: DVec2) -> (usize, i64) {
-        let column = ((site.x - self.domain.left) / self.size.x).floor().max(0.0) as usize;
-        let row = ((site.y - self.domain.bottom) / self.size.y).floor() as i64;
-        (column.min(self.columns - 1), self.rows.map_or(row, |rows| row.rem_euclid(rows)))
+    /// Names the squares that a disk reaches.
+    fn squares(&self, site: DVec2, radius: f64) -> impl Iterator<Item = (i64, i64)> + use<> {
+        let reach = DVec2::splat(radius * MARGIN);
+        let (low, high) = (site - reach, site + reach);
+        let (columns, rows) = (self.columns.between(low.x, high.x), self.rows.between(low.y, high.y));
+        columns.flat_map(move |column| rows.clone().map(move |row| (column, row)))
     }
 
-    /// Adds a disk of this index.
-    pub(super) fn add(&mut self, site: DVec2, disk: usize) {
-        self.disks.entry(self.bin(site)).or_default().push(disk);
+    /// Adds a disk of this index and radius.
+    pub(super) fn add(&mut self, site: DVec2, radius: f64, disk: usize) {
+        for square in self.squares(site, radius) {
+            self.disks.entry(square).or_default().push(disk);
+        }
     }
 
-    /// Names the disks in the nine bins around a place, some of them twice in very narrow domains.
-    pub(super) fn near(&self, site: DVec2) -> impl Iterator<Item = usize> {
-        let (column, row) = self.bin(site);
-        let columns = [column + self.columns - 1, column, column + 1].map(|c| c % self.columns);
-        let rows = [row.saturating_sub(1), row, row.saturating_add(1)]
-            .map(|row| self.rows.map_or(row, |rows| row.rem_euclid(rows)));
-        let near = columns.into_iter().flat_map(move |c| rows.map(|r| (c, r)));
-        near.filter_map(|bin| self.disks.get(&bin)).flatten().copied()
+    /// Names all disks that may overlap one of this radius, and some others, some of them several times.
+    pub(super) fn near(&self, site: DVec2, radius: f64) -> impl Iterator<Item = usize> {
+        self.squares(site, radius).filter_map(|square| self.disks.get(&square)).flatten().copied()
     }
 
     /// Tells whether a disk of this radius at this place overlaps none of those placed.
     pub(super) fn is_free(&self, site: DVec2, radius: f64, placed: &[Disk]) -> bool {
-        self.near(site).all(|other| {
+        self.near(site, radius).all(|other| {
             let contact = radius + placed[other].radius();
             self.domain.separation(site, placed[other].position()).length_squared() > contact * contact
         })
+    }
+}
+
+/// The columns, or the rows, of the squares.
+struct Axis {
+    origin: f64,
+    size: f64,
+    /// Number of squares after which a periodic axis begins anew.
+    count: Option<i64>,
+}
+
+impl Axis {
+    /// Divides an axis, which may begin anew between two ends, into intervals of about this size.
+    fn new(period: Option<(f64, f64)>, size: f64) -> Self {
+        let Some((low, high)) = period else { return Self { origin: 0.0, size, count: None } };
+        let count = ((high - low) / size).floor().max(1.0);
+        Self { origin: low, size: (high - low) / count, count: Some(count as i64) }
+    }
+
+    /// Names the intervals between two places, each of them once.
+    fn between(&self, low: f64, high: f64) -> impl Iterator<Item = i64> + Clone + use<> {
+        let index = |place: f64| ((place - self.origin) / self.size).floor() as i64;
+        let (first, last, count) = (index(low), index(high), self.count);
+        let last = count.map_or(last, |count| last.min(first.saturating_add(count - 1)));
+        (first..=last).map(move |index| count.map_or(index, |count| index.rem_euclid(count)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Bins;
+    use crate::Disk;
+    use crate::boundary::{Boundary, Container};
+    use crate::initial::{Radii, homogeneous};
+    use crate::random::uniform;
+    use glam::DVec2;
+    use rand::SeedableRng;
+    use rand_xoshiro::Xoshiro256PlusPlus;
+
+    /// Squares find what a loop over all disks finds, for any mix of radii.
+    #[test]
+    fn what_overlaps_is_near() -> Result<(), Box<dyn std::error::Error>> {
+        let mut generator = Xoshiro256PlusPlus::seed_from_u64(1);
+        let walled = Container::closed(9.0, 7.0)?;
+        for container in [walled.clone(), walled.with_periodic_sides(), Container::periodic(9.0, 7.0)?] {
+            let radii = Radii::power_law(3.0, 0.01, 2.0)?.draw(300, 5);
+            let mut site = || DVec2::new(9.0 * uniform(&mut generator), 7.0 * uniform(&mut generator));
+            let disks: Vec<Disk> = homogeneous(radii, 1.0)?
+                .iter()
+                .map(|disk| disk.with_position(site()))
+                .collect::<Result<_, _>>()?;
+            let domain = container.domain();
+            let mut bins = Bins::new(&domain, disks.iter().map(Disk::radius));
+            for (index, disk) in disks.iter().enumerate() {
+                bins.add(disk.position(), disk.radius(), index);
+            }
+            for (a, b) in disks.iter().flat_map(|a| disks.iter().enumerate().map(move |b| (a, b))) {
+                let distance = domain.separation(a.position(), b.1.position()).length();
+                let is_near = bins.near(a.position(), a.radius()).any(|index| index == b.0);
+                assert!(is_near || distance > a.radius() + b.1.radius());
+            }
+        }
+        Ok(())
     }
 }

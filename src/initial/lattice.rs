@@ -7,6 +7,10 @@ use crate::boundary::{Boundary, Domain};
 use crate::quantity::positive;
 use crate::{Disk, ParameterError};
 
+/// Number of rows without a place after which none is expected further up: walls may cover the floor, but
+/// an open top has no end.
+const MOST_EMPTY_ROWS: usize = 1000;
+
 /// Returns `count` equal disks at rest on a square lattice in the lower part of the boundary, row by row from
 /// the floor up and from left to right.
 ///
@@ -34,8 +38,7 @@ pub fn lattice<B: Boundary + ?Sized>(
     let room = room(&boundary.interior(), radius);
     let mut most = 0;
     for spacing in spacings() {
-        let sites = sites(&room, 2.0 * radius * spacing, count);
-        let disks = free_disks(boundary, sites, radius, count)?;
+        let disks = free_disks(boundary, &room, 2.0 * radius * spacing, count, radius)?;
         if disks.len() == count {
             return Ok(disks);
         }
@@ -44,29 +47,43 @@ pub fn lattice<B: Boundary + ?Sized>(
     Err(PlacementError::NoRoom { count, placed: most, radius })
 }
 
-/// Returns the sites of a square lattice with at least this spacing, row by row from the bottom.
-fn sites(room: &Domain, spacing: f64, count: usize) -> impl Iterator<Item = DVec2> {
+/// Returns up to `count` disks on a square lattice with at least this spacing, where they overlap no wall.
+fn free_disks<B: Boundary + ?Sized>(
+    boundary: &B,
+    room: &Domain,
+    spacing: f64,
+    count: usize,
+    radius: f64,
+) -> Result<Vec<Disk>, ParameterError> {
+    let (columns, pitch) = columns(room, spacing);
+    let (mut disks, mut empty) = (Vec::new(), 0);
+    for row in 0..rows(room, spacing) {
+        let height = room.bottom + row as f64 * spacing;
+        let sites = (0..columns).map(|column| DVec2::new(room.left + column as f64 * pitch, height));
+        let free = sites.filter(|&site| boundary.overlap(site, radius, 0.0).is_none());
+        let before = disks.len();
+        for site in free.take(count - before) {
+            disks.push(Disk::new(site, radius)?);
+        }
+        empty = if disks.len() > before { 0 } else { empty + 1 };
+        if disks.len() == count || empty == MOST_EMPTY_ROWS {
+            break;
+        }
+    }
+    Ok(disks)
+}
+
+/// Returns the number of columns of a square lattice with at least this spacing, and their distance.
+fn columns(room: &Domain, spacing: f64) -> (u64, f64) {
     let intervals = (room.width() / spacing).floor().max(0.0);
     let columns = if room.periodic_sides { intervals } else { intervals + 1.0 };
     let columns = if room.width() < 0.0 { 0.0 } else { columns };
-    let pitch = if intervals > 0.0 { room.width() / intervals } else { 0.0 };
-    let rows = ((room.top - room.bottom) / spacing).floor();
-    // At periodic ends, a row at the top would be the first one again.
-    let rows = if room.periodic_ends { rows } else { rows + 1.0 };
-    // Under an open top the rows must end somewhere; obstacles may take many of them.
-    let rows = rows.clamp(0.0, 4.0 * (count as f64 / columns.max(1.0)).ceil() + 100.0);
-    let (left, bottom) = (room.left, room.bottom);
-    let spots = (0..rows as u64).flat_map(move |row| (0..columns as u64).map(move |column| (row, column)));
-    spots.map(move |(row, column)| DVec2::new(left + column as f64 * pitch, bottom + row as f64 * spacing))
+    (columns as u64, if intervals > 0.0 { room.width() / intervals } else { 0.0 })
 }
 
-/// Returns disks on the first `count` sites that overlap no wall.
-fn free_disks<B: Boundary + ?Sized>(
-    boundary: &B,
-    sites: impl Iterator<Item = DVec2>,
-    radius: f64,
-    count: usize,
-) -> Result<Vec<Disk>, ParameterError> {
-    let free = sites.filter(|&site| boundary.overlap(site, radius, 0.0).is_none());
-    free.take(count).map(|site| Disk::new(site, radius)).collect()
+/// Returns the number of rows, which is huge under an open top.
+fn rows(room: &Domain, spacing: f64) -> u64 {
+    let intervals = ((room.top - room.bottom) / spacing).floor();
+    // At periodic ends, a row at the top would be the first one again.
+    if room.periodic_ends { intervals as u64 } else { (intervals + 1.0) as u64 }
 }

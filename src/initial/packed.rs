@@ -74,9 +74,18 @@ pub fn packed_at_random<B: Boundary + ?Sized>(
     accept(area > 0.0, "area of the room for the disks", "positive", area)?;
     let wider = |disk: &Disk| Disk::new(disk.position(), disk.radius() * (1.0 + APART));
     let wider = disks.iter().map(wider).collect::<Result<Vec<_>, _>>()?;
-    let packing = grown(&room, &wider, area, seed)?;
+    let packing = grown(&room, &wider, area, seed).map_err(|error| with_full_radius(error, &disks))?;
     let packed = disks.iter().zip(packing.places()).map(|(disk, place)| disk.with_position(place));
     Ok(packed.collect::<Result<_, _>>()?)
+}
+
+/// Names the radius of the disk that finds no room, not that with which it would have begun to grow. The
+/// largest disks are placed first.
+fn with_full_radius(error: PlacementError, disks: &[Disk]) -> PlacementError {
+    let PlacementError::NoRoom { count, placed, radius } = error else { return error };
+    let mut radii: Vec<f64> = disks.iter().map(Disk::radius).collect();
+    radii.sort_by(|a, b| b.total_cmp(a));
+    PlacementError::NoRoom { count, placed, radius: radii.get(placed).copied().unwrap_or(radius) }
 }
 
 /// Lets the disks move and grow by turns until all have their radii, or jam in a room of this area.

@@ -5,7 +5,7 @@ use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::bins::Bins;
-use super::{PlacementError, countable, room};
+use super::{PlacementError, countable, cut, room};
 use crate::Disk;
 use crate::boundary::{Boundary, Domain};
 use crate::quantity::positive;
@@ -53,7 +53,8 @@ pub fn random<B: Boundary + ?Sized>(
 /// The rest is as for [`random`].
 ///
 /// # Errors
-/// If the height is not finite and positive, or a disk finds no place in ten thousand trials.
+/// If the height is not finite and positive, there are more than 2²⁸ disks, or one finds no place in ten
+/// thousand trials.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;
@@ -71,34 +72,28 @@ pub fn placed_at_random<B: Boundary + ?Sized>(
     seed: u64,
 ) -> Result<Vec<Disk>, PlacementError> {
     positive("height", below)?;
+    countable(disks.len())?;
+    let interior = cut(boundary.interior(), below);
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let largest = disks.iter().map(Disk::radius).fold(0.0, f64::max);
-    let mut bins = Bins::new(&boundary.domain(), 2.0 * largest, disks.len());
+    let mut bins = Bins::new(&boundary.domain(), disks.iter().map(Disk::radius));
     let (count, mut placed) = (disks.len(), Vec::with_capacity(disks.len()));
     for disk in disks {
-        let room = room_below(&boundary.interior(), disk.radius(), below);
-        let trial = room.iter().flat_map(|room| std::iter::repeat_n(room, TRIALS)).find_map(|room| {
-            let site = random_site(room, &mut generator);
-            let inside = boundary.overlap(site, disk.radius(), 0.0).is_none();
-            (inside && bins.is_free(site, disk.radius(), &placed)).then_some(site)
-        });
-        let Some(site) = trial else {
-            return Err(PlacementError::NoRoom { count, placed: placed.len(), radius: disk.radius() });
-        };
-        bins.add(site, placed.len());
+        let radius = disk.radius();
+        let no_room = PlacementError::NoRoom { count, placed: placed.len(), radius };
+        let Some(room) = room_for(&interior, radius) else { return Err(no_room) };
+        let sites = std::iter::repeat_with(|| random_site(&room, &mut generator)).take(TRIALS);
+        let mut free = sites.filter(|&site| boundary.overlap(site, radius, 0.0).is_none());
+        let site = free.find(|&site| bins.is_free(site, radius, &placed)).ok_or(no_room)?;
+        bins.add(site, radius, placed.len());
         placed.push(disk.with_position(site)?);
     }
     Ok(placed)
 }
 
-/// Returns the rectangle for the center of a disk whose edge is below the height `below`; `None` if the
-/// disk is too large, also for its own image at periodic sides or ends.
-fn room_below(interior: &Domain, radius: f64, below: f64) -> Option<Domain> {
-    let whole = room(interior, radius);
-    let is_cut = below < interior.top;
-    // Below a height, the ends are no longer periodic.
-    let bottom = if is_cut { interior.bottom + radius } else { whole.bottom };
-    let room = Domain { bottom, top: whole.top.min(below - if is_cut { radius } else { 0.0 }), ..whole };
+/// Returns the rectangle for the center of a disk; `None` if the disk is too large, also for its own image at
+/// periodic sides or ends.
+fn room_for(interior: &Domain, radius: f64) -> Option<Domain> {
+    let room = room(interior, radius);
     let fits = |period: f64| period == 0.0 || 2.0 * radius <= period;
     let DVec2 { x, y } = interior.periods();
     (room.width() >= 0.0 && room.height() >= 0.0 && fits(x) && fits(y)).then_some(room)

@@ -88,7 +88,10 @@ pub enum BuildError {
         depth: f64,
     },
     /// The domain has no area, or its periodic sides are so close that a disk could meet its own image.
-    #[error("a domain of width {width} and height {height} is too small for disks of diameter {diameter}")]
+    #[error(
+        "a domain of width {width} and height {height} is too small for disks of diameter {diameter}: \
+         where it is periodic, it must be four diameters long"
+    )]
     DomainTooSmall {
         /// Width of the domain.
         width: f64,

@@ -13,7 +13,7 @@ use super::errors::{BoundaryFault, Outcome, RunError};
 use super::events::Event;
 use super::forecasting::HORIZON;
 use super::prediction::are_closing;
-use super::resolution::{Kick, failed, is_parting, is_unit_and_finite, resolve_pair, resolve_wall};
+use super::resolution::{Kick, failed, is_parting, is_possible, resolve_pair, resolve_wall};
 use super::state::{Clock, Earliest, Exit, Forecast};
 use crate::boundary::{Boundary, Response};
 use crate::collision::laws::closing_speed_after;
@@ -131,7 +131,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let now = self.clock.now;
         let position = self.bodies.position(disk, now);
         let surface = self.boundary.surface(wall, position, now);
-        if !is_unit_and_finite(&surface) {
+        if !is_possible(&surface) {
             let (normal, velocity) = (surface.normal, surface.velocity);
             return Err(self.boundary_fault(disk, BoundaryFault::Surface { wall, normal, velocity }).into());
         }

@@ -101,7 +101,7 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     let arriving = Body { velocity: bodies.velocity(disk, offset), ..bodies.body(disk) };
     let since = offset - bodies.spins[disk].last_collision;
     let partner = Body { velocity: surface.velocity, angular_velocity: 0.0 };
-    let (partner, wall) = (&partner, &Material::of_wall(surface.kind));
+    let (partner, wall) = (&partner, &Material::of_wall(surface.kind, surface.radius));
     let against = |rule: &dyn CollisionRule| {
         collide_bodies(rule, surface.normal, since, (&arriving, &material), (partner, wall))
     };
@@ -146,10 +146,15 @@ pub(super) fn is_parting(normal: DVec2, kicks: &[Kick; 2]) -> bool {
     (kicks[0].after.velocity - kicks[1].after.velocity).dot(normal) > GRAZING * (velocity.x + velocity.y)
 }
 
-/// Tells whether a surface's normal is a unit vector, and its velocity one that a disk may have.
-pub(super) fn is_unit_and_finite(surface: &Surface<'_>) -> bool {
+/// Tells whether a surface's normal is a unit vector, its velocity one that a disk may have, and its radius
+/// one that rules may be told.
+pub(super) fn is_possible(surface: &Surface<'_>) -> bool {
     let velocity = surface.velocity.abs();
-    (surface.normal.length() - 1.0).abs() <= UNIT && velocity.x <= LARGEST && velocity.y <= LARGEST
+    let is_curved = surface.radius > 0.0 || surface.radius < 0.0;
+    (surface.normal.length() - 1.0).abs() <= UNIT
+        && velocity.x <= LARGEST
+        && velocity.y <= LARGEST
+        && is_curved
 }
 
 /// Returns the error of a collision whose outcome is not a possible motion.

@@ -1,4 +1,4 @@
-//! Where the files of a study are, and who may write them.
+//! The folder of a study: its files, and the locks of those who write them.
 //!
 //! Whoever writes into the folder of a study, or into that of a ramp, holds its lock; so a temporary file
 //! that is found under the lock has a writer that is dead.

@@ -1,4 +1,4 @@
-//! How long each value of a study lasts, and when it is sampled.
+//! The length of each value of a study, and the times of its samples.
 
 use crate::ParameterError;
 use crate::quantity::accept;

@@ -1,4 +1,4 @@
-//! What is known of a study: records one by one, points, transitions, and all of it as tables.
+//! Results of a study: records one by one, points, transitions, and all of it as tables.
 
 use super::errors::StudyError;
 use super::record::{Contents, Record};

@@ -1,4 +1,4 @@
-//! What is kept of a finished value.
+//! Records of finished values.
 
 use std::fmt;
 
@@ -20,20 +20,20 @@ pub enum Outcome {
     /// The observer ended the value: there are only the samples until then. The next value of the ramp starts
     /// from there.
     Stopped {
-        /// When, since the start of the ramp.
+        /// Time since the start of the ramp.
         time: f64,
     },
     /// Events piled up in vanishing time, as in an inelastic collapse: there are only the samples until then.
     /// The next value of the ramp starts from the state in which this one did.
     Stalled {
-        /// When, since the start of the ramp.
+        /// Time since the start of the ramp.
         time: f64,
         /// Message of the engine.
         reason: String,
     },
     /// The engine gave up for another reason; else as stalled.
     Failed {
-        /// When, since the start of the ramp.
+        /// Time since the start of the ramp.
         time: f64,
         /// Message of the engine.
         reason: String,

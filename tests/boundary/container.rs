@@ -206,3 +206,14 @@ fn a_thermal_wall_is_read_through_the_same_gate() {
     assert_eq!(serde_json::from_str::<Thermal>(&text).unwrap(), wall);
     assert!(serde_json::from_str::<Thermal>(&text.replace("2.0", "-2.0")).is_err());
 }
+
+/// Text formats have no infinite numbers, so an open top is no number there.
+#[cfg(feature = "serde")]
+#[test]
+fn a_domain_with_an_open_top_returns_from_a_file() {
+    let open = Container::open(10.0).unwrap().domain();
+    for domain in [open, open.with_periodic_sides(), closed().domain()] {
+        let json = serde_json::to_string(&domain).unwrap();
+        assert_eq!(serde_json::from_str::<Domain>(&json).unwrap(), domain, "{json}");
+    }
+}

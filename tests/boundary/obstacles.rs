@@ -1,7 +1,7 @@
 //! Round obstacles inside another boundary.
 
 use granular_edmd::boundary::{Boundary, Container, Obstacles, Wall, laws};
-use granular_edmd::collision::Elastic;
+use granular_edmd::collision::{Contact, Elastic, Impulse, from_fn};
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{Disk, Kind, Simulation, initial};
@@ -47,6 +47,21 @@ fn a_gas_flows_around_obstacles() {
     }
     assert!((energy(&run.disks()) / energy(&disks) - 1.0).abs() < 1e-10);
     assert!(run.counters().wall_collisions > 100, "{:?}", run.counters());
+}
+
+/// A rule is told the radius of a peg, and an infinite one at a straight wall.
+#[test]
+fn a_rule_knows_the_radius_of_a_peg() {
+    let seen = std::sync::Mutex::new(std::collections::BTreeSet::new());
+    let rule = from_fn(|contact: &Contact| {
+        seen.lock().unwrap().insert(format!("{:?}", contact.radii()));
+        Impulse::new(contact.normal_impulse(1.0), 0.0)
+    });
+    let board = Obstacles::new(Container::open(10.0).unwrap(), [peg(5.0, 2.0, 1.5)]);
+    let mut run = Simulation::builder(&rule, board).disks([peg(5.1, 5.5, 0.5)]).gravity(1.0).build().unwrap();
+    run.run_until(30.0, &mut ()).unwrap();
+    let seen: Vec<String> = seen.lock().unwrap().iter().cloned().collect();
+    assert_eq!(seen, ["[0.5, 1.5]", "[0.5, inf]"]);
 }
 
 /// A disk that falls centrally on a peg bounces on it as on a floor: from height h it takes sqrt(2h/g).

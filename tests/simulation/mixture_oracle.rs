@@ -23,7 +23,7 @@ enum Sides {
     Periodic(bool, bool),
 }
 
-/// What a system is made of.
+/// The parts of a system.
 #[derive(Debug)]
 struct Mixture {
     sides: Sides,

@@ -30,7 +30,7 @@ fn an_interrupted_study_goes_on() {
     assert_same(&scratch.0, &expected.0);
 }
 
-/// What a killed process does; on its own it does nothing.
+/// The work of a process that is killed; on its own it does nothing.
 #[test]
 #[ignore = "started by the tests of killed processes"]
 fn child() {

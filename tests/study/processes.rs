@@ -20,7 +20,7 @@ pub(crate) fn plan(seed: u64) -> Plan<VibratedBox> {
         .unwrap()
 }
 
-/// What a process of these tests does: the whole study, or one ramp.
+/// The work of a process of these tests: the whole study, or one ramp.
 #[test]
 #[ignore = "started by the tests of many processes"]
 fn child() {
@@ -55,7 +55,7 @@ fn numbers(seed: u64) -> impl FnMut(u64) -> u64 {
     }
 }
 
-/// How often each value was finished, from the log.
+/// Returns how often each value was finished, from the log.
 fn finished(folder: &Path) -> BTreeMap<(u64, u64), usize> {
     let log = fs::read_to_string(folder.join("log.jsonl")).unwrap();
     let mut counts = BTreeMap::new();

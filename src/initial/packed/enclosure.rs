@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use crate::Flight;
 use crate::boundary::{Boundary, Domain, Region, Response, Surface, Touch};
+use crate::initial::cut;
 use crate::roots::first_descent;
 
 /// A boundary with a rectangle inside, which the disks do not leave.
@@ -25,11 +26,9 @@ impl<B: ?Sized> Clone for Enclosure<'_, B> {
 }
 
 impl<'a, B: Boundary + ?Sized> Enclosure<'a, B> {
-    /// Encloses the interior of the boundary below a height. A lid below periodic ends makes an end of them.
+    /// Encloses the interior of the boundary below a height.
     pub(super) fn new(boundary: &'a B, below: f64) -> Self {
-        let interior = boundary.interior();
-        let periodic_ends = interior.periodic_ends && below >= interior.top;
-        Self { boundary, room: Domain { top: interior.top.min(below), periodic_ends, ..interior } }
+        Self { boundary, room: cut(boundary.interior(), below) }
     }
 
     /// Returns normal and place of each side of the rectangle that there is.

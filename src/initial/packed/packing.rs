@@ -92,9 +92,10 @@ impl<'a> Packing<'a> {
     /// Lets each disk grow into the room around it.
     pub(super) fn grow<B: Boundary + ?Sized>(&mut self, room: &Enclosure<B>) -> Result<(), ParameterError> {
         let domain = room.domain();
-        let mut bins = Bins::new(&domain, 2.0 * largest(self.full), self.grown.len());
-        for (index, disk) in self.grown.iter().enumerate() {
-            bins.add(disk.position(), index);
+        let mut bins = Bins::new(&domain, self.full.iter().map(Disk::radius));
+        for (index, (disk, full)) in self.grown.iter().zip(self.full).enumerate() {
+            // Whoever is further away than both shall reach is in nobody's way.
+            bins.add(disk.position(), full.radius(), index);
         }
         for index in 0..self.grown.len() {
             let disk = self.grown[index];
@@ -121,7 +122,7 @@ impl<'a> Packing<'a> {
         if disk.radius() >= full {
             return full;
         }
-        bins.near(disk.position()).filter(|&other| other != index).map(most).fold(full, f64::min)
+        bins.near(disk.position(), full).filter(|&other| other != index).map(most).fold(full, f64::min)
     }
 }
 

@@ -1,4 +1,4 @@
-//! What the events of a mixture cost, by how its disks are put into classes.
+//! The cost of the events of a mixture, for each way to put its disks into classes.
 
 use super::cell_size::CellSize;
 use super::size_class::SizeClass;

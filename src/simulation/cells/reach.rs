@@ -49,7 +49,7 @@ pub(super) struct Reach {
     columns: Vec<[Span; 2]>,
     rows: Vec<[Span; 2]>,
     /// Number of columns of homes, after which periodic sides begin anew.
-    period: u32,
+    period_columns: u32,
     /// The same for rows. At periodic ends, rows are counted on beyond it.
     period_rows: u32,
     stride: usize,
@@ -81,7 +81,7 @@ impl Reach {
                 .map(|range| spans(&columns, range, margin.x, periods.x > 0.0))
                 .collect(),
             rows: from_rows.iter().map(row_spans).collect(),
-            period: columns.len() as u32 - 1,
+            period_columns: columns.len() as u32 - 1,
             period_rows: rows.len() as u32 - 1,
             stride: homes.stride,
             first: homes.first,
@@ -129,30 +129,25 @@ impl Reach {
     #[inline]
     fn act_on(&self, column: u32, rows: Span, act: &mut impl FnMut(usize, usize)) {
         let start = self.first + column as usize * self.stride;
-        if rows.behind() <= self.period_rows {
-            if rows.count > 0 {
-                act(start + rows.first as usize, rows.count as usize);
-            }
-            return;
-        }
-        // The span goes on at the other end.
-        for rows in [
-            Span::between(rows.first, self.period_rows),
-            Span::between(
-                rows.first.max(self.period_rows) - self.period_rows,
-                rows.behind() - self.period_rows,
-            ),
-        ] {
+        for rows in self.pieces(rows) {
             if rows.count > 0 {
                 act(start + rows.first as usize, rows.count as usize);
             }
         }
     }
 
+    /// Returns the part of a span before the last row, and the part that goes on at the other end.
+    #[inline]
+    fn pieces(&self, rows: Span) -> [Span; 2] {
+        let last = self.period_rows;
+        let beyond = Span::between(rows.first.max(last) - last, rows.behind().max(last) - last);
+        [Span::between(rows.first, rows.behind().min(last)), beyond]
+    }
+
     /// Iterates over the columns of homes within reach of a place.
     #[inline]
     fn columns_of(&self, place: Place) -> impl Iterator<Item = u32> + use<> {
-        let ([columns, _], period) = (self.columns[place.column as usize - 1], self.period);
+        let ([columns, _], period) = (self.columns[place.column as usize - 1], self.period_columns);
         (columns.first..columns.behind()).map(move |k| if k >= period { k - period } else { k })
     }
 
@@ -161,7 +156,7 @@ impl Reach {
     fn rows_of(&self, place: Place, column: u32) -> [Span; 2] {
         let [columns, hole_columns] = self.columns[place.column as usize - 1];
         let [rows, hole_rows] = self.rows[place.row as usize - 1];
-        let turn = if column < columns.first { self.period } else { 0 };
+        let turn = if column < columns.first { self.period_columns } else { 0 };
         if column + turn - columns.first >= columns.count {
             return [Span::EMPTY; 2];
         }
@@ -173,7 +168,7 @@ impl Reach {
     }
 }
 
-/// Every so many of the edges, from the first to the last.
+/// Returns the edges of homes that are so many cells wide.
 fn every(cells: usize, edges: &[f64]) -> Vec<f64> {
     edges.iter().copied().step_by(cells).collect()
 }

@@ -3,6 +3,9 @@
 use crate::collision::Material;
 use crate::{Disk, Kind};
 
+/// Ratio of the largest to the median diameter beyond which the largest decides how long epochs are.
+const LARGEST_RATIO: f64 = 1024.0;
+
 /// The properties of all disks: one for all if they are equal, so that they stay in the cache.
 #[derive(Debug, Clone)]
 pub(super) enum Properties {
@@ -59,6 +62,9 @@ impl Properties {
     }
 
     /// Returns the median diameter, which does not depend on the order of the disks; 0 without disks.
+    ///
+    /// It is more if there is a disk more than a thousand times as large: where that one has room, places
+    /// have so few digits that fine dust gains nothing from short epochs.
     pub(super) fn typical_diameter(&self) -> f64 {
         match self {
             Self::Same { model, .. } => 2.0 * model.radius(),
@@ -66,7 +72,8 @@ impl Properties {
             Self::Each { radii, .. } => {
                 let mut radii = radii.clone();
                 let middle = radii.len() / 2;
-                2.0 * *radii.select_nth_unstable_by(middle, f64::total_cmp).1
+                let (_, median, larger) = radii.select_nth_unstable_by(middle, f64::total_cmp);
+                larger.iter().fold(2.0 * *median, |most, radius| most.max(2.0 * radius / LARGEST_RATIO))
             }
         }
     }

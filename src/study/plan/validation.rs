@@ -1,4 +1,4 @@
-//! What a plan must be to be carried out: checked when it is made, before anything is run.
+//! Checks of a plan when it is made, so that nothing fails for its sake later.
 
 use super::Plan;
 use crate::quantity::accept;

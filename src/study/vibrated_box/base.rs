@@ -1,4 +1,4 @@
-//! What is below the disks, and at their sides.
+//! The base of the box, and its sides.
 
 use crate::boundary::{Container, Thermal, Wall};
 use crate::study::ExperimentError;

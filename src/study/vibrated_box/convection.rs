@@ -1,4 +1,4 @@
-//! What the records of the box tell, and its tables.
+//! Convective states from the records of the box, and its tables.
 
 use super::{Sample, VibratedBox};
 use crate::analysis::thermal_noise;

@@ -1,4 +1,4 @@
-//! What is measured of the box.
+//! Measurements of the box.
 
 use crate::observable::{
     CenterOfMass, Collision, Energies, EnergyChange, HeightProfile, Observable, Observer, OrderParameters,
