@@ -150,7 +150,7 @@ pub(super) fn is_parting(normal: DVec2, kicks: &[Kick; 2]) -> bool {
 /// one that rules may be told.
 pub(super) fn is_possible(surface: &Surface<'_>) -> bool {
     let velocity = surface.velocity.abs();
-    let is_curved = surface.radius > 0.0 || surface.radius < 0.0;
+    let is_curved = surface.radius.abs() > 0.0;
     (surface.normal.length() - 1.0).abs() <= UNIT
         && velocity.x <= LARGEST
         && velocity.y <= LARGEST
