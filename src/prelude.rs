@@ -3,7 +3,9 @@
 //! The prelude holds everything that a run needs, and everything that a rule, a wall motion, a boundary, a
 //! scheduler, an observable or an observer of your own is made of.
 
-pub use crate::boundary::{Boundary, Container, Domain, Region, Response, Surface, Thermal, Touch, Wall};
+pub use crate::boundary::{
+    Boundary, Brick, Container, Domain, Part, Region, Response, Surface, Thermal, Touch, Vessel, Wall,
+};
 pub use crate::collision::{
     CollisionRule, Contact, ContactDuration, Elastic, Friction, Frictional, Impulse, Regime, Rough,
     RulesByKind, Smooth,
