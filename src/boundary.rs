@@ -5,20 +5,27 @@
 //! wanted. [`Obstacles`] puts fixed round obstacles into any boundary. A geometry of your own implements
 //! [`Boundary`]; [`roots`](crate::roots) has the numerics that it needs, and [`laws`] checks it.
 
+mod brick;
+mod conduct;
 mod container;
 mod domain;
 mod forward;
 pub mod laws;
 mod obstacles;
+mod part;
 mod plane;
 mod surface;
 mod touch;
+mod vessel;
 
+pub use brick::Brick;
 pub use container::{Container, Wall, WallError};
 pub use domain::{Domain, Region};
 pub use obstacles::Obstacles;
+pub use part::Part;
 pub use surface::{Response, Surface, Thermal};
 pub use touch::Touch;
+pub use vessel::{Vessel, VesselError};
 
 use std::borrow::Cow;
 

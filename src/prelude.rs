@@ -4,7 +4,8 @@
 //! scheduler, an observable or an observer of your own is made of.
 
 pub use crate::boundary::{
-    Boundary, Container, Domain, Obstacles, Region, Response, Surface, Thermal, Touch, Wall,
+    Boundary, Brick, Container, Domain, Obstacles, Part, Region, Response, Surface, Thermal, Touch, Vessel,
+    Wall,
 };
 pub use crate::collision::{
     CollisionRule, Contact, ContactDuration, Elastic, Friction, Frictional, Impulse, Regime, Rough,

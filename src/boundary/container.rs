@@ -1,19 +1,22 @@
 //! The rectangular container.
 
+#[cfg(feature = "serde")]
+mod file;
 mod wall;
 
 pub use wall::{Wall, WallError};
 
 use std::borrow::Cow;
-use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::plane::{Conduct, Plane};
+use super::brick::finite_point;
+use super::conduct::Conduct;
+use super::plane::Plane;
 use super::{Boundary, Domain, Region, Surface, Thermal, Touch};
 use crate::collision::CollisionRule;
 use crate::quantity::positive;
-use crate::wall::{WallMotion, laws};
+use crate::wall::{Motion, WallMotion};
 use crate::{Fingerprint, Flight, Kind, ParameterError};
 
 /// A rectangular container with its lower left corner at the origin: the paper's box and its relatives.
@@ -41,7 +44,11 @@ use crate::{Fingerprint, Flight, Kind, ParameterError};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "file::Record", into = "file::Record"))]
 pub struct Container {
+    /// Lower left corner.
+    corner: DVec2,
     width: f64,
     /// Height of the lid; infinite without a lid.
     height: f64,
@@ -68,7 +75,8 @@ impl Container {
     /// If the width is not finite and positive.
     pub fn open(width: f64) -> Result<Self, ParameterError> {
         let width = positive("width", width)?;
-        let mut container = Self { width, height: f64::INFINITY, walls: Vec::new(), planes: Vec::new() };
+        let (walls, planes) = (Vec::new(), Vec::new());
+        let mut container = Self { corner: DVec2::ZERO, width, height: f64::INFINITY, walls, planes };
         container.add(Wall::Floor, Plane::new(DVec2::Y, 0.0));
         container.add(Wall::Left, Plane::new(DVec2::X, 0.0));
         container.add(Wall::Right, Plane::new(DVec2::NEG_X, -width));
@@ -91,7 +99,7 @@ impl Container {
     pub fn periodic(width: f64, height: f64) -> Result<Self, ParameterError> {
         let width = positive("width", width)?;
         let height = positive("height", height)?;
-        Ok(Self { width, height, walls: Vec::new(), planes: Vec::new() })
+        Ok(Self { corner: DVec2::ZERO, width, height, walls: Vec::new(), planes: Vec::new() })
     }
 
     /// Returns the same container with periodic sides: a disk that leaves on one side enters on the other.
@@ -129,8 +137,7 @@ impl Container {
         motion: impl WallMotion + Send + Sync + 'static,
     ) -> Result<Self, WallError> {
         let plane = self.plane_mut(wall)?;
-        laws::check_finite(&motion).map_err(|violation| WallError::Motion { wall, violation })?;
-        plane.set_motion(Arc::new(motion));
+        plane.set_motion(Motion::new(motion).map_err(|violation| WallError::Motion { wall, violation })?);
         Ok(self)
     }
 
@@ -143,7 +150,7 @@ impl Container {
         wall: Wall,
         rule: impl CollisionRule + Send + Sync + 'static,
     ) -> Result<Self, WallError> {
-        self.plane_mut(wall)?.set_conduct(Conduct::Rule(Arc::new(rule)));
+        self.plane_mut(wall)?.set_conduct(Conduct::rule(rule));
         Ok(self)
     }
 
@@ -162,6 +169,28 @@ impl Container {
     /// If the container has no such wall.
     pub fn with_kind(mut self, wall: Wall, kind: Kind) -> Result<Self, WallError> {
         self.plane_mut(wall)?.set_kind(kind);
+        Ok(self)
+    }
+
+    /// Returns the same container elsewhere: its lower left corner is moved by this vector.
+    ///
+    /// # Errors
+    /// If a coordinate would not be finite.
+    ///
+    /// ```
+    /// use granular_edmd::boundary::{Boundary, Container};
+    /// use granular_edmd::glam::DVec2;
+    /// let container = Container::closed(4.0, 3.0)?.shifted(DVec2::new(-2.0, 1.0))?;
+    /// let domain = container.domain();
+    /// assert_eq!((domain.left, domain.right, domain.bottom, domain.top), (-2.0, 2.0, 1.0, 4.0));
+    /// # Ok::<(), granular_edmd::ParameterError>(())
+    /// ```
+    pub fn shifted(mut self, by: DVec2) -> Result<Self, ParameterError> {
+        self.corner += by;
+        finite_point(self.corner)?;
+        for plane in &mut self.planes {
+            plane.shift(by);
+        }
         Ok(self)
     }
 
@@ -219,19 +248,19 @@ impl Container {
 impl Boundary for Container {
     fn domain(&self) -> Domain {
         self.with_sides(Domain::new(
-            -self.retreat(Wall::Left),
-            self.width + self.retreat(Wall::Right),
-            -self.retreat(Wall::Floor),
-            self.height + self.retreat(Wall::Lid),
+            self.corner.x - self.retreat(Wall::Left),
+            self.corner.x + self.width + self.retreat(Wall::Right),
+            self.corner.y - self.retreat(Wall::Floor),
+            self.corner.y + self.height + self.retreat(Wall::Lid),
         ))
     }
 
     fn interior(&self) -> Domain {
         self.with_sides(Domain::new(
-            self.advance(Wall::Left),
-            self.width - self.advance(Wall::Right),
-            self.advance(Wall::Floor),
-            self.height - self.advance(Wall::Lid),
+            self.corner.x + self.advance(Wall::Left),
+            self.corner.x + self.width - self.advance(Wall::Right),
+            self.corner.y + self.advance(Wall::Floor),
+            self.corner.y + self.height - self.advance(Wall::Lid),
         ))
     }
 
@@ -281,6 +310,8 @@ impl Boundary for Container {
 
     fn fingerprint(&self) -> Option<Fingerprint> {
         let sizes = Fingerprint::of("Container").number(self.width).number(self.height);
+        let DVec2 { x, y } = self.corner;
+        let sizes = if self.corner == DVec2::ZERO { sizes } else { sizes.number(x).number(y) };
         self.walls.iter().zip(&self.planes).try_fold(sizes, |container, (wall, plane)| {
             Some(container.text(wall.name()).part(plane.fingerprint()?))
         })

@@ -1,14 +1,13 @@
 //! A straight wall that may move along its normal.
 
 use std::fmt;
-use std::sync::Arc;
 
 use glam::DVec2;
 
 use super::Region;
-use super::surface::{Response, Surface, Thermal};
-use crate::collision::CollisionRule;
-use crate::wall::{Approach, Fixed, WallMotion, first_touch};
+use super::conduct::Conduct;
+use super::surface::Surface;
+use crate::wall::{Approach, Motion, first_touch};
 use crate::{Fingerprint, Flight, Kind};
 
 /// A straight wall: the disks stay on one side of a line.
@@ -18,21 +17,13 @@ pub(super) struct Plane {
     normal: DVec2,
     /// Place of the wall at rest, along its normal.
     place: f64,
-    motion: Arc<dyn WallMotion + Send + Sync>,
+    motion: Motion,
     /// Upper end of the motion's reach.
     highest: f64,
     conduct: Conduct,
     kind: Kind,
     /// Phase of the motion at the time origin.
     phase: f64,
-}
-
-/// Response of the wall to a touch, in owned form. [`Response`] lends it out.
-#[derive(Clone)]
-pub(super) enum Conduct {
-    Shared,
-    Rule(Arc<dyn CollisionRule + Send + Sync>),
-    Thermal(Thermal),
 }
 
 impl fmt::Debug for Plane {
@@ -48,11 +39,15 @@ impl fmt::Debug for Plane {
 
 impl Plane {
     pub(super) fn new(normal: DVec2, place: f64) -> Self {
-        let (motion, conduct, kind) = (Arc::new(Fixed), Conduct::Shared, Kind::WALL);
+        let (motion, conduct, kind) = (Motion::none(), Conduct::Shared, Kind::WALL);
         Self { normal, place, motion, highest: 0.0, conduct, kind, phase: 0.0 }
     }
 
-    pub(super) fn set_motion(&mut self, motion: Arc<dyn WallMotion + Send + Sync>) {
+    pub(super) fn shift(&mut self, by: DVec2) {
+        self.place += self.normal.dot(by);
+    }
+
+    pub(super) fn set_motion(&mut self, motion: Motion) {
         self.highest = motion.reach().1;
         self.motion = motion;
     }
@@ -65,17 +60,14 @@ impl Plane {
         self.kind = kind;
     }
 
+    /// Returns all that can be set.
+    #[cfg(feature = "serde")]
+    pub(super) fn into_parts(self) -> (Motion, Conduct, Kind) {
+        (self.motion, self.conduct, self.kind)
+    }
+
     pub(super) fn set_time_origin(&mut self, origin: f64) {
-        let (low, high) = self.motion.reach();
-        self.phase = match self.motion.period() {
-            // A wall that never leaves its place is the same at all times. Phase 0 costs the times none of
-            // their digits.
-            _ if low == high => 0.0,
-            // The remainder of two floats is exact, so the phase keeps all its digits however late the time
-            // is.
-            Some(period) => origin % period,
-            None => origin,
-        };
+        self.phase = self.motion.phase(origin);
     }
 
     pub(super) fn reach(&self) -> (f64, f64) {
@@ -111,13 +103,8 @@ impl Plane {
     }
 
     pub(super) fn surface(&self, time: f64) -> Surface<'_> {
-        let response = match &self.conduct {
-            Conduct::Shared => Response::Shared,
-            Conduct::Rule(rule) => Response::Rule(&**rule),
-            Conduct::Thermal(thermal) => Response::Thermal(*thermal),
-        };
         let velocity = self.normal * self.motion.state(time + self.phase).velocity;
-        Surface::new(self.normal, velocity).with_response(response).with_kind(self.kind)
+        Surface::new(self.normal, velocity).with_response(self.conduct.response()).with_kind(self.kind)
     }
 
     /// Tells whether a disk is so near that it overlaps the wall at some time of the motion.
@@ -137,10 +124,6 @@ impl Plane {
     pub(super) fn fingerprint(&self) -> Option<Fingerprint> {
         let kind = f64::from(self.kind.number());
         let plane = Fingerprint::of("Plane").part(self.motion.fingerprint()?).number(kind);
-        Some(plane.part(match &self.conduct {
-            Conduct::Shared => Fingerprint::of("Shared"),
-            Conduct::Rule(rule) => Fingerprint::of("Rule").part(rule.fingerprint()?),
-            Conduct::Thermal(thermal) => thermal.fingerprint(),
-        }))
+        Some(plane.part(self.conduct.fingerprint()?))
     }
 }

@@ -7,3 +7,4 @@ mod fingerprints;
 mod names;
 mod obstacles;
 mod planted;
+mod vessels;

@@ -1,0 +1,183 @@
+//! Round bricks: circles, arcs and points.
+
+use glam::DVec2;
+
+use super::path::{Beside, Path};
+use super::{MARGIN, Side, Sight};
+use crate::boundary::Region;
+
+/// A circle or a part of it, counterclockwise: its left side is inside. A point is a circle without a radius.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Arc {
+    center: DVec2,
+    radius: f64,
+    sector: Option<Sector>,
+}
+
+/// The directions from the center to an arc.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Sector {
+    /// Unit vectors to both ends of the arc.
+    start: DVec2,
+    end: DVec2,
+    /// True if the arc is longer than half of the circle.
+    is_wide: bool,
+}
+
+impl Sector {
+    pub(super) const fn new(start: DVec2, end: DVec2, is_wide: bool) -> Self {
+        Self { start, end, is_wide }
+    }
+
+    /// Returns both ends and the width.
+    #[cfg(feature = "serde")]
+    pub(super) const fn parts(&self) -> (DVec2, DVec2, bool) {
+        (self.start, self.end, self.is_wide)
+    }
+
+    fn contains(&self, direction: DVec2) -> bool {
+        let (after, before) = (self.start.perp_dot(direction) >= 0.0, direction.perp_dot(self.end) >= 0.0);
+        if self.is_wide { after || before } else { after && before }
+    }
+}
+
+impl Arc {
+    pub(super) const fn point(place: DVec2) -> Self {
+        Self { center: place, radius: 0.0, sector: None }
+    }
+
+    pub(super) const fn new(center: DVec2, radius: f64, sector: Option<Sector>) -> Self {
+        Self { center, radius, sector }
+    }
+
+    pub(super) const fn center(&self) -> DVec2 {
+        self.center
+    }
+
+    pub(super) const fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    #[cfg(feature = "serde")]
+    pub(super) const fn sector(&self) -> Option<Sector> {
+        self.sector
+    }
+
+    pub(super) const fn is_whole(&self) -> bool {
+        self.sector.is_none()
+    }
+
+    /// Returns the start and the end, with the directions of the arc there.
+    pub(super) fn ends(&self) -> Option<[(DVec2, DVec2); 2]> {
+        let end = |direction: DVec2| (self.center + self.radius * direction, direction.perp());
+        self.sector.map(|sector| [end(sector.start), end(sector.end)])
+    }
+
+    /// Returns the same arc after a rotation about the origin by the angle of this unit vector, and a shift.
+    pub(super) fn moved(&self, turn: DVec2, shift: DVec2) -> Self {
+        let turned = |Sector { start, end, is_wide }| {
+            Sector::new(turn.rotate(start).normalize(), turn.rotate(end).normalize(), is_wide)
+        };
+        Self { center: turn.rotate(self.center) + shift, sector: self.sector.map(turned), ..*self }
+    }
+
+    pub(super) fn side(&self, place: DVec2) -> Side {
+        if place.distance(self.center) < self.radius { Side::Left } else { Side::Right }
+    }
+
+    /// Returns the gap on one side as a polynomial of the time: the difference of two squared distances.
+    pub(super) fn gap(&self, path: &Path, side: Side) -> [f64; 5] {
+        let (r, v, a) = (path.place - self.center, path.velocity, path.acceleration);
+        let (k, s) = (path.widening, path.spread);
+        let square = [2.0 * r.dot(v), v.length_squared() + r.dot(a), v.dot(a), 0.25 * a.length_squared()];
+        match side {
+            Side::Right => {
+                let contact = self.radius + path.radius;
+                let grown = [2.0 * contact * k, k * k + contact * s, k * s, 0.25 * s * s];
+                let [c1, c2, c3, c4] = std::array::from_fn(|n| square[n] - grown[n]);
+                [(r.length() - contact) * (r.length() + contact), c1, c2, c3, c4]
+            }
+            // A disk that is larger than the circle never touches it from inside: it does not get there.
+            Side::Left if path.radius >= self.radius => [1.0, 0.0, 0.0, 0.0, 0.0],
+            Side::Left => {
+                let room = self.radius - path.radius;
+                let shrunk = [-2.0 * room * k, k * k - room * s, k * s, 0.25 * s * s];
+                let [c1, c2, c3, c4] = std::array::from_fn(|n| shrunk[n] - square[n]);
+                [(room - r.length()) * (room + r.length()), c1, c2, c3, c4]
+            }
+        }
+    }
+
+    pub(super) fn beside(&self, path: &Path) -> Option<Beside> {
+        let sector = self.sector?;
+        let margin = MARGIN * (self.center.length() + self.radius);
+        let after = path.along(self.center, sector.start.perp()).widened(margin, path);
+        let before = path.along(self.center, -sector.end.perp()).widened(margin, path);
+        Some(Beside { quantities: [after, before], one_is_enough: sector.is_wide })
+    }
+
+    /// Tells whether the way stays too far from the brick to touch it. Most do.
+    pub(super) fn is_out_of_reach(&self, path: &Path, wait: f64) -> bool {
+        const LESS: f64 = 1.0 - 1e-9;
+        let (from, to) = (path.place - self.center, path.at(wait) - self.center);
+        let sagitta = path.sagitta(wait);
+        let contact = self.radius + path.radius + sagitta;
+        if LESS * distance_to_chord(from, to) > contact {
+            return true;
+        }
+        let farthest = from.length_squared().max(to.length_squared()).sqrt();
+        farthest + sagitta < LESS * (self.radius - path.radius)
+    }
+
+    /// Returns the largest growth of a disk of this radius that leaves it room inside.
+    pub(super) fn most_growth(&self, radius: f64) -> f64 {
+        if self.radius > radius { 0.5 * (self.radius - radius) } else { f64::INFINITY }
+    }
+
+    pub(super) fn sight(&self, place: DVec2) -> Sight {
+        let (r, side) = (place - self.center, self.side(place));
+        if let (Some(sector), Some(ends)) = (self.sector, self.ends())
+            && !sector.contains(r)
+        {
+            let [start, end] = ends.map(|(end, direction)| {
+                let away = place - end;
+                let normal = away.try_normalize().unwrap_or(direction.perp());
+                let height = direction.perp_dot(away);
+                let side = if height >= 0.0 { Side::Left } else { Side::Right };
+                Sight { distance: away.length(), normal, side, weight: height.abs() }
+            });
+            return if start.distance <= end.distance { start } else { end };
+        }
+        let outward = r.try_normalize().unwrap_or(DVec2::Y);
+        let normal = if side == Side::Left { -outward } else { outward };
+        let distance = (r.length() - self.radius).abs();
+        // A point has no sides. Bricks that end there have.
+        Sight { distance, normal, side, weight: if self.radius == 0.0 { 0.0 } else { distance } }
+    }
+
+    /// Tells whether a place of the brick is within `reach` of a region.
+    pub(super) fn is_near(&self, region: &Region, reach: f64) -> bool {
+        let nearest = self.center.clamp(region.min, region.max).distance(self.center);
+        let farthest = (region.min - self.center).abs().max((region.max - self.center).abs()).length();
+        nearest <= self.radius + reach && farthest >= self.radius - reach
+    }
+
+    /// Returns a rectangle around the brick.
+    pub(super) fn bounds(&self) -> (DVec2, DVec2) {
+        (self.center - self.radius, self.center + self.radius)
+    }
+
+    /// Returns bounds of the distances of the arc from a place.
+    pub(super) fn distances(&self, place: DVec2) -> (f64, f64) {
+        let distance = place.distance(self.center);
+        ((distance - self.radius).abs(), distance + self.radius)
+    }
+}
+
+/// Returns the smallest distance of a chord from the origin.
+fn distance_to_chord(from: DVec2, to: DVec2) -> f64 {
+    let chord = to - from;
+    let share = (-from.dot(chord) / chord.length_squared()).clamp(0.0, 1.0);
+    // A chord without length gives a share that is not a number.
+    if share.is_nan() { from.length() } else { (from + share * chord).length() }
+}

@@ -1,0 +1,138 @@
+//! Straight bricks: segments and half-lines.
+
+use glam::DVec2;
+
+use super::path::{Beside, Path};
+use super::{MARGIN, Side, Sight};
+use crate::boundary::Region;
+
+/// A straight brick, with its left side to the left of its direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Segment {
+    from: DVec2,
+    /// End; not used if the length is infinite.
+    to: DVec2,
+    /// Unit vector.
+    direction: DVec2,
+    /// Length; infinite for a half-line.
+    length: f64,
+}
+
+impl Segment {
+    pub(super) fn between(from: DVec2, to: DVec2) -> Self {
+        let length = from.distance(to);
+        Self { from, to, direction: (to - from) / length, length }
+    }
+
+    pub(super) fn endless(from: DVec2, direction: DVec2) -> Self {
+        Self { from, to: from, direction, length: f64::INFINITY }
+    }
+
+    pub(super) const fn from(&self) -> DVec2 {
+        self.from
+    }
+
+    /// Returns the end, if there is one.
+    pub(super) fn to(&self) -> Option<DVec2> {
+        self.length.is_finite().then_some(self.to)
+    }
+
+    pub(super) const fn direction(&self) -> DVec2 {
+        self.direction
+    }
+
+    /// Returns the same segment after a rotation about the origin by the angle of this unit vector, and a
+    /// shift.
+    pub(super) fn moved(&self, turn: DVec2, shift: DVec2) -> Self {
+        match self.to() {
+            Some(to) => Self::between(turn.rotate(self.from) + shift, turn.rotate(to) + shift),
+            None => Self::endless(turn.rotate(self.from) + shift, turn.rotate(self.direction)),
+        }
+    }
+
+    pub(super) fn side(&self, place: DVec2) -> Side {
+        if self.direction.perp_dot(place - self.from) >= 0.0 { Side::Left } else { Side::Right }
+    }
+
+    /// Returns the gap on one side as a polynomial of the time.
+    pub(super) fn gap(&self, path: &Path, side: Side) -> [f64; 5] {
+        let height = path.along(self.from, self.normal(side));
+        let gap = height.negated().widened(path.radius, path).negated();
+        [gap.value, gap.rate, 0.5 * gap.acceleration, 0.0, 0.0]
+    }
+
+    fn normal(&self, side: Side) -> DVec2 {
+        if side == Side::Left { self.direction.perp() } else { -self.direction.perp() }
+    }
+
+    pub(super) fn beside(&self, path: &Path) -> Beside {
+        let along = path.along(self.from, self.direction);
+        let margin = MARGIN * (self.from.length() + self.from.distance(self.to));
+        let before_end = along.negated().widened(margin + self.length, path);
+        Beside { quantities: [along.widened(margin, path), before_end], one_is_enough: false }
+    }
+
+    /// Tells whether the way stays too far from the brick to touch it. Most do.
+    pub(super) fn is_out_of_reach(&self, path: &Path, wait: f64) -> bool {
+        let (place, growth) = (path.place - self.from, path.growth(wait));
+        let way = |direction: DVec2| {
+            let (rate, pull) = (path.velocity.dot(direction), path.acceleration.dot(direction));
+            1.001 * ((rate.abs() + 0.5 * pull.abs() * wait) * wait + growth)
+        };
+        let (normal, along) = (self.direction.perp(), place.dot(self.direction));
+        if place.dot(normal).abs() - path.radius > way(normal) {
+            return true;
+        }
+        let way = way(self.direction) + path.radius;
+        along < -way || along - self.length > way
+    }
+
+    pub(super) fn sight(&self, place: DVec2) -> Sight {
+        let along = (place - self.from).dot(self.direction);
+        let height = self.direction.perp_dot(place - self.from);
+        let nearest = if along <= 0.0 {
+            self.from
+        } else if along >= self.length {
+            self.to
+        } else {
+            let normal = self.normal(self.side(place));
+            return Sight { distance: height.abs(), normal, side: self.side(place), weight: height.abs() };
+        };
+        let distance = place.distance(nearest);
+        let normal = (place - nearest).try_normalize().unwrap_or(self.direction.perp());
+        Sight { distance, normal, side: self.side(place), weight: height.abs() }
+    }
+
+    /// Tells whether a place of the brick is within `reach` of a region.
+    pub(super) fn is_near(&self, region: &Region, reach: f64) -> bool {
+        let (low, high) = self.bounds();
+        let (min, max) = (region.min - reach, region.max + reach);
+        let boxes_meet = low.x <= max.x && low.y <= max.y && high.x >= min.x && high.y >= min.y;
+        if !boxes_meet {
+            return false;
+        }
+        // A zero component of the normal must not be multiplied by an infinite edge.
+        let along = |component: f64, edge: f64| if component == 0.0 { 0.0 } else { component * edge };
+        let height = |normal: DVec2| {
+            let nearest = DVec2::select(normal.cmpgt(DVec2::ZERO), region.min, region.max);
+            along(normal.x, nearest.x) + along(normal.y, nearest.y) - normal.dot(self.from)
+        };
+        let normal = self.direction.perp();
+        height(normal) <= reach && height(-normal) <= reach
+    }
+
+    /// Returns the rectangle around the brick.
+    pub(super) fn bounds(&self) -> (DVec2, DVec2) {
+        let far = |component: f64| if component == 0.0 { 0.0 } else { component * f64::INFINITY };
+        let to =
+            self.to().unwrap_or_else(|| self.from + DVec2::new(far(self.direction.x), far(self.direction.y)));
+        (self.from.min(to), self.from.max(to))
+    }
+
+    /// Returns the smallest and the largest distance from a place.
+    pub(super) fn distances(&self, place: DVec2) -> (f64, f64) {
+        let farthest =
+            self.to().map_or(f64::INFINITY, |to| place.distance(to).max(place.distance(self.from)));
+        (self.sight(place).distance, farthest)
+    }
+}

@@ -1,0 +1,70 @@
+//! Containers in files.
+
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+
+use super::{Container, Wall};
+use crate::Kind;
+use crate::boundary::conduct::Conduct;
+use crate::wall::Motion;
+
+/// A container as it stands in a file.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename = "Container")]
+pub(super) struct Record {
+    corner: DVec2,
+    width: f64,
+    /// Height of the lid, if there is one or the ends are periodic.
+    height: Option<f64>,
+    walls: Vec<WallRecord>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename = "ContainerWall")]
+struct WallRecord {
+    wall: Wall,
+    motion: Motion,
+    conduct: Conduct,
+    kind: Kind,
+}
+
+impl From<Container> for Record {
+    fn from(container: Container) -> Self {
+        let walls = container.walls.into_iter().zip(container.planes).map(|(wall, plane)| {
+            let (motion, conduct, kind) = plane.into_parts();
+            WallRecord { wall, motion, conduct, kind }
+        });
+        let height = container.height.is_finite().then_some(container.height);
+        Self { corner: container.corner, width: container.width, height, walls: walls.collect() }
+    }
+}
+
+impl TryFrom<Record> for Container {
+    type Error = String;
+
+    fn try_from(record: Record) -> Result<Self, String> {
+        let Record { corner, width, height, walls } = record;
+        let has = |wall: Wall| walls.iter().any(|record| record.wall == wall);
+        let mut container = match height {
+            Some(height) => Self::closed(width, height),
+            None => Self::open(width),
+        }
+        .map_err(|error| error.to_string())?;
+        if !has(Wall::Left) {
+            container = container.with_periodic_sides();
+        }
+        if !has(Wall::Floor) {
+            container = container.with_periodic_ends().map_err(|error| error.to_string())?;
+        }
+        // The walls must be those that the container has now, in their order.
+        if !walls.iter().map(|record| record.wall).eq(container.walls.iter().copied()) {
+            return Err("no container has just these walls in this order".to_owned());
+        }
+        for (plane, record) in container.planes.iter_mut().zip(walls) {
+            plane.set_motion(record.motion);
+            plane.set_conduct(record.conduct);
+            plane.set_kind(record.kind);
+        }
+        container.shifted(corner).map_err(|error| error.to_string())
+    }
+}

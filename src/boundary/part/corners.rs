@@ -1,0 +1,56 @@
+//! The corners of a part: points where its bricks end.
+
+use std::collections::HashMap;
+
+use glam::DVec2;
+
+use crate::boundary::brick::Brick;
+
+/// Sine of the angle by which a corner must turn toward the disks to need no point. In such a corner, a disk
+/// touches both bricks and never the corner itself.
+const CLEARLY: f64 = 1e-6;
+
+/// The bricks that end at a place: the directions in which they come and go.
+#[derive(Debug, Default)]
+struct Joint {
+    coming: Vec<DVec2>,
+    going: Vec<DVec2>,
+    is_thin: bool,
+}
+
+impl Joint {
+    /// Tells whether a disk can touch the corner.
+    fn is_exposed(&self) -> bool {
+        match (self.coming.as_slice(), self.going.as_slice()) {
+            ([coming], [going]) if !self.is_thin => coming.perp_dot(*going) <= CLEARLY,
+            _ => true,
+        }
+    }
+}
+
+/// Returns points for all ends of bricks at which a disk can touch a corner, each once, in the order of the
+/// bricks.
+pub(super) fn corners(bricks: &[Brick]) -> Vec<Brick> {
+    let mut joints: HashMap<[u64; 2], Joint> = HashMap::new();
+    let mut places = Vec::new();
+    for brick in bricks {
+        let [start, end] = brick.ends();
+        for (end, is_start) in [(start, true), (end, false)] {
+            let Some((place, direction)) = end else { continue };
+            // The sum turns a negative zero into a positive one, which has other bits.
+            let key = [(place.x + 0.0).to_bits(), (place.y + 0.0).to_bits()];
+            if !joints.contains_key(&key) {
+                places.push((key, place));
+            }
+            let joint = joints.entry(key).or_default();
+            if is_start {
+                joint.going.push(direction);
+            } else {
+                joint.coming.push(direction);
+            }
+            joint.is_thin |= brick.is_two_sided();
+        }
+    }
+    let is_exposed = |key| joints.get(key).is_some_and(Joint::is_exposed);
+    places.iter().filter(|(key, _)| is_exposed(key)).map(|(_, place)| Brick::corner(*place)).collect()
+}

@@ -1,0 +1,127 @@
+//! Polygons: their sides, checks, and points in text.
+
+use glam::DVec2;
+
+use crate::boundary::brick::{Brick, finite_point};
+use crate::boundary::vessel::VesselError;
+use crate::wall::WallMotion;
+
+/// Returns the sides of a polygon with the disks inside or outside.
+pub(super) fn sides(mut points: Vec<DVec2>, inside: bool) -> Result<Vec<Brick>, VesselError> {
+    if points.len() < 3 {
+        return Err(VesselError::TooFewPoints { count: points.len(), least: 3 });
+    }
+    for point in &points {
+        finite_point(*point)?;
+    }
+    let area = doubled_area(&points);
+    // The sides of a polygon without area may still not cross: it is a line that goes to and fro.
+    if area == 0.0 {
+        return Err(VesselError::NoArea);
+    }
+    if let Some((first, second)) = crossing(&points) {
+        return Err(VesselError::Crossing { first, second });
+    }
+    if (area > 0.0) != inside {
+        points.reverse();
+    }
+    pairs(&points).map(|(from, to)| Brick::segment(from, to)).collect()
+}
+
+/// Returns the points in pairs: the ends of each side.
+fn pairs(points: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> {
+    points.iter().zip(points.iter().cycle().skip(1)).map(|(from, to)| (*from, *to))
+}
+
+/// Returns twice the area, positive if the points go round counterclockwise.
+fn doubled_area(points: &[DVec2]) -> f64 {
+    let first = points[0];
+    pairs(points).map(|(from, to)| (from - first).perp_dot(to - first)).sum()
+}
+
+/// Returns the numbers of two sides that cross or touch and are not neighbors, if there are any.
+///
+/// Sides are sorted by their left ends, so that each is compared with those only that begin before it ends.
+fn crossing(points: &[DVec2]) -> Option<(usize, usize)> {
+    let sides: Vec<(DVec2, DVec2)> = pairs(points).collect();
+    let mut order: Vec<usize> = (0..sides.len()).collect();
+    let left = |side: usize| sides[side].0.x.min(sides[side].1.x);
+    let right = |side: usize| sides[side].0.x.max(sides[side].1.x);
+    order.sort_by(|&a, &b| left(a).total_cmp(&left(b)));
+    for (rank, &one) in order.iter().enumerate() {
+        let later = order[rank + 1..].iter().take_while(|&&other| left(other) <= right(one));
+        for &other in later {
+            let are_neighbors = (one + 1) % sides.len() == other || (other + 1) % sides.len() == one;
+            if cross(sides[one], sides[other], are_neighbors) {
+                return Some((one.min(other), one.max(other)));
+            }
+        }
+    }
+    None
+}
+
+/// Tells whether two sides have a point in common that they do not share as neighbors.
+fn cross(one: (DVec2, DVec2), other: (DVec2, DVec2), are_neighbors: bool) -> bool {
+    let side = |(from, to): (DVec2, DVec2), place: DVec2| (to - from).perp_dot(place - from);
+    let within = |(from, to): (DVec2, DVec2), place: DVec2| {
+        let (low, high) = (from.min(to), from.max(to));
+        place.cmpge(low).all() && place.cmple(high).all()
+    };
+    if are_neighbors {
+        // Neighbors share an end. They cross only if one lies on the other.
+        let (shared, ends) = match (one, other) {
+            ((a, b), (c, d)) if b == c => (b, (a, d)),
+            ((a, b), (c, d)) if a == d => (a, (b, c)),
+            _ => return false,
+        };
+        let (back, on) = (ends.0 - shared, ends.1 - shared);
+        return back.perp_dot(on) == 0.0 && back.dot(on) > 0.0;
+    }
+    let (a, b) = (side(one, other.0), side(one, other.1));
+    let (c, d) = (side(other, one.0), side(other, one.1));
+    let lies_on = (a == 0.0 && within(one, other.0))
+        || (b == 0.0 && within(one, other.1))
+        || (c == 0.0 && within(other, one.0))
+        || (d == 0.0 && within(other, one.1));
+    lies_on
+        || ([a, b, c, d].iter().all(|&side| side != 0.0) && (a > 0.0) != (b > 0.0) && (c > 0.0) != (d > 0.0))
+}
+
+/// Reads points from text.
+pub(super) fn points(text: &str) -> Result<Vec<DVec2>, VesselError> {
+    let lines = text.lines().enumerate().map(|(number, line)| (number + 1, line.trim()));
+    lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#')).map(point).collect()
+}
+
+fn point((number, line): (usize, &str)) -> Result<DVec2, VesselError> {
+    let words = line.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty());
+    let numbers: Option<Vec<f64>> = words.map(|word| word.parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y]) => Ok(DVec2::new(x, y)),
+        _ => Err(VesselError::Line { number, line: line.chars().take(60).collect() }),
+    }
+}
+
+/// Tells whether a motion jumps at the ends of its pieces, in the first period or in the first thousand
+/// pieces.
+pub(super) fn jumps(motion: &dyn WallMotion) -> bool {
+    const PIECES: usize = 1000;
+    let (low, high) = motion.reach();
+    let end = motion.period().unwrap_or(f64::INFINITY);
+    let mut phase = 0.0;
+    for _ in 0..PIECES {
+        let until = motion.acceleration(phase).until;
+        if !(until.is_finite() && until > phase) {
+            return false;
+        }
+        let (before, after) = (motion.state(until.next_down()), motion.state(until));
+        if (after.displacement - before.displacement).abs() > 1e-6 * (high - low) {
+            return true;
+        }
+        if until >= end {
+            return false;
+        }
+        phase = until;
+    }
+    false
+}

@@ -1,0 +1,342 @@
+//! Vessels of any shape: named parts in a container.
+
+mod error;
+mod index;
+mod touch;
+
+pub use error::VesselError;
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::brick::Brick;
+use super::part::{Part, Travel};
+use super::{Boundary, Container, Domain, Region, Surface, Touch};
+use crate::{Fingerprint, Flight};
+use index::Index;
+
+/// Largest number of walls of a vessel.
+const MOST_WALLS: usize = 1 << 16;
+
+/// A vessel of any shape: named [parts](Part) in a [`Container`].
+///
+/// Disks are where they are free of the container and of each part: a hopper of two blocks, a polygon and
+/// pegs in it. Parts may overlap, and may reach beyond the container. They are put in, changed and taken out
+/// by name, also between runs
+/// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
+///
+/// The walls of the container come first. Each brick of each part is a wall, in the order in which the parts
+/// were put in, and so is each corner. [`walls`](Self::walls) returns those of a part.
+///
+/// ```
+/// use granular_edmd::boundary::{Container, Part, Vessel};
+/// use granular_edmd::collision::{ContactDuration, Frictional};
+/// use granular_edmd::glam::DVec2;
+/// use granular_edmd::{Simulation, initial};
+///
+/// // A silo: two blocks leave an outlet of width 6, which is shut by a gate.
+/// let left = [(0.0, 10.0), (7.0, 10.0), (0.0, 20.0)].map(DVec2::from);
+/// let right = left.map(|corner| DVec2::new(20.0 - corner.x, corner.y));
+/// let gate = Part::polyline([(6.0, 9.9), (14.0, 9.9)].map(DVec2::from))?;
+/// let silo = Vessel::new(Container::open(20.0)?)
+///     .with("left", Part::block(left)?)?
+///     .with("right", Part::block(right)?)?
+///     .with("gate", gate)?;
+///
+/// let disks = initial::lattice(&silo, 100, 0.5)?;
+/// # let disks: Vec<_> = disks.into_iter().filter(|disk| disk.position().y > 10.0).collect();
+/// let rule = ContactDuration::new(Frictional::new(0.1, 0.3)?, 1e-3)?;
+/// let mut run = Simulation::builder(rule, silo).disks(disks).gravity(1.0).build()?;
+/// run.run_until(0.5, &mut ())?;
+///
+/// let mut silo = run.boundary().clone();
+/// silo.remove("gate")?;
+/// run.set_boundary(silo)?;
+/// run.run_until(1.0, &mut ())?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "file::Record", into = "file::Record"))]
+pub struct Vessel {
+    container: Container,
+    parts: Vec<Placed>,
+    walls: Vec<Wall>,
+    index: Index,
+}
+
+/// A part of a vessel.
+#[derive(Debug, Clone)]
+struct Placed {
+    name: String,
+    part: Part,
+    /// Index of the first wall.
+    first: usize,
+    /// Phase of the motion at the time origin.
+    phase: f64,
+}
+
+/// A brick of a part.
+#[derive(Debug, Clone, Copy)]
+struct Wall {
+    part: usize,
+    brick: Brick,
+}
+
+/// Parts.
+impl Vessel {
+    /// Creates a vessel without parts: the container.
+    pub const fn new(container: Container) -> Self {
+        Self { container, parts: Vec::new(), walls: Vec::new(), index: Index::EMPTY }
+    }
+
+    /// Creates a vessel of parts that enclose the disks by themselves. The container is a rectangle around
+    /// them that no disk touches.
+    ///
+    /// # Errors
+    /// If two parts have the same name, or a part has no end.
+    ///
+    /// ```
+    /// use granular_edmd::boundary::{Boundary, Part, Vessel};
+    /// use granular_edmd::glam::DVec2;
+    ///
+    /// // A drum about the origin that turns clockwise once in 20 time units.
+    /// let turning = -std::f64::consts::TAU / 20.0;
+    /// let drum = Part::drum(DVec2::ZERO, 10.0)?.with_rotation(DVec2::ZERO, turning)?;
+    /// let vessel = Vessel::around([("drum", drum)])?;
+    /// let surface = vessel.surface(vessel.walls("drum").unwrap().start, DVec2::new(0.0, -9.5), 0.0);
+    /// assert_eq!((surface.normal, surface.velocity.x), (DVec2::Y, 10.0 * turning));
+    /// # Ok::<(), granular_edmd::boundary::VesselError>(())
+    /// ```
+    pub fn around<N: Into<String>>(parts: impl IntoIterator<Item = (N, Part)>) -> Result<Self, VesselError> {
+        /// Room beyond the parts, relative to their size.
+        const ROOM: f64 = 1.0 / 16.0;
+        let parts: Vec<(String, Part)> = parts.into_iter().map(|(name, part)| (name.into(), part)).collect();
+        let (mut low, mut high) = (DVec2::splat(f64::INFINITY), DVec2::splat(f64::NEG_INFINITY));
+        for (name, part) in &parts {
+            for (from, to) in part.all_bricks().iter().map(|brick| part.travel().bounds(brick)) {
+                if !(from.is_finite() && to.is_finite()) {
+                    return Err(VesselError::Endless { name: name.clone() });
+                }
+                (low, high) = (low.min(from), high.max(to));
+            }
+        }
+        let size = if parts.is_empty() { DVec2::ONE } else { high - low };
+        let room = DVec2::splat(ROOM * size.max_element());
+        let corner = if parts.is_empty() { DVec2::ZERO } else { low - room };
+        let (width, height) = (size.x + 2.0 * room.x, size.y + 2.0 * room.y);
+        let mut vessel = Self::new(Container::closed(width, height)?.shifted(corner)?);
+        for (name, part) in parts {
+            vessel.put(name, part)?;
+        }
+        Ok(vessel)
+    }
+
+    /// Returns the same vessel with another part.
+    ///
+    /// # Errors
+    /// As [`put`](Self::put).
+    pub fn with(mut self, name: impl Into<String>, part: Part) -> Result<Self, VesselError> {
+        self.put(name, part)?;
+        Ok(self)
+    }
+
+    /// Puts a part into the vessel. Its walls come after those of all other parts.
+    ///
+    /// # Errors
+    /// If there is a part or a wall of the container of this name already, or the vessel would have more than
+    /// 2¹⁶ walls. The vessel is then as before.
+    pub fn put(&mut self, name: impl Into<String>, part: Part) -> Result<(), VesselError> {
+        let name = name.into();
+        let mut walls = (0..self.container.wall_count()).map(|wall| self.container.wall_name(wall));
+        if self.part(&name).is_some() || walls.any(|wall| wall == name) {
+            return Err(VesselError::Duplicate { name });
+        }
+        let count = self.wall_count() + part.all_bricks().len();
+        if count > MOST_WALLS {
+            return Err(VesselError::TooManyWalls { count, most: MOST_WALLS });
+        }
+        self.parts.push(Placed { name, part, first: 0, phase: 0.0 });
+        self.number();
+        Ok(())
+    }
+
+    /// Takes a part out of the vessel. The numbers of the walls after it become smaller.
+    ///
+    /// # Errors
+    /// If there is no part of this name. The vessel is then as before.
+    pub fn remove(&mut self, name: &str) -> Result<Part, VesselError> {
+        let Some(place) = self.parts.iter().position(|placed| placed.name == name) else {
+            return Err(VesselError::Unknown { name: name.to_owned() });
+        };
+        let removed = self.parts.remove(place);
+        self.number();
+        Ok(removed.part)
+    }
+
+    /// Puts a part in the place of the one of this name, and returns that one.
+    ///
+    /// # Errors
+    /// If there is no part of this name, or the vessel would have more than 2¹⁶ walls. The vessel is then as
+    /// before.
+    pub fn replace(&mut self, name: &str, part: Part) -> Result<Part, VesselError> {
+        let Some(place) = self.parts.iter().position(|placed| placed.name == name) else {
+            return Err(VesselError::Unknown { name: name.to_owned() });
+        };
+        let less = self.parts[place].part.all_bricks().len();
+        let count = self.wall_count() - less + part.all_bricks().len();
+        if count > MOST_WALLS {
+            return Err(VesselError::TooManyWalls { count, most: MOST_WALLS });
+        }
+        let before = std::mem::replace(&mut self.parts[place].part, part);
+        self.number();
+        Ok(before)
+    }
+
+    /// Returns the part of a name, if there is one.
+    pub fn part(&self, name: &str) -> Option<&Part> {
+        self.parts.iter().find(|placed| placed.name == name).map(|placed| &placed.part)
+    }
+
+    /// Returns the names of the parts, in the order of their walls.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.parts.iter().map(|placed| placed.name.as_str())
+    }
+
+    /// Returns the indices of the walls of a part, if there is one of this name.
+    pub fn walls(&self, name: &str) -> Option<Range<usize>> {
+        let placed = self.parts.iter().find(|placed| placed.name == name)?;
+        Some(placed.first..placed.first + placed.part.all_bricks().len())
+    }
+
+    /// Returns the container.
+    pub const fn container(&self) -> &Container {
+        &self.container
+    }
+
+    /// Numbers the walls, and makes the index of them.
+    fn number(&mut self) {
+        self.walls.clear();
+        for (number, placed) in self.parts.iter_mut().enumerate() {
+            placed.first = self.container.wall_count() + self.walls.len();
+            let bricks = placed.part.all_bricks().iter();
+            self.walls.extend(bricks.map(|&brick| Wall { part: number, brick }));
+        }
+        let travel = |wall: &Wall| -> &Travel { self.parts[wall.part].part.travel() };
+        self.index = Index::new(
+            &self.container.domain(),
+            &self.walls,
+            |wall| travel(wall).bounds(&wall.brick),
+            |wall, region| travel(wall).may_reach(&wall.brick, region, 0.0),
+        );
+    }
+}
+
+impl Boundary for Vessel {
+    fn domain(&self) -> Domain {
+        self.container.domain()
+    }
+
+    fn interior(&self) -> Domain {
+        self.container.interior()
+    }
+
+    fn wall_count(&self) -> usize {
+        self.container.wall_count() + self.walls.len()
+    }
+
+    fn wall_name(&self, wall: usize) -> Cow<'_, str> {
+        let known = wall.checked_sub(self.container.wall_count()).and_then(|brick| self.walls.get(brick));
+        let Some(placed) = known.map(|known| &self.parts[known.part]) else {
+            return self.container.wall_name(wall);
+        };
+        match placed.part.bricks().len() {
+            1 => placed.name.as_str().into(),
+            bricks if wall - placed.first < bricks => {
+                format!("{}, brick {}", placed.name, wall - placed.first).into()
+            }
+            bricks => format!("{}, corner {}", placed.name, wall - placed.first - bricks).into(),
+        }
+    }
+
+    fn set_time_origin(&mut self, origin: f64) {
+        self.container.set_time_origin(origin);
+        for placed in &mut self.parts {
+            placed.phase = placed.part.travel().phase(origin);
+        }
+    }
+
+    fn may_touch(&self, region: &Region, radius: f64) -> bool {
+        // Regions are those of centers; rounding may not hide a touch at their edges.
+        let reach = 1.001 * radius;
+        let mut near = self.index.near(region.min - reach, region.max + reach);
+        self.container.may_touch(region, radius)
+            || near.any(|entry| {
+                let region = Region::new(region.min - entry.image, region.max - entry.image);
+                let (wall, travel) = self.wall(entry.wall as usize);
+                travel.may_reach(&wall.brick, &region, reach)
+            })
+    }
+
+    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+        let other = self.container.first_touch(flight, until);
+        self.first_touch_with_parts(flight, other.map_or(until, |touch| touch.time), other)
+    }
+
+    fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
+        match wall.checked_sub(self.container.wall_count()) {
+            Some(brick) => self.surface_of_brick(brick, position, time),
+            None => self.container.surface(wall, position, time),
+        }
+    }
+
+    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+        let parts = self.parts.iter().filter_map(|placed| self.depth(placed, position, radius, time));
+        let all = self.container.overlap(position, radius, time).into_iter().chain(parts);
+        all.filter(|&(_, depth)| depth > 0.0).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let vessel = Fingerprint::of("Vessel").part(self.container.fingerprint()?);
+        self.parts.iter().try_fold(vessel, |vessel, placed| {
+            Some(vessel.text(&placed.name).part(placed.part.fingerprint()?))
+        })
+    }
+}
+
+/// Vessels in files.
+#[cfg(feature = "serde")]
+mod file {
+    use serde::{Deserialize, Serialize};
+
+    use super::{Container, Part, Vessel, VesselError};
+
+    /// A vessel as it stands in a file.
+    #[derive(Serialize, Deserialize)]
+    #[serde(deny_unknown_fields, rename = "Vessel")]
+    pub(super) struct Record {
+        container: Container,
+        parts: Vec<(String, Part)>,
+    }
+
+    impl From<Vessel> for Record {
+        fn from(vessel: Vessel) -> Self {
+            let parts = vessel.parts.into_iter().map(|placed| (placed.name, placed.part)).collect();
+            Self { container: vessel.container, parts }
+        }
+    }
+
+    impl TryFrom<Record> for Vessel {
+        type Error = VesselError;
+
+        fn try_from(record: Record) -> Result<Self, VesselError> {
+            let mut vessel = Self::new(record.container);
+            for (name, part) in record.parts {
+                vessel.put(name, part)?;
+            }
+            Ok(vessel)
+        }
+    }
+}

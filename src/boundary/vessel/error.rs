@@ -1,0 +1,94 @@
+//! Errors of vessels.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::ParameterError;
+use crate::wall::laws::Violation;
+
+/// An error: a vessel cannot be built or changed in this way.
+///
+/// ```
+/// use granular_edmd::boundary::{Container, Vessel};
+/// let error = Vessel::new(Container::open(20.0)?).remove("gate").unwrap_err();
+/// assert_eq!(error.to_string(), "the vessel has no part \"gate\"");
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum VesselError {
+    /// A parameter is out of range.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// There are too few points or bricks.
+    #[error("{count} points or bricks are too few: there must be at least {least}")]
+    TooFewPoints {
+        /// Number of points or bricks.
+        count: usize,
+        /// Least number.
+        least: usize,
+    },
+    /// A polygon has no area, so it has no inside.
+    #[error("the polygon has no area")]
+    NoArea,
+    /// Two sides of a polygon cross or touch, so its inside is not clear. Side 0 begins at the first point.
+    #[error("the sides {first} and {second} of the polygon cross or touch")]
+    Crossing {
+        /// Number of a side.
+        first: usize,
+        /// Number of another side.
+        second: usize,
+    },
+    /// The motion answers with numbers that would break every run.
+    #[error("the motion of the part cannot be used: {violation}")]
+    Motion {
+        /// The answer of the motion.
+        violation: Violation,
+    },
+    /// The motion jumps back, and disks are behind the part.
+    #[error("the motion jumps back at times, and would jump into disks behind the part")]
+    Jump,
+    /// A line of a text is not a point.
+    #[error("line {number} must be two numbers, but is \"{line}\"")]
+    Line {
+        /// Number of the line, from 1 on.
+        number: usize,
+        /// The line.
+        line: String,
+    },
+    /// A file cannot be read.
+    #[error("cannot read {}: {reason}", .path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The cause.
+        reason: String,
+    },
+    /// The vessel has no part of this name.
+    #[error("the vessel has no part \"{name}\"")]
+    Unknown {
+        /// The name.
+        name: String,
+    },
+    /// The vessel has a part or a wall of this name already.
+    #[error("the vessel has a part or wall \"{name}\" already")]
+    Duplicate {
+        /// The name.
+        name: String,
+    },
+    /// The parts have no common rectangle, since one of them has no end.
+    #[error("the part \"{name}\" has no end: give the vessel a container")]
+    Endless {
+        /// The name.
+        name: String,
+    },
+    /// The vessel has more walls than the engine can number.
+    #[error("the vessel would have {count} walls; the most are {most}")]
+    TooManyWalls {
+        /// Number of walls.
+        count: usize,
+        /// Largest number.
+        most: usize,
+    },
+}

@@ -1,0 +1,137 @@
+//! The index of a vessel: which bricks are near a rectangle.
+
+use glam::DVec2;
+
+use super::Wall;
+use crate::boundary::{Domain, Region};
+
+/// Number of cells for each brick. A brick is then alone in most of its cells.
+const CELLS_PER_BRICK: usize = 4;
+
+/// Largest number of cells.
+const MOST_CELLS: usize = 1 << 16;
+
+/// A grid of cells, each with the bricks that come into it at any time. Cells at the edges have no end.
+#[derive(Debug, Clone)]
+pub(super) struct Index {
+    corner: DVec2,
+    /// Cells per length.
+    density: DVec2,
+    columns: usize,
+    rows: usize,
+    /// Where the bricks of each cell begin, and where those of the last one end.
+    starts: Vec<u32>,
+    entries: Vec<Entry>,
+}
+
+/// A brick at one of its places. Where the domain is periodic, a brick has several places.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Entry {
+    /// Index of the wall.
+    pub(super) wall: u32,
+    /// Displacement of the place.
+    pub(super) image: DVec2,
+}
+
+impl Index {
+    /// The index of a vessel without bricks.
+    pub(super) const EMPTY: Self = Self {
+        corner: DVec2::ZERO,
+        density: DVec2::ONE,
+        columns: 1,
+        rows: 1,
+        starts: Vec::new(),
+        entries: Vec::new(),
+    };
+
+    /// Enters walls into the cells of a grid. A wall is near a region of a cell if `is_near` says so.
+    pub(super) fn new(
+        domain: &Domain,
+        walls: &[Wall],
+        bounds: impl Fn(&Wall) -> (DVec2, DVec2),
+        is_near: impl Fn(&Wall, &Region) -> bool,
+    ) -> Self {
+        let images: Vec<DVec2> = images(*domain).collect();
+        let (low, high) = rectangle(domain, walls.iter().map(&bounds));
+        let size = (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
+        let most = (CELLS_PER_BRICK * walls.len() * images.len()).clamp(1, MOST_CELLS) as f64;
+        let columns = (most * size.x / size.y).sqrt().clamp(1.0, most).floor();
+        let rows = (most / columns).floor().max(1.0);
+        let density = DVec2::new(columns, rows) / size;
+        let (columns, rows) = (columns as usize, rows as usize);
+        let mut index = Self { corner: low, density, columns, rows, starts: vec![0], entries: Vec::new() };
+        let mut cells = vec![Vec::new(); columns * rows];
+        for (number, wall) in walls.iter().enumerate() {
+            let (low, high) = bounds(wall);
+            for &image in &images {
+                for cell in index.cells(low + image, high + image) {
+                    let region = index.region(cell);
+                    if is_near(wall, &Region::new(region.min - image, region.max - image)) {
+                        cells[cell].push(Entry { wall: number as u32, image });
+                    }
+                }
+            }
+        }
+        for cell in cells {
+            index.entries.extend(cell);
+            index.starts.push(index.entries.len() as u32);
+        }
+        index
+    }
+
+    /// Returns the bricks that may come into a rectangle, some of them several times.
+    pub(super) fn near(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = Entry> {
+        self.cells(min, max).flat_map(|cell| self.within(cell))
+    }
+
+    /// Returns the bricks that come into a cell.
+    fn within(&self, cell: usize) -> impl Iterator<Item = Entry> {
+        let range = match (self.starts.get(cell), self.starts.get(cell + 1)) {
+            (Some(&from), Some(&to)) => from as usize..to as usize,
+            _ => 0..0,
+        };
+        self.entries[range].iter().copied()
+    }
+
+    /// Returns the cells that overlap a rectangle.
+    fn cells(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = usize> {
+        let place = |value: f64, count: usize| (value.floor().max(0.0) as usize).min(count.max(1) - 1);
+        let (from, to) = ((min - self.corner) * self.density, (max - self.corner) * self.density);
+        let columns = place(from.x, self.columns)..=place(to.x, self.columns);
+        let rows = place(from.y, self.rows)..=place(to.y, self.rows);
+        let width = self.columns;
+        rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
+    }
+
+    /// Returns the rectangle of a cell, a little larger, so that rounding leaves nothing between two cells.
+    fn region(&self, cell: usize) -> Region {
+        const ROUNDING: f64 = 1e-6;
+        let (column, row) = (cell % self.columns, cell / self.columns);
+        let edge = |number: usize, count: usize, more: f64| match number {
+            0 if more < 0.0 => f64::NEG_INFINITY,
+            last if last == count && more > 0.0 => f64::INFINITY,
+            number => number as f64 + more,
+        };
+        let low = DVec2::new(edge(column, self.columns, -ROUNDING), edge(row, self.rows, -ROUNDING));
+        let high = DVec2::new(edge(column + 1, self.columns, ROUNDING), edge(row + 1, self.rows, ROUNDING));
+        Region::new(self.corner + low / self.density, self.corner + high / self.density)
+    }
+}
+
+/// Returns the displacements after which the domain repeats itself, in the neighborhood.
+pub(super) fn images(domain: Domain) -> impl Iterator<Item = DVec2> {
+    let periods = domain.periods();
+    let shifts = |period: f64| [0.0, -period, period].into_iter().take(if period > 0.0 { 3 } else { 1 });
+    shifts(periods.x).flat_map(move |x| shifts(periods.y).map(move |y| DVec2::new(x, y)))
+}
+
+/// Returns the part of the domain in which there are bricks.
+fn rectangle(domain: &Domain, bounds: impl Iterator<Item = (DVec2, DVec2)>) -> (DVec2, DVec2) {
+    let outer = (DVec2::splat(f64::INFINITY), DVec2::splat(f64::NEG_INFINITY));
+    let (low, high) = bounds.fold(outer, |all, one| (all.0.min(one.0), all.1.max(one.1)));
+    let low = low.max(DVec2::new(domain.left, domain.bottom)).min(DVec2::new(domain.right, domain.top));
+    let high = high.min(DVec2::new(domain.right, domain.top)).max(low);
+    // A brick without an end in a domain without a lid reaches beyond all numbers.
+    let height = if high.y.is_finite() { high.y - low.y } else { domain.width() };
+    (low, DVec2::new(high.x, low.y + height))
+}

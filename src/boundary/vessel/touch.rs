@@ -1,0 +1,210 @@
+//! Touches of a vessel's parts: the search among the bricks near a flight.
+
+use glam::DVec2;
+
+use super::index::Entry;
+use super::{Placed, Vessel, Wall};
+use crate::Flight;
+use crate::boundary::brick::Path;
+use crate::boundary::part::Travel;
+use crate::boundary::{Boundary, Surface, Touch};
+
+/// Largest number of steps of a search. A part that moves in pieces of time takes a few steps in each of those
+/// in which the flight is near.
+const MOST_STEPS: u32 = 1 << 16;
+
+/// Way within which surfaces touch, relative to the lengths of which it is the difference.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+impl Vessel {
+    /// Returns a brick and the motion of its part.
+    pub(super) fn wall(&self, brick: usize) -> (&Wall, &Travel) {
+        let wall = &self.walls[brick];
+        (wall, self.parts[wall.part].part.travel())
+    }
+
+    /// Returns the first touch of a part, or `other`, whichever is earlier. Of equal times, the smaller wall
+    /// counts.
+    pub(super) fn first_touch_with_parts(
+        &self,
+        flight: &Flight,
+        until: f64,
+        other: Option<Touch>,
+    ) -> Option<Touch> {
+        let (low, high) = rectangle(flight, until);
+        let (mut first, mut until) = (other, until);
+        let mut last = None;
+        for entry in self.index.near(low, high) {
+            if last.replace(entry) == Some(entry) {
+                continue;
+            }
+            let wall = entry.wall as usize + self.container.wall_count();
+            if let Some(time) = self.touch_of(entry, flight, until)
+                && first.is_none_or(|touch| time < touch.time || (time == touch.time && wall < touch.wall))
+            {
+                first = Some(Touch::new(time, wall));
+                until = time;
+            }
+        }
+        first
+    }
+
+    /// Returns the first touch of a brick.
+    fn touch_of(&self, entry: Entry, flight: &Flight, until: f64) -> Option<f64> {
+        let wall = &self.walls[entry.wall as usize];
+        let placed = &self.parts[wall.part];
+        let flight = if entry.image == DVec2::ZERO { *flight } else { shifted(flight, -entry.image) };
+        if !placed.part.travel().is_at_rest() {
+            return Search { wall, placed, flight: &flight, until }.run();
+        }
+        let start = flight.time();
+        let (place, velocity) = (flight.position(start), flight.velocity(start));
+        let path = Path::exact(place, velocity, flight.acceleration(), flight.radius());
+        let wait = wall.brick.first_touch(&path, until - start)?;
+        Some((start + wait).min(until))
+    }
+
+    /// Returns the surface of a brick that a disk at this place touches.
+    pub(super) fn surface_of_brick(&self, brick: usize, position: DVec2, time: f64) -> Surface<'_> {
+        let wall = &self.walls[brick];
+        let placed = &self.parts[wall.part];
+        let travel = placed.part.travel();
+        let pose = travel.pose(time + placed.phase);
+        let images = self.domain_images();
+        let sights = images.map(|image| (image, wall.brick.nearest(pose.inward(position - image))));
+        let nearest = sights.reduce(|a, b| if b.1.distance < a.1.distance { b } else { a });
+        let Some((image, nearest)) = nearest else {
+            return Surface::new(DVec2::Y, DVec2::ZERO);
+        };
+        let normal = pose.direction_outward(nearest.normal);
+        let contact = position - image - nearest.distance * normal;
+        placed.part.surface(normal, travel.velocity(contact, time + placed.phase))
+    }
+
+    /// Returns the wall of a part that is nearest, and how deep a disk reaches into it.
+    pub(super) fn depth(
+        &self,
+        placed: &Placed,
+        position: DVec2,
+        radius: f64,
+        time: f64,
+    ) -> Option<(usize, f64)> {
+        let pose = placed.part.travel().pose(time + placed.phase);
+        let images = self.domain_images();
+        let depths = images.filter_map(|image| {
+            let (brick, distance) = placed.part.nearest(pose.inward(position - image))?;
+            Some((placed.first + brick, radius - distance))
+        });
+        depths.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Returns the displacements after which the vessel repeats itself, in the neighborhood.
+    fn domain_images(&self) -> impl Iterator<Item = DVec2> + use<> {
+        super::index::images(self.container.domain())
+    }
+}
+
+/// A search for the first touch of a brick that moves.
+///
+/// It looks at the flight from the part, where the brick rests. On a piece of time in which the part
+/// accelerates evenly, that is a flight like any other, and its first touch is exact. Otherwise, the flight is
+/// known up to an error, and a disk that grows by it touches no later. The search goes to that time, and
+/// looks again from there, until the step is within rounding. It never steps over a touch.
+struct Search<'a> {
+    wall: &'a Wall,
+    placed: &'a Placed,
+    flight: &'a Flight,
+    until: f64,
+}
+
+/// Outcome of one step of the search.
+enum Step {
+    /// The surfaces touch at this time.
+    Touch(f64),
+    /// The surfaces do not touch before this time.
+    Open(f64),
+}
+
+impl Search<'_> {
+    fn run(&self) -> Option<f64> {
+        let mut time = self.flight.time();
+        for _ in 0..MOST_STEPS {
+            time = self.enters_reach(time)?;
+            if time > self.until {
+                return None;
+            }
+            match self.step(time) {
+                Step::Touch(touch) => return (touch <= self.until).then_some(touch),
+                Step::Open(_) if time >= self.until => return None,
+                Step::Open(next) => time = next.max(time.next_up()),
+            }
+        }
+        // A search that does not get on may be at a touch. The engine reports a run without progress.
+        Some(time.min(self.until))
+    }
+
+    fn step(&self, time: f64) -> Step {
+        let travel = self.placed.part.travel();
+        let look = travel.look(self.flight, self.placed.phase, time, self.until - time);
+        let (path, brick) = (look.path, &self.wall.brick);
+        let mut wait = (self.until.min(look.until) - time).max(0.0);
+        if path.spread > 0.0 {
+            // The disk may not grow so much that it leaves no room in a circle.
+            wait = wait.min((2.0 * brick.most_growth(path.radius) / path.spread).sqrt());
+        }
+        let Some(touch) = brick.first_touch(&path, wait) else {
+            return Step::Open(time + wait);
+        };
+        let is_exact = path.spread == 0.0;
+        if is_exact {
+            return Step::Touch(time + touch);
+        }
+        let rounding = ROUNDING * (self.flight.position(time).length() + path.place.length() + path.radius);
+        if path.way(touch) <= rounding && self.closes(time + touch) {
+            return Step::Touch(time + touch);
+        }
+        Step::Open(time + touch)
+    }
+
+    /// Tells whether disk and brick approach each other.
+    fn closes(&self, time: f64) -> bool {
+        let travel = self.placed.part.travel();
+        let path = travel.look(self.flight, self.placed.phase, time, 0.0).path;
+        self.wall.brick.nearest(path.place).normal.dot(path.velocity) < 0.0
+    }
+
+    /// Returns the first time, from this one on, at which the disk is within the rectangle that the brick
+    /// never leaves. The time may be early.
+    fn enters_reach(&self, time: f64) -> Option<f64> {
+        let (low, high) = self.placed.part.travel().bounds(&self.wall.brick);
+        let (place, velocity) = (self.flight.position(time), self.flight.velocity(time));
+        let (pull, radius) = (self.flight.acceleration(), 1.001 * self.flight.radius());
+        let entry = |value: f64, rate: f64, pull: f64, low: f64, high: f64| {
+            let gap = (low - radius - value).max(value - high - radius);
+            if gap <= 0.0 {
+                return Some(0.0);
+            }
+            let sign = if value > high { 1.0 } else { -1.0 };
+            crate::roots::first_descent(gap, sign * rate, sign * pull)
+        };
+        let x = entry(place.x, velocity.x, pull.x, low.x, high.x)?;
+        let y = entry(place.y, velocity.y, pull.y, low.y, high.y)?;
+        Some(time + x.max(y))
+    }
+}
+
+/// Returns a rectangle that holds the disk on its flight.
+fn rectangle(flight: &Flight, until: f64) -> (DVec2, DVec2) {
+    let wait = until - flight.time();
+    let (from, to) = (flight.position(flight.time()), flight.position(until));
+    // No place of the flight is farther from its chord.
+    let sagitta = 0.125 * flight.acceleration().length() * wait * wait;
+    let reach = 1.001 * (flight.radius() + sagitta);
+    (from.min(to) - reach, from.max(to) + reach)
+}
+
+fn shifted(flight: &Flight, by: DVec2) -> Flight {
+    let time = flight.time();
+    let (place, velocity) = (flight.position(time), flight.velocity(time));
+    Flight::new(time, place + by, velocity, flight.acceleration(), flight.radius())
+}

@@ -1,0 +1,178 @@
+//! Vessels keep the contract of boundaries, whatever they are built of and however they move.
+
+use std::f64::consts::{PI, TAU};
+
+use granular_edmd::boundary::{Boundary, Brick, Container, Part, Vessel, laws};
+use granular_edmd::collision::{CollisionRule, Elastic};
+use granular_edmd::glam::DVec2;
+use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
+use granular_edmd::{Disk, Simulation, initial};
+
+fn points(list: &[(f64, f64)]) -> Vec<DVec2> {
+    list.iter().copied().map(DVec2::from).collect()
+}
+
+/// An hourglass: not convex, with corners that point inward.
+fn glass() -> Part {
+    let right = [(8.0, 0.0), (8.0, 6.0), (5.0, 10.0), (8.0, 14.0), (8.0, 20.0)];
+    let left = right.iter().rev().map(|&(x, y)| (8.0 - x, y));
+    Part::polygon(right.into_iter().chain(left).map(DVec2::from)).unwrap()
+}
+
+fn triangle() -> Part {
+    Part::block(points(&[(4.0, 4.0), (8.0, 4.5), (5.0, 7.0)])).unwrap()
+}
+
+/// A bowl, a thin wall, a small arc from outside, and a peg.
+fn mixed() -> Part {
+    Part::new([
+        Brick::arc(DVec2::new(5.0, 5.0), 4.0, PI, 1.8 * PI).unwrap().two_sided(),
+        Brick::segment(DVec2::new(9.0, 7.0), DVec2::new(11.0, 9.0)).unwrap().two_sided(),
+        Brick::arc(DVec2::new(10.0, 3.0), 1.0, 0.0, 1.5 * PI).unwrap().reversed().two_sided(),
+        Brick::circle(DVec2::new(5.0, 9.5), 0.7).unwrap().reversed(),
+        Brick::point(DVec2::new(8.0, 10.0)).unwrap(),
+    ])
+    .unwrap()
+}
+
+fn room() -> Vessel {
+    Vessel::new(Container::closed(12.0, 12.0).unwrap())
+}
+
+fn check(name: &str, vessel: &Vessel) {
+    for (seed, radius) in [(0, 0.5), (1, 0.3), (2, 0.05)] {
+        let outcome = laws::check(&mut vessel.clone(), radius, 1.0, seed);
+        assert_eq!(outcome, Ok(()), "{name}, radius {radius}");
+    }
+}
+
+#[test]
+fn vessels_at_rest_keep_the_contract() {
+    check("glass", &Vessel::around([("glass", glass())]).unwrap());
+    check("drum", &Vessel::around([("drum", Part::drum(DVec2::new(3.0, -2.0), 5.0).unwrap())]).unwrap());
+    check("block", &room().with("block", triangle()).unwrap());
+    check("mixed", &room().with("mixed", mixed()).unwrap());
+    let wall = Part::polyline(points(&[(3.0, 2.0), (6.0, 5.0), (9.0, 2.0), (9.0, 9.0)])).unwrap();
+    check("thin wall", &room().with("wall", wall).unwrap());
+    let line = Part::new([Brick::half_line(DVec2::new(2.0, 3.0), DVec2::new(5.0, 1.0)).unwrap().two_sided()])
+        .unwrap();
+    check("half-line", &room().with("line", line).unwrap());
+}
+
+#[test]
+fn vessels_with_periodic_sides_keep_the_contract() {
+    let sides = Container::closed(12.0, 12.0).unwrap().with_periodic_sides();
+    for container in [sides, Container::periodic(12.0, 12.0).unwrap()] {
+        for part in [triangle(), mixed(), triangle().shifted(DVec2::new(6.0, 6.0)).unwrap()] {
+            check("periodic", &Vessel::new(container.clone()).with("part", part).unwrap());
+        }
+    }
+}
+
+#[test]
+fn vessels_that_move_keep_the_contract() {
+    let along = DVec2::new(1.0, 0.7);
+    for part in [triangle(), mixed()] {
+        let still = || part.clone();
+        let parts = [
+            still().with_motion(along, BiParabolic::new(0.4, 2.0).unwrap()),
+            still().with_motion(along, Triangular::new(0.4, 2.0).unwrap()),
+            still().with_motion(along, Sinusoidal::new(0.4, 2.0).unwrap()),
+            still().with_motion(DVec2::Y, Sinusoidal::new(0.1, 20.0).unwrap()),
+            still().with_rotation(DVec2::new(6.0, 6.0), 0.2),
+            still().with_rotation(DVec2::new(6.0, 6.0), -3.0),
+        ];
+        for (number, part) in parts.into_iter().enumerate() {
+            check(&format!("motion {number}"), &room().with("part", part.unwrap()).unwrap());
+        }
+    }
+    let turning = glass().with_rotation(DVec2::new(4.0, 10.0), 0.3).unwrap();
+    check("turning glass", &Vessel::around([("glass", turning)]).unwrap());
+    let shaken = glass().with_motion(DVec2::Y, Sinusoidal::new(0.5, 3.0).unwrap()).unwrap();
+    check("shaken glass", &Vessel::around([("glass", shaken)]).unwrap());
+    let drum = Part::drum(DVec2::ZERO, 5.0).unwrap();
+    let shaken = drum.clone().with_motion(DVec2::X, Sinusoidal::new(0.5, 3.0).unwrap()).unwrap();
+    check("shaken drum", &Vessel::around([("drum", shaken)]).unwrap());
+    let off_axis = drum.with_rotation(DVec2::new(0.5, 0.0), TAU / 10.0).unwrap();
+    check("drum about another axis", &Vessel::around([("drum", off_axis)]).unwrap());
+}
+
+#[test]
+fn a_motion_that_jumps_is_refused_where_it_would_jump_into_disks() {
+    let saw = || Sawtooth::new(0.2, 3.0).unwrap();
+    assert!(triangle().with_motion(DVec2::Y, saw()).is_err());
+    assert!(triangle().with_motion(DVec2::Y, Triangular::new(0.2, 3.0).unwrap()).is_ok());
+}
+
+#[test]
+fn walls_have_the_names_of_their_parts() {
+    let mut vessel = room().with("mixed", mixed()).unwrap().with("block", triangle()).unwrap();
+    let walls = vessel.walls("mixed").unwrap();
+    assert_eq!(walls.start, 4);
+    assert_eq!(vessel.wall_name(4), "mixed, brick 0");
+    assert_eq!(vessel.wall_name(walls.end - 1), "mixed, corner 5");
+    assert_eq!(vessel.wall_name(walls.end), "block, brick 0");
+    vessel.remove("mixed").unwrap();
+    assert_eq!(vessel.walls("block"), Some(4..10));
+    assert_eq!(vessel.wall_name(10), "wall 10");
+    assert_eq!(vessel.names().collect::<Vec<_>>(), ["block"]);
+}
+
+/// An elastic gas under gravity keeps its energy in a vessel at rest, and stays inside.
+#[test]
+fn a_gas_stays_in_its_vessel() {
+    let periodic = Vessel::new(Container::periodic(12.0, 12.0).unwrap()).with("mixed", mixed()).unwrap();
+    for (vessel, gravity) in [
+        (Vessel::around([("glass", glass())]).unwrap(), 1.0),
+        (room().with("mixed", mixed()).unwrap().with("block", triangle()).unwrap(), 0.3),
+        (periodic, 0.0),
+    ] {
+        let disks = initial::random(&vessel, 30, 0.3, 20.0, 1).unwrap();
+        let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
+        let energy = |disks: &[Disk]| -> f64 {
+            disks.iter().map(|disk| disk.translational_energy() + gravity * disk.position().y).sum()
+        };
+        let mut run = Simulation::builder(Elastic, vessel.clone())
+            .disks(disks.clone())
+            .gravity(gravity)
+            .build()
+            .unwrap();
+        run.run_until(200.0, &mut ()).unwrap();
+        for disk in run.disks() {
+            let overlap = vessel.overlap(disk.position(), disk.radius(), 0.0);
+            assert!(overlap.is_none_or(|(_, depth)| depth < 1e-10), "{disk:?} {overlap:?}");
+        }
+        assert!((energy(&run.disks()) / energy(&disks) - 1.0).abs() < 1e-9);
+        assert!(run.counters().wall_collisions > 500, "{:?}", run.counters());
+        assert!(run.counters().max_wall_overlap < 1e-10, "{:?}", run.counters());
+    }
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn vessels_come_back_from_files() {
+    use granular_edmd::boundary::{Thermal, Wall};
+    use granular_edmd::collision::{Frictional, Smooth, from_fn};
+
+    let floor = BiParabolic::new(0.1, 10.0).unwrap();
+    let container = Container::open(12.0).unwrap().with_motion(Wall::Floor, floor).unwrap();
+    let container = container.with_rule(Wall::Left, Smooth::new(0.1).unwrap()).unwrap();
+    let vessel = Vessel::new(container.shifted(DVec2::new(-1.0, 2.0)).unwrap())
+        .with("mixed", mixed().with_motion(DVec2::X, Sinusoidal::new(0.4, 2.0).unwrap()).unwrap())
+        .unwrap()
+        .with(
+            "block",
+            triangle().with_rotation(DVec2::ONE, 0.1).unwrap().with_rule(Frictional::new(0.1, 0.3).unwrap()),
+        )
+        .unwrap()
+        .with("hot", triangle().with_temperature(Thermal::new(2.0).unwrap()).with_surface_speed(0.3).unwrap())
+        .unwrap();
+    let text = serde_json::to_string(&vessel).unwrap();
+    let back: Vessel = serde_json::from_str(&text).unwrap();
+    assert_eq!(serde_json::to_string(&back).unwrap(), text);
+    assert_eq!(back.fingerprint().unwrap(), vessel.fingerprint().unwrap());
+
+    let own = triangle().with_rule(from_fn(|contact| Elastic.impulse(contact)));
+    let error = serde_json::to_string(&own).unwrap_err().to_string();
+    assert_eq!(error, "a collision rule that is not of granular-edmd cannot be serialized");
+}
