@@ -11,35 +11,34 @@
 //! | [`Frictional`] | normal and tangential restitution, static and dynamic friction | paper, Eqs. (1)–(5) |
 //! | [`Smooth`] | normal restitution only | paper, Eq. (8) |
 //! | [`Rough`] | normal and tangential restitution, no Coulomb limit | paper, Eqs. (3), (4) |
+//! | [`SpeedDependent`] | normal restitution that falls with speed, friction | Bizon et al. 1998 |
 //! | [`Elastic`] | none | |
 //! | [`ContactDuration`] | an adaptor: contacts soon after another lose nothing | Luding and McNamara 1998 |
+//! | [`ElasticBelow`] | an adaptor: slow contacts lose nothing | a cut-off of many codes |
 //! | [`RulesByKind`] | a table: one rule for each pair of kinds | |
 //! | [`from_fn`] | yours, as a closure | |
 //!
 //! # A rule of your own
-//! A rule that decides the normal direction takes the tangential one from [`Friction`]. The example is the
-//! restitution of C. Bizon et al., Phys. Rev. Lett. **80**, 57 (1998), which falls with the speed of the
-//! impact until it is constant, `$r_n = 1 - (1 - r_0)\min(v_n/v_0, 1)^{3/4}$`:
+//! A rule that decides the normal direction takes the tangential one from [`Friction`]. The example is a
+//! viscoelastic sphere in the first order of its law:
 //!
 //! ```
 //! use granular_edmd::collision::{CollisionRule, Contact, Friction, Impulse, laws};
 //!
-//! struct Bizon {
-//!     restitution: f64,
-//!     speed: f64,
+//! struct Viscoelastic {
+//!     loss: f64,
 //!     friction: Friction,
 //! }
 //!
-//! impl CollisionRule for Bizon {
+//! impl CollisionRule for Viscoelastic {
 //!     fn impulse(&self, contact: &Contact) -> Impulse {
-//!         // Square roots have the same bits on every platform; `powf(0.75)` does not.
-//!         let root = (contact.closing_speed() / self.speed).min(1.0).sqrt();
-//!         let restitution = 1.0 - (1.0 - self.restitution) * root * root.sqrt();
+//!         // `libm` has the same bits on every platform; `powf` of the standard library does not.
+//!         let restitution = 1.0 / (1.0 + self.loss * libm::pow(contact.closing_speed(), 0.2));
 //!         self.friction.impulse(contact, contact.normal_impulse(restitution))
 //!     }
 //! }
 //!
-//! let rule = Bizon { restitution: 0.7, speed: 1.0, friction: Friction::new(0.25, 0.5)? };
+//! let rule = Viscoelastic { loss: 0.3, friction: Friction::new(0.25, 0.5)? };
 //! laws::check_rule(&rule, &laws::Promises::new().with_friction(0.5))?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -48,6 +47,7 @@ mod body;
 mod contact;
 mod contact_duration;
 mod elastic;
+mod elastic_below;
 mod encounter;
 mod friction;
 mod frictional;
@@ -58,11 +58,14 @@ pub mod laws;
 mod rough;
 mod rules_by_kind;
 mod smooth;
+mod speed_dependent;
+mod tangential_response;
 
 pub(crate) use body::{Body, Material, collide_bodies};
 pub use contact::Contact;
-pub use contact_duration::{ContactDuration, TangentialResponse};
+pub use contact_duration::ContactDuration;
 pub use elastic::Elastic;
+pub use elastic_below::ElasticBelow;
 pub use encounter::{Encounter, WallEncounter, collide, collide_with_wall};
 pub use friction::Friction;
 pub use frictional::Frictional;
@@ -71,6 +74,8 @@ pub use impulse::{Impulse, Regime};
 pub use rough::Rough;
 pub use rules_by_kind::RulesByKind;
 pub use smooth::Smooth;
+pub use speed_dependent::SpeedDependent;
+pub use tangential_response::TangentialResponse;
 
 use crate::Fingerprint;
 

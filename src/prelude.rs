@@ -8,8 +8,8 @@ pub use crate::boundary::{
     Wall,
 };
 pub use crate::collision::{
-    CollisionRule, Contact, ContactDuration, Elastic, Friction, Frictional, Impulse, Regime, Rough,
-    RulesByKind, Smooth,
+    CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Impulse, Regime,
+    Rough, RulesByKind, Smooth, SpeedDependent,
 };
 pub use crate::glam::DVec2;
 pub use crate::initial::{self, Radii};
@@ -20,7 +20,7 @@ pub use crate::observable::{
 };
 pub use crate::scheduler::EventScheduler;
 pub use crate::simulation::{
-    BoxedBoundary, BoxedRule, BoxedScheduler, BoxedSimulation, Event, RunEnd, RunError, Simulation,
+    BoxedBoundary, BoxedRule, BoxedScheduler, BoxedSimulation, Event, Limits, RunEnd, RunError, Simulation,
 };
 pub use crate::statistics::Estimate;
 pub use crate::wall::{

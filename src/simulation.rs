@@ -1,8 +1,8 @@
 //! The engine, which takes disks from event to event.
 //!
 //! [`Simulation::builder`] checks disks, gravity and boundary and makes a [`Simulation`].
-//! [`Simulation::run_until`] and [`Simulation::step_until`] advance it. Rule, boundary and gravity can be
-//! changed between runs.
+//! [`Simulation::run_until`], [`Simulation::run`] with its [`Limits`] and [`Simulation::step_until`] advance
+//! it. Rule, boundary and gravity can be changed between runs.
 //!
 //! # Promises
 //! 1. The same inputs give the same bits, under every scheduler, with any observer, and however a run is cut
@@ -10,9 +10,9 @@
 //! 2. Equal times are ordered by the smaller disk index, then by the smaller partner index, with disks before
 //!    walls.
 //! 3. A sample at time `$t$` has seen all events up to and at `$t$`.
-//! 4. A run that cannot progress ends with [`RunError::Stalled`]. Such a run has 200 000 events, and 20 more
-//!    for each disk, within at most some 1e-6 of the time in which a typical disk goes its diameter. A run
-//!    that is only slow goes on.
+//! 4. A run that hardly progresses ends with [`RunError::Stalled`], within seconds. Progress is the simulated
+//!    time per event, over windows of 200 000 events and 20 more for each disk. How much of it a run needs is
+//!    up to its caller: [`Limits::with_least_progress`].
 //! 5. A checkpoint restores everything on which the future depends, except rule and boundary, which are given
 //!    again. It notices if they are others, as far as they have fingerprints.
 //! 6. A part that breaks its contract (a rule, boundary, scheduler or observer) ends the run with an error
@@ -28,9 +28,13 @@ mod errors;
 mod event_loop;
 mod events;
 mod forecasting;
+mod limits;
 mod lookahead;
+mod parting;
 mod prediction;
 mod resolution;
+mod running;
+mod stall;
 mod state;
 
 pub use builder::SimulationBuilder;
@@ -38,8 +42,8 @@ pub use builder::SimulationBuilder;
 pub use checkpoint::{Checkpoint, CheckpointError, Resumption};
 pub use errors::{BoundaryFault, BuildError, FailedCollision, RunError};
 pub use events::{Counters, Event, RunEnd};
-
-use std::ops::ControlFlow;
+pub use limits::Limits;
+pub use stall::Remedy;
 
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -47,13 +51,12 @@ use crate::boundary::{Boundary, Container};
 use crate::collision::{CollisionRule, Frictional};
 use crate::disk::bounded;
 use crate::instructions::Instructions;
-use crate::observable::{Moment, Observable, Observer, Snapshot};
+use crate::observable::{Observable, Snapshot};
 use crate::quantity::accept;
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, ParameterError};
 use builder::fit;
 use cells::Cells;
-use errors::Outcome;
 use lookahead::Lookahead;
 use state::{Bodies, Clock};
 
@@ -154,137 +157,6 @@ struct Scratch {
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Runs until the absolute time `end` while `observer` watches (`&mut ()` for no observer). Returns what
-    /// ended the run.
-    ///
-    /// The observer is told of the start, of each collision, and of the end, also if that is an error. It is
-    /// shown the samples that it asks for. If it stops the run, the present is the time of the collision or
-    /// sample at which it did so, and the next run goes on from there with the same bits.
-    ///
-    /// # Errors
-    /// If the end is not finite or before the present, the run cannot progress, a rule, boundary, scheduler
-    /// or observer breaks its contract, or an observer fails. The simulation then keeps the state of that
-    /// moment.
-    pub fn run_until<O: Observer + ?Sized>(
-        &mut self,
-        end: f64,
-        observer: &mut O,
-    ) -> Result<RunEnd, RunError> {
-        self.watched_until(end, observer).map_err(|error| *error)
-    }
-
-    fn watched_until<O: Observer + ?Sized>(&mut self, end: f64, observer: &mut O) -> Outcome<RunEnd> {
-        self.check_end(end)?;
-        observer.on_start(&self.moment());
-        let ended = match self.verdict_of(observer) {
-            Ok(ControlFlow::Continue(())) => self.instructions.run(
-                #[inline(always)]
-                || self.sample_until(end, observer),
-            ),
-            stopped => stopped.map(|_| RunEnd::Observer),
-        };
-        observer.on_end(&self.moment());
-        // A verdict to stop comes too late now. A failure, such as that of a last write, must still be
-        // reported.
-        let last = self.verdict_of(observer);
-        ended.and_then(|end| last.map(|_| end))
-    }
-
-    /// Goes to the next collision, if it is not after the absolute time `end`, and returns it. If there is
-    /// none, goes to `end` and returns `None`.
-    ///
-    /// The observer is told of the collision only: `on_start`, `on_sample` and `on_end` are not called, so
-    /// its clock stands still. If the observer fails, the step returns an error. A verdict to stop has no
-    /// effect, since the caller takes each step.
-    ///
-    /// ```
-    /// # use granular_edmd::glam::DVec2;
-    /// # use granular_edmd::{Disk, Simulation, boundary::Container, collision::Elastic, simulation::Event};
-    /// let disk = Disk::new(DVec2::new(2.0, 1.0), 0.5)?.with_velocity(DVec2::NEG_Y)?;
-    /// let mut run = Simulation::builder(Elastic, Container::open(4.0)?).disks([disk]).build()?;
-    /// assert_eq!(run.step_until(10.0, &mut ())?, Some(Event::WallCollision { disk: 0, wall: 0 }));
-    /// assert_eq!(run.time(), 0.5);
-    /// assert_eq!(run.step_until(10.0, &mut ())?, None);
-    /// assert_eq!(run.time(), 10.0);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    ///
-    /// # Errors
-    /// As [`Self::run_until`].
-    pub fn step_until<O: Observer + ?Sized>(
-        &mut self,
-        end: f64,
-        observer: &mut O,
-    ) -> Result<Option<Event>, RunError> {
-        self.watched_step(end, observer).map_err(|error| *error)
-    }
-
-    fn watched_step<O: Observer + ?Sized>(&mut self, end: f64, observer: &mut O) -> Outcome<Option<Event>> {
-        self.check_end(end)?;
-        let event = self.collide_until(end, observer)?;
-        // A verdict to stop has no effect: the caller of single steps can stop at any of them.
-        let _: ControlFlow<()> = self.verdict_of(observer)?;
-        Ok(event)
-    }
-
-    /// Goes from sample to sample until `end`.
-    #[inline(always)]
-    fn sample_until<O: Observer + ?Sized>(&mut self, end: f64, observer: &mut O) -> Outcome<RunEnd> {
-        loop {
-            let sample = observer.next_sample();
-            if sample.is_nan() {
-                return Err(Box::new(RunError::SampleTime { next: sample, time: self.time() }));
-            }
-            let stop = end.min(sample.max(self.time()));
-            while self.collide_until(stop, observer)?.is_some() {
-                if self.verdict_of(observer)?.is_break() {
-                    return Ok(RunEnd::Observer);
-                }
-            }
-            if sample > stop {
-                return Ok(RunEnd::Time);
-            }
-            observer.on_sample(&self.snapshot_as_of(stop));
-            if self.verdict_of(observer)?.is_break() {
-                return Ok(RunEnd::Observer);
-            }
-            let next = observer.next_sample();
-            if next.is_nan() || next <= sample {
-                return Err(Box::new(RunError::SampleTime { next, time: self.time() }));
-            }
-        }
-    }
-
-    /// Does all events until the next collision, or until the absolute time `stop`, and goes there.
-    #[inline(always)]
-    fn collide_until<O: Observer + ?Sized>(&mut self, stop: f64, observer: &mut O) -> Outcome<Option<Event>> {
-        // The epoch may move with each event, which changes the offset of `stop`.
-        while let Some((disk, due)) = self.next_due(stop - self.clock.origin) {
-            let event = self.advance(disk, due, observer)?;
-            if event.is_some() {
-                return Ok(event);
-            }
-        }
-        self.clock.now = self.clock.now.max(stop - self.clock.origin);
-        Ok(None)
-    }
-
-    fn check_end(&self, end: f64) -> Outcome<()> {
-        let is_ahead = end.is_finite() && end >= self.time() - self.clock.rounding();
-        if is_ahead { Ok(()) } else { Err(Box::new(RunError::End { end, time: self.time() })) }
-    }
-
-    /// Asks the observer whether the run goes on.
-    #[inline]
-    fn verdict_of<O: Observer + ?Sized>(&self, observer: &mut O) -> Outcome<ControlFlow<()>> {
-        observer.verdict().map_err(|source| Box::new(RunError::Observer { time: self.time(), source }))
-    }
-
-    fn moment(&self) -> Moment {
-        let domain = self.boundary.domain();
-        Moment::new(self.time(), self.len(), self.wall_count, domain, self.bodies.gravity)
-    }
-
     /// Returns the present, in absolute time.
     pub fn time(&self) -> f64 {
         self.clock.time()

@@ -1,22 +1,8 @@
 //! The contact-duration model, the remedy against inelastic collapse.
 
-use super::{CollisionRule, Contact, Elastic, Impulse, Regime};
+use super::{CollisionRule, Contact, Impulse, Regime, TangentialResponse};
 use crate::quantity::{Checked, Quantity, Range};
 use crate::{Fingerprint, ParameterError};
-
-/// The tangential impulse in a contact that the contact-duration model makes elastic.
-///
-/// Published codes differ in this choice, so it is explicit here.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub enum TangentialResponse {
-    /// No tangential impulse: the contact is elastic and frictionless.
-    #[default]
-    Frictionless,
-    /// The tangential impulse of the rule. Only the normal direction is made elastic.
-    Unchanged,
-}
 
 /// The contact-duration (TC) model over any rule: a collision of a body that collided less than `$t_c$` ago
 /// loses no energy (Luding and McNamara 1998).
@@ -81,21 +67,11 @@ impl<R> ContactDuration<R> {
     }
 }
 
-impl<R: CollisionRule> ContactDuration<R> {
-    fn elastic(&self, contact: &Contact) -> Impulse {
-        let tangential = match self.tangential_response {
-            TangentialResponse::Frictionless => 0.0,
-            TangentialResponse::Unchanged => self.rule.impulse(contact).tangential(),
-        };
-        Impulse::new(Elastic.impulse(contact).normal(), tangential).with_regime(Regime::ContactDuration)
-    }
-}
-
 impl<R: CollisionRule> CollisionRule for ContactDuration<R> {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
         if contact.time_since_last_collision() < self.duration.get() {
-            self.elastic(contact)
+            self.tangential_response.elastic(&self.rule, contact, Regime::ContactDuration)
         } else {
             self.rule.impulse(contact)
         }
@@ -107,11 +83,7 @@ impl<R: CollisionRule> CollisionRule for ContactDuration<R> {
 
     /// Returns `None` if the rule inside has no fingerprint: two such models could not be told apart.
     fn fingerprint(&self) -> Option<Fingerprint> {
-        let response = match self.tangential_response {
-            TangentialResponse::Frictionless => "frictionless",
-            TangentialResponse::Unchanged => "unchanged",
-        };
-        let rule = self.rule.fingerprint()?;
+        let (rule, response) = (self.rule.fingerprint()?, self.tangential_response.name());
         Some(Fingerprint::of("ContactDuration").part(rule).number(self.duration.get()).text(response))
     }
 }

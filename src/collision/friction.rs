@@ -2,8 +2,8 @@
 
 use super::inelasticity::TangentialInelasticity;
 use super::{Contact, Impulse, Regime};
-use crate::ParameterError;
 use crate::quantity::{accept, non_negative};
+use crate::{Fingerprint, ParameterError};
 
 /// Coulomb friction that sticks or slides: the tangential part of a rule, for any normal impulse.
 ///
@@ -106,6 +106,12 @@ impl Friction {
         let sticks = sticking.abs() < self.static_coefficient * normal;
         let tangential = if sticks { sticking } else { sliding };
         Impulse::new(normal, tangential).with_regime(if sticks { Regime::Sticking } else { Regime::Sliding })
+    }
+
+    /// Returns the fingerprint, for those of rules with friction.
+    pub(super) fn fingerprint(&self) -> Fingerprint {
+        let inelastic = Fingerprint::of("Friction").number(self.tangential_inelasticity());
+        inelastic.number(self.static_coefficient).number(self.dynamic_coefficient)
     }
 
     /// Returns the tangential inelasticity `$q_t$`.

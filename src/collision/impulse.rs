@@ -17,6 +17,8 @@ pub enum Regime {
     Sliding,
     /// A contact-duration model replaced the rule.
     ContactDuration,
+    /// The contact was so slow that it was made elastic.
+    ElasticBelow,
 }
 
 /// The momentum that partner 1 receives along the normal and the tangent. Partner 2 receives the opposite.

@@ -24,6 +24,7 @@ pub struct CollisionCounts {
     sticking: u64,
     sliding: u64,
     contact_duration: u64,
+    elastic_below: u64,
 }
 
 impl CollisionCounts {
@@ -53,8 +54,10 @@ impl CollisionCounts {
             Regime::Sticking => self.sticking,
             Regime::Sliding => self.sliding,
             Regime::ContactDuration => self.contact_duration,
+            Regime::ElasticBelow => self.elastic_below,
             Regime::Unspecified => {
-                self.disks + self.wall_collisions() - self.sticking - self.sliding - self.contact_duration
+                let told = self.sticking + self.sliding + self.contact_duration + self.elastic_below;
+                self.disks + self.wall_collisions() - told
             }
         }
     }
@@ -76,6 +79,7 @@ impl Observer for CollisionCounts {
             Regime::Sticking => self.sticking += 1,
             Regime::Sliding => self.sliding += 1,
             Regime::ContactDuration => self.contact_duration += 1,
+            Regime::ElasticBelow => self.elastic_below += 1,
             Regime::Unspecified => {}
         }
     }
@@ -91,6 +95,7 @@ struct RawCollisionCounts {
     sticking: u64,
     sliding: u64,
     contact_duration: u64,
+    elastic_below: u64,
 }
 
 #[cfg(feature = "serde")]
@@ -98,14 +103,15 @@ impl TryFrom<RawCollisionCounts> for CollisionCounts {
     type Error = crate::ParameterError;
 
     fn try_from(raw: RawCollisionCounts) -> Result<Self, Self::Error> {
-        let RawCollisionCounts { start, disks, walls, sticking, sliding, contact_duration } = raw;
+        let RawCollisionCounts { start, disks, walls, sticking, sliding, contact_duration, elastic_below } =
+            raw;
         crate::quantity::finite("start of the counts", start)?;
         // The sum has 128 bits, so that sums of forged counts do not wrap.
         let sum = |counts: &[u64]| counts.iter().map(|&count| u128::from(count)).sum::<u128>();
         let all = u128::from(disks) + walls.values().map(|&count| u128::from(count)).sum::<u128>();
-        let regimes = sum(&[sticking, sliding, contact_duration]);
+        let regimes = sum(&[sticking, sliding, contact_duration, elastic_below]);
         let fits = regimes <= all && all <= u128::from(u64::MAX / 2);
         crate::quantity::accept(fits, "number of collisions", "at least that of all regimes", all as f64)?;
-        Ok(Self { start, disks, walls, sticking, sliding, contact_duration })
+        Ok(Self { start, disks, walls, sticking, sliding, contact_duration, elastic_below })
     }
 }

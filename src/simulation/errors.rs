@@ -5,6 +5,7 @@ use std::fmt;
 use glam::DVec2;
 use thiserror::Error;
 
+use super::stall::{Named, Remedy};
 use crate::ParameterError;
 use crate::collision::{Contact, Impulse};
 use crate::observable::{ObserverError, Partner};
@@ -118,18 +119,28 @@ pub enum RunError {
         /// The present.
         time: f64,
     },
-    /// Events pile up in vanishing time, by an inelastic collapse or because a disk rests on a wall.
+    /// The run hardly progresses: disks come to rest, by an inelastic collapse or under gravity, and collide
+    /// ever more often.
     #[error(
-        "{events} events without progress at time {time}, the last of disk {disk}: an inelastic collapse, which the rule \
-         ContactDuration may prevent, or a disk that is at rest on a wall, squeezed, or never pushed apart by its rule"
+        "the run stalled at time {time}: {events} events took it only {elapsed:e} further, the last of disk {disk}{}: \
+         {remedy}; docs/rest.md compares the remedies, and Limits::with_least_progress allows less progress",
+        Named(*.partner, .wall.as_deref())
     )]
     Stalled {
         /// The present.
         time: f64,
-        /// The disk whose event was last.
+        /// A disk that collides again and again: the next one to do so.
         disk: usize,
-        /// Number of events without progress.
+        /// The partner of the disk; `None` if no collision is in sight.
+        partner: Option<Partner>,
+        /// The name of the wall, if the partner is one.
+        wall: Option<String>,
+        /// Number of events with too little progress.
         events: u64,
+        /// Simulated time that these events took.
+        elapsed: f64,
+        /// The remedy, by what the rule does in these collisions.
+        remedy: Remedy,
     },
     /// A rule answered with an impulse that is not finite, or that leads to a motion beyond 1e60.
     #[error("the collision of {0}")]
@@ -217,10 +228,11 @@ pub struct FailedCollision {
 impl fmt::Display for FailedCollision {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { disk, time, contact, impulse, .. } = self;
-        match (self.partner, &self.wall) {
-            (Partner::Disk(other), _) => write!(formatter, "disks {disk} and {other}")?,
-            (Partner::Wall(_), Some(name)) => write!(formatter, "disk {disk} with the wall {name:?}")?,
-            (Partner::Wall(wall), None) => write!(formatter, "disk {disk} with wall {wall}")?,
+        match self.partner {
+            Partner::Disk(other) => write!(formatter, "disks {disk} and {other}")?,
+            wall @ Partner::Wall(_) => {
+                write!(formatter, "disk {disk}{}", Named(Some(wall), self.wall.as_deref()))?;
+            }
         }
         write!(
             formatter,

@@ -3,16 +3,13 @@
 //! One collision reads from top to bottom. [`Simulation::next_due`] asks the scheduler, and
 //! [`Simulation::advance`] goes to the event. [`Simulation::collide`] lets the rule decide (`resolution.rs`)
 //! and kicks both disks. It then finds what each disk does next, and tells the scheduler (`forecasting.rs`).
-//! The arithmetic of meetings is in `prediction.rs`, and epochs are in `epoch.rs`. None of these files calls
-//! back.
-
-use glam::DVec2;
+//! The arithmetic of meetings is in `prediction.rs`, and epochs are in `epoch.rs`. Disks that a collision left
+//! within rounding of each other part in `parting.rs`. None of these files calls back.
 
 use super::Simulation;
 use super::errors::{BoundaryFault, Outcome, RunError};
 use super::events::Event;
 use super::forecasting::HORIZON;
-use super::prediction::are_closing;
 use super::resolution::{Kick, failed, is_parting, is_possible, resolve_pair, resolve_wall};
 use super::state::{Clock, Earliest, Exit, Forecast};
 use crate::boundary::{Boundary, Response};
@@ -20,14 +17,6 @@ use crate::collision::laws::closing_speed_after;
 use crate::collision::{CollisionRule, Regime};
 use crate::observable::{Collision, Observer};
 use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
-
-/// Number of doublings of a push, after which two surfaces that a collision left within rounding of each
-/// other are left alone.
-const MOST_NUDGES: u32 = 24;
-
-/// Closing speed after a collision, relative to the speeds of the disks, that is more than rounding: the rule
-/// wants the disks to close on.
-const WANTED: f64 = 1e-9;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the disk whose event is next and the offset of the event, if it is not after the offset `end`.
@@ -61,9 +50,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             return Ok(None);
         }
         self.clock.now = due;
-        if let Some(events) = self.clock.watch(self.bodies.len()) {
-            return Err(Box::new(RunError::Stalled { time: self.time(), disk, events }));
-        }
         self.look_ahead();
         if forecast.is_collision() {
             let partner = forecast.partner as usize;
@@ -215,52 +201,6 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     fn kick(&mut self, disk: usize, kick: &Kick) {
         self.bodies.kick(disk, kick.velocity, kick.angular_velocity, self.clock.now);
         self.forecast_mut(disk).count_collision();
-    }
-
-    /// Makes two disks part that a collision has left with a closing speed of rounding, or none.
-    ///
-    /// The digits of velocities are relative to the velocities themselves, not to their difference. A rule
-    /// that takes all of the closing speed leaves some 1e-17 of it, of either sign, and disks that touch and
-    /// close collide at once, again and again. Therefore, the speed at which the disks part is raised on the
-    /// scale of its rounding, by just as much as the prediction needs to see them part.
-    #[cold]
-    #[inline(never)]
-    fn part(&mut self, disk: usize, partner: usize, normal: DVec2, left: f64) {
-        let masses = [disk, partner].map(|disk| self.bodies.material(disk).inverse_mass);
-        let (periods, now) = (self.cells.grid().periods(), self.clock.now);
-        let speed = self.bodies.speed(disk) + self.bodies.speed(partner);
-        if left > WANTED * speed {
-            return;
-        }
-        for doubling in 0..MOST_NUDGES {
-            if !are_closing(&self.bodies, periods, disk, partner, now) {
-                return;
-            }
-            let push = normal * (f64::from(1_u32 << doubling) * f64::EPSILON * speed);
-            // The push is shared as an impulse would be, so that momentum is conserved.
-            let total = masses[0] + masses[1];
-            self.bodies.push(disk, push * (masses[0] / total), now);
-            self.bodies.push(partner, -push * (masses[1] / total), now);
-        }
-    }
-
-    /// Makes a disk leave a wall about which engine and boundary disagree. In the engine's arithmetic the
-    /// disk parts from the wall, and in the boundary's it approaches, by a rounding of its speed. A disk that
-    /// rests on a wall does not part from it, and is left alone.
-    #[cold]
-    #[inline(never)]
-    fn leave_wall(&mut self, disk: usize, wall: usize, collision: &Collision) {
-        for doubling in 0..MOST_NUDGES {
-            let Forecast { exit, exit_due, wall: next, .. } = *self.forecast(disk);
-            if exit != Exit::Wall || exit_due > self.clock.now || usize::from(next) != wall {
-                return;
-            }
-            // The speed relative to the wall is a difference of speeds, and has their rounding.
-            let fallen = self.bodies.fall(self.clock.now).1.length();
-            let scale = f64::EPSILON * (self.bodies.speed(disk) + fallen);
-            self.bodies.push(disk, collision.normal * (f64::from(1_u32 << doubling) * scale), self.clock.now);
-            self.find_next(disk);
-        }
     }
 
     /// Takes a disk to its next cell. Its trajectory does not change, so only the cells ahead can hold an

@@ -20,15 +20,22 @@ pub enum Event {
     },
 }
 
-/// The reason why a run ended without an error.
+/// The reason why a run ended without an error. The run can go on from there, with the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RunEnd {
     /// The run came to the end time.
     Time,
-    /// An observer stopped the run; see [`Observer::verdict`](crate::observable::Observer::verdict). The run
-    /// can go on from there, with the same bits.
+    /// An observer stopped the run; see [`Observer::verdict`](crate::observable::Observer::verdict).
     Observer,
+    /// The run had all the collisions that it may have; see
+    /// [`Limits::with_most_collisions`](super::Limits::with_most_collisions).
+    Collisions,
+    /// The run took all the time that it may take; see
+    /// [`Limits::with_wall_clock`](super::Limits::with_wall_clock).
+    WallClock,
+    /// The flag for it was set; see [`Limits::with_interrupt`](super::Limits::with_interrupt).
+    Interrupted,
 }
 
 /// The numbers of events since the simulation was built.

@@ -14,3 +14,4 @@ pub(super) use clock::{Clock, Tally};
 pub(super) use forecast::{Earliest, Exit, Forecast};
 #[cfg(feature = "serde")]
 pub(super) use guard::Guard;
+pub(super) use guard::{Standstill, least_progress};

@@ -1,7 +1,8 @@
 //! Rules in files: what is written can be read, and what a constructor refuses a file cannot bring in.
 
 use granular_edmd::collision::{
-    ContactDuration, Elastic, Friction, Frictional, Rough, Smooth, TangentialResponse,
+    ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Rough, Smooth, SpeedDependent,
+    TangentialResponse,
 };
 use granular_edmd::strategies::decades;
 use proptest::prelude::*;
@@ -43,6 +44,9 @@ proptest! {
         prop_assert!(returns(&ContactDuration::new(frictional, duration).unwrap()));
         let nested = ContactDuration::new(rough, duration).unwrap().with_tangential_response(unchanged);
         prop_assert!(returns(&ContactDuration::new(nested, duration).unwrap()));
+        let below = ElasticBelow::new(frictional, duration).unwrap();
+        prop_assert!(returns(&below) && returns(&below.with_tangential_response(unchanged)));
+        prop_assert!(returns(&SpeedDependent::new(ratio, duration).unwrap().with_friction(friction)));
     }
 }
 
@@ -56,6 +60,12 @@ fn the_names_in_a_file_are_stable() {
     assert_eq!(serde_json::to_string(&rule).unwrap(), text);
     let friction = r#"{"tangential_inelasticity":0.25,"static_coefficient":0.5,"dynamic_coefficient":0.5}"#;
     assert_eq!(serde_json::to_string(&Friction::new(0.25, 0.5).unwrap()).unwrap(), friction);
+    let below = ElasticBelow::new(Elastic, 0.125).unwrap();
+    let text_below = r#"{"rule":null,"speed":0.125,"tangential_response":"Frictionless"}"#;
+    assert_eq!(serde_json::to_string(&below).unwrap(), text_below);
+    let bizon = SpeedDependent::new(0.5, 2.0).unwrap().with_friction(Friction::new(0.25, 0.5).unwrap());
+    let text_bizon = format!(r#"{{"least_restitution":0.5,"speed":2.0,"friction":{friction}}}"#);
+    assert_eq!(serde_json::to_string(&bizon).unwrap(), text_bizon);
     let short = text.replace(r#","tangential_response":"Frictionless""#, "");
     assert_eq!(serde_json::from_str::<ContactDuration<Frictional>>(&short).unwrap(), rule);
 }
@@ -74,6 +84,9 @@ fn a_file_passes_the_constructors() {
     let model = r#"{"rule":null,"duration":0}"#;
     let error = ContactDuration::new(Elastic, 0.0).unwrap_err();
     assert!(refusal::<ContactDuration<Elastic>>(model).contains(&error.to_string()));
+    let below = r#"{"rule":null,"speed":-1}"#;
+    let error = ElasticBelow::new(Elastic, -1.0).unwrap_err();
+    assert!(refusal::<ElasticBelow<Elastic>>(below).contains(&error.to_string()));
     let inner = format!(r#"{{"rule":{smooth},"duration":1}}"#);
     assert!(
         refusal::<ContactDuration<Smooth>>(&inner)
@@ -99,6 +112,10 @@ fn unknown_missing_and_unreadable_fields_are_refused() {
     assert!(refusal::<Frictional>(frictional).contains("unknown field `restitution`"));
     let model = r#"{"rule":null,"duration":1,"response":0}"#;
     assert!(refusal::<ContactDuration<Elastic>>(model).contains("unknown field `response`"));
+    let below = r#"{"rule":null,"speed":1,"response":0}"#;
+    assert!(refusal::<ElasticBelow<Elastic>>(below).contains("unknown field `response`"));
+    let bizon = r#"{"least_restitution":0.5,"speed":1,"exponent":0.75}"#;
+    assert!(refusal::<SpeedDependent>(bizon).contains("unknown field `exponent`"));
     let response = r#"{"rule":null,"duration":1,"tangential_response":"Sticky"}"#;
     assert!(refusal::<ContactDuration<Elastic>>(response).contains("unknown variant `Sticky`"));
 }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use granular_edmd::Fingerprint;
 use granular_edmd::collision::{
-    CollisionRule, Contact, ContactDuration, Elastic, Friction, Frictional, Impulse, Rough, Smooth,
-    TangentialResponse, from_fn,
+    CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Impulse, Rough,
+    Smooth, SpeedDependent, TangentialResponse, from_fn,
 };
 
 /// A rule that answers everything that it can be asked.
@@ -44,6 +44,8 @@ fn every_way_to_hold_a_rule_passes_all_on() {
 fn a_model_passes_the_explanation_on() {
     let model = ContactDuration::new(Talkative, 1e-4).unwrap();
     assert_eq!(model.explain(&Contact::new(3.0, 0.0, 0.5, 0.125)).as_deref(), Some("too fast: 3"));
+    let remedy = ElasticBelow::new(Talkative, 1e-4).unwrap();
+    assert_eq!(remedy.explain(&Contact::new(2.0, 0.0, 0.5, 0.125)).as_deref(), Some("too fast: 2"));
     assert_eq!(Elastic.explain(&Contact::new(3.0, 0.0, 0.5, 0.125)), None);
 }
 
@@ -76,6 +78,14 @@ fn different_rules_have_different_fingerprints() {
                 .with_tangential_response(TangentialResponse::Unchanged),
         ),
         Box::new(ContactDuration::new(Elastic, 1e-4).unwrap()),
+        Box::new(ElasticBelow::new(Elastic, 1e-4).unwrap()),
+        Box::new(ElasticBelow::new(Elastic, 1e-5).unwrap()),
+        Box::new(
+            ElasticBelow::new(Elastic, 1e-4).unwrap().with_tangential_response(TangentialResponse::Unchanged),
+        ),
+        Box::new(SpeedDependent::new(0.1, 0.2).unwrap()),
+        Box::new(SpeedDependent::new(0.2, 0.1).unwrap()),
+        Box::new(SpeedDependent::new(0.1, 0.2).unwrap().with_friction(Friction::new(0.0, 0.2).unwrap())),
     ];
     let fingerprints: HashSet<_> = rules.iter().map(|rule| rule.fingerprint().unwrap()).collect();
     assert_eq!(fingerprints.len(), rules.len());
@@ -87,6 +97,7 @@ fn a_closure_has_none_and_neither_has_a_model_of_it() {
     let closure = from_fn(|contact: &Contact| Impulse::new(contact.normal_impulse(0.5), 0.0));
     assert_eq!(closure.fingerprint(), None);
     assert_eq!(ContactDuration::new(closure, 1e-4).unwrap().fingerprint(), None);
+    assert_eq!(ElasticBelow::new(closure, 1e-4).unwrap().fingerprint(), None);
 }
 
 /// Rules are shared by threads, and sent to them.
@@ -96,5 +107,6 @@ fn rules_go_to_other_threads() {
     const {
         both::<(Contact, Impulse, Friction, Elastic, Smooth, Rough, Frictional)>();
         both::<ContactDuration<Arc<dyn CollisionRule + Send + Sync>>>();
+        both::<(ElasticBelow<Arc<dyn CollisionRule + Send + Sync>>, SpeedDependent)>();
     }
 }

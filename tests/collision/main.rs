@@ -6,6 +6,7 @@
 mod cases;
 mod conservation;
 mod contact_duration;
+mod elastic_below;
 mod energy;
 #[cfg(feature = "serde")]
 mod files;
@@ -17,6 +18,7 @@ mod parameters;
 mod planted;
 mod rules;
 mod separation;
+mod speed_dependent;
 mod stick_slip;
 mod symmetry;
 mod violations;

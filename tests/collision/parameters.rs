@@ -1,7 +1,9 @@
 //! Parameters outside their range: each constructor refuses them and names the value.
 
 use granular_edmd::ParameterError;
-use granular_edmd::collision::{ContactDuration, Elastic, Friction, Frictional, Rough, Smooth};
+use granular_edmd::collision::{
+    ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Rough, Smooth, SpeedDependent,
+};
 
 /// A constructor of one parameter, that parameter's name, and values that it must refuse beside the usual
 /// ones.
@@ -52,6 +54,9 @@ fn cases() -> Vec<Case> {
             &[-1e-300, 0.500_000_1],
         ),
         ("contact duration", |value| ContactDuration::new(Elastic, value).map(drop), &[0.0, -0.0, -1e-4]),
+        ("speed of elastic collisions", |value| ElasticBelow::new(Elastic, value).map(drop), &[0.0, -1e-4]),
+        ("least restitution", |value| SpeedDependent::new(value, 1.0).map(drop), restitution),
+        ("speed of the least restitution", |value| SpeedDependent::new(0.5, value).map(drop), &[0.0, -1.0]),
     ]
 }
 

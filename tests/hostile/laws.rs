@@ -1,10 +1,10 @@
-//! Every collision rule, alone and within the contact-duration model.
+//! Every collision rule, alone, within the contact-duration model, and elastic below a speed.
 
 use std::sync::Arc;
 
 use granular_edmd::collision::{
-    CollisionRule, Contact, ContactDuration, Elastic, Frictional, Impulse, Rough, Smooth, TangentialResponse,
-    from_fn,
+    CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Impulse, Rough,
+    Smooth, SpeedDependent, TangentialResponse, from_fn,
 };
 use proptest::prelude::*;
 
@@ -18,8 +18,13 @@ pub(crate) enum Kind {
     Smooth,
     Rough,
     Frictional,
+    SpeedDependent,
     Closure,
 }
+
+/// A remedy for disks at rest: whether it is the contact-duration model, its time or speed, and whether the
+/// tangential response stays.
+type Remedy = (bool, f64, bool);
 
 /// A rule that never gains energy.
 #[derive(Debug, Clone, Copy)]
@@ -29,18 +34,21 @@ pub(crate) struct Law {
     tangential: f64,
     friction: f64,
     dynamic_share: f64,
-    /// The contact-duration model around the rule: its time, and whether the tangential response stays.
-    contact_duration: Option<(f64, bool)>,
+    /// A remedy around the rule.
+    remedy: Option<Remedy>,
 }
 
 impl Law {
     pub(crate) fn rule(&self) -> Rule {
         let rule = self.bare();
-        let Some((duration, unchanged)) = self.contact_duration else { return rule };
-        let model = ContactDuration::new(rule, duration).unwrap();
+        let Some((lasting, limit, unchanged)) = self.remedy else { return rule };
         let response =
             if unchanged { TangentialResponse::Unchanged } else { TangentialResponse::Frictionless };
-        Arc::new(model.with_tangential_response(response))
+        if lasting {
+            Arc::new(ContactDuration::new(rule, limit).unwrap().with_tangential_response(response))
+        } else {
+            Arc::new(ElasticBelow::new(rule, limit).unwrap().with_tangential_response(response))
+        }
     }
 
     fn bare(&self) -> Rule {
@@ -52,6 +60,10 @@ impl Law {
             Kind::Frictional => {
                 let rule = Frictional::from_inelasticity(normal, tangential).unwrap();
                 Arc::new(rule.with_friction(friction, dynamic_share * friction).unwrap())
+            }
+            Kind::SpeedDependent => {
+                let rule = SpeedDependent::new(1.0 - 2.0 * normal, 0.3).unwrap();
+                Arc::new(rule.with_friction(Friction::new(tangential, friction).unwrap()))
             }
             Kind::Closure => Arc::new(from_fn(move |contact: &Contact| viscous(normal, tangential, contact))),
         }
@@ -71,20 +83,21 @@ pub(crate) fn law() -> impl Strategy<Value = Law> {
         1 => Just(Kind::Smooth),
         1 => Just(Kind::Rough),
         2 => Just(Kind::Frictional),
+        1 => Just(Kind::SpeedDependent),
         1 => Just(Kind::Closure),
     ];
     let normal = prop_oneof![4 => 0.0..0.1f64, 1 => Just(0.0), 1 => 0.0..=0.5f64, 1 => Just(0.5)];
     let tangential = prop_oneof![3 => 0.0..=1.0f64, 1 => Just(0.0), 1 => Just(1.0)];
     let friction = prop_oneof![3 => 0.0..1.0f64, 1 => Just(0.0), 1 => Just(1e3)];
-    let contact_duration = prop::option::of((decades(-3.0, -1.0), any::<bool>()));
-    (kind, normal, tangential, friction, 0.0..=1.0f64, contact_duration).prop_map(
-        |(kind, normal, tangential, friction, dynamic_share, contact_duration)| Law {
+    let remedy = prop::option::of((any::<bool>(), decades(-3.0, -1.0), any::<bool>()));
+    (kind, normal, tangential, friction, 0.0..=1.0f64, remedy).prop_map(
+        |(kind, normal, tangential, friction, dynamic_share, remedy)| Law {
             kind,
             normal,
             tangential,
             friction,
             dynamic_share,
-            contact_duration,
+            remedy,
         },
     )
 }

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use granular_edmd::analysis::{PlaneTransition, Transition};
 use granular_edmd::boundary::{Boundary, Thermal};
-use granular_edmd::collision::{ContactDuration, Frictional, Rough, Smooth};
+use granular_edmd::collision::{ContactDuration, ElasticBelow, Frictional, Rough, Smooth, SpeedDependent};
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::Maxwellian;
 use granular_edmd::observable::{
@@ -78,6 +78,8 @@ fn parameters_with_a_field_too_many_are_refused() {
     refuses(&Rough::new(0.1, 0.2).unwrap());
     refuses(&Frictional::new(0.1, 0.2).unwrap());
     refuses(&ContactDuration::new(Frictional::new(0.1, 0.2).unwrap(), 1e-3).unwrap());
+    refuses(&ElasticBelow::new(Frictional::new(0.1, 0.2).unwrap(), 1e-3).unwrap());
+    refuses(&SpeedDependent::new(0.5, 1.0).unwrap());
     refuses(&BiParabolic::new(0.1, 3.0).unwrap());
     refuses(&Sinusoidal::new(0.1, 3.0).unwrap());
     refuses(&Triangular::new(0.1, 3.0).unwrap());

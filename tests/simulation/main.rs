@@ -14,6 +14,7 @@ mod inputs;
 mod kinds;
 mod late_times;
 mod lies;
+mod limits;
 mod long_runs;
 mod mixture_oracle;
 mod mixtures;
@@ -21,6 +22,7 @@ mod oracle;
 mod order;
 mod parting;
 mod periodic;
+mod rest;
 #[cfg(feature = "serde")]
 mod resuming;
 #[path = "../support/schedulers.rs"]

@@ -128,7 +128,7 @@ fn is_spin(spin: &Spin, now: f64) -> bool {
 }
 
 fn is_guard(guard: &Guard) -> bool {
-    guard.since.is_finite() && guard.events <= MOST_COUNTED
+    guard.since.is_finite() && guard.before <= MOST_COUNTED
 }
 
 fn are_counted(counters: &Counters) -> bool {

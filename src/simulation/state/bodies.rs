@@ -82,7 +82,7 @@ pub(in crate::simulation) struct Bodies {
     /// Numbers of periods that each disk has passed; empty as long as none has passed any.
     images: Vec<[i32; 2]>,
     /// Typical diameter, in which the length of an epoch is measured.
-    pub(super) typical_diameter: f64,
+    pub(in crate::simulation) typical_diameter: f64,
 }
 
 impl Bodies {

@@ -28,12 +28,22 @@ pub(in crate::simulation) struct Clock {
     /// The offset after which the epoch moves.
     pub(in crate::simulation) epoch_length: f64,
     pub(in crate::simulation) guard: Guard,
+    /// Number of events until limits and guard are looked at again: 1 if that is due at the next event. No
+    /// outcome depends on it.
+    pub(in crate::simulation) events_to_look: u64,
     pub(in crate::simulation) tally: Tally,
 }
 
 impl Clock {
     pub(in crate::simulation) fn new(origin: f64, epoch_length: f64) -> Self {
-        Self { origin, now: 0.0, epoch_length, guard: Guard::default(), tally: Tally::default() }
+        Self {
+            origin,
+            now: 0.0,
+            epoch_length,
+            guard: Guard::default(),
+            events_to_look: 1,
+            tally: Tally::default(),
+        }
     }
 
     /// Returns the present in absolute time.
@@ -89,11 +99,11 @@ impl Clock {
         if by <= self.now { by } else { nearest.next_down() - self.origin }
     }
 
-    /// Counts an event of a run with so many disks. Returns the number of events without progress, if there
-    /// were too many.
+    /// Counts an event, and tells whether it is time to look at limits and guard.
     #[inline]
-    pub(in crate::simulation) fn watch(&mut self, disks: usize) -> Option<u64> {
-        self.guard.watch(self.now, self.epoch_length, disks)
+    pub(in crate::simulation) fn is_look_due(&mut self) -> bool {
+        self.events_to_look -= 1;
+        self.events_to_look == 0
     }
 
     /// Moves the epoch on by this time.

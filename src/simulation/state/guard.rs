@@ -1,51 +1,96 @@
-//! The guard against runs that cannot progress.
+//! The guard against runs that hardly progress.
 
-/// Number of events that are allowed while time advances by less than [`RESOLUTION`] epochs.
-const PATIENCE: u64 = 200_000;
+/// Number of events of a window, after which progress is judged.
+const WINDOW: u64 = 200_000;
 
-/// Number of events that are allowed in addition for each disk. On a lattice, all disks may have an event at
-/// the same time.
-const PATIENCE_PER_DISK: u64 = 20;
+/// Number of events of a window for each disk in addition. On a lattice, all disks may have an event at the
+/// same time.
+const WINDOW_PER_DISK: u64 = 20;
 
-/// Time that counts as progress, in epochs.
+/// Largest number of events in an epoch that counts as progress: so many, and for each disk so many more.
 ///
-/// A disk goes some tens of diameters in an epoch. If [`PATIENCE`] events advance time by less than this, an
-/// epoch takes 10¹³ events, and days. The bound is not zero, since time does not quite stand still in such a
-/// run: a disk at rest on a wall bounces as high as rounding lets it. The bound is not larger, either. Under
-/// a contact duration of a ten-millionth of the time that a disk takes for a diameter, a run makes progress
-/// even if all disks bounce at once.
-const RESOLUTION: f64 = 1.0 / (1u64 << 25) as f64;
+/// A typical disk goes, or falls, some tens of diameters in an epoch. The bounds are far above the rates of
+/// dense flows, and of packings up to some 1e4 collisions for each diameter that a disk goes. They are far
+/// below those of matter that comes to rest without a remedy. Under them, a disk needs less than a minute for
+/// an epoch, and a thousand some fifteen minutes.
+const MOST_EVENTS: f64 = (1_u64 << 27) as f64;
+const MOST_EVENTS_PER_DISK: f64 = (1_u64 << 22) as f64;
 
-/// A counter of events since time last progressed.
+/// The start of the present window of events.
+///
+/// Windows follow each other without a gap, by numbers of events alone. So a run stalls at the same event,
+/// however it is cut into pieces.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Guard {
+    /// Time offset of the window's first event.
     pub(in crate::simulation) since: f64,
+    /// Number of all events before the window.
+    pub(in crate::simulation) before: u64,
+}
+
+/// A window in which time has hardly advanced.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::simulation) struct Standstill {
     pub(in crate::simulation) events: u64,
+    pub(in crate::simulation) elapsed: f64,
+}
+
+/// Returns the time per event that a run of so many disks needs at least, unless its caller says otherwise.
+pub(in crate::simulation) fn least_progress(epoch_length: f64, disks: usize) -> f64 {
+    epoch_length / (MOST_EVENTS + MOST_EVENTS_PER_DISK * disks as f64)
 }
 
 impl Guard {
-    /// Counts an event. If there were too many without progress, returns their number and starts again from
-    /// 0, so that a caller who removes the cause can go on.
-    #[inline]
-    pub(in crate::simulation) fn watch(
+    /// Returns the number of events until the end of the window; 0 at its end.
+    pub(in crate::simulation) fn left(&self, events: u64, disks: usize) -> u64 {
+        let window = WINDOW + WINDOW_PER_DISK * disks as u64;
+        window.saturating_sub(events.saturating_sub(self.before))
+    }
+
+    /// Ends the window before the event at this time offset, after so many events in all. Returns what it
+    /// was if time has advanced by less than `least_progress` for each event. In either case a new window
+    /// begins, so that a caller who removes the cause can go on.
+    pub(in crate::simulation) fn end_window(
         &mut self,
-        time_offset: f64,
-        epoch_length: f64,
-        disks: usize,
-    ) -> Option<u64> {
-        if time_offset - self.since > RESOLUTION * epoch_length {
-            *self = Self { since: time_offset, events: 0 };
-        }
-        self.events += 1;
-        if self.events > PATIENCE + PATIENCE_PER_DISK * disks as u64 {
-            return Some(std::mem::take(&mut self.events));
-        }
-        None
+        offset: f64,
+        events: u64,
+        least_progress: f64,
+    ) -> Option<Standstill> {
+        let last = std::mem::replace(self, Self { since: offset, before: events });
+        let standstill =
+            Standstill { events: events.saturating_sub(last.before), elapsed: offset - last.since };
+        let is_slow = standstill.elapsed < least_progress * standstill.events as f64;
+        is_slow.then_some(standstill)
     }
 
     /// Measures time from an epoch that is later by this time.
     pub(in crate::simulation) fn shift(&mut self, by: f64) {
         self.since -= by;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Guard, least_progress};
+
+    #[test]
+    fn a_window_ends_after_its_events_and_the_next_one_begins() {
+        let mut guard = Guard::default();
+        assert_eq!(
+            [0, 1, 200_199, 200_200, 300_000].map(|events| guard.left(events, 10)),
+            [200_200, 200_199, 1, 0, 0]
+        );
+        assert_eq!(guard.end_window(3.0, 200_200, 1e-5), None);
+        assert_eq!(guard, Guard { since: 3.0, before: 200_200 });
+        let slow = guard.end_window(3.5, 400_400, 1e-5).unwrap();
+        assert_eq!((slow.events, slow.elapsed), (200_200, 0.5));
+        assert_eq!(guard.left(400_400, 10), 200_200);
+    }
+
+    #[test]
+    fn without_a_least_progress_nothing_is_too_slow() {
+        assert_eq!(Guard::default().end_window(0.0, 1_000_000, 0.0), None);
+        assert!(least_progress(1.0, 0) > least_progress(1.0, 1000));
     }
 }

@@ -1,0 +1,313 @@
+//! Matter at rest: a column of 50 grains falls into a heap on a fixed floor, under each remedy.
+//!
+//! Without a remedy the run stalls, and says so. With one, the example measures what it costs and what it
+//! does to the heap: events per grain and time, the height of the heap, the heat that it keeps, and how far
+//! its grains creep. Diameter, mass and gravity are 1; `q = 0.1`, `κ = 0.5`.
+//!
+//! ```text
+//! cargo run --release --example rest
+//! cargo run --release --example rest -- --end 100 --seconds 5 --out heaps
+//! ```
+//!
+//! The example writes `rest.png` and `rest.csv`. `docs/rest.md` explains the remedies.
+
+mod common;
+
+use std::error::Error;
+use std::fs;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use clap::Parser;
+use granular_edmd::collision::TangentialResponse::{self, Frictionless, Reversing, Unchanged};
+use granular_edmd::prelude::*;
+use granular_edmd::simulation::Counters;
+use kuva::prelude::{LinePlot, Plot, ScatterPlot};
+
+use common::command_line::{self, Failure, positive};
+use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
+
+/// Grains that come to rest, under each remedy: events, height, heat and creep.
+#[derive(Parser)]
+struct Arguments {
+    /// End of each run, in the time in which a grain falls half a diameter.
+    #[arg(long, default_value_t = 1000.0, value_parser = positive)]
+    end: f64,
+    /// Longest wall-clock time of each run, in seconds.
+    #[arg(long, default_value_t = 20.0, value_parser = positive)]
+    seconds: f64,
+    /// Runs to time 40 at most, for 2 seconds at most.
+    #[arg(long)]
+    quick: bool,
+    /// Folder for the results.
+    #[arg(long, default_value = "out")]
+    out: PathBuf,
+    /// File for the numbers as JSON.
+    #[arg(long)]
+    json: Option<PathBuf>,
+}
+
+const GRAINS: usize = 50;
+
+/// Width of the floor, and of the column at first.
+const WIDTH: f64 = 24.0;
+const COLUMN: f64 = 6.6;
+
+/// Share of a run after which the heap is measured.
+const SETTLED: f64 = 0.2;
+
+fn main() -> ExitCode {
+    match run(&command_line::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let out = &arguments.out;
+    fs::create_dir_all(out)
+        .map_err(|error| Failure::run(format_args!("--out {}: {error}", out.display())))?;
+    println!("| remedy | parameter | time | events per grain and time | height | heat | creep | ended by |");
+    println!("|---|---|---|---|---|---|---|---|");
+    let mut heaps = Vec::new();
+    for remedy in remedies().map_err(Failure::run)? {
+        let heap = settled(arguments, remedy).map_err(Failure::run)?;
+        println!("{heap}");
+        heaps.push(heap);
+    }
+    write(arguments, &heaps).map_err(Failure::run)
+}
+
+/// A remedy with its parameter.
+struct Remedy {
+    name: String,
+    parameter: f64,
+    rule: BoxedRule,
+}
+
+fn remedies() -> Result<Vec<Remedy>, ParameterError> {
+    let constant = Frictional::from_inelasticity(0.1, 0.1)?.with_friction(0.5, 0.5)?;
+    let bizon = SpeedDependent::new(0.8, 1.0)?.with_friction(Friction::new(0.1, 0.5)?);
+    let lasting = |duration: f64, response: TangentialResponse| -> Result<BoxedRule, ParameterError> {
+        Ok(Box::new(ContactDuration::new(constant, duration)?.with_tangential_response(response)))
+    };
+    let below = |speed: f64, response: TangentialResponse| -> Result<BoxedRule, ParameterError> {
+        Ok(Box::new(ElasticBelow::new(constant, speed)?.with_tangential_response(response)))
+    };
+    let mut remedies = vec![
+        Remedy { name: "none".into(), parameter: 0.0, rule: Box::new(constant) },
+        Remedy { name: "SpeedDependent".into(), parameter: 1.0, rule: Box::new(bizon) },
+    ];
+    let responses = [(Frictionless, "frictionless"), (Reversing, "reversing"), (Unchanged, "unchanged")];
+    for (response, word) in responses {
+        for parameter in [1e-3, 1e-2, 1e-1] {
+            let name = format!("ContactDuration, {word}");
+            remedies.push(Remedy { name, parameter, rule: lasting(parameter, response)? });
+        }
+    }
+    for (response, word) in responses {
+        for parameter in [0.02, 0.05, 0.1, 0.2, 0.4] {
+            let name = format!("ElasticBelow, {word}");
+            remedies.push(Remedy { name, parameter, rule: below(parameter, response)? });
+        }
+    }
+    let rule = Box::new(ElasticBelow::new(bizon, 0.1)?);
+    remedies.push(Remedy { name: "ElasticBelow of SpeedDependent".into(), parameter: 0.1, rule });
+    Ok(remedies)
+}
+
+/// What became of the grains under a remedy.
+struct Heap {
+    name: String,
+    parameter: f64,
+    ended: String,
+    /// Time at which the run ended, and the wall-clock time that it took, in seconds.
+    time: f64,
+    seconds: f64,
+    /// Events per grain and time, over the time in which the heap is measured, or over all of a run that
+    /// does not get there.
+    events: f64,
+    /// Height of the highest grain's top.
+    height: f64,
+    /// Mean kinetic energy of a grain's motion, over the time in which the heap is measured.
+    heat: f64,
+    /// Mean distance that a grain creeps in that time, per time.
+    creep: f64,
+    disks: Vec<Disk>,
+}
+
+fn settled(arguments: &Arguments, remedy: Remedy) -> Result<Heap, Box<dyn Error>> {
+    let quick = |value: f64, most: f64| if arguments.quick { value.min(most) } else { value };
+    let (end, seconds) = (quick(arguments.end, 40.0), quick(arguments.seconds, 2.0));
+    let container = Container::open(WIDTH)?;
+    let mut simulation = Simulation::builder(remedy.rule, container).disks(column()?).gravity(1.0).build()?;
+    let started = Instant::now();
+    let limits = |end: f64| {
+        let left = Duration::from_secs_f64(seconds).saturating_sub(started.elapsed());
+        Limits::until(end).with_wall_clock(left)
+    };
+    let mut ended = simulation.run(&limits(SETTLED * end), &mut ());
+    let (mut before, mut since, mut start) = (*simulation.counters(), simulation.time(), simulation.disks());
+    let (mut heat, mut samples) = (0.0, 0.0);
+    if matches!(ended, Ok(RunEnd::Time)) {
+        let mut watch = on_sample(SampleTimes::every(0.01 * end)?, |snapshot: &Snapshot<'_>| {
+            heat += snapshot.disks().iter().map(Disk::translational_energy).sum::<f64>() / GRAINS as f64;
+            samples += 1.0;
+        });
+        ended = simulation.run(&limits(end), &mut watch);
+    } else {
+        (before, since, start) = (Counters::default(), 0.0, simulation.disks());
+    }
+    let (time, disks) = (simulation.time(), simulation.disks());
+    let events = simulation.counters().since(&before).events() as f64;
+    let way = start.iter().zip(&disks).map(|(from, to)| from.position().distance(to.position()));
+    Ok(Heap {
+        name: remedy.name,
+        parameter: remedy.parameter,
+        ended: ended.map_or_else(|error| reason(&error), |end| format!("{end:?}")),
+        time,
+        seconds: started.elapsed().as_secs_f64(),
+        events: events / (GRAINS as f64 * (time - since)),
+        height: disks.iter().map(|disk| disk.position().y + disk.radius()).fold(0.0, f64::max),
+        heat: heat / samples,
+        creep: way.sum::<f64>() / (GRAINS as f64 * (time - since)),
+        disks,
+    })
+}
+
+fn reason(error: &RunError) -> String {
+    if matches!(error, RunError::Stalled { .. }) { "Stalled".into() } else { error.to_string() }
+}
+
+/// Returns a column of grains in the middle of the floor.
+fn column() -> Result<Vec<Disk>, Box<dyn Error>> {
+    let shift = DVec2::new(0.5 * (WIDTH - COLUMN), 0.0);
+    let narrow = initial::lattice(&Container::open(COLUMN)?, GRAINS, 0.5)?;
+    let moved = narrow.into_iter().map(|disk| disk.with_position(disk.position() + shift));
+    Ok(initial::with_maxwellian_velocities(moved.collect::<Result<Vec<_>, _>>()?, 0.05, 1)?)
+}
+
+impl std::fmt::Display for Heap {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { name, parameter, ended, time, seconds, events, height, heat, creep, .. } = self;
+        write!(
+            formatter,
+            "| {name} | {parameter} | {time:.1} | {events:.0} | {height:.2} | {heat:.1e} | {creep:.1e} | {ended}, \
+             {seconds:.1} s |"
+        )
+    }
+}
+
+fn write(arguments: &Arguments, heaps: &[Heap]) -> Result<(), Box<dyn Error>> {
+    let (picture, path) = (arguments.out.join("rest.png"), arguments.out.join("rest.csv"));
+    let mut table = csv::Writer::from_path(&path)?;
+    table.write_record([
+        "remedy",
+        "parameter",
+        "time",
+        "seconds",
+        "events",
+        "height",
+        "heat",
+        "creep",
+        "ended",
+    ])?;
+    for Heap { name, parameter, time, seconds, events, height, heat, creep, ended, .. } in heaps {
+        table.serialize((name, parameter, time, seconds, events, height, heat, creep, ended))?;
+    }
+    table.flush()?;
+    fs::write(&picture, draw(heaps)?)?;
+    println!("wrote {} and {}", picture.display(), path.display());
+    if let Some(path) = &arguments.json {
+        let heap = |heap: &Heap| {
+            let Heap { name, parameter, time, seconds, events, height, heat, creep, ended, .. } = heap;
+            serde_json::json!({
+                "remedy": name, "parameter": parameter, "time": time, "seconds": seconds, "ended": ended,
+                "events_per_grain_and_time": events, "height": height, "heat": heat, "creep": creep,
+            })
+        };
+        let text = serde_json::to_string_pretty(&heaps.iter().map(heap).collect::<Vec<_>>())?;
+        fs::write(path, text).map_err(|error| format!("--json {}: {error}", path.display()))?;
+        println!("wrote {}", path.display());
+    }
+    Ok(())
+}
+
+/// Space between a panel's edge and its axes: left, right, top, bottom.
+const MARGINS: [f64; 4] = [52.0, 14.0, 30.0, 44.0];
+const HEADER: f64 = 56.0;
+const UNIT: f64 = 17.0;
+
+/// Height of the part of the heaps that is shown.
+const SHOWN: f64 = 8.0;
+
+/// The remedies whose heaps are drawn.
+const DRAWN: [(&str, f64); 4] = [
+    ("ContactDuration, frictionless", 1e-2),
+    ("ElasticBelow, frictionless", 0.1),
+    ("ElasticBelow, unchanged", 0.1),
+    ("ElasticBelow, unchanged", 0.4),
+];
+
+/// The remedies whose numbers are drawn over their parameters, with their colors.
+const FAMILIES: [(&str, &str); 4] = [
+    (INK, "ContactDuration, frictionless"),
+    (QUIET, "ContactDuration, unchanged"),
+    (BLUE, "ElasticBelow, frictionless"),
+    (ORANGE, "ElasticBelow, unchanged"),
+];
+
+/// Draws some heaps, and cost and heat over the parameters of the remedies.
+fn draw(heaps: &[Heap]) -> Result<Vec<u8>, Box<dyn Error>> {
+    let frame = [WIDTH * UNIT + MARGINS[0] + MARGINS[1], SHOWN * UNIT + MARGINS[2] + MARGINS[3]];
+    let mut sheet = Sheet::new(2.0 * frame[0], HEADER + 2.0 * frame[1] + 340.0);
+    sheet.text(MARGINS[0], 28.0, 19, INK, "Fifty grains that came to rest");
+    sheet.text(MARGINS[0], 47.0, 12, QUIET, "a column fell onto a fixed floor; g = 1, q = 0.1, κ = 0.5");
+    for (k, (name, parameter)) in DRAWN.into_iter().enumerate() {
+        let Some(heap) = heaps.iter().find(|heap| heap.name == name && heap.parameter == parameter) else {
+            continue;
+        };
+        let (x, y) = ((k % 2) as f64 * frame[0], HEADER + (k / 2) as f64 * frame[1]);
+        let layout = sheet::axes((0.0, WIDTH), (0.0, SHOWN)).with_show_grid(false).with_box_axes();
+        let place = Place { x, y, width: frame[0], height: frame[1] };
+        sheet.panel(place, MARGINS, faces(&heap.disks), layout.with_x_label("x").with_y_label("height"));
+        let title = format!("{name}, {parameter}: at time {:.0}", heap.time);
+        sheet.text(x + MARGINS[0], y + 20.0, 12, INK, &title);
+    }
+    let below = HEADER + 2.0 * frame[1];
+    let panels: [(&str, fn(&Heap) -> f64); 2] =
+        [("events per grain and time", |heap| heap.events), ("heat per grain", |heap| heap.heat)];
+    for (k, (label, value)) in panels.into_iter().enumerate() {
+        let place = Place { x: k as f64 * frame[0], y: below + 20.0, width: frame[0], height: 310.0 };
+        let layout = sheet::axes((1e-3, 1.0), range(heaps, value)).with_log_scale().with_show_grid(true);
+        let layout = layout.with_x_label("duration, or speed, of the remedy").with_y_label(label);
+        sheet.panel(place, MARGINS, curves(heaps, value), layout);
+    }
+    sheet.key(MARGINS[0], below + 16.0, &FAMILIES);
+    Ok(sheet.png(1.4)?)
+}
+
+/// Returns the decades that hold all values.
+fn range(heaps: &[Heap], value: fn(&Heap) -> f64) -> (f64, f64) {
+    let values = || heaps.iter().map(value).filter(|value| *value > 0.0 && value.is_finite());
+    let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
+    (10f64.powf(low.log10().floor()), 10f64.powf(high.log10().ceil()))
+}
+
+fn faces(disks: &[Disk]) -> Vec<Plot> {
+    let centers = disks.iter().map(|disk| (disk.position().x, disk.position().y));
+    let sizes = disks.iter().map(|disk| disk.radius() * UNIT - 0.4);
+    vec![ScatterPlot::new().with_data(centers).with_color(GREEN).with_sizes(sizes).into()]
+}
+
+fn curves(heaps: &[Heap], value: fn(&Heap) -> f64) -> Vec<Plot> {
+    let curve = |(color, name): (&str, &str)| {
+        let family = heaps.iter().filter(|heap| heap.name == name);
+        let points = family.map(|heap| (heap.parameter, value(heap))).filter(|(_, value)| *value > 0.0);
+        let points: Vec<(f64, f64)> = points.collect();
+        let marks = ScatterPlot::new().with_data(points.clone()).with_color(color).with_size(3.5);
+        [LinePlot::new().with_data(points).with_color(color).with_stroke_width(1.6).into(), marks.into()]
+    };
+    FAMILIES.into_iter().flat_map(curve).collect()
+}

@@ -1,0 +1,88 @@
+//! Slow collisions without loss, the remedy for matter at rest.
+
+use super::{CollisionRule, Contact, Impulse, Regime, TangentialResponse};
+use crate::quantity::{Checked, Quantity, Range};
+use crate::{Fingerprint, ParameterError};
+
+/// A rule that loses no energy in collisions below a closing speed `$v_c$`, and is as it was above.
+///
+/// A disk that comes to rest then keeps bouncing, at a speed below `$v_c$` and so at a known rate: once in
+/// `$2v/g$`. Matter at rest keeps a granular temperature of the order of `$m v_c^2$`, far below that of its
+/// motion if `$v_c$` is small, and costs the more events the smaller `$v_c$` is. In a gas of temperature
+/// `$T$`, the share `$1 - (1 + x)\,e^{-x} \approx x^2/2$` of the normal dissipation is lost, with
+/// `$x = m v_c^2/4T$`. The page `docs/rest.md` of the repository compares this cut-off with other remedies.
+///
+/// ```
+/// use granular_edmd::collision::{CollisionRule, Contact, ElasticBelow, Frictional, Regime};
+///
+/// let rule = ElasticBelow::new(Frictional::new(0.1, 0.3)?, 0.05)?;
+/// let fast = Contact::new(1.0, 0.5, 0.5, 1.0 / 6.0);
+/// let slow = Contact::new(0.01, 0.5, 0.5, 1.0 / 6.0);
+/// assert!(rule.impulse(&fast).energy_change(&fast) < 0.0);
+/// assert_eq!(rule.impulse(&slow).energy_change(&slow), 0.0);
+/// assert_eq!(rule.impulse(&slow).regime(), Regime::ElasticBelow);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct ElasticBelow<R> {
+    rule: R,
+    speed: Checked<Speed>,
+    #[cfg_attr(feature = "serde", serde(default))]
+    tangential_response: TangentialResponse,
+}
+
+enum Speed {}
+
+impl Quantity for Speed {
+    const NAME: &'static str = "speed of elastic collisions";
+    const RANGE: Range = Range::POSITIVE;
+}
+
+impl<R> ElasticBelow<R> {
+    /// Creates the remedy over `rule`: elastic and frictionless below this closing speed.
+    ///
+    /// # Errors
+    /// If the speed is not finite and positive. For no such speed, use the rule alone.
+    pub fn new(rule: R, speed: f64) -> Result<Self, ParameterError> {
+        let speed = Checked::new(speed)?;
+        Ok(Self { rule, speed, tangential_response: TangentialResponse::default() })
+    }
+
+    /// Returns the same remedy with this tangential response.
+    pub fn with_tangential_response(self, tangential_response: TangentialResponse) -> Self {
+        Self { tangential_response, ..self }
+    }
+
+    /// Returns the rule of all other collisions.
+    pub const fn rule(&self) -> &R {
+        &self.rule
+    }
+
+    /// Returns the closing speed `$v_c$` below which collisions are elastic.
+    pub const fn speed(&self) -> f64 {
+        self.speed.get()
+    }
+}
+
+impl<R: CollisionRule> CollisionRule for ElasticBelow<R> {
+    #[inline]
+    fn impulse(&self, contact: &Contact) -> Impulse {
+        if contact.closing_speed() < self.speed.get() {
+            self.tangential_response.elastic(&self.rule, contact, Regime::ElasticBelow)
+        } else {
+            self.rule.impulse(contact)
+        }
+    }
+
+    fn explain(&self, contact: &Contact) -> Option<String> {
+        self.rule.explain(contact)
+    }
+
+    /// Returns `None` if the rule inside has no fingerprint: two such remedies could not be told apart.
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let (rule, response) = (self.rule.fingerprint()?, self.tangential_response.name());
+        Some(Fingerprint::of("ElasticBelow").part(rule).number(self.speed.get()).text(response))
+    }
+}

@@ -1,0 +1,111 @@
+//! Restitution that falls with the speed of the impact.
+
+use super::{CollisionRule, Contact, Friction, Impulse};
+use crate::quantity::{accept, positive};
+use crate::{Fingerprint, ParameterError};
+
+/// Restitution that falls from 1 with the speed of the impact until it is constant, with Coulomb friction
+/// (C. Bizon et al., Phys. Rev. Lett. **80**, 57 (1998)):
+///
+/// ```math
+/// r_n(v_n) = \max\left(r_0,\ 1 - (1 - r_0)\,(v_n/v_0)^{3/4}\right)
+/// ```
+///
+/// Bizon et al. take `$v_0 = \sqrt{g\sigma}$`, with the diameter `$\sigma$`. Slow collisions lose next to
+/// nothing, as those of real grains. So disks without gravity do not collapse. A disk on a floor still comes
+/// to rest after infinitely many bounces in a finite time, only later: the speed falls by
+/// `$(1 - r_0)\,v\,(v/v_0)^{3/4}$` in each bounce, and the bounces, which last `$2v/g$`, have a finite sum.
+/// Matter at rest needs [`ElasticBelow`](super::ElasticBelow) around this rule.
+///
+/// ```
+/// use granular_edmd::collision::{CollisionRule, Contact, Friction, SpeedDependent};
+///
+/// let rule = SpeedDependent::new(0.7, 1.0)?.with_friction(Friction::new(0.25, 0.5)?);
+/// assert_eq!(rule.restitution(1.0), 0.7);
+/// assert_eq!(rule.restitution(5.0), 0.7);
+/// assert!((rule.restitution(1.0 / 16.0) - (1.0 - 0.3 / 8.0)).abs() < 1e-15);
+/// let slow = Contact::new(1e-8, 0.0, 0.5, 0.5 / 3.0);
+/// assert!((rule.impulse(&slow).normal() / 1e-8 - 1.0).abs() < 1e-6);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawSpeedDependent"))]
+pub struct SpeedDependent {
+    least_restitution: f64,
+    speed: f64,
+    friction: Friction,
+}
+
+impl SpeedDependent {
+    /// Creates a rule without friction whose restitution falls to `$r_0$`, at the closing speed `$v_0$`.
+    ///
+    /// # Errors
+    /// If the restitution is not in `[0, 1]`, or the speed is not finite and positive.
+    pub fn new(least_restitution: f64, speed: f64) -> Result<Self, ParameterError> {
+        let is_restitution = (0.0..=1.0).contains(&least_restitution);
+        accept(is_restitution, "least restitution", "in [0, 1]", least_restitution)?;
+        let friction = Friction::from_inelasticity(0.0)?;
+        Ok(Self { least_restitution, speed: positive("speed of the least restitution", speed)?, friction })
+    }
+
+    /// Returns the same rule with this friction.
+    pub const fn with_friction(self, friction: Friction) -> Self {
+        Self { friction, ..self }
+    }
+
+    /// Returns the restitution `$r_n$` at a closing speed.
+    #[inline]
+    pub fn restitution(&self, closing_speed: f64) -> f64 {
+        // Square roots have the same bits on every platform.
+        let root = (closing_speed / self.speed).min(1.0).sqrt();
+        1.0 - (1.0 - self.least_restitution) * (root * root.sqrt())
+    }
+
+    /// Returns the restitution `$r_0$` of fast collisions.
+    pub const fn least_restitution(&self) -> f64 {
+        self.least_restitution
+    }
+
+    /// Returns the closing speed `$v_0$` from which on the restitution is constant.
+    pub const fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    /// Returns the friction.
+    pub const fn friction(&self) -> &Friction {
+        &self.friction
+    }
+}
+
+impl CollisionRule for SpeedDependent {
+    #[inline]
+    fn impulse(&self, contact: &Contact) -> Impulse {
+        let normal = contact.normal_impulse(self.restitution(contact.closing_speed()));
+        self.friction.impulse(contact, normal)
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let normal = Fingerprint::of("SpeedDependent").number(self.least_restitution).number(self.speed);
+        Some(normal.part(self.friction.fingerprint()))
+    }
+}
+
+/// Fields of the rule in a file.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "SpeedDependent")]
+struct RawSpeedDependent {
+    least_restitution: f64,
+    speed: f64,
+    friction: Friction,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawSpeedDependent> for SpeedDependent {
+    type Error = ParameterError;
+
+    fn try_from(raw: RawSpeedDependent) -> Result<Self, ParameterError> {
+        Ok(Self::new(raw.least_restitution, raw.speed)?.with_friction(raw.friction))
+    }
+}

@@ -1,0 +1,42 @@
+//! The tangential direction of contacts that a remedy makes elastic.
+
+use super::{CollisionRule, Contact, Elastic, Impulse, Regime};
+
+/// The tangential impulse in a contact that [`ContactDuration`](super::ContactDuration) or
+/// [`ElasticBelow`](super::ElasticBelow) makes elastic.
+///
+/// Published codes differ in this choice, so it is explicit here.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum TangentialResponse {
+    /// No tangential impulse: the contact is elastic and frictionless.
+    #[default]
+    Frictionless,
+    /// The tangential impulse of the rule. Only the normal direction is made elastic.
+    Unchanged,
+    /// The slip reverses without loss, as between perfectly rough surfaces. Surfaces at rest then hold each
+    /// other, since the slip is zero on average, however weak the friction of the rule.
+    Reversing,
+}
+
+impl TangentialResponse {
+    /// Returns the impulse of a contact that `rule` would decide, made elastic.
+    pub(super) fn elastic<R: CollisionRule>(self, rule: &R, contact: &Contact, regime: Regime) -> Impulse {
+        let tangential = match self {
+            Self::Frictionless => 0.0,
+            Self::Unchanged => rule.impulse(contact).tangential(),
+            Self::Reversing => 2.0 * contact.tangential_mass() * contact.slip_speed(),
+        };
+        Impulse::new(Elastic.impulse(contact).normal(), tangential).with_regime(regime)
+    }
+
+    /// Returns the word for it in fingerprints.
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Frictionless => "frictionless",
+            Self::Unchanged => "unchanged",
+            Self::Reversing => "reversing",
+        }
+    }
+}

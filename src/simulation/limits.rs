@@ -1,0 +1,156 @@
+//! The limits of a run: its end, and what ends it before.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use super::events::{Counters, RunEnd};
+use super::state::least_progress;
+use crate::ParameterError;
+use crate::quantity::non_negative;
+
+/// Number of events between two looks at the time of day and at the flag of another thread. They take some
+/// tenths of a millisecond.
+const EVENTS_BETWEEN_LOOKS: u64 = 1024;
+
+/// The end of a run, and the limits that may end it before: a number of collisions, a wall-clock time, a flag
+/// that another thread sets.
+///
+/// [`Simulation::run`](crate::Simulation::run) tells which of them ended the run. In each case, the next run
+/// goes on from there with the bits that the run would have had without the limit. Observers end runs by
+/// their [verdict](crate::observable::Observer::verdict).
+///
+/// ```
+/// use std::time::Duration;
+/// use granular_edmd::simulation::{Limits, RunEnd};
+/// # use granular_edmd::{Simulation, boundary::Container, collision::Elastic, initial};
+/// # let container = Container::closed(20.0, 20.0)?;
+/// # let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 50, 0.5)?, 1.0, 1)?;
+/// # let mut simulation = Simulation::builder(Elastic, container).disks(disks).build()?;
+/// let limits = Limits::until(1e3).with_most_collisions(500).with_wall_clock(Duration::from_secs(60));
+/// assert_eq!(simulation.run(&limits, &mut ())?, RunEnd::Collisions);
+/// let counters = simulation.counters();
+/// assert_eq!(counters.collisions + counters.wall_collisions, 500);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Limits {
+    end: f64,
+    most_collisions: u64,
+    wall_clock: Option<Duration>,
+    interrupt: Option<Arc<AtomicBool>>,
+    least_progress: Option<f64>,
+}
+
+impl Limits {
+    /// Creates the limits of a run that ends at the absolute time `end`, and not before.
+    pub const fn until(end: f64) -> Self {
+        Self { end, most_collisions: u64::MAX, wall_clock: None, interrupt: None, least_progress: None }
+    }
+
+    /// Returns the same limits, with at most this many collisions in the run, of disks and with walls.
+    pub fn with_most_collisions(self, most_collisions: u64) -> Self {
+        Self { most_collisions, ..self }
+    }
+
+    /// Returns the same limits, with at most this wall-clock time.
+    ///
+    /// The clock is read once in a thousand events and at each sample, so the run takes a little longer.
+    pub fn with_wall_clock(self, wall_clock: Duration) -> Self {
+        Self { wall_clock: Some(wall_clock), ..self }
+    }
+
+    /// Returns the same limits, with a flag that ends the run when it is set, by another thread or by the
+    /// handler of a signal.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use std::sync::atomic::{AtomicBool, Ordering};
+    /// use granular_edmd::simulation::{Limits, RunEnd};
+    /// # use granular_edmd::{Simulation, boundary::Container, collision::Elastic};
+    /// # let mut simulation = Simulation::builder(Elastic, Container::open(4.0)?).build()?;
+    /// let flag = Arc::new(AtomicBool::new(false));
+    /// let limits = Limits::until(1e3).with_interrupt(Arc::clone(&flag));
+    /// // Another thread asks the run to end.
+    /// flag.store(true, Ordering::Relaxed);
+    /// assert_eq!(simulation.run(&limits, &mut ())?, RunEnd::Interrupted);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_interrupt(self, flag: Arc<AtomicBool>) -> Self {
+        Self { interrupt: Some(flag), ..self }
+    }
+
+    /// Returns the same limits, with this simulated time per event as the least progress of the run; 0 for a
+    /// run that may stand still.
+    ///
+    /// Progress is judged over windows of 200 000 events, and 20 more for each disk. A run with less is
+    /// [stalled](crate::simulation::RunError::Stalled). Without this limit, `$N$` disks may have some 1.3e8
+    /// and `$N$` times 4e6 events in the time in which a typical disk goes or falls some tens of diameters.
+    ///
+    /// # Errors
+    /// If the time is negative or not finite.
+    pub fn with_least_progress(self, time_per_event: f64) -> Result<Self, ParameterError> {
+        Ok(Self { least_progress: Some(non_negative("least progress", time_per_event)?), ..self })
+    }
+
+    /// Returns the absolute time at which the run ends.
+    pub const fn end(&self) -> f64 {
+        self.end
+    }
+}
+
+/// The limits of a run that is under way.
+#[derive(Debug)]
+pub(super) struct Watch<'a> {
+    limits: &'a Limits,
+    /// The number of all collisions at which the run ends.
+    last_collision: u64,
+    deadline: Option<Instant>,
+}
+
+impl<'a> Watch<'a> {
+    /// Begins to watch a run after these counts.
+    pub(super) fn new(limits: &'a Limits, counters: &Counters) -> Self {
+        Self {
+            limits,
+            last_collision: collisions(counters).saturating_add(limits.most_collisions),
+            // A time that no clock will show is no limit.
+            deadline: limits.wall_clock.and_then(|time| Instant::now().checked_add(time)),
+        }
+    }
+
+    /// Returns the absolute time at which the run ends.
+    #[inline]
+    pub(super) const fn end(&self) -> f64 {
+        self.limits.end
+    }
+
+    /// Returns the limit that the run has reached, if it has.
+    pub(super) fn reached(&self, counters: &Counters) -> Option<RunEnd> {
+        if collisions(counters) >= self.last_collision {
+            return Some(RunEnd::Collisions);
+        }
+        if self.limits.interrupt.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            return Some(RunEnd::Interrupted);
+        }
+        self.deadline.is_some_and(|deadline| Instant::now() >= deadline).then_some(RunEnd::WallClock)
+    }
+
+    /// Returns the number of events after which the limits must be looked at again.
+    ///
+    /// So many events have at most as many collisions as are left, so the last one is met exactly.
+    pub(super) fn events_to_look(&self, counters: &Counters) -> u64 {
+        let is_timed = self.deadline.is_some() || self.limits.interrupt.is_some();
+        let most = if is_timed { EVENTS_BETWEEN_LOOKS } else { u64::MAX };
+        most.min(self.last_collision - collisions(counters))
+    }
+
+    /// Returns the least simulated time per event.
+    pub(super) fn least_progress(&self, epoch_length: f64, disks: usize) -> f64 {
+        self.limits.least_progress.unwrap_or_else(|| least_progress(epoch_length, disks))
+    }
+}
+
+const fn collisions(counters: &Counters) -> u64 {
+    counters.collisions + counters.wall_collisions
+}

@@ -1,0 +1,211 @@
+//! Runs: from sample to sample and from collision to collision, until a limit.
+
+use std::ops::ControlFlow;
+
+use super::Simulation;
+use super::errors::{Outcome, RunError};
+use super::events::{Event, RunEnd};
+use super::limits::{Limits, Watch};
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::observable::{Moment, Observer};
+use crate::scheduler::EventScheduler;
+
+/// The point to which a run has come.
+enum Reached {
+    Collision(Event),
+    /// The time until which it should go.
+    Time,
+    Limit(RunEnd),
+}
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
+    /// Runs until the absolute time `end` while `observer` watches (`&mut ()` for no observer). Returns what
+    /// ended the run: its end time, or the observer.
+    ///
+    /// This is [`Self::run`] without any other limit.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn run_until<O: Observer + ?Sized>(
+        &mut self,
+        end: f64,
+        observer: &mut O,
+    ) -> Result<RunEnd, RunError> {
+        self.run(&Limits::until(end), observer)
+    }
+
+    /// Runs up to the first of the `limits` while `observer` watches (`&mut ()` for no observer). Returns
+    /// what ended the run.
+    ///
+    /// The observer is told of the start, of each collision, and of the end, also if that is an error. It is
+    /// shown the samples that it asks for. If it stops the run, the present is the time of the collision or
+    /// sample at which it did so. Whatever ends the run, the next one goes on from there with the same bits.
+    ///
+    /// # Errors
+    /// If the end is not finite or before the present, the run cannot progress, a rule, boundary, scheduler
+    /// or observer breaks its contract, or an observer fails. The simulation then keeps the state of that
+    /// moment.
+    pub fn run<O: Observer + ?Sized>(
+        &mut self,
+        limits: &Limits,
+        observer: &mut O,
+    ) -> Result<RunEnd, RunError> {
+        self.watched_run(limits, observer).map_err(|error| *error)
+    }
+
+    fn watched_run<O: Observer + ?Sized>(&mut self, limits: &Limits, observer: &mut O) -> Outcome<RunEnd> {
+        self.check_end(limits.end())?;
+        let watch = Watch::new(limits, &self.counters);
+        self.clock.events_to_look = 1;
+        observer.on_start(&self.moment());
+        let ended = match self.verdict_of(observer) {
+            Ok(ControlFlow::Continue(())) => self.instructions.run(
+                #[inline(always)]
+                || self.sample_until(&watch, observer),
+            ),
+            stopped => stopped.map(|_| RunEnd::Observer),
+        };
+        observer.on_end(&self.moment());
+        // A verdict to stop comes too late now. A failure, such as that of a last write, must still be
+        // reported.
+        let last = self.verdict_of(observer);
+        ended.and_then(|end| last.map(|_| end))
+    }
+
+    /// Goes to the next collision, if it is not after the absolute time `end`, and returns it. If there is
+    /// none, goes to `end` and returns `None`.
+    ///
+    /// The observer is told of the collision only: `on_start`, `on_sample` and `on_end` are not called, so
+    /// its clock stands still. If the observer fails, the step returns an error. A verdict to stop has no
+    /// effect, since the caller takes each step.
+    ///
+    /// ```
+    /// # use granular_edmd::glam::DVec2;
+    /// # use granular_edmd::{Disk, Simulation, boundary::Container, collision::Elastic, simulation::Event};
+    /// let disk = Disk::new(DVec2::new(2.0, 1.0), 0.5)?.with_velocity(DVec2::NEG_Y)?;
+    /// let mut run = Simulation::builder(Elastic, Container::open(4.0)?).disks([disk]).build()?;
+    /// assert_eq!(run.step_until(10.0, &mut ())?, Some(Event::WallCollision { disk: 0, wall: 0 }));
+    /// assert_eq!(run.time(), 0.5);
+    /// assert_eq!(run.step_until(10.0, &mut ())?, None);
+    /// assert_eq!(run.time(), 10.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Self::run_until`].
+    pub fn step_until<O: Observer + ?Sized>(
+        &mut self,
+        end: f64,
+        observer: &mut O,
+    ) -> Result<Option<Event>, RunError> {
+        self.watched_step(end, observer).map_err(|error| *error)
+    }
+
+    fn watched_step<O: Observer + ?Sized>(&mut self, end: f64, observer: &mut O) -> Outcome<Option<Event>> {
+        self.check_end(end)?;
+        let limits = Limits::until(end);
+        let reached = self.collide_until(end, &Watch::new(&limits, &self.counters), observer)?;
+        // A verdict to stop has no effect: the caller of single steps can stop at any of them.
+        let _: ControlFlow<()> = self.verdict_of(observer)?;
+        Ok(if let Reached::Collision(event) = reached { Some(event) } else { None })
+    }
+
+    /// Goes from sample to sample until a limit.
+    #[inline(always)]
+    fn sample_until<O: Observer + ?Sized>(&mut self, watch: &Watch<'_>, observer: &mut O) -> Outcome<RunEnd> {
+        let end = watch.end();
+        loop {
+            if let Some(end) = watch.reached(&self.counters) {
+                return Ok(end);
+            }
+            let sample = observer.next_sample();
+            if sample.is_nan() {
+                return Err(Box::new(RunError::SampleTime { next: sample, time: self.time() }));
+            }
+            let stop = end.min(sample.max(self.time()));
+            loop {
+                match self.collide_until(stop, watch, observer)? {
+                    Reached::Collision(_) => {}
+                    Reached::Time => break,
+                    Reached::Limit(end) => return Ok(end),
+                }
+                if self.verdict_of(observer)?.is_break() {
+                    return Ok(RunEnd::Observer);
+                }
+            }
+            if sample > stop {
+                return Ok(RunEnd::Time);
+            }
+            observer.on_sample(&self.snapshot_as_of(stop));
+            if self.verdict_of(observer)?.is_break() {
+                return Ok(RunEnd::Observer);
+            }
+            let next = observer.next_sample();
+            if next.is_nan() || next <= sample {
+                return Err(Box::new(RunError::SampleTime { next, time: self.time() }));
+            }
+        }
+    }
+
+    /// Does all events until the next collision, the absolute time `stop`, or a limit, and goes there.
+    #[inline(always)]
+    fn collide_until<O: Observer + ?Sized>(
+        &mut self,
+        stop: f64,
+        watch: &Watch<'_>,
+        observer: &mut O,
+    ) -> Outcome<Reached> {
+        // The epoch may move with each event, which changes the offset of `stop`.
+        while let Some((disk, due)) = self.next_due(stop - self.clock.origin) {
+            if self.clock.is_look_due()
+                && let Some(end) = self.look(watch, disk, due)?
+            {
+                return Ok(Reached::Limit(end));
+            }
+            if let Some(event) = self.advance(disk, due, observer)? {
+                return Ok(Reached::Collision(event));
+            }
+        }
+        self.clock.now = self.clock.now.max(stop - self.clock.origin);
+        Ok(Reached::Time)
+    }
+
+    /// Looks at the limits and at the progress of the run, before the next event. Returns the limit that was
+    /// reached, if one was.
+    #[cold]
+    #[inline(never)]
+    fn look(&mut self, watch: &Watch<'_>, disk: usize, due: f64) -> Outcome<Option<RunEnd>> {
+        // Whatever ends the run here, the next one looks before its first event.
+        self.clock.events_to_look = 1;
+        if let Some(end) = watch.reached(&self.counters) {
+            return Ok(Some(end));
+        }
+        let (events, disks) = (self.counters.events(), self.bodies.len());
+        if self.clock.guard.left(events, disks) == 0 {
+            let least = watch.least_progress(self.clock.epoch_length, disks);
+            if let Some(standstill) = self.clock.guard.end_window(due, events, least) {
+                return Err(self.stalled(&standstill, disk, due).into());
+            }
+        }
+        let left = self.clock.guard.left(events, disks);
+        self.clock.events_to_look = left.min(watch.events_to_look(&self.counters));
+        Ok(None)
+    }
+
+    fn check_end(&self, end: f64) -> Outcome<()> {
+        let is_ahead = end.is_finite() && end >= self.time() - self.clock.rounding();
+        if is_ahead { Ok(()) } else { Err(Box::new(RunError::End { end, time: self.time() })) }
+    }
+
+    /// Asks the observer whether the run goes on.
+    #[inline]
+    fn verdict_of<O: Observer + ?Sized>(&self, observer: &mut O) -> Outcome<ControlFlow<()>> {
+        observer.verdict().map_err(|source| Box::new(RunError::Observer { time: self.time(), source }))
+    }
+
+    fn moment(&self) -> Moment {
+        let domain = self.boundary.domain();
+        Moment::new(self.time(), self.len(), self.wall_count, domain, self.bodies.gravity)
+    }
+}

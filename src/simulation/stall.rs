@@ -1,0 +1,152 @@
+//! The diagnosis of a run that hardly progresses: which disk, which partner, and what would help.
+
+use std::fmt;
+
+use super::Simulation;
+use super::errors::RunError;
+use super::resolution::{resolve_pair, resolve_wall};
+use super::state::{Clock, Exit, Forecast, Standstill};
+use crate::boundary::{Boundary, Response};
+use crate::collision::laws::{available_energy, closing_speed_after};
+use crate::collision::{CollisionRule, Contact, Regime};
+use crate::observable::Partner;
+use crate::scheduler::EventScheduler;
+
+/// Speed, relative to that of a typical disk, at which the rule is asked what it does in slow collisions.
+const SLOW: f64 = 1e-9;
+
+/// Share of the energy, or of the closing speed, that is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// The remedy for a run that stalled, by what the rule does in collisions as slow as the last ones.
+///
+/// The page `docs/rest.md` of the repository compares the remedies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// Slow collisions lose energy, so disks that come to rest collide ever faster: make slow collisions, or
+    /// soon repeated ones, elastic.
+    ElasticWhenSlow,
+    /// The contact-duration model is at work, with a duration so short that disks at rest collide too often.
+    LongerContactDuration,
+    /// Slow collisions lose nothing already, but these are too slow: a disk is at rest or squeezed.
+    FasterDisks,
+    /// The rule leaves disks approaching each other.
+    PushApart,
+    /// No collision is in sight: the boundary or the scheduler names events that lead nowhere.
+    OtherParts,
+}
+
+impl fmt::Display for Remedy {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::ElasticWhenSlow => {
+                "matter that comes to rest, or an inelastic collapse; the rules ElasticBelow and ContactDuration \
+                 make such collisions elastic"
+            }
+            Self::LongerContactDuration => {
+                "matter at rest under a short contact duration; a longer one helps, or the rule ElasticBelow"
+            }
+            Self::FasterDisks => {
+                "a disk at rest or squeezed, whose collisions lose nothing but are too slow; a faster start helps, more \
+                 room, or a higher speed of ElasticBelow"
+            }
+            Self::PushApart => "the rule does not push the disks apart; see collision::laws::check_rule",
+            Self::OtherParts => "no collision is in sight; does the boundary or the scheduler advance?",
+        })
+    }
+}
+
+/// The parting words of an error: the partner of a disk.
+pub(super) struct Named<'a>(pub(super) Option<Partner>, pub(super) Option<&'a str>);
+
+impl fmt::Display for Named<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.0, self.1) {
+            (Some(Partner::Disk(other)), _) => write!(formatter, " with disk {other}"),
+            (Some(Partner::Wall(_)), Some(name)) => write!(formatter, " with the wall {name:?}"),
+            (Some(Partner::Wall(wall)), None) => write!(formatter, " with wall {wall}"),
+            (None, _) => Ok(()),
+        }
+    }
+}
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
+    /// Returns the error of a run that stands still before an event of this disk.
+    #[cold]
+    pub(super) fn stalled(&self, standstill: &Standstill, disk: usize, due: f64) -> RunError {
+        let (disk, due) = self.next_collider(disk, due);
+        let partner = self.partner_of(disk);
+        let wall = match partner {
+            Some(Partner::Wall(wall)) => Some(self.boundary.wall_name(wall).into_owned()),
+            _ => None,
+        };
+        let remedy = partner.map_or(Remedy::OtherParts, |partner| self.remedy(disk, partner, due));
+        let Standstill { events, elapsed } = *standstill;
+        RunError::Stalled { time: self.time(), disk, partner, wall, events, elapsed, remedy }
+    }
+
+    /// Returns the disk of the next collision and its time offset, or these if there is no collision.
+    fn next_collider(&self, disk: usize, due: f64) -> (usize, f64) {
+        if self.partner_of(disk).is_some() {
+            return (disk, due);
+        }
+        let colliders = (0..self.bodies.len()).filter(|&disk| self.partner_of(disk).is_some());
+        let due_of = |disk: usize| (disk, self.bodies.forecast(disk).map_or(f64::INFINITY, Forecast::due));
+        colliders.map(due_of).min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((disk, due))
+    }
+
+    /// Returns the partner of a disk in its next event, if that is a collision.
+    fn partner_of(&self, disk: usize) -> Option<Partner> {
+        let forecast = self.bodies.forecast(disk)?;
+        if forecast.is_collision() {
+            let partner = forecast.partner as usize;
+            return (partner < self.bodies.len()).then_some(Partner::Disk(partner));
+        }
+        let wall = usize::from(forecast.wall);
+        (forecast.exit == Exit::Wall && wall < self.wall_count).then_some(Partner::Wall(wall))
+    }
+
+    fn remedy(&self, disk: usize, partner: Partner, due: f64) -> Remedy {
+        let clock = Clock { now: due, ..self.clock };
+        match partner {
+            Partner::Disk(other) => {
+                let periods = self.cells.grid().periods();
+                let (collision, _) = resolve_pair(&self.bodies, &self.rule, periods, &clock, disk, other);
+                self.remedy_for(&collision.contact, &self.rule)
+            }
+            Partner::Wall(wall) => {
+                let surface = self.boundary.surface(wall, self.bodies.position(disk, due), due);
+                let mut generator = self.generator.clone();
+                let (collision, _) =
+                    resolve_wall(&self.bodies, &self.rule, &mut generator, &surface, &clock, disk, wall);
+                match surface.response {
+                    Response::Rule(own) => self.remedy_for(&collision.contact, own),
+                    Response::Thermal(_) => Remedy::FasterDisks,
+                    Response::Shared => self.remedy_for(&collision.contact, &self.rule),
+                }
+            }
+        }
+    }
+
+    /// Returns the remedy by what the rule answers to this contact, or to the same with a small speed where
+    /// the speed of the contact is rounding.
+    fn remedy_for(&self, contact: &Contact, rule: &dyn CollisionRule) -> Remedy {
+        let typical = self.bodies.typical_diameter / self.clock.epoch_length;
+        let closing = contact.closing_speed().max(SLOW * typical);
+        let slow = Contact::new(closing, 0.0, contact.normal_mass(), contact.tangential_mass())
+            .with_time_since_last_collision(contact.time_since_last_collision())
+            .with_kinds(contact.kinds())
+            .with_radii(contact.radii());
+        let impulse = rule.impulse(&slow);
+        if closing_speed_after(&slow, impulse) > ROUNDING * closing {
+            Remedy::PushApart
+        } else if impulse.energy_change(&slow) < -ROUNDING * available_energy(&slow) {
+            Remedy::ElasticWhenSlow
+        } else if impulse.regime() == Regime::ContactDuration {
+            Remedy::LongerContactDuration
+        } else {
+            Remedy::FasterDisks
+        }
+    }
+}

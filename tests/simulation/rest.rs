@@ -1,0 +1,205 @@
+//! Matter at rest: without a remedy an error that names it, within some 1e5 events, and with one a run.
+
+use granular_edmd::boundary::{Boundary, Container, Obstacles, Wall};
+use granular_edmd::collision::{
+    CollisionRule, ContactDuration, Elastic, ElasticBelow, Frictional, Smooth, SpeedDependent,
+};
+use granular_edmd::glam::DVec2;
+use granular_edmd::observable::{Collision, Energies, Partner, on_collision};
+use granular_edmd::simulation::{Remedy, RunError};
+use granular_edmd::wall::{Sinusoidal, Triangular};
+use granular_edmd::{Disk, Simulation, initial};
+
+const FLOOR: Partner = Partner::Wall(0);
+
+fn disk(x: f64, y: f64) -> Disk {
+    Disk::new(DVec2::new(x, y), 0.5).unwrap()
+}
+
+fn restitution(normal: f64) -> Smooth {
+    Smooth::from_restitution(normal).unwrap()
+}
+
+/// The stall of a run to `t` = 1000 under gravity 1, with disk, partner and remedy.
+struct Stall {
+    disk: usize,
+    partner: Option<Partner>,
+    remedy: Remedy,
+    text: String,
+}
+
+/// Runs until the run stalls, within two windows of events after the last one with progress.
+fn stall<R: CollisionRule, B: Boundary>(rule: R, boundary: B, disks: &[Disk]) -> Stall {
+    let builder = Simulation::builder(rule, boundary).disks(disks.iter().copied());
+    let mut run = builder.gravity(1.0).build().unwrap();
+    let error = run.run_until(1e3, &mut ()).unwrap_err();
+    let text = error.to_string();
+    let events = run.counters().events();
+    assert!(events < 1_500_000, "{events}: {text}");
+    let RunError::Stalled { disk, partner, remedy, time, elapsed, .. } = error else { panic!("{text}") };
+    assert!(time == run.time() && elapsed < 0.01, "{text}");
+    Stall { disk, partner, remedy, text }
+}
+
+/// Runs to the end, with slow collisions made elastic.
+fn goes_on<R: CollisionRule, B: Boundary>(rule: R, boundary: B, disks: &[Disk]) {
+    let rule = ElasticBelow::new(rule, 0.1).unwrap();
+    let builder = Simulation::builder(rule, boundary).disks(disks.iter().copied());
+    let mut run = builder.gravity(1.0).build().unwrap();
+    run.run_until(100.0, &mut ()).unwrap();
+    assert!(run.counters().max_overlap < 1e-9 && run.counters().max_wall_overlap < 1e-9);
+}
+
+#[test]
+fn a_ball_on_a_floor() {
+    for normal in [0.8, 0.5, 0.0] {
+        let (walls, balls) = (Container::open(4.0).unwrap(), [disk(2.0, 1.5)]);
+        let found = stall(restitution(normal), walls.clone(), &balls);
+        assert_eq!((found.disk, found.partner), (0, Some(FLOOR)));
+        assert_eq!(found.remedy, Remedy::ElasticWhenSlow);
+        for word in ["disk 0", "\"floor\"", "rest", "ElasticBelow", "docs/rest.md"] {
+            assert!(found.text.contains(word), "{word}: {}", found.text);
+        }
+        goes_on(restitution(normal), walls, &balls);
+    }
+}
+
+#[test]
+fn a_column_of_balls() {
+    let balls: Vec<Disk> = (0..5).map(|k| disk(2.0, 0.7 + 1.2 * f64::from(k))).collect();
+    for normal in [0.8, 0.3] {
+        let walls = Container::open(4.0).unwrap();
+        let found = stall(restitution(normal), walls.clone(), &balls);
+        assert!(found.partner.is_some() && found.remedy == Remedy::ElasticWhenSlow, "{}", found.text);
+        goes_on(restitution(normal), walls, &balls);
+    }
+}
+
+#[test]
+fn a_heap_of_fifty() {
+    let walls = Container::open(20.0).unwrap();
+    let disks = initial::lattice(&walls, 50, 0.5).unwrap();
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
+    let found = stall(Frictional::new(0.1, 0.3).unwrap(), walls.clone(), &disks);
+    assert!(found.partner.is_some() && found.remedy == Remedy::ElasticWhenSlow, "{}", found.text);
+    goes_on(Frictional::new(0.1, 0.3).unwrap(), walls, &disks);
+}
+
+#[test]
+fn two_disks_squeezed_between_floor_and_lid() {
+    let walls = Container::closed(1.0 + 1e-6, 2.0 + 1e-6).unwrap();
+    let disks = [disk(0.5 + 4e-7, 0.5 + 2e-7), disk(0.5 + 6e-7, 1.5 + 6e-7)];
+    let found = stall(restitution(0.6), walls.clone(), &disks);
+    assert!(found.partner.is_some() && found.remedy == Remedy::ElasticWhenSlow, "{}", found.text);
+    // Between walls so close, elastic disks do not rest, but collide 1e6 times in the time of a diameter.
+    let found = stall(Elastic, walls, &disks.map(|disk| disk.with_velocity(DVec2::splat(40.0)).unwrap()));
+    assert_eq!(found.remedy, Remedy::FasterDisks);
+}
+
+#[test]
+fn a_disk_in_a_notch_between_two_obstacles() {
+    let pegs = [disk(1.4, 0.6), disk(2.7, 0.5)];
+    let walls = Obstacles::new(Container::open(4.0).unwrap(), pegs);
+    let balls = [disk(2.0, 3.0)];
+    let found = stall(Frictional::new(0.2, 0.4).unwrap(), walls.clone(), &balls);
+    assert!(matches!(found.partner, Some(Partner::Wall(1..))), "{}", found.text);
+    assert!(found.text.contains("obstacle"), "{}", found.text);
+    goes_on(Frictional::new(0.2, 0.4).unwrap(), walls, &balls);
+}
+
+#[test]
+fn a_disk_on_a_floor_that_accelerates_upward() {
+    let floors = [Sinusoidal::new(1.0, 4.0).unwrap(), Sinusoidal::new(0.05, 4.0).unwrap()];
+    for floor in floors {
+        let walls = Container::open(4.0).unwrap().with_motion(Wall::Floor, floor).unwrap();
+        let spinning = disk(2.0, 2.5).with_angular_velocity(3.0).unwrap();
+        let found = stall(Frictional::new(0.4, 0.5).unwrap(), walls.clone(), &[spinning]);
+        assert_eq!((found.partner, found.remedy), (Some(FLOOR), Remedy::ElasticWhenSlow));
+        goes_on(Frictional::new(0.4, 0.5).unwrap(), walls, &[spinning]);
+    }
+}
+
+#[test]
+fn a_disk_under_a_lid_that_comes_down() {
+    let lid = Triangular::new(0.5, 1.0).unwrap();
+    let walls = Container::closed(4.0, 2.0).unwrap().with_motion(Wall::Lid, lid).unwrap();
+    let found = stall(Frictional::new(0.4, 0.5).unwrap(), walls, &[disk(2.0, 0.9)]);
+    assert_eq!(found.disk, 0);
+}
+
+#[test]
+fn the_error_says_what_helps() {
+    let balls = [disk(2.0, 1.5)];
+    let open = || Container::open(4.0).unwrap();
+    let short = ContactDuration::new(restitution(0.5), 1e-9).unwrap();
+    assert_eq!(stall(short, open(), &balls).remedy, Remedy::LongerContactDuration);
+    let slow = ElasticBelow::new(restitution(0.5), 1e-9).unwrap();
+    let found = stall(slow, open(), &balls);
+    assert_eq!(found.remedy, Remedy::FasterDisks);
+    assert!(found.text.contains("higher speed of ElasticBelow"), "{}", found.text);
+    // At rest from the start: there is no speed to bounce with.
+    assert_eq!(stall(Elastic, open(), &[disk(2.0, 0.5)]).remedy, Remedy::FasterDisks);
+    let weak = granular_edmd::collision::from_fn(|contact: &granular_edmd::collision::Contact| {
+        granular_edmd::collision::Impulse::new(0.5 * contact.normal_impulse(0.0), 0.0)
+    });
+    assert_eq!(stall(weak, open(), &balls).remedy, Remedy::PushApart);
+}
+
+/// Speeds fall by the restitution until one is below that of the remedy, and stay there.
+#[test]
+fn a_ball_at_rest_bounces_at_the_speed_and_rate_of_the_closed_form() {
+    let (normal, slow, end) = (0.7_f64, 0.05, 1000.0);
+    let rule = ElasticBelow::new(restitution(normal), slow).unwrap();
+    let mut run = Simulation::builder(rule, Container::open(4.0).unwrap())
+        .disks([disk(2.0, 1.5)])
+        .gravity(1.0)
+        .build()
+        .unwrap();
+    let (mut speed, mut bounces) = (2.0_f64.sqrt(), 0_i32);
+    while speed >= slow {
+        speed *= normal;
+        bounces += 1;
+    }
+    let mut last = 0.0;
+    run.run_until(end, &mut on_collision(|c: &Collision| last = c.contact.closing_speed())).unwrap();
+    assert!((last / speed - 1.0).abs() < 1e-9, "{last} {speed}");
+    let settled = 2.0_f64.sqrt() * (1.0 + 2.0 * (1..=bounces).map(|n| normal.powi(n)).sum::<f64>());
+    let expected = f64::from(bounces) + 1.0 + (end - settled) / (2.0 * speed);
+    assert!((run.counters().wall_collisions as f64 - expected).abs() <= 1.0 + 1e-6 * expected, "{expected}");
+}
+
+/// Bizon's restitution delays the rest of a ball and does not prevent it, as its speeds say.
+#[test]
+fn a_ball_of_speed_dependent_restitution_bounces_as_iterated_and_stalls_in_the_end() {
+    let rule = SpeedDependent::new(0.7, 1.0).unwrap();
+    let mut run = Simulation::builder(rule, Container::open(4.0).unwrap())
+        .disks([disk(2.0, 1.5)])
+        .gravity(1.0)
+        .build()
+        .unwrap();
+    let mut speeds = Vec::new();
+    let mut watch = on_collision(|c: &Collision| speeds.push(c.contact.closing_speed()));
+    let error = run.run_until(1e3, &mut watch).unwrap_err();
+    assert!(matches!(error, RunError::Stalled { remedy: Remedy::ElasticWhenSlow, .. }), "{error}");
+    let mut speed = 2.0_f64.sqrt();
+    for (n, &measured) in speeds.iter().enumerate().take(1000) {
+        assert!((measured / speed - 1.0).abs() < 1e-6, "{n}: {measured} {speed}");
+        speed *= 0.7_f64.max(1.0 - 0.3 * speed.powf(0.75));
+    }
+    // The last of the bounces are far apart from each other in number, not in time: their sum is finite.
+    assert!(run.time() < 60.0, "{}", run.time());
+}
+
+/// Slow collisions without loss keep the energy of all disks that only have slow collisions.
+#[test]
+fn a_heap_that_only_has_slow_collisions_keeps_its_energy() {
+    let walls = Container::closed(8.0, 20.0).unwrap().with_periodic_sides();
+    let disks = initial::lattice(&walls, 30, 0.5).unwrap();
+    let disks = initial::with_maxwellian_velocities(disks, 1e-4, 2).unwrap();
+    let rule = ElasticBelow::new(Frictional::new(0.1, 0.3).unwrap(), 100.0).unwrap();
+    let mut run = Simulation::builder(rule, walls).disks(disks).gravity(1.0).build().unwrap();
+    let before = run.measure(&Energies).total();
+    run.run_until(50.0, &mut ()).unwrap();
+    assert!((run.measure(&Energies).total() / before - 1.0).abs() < 1e-10);
+    assert!(run.counters().collisions > 1000);
+}
