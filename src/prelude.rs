@@ -5,8 +5,8 @@
 
 pub use crate::boundary::{Boundary, Container, Domain, Region, Response, Surface, Thermal, Touch, Wall};
 pub use crate::collision::{
-    CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Impulse, Regime,
-    Rough, RulesByKind, Smooth, SpeedDependent,
+    CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Impulse,
+    LeastRebound, Regime, Rough, RulesByKind, Smooth, SpeedDependent,
 };
 pub use crate::glam::DVec2;
 pub use crate::initial;
