@@ -295,7 +295,7 @@ fn draw(heaps: &[Heap]) -> Result<Vec<u8>, Box<dyn Error>> {
         sheet.text(x + MARGINS[0], y + 20.0, 12, INK, &title);
     }
     let below = HEADER + 2.0 * frame[1];
-    let panels: [(&str, fn(&Heap) -> f64); 2] =
+    let panels: [(&str, Quantity); 2] =
         [("events per grain and time", |heap| heap.events), ("heat per grain", |heap| heap.heat)];
     for (k, (label, value)) in panels.into_iter().enumerate() {
         let place = Place { x: k as f64 * frame[0], y: below + 20.0, width: frame[0], height: 310.0 };
@@ -307,8 +307,11 @@ fn draw(heaps: &[Heap]) -> Result<Vec<u8>, Box<dyn Error>> {
     Ok(sheet.png(1.4)?)
 }
 
+/// A number of a heap.
+type Quantity = fn(&Heap) -> f64;
+
 /// Returns the decades that hold all values.
-fn range(heaps: &[Heap], value: fn(&Heap) -> f64) -> (f64, f64) {
+fn range(heaps: &[Heap], value: Quantity) -> (f64, f64) {
     let values = || heaps.iter().map(value).filter(|value| *value > 0.0 && value.is_finite());
     let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
     (10f64.powf(low.log10().floor()), 10f64.powf(high.log10().ceil()))
@@ -323,7 +326,7 @@ fn faces(disks: &[Disk], glued: &[Disk]) -> Vec<Plot> {
     vec![faces(glued, QUIET), faces(disks, GREEN)]
 }
 
-fn curves(heaps: &[Heap], value: fn(&Heap) -> f64) -> Vec<Plot> {
+fn curves(heaps: &[Heap], value: Quantity) -> Vec<Plot> {
     let curve = |(color, name): (&str, &str)| {
         let family = heaps.iter().filter(|heap| heap.name == name);
         let points = family.map(|heap| (heap.parameter, value(heap))).filter(|(_, value)| *value > 0.0);

@@ -11,8 +11,8 @@ use crate::{Fingerprint, ParameterError};
 /// ```
 ///
 /// A grain at rest then bounces at `$v_c$`, as if the ground trembled. Each collision passes on the momentum
-/// `$\mu v_c$` at least, so a contact that carries the mean force `$F$` has at most `$F/\mu v_c$` collisions in
-/// a unit of time, whatever the rule loses. The cost of matter at rest is known beforehand, and friction
+/// `$\mu v_c$` at least. So a contact that carries the mean force `$F$` has at most `$F/\mu v_c$` collisions
+/// in a unit of time, whatever the rule loses. The cost of matter at rest is known beforehand, and friction
 /// stays as it is.
 ///
 /// **The rule gains energy** where surfaces close more slowly than they part, `$\tfrac12\mu(v_c^2 - v_n^2)$`
