@@ -1,4 +1,4 @@
-//! Matter at rest: a column of 50 grains falls into a heap on a fixed floor, under each remedy.
+//! Matter at rest: a column of 50 grains falls into a heap on a rough floor, under each remedy.
 //!
 //! Without a remedy the run stalls, and says so. With one, the example measures what it costs and what it
 //! does to the heap: events per grain and time, the height of the heap, the heat that it keeps, and how far
@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! cargo run --release --example rest
-//! cargo run --release --example rest -- --end 100 --seconds 5 --out heaps
+//! cargo run --release --example rest -- --flat --end 1000 --out heaps
 //! ```
 //!
 //! The example writes `rest.png` and `rest.csv`. `docs/rest.md` explains the remedies.
@@ -20,7 +20,8 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use clap::Parser;
-use granular_edmd::collision::TangentialResponse::{self, Frictionless, Reversing, Unchanged};
+use granular_edmd::boundary::Obstacles;
+use granular_edmd::collision::TangentialResponse::{Reversing, Unchanged};
 use granular_edmd::prelude::*;
 use granular_edmd::simulation::Counters;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
@@ -32,11 +33,14 @@ use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
 #[derive(Parser)]
 struct Arguments {
     /// End of each run, in the time in which a grain falls half a diameter.
-    #[arg(long, default_value_t = 1000.0, value_parser = positive)]
+    #[arg(long, default_value_t = 200.0, value_parser = positive)]
     end: f64,
     /// Longest wall-clock time of each run, in seconds.
     #[arg(long, default_value_t = 20.0, value_parser = positive)]
     seconds: f64,
+    /// Takes a flat floor, with no grains glued to it.
+    #[arg(long)]
+    flat: bool,
     /// Runs to time 40 at most, for 2 seconds at most.
     #[arg(long)]
     quick: bool,
@@ -49,6 +53,9 @@ struct Arguments {
 }
 
 const GRAINS: usize = 50;
+
+/// Durations and speeds of the remedies.
+const PARAMETERS: [f64; 5] = [0.02, 0.05, 0.1, 0.2, 0.4];
 
 /// Width of the floor, and of the column at first.
 const WIDTH: f64 = 24.0;
@@ -81,7 +88,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// A remedy with its parameter.
 struct Remedy {
-    name: String,
+    name: &'static str,
     parameter: f64,
     rule: BoxedRule,
 }
@@ -89,37 +96,30 @@ struct Remedy {
 fn remedies() -> Result<Vec<Remedy>, ParameterError> {
     let constant = Frictional::from_inelasticity(0.1, 0.1)?.with_friction(0.5, 0.5)?;
     let bizon = SpeedDependent::new(0.8, 1.0)?.with_friction(Friction::new(0.1, 0.5)?);
-    let lasting = |duration: f64, response: TangentialResponse| -> Result<BoxedRule, ParameterError> {
-        Ok(Box::new(ContactDuration::new(constant, duration)?.with_tangential_response(response)))
-    };
-    let below = |speed: f64, response: TangentialResponse| -> Result<BoxedRule, ParameterError> {
-        Ok(Box::new(ElasticBelow::new(constant, speed)?.with_tangential_response(response)))
-    };
     let mut remedies = vec![
-        Remedy { name: "none".into(), parameter: 0.0, rule: Box::new(constant) },
-        Remedy { name: "SpeedDependent".into(), parameter: 1.0, rule: Box::new(bizon) },
+        Remedy { name: "none", parameter: 0.0, rule: Box::new(constant) },
+        Remedy { name: "SpeedDependent", parameter: 1.0, rule: Box::new(bizon) },
     ];
-    let responses = [(Frictionless, "frictionless"), (Reversing, "reversing"), (Unchanged, "unchanged")];
-    for (response, word) in responses {
-        for parameter in [1e-3, 1e-2, 1e-1] {
-            let name = format!("ContactDuration, {word}");
-            remedies.push(Remedy { name, parameter, rule: lasting(parameter, response)? });
-        }
+    for parameter in PARAMETERS {
+        let lasting = ContactDuration::new(constant, parameter)?;
+        let below = ElasticBelow::new(constant, parameter)?;
+        let rules: [(&'static str, BoxedRule); 6] = [
+            ("ContactDuration", Box::new(lasting)),
+            ("ContactDuration, unchanged", Box::new(lasting.with_tangential_response(Unchanged))),
+            ("ElasticBelow", Box::new(below)),
+            ("ElasticBelow, reversing", Box::new(below.with_tangential_response(Reversing))),
+            ("ElasticBelow, unchanged", Box::new(below.with_tangential_response(Unchanged))),
+            ("LeastRebound", Box::new(LeastRebound::new(constant, parameter)?)),
+        ];
+        remedies.extend(rules.map(|(name, rule)| Remedy { name, parameter, rule }));
     }
-    for (response, word) in responses {
-        for parameter in [0.02, 0.05, 0.1, 0.2, 0.4] {
-            let name = format!("ElasticBelow, {word}");
-            remedies.push(Remedy { name, parameter, rule: below(parameter, response)? });
-        }
-    }
-    let rule = Box::new(ElasticBelow::new(bizon, 0.1)?);
-    remedies.push(Remedy { name: "ElasticBelow of SpeedDependent".into(), parameter: 0.1, rule });
+    remedies.sort_by_key(|remedy| FAMILIES.iter().position(|(_, name)| *name == remedy.name));
     Ok(remedies)
 }
 
 /// What became of the grains under a remedy.
 struct Heap {
-    name: String,
+    name: &'static str,
     parameter: f64,
     ended: String,
     /// Time at which the run ended, and the wall-clock time that it took, in seconds.
@@ -135,13 +135,14 @@ struct Heap {
     /// Mean distance that a grain creeps in that time, per time.
     creep: f64,
     disks: Vec<Disk>,
+    glued: Vec<Disk>,
 }
 
 fn settled(arguments: &Arguments, remedy: Remedy) -> Result<Heap, Box<dyn Error>> {
     let quick = |value: f64, most: f64| if arguments.quick { value.min(most) } else { value };
     let (end, seconds) = (quick(arguments.end, 40.0), quick(arguments.seconds, 2.0));
-    let container = Container::open(WIDTH)?;
-    let mut simulation = Simulation::builder(remedy.rule, container).disks(column()?).gravity(1.0).build()?;
+    let mut simulation =
+        Simulation::builder(remedy.rule, floor(arguments.flat)?).disks(column()?).gravity(1.0).build()?;
     let started = Instant::now();
     let limits = |end: f64| {
         let left = Duration::from_secs_f64(seconds).saturating_sub(started.elapsed());
@@ -173,6 +174,7 @@ fn settled(arguments: &Arguments, remedy: Remedy) -> Result<Heap, Box<dyn Error>
         heat: heat / samples,
         creep: way.sum::<f64>() / (GRAINS as f64 * (time - since)),
         disks,
+        glued: simulation.boundary().obstacles().to_vec(),
     })
 }
 
@@ -180,9 +182,19 @@ fn reason(error: &RunError) -> String {
     if matches!(error, RunError::Stalled { .. }) { "Stalled".into() } else { error.to_string() }
 }
 
-/// Returns a column of grains in the middle of the floor.
+/// Distance of the grains that are glued to the floor.
+const GLUED: f64 = 1.2;
+
+/// Returns the floor, flat or with a row of grains glued to it.
+fn floor(flat: bool) -> Result<Obstacles<Container>, ParameterError> {
+    let count = if flat { 0 } else { (WIDTH / GLUED) as usize };
+    let grain = |k| Disk::new(DVec2::new((k as f64 + 0.5) * GLUED, 0.5), 0.5);
+    Ok(Obstacles::new(Container::open(WIDTH)?, (0..count).map(grain).collect::<Result<Vec<_>, _>>()?))
+}
+
+/// Returns a column of grains above the middle of the floor.
 fn column() -> Result<Vec<Disk>, Box<dyn Error>> {
-    let shift = DVec2::new(0.5 * (WIDTH - COLUMN), 0.0);
+    let shift = DVec2::new(0.5 * (WIDTH - COLUMN), 1.0);
     let narrow = initial::lattice(&Container::open(COLUMN)?, GRAINS, 0.5)?;
     let moved = narrow.into_iter().map(|disk| disk.with_position(disk.position() + shift));
     Ok(initial::with_maxwellian_velocities(moved.collect::<Result<Vec<_>, _>>()?, 0.05, 1)?)
@@ -243,19 +255,15 @@ const UNIT: f64 = 17.0;
 const SHOWN: f64 = 8.0;
 
 /// The remedies whose heaps are drawn.
-const DRAWN: [(&str, f64); 4] = [
-    ("ContactDuration, frictionless", 1e-2),
-    ("ElasticBelow, frictionless", 0.1),
-    ("ElasticBelow, unchanged", 0.1),
-    ("ElasticBelow, unchanged", 0.4),
-];
+const DRAWN: [(&str, f64); 4] =
+    [("ContactDuration", 0.1), ("ElasticBelow", 0.1), ("LeastRebound", 0.1), ("LeastRebound", 0.4)];
 
 /// The remedies whose numbers are drawn over their parameters, with their colors.
 const FAMILIES: [(&str, &str); 4] = [
-    (INK, "ContactDuration, frictionless"),
-    (QUIET, "ContactDuration, unchanged"),
-    (BLUE, "ElasticBelow, frictionless"),
-    (ORANGE, "ElasticBelow, unchanged"),
+    (INK, "ContactDuration"),
+    (BLUE, "ElasticBelow"),
+    (GREEN, "ElasticBelow, reversing"),
+    (ORANGE, "LeastRebound"),
 ];
 
 /// Draws some heaps, and cost and heat over the parameters of the remedies.
@@ -263,7 +271,13 @@ fn draw(heaps: &[Heap]) -> Result<Vec<u8>, Box<dyn Error>> {
     let frame = [WIDTH * UNIT + MARGINS[0] + MARGINS[1], SHOWN * UNIT + MARGINS[2] + MARGINS[3]];
     let mut sheet = Sheet::new(2.0 * frame[0], HEADER + 2.0 * frame[1] + 340.0);
     sheet.text(MARGINS[0], 28.0, 19, INK, "Fifty grains that came to rest");
-    sheet.text(MARGINS[0], 47.0, 12, QUIET, "a column fell onto a fixed floor; g = 1, q = 0.1, κ = 0.5");
+    sheet.text(
+        MARGINS[0],
+        47.0,
+        12,
+        QUIET,
+        "a column fell onto a floor with grains glued to it; g = 1, q = 0.1, κ = 0.5",
+    );
     for (k, (name, parameter)) in DRAWN.into_iter().enumerate() {
         let Some(heap) = heaps.iter().find(|heap| heap.name == name && heap.parameter == parameter) else {
             continue;
@@ -271,16 +285,21 @@ fn draw(heaps: &[Heap]) -> Result<Vec<u8>, Box<dyn Error>> {
         let (x, y) = ((k % 2) as f64 * frame[0], HEADER + (k / 2) as f64 * frame[1]);
         let layout = sheet::axes((0.0, WIDTH), (0.0, SHOWN)).with_show_grid(false).with_box_axes();
         let place = Place { x, y, width: frame[0], height: frame[1] };
-        sheet.panel(place, MARGINS, faces(&heap.disks), layout.with_x_label("x").with_y_label("height"));
+        sheet.panel(
+            place,
+            MARGINS,
+            faces(&heap.disks, &heap.glued),
+            layout.with_x_label("x").with_y_label("height"),
+        );
         let title = format!("{name}, {parameter}: at time {:.0}", heap.time);
         sheet.text(x + MARGINS[0], y + 20.0, 12, INK, &title);
     }
     let below = HEADER + 2.0 * frame[1];
-    let panels: [(&str, fn(&Heap) -> f64); 2] =
+    let panels: [(&str, Quantity); 2] =
         [("events per grain and time", |heap| heap.events), ("heat per grain", |heap| heap.heat)];
     for (k, (label, value)) in panels.into_iter().enumerate() {
         let place = Place { x: k as f64 * frame[0], y: below + 20.0, width: frame[0], height: 310.0 };
-        let layout = sheet::axes((1e-3, 1.0), range(heaps, value)).with_log_scale().with_show_grid(true);
+        let layout = sheet::axes((1e-2, 1.0), range(heaps, value)).with_log_scale().with_show_grid(true);
         let layout = layout.with_x_label("duration, or speed, of the remedy").with_y_label(label);
         sheet.panel(place, MARGINS, curves(heaps, value), layout);
     }
@@ -288,20 +307,26 @@ fn draw(heaps: &[Heap]) -> Result<Vec<u8>, Box<dyn Error>> {
     Ok(sheet.png(1.4)?)
 }
 
+/// A number of a heap.
+type Quantity = fn(&Heap) -> f64;
+
 /// Returns the decades that hold all values.
-fn range(heaps: &[Heap], value: fn(&Heap) -> f64) -> (f64, f64) {
+fn range(heaps: &[Heap], value: Quantity) -> (f64, f64) {
     let values = || heaps.iter().map(value).filter(|value| *value > 0.0 && value.is_finite());
     let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
     (10f64.powf(low.log10().floor()), 10f64.powf(high.log10().ceil()))
 }
 
-fn faces(disks: &[Disk]) -> Vec<Plot> {
-    let centers = disks.iter().map(|disk| (disk.position().x, disk.position().y));
-    let sizes = disks.iter().map(|disk| disk.radius() * UNIT - 0.4);
-    vec![ScatterPlot::new().with_data(centers).with_color(GREEN).with_sizes(sizes).into()]
+fn faces(disks: &[Disk], glued: &[Disk]) -> Vec<Plot> {
+    let faces = |disks: &[Disk], color: &str| {
+        let centers = disks.iter().map(|disk| (disk.position().x, disk.position().y));
+        let sizes = disks.iter().map(|disk| disk.radius() * UNIT - 0.4);
+        ScatterPlot::new().with_data(centers).with_color(color).with_sizes(sizes).into()
+    };
+    vec![faces(glued, QUIET), faces(disks, GREEN)]
 }
 
-fn curves(heaps: &[Heap], value: fn(&Heap) -> f64) -> Vec<Plot> {
+fn curves(heaps: &[Heap], value: Quantity) -> Vec<Plot> {
     let curve = |(color, name): (&str, &str)| {
         let family = heaps.iter().filter(|heap| heap.name == name);
         let points = family.map(|heap| (heap.parameter, value(heap))).filter(|(_, value)| *value > 0.0);

@@ -15,6 +15,7 @@
 //! | [`Elastic`] | none | |
 //! | [`ContactDuration`] | an adaptor: contacts soon after another lose nothing | Luding and McNamara 1998 |
 //! | [`ElasticBelow`] | an adaptor: slow contacts lose nothing | a cut-off of many codes |
+//! | [`LeastRebound`] | an adaptor: surfaces never part too slowly; drives | |
 //! | [`RulesByKind`] | a table: one rule for each pair of kinds | |
 //! | [`from_fn`] | yours, as a closure | |
 //!
@@ -55,6 +56,7 @@ mod from_fn;
 mod impulse;
 mod inelasticity;
 pub mod laws;
+mod least_rebound;
 mod rough;
 mod rules_by_kind;
 mod smooth;
@@ -71,6 +73,7 @@ pub use friction::Friction;
 pub use frictional::Frictional;
 pub use from_fn::{FromFn, from_fn};
 pub use impulse::{Impulse, Regime};
+pub use least_rebound::LeastRebound;
 pub use rough::Rough;
 pub use rules_by_kind::RulesByKind;
 pub use smooth::Smooth;

@@ -8,8 +8,8 @@ pub use crate::boundary::{
     Wall,
 };
 pub use crate::collision::{
-    CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Impulse, Regime,
-    Rough, RulesByKind, Smooth, SpeedDependent,
+    CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Impulse,
+    LeastRebound, Regime, Rough, RulesByKind, Smooth, SpeedDependent,
 };
 pub use crate::glam::DVec2;
 pub use crate::initial::{self, Radii};

@@ -4,13 +4,19 @@ use super::{CollisionRule, Contact, Impulse, Regime, TangentialResponse};
 use crate::quantity::{Checked, Quantity, Range};
 use crate::{Fingerprint, ParameterError};
 
-/// A rule that loses no energy in collisions below a closing speed `$v_c$`, and is as it was above.
+/// A rule whose collisions leave surfaces parting at a speed `$v_c$` at least, or as fast as they came: slow
+/// collisions are elastic.
 ///
-/// A disk that comes to rest then keeps bouncing, at a speed below `$v_c$` and so at a known rate: once in
-/// `$2v/g$`. Matter at rest keeps a granular temperature of the order of `$m v_c^2$`, far below that of its
-/// motion if `$v_c$` is small, and costs the more events the smaller `$v_c$` is. In a gas of temperature
-/// `$T$`, the share `$1 - (1 + x)\,e^{-x} \approx x^2/2$` of the normal dissipation is lost, with
-/// `$x = m v_c^2/4T$`. The page `docs/rest.md` of the repository compares this cut-off with other remedies.
+/// ```math
+/// v_n' = \max\left(r_n v_n,\ \min(v_n, v_c)\right)
+/// ```
+///
+/// A disk that comes to rest on a floor then bounces at the speed `$v_c$`, once in `$2v_c/g$`. Many disks
+/// share what the last fast collisions left them. Their granular temperature stays, if the tangential
+/// response loses nothing, but it may be far below `$m v_c^2$`, and the events are the more.
+/// [`LeastRebound`](super::LeastRebound) bounds them. In a gas of temperature `$T$`, the share
+/// `$1 - (1 + x)\,e^{-x} \approx x^2/2$` of the normal dissipation is lost to collisions below `$v_c$`, with
+/// `$x = m v_c^2/4T$`. The page `docs/rest.md` of the repository compares the remedies.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, ElasticBelow, Frictional, Regime};
@@ -41,7 +47,7 @@ impl Quantity for Speed {
 }
 
 impl<R> ElasticBelow<R> {
-    /// Creates the remedy over `rule`: elastic and frictionless below this closing speed.
+    /// Creates the remedy over `rule`: elastic and frictionless below this speed.
     ///
     /// # Errors
     /// If the speed is not finite and positive. For no such speed, use the rule alone.
@@ -70,10 +76,9 @@ impl<R: CollisionRule> CollisionRule for ElasticBelow<R> {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
         if contact.closing_speed() < self.speed.get() {
-            self.tangential_response.elastic(&self.rule, contact, Regime::ElasticBelow)
-        } else {
-            self.rule.impulse(contact)
+            return self.tangential_response.elastic(&self.rule, contact, Regime::ElasticBelow);
         }
+        self.rule.impulse(contact).parting_at_least(self.speed.get(), contact)
     }
 
     fn explain(&self, contact: &Contact) -> Option<String> {

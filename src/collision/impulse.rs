@@ -49,6 +49,14 @@ impl Impulse {
         Self { regime, ..self }
     }
 
+    /// Returns the same impulse, with a normal part that leaves the surfaces parting at this speed at least.
+    #[inline]
+    pub(super) fn parting_at_least(self, speed: f64, contact: &Contact) -> Self {
+        let least = contact.normal_mass() * (contact.closing_speed() + speed);
+        // The comparison is false for an impulse that is not a number, which the engine must see.
+        if self.normal < least { Self { normal: least, ..self } } else { self }
+    }
+
     /// Returns the normal part `$\Delta_n$`, positive if it pushes the partners apart.
     #[inline]
     pub const fn normal(&self) -> f64 {

@@ -13,7 +13,8 @@ pub enum TangentialResponse {
     /// No tangential impulse: the contact is elastic and frictionless.
     #[default]
     Frictionless,
-    /// The tangential impulse of the rule. Only the normal direction is made elastic.
+    /// The tangential impulse of the rule. Only the normal direction is made elastic. Friction then goes on
+    /// to cool matter at rest, so that runs still stall.
     Unchanged,
     /// The slip reverses without loss, as between perfectly rough surfaces. Surfaces at rest then hold each
     /// other, since the slip is zero on average, however weak the friction of the rule.

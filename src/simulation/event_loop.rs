@@ -3,8 +3,8 @@
 //! One collision reads from top to bottom. [`Simulation::next_due`] asks the scheduler, and
 //! [`Simulation::advance`] goes to the event. [`Simulation::collide`] lets the rule decide (`resolution.rs`)
 //! and kicks both disks. It then finds what each disk does next, and tells the scheduler (`forecasting.rs`).
-//! The arithmetic of meetings is in `prediction.rs`, and epochs are in `epoch.rs`. Disks that a collision left
-//! within rounding of each other part in `parting.rs`. None of these files calls back.
+//! The arithmetic of meetings is in `prediction.rs`, and epochs are in `epoch.rs`. Disks that a collision
+//! left within rounding of each other part in `parting.rs`. None of these files calls back.
 
 use super::Simulation;
 use super::errors::{BoundaryFault, Outcome, RunError};

@@ -12,7 +12,7 @@ use crate::collision::{CollisionRule, Contact, Regime};
 use crate::observable::Partner;
 use crate::scheduler::EventScheduler;
 
-/// Speed, relative to that of a typical disk, at which the rule is asked what it does in slow collisions.
+/// Least speed, relative to that of a typical disk, at which the rule is asked what it does.
 const SLOW: f64 = 1e-9;
 
 /// Share of the energy, or of the closing speed, that is rounding.
@@ -24,12 +24,12 @@ const ROUNDING: f64 = 1e-12;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Remedy {
-    /// Slow collisions lose energy, so disks that come to rest collide ever faster: make slow collisions, or
-    /// soon repeated ones, elastic.
+    /// Slow collisions lose energy, so disks that come to rest collide ever more often: make slow or soon
+    /// repeated collisions elastic, or let no surfaces part too slowly.
     ElasticWhenSlow,
     /// The contact-duration model is at work, with a duration so short that disks at rest collide too often.
     LongerContactDuration,
-    /// Slow collisions lose nothing already, but these are too slow: a disk is at rest or squeezed.
+    /// Slow collisions lose nothing already, but they are too slow: a disk is at rest or squeezed.
     FasterDisks,
     /// The rule leaves disks approaching each other.
     PushApart,
@@ -41,15 +41,15 @@ impl fmt::Display for Remedy {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(match self {
             Self::ElasticWhenSlow => {
-                "matter that comes to rest, or an inelastic collapse; the rules ElasticBelow and ContactDuration \
-                 make such collisions elastic"
+                "matter that comes to rest, or an inelastic collapse; the rules LeastRebound, ElasticBelow and \
+                 ContactDuration are remedies"
             }
             Self::LongerContactDuration => {
-                "matter at rest under a short contact duration; a longer one helps, or the rule ElasticBelow"
+                "matter at rest under a short contact duration; a longer one helps, or the rule LeastRebound"
             }
             Self::FasterDisks => {
                 "a disk at rest or squeezed, whose collisions lose nothing but are too slow; a faster start helps, more \
-                 room, or a higher speed of ElasticBelow"
+                 room, or the rule LeastRebound with a higher speed"
             }
             Self::PushApart => "the rule does not push the disks apart; see collision::laws::check_rule",
             Self::OtherParts => "no collision is in sight; does the boundary or the scheduler advance?",
@@ -57,7 +57,7 @@ impl fmt::Display for Remedy {
     }
 }
 
-/// The parting words of an error: the partner of a disk.
+/// The partner of a disk, in the words of an error.
 pub(super) struct Named<'a>(pub(super) Option<Partner>, pub(super) Option<&'a str>);
 
 impl fmt::Display for Named<'_> {
@@ -129,11 +129,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Returns the remedy by what the rule answers to this contact, or to the same with a small speed where
-    /// the speed of the contact is rounding.
+    /// Returns the remedy by what the rule answers to a contact like this.
     fn remedy_for(&self, contact: &Contact, rule: &dyn CollisionRule) -> Remedy {
         let typical = self.bodies.typical_diameter / self.clock.epoch_length;
-        let closing = contact.closing_speed().max(SLOW * typical);
+        // Where disks bounce at the very speed of a remedy, rounding decides whether it applies. The speed of
+        // a disk at rest is rounding altogether.
+        let closing = (0.5 * contact.closing_speed()).max(SLOW * typical);
         let slow = Contact::new(closing, 0.0, contact.normal_mass(), contact.tangential_mass())
             .with_time_since_last_collision(contact.time_since_last_collision())
             .with_kinds(contact.kinds())

@@ -1,8 +1,8 @@
 //! Rules in files: what is written can be read, and what a constructor refuses a file cannot bring in.
 
 use granular_edmd::collision::{
-    ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Rough, Smooth, SpeedDependent,
-    TangentialResponse,
+    ContactDuration, Elastic, ElasticBelow, Friction, Frictional, LeastRebound, Rough, Smooth,
+    SpeedDependent, TangentialResponse,
 };
 use granular_edmd::strategies::decades;
 use proptest::prelude::*;
@@ -46,6 +46,7 @@ proptest! {
         prop_assert!(returns(&ContactDuration::new(nested, duration).unwrap()));
         let below = ElasticBelow::new(frictional, duration).unwrap();
         prop_assert!(returns(&below) && returns(&below.with_tangential_response(unchanged)));
+        prop_assert!(returns(&LeastRebound::new(frictional, duration).unwrap()));
         prop_assert!(returns(&SpeedDependent::new(ratio, duration).unwrap().with_friction(friction)));
     }
 }
@@ -63,6 +64,8 @@ fn the_names_in_a_file_are_stable() {
     let below = ElasticBelow::new(Elastic, 0.125).unwrap();
     let text_below = r#"{"rule":null,"speed":0.125,"tangential_response":"Frictionless"}"#;
     assert_eq!(serde_json::to_string(&below).unwrap(), text_below);
+    let rebound = LeastRebound::new(Elastic, 0.125).unwrap();
+    assert_eq!(serde_json::to_string(&rebound).unwrap(), r#"{"rule":null,"speed":0.125}"#);
     let bizon = SpeedDependent::new(0.5, 2.0).unwrap().with_friction(Friction::new(0.25, 0.5).unwrap());
     let text_bizon = format!(r#"{{"least_restitution":0.5,"speed":2.0,"friction":{friction}}}"#);
     assert_eq!(serde_json::to_string(&bizon).unwrap(), text_bizon);
@@ -87,6 +90,8 @@ fn a_file_passes_the_constructors() {
     let below = r#"{"rule":null,"speed":-1}"#;
     let error = ElasticBelow::new(Elastic, -1.0).unwrap_err();
     assert!(refusal::<ElasticBelow<Elastic>>(below).contains(&error.to_string()));
+    let error = LeastRebound::new(Elastic, -1.0).unwrap_err();
+    assert!(refusal::<LeastRebound<Elastic>>(below).contains(&error.to_string()));
     let inner = format!(r#"{{"rule":{smooth},"duration":1}}"#);
     assert!(
         refusal::<ContactDuration<Smooth>>(&inner)

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use granular_edmd::Fingerprint;
 use granular_edmd::collision::{
-    CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Impulse, Rough,
-    Smooth, SpeedDependent, TangentialResponse, from_fn,
+    CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Impulse,
+    LeastRebound, Rough, Smooth, SpeedDependent, TangentialResponse, from_fn,
 };
 
 /// A rule that answers everything that it can be asked.
@@ -46,6 +46,8 @@ fn a_model_passes_the_explanation_on() {
     assert_eq!(model.explain(&Contact::new(3.0, 0.0, 0.5, 0.125)).as_deref(), Some("too fast: 3"));
     let remedy = ElasticBelow::new(Talkative, 1e-4).unwrap();
     assert_eq!(remedy.explain(&Contact::new(2.0, 0.0, 0.5, 0.125)).as_deref(), Some("too fast: 2"));
+    let remedy = LeastRebound::new(Talkative, 1e-4).unwrap();
+    assert_eq!(remedy.explain(&Contact::new(1.0, 0.0, 0.5, 0.125)).as_deref(), Some("too fast: 1"));
     assert_eq!(Elastic.explain(&Contact::new(3.0, 0.0, 0.5, 0.125)), None);
 }
 
@@ -83,6 +85,8 @@ fn different_rules_have_different_fingerprints() {
         Box::new(
             ElasticBelow::new(Elastic, 1e-4).unwrap().with_tangential_response(TangentialResponse::Unchanged),
         ),
+        Box::new(LeastRebound::new(Elastic, 1e-4).unwrap()),
+        Box::new(LeastRebound::new(Elastic, 1e-5).unwrap()),
         Box::new(SpeedDependent::new(0.1, 0.2).unwrap()),
         Box::new(SpeedDependent::new(0.2, 0.1).unwrap()),
         Box::new(SpeedDependent::new(0.1, 0.2).unwrap().with_friction(Friction::new(0.0, 0.2).unwrap())),
@@ -98,6 +102,7 @@ fn a_closure_has_none_and_neither_has_a_model_of_it() {
     assert_eq!(closure.fingerprint(), None);
     assert_eq!(ContactDuration::new(closure, 1e-4).unwrap().fingerprint(), None);
     assert_eq!(ElasticBelow::new(closure, 1e-4).unwrap().fingerprint(), None);
+    assert_eq!(LeastRebound::new(closure, 1e-4).unwrap().fingerprint(), None);
 }
 
 /// Rules are shared by threads, and sent to them.

@@ -14,6 +14,7 @@ mod friction;
 mod identity;
 mod kinds;
 mod kinematics;
+mod least_rebound;
 mod parameters;
 mod planted;
 mod rules;

@@ -2,7 +2,7 @@
 
 use granular_edmd::ParameterError;
 use granular_edmd::collision::{
-    ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Rough, Smooth, SpeedDependent,
+    ContactDuration, Elastic, ElasticBelow, Friction, Frictional, LeastRebound, Rough, Smooth, SpeedDependent,
 };
 
 /// A constructor of one parameter, that parameter's name, and values that it must refuse beside the usual
@@ -55,6 +55,7 @@ fn cases() -> Vec<Case> {
         ),
         ("contact duration", |value| ContactDuration::new(Elastic, value).map(drop), &[0.0, -0.0, -1e-4]),
         ("speed of elastic collisions", |value| ElasticBelow::new(Elastic, value).map(drop), &[0.0, -1e-4]),
+        ("least speed of rebound", |value| LeastRebound::new(Elastic, value).map(drop), &[0.0, -1e-4]),
         ("least restitution", |value| SpeedDependent::new(value, 1.0).map(drop), restitution),
         ("speed of the least restitution", |value| SpeedDependent::new(0.5, value).map(drop), &[0.0, -1.0]),
     ]

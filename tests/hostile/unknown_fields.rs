@@ -4,7 +4,9 @@ use std::fmt::Debug;
 
 use granular_edmd::analysis::{PlaneTransition, Transition};
 use granular_edmd::boundary::{Boundary, Thermal};
-use granular_edmd::collision::{ContactDuration, ElasticBelow, Frictional, Rough, Smooth, SpeedDependent};
+use granular_edmd::collision::{
+    ContactDuration, ElasticBelow, Frictional, LeastRebound, Rough, Smooth, SpeedDependent,
+};
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::Maxwellian;
 use granular_edmd::observable::{
@@ -79,6 +81,7 @@ fn parameters_with_a_field_too_many_are_refused() {
     refuses(&Frictional::new(0.1, 0.2).unwrap());
     refuses(&ContactDuration::new(Frictional::new(0.1, 0.2).unwrap(), 1e-3).unwrap());
     refuses(&ElasticBelow::new(Frictional::new(0.1, 0.2).unwrap(), 1e-3).unwrap());
+    refuses(&LeastRebound::new(Frictional::new(0.1, 0.2).unwrap(), 1e-3).unwrap());
     refuses(&SpeedDependent::new(0.5, 1.0).unwrap());
     refuses(&BiParabolic::new(0.1, 3.0).unwrap());
     refuses(&Sinusoidal::new(0.1, 3.0).unwrap());

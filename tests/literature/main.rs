@@ -11,6 +11,7 @@ mod cooling;
 mod equilibrium;
 mod figure_2;
 mod gas;
+mod layer;
 mod mixtures;
 mod order_parameters;
 mod plate;

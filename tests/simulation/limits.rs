@@ -14,7 +14,7 @@ use granular_edmd::{Disk, Simulation, initial};
 
 use crate::setups::{Log, elastic_gas};
 
-const END: f64 = 60.0;
+const END: f64 = 300.0;
 
 fn run() -> Simulation<Frictional> {
     let walls =

@@ -1,0 +1,83 @@
+//! Surfaces that never part too slowly: the remedy for matter at rest whose friction stays.
+
+use super::{CollisionRule, Contact, Impulse};
+use crate::quantity::{Checked, Quantity, Range};
+use crate::{Fingerprint, ParameterError};
+
+/// A rule whose collisions leave surfaces parting at a speed `$v_c$` at least:
+///
+/// ```math
+/// v_n' = \max\left(r_n v_n,\ v_c\right)
+/// ```
+///
+/// A grain at rest then bounces at `$v_c$`, as if the ground trembled. Each collision passes on the momentum
+/// `$\mu v_c$` at least. So a contact that carries the mean force `$F$` has at most `$F/\mu v_c$` collisions
+/// in a unit of time, whatever the rule loses. The cost of matter at rest is known beforehand, and friction
+/// stays as it is.
+///
+/// **The rule gains energy** where surfaces close more slowly than they part, `$\tfrac12\mu(v_c^2 - v_n^2)$`
+/// at most; friction and faster collisions take it away. Matter at rest keeps a granular temperature of the
+/// order of `$m v_c^2$` and creeps by it. Without gravity, disks that should cool for ever do not. The page
+/// `docs/rest.md` of the repository compares this remedy with others.
+///
+/// ```
+/// use granular_edmd::collision::{CollisionRule, Contact, Frictional, LeastRebound, laws};
+///
+/// let rule = LeastRebound::new(Frictional::new(0.1, 0.3)?, 0.01)?;
+/// let fast = Contact::new(1.0, 0.5, 0.5, 1.0 / 6.0);
+/// let slow = Contact::new(0.001, 0.0, 0.5, 1.0 / 6.0);
+/// assert_eq!(rule.impulse(&fast), rule.rule().impulse(&fast));
+/// assert!((laws::closing_speed_after(&slow, rule.impulse(&slow)) + 0.01).abs() < 1e-15);
+/// laws::check_rule(&rule, &laws::Promises::new().with_friction(0.3).with_energy_gain())?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct LeastRebound<R> {
+    rule: R,
+    speed: Checked<Speed>,
+}
+
+enum Speed {}
+
+impl Quantity for Speed {
+    const NAME: &'static str = "least speed of rebound";
+    const RANGE: Range = Range::POSITIVE;
+}
+
+impl<R> LeastRebound<R> {
+    /// Creates the remedy over `rule`, with this parting speed at least.
+    ///
+    /// # Errors
+    /// If the speed is not finite and positive. For no such speed, use the rule alone.
+    pub fn new(rule: R, speed: f64) -> Result<Self, ParameterError> {
+        Ok(Self { rule, speed: Checked::new(speed)? })
+    }
+
+    /// Returns the rule of all faster rebounds.
+    pub const fn rule(&self) -> &R {
+        &self.rule
+    }
+
+    /// Returns the least parting speed `$v_c$`.
+    pub const fn speed(&self) -> f64 {
+        self.speed.get()
+    }
+}
+
+impl<R: CollisionRule> CollisionRule for LeastRebound<R> {
+    #[inline]
+    fn impulse(&self, contact: &Contact) -> Impulse {
+        self.rule.impulse(contact).parting_at_least(self.speed.get(), contact)
+    }
+
+    fn explain(&self, contact: &Contact) -> Option<String> {
+        self.rule.explain(contact)
+    }
+
+    /// Returns `None` if the rule inside has no fingerprint: two such remedies could not be told apart.
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        Some(Fingerprint::of("LeastRebound").part(self.rule.fingerprint()?).number(self.speed.get()))
+    }
+}
