@@ -37,16 +37,16 @@ const MOST_WALLS: usize = 1 << 16;
 /// use granular_edmd::{Simulation, initial};
 ///
 /// // A silo: two blocks leave an outlet of width 6, which is shut by a gate.
-/// let left = [(0.0, 10.0), (7.0, 10.0), (0.0, 20.0)].map(DVec2::from);
-/// let right = left.map(|corner| DVec2::new(20.0 - corner.x, corner.y));
-/// let gate = Part::polyline([(6.0, 9.9), (14.0, 9.9)].map(DVec2::from))?;
+/// let slope = [(0.0, 10.0), (7.0, 10.0), (0.0, 20.0)].map(DVec2::from);
+/// let other = slope.map(|corner| DVec2::new(20.0 - corner.x, corner.y));
 /// let silo = Vessel::new(Container::open(20.0)?)
-///     .with("left", Part::block(left)?)?
-///     .with("right", Part::block(right)?)?
-///     .with("gate", gate)?;
+///     .with("left slope", Part::block(slope)?)?
+///     .with("right slope", Part::block(other)?)?
+///     .with("gate", Part::polyline([(6.0, 9.9), (14.0, 9.9)].map(DVec2::from))?)?;
 ///
-/// let disks = initial::lattice(&silo, 100, 0.5)?;
-/// # let disks: Vec<_> = disks.into_iter().filter(|disk| disk.position().y > 10.0).collect();
+/// // A lattice begins at the floor. The disks below the gate are left out.
+/// let mut disks = initial::lattice(&silo, 200, 0.5)?;
+/// disks.retain(|disk| disk.position().y > 10.0);
 /// let rule = ContactDuration::new(Frictional::new(0.1, 0.3)?, 1e-3)?;
 /// let mut run = Simulation::builder(rule, silo).disks(disks).gravity(1.0).build()?;
 /// run.run_until(0.5, &mut ())?;
