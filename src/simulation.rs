@@ -2,7 +2,7 @@
 //!
 //! [`Simulation::builder`] checks disks, gravity and boundary and makes a [`Simulation`].
 //! [`Simulation::run_until`] and [`Simulation::step_until`] advance it. Rule, boundary and gravity can be
-//! changed between runs.
+//! changed between runs, and disks put in and taken out ([`Simulation::insert`], [`Simulation::remove`]).
 //!
 //! # Promises
 //! 1. The same inputs give the same bits, under every scheduler, with any observer, and however a run is cut
@@ -29,6 +29,7 @@ mod event_loop;
 mod events;
 mod forecasting;
 mod lookahead;
+mod population;
 mod prediction;
 mod resolution;
 mod state;

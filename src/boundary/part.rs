@@ -285,8 +285,7 @@ impl Part {
     fn traveling(self, travel: Travel) -> Result<Self, VesselError> {
         match &travel {
             Travel::Along { direction, motion } => {
-                let jumps = polygon::jumps(&**motion);
-                let is_safe = !jumps || self.bricks.iter().all(|brick| brick.faces(*direction));
+                let is_safe = !motion.jumps() || self.bricks.iter().all(|brick| brick.faces(*direction));
                 if !is_safe {
                     return Err(VesselError::Jump);
                 }

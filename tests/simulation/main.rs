@@ -21,6 +21,7 @@ mod oracle;
 mod order;
 mod parting;
 mod periodic;
+mod population;
 #[cfg(feature = "serde")]
 mod resuming;
 #[path = "../support/schedulers.rs"]
