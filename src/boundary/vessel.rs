@@ -2,6 +2,7 @@
 
 mod error;
 mod index;
+mod overlap;
 mod touch;
 
 pub use error::VesselError;
@@ -65,6 +66,8 @@ pub struct Vessel {
     parts: Vec<Placed>,
     walls: Vec<Wall>,
     index: Index,
+    /// The parts at rest that fill each cell of the index.
+    filled: Vec<Vec<u32>>,
 }
 
 /// A part of a vessel.
@@ -89,7 +92,7 @@ struct Wall {
 impl Vessel {
     /// Creates a vessel without parts: the container.
     pub const fn new(container: Container) -> Self {
-        Self { container, parts: Vec::new(), walls: Vec::new(), index: Index::EMPTY }
+        Self { container, parts: Vec::new(), walls: Vec::new(), index: Index::EMPTY, filled: Vec::new() }
     }
 
     /// Creates a vessel of parts that enclose the disks by themselves. The container is a rectangle around
@@ -231,6 +234,7 @@ impl Vessel {
             |wall| travel(wall).bounds(&wall.brick),
             |wall, region| travel(wall).may_reach(&wall.brick, region, 0.0),
         );
+        self.filled = self.filled_cells();
     }
 }
 
@@ -293,7 +297,7 @@ impl Boundary for Vessel {
     }
 
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
-        let parts = self.parts.iter().filter_map(|placed| self.depth(placed, position, radius, time));
+        let parts = self.overlap_with_parts(position, radius, time);
         let all = self.container.overlap(position, radius, time).into_iter().chain(parts);
         all.filter(|&(_, depth)| depth > 0.0).max_by(|a, b| a.1.total_cmp(&b.1))
     }
