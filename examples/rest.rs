@@ -65,16 +65,12 @@ const COLUMN: f64 = 6.6;
 const SETTLED: f64 = 0.2;
 
 fn main() -> ExitCode {
-    match run(&command_line::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
-    }
+    command_line::main(run)
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = &arguments.out;
-    fs::create_dir_all(out)
-        .map_err(|error| Failure::run(format_args!("--out {}: {error}", out.display())))?;
+    command_line::make_folder(out)?;
     println!("| remedy | parameter | time | events per grain and time | height | heat | creep | ended by |");
     println!("|---|---|---|---|---|---|---|---|");
     let mut heaps = Vec::new();

@@ -2,7 +2,27 @@
 //!
 //! [`Container`] is the rectangular box of the paper and its relatives: side walls or periodic sides, a
 //! floor that is fixed, moving or thermal, a lid or an open top, each wall with a rule of its own if
-//! wanted. [`Obstacles`] puts fixed round obstacles into any boundary. A geometry of your own implements
+//! wanted. Walls can slide along themselves, and the box can be shaken as a whole.
+//!
+//! A [`Vessel`] has any shape: a container with named [`Part`]s in it, which are made of [`Brick`]s.
+//!
+//! | shape | how |
+//! |---|---|
+//! | hourglass, funnel, any polygon with the disks inside | [`Part::polygon`], [`Part::polygon_from_file`] |
+//! | ramp, hopper side, any polygon with the disks outside | [`Part::block`] |
+//! | gate, baffle, any thin wall | [`Part::polyline`] |
+//! | drum; round obstacle | [`Part::drum`]; [`Part::peg`] |
+//! | segments, half-lines, arcs, circles and points in any mix | [`Part::new`] of [`Brick`]s |
+//! | conveyor, shear cell | [`Part::with_surface_speed`], [`Container::with_surface_speed`], [`Container::with_sliding`] |
+//! | part that is shaken along any direction | [`Part::with_motion`] |
+//! | part that turns: a drum, a stirrer | [`Part::with_rotation`] |
+//! | box that is shaken as a whole | [`Container::shaken_sideways`], [`Container::shaken_vertically`] |
+//!
+//! Parts are put in, changed and taken out by name, also between runs: a gate that opens. With the feature
+//! `serde`, bricks, parts, vessels and containers go to files and come back through their checks; a rule or a
+//! motion of your own does not.
+//!
+//! [`Obstacles`] puts fixed round obstacles into any boundary. A geometry of your own implements
 //! [`Boundary`]; [`roots`](crate::roots) has the numerics that it needs, and [`laws`] checks it.
 
 mod brick;

@@ -2,7 +2,8 @@
 //!
 //! [`Simulation::builder`] checks disks, gravity and boundary and makes a [`Simulation`].
 //! [`Simulation::run_until`], [`Simulation::run`] with its [`Limits`] and [`Simulation::step_until`] advance
-//! it. Rule, boundary and gravity can be changed between runs.
+//! it. Rule, boundary and gravity can be changed between runs, and disks put in and taken out
+//! ([`Simulation::insert`], [`Simulation::remove`]).
 //!
 //! # Promises
 //! 1. The same inputs give the same bits, under every scheduler, with any observer, and however a run is cut
@@ -31,6 +32,7 @@ mod forecasting;
 mod limits;
 mod lookahead;
 mod parting;
+mod population;
 mod prediction;
 mod resolution;
 mod running;

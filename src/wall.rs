@@ -17,6 +17,7 @@ mod first_touch;
 mod fixed;
 mod forward;
 pub mod laws;
+mod mirrored;
 mod motion;
 mod oscillation;
 mod sawtooth;

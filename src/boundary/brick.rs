@@ -353,13 +353,12 @@ impl Brick {
     /// the brick goes on until it has come out in front. The brick counts beside it only. What it would leave
     /// open at its ends is closed by the next brick, or by a point.
     pub(super) fn first_touch(&self, path: &Path, wait: f64) -> Option<f64> {
-        let (is_out_of_reach, beside) = match self.shape {
-            Shape::Segment(segment) => (segment.is_out_of_reach(path, wait), Some(segment.beside(path))),
-            Shape::Arc(arc) => (arc.is_out_of_reach(path, wait), arc.beside(path)),
+        let beside = match self.shape {
+            Shape::Segment(segment) if segment.is_out_of_reach(path, wait) => return None,
+            Shape::Arc(arc) if arc.is_out_of_reach(path, wait) => return None,
+            Shape::Segment(segment) => Some(segment.beside(path)),
+            Shape::Arc(arc) => arc.beside(path),
         };
-        if is_out_of_reach {
-            return None;
-        }
         let Some(beside) = beside else {
             return self.touch_between(path, 0.0, wait);
         };

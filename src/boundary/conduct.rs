@@ -10,6 +10,7 @@ use crate::collision::CollisionRule;
 /// The response of a wall to a touch, in owned form. [`Response`] lends it out.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub(super) enum Conduct {
     #[default]
     Shared,
@@ -81,7 +82,7 @@ mod file {
 
     /// The rules of the crate.
     #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-    #[serde(rename = "Rule")]
+    #[serde(rename_all = "snake_case", rename = "Rule")]
     pub(super) enum Known {
         Elastic(Elastic),
         Smooth(Smooth),

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use glam::DVec2;
 
-use super::brick::{Brick, finite_point, unit};
+use super::brick::{Brick, Nearest, finite_point, unit};
 use super::conduct::Conduct;
 use super::vessel::VesselError;
 use super::{Surface, Thermal};
@@ -285,8 +285,7 @@ impl Part {
     fn traveling(self, travel: Travel) -> Result<Self, VesselError> {
         match &travel {
             Travel::Along { direction, motion } => {
-                let jumps = polygon::jumps(&**motion);
-                let is_safe = !jumps || self.bricks.iter().all(|brick| brick.faces(*direction));
+                let is_safe = !motion.jumps() || self.bricks.iter().all(|brick| brick.faces(*direction));
                 if !is_safe {
                     return Err(VesselError::Jump);
                 }
@@ -314,21 +313,17 @@ impl Part {
         &self.travel
     }
 
+    /// Returns a rectangle around the part as it was built. Its edges may be infinite.
+    pub(super) fn bounds(&self) -> (DVec2, DVec2) {
+        let none = (DVec2::splat(f64::INFINITY), DVec2::splat(f64::NEG_INFINITY));
+        self.bricks.iter().map(Brick::bounds).fold(none, |all, one| (all.0.min(one.0), all.1.max(one.1)))
+    }
+
     /// Returns the number of the nearest brick and the distance from it, negative behind it.
-    ///
-    /// Two bricks that meet at the nearest point are equally far up to rounding. The one that is seen less
-    /// from the side knows whether the place is behind it.
     pub(super) fn nearest(&self, place: DVec2) -> Option<(usize, f64)> {
-        const ROUNDING: f64 = 1e-12;
-        let sights = self.bricks.iter().map(|brick| brick.nearest(place)).enumerate();
-        let nearest = sights.reduce(|best, next| {
-            let rounding = ROUNDING * (best.1.distance + place.length());
-            let is_tie = (next.1.distance - best.1.distance).abs() <= rounding;
-            let is_better =
-                if is_tie { next.1.weight > best.1.weight } else { next.1.distance < best.1.distance };
-            if is_better { next } else { best }
-        });
-        nearest.map(|(brick, sight)| (brick, if sight.is_free { sight.distance } else { -sight.distance }))
+        let sights = self.bricks.iter().map(|brick| Sighted::new(brick, place)).enumerate();
+        let nearest = sights.reduce(|a, b| if b.1.is_better_than(&a.1) { b } else { a });
+        nearest.map(|(brick, sighted)| (brick, sighted.signed_distance()))
     }
 
     /// Returns the surface of the part for a normal and a velocity.
@@ -342,6 +337,41 @@ impl Part {
         let part = Fingerprint::of("Part").number(self.surface_speed).number(kind);
         let part = part.part(self.travel.fingerprint()?).part(self.conduct.fingerprint()?);
         Some(self.bricks.iter().fold(part, |part, brick| part.part(brick.fingerprint())))
+    }
+}
+
+/// A brick as seen from a place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sighted {
+    nearest: Nearest,
+    /// Distance below which two bricks count as equally far.
+    rounding: f64,
+}
+
+impl Sighted {
+    pub(super) fn new(brick: &Brick, place: DVec2) -> Self {
+        const ROUNDING: f64 = 1e-12;
+        let nearest = brick.nearest(place);
+        Self { nearest, rounding: ROUNDING * (nearest.distance + place.length()) }
+    }
+
+    /// Tells whether this brick is nearer than another one, or as near and knows better what is behind it.
+    ///
+    /// Two bricks that meet at the nearest point are equally far up to rounding. The one that is seen less
+    /// from the side knows whether the place is behind it.
+    pub(super) fn is_better_than(&self, other: &Self) -> bool {
+        let nearer = other.nearest.distance - self.nearest.distance;
+        let is_tie = nearer.abs() <= other.rounding;
+        if is_tie { self.nearest.weight > other.nearest.weight } else { nearer > 0.0 }
+    }
+
+    pub(super) fn distance(&self) -> f64 {
+        self.nearest.distance
+    }
+
+    /// Returns the distance, negative behind the brick.
+    pub(super) fn signed_distance(&self) -> f64 {
+        if self.nearest.is_free { self.nearest.distance } else { -self.nearest.distance }
     }
 }
 

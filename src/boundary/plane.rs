@@ -24,6 +24,45 @@ pub(super) struct Plane {
     kind: Kind,
     /// Phase of the motion at the time origin.
     phase: f64,
+    slide: Option<Slide>,
+}
+
+/// The motion of a wall along itself: to the right, or up. It turns the disks and carries them along, but
+/// moves no wall into them.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case", deny_unknown_fields))]
+pub(super) enum Slide {
+    Speed(f64),
+    Motion {
+        motion: Motion,
+        /// Phase of the motion at the time origin.
+        #[cfg_attr(feature = "serde", serde(skip))]
+        phase: f64,
+    },
+}
+
+impl Slide {
+    fn set_time_origin(&mut self, origin: f64) {
+        if let Self::Motion { motion, phase } = self {
+            *phase = motion.phase(origin);
+        }
+    }
+
+    fn speed(&self, time: f64) -> f64 {
+        match self {
+            Self::Speed(speed) => *speed,
+            Self::Motion { motion, phase } => motion.state(time + phase).velocity,
+        }
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let slide = Fingerprint::of("Slide");
+        match self {
+            Self::Speed(speed) => Some(slide.number(*speed)),
+            Self::Motion { motion, .. } => Some(slide.part(motion.fingerprint()?)),
+        }
+    }
 }
 
 impl fmt::Debug for Plane {
@@ -40,7 +79,7 @@ impl fmt::Debug for Plane {
 impl Plane {
     pub(super) fn new(normal: DVec2, place: f64) -> Self {
         let (motion, conduct, kind) = (Motion::none(), Conduct::Shared, Kind::WALL);
-        Self { normal, place, motion, highest: 0.0, conduct, kind, phase: 0.0 }
+        Self { normal, place, motion, highest: 0.0, conduct, kind, phase: 0.0, slide: None }
     }
 
     pub(super) fn shift(&mut self, by: DVec2) {
@@ -60,14 +99,21 @@ impl Plane {
         self.kind = kind;
     }
 
+    pub(super) fn set_slide(&mut self, slide: Option<Slide>) {
+        self.slide = slide;
+    }
+
     /// Returns all that can be set.
     #[cfg(feature = "serde")]
-    pub(super) fn into_parts(self) -> (Motion, Conduct, Kind) {
-        (self.motion, self.conduct, self.kind)
+    pub(super) fn into_parts(self) -> (Motion, Conduct, Kind, Option<Slide>) {
+        (self.motion, self.conduct, self.kind, self.slide)
     }
 
     pub(super) fn set_time_origin(&mut self, origin: f64) {
         self.phase = self.motion.phase(origin);
+        if let Some(slide) = &mut self.slide {
+            slide.set_time_origin(origin);
+        }
     }
 
     pub(super) fn reach(&self) -> (f64, f64) {
@@ -103,7 +149,11 @@ impl Plane {
     }
 
     pub(super) fn surface(&self, time: f64) -> Surface<'_> {
-        let velocity = self.normal * self.motion.state(time + self.phase).velocity;
+        let mut velocity = self.normal * self.motion.state(time + self.phase).velocity;
+        if let Some(slide) = &self.slide {
+            // To the right along a floor or a lid, and up along a side.
+            velocity += self.normal.perp().abs() * slide.speed(time);
+        }
         Surface::new(self.normal, velocity).with_response(self.conduct.response()).with_kind(self.kind)
     }
 
@@ -124,6 +174,10 @@ impl Plane {
     pub(super) fn fingerprint(&self) -> Option<Fingerprint> {
         let kind = f64::from(self.kind.number());
         let plane = Fingerprint::of("Plane").part(self.motion.fingerprint()?).number(kind);
-        Some(plane.part(self.conduct.fingerprint()?))
+        let plane = plane.part(self.conduct.fingerprint()?);
+        match &self.slide {
+            Some(slide) => Some(plane.part(slide.fingerprint()?)),
+            None => Some(plane),
+        }
     }
 }

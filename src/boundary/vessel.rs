@@ -2,6 +2,7 @@
 
 mod error;
 mod index;
+mod overlap;
 mod touch;
 
 pub use error::VesselError;
@@ -37,16 +38,16 @@ const MOST_WALLS: usize = 1 << 16;
 /// use granular_edmd::{Simulation, initial};
 ///
 /// // A silo: two blocks leave an outlet of width 6, which is shut by a gate.
-/// let left = [(0.0, 10.0), (7.0, 10.0), (0.0, 20.0)].map(DVec2::from);
-/// let right = left.map(|corner| DVec2::new(20.0 - corner.x, corner.y));
-/// let gate = Part::polyline([(6.0, 9.9), (14.0, 9.9)].map(DVec2::from))?;
+/// let slope = [(0.0, 10.0), (7.0, 10.0), (0.0, 20.0)].map(DVec2::from);
+/// let other = slope.map(|corner| DVec2::new(20.0 - corner.x, corner.y));
 /// let silo = Vessel::new(Container::open(20.0)?)
-///     .with("left", Part::block(left)?)?
-///     .with("right", Part::block(right)?)?
-///     .with("gate", gate)?;
+///     .with("left slope", Part::block(slope)?)?
+///     .with("right slope", Part::block(other)?)?
+///     .with("gate", Part::polyline([(6.0, 9.9), (14.0, 9.9)].map(DVec2::from))?)?;
 ///
-/// let disks = initial::lattice(&silo, 100, 0.5)?;
-/// # let disks: Vec<_> = disks.into_iter().filter(|disk| disk.position().y > 10.0).collect();
+/// // A lattice begins at the floor. The disks below the gate are left out.
+/// let mut disks = initial::lattice(&silo, 200, 0.5)?;
+/// disks.retain(|disk| disk.position().y > 10.0);
 /// let rule = ContactDuration::new(Frictional::new(0.1, 0.3)?, 1e-3)?;
 /// let mut run = Simulation::builder(rule, silo).disks(disks).gravity(1.0).build()?;
 /// run.run_until(0.5, &mut ())?;
@@ -65,6 +66,8 @@ pub struct Vessel {
     parts: Vec<Placed>,
     walls: Vec<Wall>,
     index: Index,
+    /// The parts at rest that fill each cell of the index.
+    filled: Vec<Vec<u32>>,
 }
 
 /// A part of a vessel.
@@ -89,7 +92,7 @@ struct Wall {
 impl Vessel {
     /// Creates a vessel without parts: the container.
     pub const fn new(container: Container) -> Self {
-        Self { container, parts: Vec::new(), walls: Vec::new(), index: Index::EMPTY }
+        Self { container, parts: Vec::new(), walls: Vec::new(), index: Index::EMPTY, filled: Vec::new() }
     }
 
     /// Creates a vessel of parts that enclose the disks by themselves. The container is a rectangle around
@@ -231,6 +234,7 @@ impl Vessel {
             |wall| travel(wall).bounds(&wall.brick),
             |wall, region| travel(wall).may_reach(&wall.brick, region, 0.0),
         );
+        self.filled = self.filled_cells();
     }
 }
 
@@ -293,7 +297,7 @@ impl Boundary for Vessel {
     }
 
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
-        let parts = self.parts.iter().filter_map(|placed| self.depth(placed, position, radius, time));
+        let parts = self.overlap_with_parts(position, radius, time);
         let all = self.container.overlap(position, radius, time).into_iter().chain(parts);
         all.filter(|&(_, depth)| depth > 0.0).max_by(|a, b| a.1.total_cmp(&b.1))
     }

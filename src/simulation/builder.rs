@@ -109,15 +109,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
     pub fn build(self) -> Result<Simulation<R, B, S>, BuildError> {
         bounded("gravity", self.gravity)?;
         finite("start time", self.start_time)?;
-        if self.disks.len() > MOST_DISKS {
-            return Err(BuildError::TooManyDisks { count: self.disks.len(), most: MOST_DISKS });
-        }
+        bounded_count(self.disks.len())?;
         let mut boundary = self.boundary;
         boundary.set_time_origin(self.start_time);
         let (wall_count, cells) = fit(&boundary, &self.disks, 0.0)?;
         let bodies = Bodies::new(&self.disks, self.gravity);
         let clock = Clock::new(self.start_time, bodies.epoch_length());
-        check_start(&clock, &self.disks)?;
+        if !self.disks.is_empty() {
+            check_epoch(&clock, 0.0)?;
+        }
         let mut simulation = Simulation {
             rule: self.rule,
             boundary,
@@ -146,18 +146,23 @@ pub(super) fn fit<B: Boundary + ?Sized>(
 ) -> Result<(usize, Cells), BuildError> {
     let wall_count = count_walls(boundary)?;
     check_inside(boundary, disks, offset)?;
-    let cells = cells_for(boundary, disks)?;
+    let cells = cells_around(boundary, disks)?;
     check_overlaps(boundary, disks, &cells)?;
     Ok((wall_count, cells))
 }
 
-/// Checks that times at the start are not too coarse, so that time cannot stand still.
-fn check_start(clock: &Clock, disks: &[Disk]) -> Result<(), BuildError> {
-    match clock.coarseness(0.0) {
-        Some(spacing) if !disks.is_empty() => {
-            Err(BuildError::StartTime { start: clock.origin, spacing, epoch: clock.epoch_length })
+/// Checks that so many disks can be numbered.
+pub(super) fn bounded_count(count: usize) -> Result<(), BuildError> {
+    if count > MOST_DISKS { Err(BuildError::TooManyDisks { count, most: MOST_DISKS }) } else { Ok(()) }
+}
+
+/// Checks that times at this offset are not too coarse, so that time cannot stand still.
+pub(super) fn check_epoch(clock: &Clock, offset: f64) -> Result<(), BuildError> {
+    match clock.coarseness(offset) {
+        Some(spacing) => {
+            Err(BuildError::StartTime { start: clock.origin + offset, spacing, epoch: clock.epoch_length })
         }
-        _ => Ok(()),
+        None => Ok(()),
     }
 }
 
@@ -171,7 +176,7 @@ pub(super) fn count_walls<B: Boundary + ?Sized>(boundary: &B) -> Result<usize, B
 }
 
 /// Returns neighbor cells that suit these disks.
-fn cells_for<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells, BuildError> {
+pub(super) fn cells_around<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells, BuildError> {
     let diameter = 2.0 * disks.iter().map(Disk::radius).fold(0.0, f64::max);
     let domain = boundary.domain();
     // Any cells will do without disks.

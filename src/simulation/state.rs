@@ -5,6 +5,7 @@ mod clock;
 mod forecast;
 mod guard;
 mod pace;
+mod population;
 mod properties;
 
 pub(super) use bodies::Bodies;

@@ -5,6 +5,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use super::laws::{Violation, check_finite};
+use super::mirrored::Mirrored;
 use super::{Fixed, WallMotion};
 
 /// A motion of any type.
@@ -14,7 +15,7 @@ use super::{Fixed, WallMotion};
 pub(crate) struct Motion {
     motion: Arc<dyn WallMotion + Send + Sync>,
     #[cfg(feature = "serde")]
-    known: Option<file::Known>,
+    known: Option<file::Record>,
 }
 
 impl Motion {
@@ -22,7 +23,7 @@ impl Motion {
     pub(crate) fn new<M: WallMotion + Send + Sync + 'static>(motion: M) -> Result<Self, Violation> {
         check_finite(&motion)?;
         #[cfg(feature = "serde")]
-        let known = file::Known::of(&motion);
+        let known = file::Record::of(&motion);
         Ok(Self {
             motion: Arc::new(motion),
             #[cfg(feature = "serde")]
@@ -35,8 +36,41 @@ impl Motion {
         Self {
             motion: Arc::new(Fixed),
             #[cfg(feature = "serde")]
-            known: Some(file::Known::Fixed),
+            known: file::Record::of(&Fixed),
         }
+    }
+
+    /// Returns the same motion in the opposite direction.
+    pub(crate) fn mirrored(&self) -> Self {
+        Self {
+            motion: Arc::new(Mirrored(Arc::clone(&self.motion))),
+            #[cfg(feature = "serde")]
+            known: self.known.map(file::Record::mirrored),
+        }
+    }
+
+    /// Tells whether the motion jumps at the end of a piece, in the first period or in the first thousand
+    /// pieces.
+    pub(crate) fn jumps(&self) -> bool {
+        const PIECES: usize = 1000;
+        let (low, high) = self.reach();
+        let end = self.period().unwrap_or(f64::INFINITY);
+        let mut phase = 0.0;
+        for _ in 0..PIECES {
+            let until = self.acceleration(phase).until;
+            if !(until.is_finite() && until > phase) {
+                return false;
+            }
+            let (before, after) = (self.state(until.next_down()), self.state(until));
+            if (after.displacement - before.displacement).abs() > 1e-6 * (high - low) {
+                return true;
+            }
+            if until >= end {
+                return false;
+            }
+            phase = until;
+        }
+        false
     }
 
     /// Returns the phase at a time origin: the origin less whole periods.
@@ -82,7 +116,7 @@ mod file {
 
     /// The motions of the crate.
     #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-    #[serde(rename = "Motion")]
+    #[serde(rename_all = "snake_case", rename = "KnownMotion")]
     pub(super) enum Known {
         Fixed,
         BiParabolic(BiParabolic),
@@ -91,10 +125,29 @@ mod file {
         Sawtooth(Sawtooth),
     }
 
-    impl Known {
+    /// A motion as it stands in a file.
+    #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields, rename = "Motion")]
+    pub(super) struct Record {
+        motion: Known,
+        #[serde(default)]
+        is_mirrored: bool,
+    }
+
+    impl Record {
         pub(super) fn of(motion: &dyn Any) -> Option<Self> {
-            let copy = |known: Option<&Fixed>| known.map(|_| Self::Fixed);
-            copy(motion.downcast_ref())
+            Known::of(motion).map(|motion| Self { motion, is_mirrored: false })
+        }
+
+        pub(super) fn mirrored(self) -> Self {
+            Self { is_mirrored: !self.is_mirrored, ..self }
+        }
+    }
+
+    impl Known {
+        fn of(motion: &dyn Any) -> Option<Self> {
+            let fixed = motion.downcast_ref().map(|Fixed| Self::Fixed);
+            fixed
                 .or_else(|| motion.downcast_ref().copied().map(Self::BiParabolic))
                 .or_else(|| motion.downcast_ref().copied().map(Self::Sinusoidal))
                 .or_else(|| motion.downcast_ref().copied().map(Self::Triangular))
@@ -111,14 +164,16 @@ mod file {
 
     impl<'de> Deserialize<'de> for Motion {
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            let motion = match Known::deserialize(deserializer)? {
+            let Record { motion, is_mirrored } = Record::deserialize(deserializer)?;
+            let motion = match motion {
                 Known::Fixed => Self::new(Fixed),
                 Known::BiParabolic(motion) => Self::new(motion),
                 Known::Sinusoidal(motion) => Self::new(motion),
                 Known::Triangular(motion) => Self::new(motion),
                 Known::Sawtooth(motion) => Self::new(motion),
             };
-            motion.map_err(de::Error::custom)
+            let motion = motion.map_err(de::Error::custom)?;
+            Ok(if is_mirrored { motion.mirrored() } else { motion })
         }
     }
 }

@@ -7,4 +7,5 @@ mod fingerprints;
 mod names;
 mod obstacles;
 mod planted;
+mod touches;
 mod vessels;

@@ -2,10 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use granular_edmd::boundary::{Boundary, Brick, Container, Part, Vessel, laws};
+use granular_edmd::boundary::{Boundary, Brick, Container, Part, Vessel, Wall, laws};
 use granular_edmd::collision::{CollisionRule, Elastic};
 use granular_edmd::glam::DVec2;
-use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
+use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular, WallMotion};
 use granular_edmd::{Disk, Simulation, initial};
 
 fn points(list: &[(f64, f64)]) -> Vec<DVec2> {
@@ -151,7 +151,7 @@ fn a_gas_stays_in_its_vessel() {
 #[cfg(feature = "serde")]
 #[test]
 fn vessels_come_back_from_files() {
-    use granular_edmd::boundary::{Thermal, Wall};
+    use granular_edmd::boundary::Thermal;
     use granular_edmd::collision::{Frictional, Smooth, from_fn};
 
     let floor = BiParabolic::new(0.1, 10.0).unwrap();
@@ -175,4 +175,83 @@ fn vessels_come_back_from_files() {
     let own = triangle().with_rule(from_fn(|contact| Elastic.impulse(contact)));
     let error = serde_json::to_string(&own).unwrap_err().to_string();
     assert_eq!(error, "a collision rule that is not of granular-edmd cannot be serialized");
+}
+
+/// Numbers of every kind are refused with the value named, or make a part that answers.
+#[test]
+fn numbers_of_every_kind_are_refused_or_taken() {
+    const NUMBERS: [f64; 12] = [
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        1e-300,
+        5e-324,
+        1e30,
+        1e61,
+        f64::MAX,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NAN,
+    ];
+    let mut taken = 0;
+    for (a, b) in NUMBERS.iter().flat_map(|&a| NUMBERS.map(|b| (a, b))) {
+        let point = DVec2::new(a, b);
+        let parts = [
+            Brick::segment(point, DVec2::ONE).and_then(|brick| Part::new([brick.two_sided()])),
+            Brick::half_line(DVec2::ONE, point).and_then(|brick| Part::new([brick.two_sided()])),
+            Brick::arc(DVec2::ONE, 1.0, a, b).and_then(|brick| Part::new([brick.two_sided()])),
+            Part::peg(point, 1.0),
+            Part::peg(DVec2::ONE, a),
+            Part::polygon([DVec2::ZERO, DVec2::ONE, point]),
+            triangle().shifted(point),
+            triangle().rotated(point, a),
+            triangle().rotated(DVec2::ONE, b),
+            triangle().with_rotation(point, 1.0),
+            triangle().with_rotation(DVec2::ONE, a),
+            triangle().with_surface_speed(a),
+            triangle().with_motion(point, Sinusoidal::new(0.1, 3.0).unwrap()),
+        ];
+        for part in parts.into_iter().flatten() {
+            let vessel = room().with("part", part).unwrap();
+            let place = DVec2::new(2.0, 11.0);
+            let flight = granular_edmd::Flight::new(0.0, place, DVec2::new(3.0, -9.0), DVec2::NEG_Y, 0.4);
+            let touch = vessel.first_touch(&flight, 10.0).unwrap();
+            assert!(touch.time >= 0.0 && touch.time <= 10.0 && touch.wall < vessel.wall_count());
+            let depth = vessel.overlap(place, 0.4, 0.0).map_or(0.0, |(_, depth)| depth);
+            assert!(!depth.is_nan());
+            taken += 1;
+        }
+    }
+    assert!(taken > 500, "{taken}");
+}
+
+/// Where the box is shaken as a whole, the sides move together, and floor and lid slide with them.
+#[test]
+fn a_box_that_is_shaken_moves_as_one() {
+    let motion = Sinusoidal::new(0.5, 3.0).unwrap();
+    let floor = BiParabolic::new(0.1, 10.0).unwrap();
+    let container = Container::closed(12.0, 9.0).unwrap().with_motion(Wall::Floor, floor).unwrap();
+    let mut container = container.shaken_sideways(motion).unwrap();
+    assert_eq!(laws::check(&mut container, 0.5, 1.0, 3), Ok(()));
+    container.set_time_origin(0.0);
+    for time in [0.0, 0.3, 1.7] {
+        let shaken = motion.state(time);
+        for wall in 0..4 {
+            let velocity = container.surface(wall, DVec2::ONE, time).velocity;
+            assert!((velocity.x - shaken.velocity).abs() < 1e-12, "{wall} at {time}: {velocity}");
+        }
+        let depth = |x: f64| container.overlap(DVec2::new(x, 4.0), 1.0, time).map_or(0.0, |(_, depth)| depth);
+        assert!((depth(0.0) - (1.0 + shaken.displacement)).abs() < 1e-12);
+        assert!((depth(12.0) - (1.0 - shaken.displacement)).abs() < 1e-12);
+        assert_eq!(container.surface(0, DVec2::ONE, time).velocity.y, floor.state(time).velocity);
+    }
+    let both = Container::closed(12.0, 9.0).unwrap().shaken_vertically(motion).unwrap();
+    let mut both = both.shaken_sideways(floor).unwrap();
+    assert_eq!(laws::check(&mut both, 0.5, 1.0, 3), Ok(()));
+    both.set_time_origin(0.0);
+    let velocities = [0, 1, 2, 3].map(|wall| both.surface(wall, DVec2::ONE, 0.4).velocity);
+    let expected = DVec2::new(floor.state(0.4).velocity, motion.state(0.4).velocity);
+    assert!(velocities.iter().all(|velocity| (*velocity - expected).length() < 1e-12), "{velocities:?}");
+    assert!(Container::open(9.0).unwrap().shaken_sideways(Sawtooth::new(0.1, 3.0).unwrap()).is_err());
 }

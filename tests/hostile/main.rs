@@ -39,4 +39,5 @@ mod specimens;
 mod systems;
 #[cfg(feature = "serde")]
 mod unknown_fields;
+mod vessels;
 mod walls;

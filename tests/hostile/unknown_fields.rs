@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 
 use granular_edmd::analysis::{PlaneTransition, Transition};
-use granular_edmd::boundary::{Boundary, Thermal};
+use granular_edmd::boundary::{Boundary, Brick, Container, Part, Thermal, Vessel, Wall};
 use granular_edmd::collision::{
     ContactDuration, ElasticBelow, Frictional, LeastRebound, Rough, Smooth, SpeedDependent,
 };
@@ -89,6 +89,35 @@ fn parameters_with_a_field_too_many_are_refused() {
     refuses(&Sawtooth::new(0.1, 3.0).unwrap());
     refuses(&Thermal::new(2.0).unwrap());
     refuses(&Maxwellian::new(1.0).unwrap().with_rotational_temperature(0.5).unwrap());
+}
+
+#[test]
+fn boundaries_with_a_field_too_many_are_refused() {
+    let bricks = [
+        Brick::segment(DVec2::ZERO, DVec2::ONE).unwrap(),
+        Brick::half_line(DVec2::ZERO, DVec2::ONE).unwrap().two_sided(),
+        Brick::circle(DVec2::ZERO, 2.0).unwrap().reversed(),
+        Brick::arc(DVec2::ZERO, 2.0, 0.3, 1.9).unwrap(),
+        Brick::point(DVec2::ONE).unwrap(),
+    ];
+    for brick in &bricks {
+        refuses(brick);
+    }
+    let part = || Part::new(bricks).unwrap();
+    let parts = [
+        part().with_rule(Smooth::new(0.1).unwrap()),
+        part().with_motion(DVec2::ONE, Sinusoidal::new(0.1, 3.0).unwrap()).unwrap(),
+        part().with_rotation(DVec2::ONE, 0.3).unwrap().with_temperature(Thermal::new(2.0).unwrap()),
+    ];
+    let container =
+        Container::open(10.0).unwrap().shaken_sideways(BiParabolic::new(0.1, 3.0).unwrap()).unwrap();
+    let container = container.with_surface_speed(Wall::Left, 0.3).unwrap();
+    refuses_intruders::<Container>(&serde_json::to_value(&container).unwrap());
+    for part in parts {
+        refuses_intruders::<Part>(&serde_json::to_value(&part).unwrap());
+        let vessel = Vessel::new(container.clone()).with("part", part).unwrap();
+        refuses_intruders::<Vessel>(&serde_json::to_value(&vessel).unwrap());
+    }
 }
 
 #[test]

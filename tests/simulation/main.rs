@@ -22,6 +22,7 @@ mod oracle;
 mod order;
 mod parting;
 mod periodic;
+mod population;
 mod rest;
 #[cfg(feature = "serde")]
 mod resuming;

@@ -6,6 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::{Container, Wall};
 use crate::Kind;
 use crate::boundary::conduct::Conduct;
+use crate::boundary::plane::Slide;
+use crate::quantity::finite;
 use crate::wall::Motion;
 
 /// A container as it stands in a file.
@@ -26,13 +28,15 @@ struct WallRecord {
     motion: Motion,
     conduct: Conduct,
     kind: Kind,
+    #[serde(default)]
+    slide: Option<Slide>,
 }
 
 impl From<Container> for Record {
     fn from(container: Container) -> Self {
         let walls = container.walls.into_iter().zip(container.planes).map(|(wall, plane)| {
-            let (motion, conduct, kind) = plane.into_parts();
-            WallRecord { wall, motion, conduct, kind }
+            let (motion, conduct, kind, slide) = plane.into_parts();
+            WallRecord { wall, motion, conduct, kind, slide }
         });
         let height = container.height.is_finite().then_some(container.height);
         Self { corner: container.corner, width: container.width, height, walls: walls.collect() }
@@ -64,6 +68,10 @@ impl TryFrom<Record> for Container {
             plane.set_motion(record.motion);
             plane.set_conduct(record.conduct);
             plane.set_kind(record.kind);
+            if let Some(Slide::Speed(speed)) = record.slide {
+                finite("surface speed", speed).map_err(|error| error.to_string())?;
+            }
+            plane.set_slide(record.slide);
         }
         container.shifted(corner).map_err(|error| error.to_string())
     }

@@ -4,6 +4,7 @@ use std::fmt;
 
 use thiserror::Error;
 
+use crate::ParameterError;
 use crate::wall::laws::Violation;
 
 /// A wall of a [`Container`](super::Container).
@@ -64,4 +65,13 @@ pub enum WallError {
         /// The answer of the motion.
         violation: Violation,
     },
+    /// The motion jumps back, which would move the wall on the other side into the disks.
+    #[error("the motion jumps back at times, and would move the wall \"{wall}\" into disks")]
+    Jump {
+        /// The wall that would jump.
+        wall: Wall,
+    },
+    /// The surface speed is not finite.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
 }

@@ -4,7 +4,6 @@ use glam::DVec2;
 
 use crate::boundary::brick::{Brick, finite_point};
 use crate::boundary::vessel::VesselError;
-use crate::wall::WallMotion;
 
 /// Returns the sides of a polygon with the disks inside or outside.
 pub(super) fn sides(mut points: Vec<DVec2>, inside: bool) -> Result<Vec<Brick>, VesselError> {
@@ -100,28 +99,4 @@ fn point((number, line): (usize, &str)) -> Result<DVec2, VesselError> {
         Some(&[x, y]) => Ok(DVec2::new(x, y)),
         _ => Err(VesselError::Line { number, line: line.chars().take(60).collect() }),
     }
-}
-
-/// Tells whether a motion jumps at the ends of its pieces, in the first period or in the first thousand
-/// pieces.
-pub(super) fn jumps(motion: &dyn WallMotion) -> bool {
-    const PIECES: usize = 1000;
-    let (low, high) = motion.reach();
-    let end = motion.period().unwrap_or(f64::INFINITY);
-    let mut phase = 0.0;
-    for _ in 0..PIECES {
-        let until = motion.acceleration(phase).until;
-        if !(until.is_finite() && until > phase) {
-            return false;
-        }
-        let (before, after) = (motion.state(until.next_down()), motion.state(until));
-        if (after.displacement - before.displacement).abs() > 1e-6 * (high - low) {
-            return true;
-        }
-        if until >= end {
-            return false;
-        }
-        phase = until;
-    }
-    false
 }

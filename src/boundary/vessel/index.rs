@@ -17,7 +17,7 @@ pub(super) struct Index {
     corner: DVec2,
     /// Cells per length.
     density: DVec2,
-    columns: usize,
+    pub(super) columns: usize,
     rows: usize,
     /// Where the bricks of each cell begin, and where those of the last one end.
     starts: Vec<u32>,
@@ -84,8 +84,24 @@ impl Index {
         self.cells(min, max).flat_map(|cell| self.within(cell))
     }
 
+    /// Returns the number of cells.
+    pub(super) fn len(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+
+    /// Returns the cell in which a place is.
+    pub(super) fn cell(&self, place: DVec2) -> usize {
+        self.cells(place, place).next().unwrap_or(0)
+    }
+
+    /// Returns the middle of a cell, without the endless part of a cell at an edge.
+    pub(super) fn middle(&self, cell: usize) -> DVec2 {
+        let (column, row) = ((cell % self.columns) as f64, (cell / self.columns) as f64);
+        self.corner + DVec2::new(column + 0.5, row + 0.5) / self.density
+    }
+
     /// Returns the bricks that come into a cell.
-    fn within(&self, cell: usize) -> impl Iterator<Item = Entry> {
+    pub(super) fn within(&self, cell: usize) -> impl Iterator<Item = Entry> {
         let range = match (self.starts.get(cell), self.starts.get(cell + 1)) {
             (Some(&from), Some(&to)) => from as usize..to as usize,
             _ => 0..0,
@@ -94,7 +110,7 @@ impl Index {
     }
 
     /// Returns the cells that overlap a rectangle.
-    fn cells(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = usize> {
+    pub(super) fn cells(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = usize> {
         let place = |value: f64, count: usize| (value.floor().max(0.0) as usize).min(count.max(1) - 1);
         let (from, to) = ((min - self.corner) * self.density, (max - self.corner) * self.density);
         let columns = place(from.x, self.columns)..=place(to.x, self.columns);

@@ -81,25 +81,8 @@ impl Vessel {
         placed.part.surface(normal, travel.velocity(contact, time + placed.phase))
     }
 
-    /// Returns the wall of a part that is nearest, and how deep a disk reaches into it.
-    pub(super) fn depth(
-        &self,
-        placed: &Placed,
-        position: DVec2,
-        radius: f64,
-        time: f64,
-    ) -> Option<(usize, f64)> {
-        let pose = placed.part.travel().pose(time + placed.phase);
-        let images = self.domain_images();
-        let depths = images.filter_map(|image| {
-            let (brick, distance) = placed.part.nearest(pose.inward(position - image))?;
-            Some((placed.first + brick, radius - distance))
-        });
-        depths.max_by(|a, b| a.1.total_cmp(&b.1))
-    }
-
     /// Returns the displacements after which the vessel repeats itself, in the neighborhood.
-    fn domain_images(&self) -> impl Iterator<Item = DVec2> + use<> {
+    pub(super) fn domain_images(&self) -> impl Iterator<Item = DVec2> + use<> {
         super::index::images(self.container.domain())
     }
 }

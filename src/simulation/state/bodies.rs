@@ -48,7 +48,7 @@ pub(in crate::simulation) struct Spin {
 }
 
 impl Spin {
-    fn of(disk: &Disk) -> Self {
+    pub(super) fn of(disk: &Disk) -> Self {
         Self {
             angle: disk.angle(),
             angular_velocity: disk.angular_velocity(),
@@ -68,7 +68,7 @@ pub(in crate::simulation) struct Particle {
 
 impl Particle {
     /// Creates a particle with this trajectory, whose next event is not known.
-    fn new(trajectory: Trajectory) -> Self {
+    pub(super) fn new(trajectory: Trajectory) -> Self {
         Self { trajectory, forecast: Forecast::NEW }
     }
 }
@@ -78,9 +78,9 @@ pub(in crate::simulation) struct Bodies {
     pub(in crate::simulation) particles: Vec<Particle>,
     pub(in crate::simulation) spins: Vec<Spin>,
     pub(in crate::simulation) gravity: f64,
-    properties: Properties,
+    pub(super) properties: Properties,
     /// Numbers of periods that each disk has passed; empty as long as none has passed any.
-    images: Vec<[i32; 2]>,
+    pub(super) images: Vec<[i32; 2]>,
     /// Typical diameter, in which the length of an epoch is measured.
     pub(in crate::simulation) typical_diameter: f64,
 }

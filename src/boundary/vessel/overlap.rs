@@ -1,0 +1,112 @@
+//! Overlaps with the parts of a vessel.
+//!
+//! The nearest brick of a part decides whether a place is behind it. For a disk at a part, that is one of the
+//! bricks near the disk. Far from all bricks of a part at rest, a table says which side it is: the parts that
+//! fill each cell of the index.
+
+use glam::DVec2;
+
+use super::index::{Entry, Index};
+use super::{Placed, Vessel};
+use crate::boundary::Boundary;
+use crate::boundary::part::Sighted;
+
+impl Vessel {
+    /// Returns the wall of a part into which a disk reaches deepest, and the depth.
+    pub(super) fn overlap_with_parts(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+        let moving = self.parts.iter().filter(|placed| !placed.part.travel().is_at_rest());
+        let moving = moving.filter_map(|placed| self.depth(placed, position, radius, time));
+        let filled = self.filled.get(self.index.cell(position)).into_iter().flatten();
+        let filled =
+            filled.filter_map(|&part| self.depth(&self.parts[part as usize], position, radius, time));
+        let near = || self.near_at_rest(position, radius);
+        let firsts =
+            near().enumerate().filter(|(k, (part, _))| !near().take(*k).any(|(other, _)| other == *part));
+        let beside = firsts.filter_map(|(_, (part, _))| {
+            let entries = near().filter(|(other, _)| *other == part).map(|(_, entry)| entry);
+            let placed = &self.parts[part];
+            match self.nearest_of(entries, position) {
+                Some((wall, sighted)) if sighted.distance() <= radius => {
+                    Some((wall, radius - sighted.signed_distance()))
+                }
+                _ => self.depth(placed, position, radius, time),
+            }
+        });
+        moving.chain(filled).chain(beside).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Returns the bricks at rest in the cells around a disk, with the numbers of their parts.
+    fn near_at_rest(&self, position: DVec2, radius: f64) -> impl Iterator<Item = (usize, Entry)> {
+        let near = self.index.near(position - radius, position + radius);
+        let with_part = near.map(|entry| (self.walls[entry.wall as usize].part, entry));
+        with_part.filter(|(part, _)| self.parts[*part].part.travel().is_at_rest())
+    }
+
+    /// Returns the nearest of some bricks at rest, by the number of its wall.
+    fn nearest_of(&self, entries: impl Iterator<Item = Entry>, position: DVec2) -> Option<(usize, Sighted)> {
+        let sights = entries.map(|entry| {
+            let wall = entry.wall as usize;
+            let sighted = Sighted::new(&self.walls[wall].brick, position - entry.image);
+            (wall + self.container.wall_count(), sighted)
+        });
+        sights.reduce(|a, b| if b.1.is_better_than(&a.1) { b } else { a })
+    }
+
+    /// Returns the wall of a part that is nearest, and how deep a disk reaches into it.
+    fn depth(&self, placed: &Placed, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+        let pose = placed.part.travel().pose(time + placed.phase);
+        let depths = self.domain_images().filter_map(|image| {
+            let (brick, distance) = placed.part.nearest(pose.inward(position - image))?;
+            Some((placed.first + brick, radius - distance))
+        });
+        depths.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Lists the parts at rest that fill each cell in which they have no brick, wholly.
+    pub(super) fn filled_cells(&self) -> Vec<Vec<u32>> {
+        let mut filled = vec![Vec::new(); self.index.len()];
+        for (number, placed) in self.parts.iter().enumerate() {
+            let has_back =
+                placed.part.all_bricks().iter().any(|brick| !brick.is_two_sided() && !brick.is_point());
+            if placed.part.travel().is_at_rest() && has_back {
+                for cell in self.cells_filled_by(number, placed) {
+                    filled[cell].push(number as u32);
+                }
+            }
+        }
+        filled
+    }
+
+    /// Returns the cells without bricks of a part that are behind it.
+    ///
+    /// Of two neighbors without a brick of the part, both are behind it or none. So a cell is looked at only if
+    /// its neighbors to the left and below do not tell.
+    fn cells_filled_by(&self, number: usize, placed: &Placed) -> Vec<usize> {
+        let Index { columns, .. } = self.index;
+        let has_brick =
+            |cell: usize| self.index.within(cell).any(|entry| self.walls[entry.wall as usize].part == number);
+        let is_behind = |cell: usize| {
+            self.depth(placed, self.index.middle(cell), 0.0, 0.0).is_some_and(|(_, depth)| depth > 0.0)
+        };
+        // For each cell looked at: empty of bricks of the part, and behind it or not.
+        let mut known: Vec<Option<bool>> = vec![None; self.index.len()];
+        for cell in self.cells_to_look_at(placed) {
+            if has_brick(cell) {
+                continue;
+            }
+            let left = if cell % columns > 0 { known[cell - 1] } else { None };
+            let below = if cell >= columns { known[cell - columns] } else { None };
+            known[cell] = Some(left.or(below).unwrap_or_else(|| is_behind(cell)));
+        }
+        (0..known.len()).filter(|&cell| known[cell] == Some(true)).collect()
+    }
+
+    /// Returns the cells that may be behind a part: those of its rectangle, unless it is free inside only.
+    fn cells_to_look_at(&self, placed: &Placed) -> Vec<usize> {
+        let (low, high) = placed.part.bounds();
+        let is_bounded = low.is_finite() && high.is_finite() && self.domain().periods() == DVec2::ZERO;
+        let outside = low - (high - low) - DVec2::ONE;
+        let is_free_outside = is_bounded && placed.part.signed_distance(outside) > 0.0;
+        if is_free_outside { self.index.cells(low, high).collect() } else { (0..self.index.len()).collect() }
+    }
+}

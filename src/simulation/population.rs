@@ -1,0 +1,94 @@
+//! Disks that come and go between runs.
+
+use std::ops::Range;
+
+use super::Simulation;
+use super::builder::{bounded_count, cells_around, check_epoch, fit};
+use super::errors::BuildError;
+use super::lookahead::Lookahead;
+use super::state::Clock;
+use crate::Disk;
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::scheduler::EventScheduler;
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
+    /// Puts disks into the simulation, as they are now, and returns their indices. They come after all others,
+    /// in the order given.
+    ///
+    /// All events are predicted anew. The run goes on with the same bits under every scheduler, and through a
+    /// checkpoint before or after. Counters go on. The new disks have collided with nothing yet, and may be of
+    /// any size and kind.
+    ///
+    /// # Errors
+    /// If a disk is outside, overlaps a wall or overlaps another disk; the error names its index. If the
+    /// domain is too small for it, or it is so fast that times as late as the present are too coarse. The
+    /// simulation is then as before.
+    ///
+    /// ```
+    /// use granular_edmd::boundary::Container;
+    /// use granular_edmd::collision::Elastic;
+    /// use granular_edmd::glam::DVec2;
+    /// use granular_edmd::{Disk, Simulation};
+    ///
+    /// let disk = |y: f64| Disk::new(DVec2::new(2.0, y), 0.5);
+    /// let mut run = Simulation::builder(Elastic, Container::open(4.0)?).disks([disk(1.0)?]).gravity(1.0).build()?;
+    /// run.run_until(0.5, &mut ())?;
+    /// assert_eq!(run.insert([disk(3.0)?, disk(5.0)?])?, 1..3);
+    /// assert!(run.insert([disk(3.2)?]).is_err(), "it overlaps another one");
+    /// let removed = run.remove(|_, disk| disk.position().y > 4.0)?;
+    /// assert_eq!((removed.len(), run.len()), (1, 2));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn insert(&mut self, disks: impl IntoIterator<Item = Disk>) -> Result<Range<usize>, BuildError> {
+        let new: Vec<Disk> = disks.into_iter().collect();
+        let indices = self.len()..self.len() + new.len();
+        bounded_count(indices.end)?;
+        let mut all = self.disks();
+        all.extend_from_slice(&new);
+        let (wall_count, cells) = fit(&self.boundary, &all, self.clock.now)?;
+        let mut bodies = self.bodies.clone();
+        bodies.insert(&new, self.clock.now);
+        check_epoch(&Clock { epoch_length: bodies.epoch_length(), ..self.clock }, self.clock.now)?;
+        // The place of a fast disk at a far epoch would lack digits, so the epoch moves first.
+        self.shift_epoch(self.clock.exact_offset());
+        self.bodies.insert(&new, self.clock.now);
+        (self.wall_count, self.cells) = (wall_count, cells);
+        self.begin_anew();
+        Ok(indices)
+    }
+
+    /// Takes out the disks that are chosen by their index and state, and returns them in their order.
+    ///
+    /// The other disks stay in their order: the index of each becomes smaller by the number of disks removed
+    /// before it. An observer that counts by index must be begun anew. For the bits, see
+    /// [`insert`](Self::insert).
+    ///
+    /// # Errors
+    /// If the boundary's domain cannot hold the other disks any more, since the boundary breaks its contract.
+    /// The simulation is then as before.
+    pub fn remove(&mut self, mut chosen: impl FnMut(usize, &Disk) -> bool) -> Result<Vec<Disk>, BuildError> {
+        let all = self.disks();
+        let leaves: Vec<bool> = all.iter().enumerate().map(|(index, disk)| chosen(index, disk)).collect();
+        let (mut removed, mut rest) = (Vec::new(), Vec::new());
+        for (disk, leaves) in all.into_iter().zip(&leaves) {
+            if *leaves { removed.push(disk) } else { rest.push(disk) }
+        }
+        if removed.is_empty() {
+            return Ok(removed);
+        }
+        let cells = cells_around(&self.boundary, &rest)?;
+        self.shift_epoch(self.clock.exact_offset());
+        self.bodies.remove(&leaves);
+        self.cells = cells;
+        self.begin_anew();
+        Ok(removed)
+    }
+
+    /// Predicts everything anew for other disks than before.
+    fn begin_anew(&mut self) {
+        self.lookahead = Lookahead::default();
+        self.clock.epoch_length = self.bodies.epoch_length();
+        self.predict_all();
+    }
+}

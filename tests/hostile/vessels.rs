@@ -1,0 +1,171 @@
+//! Random vessels: polygons that are anything but regular, and arcs, pegs and thin walls, at rest and in all
+//! motions. They keep the contract, and nothing gets out.
+
+use granular_edmd::boundary::{Boundary, Brick, Container, Part, Vessel, VesselError, laws};
+use granular_edmd::collision::{ContactDuration, Frictional};
+use granular_edmd::glam::DVec2;
+use granular_edmd::wall::{BiParabolic, Sinusoidal, Triangular};
+use granular_edmd::{Simulation, initial};
+use proptest::prelude::*;
+
+use crate::cases::config;
+
+/// A way in which a part moves.
+#[derive(Debug, Clone, Copy)]
+enum Motion {
+    None,
+    BiParabolic,
+    Triangular,
+    Sinusoidal,
+    Turning,
+}
+
+/// A vessel as data.
+#[derive(Debug, Clone)]
+pub(crate) struct Plan {
+    /// Distances of the corners from the middle, at angles in equal steps and a little off.
+    corners: Vec<(f64, f64)>,
+    /// A thing in the middle, and its size.
+    inner: (u8, f64),
+    motion: Motion,
+    inner_motion: Motion,
+    amplitude: f64,
+    frequency: f64,
+    direction: f64,
+    periodic: bool,
+}
+
+const MIDDLE: DVec2 = DVec2::new(5.0, -3.0);
+
+fn unit(angle: f64) -> DVec2 {
+    let (sine, cosine) = libm::sincos(angle);
+    DVec2::new(cosine, sine)
+}
+
+impl Plan {
+    /// Returns the corners of a polygon that the middle sees whole.
+    fn polygon(&self, size: f64) -> Vec<DVec2> {
+        let step = std::f64::consts::TAU / self.corners.len() as f64;
+        let corner = |(k, &(distance, off)): (usize, &(f64, f64))| {
+            MIDDLE + size * distance * unit(step * (k as f64 + 0.4 * off))
+        };
+        self.corners.iter().enumerate().map(corner).collect()
+    }
+
+    fn inner(&self) -> Result<Part, VesselError> {
+        let (kind, size) = self.inner;
+        let at = |x: f64, y: f64| MIDDLE + size * DVec2::new(x, y);
+        match kind {
+            0 => Part::peg(MIDDLE, size),
+            1 => Part::polyline([at(-1.0, 0.2), at(0.1, -0.3), at(0.2, 0.9)]),
+            2 => Part::block([at(-1.0, -0.8), at(1.0, -0.7), at(0.1, 0.1), at(0.9, 1.0), at(-0.2, 0.4)]),
+            3 => Part::new([Brick::arc(MIDDLE, size, self.direction, self.direction + 4.0)?.two_sided()]),
+            _ => Part::new([Brick::arc(MIDDLE, size, self.direction, self.direction + 2.0)?.two_sided()]),
+        }
+    }
+
+    fn moving(&self, part: Part, motion: Motion) -> Result<Part, VesselError> {
+        let (along, amplitude, frequency) = (unit(self.direction), self.amplitude, self.frequency);
+        match motion {
+            Motion::None => Ok(part),
+            Motion::BiParabolic => part.with_motion(along, BiParabolic::new(amplitude, frequency)?),
+            Motion::Triangular => part.with_motion(along, Triangular::new(amplitude, frequency)?),
+            Motion::Sinusoidal => part.with_motion(along, Sinusoidal::new(amplitude, frequency)?),
+            Motion::Turning => part.with_rotation(MIDDLE + amplitude * along, 0.1 * frequency),
+        }
+    }
+
+    pub(crate) fn vessel(&self) -> Result<Vessel, VesselError> {
+        let inner = self.moving(self.inner()?, self.inner_motion)?;
+        if self.periodic {
+            // The polygon is a block that lies across the sides.
+            let container = Container::closed(16.0, 14.0)?.with_periodic_sides();
+            let block = Part::block(self.polygon(2.0))?.shifted(DVec2::new(-5.0, 7.0))?;
+            let other = inner.shifted(DVec2::new(3.0, 10.0))?;
+            return Vessel::new(container)
+                .with("block", self.moving(block, self.motion)?)?
+                .with("inner", other);
+        }
+        let outer = self.moving(Part::polygon(self.polygon(6.0))?, self.motion)?;
+        Vessel::around([("outer", outer), ("inner", inner)])
+    }
+}
+
+fn motion() -> impl Strategy<Value = Motion> {
+    prop_oneof![
+        Just(Motion::None),
+        Just(Motion::BiParabolic),
+        Just(Motion::Triangular),
+        Just(Motion::Sinusoidal),
+        Just(Motion::Turning)
+    ]
+}
+
+pub(crate) fn plan() -> impl Strategy<Value = Plan> {
+    let corners = prop::collection::vec((0.55..1.0f64, -1.0..1.0f64), 3..14);
+    let numbers = (0.01..0.3f64, 0.3..8.0f64, 0.0..6.0f64);
+    (corners, (0u8..5, 0.2..1.0f64), motion(), motion(), numbers, any::<bool>()).prop_map(
+        |(corners, inner, motion, inner_motion, (amplitude, frequency, direction), periodic)| Plan {
+            corners,
+            inner,
+            motion,
+            inner_motion,
+            amplitude,
+            frequency,
+            direction,
+            periodic,
+        },
+    )
+}
+
+/// Checks that a vessel keeps the contract. A vessel without room for a disk, or whose corners lie so that
+/// sides cross, proves nothing.
+fn keeps_the_contract(plan: &Plan, radius: f64, seed: u64) -> Result<(), TestCaseError> {
+    let mut vessel = match plan.vessel() {
+        Err(VesselError::Crossing { .. }) => return Err(TestCaseError::reject("sides cross")),
+        vessel => vessel.map_err(|error| TestCaseError::fail(error.to_string()))?,
+    };
+    match laws::check(&mut vessel, radius, 1.0, seed) {
+        Err(laws::Violation::NoRoom { .. }) => Err(TestCaseError::reject("there is no room")),
+        outcome => {
+            prop_assert_eq!(outcome, Ok(()));
+            Ok(())
+        }
+    }
+}
+
+/// Lets disks fly in a vessel for a while. They stay inside.
+fn nothing_gets_out(plan: &Plan, radius: f64, seed: u64) -> Result<(), TestCaseError> {
+    let Ok(vessel) = plan.vessel() else { return Err(TestCaseError::reject("sides cross")) };
+    let Ok(disks) = initial::random(&vessel, 12, radius, 20.0, seed) else {
+        return Err(TestCaseError::reject("there is no room"));
+    };
+    let fail = |error: &dyn std::error::Error| TestCaseError::fail(error.to_string());
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, seed).map_err(|error| fail(&error))?;
+    let rule = Frictional::new(0.02, 0.3).and_then(|rule| ContactDuration::new(rule, 1e-2));
+    let rule = rule.map_err(|error| fail(&error))?;
+    let mut run = Simulation::builder(rule, vessel.clone()).disks(disks).gravity(0.2).build();
+    let run = run.as_mut().map_err(|error| fail(error))?;
+    for time in 1..=20 {
+        run.run_until(f64::from(time), &mut ()).map_err(|error| fail(&error))?;
+        for disk in run.disks() {
+            let overlap = vessel.overlap(disk.position(), 0.0, run.time());
+            prop_assert!(overlap.is_none(), "{:?} at {} is out: {:?}", disk, time, overlap);
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { max_global_rejects: 100_000, ..config(24) })]
+
+    #[test]
+    fn random_vessels_keep_the_contract(plan in plan(), radius in 0.1..0.5f64, seed in any::<u64>()) {
+        keeps_the_contract(&plan, radius, seed)?;
+    }
+
+    #[test]
+    fn nothing_gets_out_of_random_vessels(plan in plan(), radius in 0.1..0.3f64, seed in any::<u64>()) {
+        nothing_gets_out(&plan, radius, seed)?;
+    }
+}

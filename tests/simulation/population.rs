@@ -1,0 +1,138 @@
+//! Disks that come and go between runs.
+
+use granular_edmd::boundary::{Boundary, Container};
+use granular_edmd::collision::Elastic;
+use granular_edmd::glam::DVec2;
+use granular_edmd::simulation::BuildError;
+#[cfg(feature = "serde")]
+use granular_edmd::simulation::Checkpoint;
+use granular_edmd::{Disk, Kind, Simulation};
+use proptest::prelude::*;
+
+use crate::schedulers::{SCHEDULERS, Scheduler};
+use crate::setups::{Rule, Setup, config, elastic_gas, setup};
+
+type Run = Simulation<Rule, Container, Scheduler>;
+
+/// Returns a simulation of a set-up under a scheduler.
+fn run(setup: &Setup, scheduler: usize) -> Run {
+    setup.builder().scheduler(SCHEDULERS[scheduler]()).build().unwrap()
+}
+
+/// Returns the same run, written to bytes and resumed under the next scheduler.
+#[cfg(feature = "serde")]
+fn through_bytes(run: &Run, setup: &Setup, scheduler: usize) -> Run {
+    let checkpoint = Checkpoint::from_bytes(&run.checkpoint().to_bytes().unwrap()).unwrap();
+    let resumption = Simulation::resume(&checkpoint, setup.rule(), setup.boundary());
+    resumption.scheduler(SCHEDULERS[scheduler]()).build().unwrap()
+}
+
+/// Takes out every third disk and those above the middle, and puts some of them in again where there is room,
+/// one of them smaller, faster and of another kind.
+fn change(run: &mut Run) {
+    let removed = run.remove(|index, disk| index % 3 == 0 || disk.position().y > 10.0).unwrap();
+    for (k, disk) in removed.iter().enumerate().filter(|(k, _)| k % 2 == 0) {
+        let disk = if k % 4 == 0 {
+            let small = Disk::new(disk.position(), 0.3 * disk.radius()).unwrap();
+            small.with_kind(Kind::new(3)).with_velocity(10.0 * disk.velocity()).unwrap()
+        } else {
+            *disk
+        };
+        let count = run.len();
+        assert_eq!(run.insert([disk]).unwrap(), count..count + 1);
+    }
+}
+
+#[cfg(feature = "serde")]
+proptest! {
+    #![proptest_config(config(40))]
+
+    #[test]
+    fn the_bits_are_those_of_every_scheduler_and_checkpoint(setup in setup(), cut in 0.0..2.0f64) {
+        let (first, last) = (setup.start + cut, setup.start + 3.0);
+        let mut whole = run(&setup, 0);
+        whole.run_until(first, &mut ()).unwrap();
+        change(&mut whole);
+        whole.run_until(last, &mut ()).unwrap();
+        for scheduler in 0..SCHEDULERS.len() {
+            let mut cut = run(&setup, scheduler);
+            cut.run_until(first, &mut ()).unwrap();
+            let mut cut = through_bytes(&cut, &setup, scheduler);
+            change(&mut cut);
+            let mut cut = through_bytes(&cut, &setup, (scheduler + 1) % SCHEDULERS.len());
+            cut.run_until(last, &mut ()).unwrap();
+            prop_assert_eq!(cut.disks(), whole.disks());
+            prop_assert_eq!(cut.counters(), whole.counters());
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(config(40))]
+
+    /// The state is that of a simulation built of the same disks, up to rounding.
+    #[test]
+    fn a_changed_simulation_is_that_of_its_disks(setup in setup(), cut in 0.0..2.0f64) {
+        let mut changed = run(&setup, 0);
+        changed.run_until(setup.start + cut, &mut ()).unwrap();
+        let before = changed.disks();
+        change(&mut changed);
+        let now = changed.disks();
+        // Those that stay are where they were.
+        let stay = before.iter().enumerate().filter(|(k, disk)| k % 3 != 0 && disk.position().y <= 10.0);
+        for ((_, before), now) in stay.zip(&now) {
+            prop_assert!((before.position() - now.position()).length() < 1e-11);
+            prop_assert!((before.velocity() - now.velocity()).length() < 1e-11);
+            prop_assert_eq!((before.radius(), before.mass(), before.kind()), (now.radius(), now.mass(), now.kind()));
+        }
+        changed.run_until(setup.start + cut + 0.05, &mut ()).unwrap();
+        let depth = changed.counters().max_overlap;
+        prop_assert!(depth < 1e-8, "{depth}");
+    }
+}
+
+#[test]
+fn a_disk_that_does_not_fit_is_refused_and_changes_nothing() {
+    let mut run = elastic_gas(20, 12.0, 12.0, 0.1);
+    run.run_until(3.0, &mut ()).unwrap();
+    let before = run.disks();
+    let there = run.disk(4).unwrap();
+    let domain = run.boundary().domain();
+    let at = |x: f64, y: f64| Disk::new(DVec2::new(x, y), 0.5).unwrap();
+    assert!(matches!(run.insert([there]), Err(BuildError::Overlap { first: 4, second: 20, .. })));
+    let outside = run.insert([at(domain.right + 5.0, 1.0)]);
+    assert!(matches!(outside, Err(BuildError::Outside { disk: 20, .. })));
+    let wall = run.insert([at(domain.left, 5.0)]);
+    assert!(matches!(wall, Err(BuildError::OverlapsWall { disk: 20, .. })), "{wall:?}");
+    assert_eq!(run.disks(), before);
+    assert_eq!(run.insert([]).unwrap(), 20..20);
+}
+
+#[test]
+fn all_disks_may_go_and_others_come() {
+    let mut run = elastic_gas(20, 12.0, 12.0, 0.1);
+    run.run_until(3.0, &mut ()).unwrap();
+    assert_eq!(run.remove(|_, _| true).unwrap().len(), 20);
+    assert!(run.is_empty());
+    run.run_until(4.0, &mut ()).unwrap();
+    let ball = Disk::new(DVec2::new(2.0, 2.0), 0.1).unwrap().with_velocity(DVec2::X).unwrap();
+    assert_eq!(run.insert([ball]).unwrap(), 0..1);
+    run.run_until(4.5, &mut ()).unwrap();
+    let place = run.disk(0).unwrap().position();
+    assert!((place - DVec2::new(2.5, 1.9875)).length() < 1e-12, "{place}");
+}
+
+/// A disk that falls from the top each second has the flight of one that was there from the beginning.
+#[test]
+fn a_disk_put_in_late_falls_like_any_other() {
+    let ball = |y: f64| Disk::new(DVec2::new(2.0, y), 0.5).unwrap();
+    let container = Container::open(4.0).unwrap();
+    let mut run = Simulation::builder(Elastic, container).disks([ball(1e3)]).gravity(1.0).build().unwrap();
+    for second in 1..20 {
+        run.run_until(f64::from(second), &mut ()).unwrap();
+        let top = run.insert([ball(2e3).with_angular_velocity(0.5).unwrap()]).unwrap().start;
+        run.run_until(f64::from(second) + 0.5, &mut ()).unwrap();
+        assert!((run.disk(top).unwrap().position().y - (2e3 - 0.125)).abs() < 1e-9);
+        assert_eq!(run.remove(|index, _| index == top).unwrap().len(), 1);
+    }
+}
