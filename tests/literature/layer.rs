@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use granular_edmd::boundary::{Container, Wall};
-use granular_edmd::collision::{ElasticBelow, Friction, SpeedDependent};
+use granular_edmd::collision::{Friction, LeastRebound, SpeedDependent};
 use granular_edmd::observable::{CenterOfMass, SampleTimes, Series};
 use granular_edmd::wall::Sinusoidal;
 use granular_edmd::{Disk, Simulation, initial};
@@ -15,15 +15,15 @@ use crate::{Outcome, agrees};
 fn alternation(acceleration: f64) -> Result<f64, Box<dyn std::error::Error>> {
     // Gravity and frequency are 1, so that the amplitude is the acceleration.
     let floor = Sinusoidal::new(acceleration, 1.0)?;
-    let container = Container::open(10.0)?.with_periodic_sides().with_motion(Wall::Floor, floor)?;
+    let container = Container::open(10.5)?.with_periodic_sides().with_motion(Wall::Floor, floor)?;
     let bizon = SpeedDependent::new(0.5, 1.0)?.with_friction(Friction::new(0.25, 0.5)?);
     let disks: Vec<Disk> = initial::lattice(&container, 80, 0.5)?;
     let disks = initial::with_maxwellian_velocities(disks, 0.01, 1)?;
-    let rule = ElasticBelow::new(bizon, 0.05)?;
+    let rule = LeastRebound::new(bizon, 0.05)?;
     let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(1.0).build()?;
-    simulation.run_until(40.0 * TAU, &mut ())?;
+    simulation.run_until(20.0 * TAU, &mut ())?;
     let mut series = Series::new(CenterOfMass, SampleTimes::every(TAU)?);
-    simulation.run_until(140.5 * TAU, &mut series)?;
+    simulation.run_until(80.5 * TAU, &mut series)?;
     let signed = |(k, center): (usize, &granular_edmd::glam::DVec2)| {
         if k % 2 == 0 { center.y } else { -center.y }
     };
@@ -39,15 +39,16 @@ fn alternation(acceleration: f64) -> Result<f64, Box<dyn std::error::Error>> {
 #[ignore = "a minute"]
 fn long_flights_of_a_layer_alternate_from_the_acceleration_of_a_body_without_restitution() -> Outcome {
     let mut onset = None;
-    for step in 0..30 {
-        let acceleration = 3.0 + 0.05 * f64::from(step);
+    for step in 0..16 {
+        let acceleration = 3.2 + 0.1 * f64::from(step);
         let alternation = alternation(acceleration)?;
         println!("{acceleration:.2}: {alternation:.4}");
-        if onset.is_none() && alternation > 0.05 {
+        if onset.is_none() && alternation > 0.2 {
             onset = Some(acceleration);
         }
     }
     let onset = onset.ok_or("the flights do not alternate")?;
-    assert!(agrees("onset of period doubling", onset, (PI * PI + 4.0).sqrt(), 0.1));
+    // Steps are 0.1 apart. Single periods scatter by some 0.1 amplitudes close to the onset.
+    assert!(agrees("onset of period doubling", onset, (PI * PI + 4.0).sqrt(), 0.04));
     Ok(())
 }
