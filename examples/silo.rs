@@ -141,11 +141,13 @@ fn measured(arguments: &Arguments, outlet: f64) -> Result<Flow, Box<dyn Error>> 
     let disks = initial::lattice(&vessel, GRAINS, 0.5)?;
     let disks = initial::with_maxwellian_velocities(disks, 0.1, arguments.seed)?;
     let rule = ContactDuration::new(Frictional::new(0.1, 0.4)?, 1e-2)?;
-    let layer = |disk: Disk| disk.with_kind(Kind::new(((disk.position().y - FLOOR) / LAYER) as u16));
-    let disks = disks.into_iter().map(layer);
     let mut run = Simulation::builder(rule, vessel.clone()).disks(disks).gravity(1.0).build()?;
     run.run_until(SETTLE, &mut ())?;
 
+    // The grains get the colors of the layers in which they lie now.
+    let layer = |disk: Disk| disk.with_kind(Kind::new(((disk.position().y - FLOOR) / LAYER) as u16));
+    let settled = run.remove(|_, _| true)?;
+    run.insert(settled.into_iter().map(layer))?;
     vessel.remove("gate")?;
     run.set_boundary(vessel)?;
     let (mut outside, mut left, mut shot) = (Vec::new(), 0, Vec::new());
@@ -173,9 +175,12 @@ fn refilled(run: &mut Run, outside: &mut Vec<Disk>) -> Result<usize, Box<dyn Err
     outside.extend(gone);
     let high: Vec<DVec2> =
         run.disks().iter().map(Disk::position).filter(|place| place.y > TOP - 2.0).collect();
+    // Two rows, in an order that leaves no side out.
     let columns = (WIDTH / PITCH) as usize;
-    let places = (0..2 * columns)
-        .map(|k| DVec2::new(PITCH * (0.5 + (k % columns) as f64), TOP + PITCH * (k / columns) as f64));
+    let places = (0..2 * columns).map(|k| {
+        let column = (8 * k + run.counters().wall_collisions as usize) % columns;
+        DVec2::new(PITCH * (0.5 + column as f64), TOP + PITCH * (k / columns) as f64)
+    });
     let mut again = Vec::new();
     for place in places.filter(|place| high.iter().all(|other| other.distance(*place) >= 0.999 * PITCH)) {
         let Some(disk) = outside.pop() else { break };

@@ -29,12 +29,12 @@ const MARGIN: f64 = 1e-12;
 /// disks are free inside. [`reversed`](Self::reversed) turns the direction, and so the free side.
 /// [`two_sided`](Self::two_sided) makes a thin wall, with disks on both sides.
 ///
-/// | brick | touch of a disk of radius `$R$` | first touch |
+/// | brick | touch of a disk of radius `$R$` | root of a |
 /// |---|---|---|
-/// | [`segment`](Self::segment), [`half_line`](Self::half_line) | at distance `$R$` from the line, beside it | root of a parabola |
-/// | [`circle`](Self::circle), [`arc`](Self::arc), from inside | at `$r - R$` from the center, in its sector | root of a quartic |
-/// | the same, from outside | at `$r + R$` | root of a quartic |
-/// | [`point`](Self::point) | at distance `$R$` | root of a quartic |
+/// | [`segment`](Self::segment), [`half_line`](Self::half_line) | at `$R$`, beside it | parabola |
+/// | [`circle`](Self::circle), [`arc`](Self::arc), from inside | at `$r - R$` from the center | quartic |
+/// | the same, from outside | at `$r + R$` from the center | quartic |
+/// | [`point`](Self::point) | at `$R$` | quartic |
 ///
 /// ```
 /// use granular_edmd::boundary::Brick;
