@@ -66,6 +66,11 @@ const BEGIN: f64 = 20.0;
 /// Time between two refills.
 const REFILL: f64 = 0.25;
 
+/// Height at which grains are put in again, their distance there, and their speed.
+const TOP: f64 = 36.0;
+const PITCH: f64 = 1.1;
+const FALL: f64 = 2.0;
+
 /// Time after the gate opens at which the picture is taken.
 const SHOT: f64 = 6.0;
 
@@ -132,11 +137,13 @@ fn measured(arguments: &Arguments, outlet: f64) -> Result<Flow, Box<dyn Error>> 
     let disks = initial::lattice(&vessel, GRAINS, 0.5)?;
     let disks = initial::with_maxwellian_velocities(disks, 0.1, arguments.seed)?;
     let rule = ContactDuration::new(Frictional::new(0.1, 0.4)?, 1e-2)?;
-    let layer = |disk: Disk| disk.with_kind(Kind::new(((disk.position().y - FLOOR) / LAYER) as u16));
-    let disks = disks.into_iter().map(layer);
     let mut run = Simulation::builder(rule, vessel.clone()).disks(disks).gravity(1.0).build()?;
     run.run_until(SETTLE, &mut ())?;
 
+    // The grains get the colors of the layers in which they lie now.
+    let layer = |disk: Disk| disk.with_kind(Kind::new(((disk.position().y - FLOOR) / LAYER) as u16));
+    let settled = run.remove(|_, _| true)?;
+    run.insert(settled.into_iter().map(layer))?;
     vessel.remove("gate")?;
     run.set_boundary(vessel)?;
     let (mut outside, mut left, mut shot) = (Vec::new(), 0, Vec::new());
@@ -156,18 +163,25 @@ fn measured(arguments: &Arguments, outlet: f64) -> Result<Flow, Box<dyn Error>> 
     Ok(Flow { outlet, rate: left as f64 / counted, shot })
 }
 
-/// Takes out the grains that have left the silo, puts as many in again on top as find room in a row, and
-/// returns how many have left.
+/// Takes out the grains that have left the silo, puts as many in again on top as find room there, and returns
+/// how many have left.
 fn refilled(run: &mut Run, outside: &mut Vec<Disk>) -> Result<usize, Box<dyn Error>> {
     let gone = run.remove(|_, disk| disk.position().y < EXIT)?;
     let count = gone.len();
     outside.extend(gone);
-    let top = run.disks().iter().map(|disk| disk.position().y).fold(FLOOR, f64::max);
-    let row = (0..(WIDTH / 1.2) as usize).map(|k| DVec2::new(0.6 + 1.2 * k as f64, top + 1.2));
+    let high: Vec<DVec2> =
+        run.disks().iter().map(Disk::position).filter(|place| place.y > TOP - 2.0).collect();
+    // Two rows, in an order that leaves no side out.
+    let columns = (WIDTH / PITCH) as usize;
+    let places = (0..2 * columns).map(|k| {
+        let column = (8 * k + run.counters().wall_collisions as usize) % columns;
+        DVec2::new(PITCH * (0.5 + column as f64), TOP + PITCH * (k / columns) as f64)
+    });
     let mut again = Vec::new();
-    for place in row {
+    for place in places.filter(|place| high.iter().all(|other| other.distance(*place) >= 0.999 * PITCH)) {
         let Some(disk) = outside.pop() else { break };
-        again.push(Disk::new(place, disk.radius())?.with_kind(AGAIN));
+        let falling = Disk::new(place, disk.radius())?.with_velocity(DVec2::new(0.0, -FALL))?;
+        again.push(falling.with_kind(AGAIN));
     }
     run.insert(again)?;
     Ok(count)
@@ -224,7 +238,7 @@ const HEADER: f64 = 56.0;
 const HEIGHT: f64 = 520.0;
 
 /// Height of the part of the silo that is shown.
-const SHOWN: f64 = 36.0;
+const SHOWN: f64 = 38.0;
 
 /// Draws the silo with the widest outlet some time after the gate was opened, and the flows with the law.
 fn draw(flows: &[Flow], law: Option<Law>) -> Result<Vec<u8>, Box<dyn Error>> {

@@ -13,7 +13,8 @@
 //! | gate, baffle, any thin wall | [`Part::polyline`] |
 //! | drum; round obstacle | [`Part::drum`]; [`Part::peg`] |
 //! | segments, half-lines, arcs, circles and points in any mix | [`Part::new`] of [`Brick`]s |
-//! | conveyor, shear cell | [`Part::with_surface_speed`], [`Container::with_surface_speed`], [`Container::with_sliding`] |
+//! | conveyor | [`Part::with_surface_speed`] |
+//! | shear cell | [`Container::with_surface_speed`], [`Container::with_sliding`] |
 //! | part that is shaken along any direction | [`Part::with_motion`] |
 //! | part that turns: a drum, a stirrer | [`Part::with_rotation`] |
 //! | box that is shaken as a whole | [`Container::shaken_sideways`], [`Container::shaken_vertically`] |

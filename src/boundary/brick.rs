@@ -29,12 +29,12 @@ const MARGIN: f64 = 1e-12;
 /// disks are free inside. [`reversed`](Self::reversed) turns the direction, and so the free side.
 /// [`two_sided`](Self::two_sided) makes a thin wall, with disks on both sides.
 ///
-/// | brick | touch of a disk of radius `$R$` | first touch |
+/// | brick | touch of a disk of radius `$R$` | root of a |
 /// |---|---|---|
-/// | [`segment`](Self::segment), [`half_line`](Self::half_line) | at distance `$R$` from the line, beside it | root of a parabola |
-/// | [`circle`](Self::circle), [`arc`](Self::arc), from inside | at `$r - R$` from the center, in its sector | root of a quartic |
-/// | the same, from outside | at `$r + R$` | root of a quartic |
-/// | [`point`](Self::point) | at distance `$R$` | root of a quartic |
+/// | [`segment`](Self::segment), [`half_line`](Self::half_line) | at `$R$`, beside it | parabola |
+/// | [`circle`](Self::circle), [`arc`](Self::arc), from inside | at `$r - R$` from the center | quartic |
+/// | the same, from outside | at `$r + R$` from the center | quartic |
+/// | [`point`](Self::point) | at `$R$` | quartic |
 ///
 /// ```
 /// use granular_edmd::boundary::Brick;
@@ -347,7 +347,8 @@ impl Brick {
 
 /// First touches.
 impl Brick {
-    /// Returns the first time, not later than `wait`, at which a disk touches the brick and closes further.
+    /// Returns the first time, not later than `wait`, at which a disk touches the brick and closes further. If
+    /// the disk grows, no touch is earlier, but that time need not be one.
     ///
     /// The side on which the center is decides which side of the brick counts. A disk whose center is behind
     /// the brick goes on until it has come out in front. The brick counts beside it only. What it would leave
@@ -377,10 +378,27 @@ impl Brick {
     fn touch_between(&self, path: &Path, from: f64, to: f64) -> Option<f64> {
         let (here, wait) = (path.later(from), to - from);
         let side = self.side(here.place);
+        let growth = here.radius - path.radius;
+        // The true center may be on the other side.
+        if growth > 0.0 && self.distance_from_line(here.place) <= growth {
+            return Some(from);
+        }
         if self.free.has(side) {
-            return Some(from + first_descent_of_quartic(&self.gap(&here, side), wait)?);
+            let gap = self.gap(&here, side);
+            // A gap that rounding has closed counts only while it closes. One that growth has closed may be
+            // open, and must be looked at.
+            if growth > 0.0 && gap[0] <= 0.0 {
+                return Some(from);
+            }
+            return Some(from + first_descent_of_quartic(&gap, wait)?);
         }
         let front = if side == Side::Left { Side::Right } else { Side::Left };
+        if path.spread > 0.0 {
+            // The true disk comes out no earlier than one that shrinks. From then on, it is looked at again.
+            let shrinking = here.shrinking(path.radius);
+            let opens = first_descent_of_quartic(&self.gap(&shrinking, front).map(|c| -c), wait)?;
+            return Some(from + opens);
+        }
         let opens = first_descent_of_quartic(&self.gap(&here, front).map(|c| -c), wait)?;
         let there = here.later(opens);
         let touch = first_descent_of_quartic(&self.gap(&there, front), wait - opens)?;
@@ -392,6 +410,14 @@ impl Brick {
         match self.shape {
             Shape::Segment(_) => f64::INFINITY,
             Shape::Arc(arc) => arc.most_growth(radius),
+        }
+    }
+
+    /// Returns the distance from the line or the circle on which the brick lies.
+    fn distance_from_line(&self, place: DVec2) -> f64 {
+        match self.shape {
+            Shape::Segment(segment) => segment.direction().perp_dot(place - segment.from()).abs(),
+            Shape::Arc(arc) => (place.distance(arc.center()) - arc.radius()).abs(),
         }
     }
 

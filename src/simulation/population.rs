@@ -32,7 +32,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// use granular_edmd::{Disk, Simulation};
     ///
     /// let disk = |y: f64| Disk::new(DVec2::new(2.0, y), 0.5);
-    /// let mut run = Simulation::builder(Elastic, Container::open(4.0)?).disks([disk(1.0)?]).gravity(1.0).build()?;
+    /// let container = Container::open(4.0)?;
+    /// let mut run = Simulation::builder(Elastic, container).disks([disk(1.0)?]).gravity(1.0).build()?;
     /// run.run_until(0.5, &mut ())?;
     /// assert_eq!(run.insert([disk(3.0)?, disk(5.0)?])?, 1..3);
     /// assert!(run.insert([disk(3.2)?]).is_err(), "it overlaps another one");

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use granular_edmd::boundary::{Boundary, Brick, Container, Part, Vessel, Wall, laws};
-use granular_edmd::collision::{CollisionRule, Elastic};
+use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular, WallMotion};
 use granular_edmd::{Disk, Simulation, initial};
@@ -152,7 +152,7 @@ fn a_gas_stays_in_its_vessel() {
 #[test]
 fn vessels_come_back_from_files() {
     use granular_edmd::boundary::Thermal;
-    use granular_edmd::collision::{Frictional, Smooth, from_fn};
+    use granular_edmd::collision::{CollisionRule, Frictional, Smooth, from_fn};
 
     let floor = BiParabolic::new(0.1, 10.0).unwrap();
     let container = Container::open(12.0).unwrap().with_motion(Wall::Floor, floor).unwrap();

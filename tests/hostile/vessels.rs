@@ -5,7 +5,7 @@ use granular_edmd::boundary::{Boundary, Brick, Container, Part, Vessel, VesselEr
 use granular_edmd::collision::{ContactDuration, Frictional};
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::{BiParabolic, Sinusoidal, Triangular};
-use granular_edmd::{Simulation, initial};
+use granular_edmd::{Flight, Simulation, initial};
 use proptest::prelude::*;
 
 use crate::cases::config;
@@ -167,5 +167,49 @@ proptest! {
     #[test]
     fn nothing_gets_out_of_random_vessels(plan in plan(), radius in 0.1..0.3f64, seed in any::<u64>()) {
         nothing_gets_out(&plan, radius, seed)?;
+    }
+}
+
+/// A slowly turning polygon: a long step of the search looked for the touch on the wrong side of a brick.
+#[test]
+fn a_slowly_turning_vessel_is_touched_whenever_the_flight_begins() {
+    let corners = vec![
+        (0.941_328_496_838_321_1, -0.339_197_871_590_426_1),
+        (0.962_435_549_598_933_7, 0.915_522_274_498_509_9),
+        (0.55, 0.0),
+        (0.901_685_450_508_385, 0.936_111_712_573_034_5),
+        (0.636_113_067_102_341_7, -0.991_760_734_970_934_5),
+        (0.55, 0.0),
+        (0.747_418_814_257_169_2, 0.498_853_501_315_805_64),
+    ];
+    let plan = Plan {
+        corners,
+        inner: (3, 0.435_357_373_095_536_35),
+        motion: Motion::Turning,
+        inner_motion: Motion::None,
+        amplitude: 0.049_997_373_080_051_984,
+        frequency: 1.175_973_602_754_541_3,
+        direction: 2.258_914_996_357_962_7,
+        periodic: false,
+    };
+    assert!(keeps_the_contract(&plan, 0.142_272_785_438_535_17, 50_794_779_578_952_536).is_ok());
+    // From any start and with any end, the touch is the same.
+    let mut vessel = plan.vessel().unwrap();
+    vessel.set_time_origin(5.716_170_656_501_686);
+    let (place, velocity) = (DVec2::new(3.5668, 1.6382), DVec2::new(1.7103, -1.9976));
+    let flight = Flight::new(13.1682, place, velocity, DVec2::new(0.0, -0.3092), 0.1422);
+    let first = vessel.first_touch(&flight, 20.0).unwrap();
+    for k in 0..1000 {
+        let start = 13.1682 + (first.time - 13.1682) * f64::from(k) / 1000.0;
+        let later = Flight::new(
+            start,
+            flight.position(start),
+            flight.velocity(start),
+            flight.acceleration(),
+            flight.radius(),
+        );
+        let until = first.time + 1e-6 + 0.01 * f64::from(k);
+        let touch = vessel.first_touch(&later, until).unwrap();
+        assert!((touch.time - first.time).abs() < 1e-11 && touch.wall == first.wall, "{touch:?} {first:?}");
     }
 }

@@ -43,6 +43,12 @@ impl Path {
         }
     }
 
+    /// Returns the same way of a disk that has shrunk from this radius, and goes on to shrink, as this one has
+    /// grown.
+    pub(super) fn shrinking(&self, radius: f64) -> Self {
+        Self { radius: 2.0 * radius - self.radius, widening: -self.widening, spread: -self.spread, ..*self }
+    }
+
     /// Returns by how much the disk grows in this time.
     pub(super) fn growth(&self, time: f64) -> f64 {
         (self.widening + 0.5 * self.spread * time) * time

@@ -182,8 +182,8 @@ impl Travel {
     }
 }
 
-/// Returns a way in the frame that turns about the origin, but before the axes are turned, with the error that
-/// it can have in this time.
+/// Returns a way in the frame that turns about the origin, but before the axes are turned, with the error
+/// that it can have in this time.
 ///
 /// The third derivative of the way there is `$-3\omega a_\perp - 3\omega^2 v + \omega^3 r_\perp$`. Its bound,
 /// times a third of the time, bounds the error like an acceleration.

@@ -9,8 +9,8 @@ use crate::boundary::brick::Path;
 use crate::boundary::part::Travel;
 use crate::boundary::{Boundary, Surface, Touch};
 
-/// Largest number of steps of a search. A part that moves in pieces of time takes a few steps in each of those
-/// in which the flight is near.
+/// Largest number of steps of a search. A part that moves in pieces of time takes a few steps in each of
+/// those in which the flight is near.
 const MOST_STEPS: u32 = 1 << 16;
 
 /// Way within which surfaces touch, relative to the lengths of which it is the difference.
@@ -90,8 +90,8 @@ impl Vessel {
 /// A search for the first touch of a brick that moves.
 ///
 /// It looks at the flight from the part, where the brick rests. On a piece of time in which the part
-/// accelerates evenly, that is a flight like any other, and its first touch is exact. Otherwise, the flight is
-/// known up to an error, and a disk that grows by it touches no later. The search goes to that time, and
+/// accelerates evenly, that is a flight like any other, and its first touch is exact. Otherwise, the flight
+/// is known up to an error, and a disk that grows by it touches no later. The search goes to that time, and
 /// looks again from there, until the step is within rounding. It never steps over a touch.
 struct Search<'a> {
     wall: &'a Wall,
