@@ -28,6 +28,9 @@ const MOST_WALLS: usize = 1 << 16;
 /// by name, also between runs
 /// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
 ///
+/// Initial states are free of all parts as they are at time 0. To pack disks densely among parts that move,
+/// pack them with the same parts at rest.
+///
 /// The walls of the container come first. Each brick of each part is a wall, in the order in which the parts
 /// were put in, and so is each corner. [`walls`](Self::walls) returns those of a part.
 ///
