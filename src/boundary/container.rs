@@ -2,6 +2,7 @@
 
 #[cfg(feature = "serde")]
 mod file;
+mod shaken;
 mod wall;
 
 pub use wall::{Wall, WallError};
@@ -12,10 +13,10 @@ use glam::DVec2;
 
 use super::brick::finite_point;
 use super::conduct::Conduct;
-use super::plane::{Plane, Slide};
+use super::plane::Plane;
 use super::{Boundary, Domain, Region, Surface, Thermal, Touch};
 use crate::collision::CollisionRule;
-use crate::quantity::{finite, positive};
+use crate::quantity::positive;
 use crate::wall::{Motion, WallMotion};
 use crate::{Fingerprint, Flight, Kind, ParameterError};
 
@@ -169,103 +170,6 @@ impl Container {
     /// If the container has no such wall.
     pub fn with_kind(mut self, wall: Wall, kind: Kind) -> Result<Self, WallError> {
         self.plane_mut(wall)?.set_kind(kind);
-        Ok(self)
-    }
-
-    /// Returns the same container with a wall whose surface moves along itself at this speed, as a conveyor
-    /// belt: floor and lid to the right, the sides up.
-    ///
-    /// # Errors
-    /// If the container has no such wall, or the speed is not finite.
-    ///
-    /// ```
-    /// use granular_edmd::boundary::{Container, Wall};
-    /// // A shear cell: the lid moves to the right, the floor to the left.
-    /// let cell = Container::closed(20.0, 10.0)?
-    ///     .with_periodic_sides()
-    ///     .with_surface_speed(Wall::Lid, 0.5)?
-    ///     .with_surface_speed(Wall::Floor, -0.5)?;
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn with_surface_speed(mut self, wall: Wall, speed: f64) -> Result<Self, WallError> {
-        let speed = finite("surface speed", speed)?;
-        self.plane_mut(wall)?.set_slide(Some(Slide::Speed(speed)));
-        Ok(self)
-    }
-
-    /// Returns the same container with a wall that moves along itself: floor and lid to the right, the sides
-    /// up. The wall may also move along its normal.
-    ///
-    /// # Errors
-    /// As [`with_motion`](Self::with_motion).
-    pub fn with_sliding(
-        mut self,
-        wall: Wall,
-        motion: impl WallMotion + Send + Sync + 'static,
-    ) -> Result<Self, WallError> {
-        let motion = Motion::new(motion).map_err(|violation| WallError::Motion { wall, violation })?;
-        self.plane_mut(wall)?.set_slide(Some(Slide::Motion { motion, phase: 0.0 }));
-        Ok(self)
-    }
-
-    /// Returns the same container shaken to the right and to the left as a whole. Where it has sides, they
-    /// move along their normals; floor and lid slide.
-    ///
-    /// Motions along other directions stay, so that floor or box can move vertically, too.
-    ///
-    /// # Errors
-    /// If the motion answers with numbers that are not finite, as for [`with_motion`](Self::with_motion), or
-    /// jumps, as a [`Sawtooth`](crate::wall::Sawtooth) does.
-    ///
-    /// ```
-    /// use granular_edmd::boundary::{Boundary, Container, Wall};
-    /// use granular_edmd::wall::{BiParabolic, Sinusoidal};
-    /// let container = Container::closed(60.0, 150.0)?
-    ///     .with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?
-    ///     .shaken_sideways(Sinusoidal::new(0.5, 3.0)?)?;
-    /// assert_eq!((container.domain().left, container.domain().right), (-0.5, 60.5));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn shaken_sideways(self, motion: impl WallMotion + Send + Sync + 'static) -> Result<Self, WallError> {
-        self.shaken([Wall::Left, Wall::Right], [Wall::Floor, Wall::Lid], motion)
-    }
-
-    /// Returns the same container shaken up and down as a whole. Floor and lid move along their normals; the
-    /// sides slide.
-    ///
-    /// Motions along other directions stay.
-    ///
-    /// # Errors
-    /// As [`shaken_sideways`](Self::shaken_sideways).
-    pub fn shaken_vertically(
-        self,
-        motion: impl WallMotion + Send + Sync + 'static,
-    ) -> Result<Self, WallError> {
-        self.shaken([Wall::Floor, Wall::Lid], [Wall::Left, Wall::Right], motion)
-    }
-
-    /// Moves a pair of walls along their normals, the second one the opposite way, and lets the others slide.
-    fn shaken(
-        mut self,
-        pair: [Wall; 2],
-        others: [Wall; 2],
-        motion: impl WallMotion + Send + Sync + 'static,
-    ) -> Result<Self, WallError> {
-        let [first, second] = pair;
-        let motion = Motion::new(motion).map_err(|violation| WallError::Motion { wall: first, violation })?;
-        if motion.jumps() {
-            return Err(WallError::Jump { wall: second });
-        }
-        for (wall, motion) in [(first, motion.clone()), (second, motion.mirrored())] {
-            if let Ok(plane) = self.plane_mut(wall) {
-                plane.set_motion(motion);
-            }
-        }
-        for wall in others {
-            if let Ok(plane) = self.plane_mut(wall) {
-                plane.set_slide(Some(Slide::Motion { motion: motion.clone(), phase: 0.0 }));
-            }
-        }
         Ok(self)
     }
 

@@ -1,12 +1,13 @@
 //! Parts: bricks that belong together, with a rule, a motion and a surface of their own.
 
+mod constructors;
 mod corners;
+#[cfg(feature = "serde")]
+mod file;
 mod polygon;
 mod travel;
 
 pub(super) use travel::Travel;
-
-use std::path::Path;
 
 use glam::DVec2;
 
@@ -55,114 +56,6 @@ pub struct Part {
     conduct: Conduct,
     kind: Kind,
     surface_speed: f64,
-}
-
-/// Constructors.
-impl Part {
-    /// Creates a part of these bricks, and of points at their ends.
-    ///
-    /// Behind a one-sided brick there is the wall. Bricks that have a free end should therefore be
-    /// [two-sided](Brick::two_sided): disks come round the end.
-    ///
-    /// # Errors
-    /// If there are no bricks.
-    pub fn new(bricks: impl IntoIterator<Item = Brick>) -> Result<Self, VesselError> {
-        let mut bricks: Vec<Brick> = bricks.into_iter().collect();
-        let given = bricks.len();
-        if given == 0 {
-            return Err(VesselError::TooFewPoints { count: 0, least: 1 });
-        }
-        bricks.extend(corners::corners(&bricks));
-        let (conduct, kind) = (Conduct::Shared, Kind::WALL);
-        Ok(Self { bricks, given, travel: Travel::Rest, conduct, kind, surface_speed: 0.0 })
-    }
-
-    /// Creates a closed polygon with the disks inside. The points may go round either way.
-    ///
-    /// # Errors
-    /// If there are fewer than three points, a coordinate is not finite, neighboring points are equal, the
-    /// polygon has no area, or two of its sides cross.
-    pub fn polygon(points: impl IntoIterator<Item = DVec2>) -> Result<Self, VesselError> {
-        Self::new(polygon::sides(points.into_iter().collect(), true)?)
-    }
-
-    /// Creates a closed polygon with the disks outside: a solid block. The points may go round either way.
-    ///
-    /// # Errors
-    /// As [`polygon`](Self::polygon).
-    ///
-    /// ```
-    /// use granular_edmd::boundary::Part;
-    /// use granular_edmd::glam::DVec2;
-    /// let ramp = Part::block([DVec2::ZERO, DVec2::new(9.0, 0.0), DVec2::new(0.0, 6.0)])?;
-    /// assert!(ramp.signed_distance(DVec2::new(1.0, 1.0)) < 0.0);
-    /// assert_eq!(ramp.signed_distance(DVec2::new(-2.0, 1.0)), 2.0);
-    /// # Ok::<(), granular_edmd::boundary::VesselError>(())
-    /// ```
-    pub fn block(points: impl IntoIterator<Item = DVec2>) -> Result<Self, VesselError> {
-        Self::new(polygon::sides(points.into_iter().collect(), false)?)
-    }
-
-    /// Creates a thin wall from point to point, with disks on both sides.
-    ///
-    /// # Errors
-    /// If there are fewer than two points, a coordinate is not finite, or neighboring points are equal.
-    pub fn polyline(points: impl IntoIterator<Item = DVec2>) -> Result<Self, VesselError> {
-        let points: Vec<DVec2> = points.into_iter().collect();
-        if points.len() < 2 {
-            return Err(VesselError::TooFewPoints { count: points.len(), least: 2 });
-        }
-        let bricks = points.windows(2).map(|pair| Ok(Brick::segment(pair[0], pair[1])?.two_sided()));
-        Self::new(bricks.collect::<Result<Vec<_>, VesselError>>()?)
-    }
-
-    /// Creates a circle with the disks inside.
-    ///
-    /// # Errors
-    /// If a coordinate is not finite, or the radius is not finite and positive.
-    pub fn drum(center: DVec2, radius: f64) -> Result<Self, VesselError> {
-        Self::new([Brick::circle(center, radius)?])
-    }
-
-    /// Creates a circle with the disks outside.
-    ///
-    /// # Errors
-    /// If a coordinate is not finite, or the radius is not finite and positive.
-    pub fn peg(center: DVec2, radius: f64) -> Result<Self, VesselError> {
-        Self::new([Brick::circle(center, radius)?.reversed()])
-    }
-
-    /// Reads points from text: two numbers in each line, with white space or a comma between them. Empty lines
-    /// and lines that begin with `#` are left out.
-    ///
-    /// # Errors
-    /// If a line is not two numbers. The error names the line.
-    ///
-    /// ```
-    /// use granular_edmd::boundary::Part;
-    /// let triangle = Part::polygon(Part::points_from_text("# x y\n0 0\n4, 0\n\n0 3")?)?;
-    /// assert_eq!(triangle.bricks().len(), 3);
-    /// let error = Part::points_from_text("0 0\n4").unwrap_err();
-    /// assert_eq!(error.to_string(), "line 2 must be two numbers, but is \"4\"");
-    /// # Ok::<(), granular_edmd::boundary::VesselError>(())
-    /// ```
-    pub fn points_from_text(text: &str) -> Result<Vec<DVec2>, VesselError> {
-        polygon::points(text)
-    }
-
-    /// Reads a closed polygon with the disks inside from a file of points, as
-    /// [`points_from_text`](Self::points_from_text) reads them.
-    ///
-    /// # Errors
-    /// If the file cannot be read, a line is not two numbers, or the points make no
-    /// [`polygon`](Self::polygon).
-    pub fn polygon_from_file(path: impl AsRef<Path>) -> Result<Self, VesselError> {
-        let path = path.as_ref();
-        let text = std::fs::read_to_string(path);
-        let text =
-            text.map_err(|error| VesselError::File { path: path.to_owned(), reason: error.to_string() })?;
-        Self::polygon(Self::points_from_text(&text)?)
-    }
 }
 
 /// Properties.
@@ -372,60 +265,5 @@ impl Sighted {
     /// Returns the distance, negative behind the brick.
     pub(super) fn signed_distance(&self) -> f64 {
         if self.nearest.is_free { self.nearest.distance } else { -self.nearest.distance }
-    }
-}
-
-/// Parts in files.
-#[cfg(feature = "serde")]
-mod file {
-    use serde::{Deserialize, Serialize};
-
-    use super::{Part, Travel};
-    use crate::Kind;
-    use crate::boundary::brick::{Brick, finite_point, unit};
-    use crate::boundary::conduct::Conduct;
-    use crate::boundary::vessel::VesselError;
-    use crate::quantity::{accept, finite};
-
-    /// A part as it stands in a file.
-    #[derive(Serialize, Deserialize)]
-    #[serde(deny_unknown_fields, rename = "Part")]
-    pub(super) struct Record {
-        bricks: Vec<Brick>,
-        travel: Travel,
-        conduct: Conduct,
-        kind: Kind,
-        surface_speed: f64,
-    }
-
-    impl From<Part> for Record {
-        fn from(part: Part) -> Self {
-            let Part { mut bricks, given, travel, conduct, kind, surface_speed } = part;
-            bricks.truncate(given);
-            Self { bricks, travel, conduct, kind, surface_speed }
-        }
-    }
-
-    impl TryFrom<Record> for Part {
-        type Error = VesselError;
-
-        fn try_from(record: Record) -> Result<Self, VesselError> {
-            let Record { bricks, travel, conduct, kind, surface_speed } = record;
-            let part = Part { conduct, kind, ..Part::new(bricks)? }.with_surface_speed(surface_speed)?;
-            match &travel {
-                Travel::Along { direction, .. } => {
-                    unit(*direction)?;
-                    let length = direction.length();
-                    accept((length - 1.0).abs() <= 1e-12, "length of a direction", "1", length)?;
-                    part.traveling(travel)
-                }
-                Travel::Turning { about, angular_velocity }
-                | Travel::Spinning { about, angular_velocity } => {
-                    finite_point(*about)?;
-                    part.with_rotation(*about, finite("angular velocity", *angular_velocity)?)
-                }
-                Travel::Rest => Ok(part),
-            }
-        }
     }
 }

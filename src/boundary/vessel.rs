@@ -1,6 +1,8 @@
 //! Vessels of any shape: named parts in a container.
 
 mod error;
+#[cfg(feature = "serde")]
+mod file;
 mod index;
 mod overlap;
 mod touch;
@@ -27,6 +29,9 @@ const MOST_WALLS: usize = 1 << 16;
 /// pegs in it. Parts may overlap, and may reach beyond the container. They are put in, changed and taken out
 /// by name, also between runs
 /// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
+///
+/// Initial states are free of all parts as they are at time 0. To pack disks densely among parts that move,
+/// pack them with the same parts at rest.
 ///
 /// The walls of the container come first. Each brick of each part is a wall, in the order in which the parts
 /// were put in, and so is each corner. [`walls`](Self::walls) returns those of a part.
@@ -307,40 +312,5 @@ impl Boundary for Vessel {
         self.parts.iter().try_fold(vessel, |vessel, placed| {
             Some(vessel.text(&placed.name).part(placed.part.fingerprint()?))
         })
-    }
-}
-
-/// Vessels in files.
-#[cfg(feature = "serde")]
-mod file {
-    use serde::{Deserialize, Serialize};
-
-    use super::{Container, Part, Vessel, VesselError};
-
-    /// A vessel as it stands in a file.
-    #[derive(Serialize, Deserialize)]
-    #[serde(deny_unknown_fields, rename = "Vessel")]
-    pub(super) struct Record {
-        container: Container,
-        parts: Vec<(String, Part)>,
-    }
-
-    impl From<Vessel> for Record {
-        fn from(vessel: Vessel) -> Self {
-            let parts = vessel.parts.into_iter().map(|placed| (placed.name, placed.part)).collect();
-            Self { container: vessel.container, parts }
-        }
-    }
-
-    impl TryFrom<Record> for Vessel {
-        type Error = VesselError;
-
-        fn try_from(record: Record) -> Result<Self, VesselError> {
-            let mut vessel = Self::new(record.container);
-            for (name, part) in record.parts {
-                vessel.put(name, part)?;
-            }
-            Ok(vessel)
-        }
     }
 }

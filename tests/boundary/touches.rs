@@ -35,10 +35,10 @@ impl Specimen {
     }
 
     /// Returns the specimen at rest and in motion.
-    fn all_of(name: &str, brick: Brick) -> [Self; 4] {
+    fn all_of(name: &str, brick: Brick) -> [Self; 5] {
         let part = Part::new([brick]).unwrap();
         let (along, wall) = (DVec2::new(0.6, 0.8), BiParabolic::new(0.3, 3.0).unwrap());
-        let (sine, turning) = (Sinusoidal::new(0.3, 3.0).unwrap(), 0.7);
+        let sine = Sinusoidal::new(0.3, 3.0).unwrap();
         let shaken = move |motion: &dyn WallMotion, time: f64| (0.0, along * motion.state(time).displacement);
         let still = || part.clone();
         [
@@ -55,13 +55,14 @@ impl Specimen {
                 still().with_motion(along, sine).unwrap(),
                 move |time| shaken(&sine, time),
             ),
-            Self::new(
-                &format!("{name}, turning"),
-                still(),
-                still().with_rotation(DVec2::ZERO, turning).unwrap(),
-                move |time| (turning * time, DVec2::ZERO),
-            ),
+            Self::turning(&format!("{name}, turning"), &part, 0.7),
+            Self::turning(&format!("{name}, turning slowly"), &part, -0.05),
         ]
+    }
+
+    fn turning(name: &str, part: &Part, angular_velocity: f64) -> Self {
+        let moving = part.clone().with_rotation(DVec2::ZERO, angular_velocity).unwrap();
+        Self::new(name, part.clone(), moving, move |time| (angular_velocity * time, DVec2::ZERO))
     }
 
     fn gap(&self, flight: &Flight, time: f64) -> f64 {

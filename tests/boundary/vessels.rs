@@ -255,3 +255,37 @@ fn a_box_that_is_shaken_moves_as_one() {
     assert!(velocities.iter().all(|velocity| (*velocity - expected).length() < 1e-12), "{velocities:?}");
     assert!(Container::open(9.0).unwrap().shaken_sideways(Sawtooth::new(0.1, 3.0).unwrap()).is_err());
 }
+
+/// A gate that shuts on a disk is refused, and changes nothing. One that opens gives the same bits through a
+/// checkpoint.
+#[cfg(feature = "serde")]
+#[test]
+fn gates_open_and_shut_between_runs() {
+    use granular_edmd::simulation::Checkpoint;
+
+    let gate = || Part::polyline(points(&[(0.0, 6.0), (12.0, 6.0)])).unwrap();
+    let shut = room().with("gate", gate()).unwrap();
+    let disks = initial::lattice(&shut, 60, 0.5).unwrap();
+    let disks: Vec<_> = disks.into_iter().filter(|disk| disk.position().y > 6.0).collect();
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
+    let mut run = Simulation::builder(Elastic, shut.clone()).disks(disks).gravity(0.2).build().unwrap();
+    run.run_until(5.0, &mut ()).unwrap();
+    assert!(run.disks().iter().all(|disk| disk.position().y > 6.49));
+
+    let mut open = run.boundary().clone();
+    open.remove("gate").unwrap();
+    run.set_boundary(open.clone()).unwrap();
+    run.run_until(9.0, &mut ()).unwrap();
+    let bytes = run.checkpoint().to_bytes().unwrap();
+    let checkpoint = Checkpoint::from_bytes(&bytes).unwrap();
+    let mut other = Simulation::resume(&checkpoint, Elastic, open).build().unwrap();
+    assert!(Simulation::resume(&checkpoint, Elastic, shut.clone()).build().is_err(), "the gate is open");
+
+    let before = run.disks();
+    let error = run.set_boundary(shut).unwrap_err().to_string();
+    assert!(error.contains("gate"), "{error}");
+    assert_eq!(run.disks(), before);
+    run.run_until(20.0, &mut ()).unwrap();
+    other.run_until(20.0, &mut ()).unwrap();
+    assert_eq!(run.disks(), other.disks());
+}

@@ -1,0 +1,136 @@
+//! The ways to make a brick, and to place it elsewhere.
+
+use glam::DVec2;
+
+use super::arc::{Arc, Sector};
+use super::segment::Segment;
+use super::{Brick, Free, Nearest, Shape, direction, finite_point, unit};
+use crate::boundary::vessel::VesselError;
+use crate::quantity::{accept, finite, positive};
+
+impl Brick {
+    /// Creates a segment between two points. Disks are free on the left of the way from the first point to
+    /// the second one.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite, or the points are equal.
+    pub fn segment(from: DVec2, to: DVec2) -> Result<Self, VesselError> {
+        let (from, to) = (finite_point(from)?, finite_point(to)?);
+        positive("length of a segment", from.distance(to))?;
+        Ok(Self::left_of(Shape::Segment(Segment::between(from, to))))
+    }
+
+    /// Creates a half-line from a point on, in a direction of any length. Disks are free on its left.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite, or the direction has no length.
+    pub fn half_line(from: DVec2, direction: DVec2) -> Result<Self, VesselError> {
+        Ok(Self::left_of(Shape::Segment(Segment::endless(finite_point(from)?, unit(direction)?))))
+    }
+
+    /// Creates a circle. Disks are free inside.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite, or the radius is not finite and positive.
+    pub fn circle(center: DVec2, radius: f64) -> Result<Self, VesselError> {
+        let (center, radius) = (finite_point(center)?, positive("radius of a circle", radius)?);
+        Ok(Self::left_of(Shape::Arc(Arc::new(center, radius, None))))
+    }
+
+    /// Creates an arc, counterclockwise from the angle `from` to the angle `to`. Disks are free inside.
+    /// Angles are in radians from the `$x$` axis.
+    ///
+    /// # Errors
+    /// If a number is not finite, the radius is not positive, or `to` is not above `from` by less than a
+    /// whole turn.
+    ///
+    /// ```
+    /// use std::f64::consts::PI;
+    /// use granular_edmd::boundary::Brick;
+    /// use granular_edmd::glam::DVec2;
+    /// let bowl = Brick::arc(DVec2::ZERO, 5.0, PI, 2.0 * PI)?;
+    /// assert_eq!(bowl.signed_distance(DVec2::new(0.0, -2.0)), 3.0);
+    /// # Ok::<(), granular_edmd::boundary::VesselError>(())
+    /// ```
+    pub fn arc(center: DVec2, radius: f64, from: f64, to: f64) -> Result<Self, VesselError> {
+        const TURN: f64 = std::f64::consts::TAU;
+        let (center, radius) = (finite_point(center)?, positive("radius of an arc", radius)?);
+        let angle = finite("angle of an arc", to)? - finite("angle of an arc", from)?;
+        accept(angle > 0.0 && angle < TURN, "angle of an arc", "above 0 and less than 2π", angle)?;
+        let sector = Sector::new(direction(from), direction(to), angle > 0.5 * TURN);
+        Ok(Self::left_of(Shape::Arc(Arc::new(center, radius, Some(sector)))))
+    }
+
+    /// Creates a point, with disks around it. [`Part`](crate::boundary::Part) adds the corners of its bricks by itself.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite.
+    pub fn point(place: DVec2) -> Result<Self, VesselError> {
+        Ok(Self::corner(finite_point(place)?))
+    }
+
+    pub(in crate::boundary) const fn corner(place: DVec2) -> Self {
+        Self { shape: Shape::Arc(Arc::point(place)), free: Free::Right }
+    }
+
+    const fn left_of(shape: Shape) -> Self {
+        Self { shape, free: Free::Left }
+    }
+
+    /// Returns the same brick with the disks on its other side. A point stays as it is.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        let free = match self.free {
+            Free::Left => Free::Right,
+            Free::Right if !self.is_point() => Free::Left,
+            free => free,
+        };
+        Self { free, ..self }
+    }
+
+    /// Returns the same brick as a thin wall, with disks on both sides.
+    #[must_use]
+    pub fn two_sided(self) -> Self {
+        let free = if self.is_point() { self.free } else { Free::Both };
+        Self { free, ..self }
+    }
+
+    /// Returns the same brick elsewhere.
+    ///
+    /// # Errors
+    /// If a coordinate would not be finite.
+    pub fn shifted(self, by: DVec2) -> Result<Self, VesselError> {
+        self.moved(DVec2::X, finite_point(by)?)
+    }
+
+    /// Returns the same brick after a turn about a point, counterclockwise by this angle in radians.
+    ///
+    /// # Errors
+    /// If a number is not finite, or would not be.
+    pub fn rotated(self, about: DVec2, angle: f64) -> Result<Self, VesselError> {
+        let turn = direction(finite("angle", angle)?);
+        self.moved(turn, finite_point(about)? - turn.rotate(about))
+    }
+
+    fn moved(self, turn: DVec2, shift: DVec2) -> Result<Self, VesselError> {
+        let shape = match self.shape {
+            Shape::Segment(segment) => Shape::Segment(segment.moved(turn, shift)),
+            Shape::Arc(arc) => Shape::Arc(arc.moved(turn, shift)),
+        };
+        for place in (Self { shape, ..self }).landmarks() {
+            finite_point(place)?;
+        }
+        if let Shape::Segment(segment) = shape {
+            // Far away, both ends may be the same number.
+            let length = segment.to().map_or(1.0, |to| to.distance(segment.from()));
+            positive("length of a segment", length)?;
+        }
+        Ok(Self { shape, ..self })
+    }
+
+    /// Returns the distance of a place from the brick, negative behind it.
+    pub fn signed_distance(&self, place: DVec2) -> f64 {
+        let Nearest { distance, is_free, .. } = self.nearest(place);
+        if is_free { distance } else { -distance }
+    }
+}

@@ -1,0 +1,97 @@
+//! The first touch of a brick.
+
+use glam::DVec2;
+
+use super::path::Path;
+use super::{Brick, Shape, Side};
+use crate::roots::first_descent_of_quartic;
+
+impl Brick {
+    /// Returns the first time, not later than `wait`, at which a disk touches the brick and closes further. If
+    /// the disk grows, no touch is earlier, but that time need not be one.
+    ///
+    /// The side on which the center is decides which side of the brick counts. A disk whose center is behind
+    /// the brick goes on until it has come out in front. The brick counts beside it only. What it would leave
+    /// open at its ends is closed by the next brick, or by a point.
+    pub(in crate::boundary) fn first_touch(&self, path: &Path, wait: f64) -> Option<f64> {
+        let beside = match self.shape {
+            Shape::Segment(segment) if segment.is_out_of_reach(path, wait) => return None,
+            Shape::Arc(arc) if arc.is_out_of_reach(path, wait) => return None,
+            Shape::Segment(segment) => Some(segment.beside(path)),
+            Shape::Arc(arc) => arc.beside(path),
+        };
+        let Some(beside) = beside else {
+            return self.touch_between(path, 0.0, wait);
+        };
+        let side = self.side(path.place);
+        // Mostly, the disk is beside the brick when it comes to the line or the circle.
+        if self.free.has(side)
+            && let Some(touch) = first_descent_of_quartic(&self.gap(path, side), wait)
+            && beside.holds(touch)
+        {
+            return Some(touch);
+        }
+        beside.stretches(wait).find_map(|(from, to)| self.touch_between(path, from, to))
+    }
+
+    /// Returns the first touch between two times at which the disk is beside the brick.
+    fn touch_between(&self, path: &Path, from: f64, to: f64) -> Option<f64> {
+        let (here, wait) = (path.later(from), to - from);
+        let side = self.side(here.place);
+        let growth = here.radius - path.radius;
+        // The true center may be on the other side.
+        if growth > 0.0 && self.distance_from_line(here.place) <= growth {
+            return Some(from);
+        }
+        if self.free.has(side) {
+            let gap = self.gap(&here, side);
+            // A gap that rounding has closed counts only while it closes. One that growth has closed may be
+            // open, and must be looked at.
+            if growth > 0.0 && gap[0] <= 0.0 {
+                return Some(from);
+            }
+            return Some(from + first_descent_of_quartic(&gap, wait)?);
+        }
+        let front = if side == Side::Left { Side::Right } else { Side::Left };
+        if path.spread > 0.0 {
+            // The true disk comes out no earlier than one that shrinks. From then on, it is looked at again.
+            let shrinking = here.shrinking(path.radius);
+            let opens = first_descent_of_quartic(&self.gap(&shrinking, front).map(|c| -c), wait)?;
+            return Some(from + opens);
+        }
+        let opens = first_descent_of_quartic(&self.gap(&here, front).map(|c| -c), wait)?;
+        let there = here.later(opens);
+        let touch = first_descent_of_quartic(&self.gap(&there, front), wait - opens)?;
+        Some(from + opens + touch)
+    }
+
+    /// Returns the largest growth of a disk for which its first touch is found.
+    pub(in crate::boundary) fn most_growth(&self, radius: f64) -> f64 {
+        match self.shape {
+            Shape::Segment(_) => f64::INFINITY,
+            Shape::Arc(arc) => arc.most_growth(radius),
+        }
+    }
+
+    /// Returns the distance from the line or the circle on which the brick lies.
+    fn distance_from_line(&self, place: DVec2) -> f64 {
+        match self.shape {
+            Shape::Segment(segment) => segment.direction().perp_dot(place - segment.from()).abs(),
+            Shape::Arc(arc) => (place.distance(arc.center()) - arc.radius()).abs(),
+        }
+    }
+
+    fn side(&self, place: DVec2) -> Side {
+        match self.shape {
+            Shape::Segment(segment) => segment.side(place),
+            Shape::Arc(arc) => arc.side(place),
+        }
+    }
+
+    fn gap(&self, path: &Path, side: Side) -> [f64; 5] {
+        match self.shape {
+            Shape::Segment(segment) => segment.gap(path, side),
+            Shape::Arc(arc) => arc.gap(path, side),
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! Parts in files.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Part, Travel};
+use crate::Kind;
+use crate::boundary::brick::{Brick, finite_point, unit};
+use crate::boundary::conduct::Conduct;
+use crate::boundary::vessel::VesselError;
+use crate::quantity::{accept, finite};
+
+/// A part as it stands in a file.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename = "Part")]
+pub(super) struct Record {
+    bricks: Vec<Brick>,
+    travel: Travel,
+    conduct: Conduct,
+    kind: Kind,
+    surface_speed: f64,
+}
+
+impl From<Part> for Record {
+    fn from(part: Part) -> Self {
+        let Part { mut bricks, given, travel, conduct, kind, surface_speed } = part;
+        bricks.truncate(given);
+        Self { bricks, travel, conduct, kind, surface_speed }
+    }
+}
+
+impl TryFrom<Record> for Part {
+    type Error = VesselError;
+
+    fn try_from(record: Record) -> Result<Self, VesselError> {
+        let Record { bricks, travel, conduct, kind, surface_speed } = record;
+        let part = Part { conduct, kind, ..Part::new(bricks)? }.with_surface_speed(surface_speed)?;
+        match &travel {
+            Travel::Along { direction, .. } => {
+                unit(*direction)?;
+                let length = direction.length();
+                accept((length - 1.0).abs() <= 1e-12, "length of a direction", "1", length)?;
+                part.traveling(travel)
+            }
+            Travel::Turning { about, angular_velocity } | Travel::Spinning { about, angular_velocity } => {
+                finite_point(*about)?;
+                part.with_rotation(*about, finite("angular velocity", *angular_velocity)?)
+            }
+            Travel::Rest => Ok(part),
+        }
+    }
+}
