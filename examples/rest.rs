@@ -58,10 +58,7 @@ const COLUMN: f64 = 6.6;
 const SETTLED: f64 = 0.2;
 
 fn main() -> ExitCode {
-    match run(&command_line::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
-    }
+    command_line::main(run)
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
