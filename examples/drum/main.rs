@@ -51,7 +51,7 @@ struct Arguments {
     #[arg(long, default_value_t = 12.0, value_parser = positive)]
     radius: f64,
     /// Number of pins on the rim; 0 for a smooth rim.
-    #[arg(long, default_value_t = 8)]
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u16).range(0..=200))]
     pins: u16,
     /// Turns that are measured, after half a turn.
     #[arg(long, default_value_t = 1.5, value_parser = positive)]
@@ -82,6 +82,9 @@ struct Arguments {
 /// Length by which pins stick out of the rim.
 const PIN: f64 = 0.6;
 
+/// Smallest radius of a drum in which there is a surface.
+const LEAST_RADIUS: f64 = 3.0;
+
 /// Share of a turn that is not measured.
 const SPIN_UP: f64 = 0.5;
 
@@ -106,6 +109,10 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.radius < LEAST_RADIUS {
+        let message = format!("--radius {}: at least {LEAST_RADIUS} is needed", arguments.radius);
+        return Err(Failure::usage(message));
+    }
     command_line::make_folder(&arguments.out)?;
     let mut drums = Vec::new();
     let skipped = if arguments.quick { arguments.rates.len().saturating_sub(1) } else { 0 };
