@@ -176,7 +176,9 @@ fn settled(arguments: &Arguments, glass: &Glass, rule: BoxedRule) -> Result<Run,
     let disks = initial::with_maxwellian_velocities(disks, 0.01, seed)?;
     let shut = Vessel::around([("glass", Part::polygon(glass.outline())?), ("gate", glass.gate()?)])?;
     let mut run = Simulation::builder(rule, shut).disks(disks).gravity(1.0).build()?;
-    run.run(&limits(arguments, SETTLING), &mut ())?;
+    if run.run(&limits(arguments, SETTLING), &mut ())? != RunEnd::Time {
+        return Err(format!("the grains are not at rest after {} s", arguments.seconds).into());
+    }
     let mut open = run.boundary().clone();
     open.remove("gate")?;
     run.set_boundary(open)?;
