@@ -77,6 +77,29 @@ impl Sheet {
         }
     }
 
+    /// Adds a disk about this place.
+    pub(crate) fn disk(&mut self, x: f64, y: f64, radius: f64, color: &str) {
+        self.scene.add(Primitive::Circle {
+            cx: x,
+            cy: y,
+            r: radius,
+            fill: color.into(),
+            fill_opacity: None,
+            stroke: None,
+            stroke_width: None,
+        });
+    }
+
+    /// Adds a line through these points.
+    pub(crate) fn line(&mut self, points: Vec<(f64, f64)>, color: &str, width: f64) {
+        self.scene.add(Primitive::PolyLine {
+            points,
+            stroke: color.into(),
+            stroke_width: width,
+            stroke_dasharray: None,
+        });
+    }
+
     /// Returns the picture as a PNG file, with this many pixels to a unit.
     pub(crate) fn png(&self, scale: f32) -> Result<Vec<u8>, String> {
         PngBackend::new().with_scale(scale).render_scene(&self.scene)

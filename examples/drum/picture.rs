@@ -1,0 +1,121 @@
+//! The picture: the drums with their flow, the angles over time, and the flow by depth.
+
+use std::error::Error;
+use std::f64::consts::TAU;
+
+use granular_edmd::glam::DVec2;
+use kuva::prelude::{LinePlot, Plot, QuiverPivot, QuiverPlot, ScatterPlot};
+
+use crate::common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
+use crate::{Arguments, PIN, Turned};
+
+/// Space between a panel's edge and its axes: left, right, top, bottom.
+const MARGINS: [f64; 4] = [66.0, 14.0, 12.0, 44.0];
+const HEADER: f64 = 62.0;
+const SIDE: f64 = 300.0;
+const BELOW: f64 = 290.0;
+const COLORS: [&str; 4] = [BLUE, ORANGE, GREEN, INK];
+
+/// Draws the drums in a row, and angles and flow below.
+pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Result<Vec<u8>, Box<dyn Error>> {
+    let (frame, tall) = (SIDE + MARGINS[0] + MARGINS[1], SIDE + MARGINS[2] + MARGINS[3]);
+    let width = frame * drums.len().max(2) as f64;
+    let mut sheet = Sheet::new(width, HEADER + tall + 40.0 + BELOW);
+    sheet.text(MARGINS[0], 28.0, 19, INK, "A drum, half full, that turns counterclockwise");
+    let Arguments { pins, friction, speed, .. } = arguments;
+    let grains = drums.first().map_or(0, |drum| drum.disks.len());
+    let words =
+        format!("{grains} grains, {pins} pins, g = 1, q = 0.1, κ = {friction}, elastic below {speed}");
+    sheet.text(MARGINS[0], 47.0, 12, QUIET, &words);
+    for (k, drum) in drums.iter().enumerate() {
+        let place = Place { x: k as f64 * frame, y: HEADER + 18.0, width: frame, height: tall };
+        let edge = 1.02 * arguments.radius;
+        let layout = sheet::axes((-edge, edge), (-edge, edge)).with_show_grid(false).with_box_axes();
+        let layout = layout.with_x_label("x, in diameters").with_y_label("y");
+        sheet.panel(place, MARGINS, inside(arguments, drum, 0.5 * SIDE / edge), layout);
+        let (angle, error) = (drum.angle.mean(), drum.angle.standard_error());
+        let words = format!("Ω = {}, Ω²R/g = {:.3}: {angle:.1}° ± {error:.1}°", drum.rate, drum.froude);
+        sheet.text(place.x + MARGINS[0], HEADER + 14.0, 12, color(k), &words);
+    }
+    let place = Place { x: 0.0, y: HEADER + tall + 40.0, width: 0.5 * width, height: BELOW };
+    let turns = drums.iter().filter_map(|drum| drum.surfaces.last()).map(|(turns, _)| *turns);
+    let layout = sheet::axes((0.5, turns.fold(0.6, f64::max)), (0.0, 60.0)).with_show_grid(true);
+    let layout = layout.with_x_label("turns").with_y_label("angle of the surface, in degrees");
+    sheet.panel(place, MARGINS, angles(drums), layout);
+    let place = Place { x: 0.5 * width, ..place };
+    let fastest = drums.iter().flat_map(|drum| relative(arguments, drum)).map(|(speed, _)| -speed);
+    let layout = sheet::axes((-1.05 * fastest.fold(1.0, f64::max), 1.2), (-1.0, 0.5)).with_show_grid(true);
+    let layout =
+        layout.with_x_label("velocity up the surface, in ΩR").with_y_label("height above the axis, in R");
+    sheet.panel(place, MARGINS, flows(arguments, drums), layout);
+    sheet.text(place.x + 76.0, place.y + 216.0, 12, QUIET, "dashed: turning as a body");
+    Ok(sheet.png(1.35)?)
+}
+
+fn color(k: usize) -> &'static str {
+    COLORS[k % COLORS.len()]
+}
+
+/// Returns rim, pins, grains, mean flow and mean surface.
+fn inside(arguments: &Arguments, drum: &Turned, unit: f64) -> Vec<Plot> {
+    let radius = arguments.radius;
+    let rim = (0..=180).map(|k| radius * DVec2::from_angle(TAU * f64::from(k) / 180.0)).map(|p| (p.x, p.y));
+    let rim = LinePlot::new().with_data(rim.collect::<Vec<_>>()).with_color(INK).with_stroke_width(1.4);
+    let centers = drum.disks.iter().map(|disk| (disk.position().x, disk.position().y));
+    let sizes = drum.disks.iter().map(|disk| disk.radius() * unit - 0.3);
+    let grains = ScatterPlot::new().with_data(centers).with_color("#d8c39a").with_sizes(sizes);
+    let (angle, end) = (drum.angle.mean().to_radians(), 0.9 * radius);
+    let middle =
+        drum.surfaces.iter().map(|(_, surface)| surface.middle).sum::<f64>() / drum.surfaces.len() as f64;
+    let ends = [-end, end].map(|along| (along * angle.cos(), middle + along * angle.sin()));
+    let line =
+        LinePlot::new().with_data(ends.to_vec()).with_color(ORANGE).with_stroke_width(1.6).with_dashed();
+    let pins = (0..arguments.pins).map(|k| TAU * f64::from(k) / f64::from(arguments.pins));
+    let pins =
+        pins.map(|angle| (radius - PIN) * DVec2::from_angle(angle + TAU * drum.turns)).map(|p| (p.x, p.y));
+    let pins = ScatterPlot::new().with_data(pins).with_color(INK).with_size(2.5);
+    vec![rim.into(), grains.into(), pins.into(), arrows(drum).into(), line.into()]
+}
+
+/// Returns the mean flow as arrows. The longest arrow is two cells long.
+fn arrows(drum: &Turned) -> QuiverPlot {
+    let arrows = drum.flow.arrows(0.15);
+    let fastest = arrows.iter().map(|arrow| arrow.velocity.length()).fold(f64::MIN_POSITIVE, f64::max);
+    let scale = 2.0 * drum.flow.pitch() / fastest;
+    let arrows = arrows.iter().map(|arrow| {
+        let (place, way) = (arrow.position, scale * arrow.velocity);
+        (place.x, place.y, way.x, way.y)
+    });
+    let plot = QuiverPlot::new().with_arrows(arrows).with_scale(1.0).with_pivot(QuiverPivot::Middle);
+    let plot = plot.with_color(INK).with_shaft_width(1.3).with_clip_to_plot_area();
+    plot.with_head_ratio(0.36).with_head_min_px(2.0).with_head_max_px(8.0)
+}
+
+fn angles(drums: &[Turned]) -> Vec<Plot> {
+    let line = |(k, drum): (usize, &Turned)| {
+        let points = drum.surfaces.iter().map(|(turns, surface)| (*turns, surface.angle.to_degrees()));
+        LinePlot::new()
+            .with_data(points.collect::<Vec<_>>())
+            .with_color(color(k))
+            .with_stroke_width(1.2)
+            .into()
+    };
+    drums.iter().enumerate().map(line).collect()
+}
+
+/// Returns velocities and heights, in units of the drum.
+fn relative(arguments: &Arguments, drum: &Turned) -> Vec<(f64, f64)> {
+    let radius = arguments.radius;
+    let profile = drum.depths.profile().into_iter();
+    profile.map(|(height, speed)| (speed / (drum.rate * radius), height / radius)).collect()
+}
+
+fn flows(arguments: &Arguments, drums: &[Turned]) -> Vec<Plot> {
+    let line = |(k, drum): (usize, &Turned)| {
+        let points = relative(arguments, drum);
+        LinePlot::new().with_data(points).with_color(color(k)).with_stroke_width(1.8).into()
+    };
+    let body = LinePlot::new().with_data(vec![(1.0, -1.0), (-0.5, 0.5)]).with_color(QUIET);
+    let body = body.with_stroke_width(1.0).with_dashed().into();
+    drums.iter().enumerate().map(line).chain([body]).collect()
+}

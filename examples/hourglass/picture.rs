@@ -1,0 +1,58 @@
+//! The picture: a film of the glass, above the numbers over time.
+
+use std::error::Error;
+
+use granular_edmd::prelude::*;
+use kuva::prelude::LinePlot;
+
+use crate::common::sheet::{self, BLUE, INK, ORANGE, Place, QUIET, Sheet};
+use crate::{Arguments, Frame, Glass, Way, grains};
+
+/// Space between a panel's edge and its axes: left, right, top, bottom.
+const MARGINS: [f64; 4] = [58.0, 14.0, 12.0, 44.0];
+const HEADER: f64 = 84.0;
+const FILM: f64 = 340.0;
+const GAP: f64 = 16.0;
+
+/// Draws the film above the numbers over time.
+pub(crate) fn draw(arguments: &Arguments, glass: &Glass, ways: &[Way; 2]) -> Result<Vec<u8>, Box<dyn Error>> {
+    let unit = FILM / (2.0 * glass.top);
+    let step = 2.0 * glass.width * unit + GAP;
+    let [first, second] = ways;
+    let film = [(first, 0.0), (first, 0.25), (first, 0.5), (first, 0.75), (first, 1.0), (second, 0.5)];
+    let width = MARGINS[0] + film.len() as f64 * step;
+    let mut sheet = Sheet::new(width, HEADER + FILM + 300.0);
+    sheet.text(MARGINS[0], 28.0, 19, INK, "An hourglass runs empty, and is turned over");
+    let words = format!("{} grains, neck {}, g = 1, q = 0.1, κ = 0.3", grains(arguments), arguments.neck);
+    sheet.text(MARGINS[0], 47.0, 12, QUIET, &words);
+    for (k, (way, share)) in film.into_iter().enumerate() {
+        let Some(frame) = way.frames.get((share * (way.frames.len() - 1) as f64) as usize) else { continue };
+        let (is_first, x) = (std::ptr::eq(way, first), MARGINS[0] + k as f64 * step);
+        let name = format!("{}t = {:.0}", if is_first { "" } else { "turned, " }, frame.time);
+        sheet.text(x, HEADER - 10.0, 12, if is_first { BLUE } else { ORANGE }, &name);
+        // Gravity points down in all pictures.
+        let turned = if is_first { unit } else { -unit };
+        let middle = DVec2::new(x + glass.width * unit, HEADER + 0.5 * FILM);
+        let place = |point: DVec2| middle + DVec2::new(turned * point.x, -turned * point.y);
+        add_glass(&mut sheet, glass, frame, unit, place);
+    }
+    let place = Place { x: 0.0, y: HEADER + FILM + 20.0, width: width - 4.0, height: 275.0 };
+    let last = ways.iter().map(Way::end).fold(1.0, f64::max);
+    let layout = sheet::axes((0.0, last), (0.0, grains(arguments) as f64)).with_show_grid(true);
+    let layout = layout.with_x_label("time t, in √(d/g)").with_y_label("grains above the neck");
+    let curve = |way: &Way| way.frames.iter().map(|f| (f.time, f.above as f64)).collect::<Vec<_>>();
+    let line = |way, color| LinePlot::new().with_data(curve(way)).with_color(color).with_stroke_width(2.0);
+    sheet.panel(place, MARGINS, vec![line(first, BLUE).into(), line(second, ORANGE).into()], layout);
+    sheet.key(width - 200.0, place.y + 36.0, &[(BLUE, "first"), (ORANGE, "turned over")]);
+    Ok(sheet.png(1.35)?)
+}
+
+fn add_glass(sheet: &mut Sheet, glass: &Glass, frame: &Frame, unit: f64, place: impl Fn(DVec2) -> DVec2) {
+    for disk in &frame.disks {
+        let DVec2 { x, y } = place(disk.position());
+        sheet.disk(x, y, disk.radius() * unit - 0.3, "#c79a4b");
+    }
+    let outline = glass.outline();
+    let closed = outline.iter().chain(outline.first()).map(|point| place(*point).into());
+    sheet.line(closed.collect(), INK, 1.4);
+}
