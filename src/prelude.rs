@@ -16,7 +16,7 @@ pub use crate::initial::{self, Radii};
 pub use crate::observable::{
     BetweenKinds, CenterOfMass, Collision, CollisionCounts, Energies, EnergyChange, Moment, Observable,
     Observer, OfKind, OrderParameters, Partner, SampleTimes, Series, Snapshot, Temperatures, Verdict,
-    on_collision, on_sample, stop_when,
+    on_collision, on_sample, stop_when, stop_when_sampled,
 };
 pub use crate::scheduler::EventScheduler;
 pub use crate::simulation::{

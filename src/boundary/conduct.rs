@@ -78,7 +78,9 @@ mod file {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     use super::OwnRule;
-    use crate::collision::{ContactDuration, Elastic, Frictional, Rough, Smooth};
+    use crate::collision::{
+        ContactDuration, Elastic, ElasticBelow, Frictional, LeastRebound, Rough, Smooth, SpeedDependent,
+    };
 
     /// The rules of the crate.
     #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -91,6 +93,16 @@ mod file {
         SmoothWithContactDuration(ContactDuration<Smooth>),
         RoughWithContactDuration(ContactDuration<Rough>),
         FrictionalWithContactDuration(ContactDuration<Frictional>),
+        SpeedDependent(SpeedDependent),
+        SpeedDependentWithContactDuration(ContactDuration<SpeedDependent>),
+        SmoothWithElasticBelow(ElasticBelow<Smooth>),
+        RoughWithElasticBelow(ElasticBelow<Rough>),
+        FrictionalWithElasticBelow(ElasticBelow<Frictional>),
+        SpeedDependentWithElasticBelow(ElasticBelow<SpeedDependent>),
+        SmoothWithLeastRebound(LeastRebound<Smooth>),
+        RoughWithLeastRebound(LeastRebound<Rough>),
+        FrictionalWithLeastRebound(LeastRebound<Frictional>),
+        SpeedDependentWithLeastRebound(LeastRebound<SpeedDependent>),
     }
 
     impl Known {
@@ -104,6 +116,16 @@ mod file {
                 .or_else(|| rule.downcast_ref().copied().map(Self::SmoothWithContactDuration))
                 .or_else(|| rule.downcast_ref().copied().map(Self::RoughWithContactDuration))
                 .or_else(|| rule.downcast_ref().copied().map(Self::FrictionalWithContactDuration))
+                .or_else(|| rule.downcast_ref().copied().map(Self::SpeedDependent))
+                .or_else(|| rule.downcast_ref().copied().map(Self::SpeedDependentWithContactDuration))
+                .or_else(|| rule.downcast_ref().copied().map(Self::SmoothWithElasticBelow))
+                .or_else(|| rule.downcast_ref().copied().map(Self::RoughWithElasticBelow))
+                .or_else(|| rule.downcast_ref().copied().map(Self::FrictionalWithElasticBelow))
+                .or_else(|| rule.downcast_ref().copied().map(Self::SpeedDependentWithElasticBelow))
+                .or_else(|| rule.downcast_ref().copied().map(Self::SmoothWithLeastRebound))
+                .or_else(|| rule.downcast_ref().copied().map(Self::RoughWithLeastRebound))
+                .or_else(|| rule.downcast_ref().copied().map(Self::FrictionalWithLeastRebound))
+                .or_else(|| rule.downcast_ref().copied().map(Self::SpeedDependentWithLeastRebound))
         }
 
         fn owned(self) -> OwnRule {
@@ -115,6 +137,16 @@ mod file {
                 Self::SmoothWithContactDuration(rule) => OwnRule::new(rule),
                 Self::RoughWithContactDuration(rule) => OwnRule::new(rule),
                 Self::FrictionalWithContactDuration(rule) => OwnRule::new(rule),
+                Self::SpeedDependent(rule) => OwnRule::new(rule),
+                Self::SpeedDependentWithContactDuration(rule) => OwnRule::new(rule),
+                Self::SmoothWithElasticBelow(rule) => OwnRule::new(rule),
+                Self::RoughWithElasticBelow(rule) => OwnRule::new(rule),
+                Self::FrictionalWithElasticBelow(rule) => OwnRule::new(rule),
+                Self::SpeedDependentWithElasticBelow(rule) => OwnRule::new(rule),
+                Self::SmoothWithLeastRebound(rule) => OwnRule::new(rule),
+                Self::RoughWithLeastRebound(rule) => OwnRule::new(rule),
+                Self::FrictionalWithLeastRebound(rule) => OwnRule::new(rule),
+                Self::SpeedDependentWithLeastRebound(rule) => OwnRule::new(rule),
             }
         }
     }

@@ -152,7 +152,9 @@ fn a_gas_stays_in_its_vessel() {
 #[test]
 fn vessels_come_back_from_files() {
     use granular_edmd::boundary::Thermal;
-    use granular_edmd::collision::{CollisionRule, Frictional, Smooth, from_fn};
+    use granular_edmd::collision::{
+        CollisionRule, ElasticBelow, Frictional, LeastRebound, Smooth, SpeedDependent, from_fn,
+    };
 
     let floor = BiParabolic::new(0.1, 10.0).unwrap();
     let container = Container::open(12.0).unwrap().with_motion(Wall::Floor, floor).unwrap();
@@ -171,6 +173,17 @@ fn vessels_come_back_from_files() {
     let back: Vessel = serde_json::from_str(&text).unwrap();
     assert_eq!(serde_json::to_string(&back).unwrap(), text);
     assert_eq!(back.fingerprint().unwrap(), vessel.fingerprint().unwrap());
+
+    let slow = |part: Part, kind: u32| match kind {
+        0 => part.with_rule(ElasticBelow::new(Frictional::new(0.1, 0.3).unwrap(), 0.1).unwrap()),
+        1 => part.with_rule(LeastRebound::new(SpeedDependent::new(0.7, 1.0).unwrap(), 0.1).unwrap()),
+        _ => part.with_rule(SpeedDependent::new(0.7, 1.0).unwrap()),
+    };
+    for kind in 0..3 {
+        let text = serde_json::to_string(&slow(triangle(), kind)).unwrap();
+        let back: Part = serde_json::from_str(&text).unwrap();
+        assert_eq!(serde_json::to_string(&back).unwrap(), text);
+    }
 
     let own = triangle().with_rule(from_fn(|contact| Elastic.impulse(contact)));
     let error = serde_json::to_string(&own).unwrap_err().to_string();
@@ -288,4 +301,28 @@ fn gates_open_and_shut_between_runs() {
     run.run_until(20.0, &mut ()).unwrap();
     other.run_until(20.0, &mut ()).unwrap();
     assert_eq!(run.disks(), other.disks());
+}
+
+/// Rules are told the radius of an arc: from inside, negative; straight walls and corners have an infinite one.
+#[test]
+fn curved_walls_tell_their_radius() {
+    let pegged = room().with("peg", Part::peg(DVec2::splat(6.0), 2.0).unwrap()).unwrap();
+    let drum = Vessel::around([("drum", Part::drum(DVec2::ZERO, 5.0).unwrap())]).unwrap();
+    let block = room().with("block", triangle()).unwrap();
+    let radius = |vessel: &Vessel, name: &str, place: DVec2| {
+        vessel.walls(name).unwrap().map(|wall| vessel.surface(wall, place, 0.0).radius).collect::<Vec<_>>()
+    };
+    assert_eq!(radius(&pegged, "peg", DVec2::new(8.5, 6.0)), [2.0]);
+    assert_eq!(radius(&drum, "drum", DVec2::new(4.5, 0.0)), [-5.0]);
+    assert!(radius(&block, "block", DVec2::new(4.0, 3.5)).iter().all(|&radius| radius == f64::INFINITY));
+}
+
+/// Many files end a polygon with its first point. Other equal neighbors are named.
+#[test]
+fn a_polygon_may_end_where_it_begins() {
+    let square = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)];
+    let closed: Vec<_> = square.iter().chain(&square[..1]).copied().collect();
+    assert_eq!(Part::polygon(points(&closed)).unwrap().bricks().len(), 4);
+    let error = Part::polygon(points(&[(0.0, 0.0), (4.0, 0.0), (4.0, 0.0), (0.0, 4.0)])).unwrap_err();
+    assert_eq!(error.to_string(), "the points 1 and 2 of the polygon are equal");
 }

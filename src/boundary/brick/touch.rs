@@ -81,6 +81,18 @@ impl Brick {
         }
     }
 
+    /// Returns the radius of the brick as a disk at this place sees it: infinite for a segment, and for a
+    /// corner, which has none; negative from inside an arc.
+    pub(in crate::boundary) fn radius_at(&self, place: DVec2) -> f64 {
+        match self.shape {
+            Shape::Arc(arc) if arc.radius() > 0.0 => match arc.side(place) {
+                Side::Left => -arc.radius(),
+                Side::Right => arc.radius(),
+            },
+            _ => f64::INFINITY,
+        }
+    }
+
     fn side(&self, place: DVec2) -> Side {
         match self.shape {
             Shape::Segment(segment) => segment.side(place),

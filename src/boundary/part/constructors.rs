@@ -29,7 +29,8 @@ impl Part {
         Ok(Self { bricks, given, travel: Travel::Rest, conduct, kind, surface_speed: 0.0 })
     }
 
-    /// Creates a closed polygon with the disks inside. The points may go round either way.
+    /// Creates a closed polygon with the disks inside. The points may go round either way, and the last one
+    /// may be the first one again.
     ///
     /// # Errors
     /// If there are fewer than three points, a coordinate is not finite, neighboring points are equal, the

@@ -13,6 +13,13 @@ pub(super) fn sides(mut points: Vec<DVec2>, inside: bool) -> Result<Vec<Brick>, 
     for point in &points {
         finite_point(*point)?;
     }
+    // In many files, a polygon ends with its first point.
+    if points.len() > 3 && points.first() == points.last() {
+        points.pop();
+    }
+    if let Some(first) = pairs(&points).position(|(from, to)| from == to) {
+        return Err(VesselError::EqualPoints { first, second: (first + 1) % points.len() });
+    }
     let area = doubled_area(&points);
     // The sides of a polygon without area may still not cross: it is a line that goes to and fro.
     if area == 0.0 {

@@ -47,6 +47,11 @@ impl Pose {
         unturned(self.turn, place - self.shift)
     }
 
+    /// Returns where a place of the part is, as seen from outside.
+    pub(in crate::boundary) fn outward(&self, place: DVec2) -> DVec2 {
+        self.turn.rotate(place) + self.shift
+    }
+
     /// Returns a direction as it is seen from outside.
     pub(in crate::boundary) fn direction_outward(&self, direction: DVec2) -> DVec2 {
         self.turn.rotate(direction)

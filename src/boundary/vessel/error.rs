@@ -29,6 +29,14 @@ pub enum VesselError {
         /// Least number.
         least: usize,
     },
+    /// Two neighboring points of a polygon are equal. The first point has the number 0.
+    #[error("the points {first} and {second} of the polygon are equal")]
+    EqualPoints {
+        /// Number of a point.
+        first: usize,
+        /// Number of the next one.
+        second: usize,
+    },
     /// A polygon has no area, so it has no inside.
     #[error("the polygon has no area")]
     NoArea,

@@ -78,7 +78,8 @@ impl Vessel {
         };
         let normal = pose.direction_outward(nearest.normal);
         let contact = position - image - nearest.distance * normal;
-        placed.part.surface(normal, travel.velocity(contact, time + placed.phase))
+        let surface = placed.part.surface(normal, travel.velocity(contact, time + placed.phase));
+        surface.with_radius(wall.brick.radius_at(pose.inward(position - image)))
     }
 
     /// Returns the displacements after which the vessel repeats itself, in the neighborhood.
@@ -113,7 +114,7 @@ impl Search<'_> {
         let mut time = self.flight.time();
         for _ in 0..MOST_STEPS {
             time = self.enters_reach(time)?;
-            if time > self.until {
+            if time > self.until || self.is_out_of_reach(time) {
                 return None;
             }
             match self.step(time) {
@@ -124,6 +125,21 @@ impl Search<'_> {
         }
         // A search that does not get on may be at a touch. The engine reports a run without progress.
         Some(time.min(self.until))
+    }
+
+    /// Tells whether a brick that turns is so far away at this time that the disk does not come to it. Most
+    /// bricks of a part that turns are, though the circles on which they turn are near.
+    fn is_out_of_reach(&self, time: f64) -> bool {
+        let travel = self.placed.part.travel();
+        let Travel::Turning { about, angular_velocity } = travel else { return false };
+        let (low, high) = self.wall.brick.bounds();
+        let middle = travel.pose(time + self.placed.phase).outward(0.5 * (low + high));
+        let wait = self.until - time;
+        let speed = self.flight.velocity(time).length()
+            + self.flight.acceleration().length() * wait
+            + angular_velocity.abs() * middle.distance(*about);
+        let reach = 0.5 * (high - low).length() + 1.001 * self.flight.radius();
+        self.flight.position(time).distance(middle) - reach > speed * wait
     }
 
     fn step(&self, time: f64) -> Step {
