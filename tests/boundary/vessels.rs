@@ -303,7 +303,8 @@ fn gates_open_and_shut_between_runs() {
     assert_eq!(run.disks(), other.disks());
 }
 
-/// Rules are told the radius of an arc: from inside, negative; straight walls and corners have an infinite one.
+/// Rules are told the radius of an arc: from inside, negative; straight walls and corners have an infinite
+/// one.
 #[test]
 fn curved_walls_tell_their_radius() {
     let pegged = room().with("peg", Part::peg(DVec2::splat(6.0), 2.0).unwrap()).unwrap();

@@ -16,8 +16,8 @@ const ROUNDING: f64 = 1e-9;
 
 /// Returns the depth of an overlap that is rounding.
 ///
-/// A few small disks in a wide domain have wide cells, so their collisions are predicted from afar. Squares of
-/// distances r then have errors of some 1e-16 r², and the touch at the distance d one of 1e-16 r²/d.
+/// A few small disks in a wide domain have wide cells, so their collisions are predicted from afar. Squares
+/// of distances r then have errors of some 1e-16 r², and the touch at the distance d one of 1e-16 r²/d.
 fn rounding(disks: &[Disk], touching: f64) -> f64 {
     let farthest = disks.iter().map(|disk| disk.position().length_squared()).fold(0.0, f64::max);
     ROUNDING * touching + f64::EPSILON * farthest / touching
