@@ -18,8 +18,6 @@ mod common;
 
 use std::error::Error;
 use std::f64::consts::TAU;
-use std::fs;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -30,6 +28,7 @@ use granular_edmd::prelude::*;
 use kuva::prelude::{Layout, LinePlot, Plot, ScatterPlot};
 
 use common::command_line::{self, Failure, non_negative, positive};
+use common::results::Results;
 use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
 
 /// A large disk among small ones, in a shaken box: how high it is over time.
@@ -50,12 +49,8 @@ struct Arguments {
     /// Runs for 20 oscillations at most.
     #[arg(long)]
     quick: bool,
-    /// Folder for the results.
-    #[arg(long, default_value = "out")]
-    out: PathBuf,
-    /// File for the heights as JSON.
-    #[arg(long)]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    results: Results,
 }
 
 const INTRUDER: Kind = Kind::new(1);
@@ -88,7 +83,7 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    command_line::make_folder(&arguments.out)?;
+    arguments.results.make_folder()?;
     let light = arguments.sizes.iter().map(|&diameter| (diameter, 1.0));
     let heavy = (arguments.heavy > 0.0).then_some((4.0, arguments.heavy));
     let mut nuts = Vec::new();
@@ -167,24 +162,16 @@ impl std::fmt::Display for Nut {
 }
 
 fn write(arguments: &Arguments, nuts: &[Nut]) -> Result<(), Box<dyn Error>> {
-    let (picture, path) = (arguments.out.join("brazil_nut.png"), arguments.out.join("brazil_nut.csv"));
-    let mut table = csv::Writer::from_path(&path)?;
-    table.write_record(["diameter", "density", "oscillations", "intruder_height", "grain_height"])?;
+    let columns = ["diameter", "density", "oscillations", "intruder_height", "grain_height"];
+    let mut table = arguments.results.table("brazil_nut", &columns)?;
     for nut in nuts {
         for heights in &nut.heights {
             table.serialize((nut.diameter, nut.density, heights))?;
         }
     }
-    table.flush()?;
-    fs::write(&picture, draw(nuts)?)?;
-    println!("wrote {} and {}", picture.display(), path.display());
-    if let Some(path) = &arguments.json {
-        let nut = |nut: &Nut| serde_json::json!({ "diameter": nut.diameter, "density": nut.density, "heights": nut.heights });
-        let text = serde_json::to_string_pretty(&nuts.iter().map(nut).collect::<Vec<_>>())?;
-        fs::write(path, text).map_err(|error| format!("--json {}: {error}", path.display()))?;
-        println!("wrote {}", path.display());
-    }
-    Ok(())
+    let nut = |nut: &Nut| serde_json::json!({ "diameter": nut.diameter, "density": nut.density, "heights": nut.heights });
+    let numbers = nuts.iter().map(nut).collect();
+    arguments.results.finish("brazil_nut", table, &draw(nuts)?, &numbers)
 }
 
 /// Space between a panel's edge and its axes: left, right, top, bottom.

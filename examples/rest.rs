@@ -14,8 +14,6 @@
 mod common;
 
 use std::error::Error;
-use std::fs;
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -27,6 +25,7 @@ use granular_edmd::simulation::Counters;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 
 use common::command_line::{self, Failure, positive};
+use common::results::Results;
 use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
 
 /// Grains that come to rest, under each remedy: events, height, heat and creep.
@@ -44,12 +43,8 @@ struct Arguments {
     /// Runs to time 40 at most, for 2 seconds at most.
     #[arg(long)]
     quick: bool,
-    /// Folder for the results.
-    #[arg(long, default_value = "out")]
-    out: PathBuf,
-    /// File for the numbers as JSON.
-    #[arg(long)]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    results: Results,
 }
 
 const GRAINS: usize = 50;
@@ -69,8 +64,7 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let out = &arguments.out;
-    command_line::make_folder(out)?;
+    arguments.results.make_folder()?;
     println!("| remedy | parameter | time | events per grain and time | height | heat | creep | ended by |");
     println!("|---|---|---|---|---|---|---|---|");
     let mut heaps = Vec::new();
@@ -113,7 +107,7 @@ fn remedies() -> Result<Vec<Remedy>, ParameterError> {
     Ok(remedies)
 }
 
-/// What became of the grains under a remedy.
+/// The grains under a remedy, and what it costs.
 struct Heap {
     name: &'static str,
     parameter: f64,
@@ -208,38 +202,20 @@ impl std::fmt::Display for Heap {
 }
 
 fn write(arguments: &Arguments, heaps: &[Heap]) -> Result<(), Box<dyn Error>> {
-    let (picture, path) = (arguments.out.join("rest.png"), arguments.out.join("rest.csv"));
-    let mut table = csv::Writer::from_path(&path)?;
-    table.write_record([
-        "remedy",
-        "parameter",
-        "time",
-        "seconds",
-        "events",
-        "height",
-        "heat",
-        "creep",
-        "ended",
-    ])?;
+    let columns = ["remedy", "parameter", "time", "seconds", "events", "height", "heat", "creep", "ended"];
+    let mut table = arguments.results.table("rest", &columns)?;
     for Heap { name, parameter, time, seconds, events, height, heat, creep, ended, .. } in heaps {
         table.serialize((name, parameter, time, seconds, events, height, heat, creep, ended))?;
     }
-    table.flush()?;
-    fs::write(&picture, draw(heaps)?)?;
-    println!("wrote {} and {}", picture.display(), path.display());
-    if let Some(path) = &arguments.json {
-        let heap = |heap: &Heap| {
-            let Heap { name, parameter, time, seconds, events, height, heat, creep, ended, .. } = heap;
-            serde_json::json!({
-                "remedy": name, "parameter": parameter, "time": time, "seconds": seconds, "ended": ended,
-                "events_per_grain_and_time": events, "height": height, "heat": heat, "creep": creep,
-            })
-        };
-        let text = serde_json::to_string_pretty(&heaps.iter().map(heap).collect::<Vec<_>>())?;
-        fs::write(path, text).map_err(|error| format!("--json {}: {error}", path.display()))?;
-        println!("wrote {}", path.display());
-    }
-    Ok(())
+    let heap = |heap: &Heap| {
+        let Heap { name, parameter, time, seconds, events, height, heat, creep, ended, .. } = heap;
+        serde_json::json!({
+            "remedy": name, "parameter": parameter, "time": time, "seconds": seconds, "ended": ended,
+            "events_per_grain_and_time": events, "height": height, "heat": heat, "creep": creep,
+        })
+    };
+    let numbers = heaps.iter().map(heap).collect();
+    arguments.results.finish("rest", table, &draw(heaps)?, &numbers)
 }
 
 /// Space between a panel's edge and its axes: left, right, top, bottom.

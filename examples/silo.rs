@@ -16,8 +16,6 @@
 mod common;
 
 use std::error::Error;
-use std::fs;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -27,6 +25,7 @@ use granular_edmd::prelude::*;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 
 use common::command_line::{self, Failure, positive};
+use common::results::Results;
 use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
 
 /// Flow out of a silo over the width of its outlet.
@@ -44,12 +43,8 @@ struct Arguments {
     /// Measures for a time of 10 at most.
     #[arg(long)]
     quick: bool,
-    /// Folder for the results.
-    #[arg(long, default_value = "out")]
-    out: PathBuf,
-    /// File for the flows and the fit as JSON.
-    #[arg(long)]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    results: Results,
 }
 
 const GRAINS: usize = 600;
@@ -102,8 +97,7 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let out = &arguments.out;
-    command_line::make_folder(out)?;
+    arguments.results.make_folder()?;
     if let Some(wide) = arguments.outlets.iter().find(|&&outlet| outlet > WIDTH - 2.0) {
         return Err(Failure::usage(format_args!("--outlets {wide}: the silo is {WIDTH} wide")));
     }
@@ -212,24 +206,14 @@ impl Law {
 }
 
 fn write(arguments: &Arguments, flows: &[Flow], law: Option<Law>) -> Result<(), Box<dyn Error>> {
-    let (picture, path) = (arguments.out.join("silo.png"), arguments.out.join("silo.csv"));
-    let mut table = csv::Writer::from_path(&path)?;
-    table.write_record(["outlet", "flow"])?;
+    let mut table = arguments.results.table("silo", &["outlet", "flow"])?;
     for flow in flows {
         table.serialize((flow.outlet, flow.rate))?;
     }
-    table.flush()?;
-    fs::write(&picture, draw(flows, law)?)?;
-    println!("wrote {} and {}", picture.display(), path.display());
-    if let Some(path) = &arguments.json {
-        let flows: Vec<_> = flows.iter().map(|flow| [flow.outlet, flow.rate]).collect();
-        let law =
-            law.map(|law| serde_json::json!({ "C": law.prefactor, "k": law.lost, "scatter": law.scatter }));
-        let text = serde_json::to_string_pretty(&serde_json::json!({ "flows": flows, "law": law }))?;
-        fs::write(path, text).map_err(|error| format!("--json {}: {error}", path.display()))?;
-        println!("wrote {}", path.display());
-    }
-    Ok(())
+    let png = draw(flows, law)?;
+    let flows: Vec<_> = flows.iter().map(|flow| [flow.outlet, flow.rate]).collect();
+    let law = law.map(|law| serde_json::json!({ "C": law.prefactor, "k": law.lost, "scatter": law.scatter }));
+    arguments.results.finish("silo", table, &png, &serde_json::json!({ "flows": flows, "law": law }))
 }
 
 /// Space between a panel's edge and its axes: left, right, top, bottom.

@@ -26,8 +26,6 @@ mod picture;
 
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
-use std::fs;
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -39,6 +37,7 @@ use granular_edmd::statistics::BlockedMean;
 
 use common::command_line::{self, Failure, positive, whole};
 use common::flow::Flow;
+use common::results::Results;
 use measure::{Depths, Slope};
 
 /// A drum, half full, that turns: the angle of the surface, and the flow.
@@ -71,12 +70,8 @@ struct Arguments {
     /// Measures the last of the rates only, for a quarter of a turn at most.
     #[arg(long)]
     quick: bool,
-    /// Folder for the results.
-    #[arg(long, default_value = "out")]
-    out: PathBuf,
-    /// File for the numbers as JSON.
-    #[arg(long)]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    results: Results,
 }
 
 /// Length by which pins stick out of the rim.
@@ -88,7 +83,7 @@ const LEAST_RADIUS: f64 = 3.0;
 /// Share of a turn that is not measured.
 const SPIN_UP: f64 = 0.5;
 
-/// What a drum did.
+/// The motion of the grains in a drum.
 struct Turned {
     rate: f64,
     froude: f64,
@@ -113,7 +108,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         let message = format!("--radius {}: at least {LEAST_RADIUS} is needed", arguments.radius);
         return Err(Failure::usage(message));
     }
-    command_line::make_folder(&arguments.out)?;
+    arguments.results.make_folder()?;
     let mut drums = Vec::new();
     let skipped = if arguments.quick { arguments.rates.len().saturating_sub(1) } else { 0 };
     for &rate in arguments.rates.iter().skip(skipped) {
@@ -205,29 +200,21 @@ impl std::fmt::Display for Turned {
 }
 
 fn write(arguments: &Arguments, drums: &[Turned]) -> Result<(), Box<dyn Error>> {
-    let (image, path) = (arguments.out.join("drum.png"), arguments.out.join("drum.csv"));
-    let mut table = csv::Writer::from_path(&path)?;
-    table.write_record(["rate", "turns", "angle_degrees", "height_in_middle"])?;
+    let columns = ["rate", "turns", "angle_degrees", "height_in_middle"];
+    let mut table = arguments.results.table("drum", &columns)?;
     for drum in drums {
         for (turns, surface) in &drum.surfaces {
             table.serialize((drum.rate, turns, surface.angle.to_degrees(), surface.middle))?;
         }
     }
-    table.flush()?;
-    fs::write(&image, picture::draw(arguments, drums)?)?;
-    println!("wrote {} and {}", image.display(), path.display());
-    if let Some(path) = &arguments.json {
-        let drum = |drum: &Turned| {
-            serde_json::json!({
-                "rate": drum.rate, "froude": drum.froude, "angle": drum.angle.mean(),
-                "standard_error": drum.angle.standard_error(), "converged": drum.angle.is_converged(),
-                "scatter": drum.scatter, "grip": drum.depths.grip(drum.rate),
-                "velocity_by_depth": drum.depths.profile(),
-            })
-        };
-        fs::write(path, serde_json::to_string_pretty(&drums.iter().map(drum).collect::<Vec<_>>())?)
-            .map_err(|error| format!("--json {}: {error}", path.display()))?;
-        println!("wrote {}", path.display());
-    }
-    Ok(())
+    let drum = |drum: &Turned| {
+        serde_json::json!({
+            "rate": drum.rate, "froude": drum.froude, "angle": drum.angle.mean(),
+            "standard_error": drum.angle.standard_error(), "converged": drum.angle.is_converged(),
+            "scatter": drum.scatter, "grip": drum.depths.grip(drum.rate),
+            "velocity_by_depth": drum.depths.profile(),
+        })
+    };
+    let numbers = drums.iter().map(drum).collect();
+    arguments.results.finish("drum", table, &picture::draw(arguments, drums)?, &numbers)
 }

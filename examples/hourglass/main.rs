@@ -23,8 +23,6 @@ mod common;
 mod picture;
 
 use std::error::Error;
-use std::fs;
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -35,6 +33,7 @@ use granular_edmd::observable::stop_when_sampled;
 use granular_edmd::prelude::*;
 
 use common::command_line::{self, Failure, positive, whole};
+use common::results::Results;
 
 /// An hourglass that runs empty and is turned over: the number of grains above over time.
 #[derive(Parser)]
@@ -57,12 +56,8 @@ struct Arguments {
     /// Takes 60 grains at most.
     #[arg(long)]
     quick: bool,
-    /// Folder for the results.
-    #[arg(long, default_value = "out")]
-    out: PathBuf,
-    /// File for the numbers as JSON.
-    #[arg(long)]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    results: Results,
 }
 
 /// Time in which the grains come to rest above the gate, and time between two frames.
@@ -79,7 +74,7 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    command_line::make_folder(&arguments.out)?;
+    arguments.results.make_folder()?;
     let glass = Glass::of(arguments);
     if arguments.compare {
         compare(arguments, &glass).map_err(Failure::run)?;
@@ -237,28 +232,19 @@ impl std::fmt::Display for Way {
 }
 
 fn write(arguments: &Arguments, glass: &Glass, ways: &[Way; 2]) -> Result<(), Box<dyn Error>> {
-    let (image, path) = (arguments.out.join("hourglass.png"), arguments.out.join("hourglass.csv"));
-    let mut table = csv::Writer::from_path(&path)?;
-    table.write_record(["way", "time", "grains_above"])?;
+    let mut table = arguments.results.table("hourglass", &["way", "time", "grains_above"])?;
     for (number, way) in (1..).zip(ways) {
         for frame in &way.frames {
             table.serialize((number, frame.time, frame.above))?;
         }
     }
-    table.flush()?;
-    fs::write(&image, picture::draw(arguments, glass, ways)?)?;
-    println!("wrote {} and {}", image.display(), path.display());
-    if let Some(path) = &arguments.json {
-        let way = |way: &Way| {
-            let above: Vec<_> = way.frames.iter().map(|frame| (frame.time, frame.above)).collect();
-            let (first, later) = (way.flow(0.9, 0.5), way.flow(0.5, 0.1));
-            serde_json::json!({ "end": way.end(), "flow": [first, later], "above": above })
-        };
-        fs::write(path, serde_json::to_string_pretty(&ways.iter().map(way).collect::<Vec<_>>())?)
-            .map_err(|error| format!("--json {}: {error}", path.display()))?;
-        println!("wrote {}", path.display());
-    }
-    Ok(())
+    let way = |way: &Way| {
+        let above: Vec<_> = way.frames.iter().map(|frame| (frame.time, frame.above)).collect();
+        let (first, later) = (way.flow(0.9, 0.5), way.flow(0.5, 0.1));
+        serde_json::json!({ "end": way.end(), "flow": [first, later], "above": above })
+    };
+    let numbers = ways.iter().map(way).collect();
+    arguments.results.finish("hourglass", table, &picture::draw(arguments, glass, ways)?, &numbers)
 }
 
 /// Prints what the hourglass does under each remedy.

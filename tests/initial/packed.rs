@@ -146,7 +146,7 @@ fn odd_rooms_are_refused_or_filled() {
     assert_apart(narrow, &few.unwrap());
 }
 
-/// What no packing can hold is refused before any disk is placed, and so is a disk that is larger than
+/// Disks that no packing can hold are refused before any is placed, and so is a disk that is larger than
 /// its room.
 #[test]
 fn what_has_no_room_is_refused_at_once() {

@@ -1,4 +1,4 @@
-//! How a part of a vessel moves, and how a flight looks to those who move with it.
+//! Motions of the parts of a vessel, and flights as those see them who move with a part.
 
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ use crate::{Fingerprint, Flight};
 /// error.
 const PIECES: f64 = 16.0;
 
-/// How a part moves.
+/// The motion of a part.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields, rename_all = "snake_case"))]
@@ -34,7 +34,7 @@ pub(in crate::boundary) struct Look {
     pub(in crate::boundary) until: f64,
 }
 
-/// Where a part is at a time: it has turned about the origin by the angle of a unit vector, then shifted.
+/// The place of a part at a time: it is turned about the origin by the angle of a unit vector, then shifted.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::boundary) struct Pose {
     turn: DVec2,

@@ -19,7 +19,7 @@ pub(super) struct Index {
     density: DVec2,
     pub(super) columns: usize,
     rows: usize,
-    /// Where the bricks of each cell begin, and where those of the last one end.
+    /// Starts of the bricks of each cell, and the end of those of the last one.
     starts: Vec<u32>,
     entries: Vec<Entry>,
 }
