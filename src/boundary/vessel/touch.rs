@@ -159,10 +159,14 @@ impl Search<'_> {
             return Step::Touch(time + touch);
         }
         let rounding = ROUNDING * (self.flight.position(time).length() + path.place.length() + path.radius);
-        if path.way(touch) <= rounding && self.closes(time + touch) {
+        if path.way(touch) > rounding {
+            return Step::Open(time + touch);
+        }
+        if self.closes(time + touch) {
             return Step::Touch(time + touch);
         }
-        Step::Open(time + touch)
+        // The surfaces part, by less than rounding. Shorter steps than that would see nothing new.
+        Step::Open(time + touch.max(time_for(&path, rounding)))
     }
 
     /// Tells whether disk and brick approach each other.
@@ -190,6 +194,13 @@ impl Search<'_> {
         let y = entry(place.y, velocity.y, pull.y, low.y, high.y)?;
         Some(time + x.max(y))
     }
+}
+
+/// Returns a time in which a disk goes no farther than this way on its path.
+fn time_for(path: &Path, way: f64) -> f64 {
+    let (speed, pull) = (path.velocity.length(), path.acceleration.length() + path.spread);
+    // The larger root of ½ pull t² + speed t = way, in a form in which nothing cancels.
+    2.0 * way / (speed + (speed * speed + 2.0 * pull * way).sqrt())
 }
 
 /// Returns a rectangle that holds the disk on its flight.
