@@ -54,11 +54,6 @@ impl Path {
         (self.widening + 0.5 * self.spread * time) * time
     }
 
-    /// Returns an upper bound of the way in this time, with the growth of the disk.
-    pub(in crate::boundary) fn way(&self, time: f64) -> f64 {
-        (self.velocity.length() + 0.5 * self.acceleration.length() * time) * time + self.growth(time)
-    }
-
     /// Returns how far the way is at most from its chord in this time, with the growth of the disk.
     pub(super) fn sagitta(&self, time: f64) -> f64 {
         0.125 * self.acceleration.length() * time * time + self.growth(time)

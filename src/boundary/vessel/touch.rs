@@ -135,29 +135,21 @@ impl Search<'_> {
             // The disk may not grow so much that it leaves no room in a circle.
             wait = wait.min((2.0 * brick.most_growth(path.radius) / path.spread).sqrt());
         }
-        let Some(touch) = brick.first_touch(&path, wait) else {
-            return Step::Open(time + wait);
-        };
         let is_exact = path.spread == 0.0;
         if is_exact {
-            return Step::Touch(time + touch);
+            let touch = brick.first_touch(&path, wait);
+            return touch.map_or(Step::Open(time + wait), |touch| Step::Touch(time + touch));
         }
         let rounding = ROUNDING * (self.flight.position(time).length() + path.place.length() + path.radius);
-        if path.way(touch) > rounding {
-            return Step::Open(time + touch);
+        let at_once = Path { radius: path.radius + rounding, spread: 0.0, ..path };
+        if brick.first_touch(&at_once, 0.0).is_some() {
+            return Step::Touch(time);
         }
-        if self.closes(time + touch) {
-            return Step::Touch(time + touch);
-        }
-        // The surfaces part, by less than rounding. Shorter steps than that would see nothing new.
-        Step::Open(time + touch.max(time_for(&path, rounding)))
-    }
-
-    /// Tells whether disk and brick approach each other.
-    fn closes(&self, time: f64) -> bool {
-        let travel = self.placed.part.travel();
-        let path = travel.look(self.flight, self.placed.phase, time, 0.0).path;
-        self.wall.brick.nearest(path.place).normal.dot(path.velocity) < 0.0
+        // The gap may close by its rounding, so that each step advances. A disk that parts from the brick as
+        // slowly as rounding lets it would else be followed in steps that show nothing new.
+        let smaller = Path { radius: path.radius - rounding, ..path };
+        let open = brick.first_touch(&smaller, wait).unwrap_or(wait);
+        Step::Open(time + open.max(time_for(&path, rounding)))
     }
 
     /// Returns the first time, from this one on, at which the disk is within the rectangle that the brick
