@@ -78,13 +78,13 @@ impl Plan {
     pub(crate) fn vessel(&self) -> Result<Vessel, VesselError> {
         let inner = self.moving(self.inner()?, self.inner_motion)?;
         if self.periodic {
-            // The polygon is a block that lies across the sides.
+            // The polygon is a block that lies across the sides. There is room for a disk all around it, so
+            // that it squeezes none.
             let container = Container::closed(16.0, 14.0)?.with_periodic_sides();
-            let block = Part::block(self.polygon(2.0))?.shifted(DVec2::new(-5.0, 7.0))?;
-            let other = inner.shifted(DVec2::new(3.0, 10.0))?;
-            return Vessel::new(container)
-                .with("block", self.moving(block, self.motion)?)?
-                .with("inner", other);
+            let block = self.moving(Part::block(self.polygon(2.0))?, self.motion)?;
+            let (block, other) =
+                (block.shifted(DVec2::new(-5.0, 7.0))?, inner.shifted(DVec2::new(3.0, 10.0))?);
+            return Vessel::new(container).with("block", block)?.with("inner", other);
         }
         let outer = self.moving(Part::polygon(self.polygon(6.0))?, self.motion)?;
         Vessel::around([("outer", outer), ("inner", inner)])
