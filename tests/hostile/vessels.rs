@@ -222,8 +222,8 @@ fn a_slowly_turning_vessel_is_touched_whenever_the_flight_begins() {
     }
 }
 
-/// A disk flies into a turning bowl. It is within the bowl's circle before it is beside the bowl, and the search
-/// took the touch for one of the past.
+/// A disk flies into a turning bowl. It is within the bowl's circle before it is beside the bowl, and the
+/// search took the touch for one of the past.
 #[test]
 fn a_turning_bowl_is_touched_from_its_opening() {
     let corners = vec![

@@ -61,7 +61,8 @@ impl Brick {
         Ok(Self::left_of(Shape::Arc(Arc::new(center, radius, Some(sector)))))
     }
 
-    /// Creates a point, with disks around it. [`Part`](crate::boundary::Part) adds the corners of its bricks by itself.
+    /// Creates a point, with disks around it. [`Part`](crate::boundary::Part) adds the corners of its bricks by
+    /// itself.
     ///
     /// # Errors
     /// If a coordinate is not finite.
