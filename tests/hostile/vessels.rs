@@ -221,3 +221,31 @@ fn a_slowly_turning_vessel_is_touched_whenever_the_flight_begins() {
         assert!((touch.time - first.time).abs() < 1e-11 && touch.wall == first.wall, "{touch:?} {first:?}");
     }
 }
+
+/// A disk flies into a turning bowl. It is within the bowl's circle before it is beside the bowl, and the
+/// search took the touch for one of the past.
+#[test]
+fn a_turning_bowl_is_touched_from_its_opening() {
+    let corners = vec![
+        (0.791_161_353_663_352_4, -0.250_387_567_220_102_14),
+        (0.688_948_629_659_140_5, 0.0),
+        (0.943_884_149_733_791_6, 0.372_238_541_555_549_9),
+        (0.55, 0.0),
+        (0.771_564_558_401_173, 0.0),
+        (0.809_908_859_783_435_1, -0.342_352_048_746_931_7),
+        (0.823_696_124_606_605_6, -0.979_097_763_166_771_1),
+        (0.55, 0.0),
+        (0.561_521_240_390_854_8, -0.473_515_704_542_890_4),
+    ];
+    let plan = Plan {
+        corners,
+        inner: (3, 0.271_952_873_884_793_1),
+        motion: Motion::Triangular,
+        inner_motion: Motion::Turning,
+        amplitude: 0.036_308_067_099_887_42,
+        frequency: 6.850_861_700_356_182,
+        direction: 0.615_628_139_827_036_5,
+        periodic: false,
+    };
+    assert!(nothing_gets_out(&plan, 0.103_722_333_383_439_45, 6_673_588_576_306_729_431).is_ok());
+}

@@ -24,12 +24,16 @@ impl Brick {
             return self.touch_between(path, 0.0, wait);
         };
         let side = self.side(path.place);
-        // Mostly, the disk is beside the brick when it comes to the line or the circle.
-        if self.free.has(side)
-            && let Some(touch) = first_descent_of_quartic(&self.gap(path, side), wait)
-            && beside.holds(touch)
-        {
-            return Some(touch);
+        if self.free.has(side) {
+            // Mostly, the disk is beside the brick when it comes to the line or the circle. A disk that is
+            // beyond the end may be across the line already, so that it does not come to it.
+            let gap = self.gap(path, side);
+            if (gap[0] > 0.0 || beside.holds(0.0))
+                && let Some(touch) = first_descent_of_quartic(&gap, wait)
+                && beside.holds(touch)
+            {
+                return Some(touch);
+            }
         }
         beside.stretches(wait).find_map(|(from, to)| self.touch_between(path, from, to))
     }
