@@ -232,6 +232,14 @@ pub(super) fn unit(direction: DVec2) -> Result<DVec2, ParameterError> {
     Ok((direction / larger).normalize())
 }
 
+/// Returns a direction of a file as it is, if its length is 1 up to rounding.
+#[cfg(feature = "serde")]
+pub(super) fn unit_vector(direction: DVec2) -> Result<DVec2, ParameterError> {
+    let length = finite_point(direction)?.length();
+    accept((length - 1.0).abs() <= 1e-12, "length of a direction", "1", length)?;
+    Ok(direction)
+}
+
 pub(super) fn finite_point(place: DVec2) -> Result<DVec2, ParameterError> {
     /// Largest coordinate: squares of distances, and squares of these, stay finite.
     const LARGEST: f64 = 1e60;

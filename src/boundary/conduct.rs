@@ -73,81 +73,97 @@ impl fmt::Debug for OwnRule {
 #[cfg(feature = "serde")]
 mod file {
     use std::any::Any;
+    use std::sync::Arc;
 
     use serde::ser::Error;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     use super::OwnRule;
+    use crate::Fingerprint;
     use crate::collision::{
-        ContactDuration, Elastic, ElasticBelow, Frictional, LeastRebound, Rough, Smooth, SpeedDependent,
+        CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Frictional, Impulse, LeastRebound,
+        Rough, Smooth, SpeedDependent,
     };
 
-    /// The rules of the crate.
+    /// A rule of the crate, without a remedy around it.
     #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-    #[serde(rename_all = "snake_case", rename = "Rule")]
-    pub(super) enum Known {
+    #[serde(rename_all = "snake_case")]
+    pub(super) enum Plain {
         Elastic(Elastic),
         Smooth(Smooth),
         Rough(Rough),
         Frictional(Frictional),
-        SmoothWithContactDuration(ContactDuration<Smooth>),
-        RoughWithContactDuration(ContactDuration<Rough>),
-        FrictionalWithContactDuration(ContactDuration<Frictional>),
         SpeedDependent(SpeedDependent),
-        SpeedDependentWithContactDuration(ContactDuration<SpeedDependent>),
-        SmoothWithElasticBelow(ElasticBelow<Smooth>),
-        RoughWithElasticBelow(ElasticBelow<Rough>),
-        FrictionalWithElasticBelow(ElasticBelow<Frictional>),
-        SpeedDependentWithElasticBelow(ElasticBelow<SpeedDependent>),
-        SmoothWithLeastRebound(LeastRebound<Smooth>),
-        RoughWithLeastRebound(LeastRebound<Rough>),
-        FrictionalWithLeastRebound(LeastRebound<Frictional>),
-        SpeedDependentWithLeastRebound(LeastRebound<SpeedDependent>),
+    }
+
+    impl Plain {
+        fn rule(&self) -> &dyn CollisionRule {
+            match self {
+                Self::Elastic(rule) => rule,
+                Self::Smooth(rule) => rule,
+                Self::Rough(rule) => rule,
+                Self::Frictional(rule) => rule,
+                Self::SpeedDependent(rule) => rule,
+            }
+        }
+    }
+
+    impl CollisionRule for Plain {
+        fn impulse(&self, contact: &Contact) -> Impulse {
+            self.rule().impulse(contact)
+        }
+
+        fn explain(&self, contact: &Contact) -> Option<String> {
+            self.rule().explain(contact)
+        }
+
+        fn fingerprint(&self) -> Option<Fingerprint> {
+            self.rule().fingerprint()
+        }
+    }
+
+    /// A rule of the crate, alone or within a remedy.
+    #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case", rename = "Rule")]
+    pub(super) enum Known {
+        Plain(Plain),
+        ContactDuration(ContactDuration<Plain>),
+        ElasticBelow(ElasticBelow<Plain>),
+        LeastRebound(LeastRebound<Plain>),
     }
 
     impl Known {
         pub(super) fn of(rule: &dyn Any) -> Option<Self> {
-            rule.downcast_ref()
-                .copied()
-                .map(Self::Elastic)
-                .or_else(|| rule.downcast_ref().copied().map(Self::Smooth))
-                .or_else(|| rule.downcast_ref().copied().map(Self::Rough))
-                .or_else(|| rule.downcast_ref().copied().map(Self::Frictional))
-                .or_else(|| rule.downcast_ref().copied().map(Self::SmoothWithContactDuration))
-                .or_else(|| rule.downcast_ref().copied().map(Self::RoughWithContactDuration))
-                .or_else(|| rule.downcast_ref().copied().map(Self::FrictionalWithContactDuration))
-                .or_else(|| rule.downcast_ref().copied().map(Self::SpeedDependent))
-                .or_else(|| rule.downcast_ref().copied().map(Self::SpeedDependentWithContactDuration))
-                .or_else(|| rule.downcast_ref().copied().map(Self::SmoothWithElasticBelow))
-                .or_else(|| rule.downcast_ref().copied().map(Self::RoughWithElasticBelow))
-                .or_else(|| rule.downcast_ref().copied().map(Self::FrictionalWithElasticBelow))
-                .or_else(|| rule.downcast_ref().copied().map(Self::SpeedDependentWithElasticBelow))
-                .or_else(|| rule.downcast_ref().copied().map(Self::SmoothWithLeastRebound))
-                .or_else(|| rule.downcast_ref().copied().map(Self::RoughWithLeastRebound))
-                .or_else(|| rule.downcast_ref().copied().map(Self::FrictionalWithLeastRebound))
-                .or_else(|| rule.downcast_ref().copied().map(Self::SpeedDependentWithLeastRebound))
+            Self::with(rule, Plain::Elastic)
+                .or_else(|| Self::with(rule, Plain::Smooth))
+                .or_else(|| Self::with(rule, Plain::Rough))
+                .or_else(|| Self::with(rule, Plain::Frictional))
+                .or_else(|| Self::with(rule, Plain::SpeedDependent))
+        }
+
+        /// Recognizes a rule of type `R`, alone or within a remedy.
+        fn with<R: Copy + 'static>(rule: &dyn Any, plain: fn(R) -> Plain) -> Option<Self> {
+            if let Some(rule) = rule.downcast_ref::<R>() {
+                Some(Self::Plain(plain(*rule)))
+            } else if let Some(remedy) = rule.downcast_ref::<ContactDuration<R>>() {
+                Some(Self::ContactDuration(remedy.around(plain(*remedy.rule()))))
+            } else if let Some(remedy) = rule.downcast_ref::<ElasticBelow<R>>() {
+                Some(Self::ElasticBelow(remedy.around(plain(*remedy.rule()))))
+            } else if let Some(remedy) = rule.downcast_ref::<LeastRebound<R>>() {
+                Some(Self::LeastRebound(remedy.around(plain(*remedy.rule()))))
+            } else {
+                None
+            }
         }
 
         fn owned(self) -> OwnRule {
-            match self {
-                Self::Elastic(rule) => OwnRule::new(rule),
-                Self::Smooth(rule) => OwnRule::new(rule),
-                Self::Rough(rule) => OwnRule::new(rule),
-                Self::Frictional(rule) => OwnRule::new(rule),
-                Self::SmoothWithContactDuration(rule) => OwnRule::new(rule),
-                Self::RoughWithContactDuration(rule) => OwnRule::new(rule),
-                Self::FrictionalWithContactDuration(rule) => OwnRule::new(rule),
-                Self::SpeedDependent(rule) => OwnRule::new(rule),
-                Self::SpeedDependentWithContactDuration(rule) => OwnRule::new(rule),
-                Self::SmoothWithElasticBelow(rule) => OwnRule::new(rule),
-                Self::RoughWithElasticBelow(rule) => OwnRule::new(rule),
-                Self::FrictionalWithElasticBelow(rule) => OwnRule::new(rule),
-                Self::SpeedDependentWithElasticBelow(rule) => OwnRule::new(rule),
-                Self::SmoothWithLeastRebound(rule) => OwnRule::new(rule),
-                Self::RoughWithLeastRebound(rule) => OwnRule::new(rule),
-                Self::FrictionalWithLeastRebound(rule) => OwnRule::new(rule),
-                Self::SpeedDependentWithLeastRebound(rule) => OwnRule::new(rule),
-            }
+            let rule: Arc<dyn CollisionRule + Send + Sync> = match self {
+                Self::Plain(rule) => Arc::new(rule),
+                Self::ContactDuration(rule) => Arc::new(rule),
+                Self::ElasticBelow(rule) => Arc::new(rule),
+                Self::LeastRebound(rule) => Arc::new(rule),
+            };
+            OwnRule { rule, known: Some(self) }
         }
     }
 

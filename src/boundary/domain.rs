@@ -70,6 +70,14 @@ impl Domain {
         DVec2::new(width, if self.periodic_ends { self.height() } else { 0.0 })
     }
 
+    /// Returns the displacements after which the rectangle repeats itself, in the neighborhood; the first is
+    /// none.
+    pub(crate) fn images(&self) -> impl Iterator<Item = DVec2> + use<> {
+        let periods = self.periods();
+        let shifts = |period: f64| [0.0, -period, period].into_iter().take(if period > 0.0 { 3 } else { 1 });
+        shifts(periods.x).flat_map(move |x| shifts(periods.y).map(move |y| DVec2::new(x, y)))
+    }
+
     /// Returns the vector from `from` to `to`, by the shortest way where the rectangle is periodic.
     pub fn separation(&self, from: DVec2, to: DVec2) -> DVec2 {
         let mut separation = to - from;
@@ -154,5 +162,13 @@ impl Region {
     #[inline]
     pub const fn new(min: DVec2, max: DVec2) -> Self {
         Self { min, max }
+    }
+
+    /// Returns the least product of a place in the rectangle with a vector.
+    pub(crate) fn least_along(&self, vector: DVec2) -> f64 {
+        let nearest = DVec2::select(vector.cmpgt(DVec2::ZERO), self.min, self.max);
+        // A zero component must not be multiplied by an infinite edge: the product is not a number.
+        let along = |component: f64, edge: f64| if component == 0.0 { 0.0 } else { component * edge };
+        along(vector.x, nearest.x) + along(vector.y, nearest.y)
     }
 }

@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
+use super::brick::{Brick, Path};
 use super::{Boundary, Domain, Region, Surface, Touch};
-use crate::roots::first_descent_of_quartic;
 use crate::{Disk, Fingerprint, Flight};
 
 /// A boundary with fixed round obstacles inside, such as pegs.
@@ -64,30 +64,9 @@ impl<B: Boundary> Obstacles<B> {
 
     /// Returns the places at which an obstacle is seen: several where the domain is periodic.
     fn images(&self, obstacle: &Disk) -> impl Iterator<Item = DVec2> {
-        let (place, periods) = (obstacle.position(), self.boundary.domain().periods());
-        let shifts = |period: f64| [0.0, -period, period].into_iter().take(if period > 0.0 { 3 } else { 1 });
-        shifts(periods.x).flat_map(move |x| shifts(periods.y).map(move |y| place + DVec2::new(x, y)))
+        let place = obstacle.position();
+        self.boundary.domain().images().map(move |image| place + image)
     }
-}
-
-/// Returns when a flight first touches a disk at this place, so many radii away, not later than `until`.
-fn first_meeting(flight: &Flight, place: DVec2, contact: f64, until: f64) -> Option<f64> {
-    let (start, wait) = (flight.time(), until - flight.time());
-    let (r, v, a) = (flight.position(start) - place, flight.velocity(start), flight.acceleration());
-    let (distance, way) = (r.length(), (v.length() + 0.5 * a.length() * wait) * wait);
-    // Most flights end far from most obstacles. Rounding must not end a flight that touches.
-    if distance - contact > 1.001 * way {
-        return None;
-    }
-    // The square of the distance less that of the contact, as a polynomial of the time.
-    let gap = [
-        (distance - contact) * (distance + contact),
-        2.0 * r.dot(v),
-        v.length_squared() + r.dot(a),
-        v.dot(a),
-        0.25 * a.length_squared(),
-    ];
-    Some((start + first_descent_of_quartic(&gap, wait)?).min(until))
 }
 
 impl<B: Boundary> Boundary for Obstacles<B> {
@@ -129,10 +108,12 @@ impl<B: Boundary> Boundary for Obstacles<B> {
 
     fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
         let mut first = self.boundary.first_touch(flight, until);
+        let path = Path::of(flight);
         for (index, obstacle) in self.obstacles.iter().enumerate() {
             for place in self.images(obstacle) {
                 let until = first.map_or(until, |touch| touch.time);
-                let meeting = first_meeting(flight, place, flight.radius() + obstacle.radius(), until);
+                let wait = Brick::round(place, obstacle.radius()).first_touch(&path, until - flight.time());
+                let meeting = wait.map(|wait| (flight.time() + wait).min(until));
                 if let Some(time) = meeting.filter(|&time| first.is_none_or(|touch| time < touch.time)) {
                     first = Some(Touch::new(time, self.boundary.wall_count() + index));
                 }

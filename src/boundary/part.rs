@@ -94,9 +94,9 @@ impl Part {
     ///
     /// # Errors
     /// If the direction has no length, or the motion answers with numbers that are not finite at one of the
-    /// phases that [`laws::check_finite`](crate::wall::laws::check_finite) looks at. If the motion jumps, as a
-    /// [`Sawtooth`](crate::wall::Sawtooth) does, and disks are free on a side of the part from which it would
-    /// jump into them.
+    /// phases that [`laws::check_finite`](crate::wall::laws::check_finite) looks at. If the motion jumps, as
+    /// a [`Sawtooth`](crate::wall::Sawtooth) does, and disks are free on a side of the part from which it
+    /// would jump into them.
     pub fn with_motion(
         self,
         direction: DVec2,
@@ -110,8 +110,8 @@ impl Part {
     /// Returns the same part turning about a point, counterclockwise at this angular velocity, in place of an
     /// earlier motion.
     ///
-    /// A circle about that point does not move, but its surface does. Every other part is at its place at time
-    /// 0, and at all times at which it has done whole turns.
+    /// A circle about that point does not move, but its surface does. Every other part is at its place at
+    /// time 0, and at all times at which it has done whole turns.
     ///
     /// # Errors
     /// If a number is not finite, or the angular velocity is so small or large that a turn is no time.

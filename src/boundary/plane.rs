@@ -122,12 +122,7 @@ impl Plane {
 
     /// Tells whether a disk with its center in `region` can touch the wall at any time.
     pub(super) fn may_touch(&self, region: &Region, radius: f64) -> bool {
-        let nearest = DVec2::select(self.normal.cmpgt(DVec2::ZERO), region.min, region.max);
-        // A zero component of the normal must not be multiplied by an infinite edge: the product is not a
-        // number.
-        let along = |component: f64, edge: f64| if component == 0.0 { 0.0 } else { component * edge };
-        let height = along(self.normal.x, nearest.x) + along(self.normal.y, nearest.y) - self.place;
-        height - radius <= self.highest
+        region.least_along(self.normal) - self.place - radius <= self.highest
     }
 
     pub(super) fn first_touch(&self, flight: &Flight, until: f64) -> Option<f64> {

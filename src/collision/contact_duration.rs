@@ -56,6 +56,12 @@ impl<R> ContactDuration<R> {
         Self { tangential_response, ..self }
     }
 
+    /// Returns the same remedy around another rule.
+    #[cfg(feature = "serde")]
+    pub(crate) const fn around<Q: Copy>(&self, rule: Q) -> ContactDuration<Q> {
+        ContactDuration { rule, duration: self.duration, tangential_response: self.tangential_response }
+    }
+
     /// Returns the rule of all other collisions.
     pub const fn rule(&self) -> &R {
         &self.rule

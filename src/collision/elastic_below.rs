@@ -61,6 +61,12 @@ impl<R> ElasticBelow<R> {
         Self { tangential_response, ..self }
     }
 
+    /// Returns the same remedy around another rule.
+    #[cfg(feature = "serde")]
+    pub(crate) const fn around<Q: Copy>(&self, rule: Q) -> ElasticBelow<Q> {
+        ElasticBelow { rule, speed: self.speed, tangential_response: self.tangential_response }
+    }
+
     /// Returns the rule of all other collisions.
     pub const fn rule(&self) -> &R {
         &self.rule

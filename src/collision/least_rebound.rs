@@ -55,6 +55,12 @@ impl<R> LeastRebound<R> {
         Ok(Self { rule, speed: Checked::new(speed)? })
     }
 
+    /// Returns the same remedy around another rule.
+    #[cfg(feature = "serde")]
+    pub(crate) const fn around<Q: Copy>(&self, rule: Q) -> LeastRebound<Q> {
+        LeastRebound { rule, speed: self.speed }
+    }
+
     /// Returns the rule of all faster rebounds.
     pub const fn rule(&self) -> &R {
         &self.rule

@@ -1,7 +1,7 @@
 //! Restitution that falls with the speed of the impact.
 
 use super::{CollisionRule, Contact, Friction, Impulse};
-use crate::quantity::{accept, positive};
+use crate::quantity::{Checked, Quantity, Range};
 use crate::{Fingerprint, ParameterError};
 
 /// Restitution that falls from 1 with the speed of the impact until it is constant, with Coulomb friction
@@ -30,11 +30,25 @@ use crate::{Fingerprint, ParameterError};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawSpeedDependent"))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct SpeedDependent {
-    least_restitution: f64,
-    speed: f64,
+    least_restitution: Checked<LeastRestitution>,
+    speed: Checked<Speed>,
     friction: Friction,
+}
+
+enum LeastRestitution {}
+
+impl Quantity for LeastRestitution {
+    const NAME: &'static str = "least restitution";
+    const RANGE: Range = Range::new("in [0, 1]", |value| (0.0..=1.0).contains(&value));
+}
+
+enum Speed {}
+
+impl Quantity for Speed {
+    const NAME: &'static str = "speed of the least restitution";
+    const RANGE: Range = Range::POSITIVE;
 }
 
 impl SpeedDependent {
@@ -43,10 +57,8 @@ impl SpeedDependent {
     /// # Errors
     /// If the restitution is not in `[0, 1]`, or the speed is not finite and positive.
     pub fn new(least_restitution: f64, speed: f64) -> Result<Self, ParameterError> {
-        let is_restitution = (0.0..=1.0).contains(&least_restitution);
-        accept(is_restitution, "least restitution", "in [0, 1]", least_restitution)?;
-        let friction = Friction::from_inelasticity(0.0)?;
-        Ok(Self { least_restitution, speed: positive("speed of the least restitution", speed)?, friction })
+        let (least_restitution, speed) = (Checked::new(least_restitution)?, Checked::new(speed)?);
+        Ok(Self { least_restitution, speed, friction: Friction::from_inelasticity(0.0)? })
     }
 
     /// Returns the same rule with this friction.
@@ -58,18 +70,18 @@ impl SpeedDependent {
     #[inline]
     pub fn restitution(&self, closing_speed: f64) -> f64 {
         // Square roots have the same bits on every platform.
-        let root = (closing_speed / self.speed).min(1.0).sqrt();
-        1.0 - (1.0 - self.least_restitution) * (root * root.sqrt())
+        let root = (closing_speed / self.speed.get()).min(1.0).sqrt();
+        1.0 - (1.0 - self.least_restitution.get()) * (root * root.sqrt())
     }
 
     /// Returns the restitution `$r_0$` of fast collisions.
     pub const fn least_restitution(&self) -> f64 {
-        self.least_restitution
+        self.least_restitution.get()
     }
 
     /// Returns the closing speed `$v_0$` from which on the restitution is constant.
     pub const fn speed(&self) -> f64 {
-        self.speed
+        self.speed.get()
     }
 
     /// Returns the friction.
@@ -86,26 +98,7 @@ impl CollisionRule for SpeedDependent {
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
-        let normal = Fingerprint::of("SpeedDependent").number(self.least_restitution).number(self.speed);
+        let normal = Fingerprint::of("SpeedDependent").number(self.least_restitution()).number(self.speed());
         Some(normal.part(self.friction.fingerprint()))
-    }
-}
-
-/// Fields of the rule in a file.
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "SpeedDependent")]
-struct RawSpeedDependent {
-    least_restitution: f64,
-    speed: f64,
-    friction: Friction,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawSpeedDependent> for SpeedDependent {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawSpeedDependent) -> Result<Self, ParameterError> {
-        Ok(Self::new(raw.least_restitution, raw.speed)?.with_friction(raw.friction))
     }
 }

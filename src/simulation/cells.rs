@@ -58,7 +58,7 @@ impl Cells {
         let largest = classes.last().map_or(0.125 * domain.width(), |class| class.largest);
         let most = CELLS_PER_DISK * disks.len() as f64 + SPARE_CELLS;
         let single = Layout::new(&domain, largest, cell_size, most, highest)?;
-        // Where sides or ends are periodic and too close, all disks share the cells of the largest.
+        // All disks share the cells of the largest if periodic sides or ends are too close for layers.
         let layered = if classes.len() > 1 { layouts(&domain, &classes, cell_size, highest) } else { None };
         let layouts = layered.unwrap_or(Layouts { smallest: single, larger: Vec::new() });
         let mut cells = Self::empty(boundary, &layouts, diameters)?;
@@ -267,7 +267,7 @@ impl Cells {
         let count = self.contents.gather(first, step, found, 0);
         match &self.layers {
             None => count,
-            // Which of the larger disks were within reach before is not worth finding out: they are few.
+            // The larger disks are few. It does not pay to leave out those that were within reach before.
             Some(layers) => layers.gather_visitors(self.grid.index(place), found, count),
         }
     }

@@ -13,12 +13,12 @@ use crate::collision::CollisionRule;
 use crate::scheduler::EventScheduler;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Puts disks into the simulation, as they are now, and returns their indices. They come after all others,
-    /// in the order given.
+    /// Puts disks into the simulation, as they are now, and returns their indices. They come after all
+    /// others, in the order given.
     ///
     /// All events are predicted anew. The run goes on with the same bits under every scheduler, and through a
-    /// checkpoint before or after. Counters go on. The new disks have collided with nothing yet, and may be of
-    /// any size and kind.
+    /// checkpoint before or after. Counters go on. The new disks have collided with nothing yet, and may be
+    /// of any size and kind.
     ///
     /// # Errors
     /// If a disk is outside, overlaps a wall or overlaps another disk; the error names its index. If the

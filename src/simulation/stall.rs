@@ -132,8 +132,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the remedy by what the rule answers to a contact like this.
     fn remedy_for(&self, contact: &Contact, rule: &dyn CollisionRule) -> Remedy {
         let typical = self.bodies.typical_diameter / self.clock.epoch_length;
-        // Where disks bounce at the very speed of a remedy, rounding decides whether it applies. The speed of
-        // a disk at rest is rounding altogether.
+        // Disks may bounce at the very speed of a remedy, so that rounding decides whether it applies. The
+        // speed of a disk at rest is rounding altogether.
         let closing = (0.5 * contact.closing_speed()).max(SLOW * typical);
         let slow = Contact::new(closing, 0.0, contact.normal_mass(), contact.tangential_mass())
             .with_time_since_last_collision(contact.time_since_last_collision())

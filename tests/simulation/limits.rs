@@ -4,26 +4,19 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use granular_edmd::boundary::{Container, Thermal, Wall};
+use granular_edmd::boundary::Container;
 use granular_edmd::collision::{Frictional, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, on_collision, stop_when};
 use granular_edmd::simulation::{Limits, RunEnd, RunError};
-use granular_edmd::wall::Sinusoidal;
-use granular_edmd::{Disk, Simulation, initial};
+use granular_edmd::{Disk, Simulation};
 
-use crate::setups::{Log, elastic_gas};
+use crate::setups::{Log, elastic_gas, shaken_and_heated};
 
 const END: f64 = 300.0;
 
 fn run() -> Simulation<Frictional> {
-    let walls =
-        Container::closed(12.0, 10.0).unwrap().with_motion(Wall::Floor, Sinusoidal::new(0.1, 9.0).unwrap());
-    let walls = walls.unwrap().with_temperature(Wall::Lid, Thermal::new(0.7).unwrap()).unwrap();
-    let disks = initial::lattice(&walls, 25, 0.5).unwrap();
-    let disks = initial::with_maxwellian_velocities(disks, 1.0, 3).unwrap();
-    let builder = Simulation::builder(Frictional::new(0.02, 0.2).unwrap(), walls).disks(disks).gravity(0.05);
-    builder.seed(5).build().unwrap()
+    shaken_and_heated().build().unwrap()
 }
 
 /// The collisions and the last state of a run that no limit cuts.

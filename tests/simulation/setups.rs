@@ -140,3 +140,14 @@ impl Observer for Log {
         self.0.push(*collision);
     }
 }
+
+/// A builder of a few disks between a floor that shakes and a lid that heats.
+pub(crate) fn shaken_and_heated() -> SimulationBuilder<Frictional, Container> {
+    let walls =
+        Container::closed(12.0, 10.0).unwrap().with_motion(Wall::Floor, Sinusoidal::new(0.1, 9.0).unwrap());
+    let walls = walls.unwrap().with_temperature(Wall::Lid, Thermal::new(0.7).unwrap()).unwrap();
+    let disks = initial::lattice(&walls, 25, 0.5).unwrap();
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 3).unwrap();
+    let rule = Frictional::new(0.02, 0.2).unwrap();
+    Simulation::builder(rule, walls).disks(disks).gravity(0.05).seed(5)
+}

@@ -2,25 +2,19 @@
 
 use std::ops::ControlFlow;
 
-use granular_edmd::boundary::{Container, Thermal, Wall};
+use granular_edmd::Simulation;
+use granular_edmd::boundary::Container;
 use granular_edmd::collision::Frictional;
 use granular_edmd::observable::{Collision, Observer, Snapshot, Verdict};
 use granular_edmd::simulation::RunEnd;
-use granular_edmd::wall::Sinusoidal;
-use granular_edmd::{Simulation, initial};
 
 use crate::schedulers::{SCHEDULERS, Scheduler};
+use crate::setups::shaken_and_heated;
 
 type Run = Simulation<Frictional, Container, Scheduler>;
 
 fn run(scheduler: Scheduler, start: f64) -> Run {
-    let walls =
-        Container::closed(12.0, 10.0).unwrap().with_motion(Wall::Floor, Sinusoidal::new(0.1, 9.0).unwrap());
-    let walls = walls.unwrap().with_temperature(Wall::Lid, Thermal::new(0.7).unwrap()).unwrap();
-    let disks = initial::lattice(&walls, 25, 0.5).unwrap();
-    let disks = initial::with_maxwellian_velocities(disks, 1.0, 3).unwrap();
-    let builder = Simulation::builder(Frictional::new(0.02, 0.2).unwrap(), walls).disks(disks).gravity(0.05);
-    builder.start_time(start).seed(5).scheduler(scheduler).build().unwrap()
+    shaken_and_heated().start_time(start).scheduler(scheduler).build().unwrap()
 }
 
 /// An observer that stops after each so many collisions and samples.

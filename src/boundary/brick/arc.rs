@@ -42,10 +42,6 @@ impl Sector {
 }
 
 impl Arc {
-    pub(super) const fn point(place: DVec2) -> Self {
-        Self { center: place, radius: 0.0, sector: None }
-    }
-
     pub(super) const fn new(center: DVec2, radius: f64, sector: Option<Sector>) -> Self {
         Self { center, radius, sector }
     }

@@ -71,7 +71,12 @@ impl Brick {
     }
 
     pub(in crate::boundary) const fn corner(place: DVec2) -> Self {
-        Self { shape: Shape::Arc(Arc::point(place)), free: Free::Right }
+        Self::round(place, 0.0)
+    }
+
+    /// Creates a circle with the disks outside.
+    pub(in crate::boundary) const fn round(center: DVec2, radius: f64) -> Self {
+        Self { shape: Shape::Arc(Arc::new(center, radius, None)), free: Free::Right }
     }
 
     const fn left_of(shape: Shape) -> Self {

@@ -5,8 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::arc::{Arc, Sector};
 use super::segment::Segment;
-use super::{Brick, Free, Shape, finite_point};
-use crate::ParameterError;
+use super::{Brick, Free, Shape, finite_point, unit_vector};
 use crate::boundary::vessel::VesselError;
 use crate::quantity::accept;
 
@@ -61,11 +60,4 @@ impl TryFrom<Record> for Brick {
             Record::Point { place } => Self::point(place),
         }
     }
-}
-
-/// Returns a direction as it is, if its length is 1 up to rounding.
-fn unit_vector(direction: DVec2) -> Result<DVec2, ParameterError> {
-    let length = finite_point(direction)?.length();
-    accept((length - 1.0).abs() <= 1e-12, "length of a direction", "1", length)?;
-    Ok(direction)
 }

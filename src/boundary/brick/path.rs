@@ -2,6 +2,8 @@
 
 use glam::DVec2;
 
+use crate::Flight;
+
 /// The way of a disk's center relative to a brick, from a moment on.
 ///
 /// The center is known up to an error that grows with time. Instead of that, the disk grows: its radius is
@@ -27,6 +29,13 @@ impl Path {
         Self { place, velocity, acceleration, radius, widening: 0.0, spread: 0.0 }
     }
 
+    /// Returns the way of a flight, from its start on.
+    pub(in crate::boundary) fn of(flight: &Flight) -> Self {
+        let start = flight.time();
+        let (place, velocity) = (flight.position(start), flight.velocity(start));
+        Self::exact(place, velocity, flight.acceleration(), flight.radius())
+    }
+
     /// Returns the place of the center after this time.
     pub(super) fn at(&self, time: f64) -> DVec2 {
         self.place + (self.velocity + 0.5 * time * self.acceleration) * time
@@ -43,8 +52,8 @@ impl Path {
         }
     }
 
-    /// Returns the same way of a disk that has shrunk from this radius, and goes on to shrink, as this one has
-    /// grown.
+    /// Returns the same way of a disk that has shrunk from this radius, and goes on to shrink, as this one
+    /// has grown.
     pub(super) fn shrinking(&self, radius: f64) -> Self {
         Self { radius: 2.0 * radius - self.radius, widening: -self.widening, spread: -self.spread, ..*self }
     }

@@ -111,12 +111,7 @@ impl Segment {
         if !boxes_meet {
             return false;
         }
-        // A zero component of the normal must not be multiplied by an infinite edge.
-        let along = |component: f64, edge: f64| if component == 0.0 { 0.0 } else { component * edge };
-        let height = |normal: DVec2| {
-            let nearest = DVec2::select(normal.cmpgt(DVec2::ZERO), region.min, region.max);
-            along(normal.x, nearest.x) + along(normal.y, nearest.y) - normal.dot(self.from)
-        };
+        let height = |normal: DVec2| region.least_along(normal) - normal.dot(self.from);
         let normal = self.direction.perp();
         height(normal) <= reach && height(-normal) <= reach
     }

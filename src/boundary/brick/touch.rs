@@ -7,8 +7,8 @@ use super::{Brick, Shape, Side};
 use crate::roots::first_descent_of_quartic;
 
 impl Brick {
-    /// Returns the first time, not later than `wait`, at which a disk touches the brick and closes further. If
-    /// the disk grows, no touch is earlier, but that time need not be one.
+    /// Returns the first time, not later than `wait`, at which a disk touches the brick and closes further.
+    /// If the disk grows, no touch is earlier, but that time need not be one.
     ///
     /// The side on which the center is decides which side of the brick counts. A disk whose center is behind
     /// the brick goes on until it has come out in front. The brick counts beside it only. What it would leave

@@ -85,8 +85,8 @@ impl Part {
         Self::new([Brick::circle(center, radius)?.reversed()])
     }
 
-    /// Reads points from text: two numbers in each line, with white space or a comma between them. Empty lines
-    /// and lines that begin with `#` are left out.
+    /// Reads points from text: two numbers in each line, with white space or a comma between them. Empty
+    /// lines and lines that begin with `#` are left out.
     ///
     /// # Errors
     /// If a line is not two numbers. The error names the line.

@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::{Part, Travel};
 use crate::Kind;
-use crate::boundary::brick::{Brick, finite_point, unit};
+use crate::boundary::brick::{Brick, finite_point, unit_vector};
 use crate::boundary::conduct::Conduct;
 use crate::boundary::vessel::VesselError;
-use crate::quantity::{accept, finite};
+use crate::quantity::finite;
 
 /// A part as it stands in a file.
 #[derive(Serialize, Deserialize)]
@@ -36,9 +36,7 @@ impl TryFrom<Record> for Part {
         let part = Part { conduct, kind, ..Part::new(bricks)? }.with_surface_speed(surface_speed)?;
         match &travel {
             Travel::Along { direction, .. } => {
-                unit(*direction)?;
-                let length = direction.length();
-                accept((length - 1.0).abs() <= 1e-12, "length of a direction", "1", length)?;
+                unit_vector(*direction)?;
                 part.traveling(travel)
             }
             Travel::Turning { about, angular_velocity } | Travel::Spinning { about, angular_velocity } => {

@@ -51,7 +51,7 @@ impl Index {
         bounds: impl Fn(&Wall) -> (DVec2, DVec2),
         is_near: impl Fn(&Wall, &Region) -> bool,
     ) -> Self {
-        let images: Vec<DVec2> = images(*domain).collect();
+        let images: Vec<DVec2> = domain.images().collect();
         let (low, high) = rectangle(domain, walls.iter().map(&bounds));
         let size = (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
         let most = (CELLS_PER_BRICK * walls.len() * images.len()).clamp(1, MOST_CELLS) as f64;
@@ -132,13 +132,6 @@ impl Index {
         let high = DVec2::new(edge(column + 1, self.columns, ROUNDING), edge(row + 1, self.rows, ROUNDING));
         Region::new(self.corner + low / self.density, self.corner + high / self.density)
     }
-}
-
-/// Returns the displacements after which the domain repeats itself, in the neighborhood.
-pub(super) fn images(domain: Domain) -> impl Iterator<Item = DVec2> {
-    let periods = domain.periods();
-    let shifts = |period: f64| [0.0, -period, period].into_iter().take(if period > 0.0 { 3 } else { 1 });
-    shifts(periods.x).flat_map(move |x| shifts(periods.y).map(move |y| DVec2::new(x, y)))
 }
 
 /// Returns the part of the domain in which there are bricks.

@@ -20,9 +20,10 @@ impl Vessel {
         let filled =
             filled.filter_map(|&part| self.depth(&self.parts[part as usize], position, radius, time));
         let near = || self.near_at_rest(position, radius);
-        let firsts =
-            near().enumerate().filter(|(k, (part, _))| !near().take(*k).any(|(other, _)| other == *part));
-        let beside = firsts.filter_map(|(_, (part, _))| {
+        let mut beside: Vec<usize> = near().map(|(part, _)| part).collect();
+        beside.sort_unstable();
+        beside.dedup();
+        let beside = beside.into_iter().filter_map(|part| {
             let entries = near().filter(|(other, _)| *other == part).map(|(_, entry)| entry);
             let placed = &self.parts[part];
             match self.nearest_of(entries, position) {
@@ -55,7 +56,7 @@ impl Vessel {
     /// Returns the wall of a part that is nearest, and how deep a disk reaches into it.
     fn depth(&self, placed: &Placed, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
         let pose = placed.part.travel().pose(time + placed.phase);
-        let depths = self.domain_images().filter_map(|image| {
+        let depths = self.domain().images().filter_map(|image| {
             let (brick, distance) = placed.part.nearest(pose.inward(position - image))?;
             Some((placed.first + brick, radius - distance))
         });
@@ -79,8 +80,8 @@ impl Vessel {
 
     /// Returns the cells without bricks of a part that are behind it.
     ///
-    /// Of two neighbors without a brick of the part, both are behind it or none. So a cell is looked at only if
-    /// its neighbors to the left and below do not tell.
+    /// Of two neighbors without a brick of the part, both are behind it or none. So a cell is looked at only
+    /// if its neighbors to the left and below do not tell.
     fn cells_filled_by(&self, number: usize, placed: &Placed) -> Vec<usize> {
         let Index { columns, .. } = self.index;
         let has_brick =

@@ -57,11 +57,8 @@ impl Vessel {
         if !placed.part.travel().is_at_rest() {
             return Search { wall, placed, flight: &flight, until }.run();
         }
-        let start = flight.time();
-        let (place, velocity) = (flight.position(start), flight.velocity(start));
-        let path = Path::exact(place, velocity, flight.acceleration(), flight.radius());
-        let wait = wall.brick.first_touch(&path, until - start)?;
-        Some((start + wait).min(until))
+        let wait = wall.brick.first_touch(&Path::of(&flight), until - flight.time())?;
+        Some((flight.time() + wait).min(until))
     }
 
     /// Returns the surface of a brick that a disk at this place touches.
@@ -70,7 +67,7 @@ impl Vessel {
         let placed = &self.parts[wall.part];
         let travel = placed.part.travel();
         let pose = travel.pose(time + placed.phase);
-        let images = self.domain_images();
+        let images = self.domain().images();
         let sights = images.map(|image| (image, wall.brick.nearest(pose.inward(position - image))));
         let nearest = sights.reduce(|a, b| if b.1.distance < a.1.distance { b } else { a });
         let Some((image, nearest)) = nearest else {
@@ -80,11 +77,6 @@ impl Vessel {
         let contact = position - image - nearest.distance * normal;
         let surface = placed.part.surface(normal, travel.velocity(contact, time + placed.phase));
         surface.with_radius(wall.brick.radius_at(pose.inward(position - image)))
-    }
-
-    /// Returns the displacements after which the vessel repeats itself, in the neighborhood.
-    pub(super) fn domain_images(&self) -> impl Iterator<Item = DVec2> + use<> {
-        super::index::images(self.container.domain())
     }
 }
 

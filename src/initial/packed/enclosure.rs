@@ -58,14 +58,8 @@ impl<B: Boundary + ?Sized> Boundary for Enclosure<'_, B> {
     fn set_time_origin(&mut self, _origin: f64) {}
 
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
-        let corners = [region.min, region.max];
-        let is_near = |(normal, place): (DVec2, f64)| {
-            // A zero component of the normal must not be multiplied by an infinite edge.
-            let along =
-                |corner: DVec2| if normal.x == 0.0 { normal.y * corner.y } else { normal.x * corner.x };
-            corners.map(along).into_iter().any(|height| height - place <= radius)
-        };
-        self.sides().any(is_near) || self.boundary.may_touch(region, radius)
+        self.sides().any(|(normal, place)| region.least_along(normal) - place <= radius)
+            || self.boundary.may_touch(region, radius)
     }
 
     fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
