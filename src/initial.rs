@@ -87,10 +87,12 @@ fn spacings() -> impl Iterator<Item = f64> {
     (0..=40).map(|k| LOOSE + (CLOSE - LOOSE) * f64::from(k) / 40.0)
 }
 
-/// Cuts the interior of a boundary at a height. A cut below periodic ends makes ends of them.
-fn cut(interior: Domain, below: f64) -> Domain {
+/// Cuts the interior of a boundary at a height above its bottom. A cut below periodic ends makes ends of them.
+fn cut(interior: Domain, below: f64) -> Result<Domain, ParameterError> {
+    let is_within = below.is_finite() && below > interior.bottom;
+    let below = accept(is_within, "height", "finite and above the bottom of the interior", below)?;
     let periodic_ends = interior.periodic_ends && below >= interior.top;
-    Domain { top: interior.top.min(below), periodic_ends, ..interior }
+    Ok(Domain { top: interior.top.min(below), periodic_ends, ..interior })
 }
 
 /// Returns the rectangle in which a center may lie. An open top stays open.

@@ -56,6 +56,8 @@ pub struct Part {
     conduct: Conduct,
     kind: Kind,
     surface_speed: f64,
+    /// Time from which the motion counts.
+    start: f64,
 }
 
 /// Properties.
@@ -126,6 +128,30 @@ impl Part {
         } else {
             Travel::Turning { about, angular_velocity }
         })
+    }
+
+    /// Returns the same part with a motion that counts its phase from this absolute time, and not from 0.
+    ///
+    /// A part that begins to move late is put in with the present as its start: it is then where it was
+    /// built, if its motion begins there. Before its start, it moves as it does after.
+    ///
+    /// # Errors
+    /// If the time is not finite.
+    ///
+    /// ```
+    /// use granular_edmd::boundary::{Boundary, Part, Vessel};
+    /// use granular_edmd::glam::DVec2;
+    ///
+    /// let wheel = Part::block([(0.0, 0.0), (8.0, 0.0), (8.0, 1.0), (0.0, 1.0)].map(DVec2::from))?;
+    /// let wheel = wheel.with_rotation(DVec2::new(4.0, 0.5), 0.7)?.starting_at(30.0)?;
+    /// let vessel = Vessel::around([("wheel", wheel)])?;
+    /// // At time 30 the wheel lies as it was built.
+    /// assert_eq!(vessel.overlap(DVec2::new(1.0, 1.25), 0.5, 30.0).map(|(_, depth)| depth), Some(0.25));
+    /// assert_eq!(vessel.overlap(DVec2::new(1.0, 1.25), 0.5, 0.0), None);
+    /// # Ok::<(), granular_edmd::boundary::VesselError>(())
+    /// ```
+    pub fn starting_at(self, time: f64) -> Result<Self, VesselError> {
+        Ok(Self { start: finite("start of a motion", time)?, ..self })
     }
 
     /// Returns the same part elsewhere. A point about which it turns moves with it.
@@ -206,6 +232,13 @@ impl Part {
         &self.travel
     }
 
+    /// Returns the phase of the motion at a time origin.
+    ///
+    /// Both remainders are exact. Their difference is rounded as a phase is, not as a late time.
+    pub(super) fn phase(&self, origin: f64) -> f64 {
+        self.travel.phase(origin) - self.travel.phase(self.start)
+    }
+
     /// Returns a rectangle around the part as it was built. Its edges may be infinite.
     pub(super) fn bounds(&self) -> (DVec2, DVec2) {
         let none = (DVec2::splat(f64::INFINITY), DVec2::splat(f64::NEG_INFINITY));
@@ -227,7 +260,7 @@ impl Part {
 
     pub(super) fn fingerprint(&self) -> Option<Fingerprint> {
         let kind = f64::from(self.kind.number());
-        let part = Fingerprint::of("Part").number(self.surface_speed).number(kind);
+        let part = Fingerprint::of("Part").number(self.surface_speed).number(self.start).number(kind);
         let part = part.part(self.travel.fingerprint()?).part(self.conduct.fingerprint()?);
         Some(self.bricks.iter().fold(part, |part, brick| part.part(brick.fingerprint())))
     }

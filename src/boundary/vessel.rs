@@ -73,6 +73,8 @@ pub struct Vessel {
     index: Index,
     /// The parts at rest that fill each cell of the index.
     filled: Vec<Vec<u32>>,
+    /// Time origin, from which the parts that are put in get their phases.
+    origin: f64,
 }
 
 /// A part of a vessel.
@@ -97,7 +99,14 @@ struct Wall {
 impl Vessel {
     /// Creates a vessel without parts: the container.
     pub const fn new(container: Container) -> Self {
-        Self { container, parts: Vec::new(), walls: Vec::new(), index: Index::EMPTY, filled: Vec::new() }
+        Self {
+            container,
+            parts: Vec::new(),
+            walls: Vec::new(),
+            index: Index::EMPTY,
+            filled: Vec::new(),
+            origin: 0.0,
+        }
     }
 
     /// Creates a vessel of parts that enclose the disks by themselves. The container is a rectangle around
@@ -229,6 +238,7 @@ impl Vessel {
         self.walls.clear();
         for (number, placed) in self.parts.iter_mut().enumerate() {
             placed.first = self.container.wall_count() + self.walls.len();
+            placed.phase = placed.part.phase(self.origin);
             let bricks = placed.part.all_bricks().iter();
             self.walls.extend(bricks.map(|&brick| Wall { part: number, brick }));
         }
@@ -272,8 +282,9 @@ impl Boundary for Vessel {
 
     fn set_time_origin(&mut self, origin: f64) {
         self.container.set_time_origin(origin);
+        self.origin = origin;
         for placed in &mut self.parts {
-            placed.phase = placed.part.travel().phase(origin);
+            placed.phase = placed.part.phase(origin);
         }
     }
 

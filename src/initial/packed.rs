@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use super::{PlacementError, countable};
 use crate::Disk;
 use crate::boundary::Boundary;
-use crate::quantity::{accept, positive};
+use crate::quantity::accept;
 use enclosure::Enclosure;
 use packing::Packing;
 
@@ -36,8 +36,8 @@ const APART: f64 = 1e-9;
 /// all disks grow at the same rate all the time.
 ///
 /// # Errors
-/// If the height is not finite and positive, there are more than 2²⁸ disks, or the disks do not find room or
-/// jam. The error of a jam names the area fraction of the disks in the rectangle of the interior below the
+/// If the height is not finite and above the bottom of the interior, there are more than 2²⁸ disks, or the disks
+/// do not find room or jam. The error of a jam names the area fraction of the disks in the rectangle of the interior below the
 /// height. If a periodic boundary is too narrow for the engine, or the boundary breaks its contract.
 ///
 /// ```
@@ -64,12 +64,11 @@ pub fn packed_at_random<B: Boundary + ?Sized>(
     below: f64,
     seed: u64,
 ) -> Result<Vec<Disk>, PlacementError> {
-    positive("height", below)?;
     countable(disks.len())?;
     if disks.is_empty() {
         return Ok(disks);
     }
-    let room = Enclosure::new(boundary, below);
+    let room = Enclosure::new(boundary, below)?;
     let area = room.domain().width() * room.domain().height();
     accept(area > 0.0, "area of the room for the disks", "positive", area)?;
     let wider = |disk: &Disk| Disk::new(disk.position(), disk.radius() * (1.0 + APART));

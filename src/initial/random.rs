@@ -24,7 +24,8 @@ const TRIALS: usize = 10_000;
 /// reached in this way: start from a [`lattice`](super::lattice()) and let it melt.
 ///
 /// # Errors
-/// If the radius or the height is not finite and positive, or a disk finds no place in ten thousand trials.
+/// If the radius is not finite and positive, the height is not finite and above the bottom of the interior, or
+/// a disk finds no place in ten thousand trials.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -42,7 +43,6 @@ pub fn random<B: Boundary + ?Sized>(
     seed: u64,
 ) -> Result<Vec<Disk>, PlacementError> {
     positive("radius", radius)?;
-    positive("height", below)?;
     countable(count)?;
     let radii = std::iter::repeat_n(radius, count);
     let disks = radii.map(|radius| Disk::new(DVec2::ZERO, radius)).collect::<Result<Vec<_>, _>>()?;
@@ -53,8 +53,8 @@ pub fn random<B: Boundary + ?Sized>(
 /// The rest is as for [`random`].
 ///
 /// # Errors
-/// If the height is not finite and positive, there are more than 2²⁸ disks, or one finds no place in ten
-/// thousand trials.
+/// If the height is not finite and above the bottom of the interior, there are more than 2²⁸ disks, or one
+/// finds no place in ten thousand trials.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;
@@ -71,9 +71,8 @@ pub fn placed_at_random<B: Boundary + ?Sized>(
     below: f64,
     seed: u64,
 ) -> Result<Vec<Disk>, PlacementError> {
-    positive("height", below)?;
     countable(disks.len())?;
-    let interior = cut(boundary.interior(), below);
+    let interior = cut(boundary.interior(), below)?;
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut bins = Bins::new(&boundary.domain(), disks.iter().map(Disk::radius));
     let (count, mut placed) = (disks.len(), Vec::with_capacity(disks.len()));

@@ -81,6 +81,7 @@ fn vessels_that_move_keep_the_contract() {
             still().with_motion(DVec2::Y, Sinusoidal::new(0.1, 20.0).unwrap()),
             still().with_rotation(DVec2::new(6.0, 6.0), 0.2),
             still().with_rotation(DVec2::new(6.0, 6.0), -3.0),
+            still().with_rotation(DVec2::new(6.0, 6.0), 0.2).and_then(|part| part.starting_at(1e3)),
         ];
         for (number, part) in parts.into_iter().enumerate() {
             check(&format!("motion {number}"), &room().with("part", part.unwrap()).unwrap());
@@ -97,11 +98,57 @@ fn vessels_that_move_keep_the_contract() {
     check("drum about another axis", &Vessel::around([("drum", off_axis)]).unwrap());
 }
 
+/// A part that is put in late begins where it was built, whatever the time origin is and whenever it is set.
+#[test]
+fn a_motion_counts_from_its_start() {
+    const START: f64 = 12_345.678_9;
+    let place = DVec2::new(3.2, 5.1);
+    let depth = |vessel: &Vessel, time: f64| vessel.overlap(place, 0.9, time);
+    for part in [
+        mixed().with_rotation(DVec2::new(6.0, 6.0), 0.7).unwrap(),
+        mixed().with_motion(DVec2::ONE, Sinusoidal::new(0.4, 2.0).unwrap()).unwrap(),
+    ] {
+        let early = room().with("part", part.clone()).unwrap();
+        let late = part.starting_at(START).unwrap();
+        for origin in [0.0, 12_288.0] {
+            let mut vessel = room();
+            vessel.set_time_origin(origin);
+            let mut set = vessel.clone().with("part", late.clone()).unwrap();
+            vessel.put("part", triangle()).unwrap();
+            vessel.replace("part", late.clone()).unwrap();
+            for wait in [0.0, 0.3, 5.0, 20.0] {
+                let (now, then) = (START - origin + wait, depth(&early, wait));
+                assert_eq!(depth(&set, now).map(|touch| touch.0), then.map(|touch| touch.0));
+                let off = depth(&set, now).map_or(0.0, |touch| touch.1) - then.map_or(0.0, |touch| touch.1);
+                assert!(off.abs() < 1e-11, "{origin} {wait}: {off:e}");
+                assert_eq!(depth(&vessel, now), depth(&set, now));
+            }
+            set.set_time_origin(origin);
+            assert_eq!(depth(&set, START - origin), depth(&vessel, START - origin));
+        }
+    }
+}
+
 #[test]
 fn a_motion_that_jumps_is_refused_where_it_would_jump_into_disks() {
     let saw = || Sawtooth::new(0.2, 3.0).unwrap();
     assert!(triangle().with_motion(DVec2::Y, saw()).is_err());
     assert!(triangle().with_motion(DVec2::Y, Triangular::new(0.2, 3.0).unwrap()).is_ok());
+}
+
+/// Bricks are numbered as the points are, whichever way these go round, and corners too.
+#[test]
+fn bricks_count_as_points_do() {
+    let points = [(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (-1.0, 5.0)].map(DVec2::from);
+    let backward = [points[0], points[3], points[2], points[1]];
+    for points in [points, backward] {
+        for part in [Part::polygon(points).unwrap(), Part::block(points).unwrap()] {
+            for (side, brick) in part.bricks().iter().enumerate() {
+                let middle = 0.5 * (points[side] + points[(side + 1) % 4]);
+                assert!(brick.signed_distance(middle).abs() < 1e-12, "side {side}");
+            }
+        }
+    }
 }
 
 #[test]
@@ -164,7 +211,11 @@ fn vessels_come_back_from_files() {
         .unwrap()
         .with(
             "block",
-            triangle().with_rotation(DVec2::ONE, 0.1).unwrap().with_rule(Frictional::new(0.1, 0.3).unwrap()),
+            triangle()
+                .with_rotation(DVec2::ONE, 0.1)
+                .and_then(|part| part.starting_at(7.0))
+                .unwrap()
+                .with_rule(Frictional::new(0.1, 0.3).unwrap()),
         )
         .unwrap()
         .with("hot", triangle().with_temperature(Thermal::new(2.0).unwrap()).with_surface_speed(0.3).unwrap())
@@ -223,6 +274,7 @@ fn numbers_of_every_kind_are_refused_or_taken() {
             triangle().with_rotation(point, 1.0),
             triangle().with_rotation(DVec2::ONE, a),
             triangle().with_surface_speed(a),
+            triangle().with_rotation(DVec2::ONE, 0.3).and_then(|part| part.starting_at(a)),
             triangle().with_motion(point, Sinusoidal::new(0.1, 3.0).unwrap()),
         ];
         for part in parts.into_iter().flatten() {

@@ -146,6 +146,18 @@ fn odd_rooms_are_refused_or_filled() {
     assert_apart(narrow, &few.unwrap());
 }
 
+/// A height counts from where the boundary is, which may lie below zero.
+#[test]
+fn rooms_below_zero_are_filled() {
+    let container = Container::open(10.0).unwrap().shifted(DVec2::new(3.0, -20.0)).unwrap();
+    for place in [initial::packed_at_random, initial::placed_at_random] {
+        let placed = place(&container, disks([0.5; 40]), -12.0, 1).unwrap();
+        assert!(placed.iter().all(|disk| disk.position().y <= -12.5 && disk.position().y >= -19.5));
+        let error = place(&container, disks([0.5; 40]), -20.0, 1).unwrap_err().to_string();
+        assert_eq!(error, "height must be finite and above the bottom of the interior, but is -20");
+    }
+}
+
 /// Disks that no packing can hold are refused before any is placed, and so is a disk that is larger than
 /// its room.
 #[test]

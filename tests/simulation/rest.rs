@@ -1,6 +1,6 @@
 //! Matter at rest: without a remedy an error that names it, within some 1e5 events, and with one a run.
 
-use granular_edmd::boundary::{Boundary, Container, Obstacles, Wall};
+use granular_edmd::boundary::{Boundary, Container, Obstacles, Part, Vessel, Wall};
 use granular_edmd::collision::{
     CollisionRule, ContactDuration, Elastic, ElasticBelow, Frictional, LeastRebound, Smooth, SpeedDependent,
 };
@@ -228,4 +228,50 @@ fn a_heap_that_only_has_slow_collisions_keeps_its_energy() {
     run.run_until(50.0, &mut ()).unwrap();
     assert!((run.measure(&Energies).total() / before - 1.0).abs() < 1e-10);
     assert!(run.counters().collisions > 1000);
+}
+
+/// Returns the number of grains in a silo when its flow has ended, the time that it took, and the seconds.
+fn emptied(slope: f64) -> (usize, f64, f64) {
+    const WIDTH: f64 = 30.0;
+    const OUTLET: f64 = 6.0;
+    const FLOOR: f64 = 16.0;
+    let half = |side: f64| {
+        let (out, wall) = (0.5 * (WIDTH + side * OUTLET), 0.5 * WIDTH + side * (0.5 * WIDTH + 1.0));
+        let top = FLOOR + slope * (wall - out).abs();
+        Part::block([(wall, top), (out, FLOOR), (out, FLOOR - 1.0), (wall, FLOOR - 1.0)].map(DVec2::from))
+            .unwrap()
+    };
+    let gate = [(0.0, 0.0), (WIDTH, 0.0), (WIDTH, FLOOR - 0.5), (0.0, FLOOR - 0.5)].map(DVec2::from);
+    let mut vessel = Vessel::new(Container::open(WIDTH).unwrap())
+        .with("left half", half(-1.0))
+        .and_then(|vessel| vessel.with("right half", half(1.0)))
+        .and_then(|vessel| vessel.with("gate", Part::block(gate)?))
+        .unwrap();
+    let grains = initial::random(&vessel, 1000, 0.5, 80.0, 1).unwrap();
+    let rule = LeastRebound::new(Frictional::new(0.1, 0.4).unwrap(), 0.1).unwrap();
+    let builder = Simulation::builder(rule, vessel.clone()).disks(grains);
+    let mut run = builder.gravity(1.0).build().unwrap();
+    let started = std::time::Instant::now();
+    run.run_until(40.0, &mut ()).unwrap();
+    vessel.remove("gate").unwrap();
+    run.set_boundary(vessel).unwrap();
+    let (mut last, mut time) = (40.0, 40.0);
+    while time < last + 40.0 && run.disk(0).is_some() {
+        time += 1.0;
+        run.run_until(time, &mut ()).unwrap();
+        let gone = run.remove(|_, disk| disk.position().y < 4.0).unwrap();
+        last = if gone.is_empty() { last } else { time };
+    }
+    (run.disks().len(), last - 40.0, started.elapsed().as_secs_f64())
+}
+
+/// A silo of 1000 grains discharges to its end: a hopper runs empty, and a flat floor keeps its heaps.
+#[test]
+#[ignore = "long: half a minute"]
+fn a_silo_of_a_thousand_discharges_to_its_end() {
+    for (slope, most) in [(1.0, 0), (0.0, 100)] {
+        let (left, time, seconds) = emptied(slope);
+        println!("slope {slope}: {left} of 1000 stay, the last one leaves after {time}; {seconds:.1} s");
+        assert!(left <= most);
+    }
 }

@@ -26,11 +26,11 @@ impl Part {
         }
         bricks.extend(corners::corners(&bricks));
         let (conduct, kind) = (Conduct::Shared, Kind::WALL);
-        Ok(Self { bricks, given, travel: Travel::Rest, conduct, kind, surface_speed: 0.0 })
+        Ok(Self { bricks, given, travel: Travel::Rest, conduct, kind, surface_speed: 0.0, start: 0.0 })
     }
 
     /// Creates a closed polygon with the disks inside. The points may go round either way, and the last one
-    /// may be the first one again.
+    /// may be the first one again. Brick 0 is between the first two points.
     ///
     /// # Errors
     /// If there are fewer than three points, a coordinate is not finite, neighboring points are equal, the

@@ -18,13 +18,15 @@ pub(super) struct Record {
     conduct: Conduct,
     kind: Kind,
     surface_speed: f64,
+    #[serde(default)]
+    start: f64,
 }
 
 impl From<Part> for Record {
     fn from(part: Part) -> Self {
-        let Part { mut bricks, given, travel, conduct, kind, surface_speed } = part;
+        let Part { mut bricks, given, travel, conduct, kind, surface_speed, start } = part;
         bricks.truncate(given);
-        Self { bricks, travel, conduct, kind, surface_speed }
+        Self { bricks, travel, conduct, kind, surface_speed, start }
     }
 }
 
@@ -32,8 +34,9 @@ impl TryFrom<Record> for Part {
     type Error = VesselError;
 
     fn try_from(record: Record) -> Result<Self, VesselError> {
-        let Record { bricks, travel, conduct, kind, surface_speed } = record;
-        let part = Part { conduct, kind, ..Part::new(bricks)? }.with_surface_speed(surface_speed)?;
+        let Record { bricks, travel, conduct, kind, surface_speed, start } = record;
+        let part = Part { conduct, kind, ..Part::new(bricks)? };
+        let part = part.with_surface_speed(surface_speed)?.starting_at(start)?;
         match &travel {
             Travel::Along { direction, .. } => {
                 unit_vector(*direction)?;

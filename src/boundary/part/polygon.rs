@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::boundary::brick::{Brick, finite_point};
 use crate::boundary::vessel::VesselError;
 
-/// Returns the sides of a polygon with the disks inside or outside.
+/// Returns the sides of a polygon with the disks inside or outside, each from one point to the next.
 pub(super) fn sides(mut points: Vec<DVec2>, inside: bool) -> Result<Vec<Brick>, VesselError> {
     if points.len() < 3 {
         return Err(VesselError::TooFewPoints { count: points.len(), least: 3 });
@@ -28,10 +28,10 @@ pub(super) fn sides(mut points: Vec<DVec2>, inside: bool) -> Result<Vec<Brick>, 
     if let Some((first, second)) = crossing(&points) {
         return Err(VesselError::Crossing { first, second });
     }
-    if (area > 0.0) != inside {
-        points.reverse();
-    }
-    pairs(&points).map(|(from, to)| Brick::segment(from, to)).collect()
+    // Each side keeps its number, so that names of walls count as the list of points does.
+    let is_turned = (area > 0.0) != inside;
+    let side = |(from, to)| if is_turned { Brick::segment(to, from) } else { Brick::segment(from, to) };
+    pairs(&points).map(side).collect()
 }
 
 /// Returns the points in pairs: the ends of each side.

@@ -4,10 +4,10 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use crate::Flight;
 use crate::boundary::{Boundary, Domain, Region, Response, Surface, Touch};
 use crate::initial::cut;
 use crate::roots::first_descent;
+use crate::{Flight, ParameterError};
 
 /// A boundary with a rectangle inside, which the disks do not leave.
 ///
@@ -27,8 +27,8 @@ impl<B: ?Sized> Clone for Enclosure<'_, B> {
 
 impl<'a, B: Boundary + ?Sized> Enclosure<'a, B> {
     /// Encloses the interior of the boundary below a height.
-    pub(super) fn new(boundary: &'a B, below: f64) -> Self {
-        Self { boundary, room: cut(boundary.interior(), below) }
+    pub(super) fn new(boundary: &'a B, below: f64) -> Result<Self, ParameterError> {
+        Ok(Self { boundary, room: cut(boundary.interior(), below)? })
     }
 
     /// Returns normal and place of each side of the rectangle that there is.
@@ -116,7 +116,7 @@ mod tests {
             Container::periodic(8.0, 20.0)?,
         ] {
             let board = Obstacles::new(container, [peg(2.0)?, peg(7.5)?]);
-            assert_eq!(laws::check(&mut Enclosure::new(&board, 6.0), 0.3, 1.0, 1), Ok(()));
+            assert_eq!(laws::check(&mut Enclosure::new(&board, 6.0)?, 0.3, 1.0, 1), Ok(()));
         }
         Ok(())
     }
