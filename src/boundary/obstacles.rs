@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use super::brick::{Brick, Path};
+use super::brick::Brick;
 use super::{Boundary, Domain, Region, Surface, Touch};
 use crate::{Disk, Fingerprint, Flight};
 
@@ -108,12 +108,10 @@ impl<B: Boundary> Boundary for Obstacles<B> {
 
     fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
         let mut first = self.boundary.first_touch(flight, until);
-        let path = Path::of(flight);
         for (index, obstacle) in self.obstacles.iter().enumerate() {
             for place in self.images(obstacle) {
                 let until = first.map_or(until, |touch| touch.time);
-                let wait = Brick::round(place, obstacle.radius()).first_touch(&path, until - flight.time());
-                let meeting = wait.map(|wait| (flight.time() + wait).min(until));
+                let meeting = Brick::round(place, obstacle.radius()).first_touch(flight, until);
                 if let Some(time) = meeting.filter(|&time| first.is_none_or(|touch| time < touch.time)) {
                     first = Some(Touch::new(time, self.boundary.wall_count() + index));
                 }

@@ -4,16 +4,49 @@ use glam::DVec2;
 
 use super::path::Path;
 use super::{Brick, Shape, Side};
+use crate::Flight;
+use crate::boundary::Region;
 use crate::roots::first_descent_of_quartic;
 
 impl Brick {
+    /// Returns the first time, from the start of a flight to `until`, at which the disk touches the brick and
+    /// closes further; `None` if it does not.
+    ///
+    /// This is the first touch for a [`Boundary`](crate::boundary::Boundary) of your own, exact for constant
+    /// acceleration. The brick counts beside it only: close open ends by a [`point`](Self::point).
+    ///
+    /// ```
+    /// use granular_edmd::Flight;
+    /// use granular_edmd::boundary::Brick;
+    /// use granular_edmd::glam::DVec2;
+    ///
+    /// // A disk of radius 1/2 falls from the middle of a drum of radius 5.
+    /// let drum = Brick::circle(DVec2::ZERO, 5.0)?;
+    /// let flight = Flight::new(2.0, DVec2::ZERO, DVec2::ZERO, DVec2::NEG_Y, 0.5);
+    /// assert_eq!(drum.first_touch(&flight, 10.0), Some(5.0));
+    /// assert_eq!(drum.normal(flight.position(5.0)), DVec2::Y);
+    /// assert_eq!(drum.first_touch(&flight, 4.0), None);
+    /// # Ok::<(), granular_edmd::boundary::VesselError>(())
+    /// ```
+    pub fn first_touch(&self, flight: &Flight, until: f64) -> Option<f64> {
+        let wait = self.wait_for_touch(&Path::of(flight), until - flight.time())?;
+        Some((flight.time() + wait).min(until))
+    }
+
+    /// Tells whether a disk of this radius can touch the brick with its center in a region, for
+    /// [`Boundary::may_touch`](crate::boundary::Boundary::may_touch).
+    pub fn may_touch(&self, region: &Region, radius: f64) -> bool {
+        // Rounding may not hide a touch at the edge of the region.
+        self.is_near(region, 1.001 * radius)
+    }
+
     /// Returns the first time, not later than `wait`, at which a disk touches the brick and closes further.
     /// If the disk grows, no touch is earlier, but that time need not be one.
     ///
     /// The side on which the center is decides which side of the brick counts. A disk whose center is behind
     /// the brick goes on until it has come out in front. The brick counts beside it only. What it would leave
     /// open at its ends is closed by the next brick, or by a point.
-    pub(in crate::boundary) fn first_touch(&self, path: &Path, wait: f64) -> Option<f64> {
+    pub(in crate::boundary) fn wait_for_touch(&self, path: &Path, wait: f64) -> Option<f64> {
         let beside = match self.shape {
             Shape::Segment(segment) if segment.is_out_of_reach(path, wait) => return None,
             Shape::Arc(arc) if arc.is_out_of_reach(path, wait) => return None,

@@ -57,8 +57,7 @@ impl Vessel {
         if !placed.part.travel().is_at_rest() {
             return Search { wall, placed, flight: &flight, until }.run();
         }
-        let wait = wall.brick.first_touch(&Path::of(&flight), until - flight.time())?;
-        Some((flight.time() + wait).min(until))
+        wall.brick.first_touch(&flight, until)
     }
 
     /// Returns the surface of a brick that a disk at this place touches.
@@ -145,18 +144,18 @@ impl Search<'_> {
         }
         let is_exact = path.spread == 0.0;
         if is_exact {
-            let touch = brick.first_touch(&path, wait);
+            let touch = brick.wait_for_touch(&path, wait);
             return touch.map_or(Step::Open(time + wait), |touch| Step::Touch(time + touch));
         }
         let rounding = ROUNDING * (self.flight.position(time).length() + path.place.length() + path.radius);
         let at_once = Path { radius: path.radius + rounding, spread: 0.0, ..path };
-        if brick.first_touch(&at_once, 0.0).is_some() {
+        if brick.wait_for_touch(&at_once, 0.0).is_some() {
             return Step::Touch(time);
         }
         // The gap may close by its rounding, so that each step advances. A disk that parts from the brick as
         // slowly as rounding lets it would else be followed in steps that show nothing new.
         let smaller = Path { radius: path.radius - rounding, ..path };
-        let open = brick.first_touch(&smaller, wait).unwrap_or(wait);
+        let open = brick.wait_for_touch(&smaller, wait).unwrap_or(wait);
         Step::Open(time + open.max(time_for(&path, rounding)))
     }
 

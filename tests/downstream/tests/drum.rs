@@ -29,7 +29,7 @@ fn farthest(snapshot: &Snapshot<'_>) -> f64 {
 
 #[test]
 fn elastic_disks_keep_energy_and_stay_inside() {
-    let drum = Drum::new(RADIUS);
+    let drum = Drum::new(RADIUS).unwrap();
     let mut simulation = filled(Viscoelastic::new(0.0, 0.0).unwrap(), drum, 0.3);
     let before = simulation.measure(&Energies).total();
     let mut reach = 0.0_f64;
@@ -46,7 +46,7 @@ fn elastic_disks_keep_energy_and_stay_inside() {
 
 #[test]
 fn a_smooth_drum_cannot_turn_the_disks() {
-    let drum = Drum::new(RADIUS).turning(3.0);
+    let drum = Drum::new(RADIUS).unwrap().turning(3.0);
     let mut simulation = filled(Viscoelastic::new(0.1, 0.0).unwrap(), drum, 0.0);
     let before = simulation.measure(&ABOUT);
     let mut series = Series::new(ABOUT, SampleTimes::every(1.0).unwrap());
@@ -61,7 +61,7 @@ fn a_smooth_drum_cannot_turn_the_disks() {
 #[test]
 fn a_rough_drum_takes_the_disks_along() {
     for angular_velocity in [-0.5, 0.5] {
-        let drum = Drum::new(RADIUS).turning(angular_velocity);
+        let drum = Drum::new(RADIUS).unwrap().turning(angular_velocity);
         // Smooth disks: rough ones would roll between each other and the wall ever faster, and collapse.
         let drum = drum.with_rule(Viscoelastic::new(0.0, 0.5).unwrap());
         let mut simulation = filled(Viscoelastic::new(0.0, 0.0).unwrap(), drum, 0.0);
@@ -77,7 +77,7 @@ fn a_rough_drum_takes_the_disks_along() {
 #[test]
 fn all_schedulers_give_the_same_bits() {
     fn last_state(scheduler: impl EventScheduler) -> Vec<Disk> {
-        let drum = Drum::new(RADIUS).turning(1.0);
+        let drum = Drum::new(RADIUS).unwrap().turning(1.0);
         let rule = ContactDuration::new(Viscoelastic::new(0.05, 0.3).unwrap(), 1e-5).unwrap();
         let disks = disks(60, &drum, 5);
         let builder = Simulation::builder(rule, drum).disks(disks).gravity(0.1);
@@ -94,7 +94,7 @@ fn all_schedulers_give_the_same_bits() {
 
 #[test]
 fn a_disk_outside_the_drum_is_refused() {
-    let drum = Drum::new(RADIUS);
+    let drum = Drum::new(RADIUS).unwrap();
     let corner = Disk::new(DVec2::splat(6.0), 0.5).unwrap();
     let error =
         Simulation::builder(Viscoelastic::new(0.0, 0.0).unwrap(), drum).disks([corner]).build().unwrap_err();
@@ -104,7 +104,7 @@ fn a_disk_outside_the_drum_is_refused() {
 #[test]
 fn lone_disks_fly_from_wall_to_wall_as_geometry_says() {
     // Without gravity, every chord of a circle is as long as the last.
-    let drum = Drum::new(RADIUS);
+    let drum = Drum::new(RADIUS).unwrap();
     let disk = Disk::new(DVec2::new(3.0, 1.0), 0.5).unwrap().with_velocity(DVec2::new(0.8, 0.6)).unwrap();
     let mut simulation =
         Simulation::builder(Viscoelastic::new(0.0, 0.0).unwrap(), drum).disks([disk]).build().unwrap();

@@ -18,7 +18,7 @@ fn a_motion_keeps_its_contract() {
 #[test]
 fn a_drum_keeps_its_contract() {
     for (radius, speed) in [(0.5, 1.0), (3.0, 1e-3), (7.0, 1e4)] {
-        let drum = Drum::new(8.0).turning(0.3);
+        let drum = Drum::new(8.0).unwrap().turning(0.3);
         assert_eq!(
             boundary::laws::check(
                 &mut drum.with_rule(Viscoelastic::new(0.1, 0.0).unwrap()),
@@ -39,10 +39,10 @@ fn a_container_with_a_motion_of_ones_own_keeps_its_contract() {
 
 #[test]
 fn fingerprints_tell_who_is_who() {
-    let drum = Drum::new(8.0);
+    let drum = Drum::new(8.0).unwrap();
     let print = |drum: &Drum| drum.fingerprint().unwrap();
-    assert_eq!(print(&drum), print(&Drum::new(8.0)));
-    assert_ne!(print(&drum), print(&Drum::new(8.5)));
+    assert_eq!(print(&drum), print(&Drum::new(8.0).unwrap()));
+    assert_ne!(print(&drum), print(&Drum::new(8.5).unwrap()));
     assert_ne!(print(&drum), print(&drum.turning(0.1)));
     assert_ne!(print(&drum), print(&drum.with_rule(Viscoelastic::new(0.1, 0.0).unwrap())));
     assert_ne!(MOTION.fingerprint(), TwoSines { amplitudes: [0.2, 0.1], ..MOTION }.fingerprint());

@@ -15,7 +15,7 @@ use granular_edmd::{Disk, Simulation, initial};
 const ABOUT: AngularMomentum = AngularMomentum { about: DVec2::ZERO };
 
 fn drum() -> Drum {
-    Drum::new(6.0).turning(0.7)
+    Drum::new(6.0).unwrap().turning(0.7)
 }
 
 type Boxed = Simulation<Box<dyn CollisionRule>, Box<dyn Boundary>, Box<dyn EventScheduler>>;
@@ -95,11 +95,11 @@ fn rule_and_boundary_can_be_changed_underway() {
     let mut simulation = boxed();
     simulation.run_until(5.0, &mut ()).unwrap();
     simulation.set_rule(Box::new(Smooth::new(0.0).unwrap()));
-    simulation.set_boundary(Box::new(Drum::new(9.0))).unwrap();
+    simulation.set_boundary(Box::new(Drum::new(9.0).unwrap())).unwrap();
     let before = simulation.measure(&Energies).total();
     simulation.run_until(200.0, &mut ()).unwrap();
     assert!((simulation.measure(&Energies).total() / before - 1.0).abs() < 1e-10);
     let farthest = simulation.disks().iter().map(|disk| disk.position().length()).fold(0.0, f64::max);
     assert!(farthest > 6.0 && farthest < 8.5 + 1e-9, "{farthest}");
-    assert!(simulation.set_boundary(Box::new(Drum::new(3.0))).is_err());
+    assert!(simulation.set_boundary(Box::new(Drum::new(3.0).unwrap())).is_err());
 }
