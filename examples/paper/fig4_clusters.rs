@@ -12,7 +12,9 @@
 //! The example writes `fig4_clusters.png`, `clusters.csv` and the tables of the study. After an interruption,
 //! the same command goes on.
 
+#[path = "../common/mod.rs"]
 mod common;
+#[path = "../studies/mod.rs"]
 mod studies;
 
 use std::error::Error;

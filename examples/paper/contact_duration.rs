@@ -10,6 +10,7 @@
 //!
 //! The example writes the studies, and prints a table. After an interruption, the same command goes on.
 
+#[path = "../studies/mod.rs"]
 mod studies;
 
 use std::error::Error;

@@ -14,12 +14,12 @@
 //! `table1` reads, beside the studies `up` and `down`. Ctrl-C stops the example, which saves all that was
 //! done and draws it. The same command then goes on.
 
-#[path = "../common/mod.rs"]
+#[path = "../../common/mod.rs"]
 mod common;
 mod picture;
 mod plan;
 mod states;
-#[path = "../studies/mod.rs"]
+#[path = "../../studies/mod.rs"]
 mod studies;
 
 use std::error::Error;

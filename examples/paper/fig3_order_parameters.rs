@@ -12,6 +12,7 @@
 //! The example writes `fig3_order_parameters.png` and the tables of the study. After an interruption, the
 //! same command goes on.
 
+#[path = "../studies/mod.rs"]
 mod studies;
 
 use std::error::Error;

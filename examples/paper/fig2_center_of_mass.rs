@@ -11,6 +11,7 @@
 //! The example writes `fig2_center_of_mass.png` and the tables of the study. After an interruption, the same
 //! command goes on.
 
+#[path = "../studies/mod.rs"]
 mod studies;
 
 use std::error::Error;

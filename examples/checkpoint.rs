@@ -1,0 +1,53 @@
+//! A checkpoint: a run that is cut, goes to a file, and goes on with the same bits.
+//!
+//! ```text
+//! cargo run --release --features serde --example checkpoint
+//! ```
+//!
+//! A second. You learn what a checkpoint holds (all of the state) and what it does not (rule and walls, which
+//! the program makes again), and how to keep a measurement beside it.
+
+use granular_edmd::prelude::*;
+use granular_edmd::simulation::Checkpoint;
+
+fn container() -> Result<Container, Box<dyn std::error::Error>> {
+    Ok(Container::closed(20.0, 50.0)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?)
+}
+
+fn rule() -> Result<ContactDuration<Frictional>, ParameterError> {
+    ContactDuration::new(Frictional::new(0.01, 0.1)?, 1e-4)
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let container = container()?;
+    let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 100, 0.5)?, 0.5, 1)?;
+    let mut whole = Simulation::builder(rule()?, container).disks(disks).gravity(0.015_625).build()?;
+    let mut series = Series::new(CenterOfMass, SampleTimes::every(10.0)?);
+    whole.run_until(500.0, &mut series)?;
+
+    // Half of the run is done. The state goes to one file, what was measured to another one.
+    let folder = std::env::temp_dir().join(format!("checkpoint-{}", std::process::id()));
+    std::fs::create_dir(&folder)?;
+    whole.checkpoint().write(folder.join("run.checkpoint"))?;
+    std::fs::write(folder.join("series.json"), serde_json::to_string(&series)?)?;
+
+    // Another program, on another day, makes rule and walls again, and goes on. A checkpoint refuses a rule
+    // or a wall that it does not know.
+    let checkpoint = Checkpoint::read(folder.join("run.checkpoint"))?;
+    let mut second = Simulation::resume(&checkpoint, rule()?, self::container()?).build()?;
+    let text = std::fs::read_to_string(folder.join("series.json"))?;
+    let mut resumed: Series<CenterOfMass> = serde_json::from_str(&text)?;
+    second.run_until(1000.0, &mut resumed)?;
+    std::fs::remove_dir_all(&folder)?;
+
+    // The run that was never cut comes to the same state, and has the same samples.
+    whole.run_until(1000.0, &mut series)?;
+    assert_eq!(second.disks(), whole.disks());
+    assert_eq!(resumed.values(), series.values());
+    println!(
+        "{} samples and {} disks are the same, to the last bit",
+        series.values().len(),
+        whole.disks().len()
+    );
+    Ok(())
+}

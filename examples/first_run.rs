@@ -1,0 +1,42 @@
+//! The first run: grains in a shaken box, and the convection rolls that appear.
+//!
+//! ```text
+//! cargo run --release --example first_run
+//! ```
+//!
+//! A second. You learn how a run is put together: walls, disks, a rule for their collisions, something to
+//! watch.
+
+use granular_edmd::prelude::*;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // The base of the box goes up and down by 0.1 diameters of a grain. Speeds are measured in units of its
+    // speed, 0.1 × 10 = 1, and lengths in diameters.
+    let base = BiParabolic::new(0.1, 10.0)?;
+    let oscillation = std::f64::consts::TAU / base.angular_frequency();
+
+    // A box 60 wide and 150 high. A question mark ends the program if a number makes no sense, and says why.
+    let container = Container::closed(60.0, 150.0)?.with_motion(Wall::Floor, base)?;
+
+    // 1000 grains of radius 1/2 on a lattice, with random velocities. The last number is the seed: the same
+    // seed gives the same run, bit for bit.
+    let disks = initial::lattice(&container, 1000, 0.5)?;
+    let disks = initial::with_maxwellian_velocities(disks, 0.5, 1)?;
+
+    // Grains lose no energy by their inelasticity (0), but rub with the friction coefficient 0.07. Contacts
+    // within 1e-4 of the last one lose nothing, so that grains that lie on each other end no run.
+    let rule = ContactDuration::new(Frictional::new(0.0, 0.07)?, 1e-4)?;
+    let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
+
+    // Watch the order parameters of one roll and of two, and the height of the center of mass.
+    let mut series = Series::new((OrderParameters, CenterOfMass), SampleTimes::every(100.0 * oscillation)?);
+    simulation.run_until(2000.0 * oscillation, &mut series)?;
+
+    println!("oscillation  one roll  two rolls   height");
+    for (time, (order, center)) in series.iter() {
+        let count = time / oscillation;
+        println!("{count:11.0} {:9.3} {:10.3} {:8.2}", order.one_roll, order.two_rolls, center.y);
+    }
+    println!("{} collisions", simulation.counters().collisions);
+    Ok(())
+}

@@ -1,0 +1,77 @@
+//! A boundary of one's own: a drum whose rim is hot on one side and cold on the other.
+//!
+//! ```text
+//! cargo run --release --example own_boundary
+//! ```
+//!
+//! A second. You learn what a boundary answers (where it is, when a disk touches it, what its surface is
+//! like), and that its geometry is made of the same bricks as the vessels of the library.
+
+use granular_edmd::boundary::laws;
+use granular_edmd::prelude::*;
+use std::borrow::Cow;
+
+/// A round drum about the origin. Its right half is thermal wall 0, its left half thermal wall 1.
+#[derive(Clone)]
+struct Drum {
+    radius: f64,
+    rim: Brick,
+    temperatures: [Thermal; 2],
+}
+
+impl Boundary for Drum {
+    fn domain(&self) -> Domain {
+        Domain::new(-self.radius, self.radius, -self.radius, self.radius)
+    }
+
+    fn wall_count(&self) -> usize {
+        2
+    }
+
+    fn wall_name(&self, wall: usize) -> Cow<'_, str> {
+        if wall == 0 { "hot half".into() } else { "cold half".into() }
+    }
+
+    // The drum rests, so it needs no clock.
+    fn set_time_origin(&mut self, _: f64) {}
+
+    fn may_touch(&self, region: &Region, radius: f64) -> bool {
+        self.rim.may_touch(region, radius)
+    }
+
+    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+        let time = self.rim.first_touch(flight, until)?;
+        Some(Touch::new(time, usize::from(flight.position(time).x < 0.0)))
+    }
+
+    fn surface(&self, wall: usize, position: DVec2, _time: f64) -> Surface<'_> {
+        let surface = Surface::new(self.rim.normal(position), DVec2::ZERO);
+        surface.with_response(Response::Thermal(self.temperatures[wall]))
+    }
+
+    fn overlap(&self, position: DVec2, radius: f64, _time: f64) -> Option<(usize, f64)> {
+        let depth = radius - self.rim.signed_distance(position);
+        (depth > 0.0).then_some((usize::from(position.x < 0.0), depth))
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let radius = 15.0;
+    let temperatures = [Thermal::new(2.0)?, Thermal::new(0.5)?];
+    let mut drum = Drum { radius, rim: Brick::circle(DVec2::ZERO, radius)?, temperatures };
+    // Does the drum keep the contract? Disks of radius 1/2 at speed 1 fly about in it.
+    laws::check(&mut drum, 0.5, 1.0, 1)?;
+
+    let disks = initial::random(&drum, 150, 0.5, radius, 1)?;
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
+    let mut simulation = Simulation::builder(Elastic, drum).disks(disks).build()?;
+    // Elastic disks carry the heat from the hot half to the cold one, and lose none.
+    simulation.run_until(100.0, &mut ())?;
+    let mut heat = EnergyChange::default();
+    simulation.run_until(600.0, &mut heat)?;
+    for wall in [0, 1] {
+        let flow = heat.wall(wall).mean() * heat.wall(wall).count() as f64 / 500.0;
+        println!("{}: energy {flow:+.2} per unit of time", simulation.boundary().wall_name(wall));
+    }
+    Ok(())
+}

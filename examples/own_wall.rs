@@ -1,0 +1,78 @@
+//! A wall motion of one's own: a base that rests between its kicks.
+//!
+//! ```text
+//! cargo run --release --example own_wall
+//! ```
+//!
+//! Two seconds. You learn what a wall motion must tell (place, velocity, bounds of its acceleration), and how
+//! it is checked.
+
+use granular_edmd::prelude::*;
+use granular_edmd::wall::laws;
+
+/// A base that hops: half of the time it flies on a parabola of height `height`, then it rests.
+#[derive(Debug, Clone, Copy)]
+struct Hopping {
+    height: f64,
+    period: f64,
+}
+
+impl Hopping {
+    /// Returns the time within the period, the time at which it began, and the duration of the hop.
+    fn moment(&self, phase: f64) -> (f64, f64, f64) {
+        let begin = (phase / self.period).floor() * self.period;
+        (phase - begin, begin, 0.5 * self.period)
+    }
+}
+
+impl WallMotion for Hopping {
+    fn state(&self, phase: f64) -> WallState {
+        let (time, _, hop) = self.moment(phase);
+        if time >= hop {
+            return WallState::new(0.0, 0.0);
+        }
+        let share = time / hop;
+        WallState::new(
+            4.0 * self.height * share * (1.0 - share),
+            4.0 * self.height * (1.0 - 2.0 * share) / hop,
+        )
+    }
+
+    // The engine finds touches exactly where acceleration is constant. So each piece names its end.
+    fn acceleration(&self, phase: f64) -> AccelerationBounds {
+        let (time, begin, hop) = self.moment(phase);
+        if time >= hop {
+            return AccelerationBounds::new(begin + self.period, 0.0, 0.0);
+        }
+        let acceleration = -8.0 * self.height / (hop * hop);
+        AccelerationBounds::new(begin + hop, acceleration, acceleration)
+    }
+
+    fn reach(&self) -> (f64, f64) {
+        (0.0, self.height)
+    }
+
+    fn period(&self) -> Option<f64> {
+        Some(self.period)
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    println!("period  height of the center of mass");
+    for period in [0.5, 1.0, 2.0, 4.0] {
+        let base = Hopping { height: 0.2, period };
+        // Do place, velocity and acceleration fit together, on all pieces of 20 periods?
+        laws::check(&base, 0.0, 20.0 * period)?;
+        let container = Container::open(20.0)?.with_motion(Wall::Floor, base)?;
+        let disks = initial::random(&container, 100, 0.5, 20.0, 1)?;
+        // Grains that come to rest on the base part with a speed of 0.1 at least: a run of hard grains needs that.
+        let rule = LeastRebound::new(Frictional::new(0.05, 0.1)?, 0.1)?;
+        let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(1.0).build()?;
+        simulation.run_until(50.0, &mut ())?;
+        let mut series = Series::new(CenterOfMass, SampleTimes::every(0.37)?);
+        simulation.run_until(150.0, &mut series)?;
+        let mean = series.values().iter().map(|center| center.y).sum::<f64>() / series.values().len() as f64;
+        println!("{period:6} {mean:29.2}");
+    }
+    Ok(())
+}
