@@ -31,6 +31,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! The [`guide`] leads from a question to a figure, a chapter for each step.
+//!
 //! # Map
 //! | floor | what is there |
 //! |---|---|
@@ -72,6 +74,7 @@ mod error;
 mod file;
 mod fingerprint;
 mod flight;
+pub mod guide;
 pub mod initial;
 mod instructions;
 mod kind;
