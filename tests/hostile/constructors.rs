@@ -118,14 +118,14 @@ fn watching() -> Vec<Case> {
     vec![
         ("sampling interval", |value| told(SampleTimes::every(value)), positive),
         ("first sampling time", |value| told(times().starting_at(value)), f64::is_finite),
-        ("top of the profile", |value| told(HeightProfile::new(0.0, value, 1, times())), positive),
+        ("upper end of the bins", |value| told(HeightProfile::new(0.0, value, 1, times())), positive),
         (
-            "bottom of the profile",
+            "lower end of the bins",
             |value| told(HeightProfile::new(value, 2.0, 1, times())),
             |value| value.is_finite() && value < 2.0,
         ),
-        ("top of the profile", |value| told(EnergyChangeProfile::new(0.0, value, 1, times())), positive),
-        ("edge of the grid", |value| told(grid(value)), |value| value > 1.0 && value.is_finite()),
+        ("upper end of the bins", |value| told(EnergyChangeProfile::new(0.0, value, 1, times())), positive),
+        ("edge of the region", |value| told(grid(value)), |value| value > 1.0 && value.is_finite()),
         ("translational temperature", |value| told(Maxwellian::new(value)), scale),
         (
             "rotational temperature",
@@ -161,7 +161,7 @@ fn each_number_is_taken_or_named() {
                 Ok(()) => assert!(takes(value), "{name} {value:e} was taken"),
                 Err(error) => {
                     assert!(!takes(value), "{value:e} was refused: {error}");
-                    let derived = ["area of", "peak", "period", "top of"];
+                    let derived = ["area of", "peak", "period", "upper end of"];
                     let said = error.rsplit(' ').next().unwrap().parse::<f64>();
                     let by_itself = error.starts_with(name)
                         && said.is_ok_and(|said| said == value || said.is_nan() && value.is_nan());

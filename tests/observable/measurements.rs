@@ -182,17 +182,17 @@ fn forged_measurements_are_refused() -> Outcome {
         assert!(refused::<EnergyChangeProfile>(forged(profile, at, number)), "{at}");
     }
     for (at, number) in [
-        ("/bins/height", json!(-1.0)),
-        ("/bins/height", json!(1e308)),
+        ("/bins/width", json!(-1.0)),
+        ("/bins/width", json!(1e308)),
         ("/bins/count", json!(0)),
         ("/sums", json!([0.0])),
     ] {
         assert!(refused::<HeightProfile>(forged(heights, at, number)), "{at}");
     }
     for (at, number) in [
-        ("/columns", json!(4)),
-        ("/rows", json!(u64::MAX)),
-        ("/max/0", json!(-1.0)),
+        ("/grid/columns", json!(4)),
+        ("/grid/rows", json!(u64::MAX)),
+        ("/grid/region/max/0", json!(-1.0)),
         ("/sums/0/count", json!(1)),
         ("/sums/0/area", json!(1.0)),
         ("/sums/0/velocity/1/squares", json!(1.0)),
