@@ -23,8 +23,8 @@ fn a_gas_at_rest_is_maxwellian() -> Outcome {
         let cumulants = [velocities.second_cumulant(), velocities.third_cumulant()];
         for estimate in cumulants.into_iter().chain(velocities.excess_kurtosis()) {
             println!("{count} disks: {estimate}");
-            // The error of 4e5 disks, half of them independent, is 0.002 for a_2, and several times that for
-            // the others.
+            // The error of 4e5 disks, half of them independent, is 0.002 for the cumulants, and the root of 24
+            // times that for the kurtosis.
             assert!(estimate.standard_error() < 0.015);
             assert!(estimate.mean().abs() < 4.0 * estimate.standard_error(), "{count} disks: {estimate}");
         }
