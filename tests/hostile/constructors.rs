@@ -6,7 +6,10 @@ use granular_edmd::boundary::{Container, Region, Thermal, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::{Maxwellian, MonteCarlo};
-use granular_edmd::observable::{EnergyChangeProfile, Fields, HeightProfile, SampleTimes};
+use granular_edmd::observable::{
+    EnergyChangeProfile, Fields, HeightProfile, PairCorrelation, SampleTimes, WallStress,
+};
+use granular_edmd::statistics::Histogram;
 use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
 use granular_edmd::{Disk, Simulation, initial};
 
@@ -125,6 +128,9 @@ fn watching() -> Vec<Case> {
             |value| value.is_finite() && value < 2.0,
         ),
         ("upper end of the bins", |value| told(EnergyChangeProfile::new(0.0, value, 1, times())), positive),
+        ("range of the correlation", |value| told(PairCorrelation::new(value, 1, times())), positive),
+        ("length of a wall", |value| told(WallStress::new(times()).with_wall(0, value)), positive),
+        ("upper end of the bins", |value| told(Histogram::new(0.0, value, 1)), positive),
         ("edge of the region", |value| told(grid(value)), |value| value > 1.0 && value.is_finite()),
         ("translational temperature", |value| told(Maxwellian::new(value)), scale),
         (
