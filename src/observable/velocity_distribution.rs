@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::grid::CellSums;
 use super::{Grid, Moment, Observer, SampleTimes, Snapshot};
 use crate::statistics::{BlockedMean, Estimate, Histogram};
 use crate::{Disk, ParameterError};
@@ -131,31 +132,38 @@ impl Frame {
     /// Returns the scaled velocities `$\sqrt m(v - u)$` of the disks, each with the share of its variance that
     /// is left when the mean is taken off, and the degrees of freedom of each component.
     fn peculiar(&self, disks: &[Disk]) -> (Vec<(DVec2, f64)>, f64) {
-        let scaled = |disk: &Disk, flow| (disk.velocity() - flow) * disk.mass().sqrt();
         match self {
             Self::Container => {
-                (disks.iter().map(|disk| (scaled(disk, DVec2::ZERO), 1.0)).collect(), disks.len() as f64)
+                let scaled = disks.iter().map(|disk| (disk.velocity() * disk.mass().sqrt(), 1.0));
+                (scaled.collect(), disks.len() as f64)
             }
             Self::Mean => {
-                let mut all = super::grid::CellSums::default();
-                disks.iter().for_each(|disk| all.add(disk));
-                let left = |disk: &Disk| 1.0 - disk.mass() / all.velocity[0].weight;
-                let peculiar = disks.iter().map(|disk| (scaled(disk, all.flow()), left(disk))).collect();
-                (peculiar, disks.len() as f64 - 1.0)
+                let mut all = CellSums::default();
+                for disk in disks {
+                    all.add(disk);
+                }
+                about(&[all], disks, |_| Some(0))
             }
-            Self::Flow(grid) => {
-                let sums = grid.sums(disks);
-                let inside = disks.iter().filter_map(|disk| Some((disk, sums[grid.find(disk.position())?])));
-                let left = |disk: &Disk, weight: f64| 1.0 - disk.mass() / weight;
-                let peculiar: Vec<_> = inside
-                    .map(|(disk, sums)| (scaled(disk, sums.flow()), left(disk, sums.velocity[0].weight)))
-                    .collect();
-                let cells = sums.iter().filter(|cell| cell.count > 0).count();
-                let freedom = peculiar.len() as f64 - cells as f64;
-                (peculiar, freedom)
-            }
+            Self::Flow(grid) => about(&grid.sums(disks), disks, |disk| grid.find(disk.position())),
         }
     }
+}
+
+/// Returns what [`Frame::peculiar`] does, about the mean velocity in each cell.
+fn about(
+    cells: &[CellSums],
+    disks: &[Disk],
+    cell_of: impl Fn(&Disk) -> Option<usize>,
+) -> (Vec<(DVec2, f64)>, f64) {
+    let scaled = |disk: &Disk| {
+        let cell = &cells[cell_of(disk)?];
+        let left = 1.0 - disk.mass() / cell.velocity[0].weight;
+        Some(((disk.velocity() - cell.flow()) * disk.mass().sqrt(), left))
+    };
+    let peculiar: Vec<_> = disks.iter().filter_map(scaled).collect();
+    let taken = cells.iter().filter(|cell| cell.count > 0).count();
+    let freedom = peculiar.len() as f64 - taken as f64;
+    (peculiar, freedom)
 }
 
 /// Returns a moment of a normal distribution over that of as many independent numbers.
