@@ -20,7 +20,8 @@ fn at_contact(correlation: &PairCorrelation, contact: f64) -> f64 {
             + a[2] * (b[0] * c[1] - b[1] * c[0])
     };
     let rows = [0, 1, 2].map(|row| [power(row), power(row + 1), power(row + 2)]);
-    let constants = [0, 1, 2].map(|row: usize| [moment(row as i32), rows[row][1], rows[row][2]]);
+    let moments = [0, 1, 2].map(moment);
+    let constants = [0, 1, 2].map(|row: usize| [moments[row], rows[row][1], rows[row][2]]);
     determinant(constants) / determinant(rows)
 }
 

@@ -164,9 +164,9 @@ fn an_observable_of_known_memory_has_its_correlation() -> Outcome {
         correlation.on_sample(&Snapshot::new(f64::from(time), &[], BOX, 0.0));
     }
     let fluctuations = granular_edmd::statistics::autocorrelation(&series, 5)?;
-    for (lag, ((time, value), normalized)) in correlation.iter().zip(&fluctuations).enumerate() {
-        let expected = 0.8_f64.powi(lag as i32);
-        assert_eq!(time, lag as f64);
+    for (lag, ((time, value), normalized)) in (0..).zip(correlation.iter().zip(&fluctuations)) {
+        let expected = 0.8_f64.powi(lag);
+        assert_eq!(time, f64::from(lag));
         assert!(value.is_converged() && value.standard_error() < 0.03);
         assert!((value.mean() - expected).abs() < 4.0 * value.standard_error(), "{lag}: {value}");
         assert!((normalized.mean() - expected).abs() < 4.0 * value.standard_error(), "{lag}: {normalized}");
@@ -283,7 +283,9 @@ fn velocities_about_a_flow_are_those_of_the_gas_in_it() -> Outcome {
         let disks = points(200, &mut Xoshiro256PlusPlus::seed_from_u64(time + 10))?;
         let disks = disks.into_iter().map(disk).collect::<Result<Vec<_>, _>>()?;
         let snapshot = Snapshot::new(time as f64, &disks, BOX, 0.0);
-        distributions.iter_mut().for_each(|distribution| distribution.on_sample(&snapshot));
+        for distribution in &mut distributions {
+            distribution.on_sample(&snapshot);
+        }
     }
     let [all, about_mean, about_flow] = &distributions;
     for estimate in [about_flow.second_cumulant(), about_flow.third_cumulant()]
