@@ -15,7 +15,6 @@
 //! each at time 0. The functions therefore work in a boundary of any shape, also in one that fills only a
 //! part of its interior.
 
-mod bins;
 mod lattice;
 mod packed;
 mod radii;

@@ -11,6 +11,8 @@
 //! | [`CenterOfMass`] | position of the center of mass |
 //! | [`Energies`] | translational, rotational and potential energy per disk |
 //! | [`Temperatures`] | horizontal, vertical and rotational temperature |
+//! | [`TemperaturesAboutFlow`] | the same about the mean velocity in each cell of a [`Grid`] |
+//! | [`Velocities`] | velocities of all disks |
 //! | [`OfKind`] | any of these, of disks of one kind |
 //! | [`from_fn`] | the result of a closure |
 //!
@@ -22,6 +24,13 @@
 //! | [`CollisionCounts`] | counts by partner and regime, and rates |
 //! | [`HeightProfile`] | packing fraction by height |
 //! | [`Fields`] | density, flow and temperatures on a grid |
+//! | [`PairCorrelation`] | pair correlation function |
+//! | [`MeanSquaredDisplacement`] | mean squared displacement by time, coefficient of self-diffusion |
+//! | [`TimeCorrelation`] | correlation function of an observable in time, of velocities for example |
+//! | [`Stress`] | stress tensor of the disks, kinetic and collisional |
+//! | [`WallStress`] | pressure and shear stress on walls |
+//! | [`CollisionHistograms`] | histograms of obliqueness, closing speed and impulse |
+//! | [`VelocityDistribution`] | histograms, cumulants and kurtosis of velocities |
 //! | [`OfKind`], [`BetweenKinds`] | what an observer keeps, of disks of one kind, of collisions between two |
 //! | [`on_collision`], [`on_sample`] | whatever a closure keeps |
 //! | [`stop_when`], [`stop_when_sampled`] | nothing: they stop the run when a closure says so |
@@ -70,6 +79,7 @@ mod by_kind;
 mod center_of_mass;
 mod collision_counts;
 mod collision_event;
+mod collision_histograms;
 mod compose;
 mod contract;
 mod energies;
@@ -77,32 +87,50 @@ mod energy_change;
 mod energy_change_profile;
 mod fields;
 mod from_fn;
-mod height_bins;
+mod grid;
 mod height_profile;
+mod lags;
 pub mod laws;
+mod mean_squared_displacement;
 mod moment;
 mod order_parameters;
+mod pair_correlation;
 mod sample_times;
 mod series;
 mod snapshot;
 mod stop;
+mod stress;
+mod stretch;
 mod temperatures;
+mod temperatures_about_flow;
+mod time_correlation;
+mod velocity_distribution;
+mod wall_stress;
 
 pub use by_kind::{BetweenKinds, OfKind};
 pub use center_of_mass::CenterOfMass;
 pub use collision_counts::CollisionCounts;
 pub use collision_event::{Collision, Partner};
+pub use collision_histograms::CollisionHistograms;
 pub use contract::{Observable, Observer, ObserverError, Verdict};
 pub use energies::{Energies, EnergyPerDisk};
 pub use energy_change::EnergyChange;
 pub use energy_change_profile::{EnergyChangeLayer, EnergyChangeProfile};
 pub use fields::{FieldCell, Fields};
 pub use from_fn::{FromFn, OnCollision, OnSample, from_fn, on_collision, on_sample};
+pub use grid::Grid;
 pub use height_profile::{DenseLayer, HeightProfile};
+pub use mean_squared_displacement::MeanSquaredDisplacement;
 pub use moment::Moment;
 pub use order_parameters::{ConvectionOrder, OrderParameters};
+pub use pair_correlation::PairCorrelation;
 pub use sample_times::SampleTimes;
 pub use series::Series;
 pub use snapshot::Snapshot;
 pub use stop::{StopWhen, StopWhenSampled, stop_when, stop_when_sampled};
+pub use stress::{Stress, StressTensor};
 pub use temperatures::{Temperature, Temperatures};
+pub use temperatures_about_flow::TemperaturesAboutFlow;
+pub use time_correlation::{InnerProduct, TimeCorrelation, Velocities};
+pub use velocity_distribution::VelocityDistribution;
+pub use wall_stress::WallStress;

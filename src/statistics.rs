@@ -1,4 +1,4 @@
-//! Statistics: means of numbers that come one by one, and how far each mean can be trusted.
+//! Statistics: means and histograms of numbers that come one by one, and how far each mean can be trusted.
 //!
 //! | question | answer |
 //! |---|---|
@@ -7,6 +7,8 @@
 //! | the same for a series in memory | [`block_average`] |
 //! | a mean, its error, and what the error rests on | [`Estimate`] |
 //! | the mean of several runs together | [`Estimate::over_repeats`] |
+//! | how long a series in memory remembers | [`autocorrelation`] |
+//! | how often numbers fall where | [`Histogram`] |
 //!
 //! Collisions and samples of one run are correlated. A standard error that takes them as independent is too
 //! small, often by a factor of ten. The error of such a mean comes from blocks, and shows when the run was
@@ -23,15 +25,21 @@
 //! assert!(estimate.standard_error() > 3.0 * mean.ungrouped().standard_error());
 //! ```
 
+mod autocorrelation;
+mod bins;
 mod blocked_mean;
 mod blocking;
 mod estimate;
+mod histogram;
 mod moments;
 mod repeats;
 mod running_mean;
 
+pub use autocorrelation::autocorrelation;
+pub(crate) use bins::Bins;
 pub use blocked_mean::BlockedMean;
 pub use blocking::block_average;
 pub use estimate::Estimate;
+pub use histogram::{Histogram, HistogramBin};
 pub(crate) use moments::Moments;
 pub use running_mean::RunningMean;

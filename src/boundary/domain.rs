@@ -149,6 +149,7 @@ mod open_top {
 
 /// A rectangle inside the domain. Its edges may be infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Region {
     /// Lower left corner.
@@ -162,6 +163,16 @@ impl Region {
     #[inline]
     pub const fn new(min: DVec2, max: DVec2) -> Self {
         Self { min, max }
+    }
+
+    /// Returns true if a place is in the rectangle; the right and the upper edge belong to its neighbors.
+    pub(crate) fn contains(&self, place: DVec2) -> bool {
+        place.cmpge(self.min).all() && place.cmplt(self.max).all()
+    }
+
+    /// Returns the area of the rectangle.
+    pub(crate) fn area(&self) -> f64 {
+        (self.max.x - self.min.x) * (self.max.y - self.min.y)
     }
 
     /// Returns the least product of a place in the rectangle with a vector.

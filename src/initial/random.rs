@@ -4,12 +4,12 @@ use glam::DVec2;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::bins::Bins;
 use super::{PlacementError, countable, cut, room};
 use crate::Disk;
 use crate::boundary::{Boundary, Domain};
 use crate::quantity::positive;
 use crate::random::uniform;
+use crate::squares::Squares;
 
 /// Trials for each disk.
 const TRIALS: usize = 10_000;
@@ -74,7 +74,7 @@ pub fn placed_at_random<B: Boundary + ?Sized>(
     countable(disks.len())?;
     let interior = cut(boundary.interior(), below)?;
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let mut bins = Bins::new(&boundary.domain(), disks.iter().map(Disk::radius));
+    let mut squares = Squares::new(&boundary.domain(), disks.iter().map(Disk::radius));
     let (count, mut placed) = (disks.len(), Vec::with_capacity(disks.len()));
     for disk in disks {
         let radius = disk.radius();
@@ -82,8 +82,8 @@ pub fn placed_at_random<B: Boundary + ?Sized>(
         let Some(room) = room_for(&interior, radius) else { return Err(no_room) };
         let sites = std::iter::repeat_with(|| random_site(&room, &mut generator)).take(TRIALS);
         let mut free = sites.filter(|&site| boundary.overlap(site, radius, 0.0).is_none());
-        let site = free.find(|&site| bins.is_free(site, radius, &placed)).ok_or(no_room)?;
-        bins.add(site, radius, placed.len());
+        let site = free.find(|&site| squares.is_free(site, radius, &placed)).ok_or(no_room)?;
+        squares.add(site, radius, placed.len());
         placed.push(disk.with_position(site)?);
     }
     Ok(placed)

@@ -1,9 +1,8 @@
 //! The energy change per collision, beside the temperature at the same height.
 
-use super::height_bins::HeightBins;
 use super::{Collision, Moment, Observer, Partner, SampleTimes, Snapshot};
 use crate::ParameterError;
-use crate::statistics::BlockedMean;
+use crate::statistics::{Bins, BlockedMean};
 
 /// A layer of an [`EnergyChangeProfile`].
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -47,7 +46,7 @@ impl EnergyChangeLayer {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawEnergyChangeProfile"))]
 pub struct EnergyChangeProfile {
-    bins: HeightBins,
+    bins: Bins,
     sample_times: SampleTimes,
     layers: Vec<EnergyChangeLayer>,
 }
@@ -59,7 +58,7 @@ impl EnergyChangeProfile {
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of layers is not in `1..=2^20`.
     pub fn new(bottom: f64, top: f64, layers: usize, times: SampleTimes) -> Result<Self, ParameterError> {
-        let bins = HeightBins::new(bottom, top, layers)?;
+        let bins = Bins::new(bottom, top, layers)?;
         let layer = |bin| EnergyChangeLayer { height: bins.middle(bin), ..EnergyChangeLayer::default() };
         Ok(Self { bins, sample_times: times, layers: (0..layers).map(layer).collect() })
     }
@@ -123,7 +122,7 @@ impl Observer for EnergyChangeProfile {
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields, rename = "EnergyChangeProfile")]
 struct RawEnergyChangeProfile {
-    bins: HeightBins,
+    bins: Bins,
     sample_times: SampleTimes,
     layers: Vec<EnergyChangeLayer>,
 }

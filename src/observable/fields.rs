@@ -2,14 +2,10 @@
 
 use glam::DVec2;
 
-use super::{Moment, Observer, SampleTimes, Snapshot};
+use super::grid::CellSums;
+use super::{Grid, Moment, Observer, SampleTimes, Snapshot};
+use crate::ParameterError;
 use crate::boundary::Region;
-use crate::quantity::{accept, finite};
-use crate::statistics::Moments;
-use crate::{Disk, ParameterError};
-
-/// Largest number of cells of a grid.
-const MOST_CELLS: usize = 1 << 22;
 
 /// The fields in one cell of a grid, averaged over all samples; made by [`Fields`]. All fields are 0 where no
 /// disk was seen.
@@ -65,12 +61,9 @@ pub struct FieldCell {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawFields"))]
 pub struct Fields {
-    min: DVec2,
-    max: DVec2,
-    columns: usize,
-    rows: usize,
+    grid: Grid,
     sample_times: SampleTimes,
-    sums: Vec<Sums>,
+    sums: Vec<CellSums>,
     samples: u64,
 }
 
@@ -86,22 +79,8 @@ impl Fields {
         rows: usize,
         times: SampleTimes,
     ) -> Result<Self, ParameterError> {
-        let Region { min, max, .. } = region;
-        let empty = Self { min, max, columns, rows, sample_times: times, sums: Vec::new(), samples: 0 };
-        let cells = empty.checked_count()?;
-        Ok(Self { sums: vec![Sums::default(); cells], ..empty })
-    }
-
-    /// Checks the shape of the grid, and returns the number of its cells.
-    fn checked_count(&self) -> Result<usize, ParameterError> {
-        let corners = [self.min.x, self.min.y, self.max.x, self.max.y];
-        corners.into_iter().try_for_each(|edge| finite("edge of the grid", edge).map(|_| ()))?;
-        let cells = self.columns.saturating_mul(self.rows);
-        accept((1..=MOST_CELLS).contains(&cells), "number of cells", "in 1..=2^22", cells as f64)?;
-        let cell = self.cell_size();
-        let area = if cell.min_element() > 0.0 { cell.x * cell.y } else { 0.0 };
-        accept(area.is_normal(), "area of a cell", "finite and positive", area)?;
-        Ok(cells)
+        let grid = Grid::new(region, columns, rows)?;
+        Ok(Self { grid, sample_times: times, sums: vec![CellSums::default(); grid.count()], samples: 0 })
     }
 
     /// Returns how many samples were taken.
@@ -111,47 +90,45 @@ impl Fields {
 
     /// Returns the number of columns and rows.
     pub const fn shape(&self) -> (usize, usize) {
-        (self.columns, self.rows)
+        self.grid.shape()
     }
 
     /// Returns the fields in a cell, or `None` outside the grid. Columns count from the left and rows from
     /// below.
     pub fn cell(&self, column: usize, row: usize) -> Option<FieldCell> {
-        let inside = column < self.columns && row < self.rows;
+        let (columns, rows) = self.shape();
+        let inside = column < columns && row < rows;
         inside.then(|| self.averaged(column, row))
     }
 
     /// Iterates over the fields in all cells, row by row from below.
     pub fn iter(&self) -> impl Iterator<Item = FieldCell> {
-        (0..self.sums.len()).map(|cell| self.averaged(cell % self.columns, cell / self.columns))
+        let (columns, rows) = self.shape();
+        (0..rows).flat_map(move |row| (0..columns).map(move |column| self.averaged(column, row)))
     }
 
     /// Forgets all samples so far.
     pub fn clear(&mut self) {
-        self.sums.fill(Sums::default());
+        self.sums.fill(CellSums::default());
         self.samples = 0;
     }
 
     fn averaged(&self, column: usize, row: usize) -> FieldCell {
-        let size = self.cell_size();
-        let center = self.min + size * DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
-        let sums = &self.sums[row * self.columns + column];
-        let area = size.x * size.y * self.samples.max(1) as f64;
-        FieldCell { center, ..sums.averaged(area) }
-    }
-
-    /// Returns the cell that holds this position.
-    fn index(&self, position: DVec2) -> Option<usize> {
-        let scaled = (position - self.min) / self.cell_size();
-        let inside = scaled.x >= 0.0
-            && scaled.y >= 0.0
-            && scaled.x < self.columns as f64
-            && scaled.y < self.rows as f64;
-        inside.then(|| scaled.y as usize * self.columns + scaled.x as usize)
-    }
-
-    fn cell_size(&self) -> DVec2 {
-        (self.max - self.min) / DVec2::new(self.columns as f64, self.rows as f64)
+        let size = self.grid.cell_size();
+        let CellSums { count, area, velocity: [x, y], angular_velocity } =
+            self.sums[row * self.shape().0 + column];
+        let seen = size.x * size.y * self.samples.max(1) as f64;
+        let disks = count.max(1) as f64;
+        FieldCell {
+            center: self.grid.center(column, row),
+            count,
+            number_density: count as f64 / seen,
+            packing_fraction: area / seen,
+            velocity: DVec2::new(x.mean, y.mean),
+            angular_velocity: angular_velocity.mean,
+            translational_temperature: 0.5 * (x.squares + y.squares) / disks,
+            rotational_temperature: angular_velocity.squares / disks,
+        }
     }
 }
 
@@ -166,7 +143,7 @@ impl Observer for Fields {
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         for disk in snapshot.disks() {
-            if let Some(cell) = self.index(disk.position()) {
+            if let Some(cell) = self.grid.find(disk.position()) {
                 self.sums[cell].add(disk);
             }
         }
@@ -175,69 +152,13 @@ impl Observer for Fields {
     }
 }
 
-/// Sums over the disks seen in a cell.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-struct Sums {
-    count: u64,
-    area: f64,
-    /// Components of the velocity, weighted by mass.
-    velocity: [Moments; 2],
-    /// Angular velocity, weighted by moment of inertia.
-    angular_velocity: Moments,
-}
-
-impl Sums {
-    fn add(&mut self, disk: &Disk) {
-        self.count += 1;
-        self.area += std::f64::consts::PI * disk.radius() * disk.radius();
-        self.velocity[0].push(disk.velocity().x, disk.mass());
-        self.velocity[1].push(disk.velocity().y, disk.mass());
-        self.angular_velocity.push(disk.angular_velocity(), disk.moment_of_inertia());
-    }
-
-    fn averaged(&self, area: f64) -> FieldCell {
-        let count = self.count.max(1) as f64;
-        let [x, y] = self.velocity;
-        FieldCell {
-            center: DVec2::ZERO,
-            count: self.count,
-            number_density: self.count as f64 / area,
-            packing_fraction: self.area / area,
-            velocity: DVec2::new(x.mean, y.mean),
-            angular_velocity: self.angular_velocity.mean,
-            translational_temperature: 0.5 * (x.squares + y.squares) / count,
-            rotational_temperature: self.angular_velocity.squares / count,
-        }
-    }
-
-    /// Checks that sums from a file can be those of disks.
-    #[cfg(feature = "serde")]
-    fn check(&self) -> Result<(), ParameterError> {
-        crate::quantity::non_negative("area of the disks in a cell", self.area)?;
-        let weights =
-            [self.area, self.velocity[0].weight, self.velocity[1].weight, self.angular_velocity.weight];
-        let sound = weights.into_iter().all(|weight| (weight > 0.0) == (self.count > 0));
-        accept(
-            sound,
-            "number of disks in a cell",
-            "0 if and only if their area and mass are",
-            self.count as f64,
-        )?;
-        Ok(())
-    }
-}
-
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields, rename = "Fields")]
 struct RawFields {
-    min: DVec2,
-    max: DVec2,
-    columns: usize,
-    rows: usize,
+    grid: Grid,
     sample_times: SampleTimes,
-    sums: Vec<Sums>,
+    sums: Vec<CellSums>,
     samples: u64,
 }
 
@@ -246,11 +167,11 @@ impl TryFrom<RawFields> for Fields {
     type Error = ParameterError;
 
     fn try_from(raw: RawFields) -> Result<Self, ParameterError> {
-        let RawFields { min, max, columns, rows, sample_times, sums, samples } = raw;
-        let fields = Self { min, max, columns, rows, sample_times, sums, samples };
-        let (cells, given) = (fields.checked_count()?, fields.sums.len());
-        accept(cells == given, "number of sums", "that of the cells", given as f64)?;
-        fields.sums.iter().try_for_each(Sums::check)?;
-        Ok(fields)
+        let RawFields { grid, sample_times, sums, samples } = raw;
+        let given = sums.len();
+        let requirement = "that of the cells";
+        crate::quantity::accept(grid.count() == given, "number of sums", requirement, given as f64)?;
+        sums.iter().try_for_each(CellSums::check)?;
+        Ok(Self { grid, sample_times, sums, samples })
     }
 }

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::height_bins::HeightBins;
 use super::{Moment, Observer, SampleTimes, Snapshot};
+use crate::statistics::Bins;
 use crate::{Disk, ParameterError};
 
 /// The bin with the largest packing fraction, and the least packing fraction below it; made by
@@ -76,7 +76,7 @@ impl DenseLayer {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawHeightProfile"))]
 pub struct HeightProfile {
-    bins: HeightBins,
+    bins: Bins,
     sample_times: SampleTimes,
     /// Packing fractions, summed over the samples.
     sums: Vec<f64>,
@@ -89,7 +89,7 @@ impl HeightProfile {
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of bins is not in `1..=2^20`.
     pub fn new(bottom: f64, top: f64, bins: usize, times: SampleTimes) -> Result<Self, ParameterError> {
-        let bins = HeightBins::new(bottom, top, bins)?;
+        let bins = Bins::new(bottom, top, bins)?;
         Ok(Self { bins, sample_times: times, sums: vec![0.0; bins.count()], samples: 0 })
     }
 
@@ -125,7 +125,7 @@ impl HeightProfile {
         let mut below = area_below(self.bins.edge(first) - height, radius);
         for bin in first..=last {
             let above = area_below(self.bins.edge(bin + 1) - height, radius);
-            self.sums[bin] += (above - below) / (width * self.bins.height());
+            self.sums[bin] += (above - below) / (width * self.bins.width());
             below = above;
         }
     }
@@ -158,7 +158,7 @@ impl Observer for HeightProfile {
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields, rename = "HeightProfile")]
 struct RawHeightProfile {
-    bins: HeightBins,
+    bins: Bins,
     sample_times: SampleTimes,
     sums: Vec<f64>,
     samples: u64,

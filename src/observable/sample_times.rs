@@ -75,6 +75,11 @@ impl SampleTimes {
         Ok(Self { first, beat: 0, started: false, ..self })
     }
 
+    /// Returns the interval between two beats.
+    pub const fn interval(&self) -> f64 {
+        self.interval
+    }
+
     /// Returns the upcoming beat; infinite once the interval is lost in rounding.
     pub fn upcoming(&self) -> f64 {
         self.time_of(self.beat)

@@ -79,6 +79,12 @@ impl Estimate {
         Self { mean, ..self }
     }
 
+    /// Returns the estimate of a multiple of the samples.
+    pub(crate) fn scaled(self, factor: f64) -> Self {
+        let standard_error = self.standard_error * factor.abs();
+        Self { mean: self.mean * factor, standard_error, ..self }
+    }
+
     /// Returns the mean; NaN without samples.
     pub const fn mean(&self) -> f64 {
         self.mean

@@ -6,7 +6,10 @@ use granular_edmd::boundary::{Container, Region, Thermal, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::{Maxwellian, MonteCarlo};
-use granular_edmd::observable::{EnergyChangeProfile, Fields, HeightProfile, SampleTimes};
+use granular_edmd::observable::{
+    EnergyChangeProfile, Fields, HeightProfile, PairCorrelation, SampleTimes, WallStress,
+};
+use granular_edmd::statistics::Histogram;
 use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
 use granular_edmd::{Disk, Simulation, initial};
 
@@ -118,14 +121,17 @@ fn watching() -> Vec<Case> {
     vec![
         ("sampling interval", |value| told(SampleTimes::every(value)), positive),
         ("first sampling time", |value| told(times().starting_at(value)), f64::is_finite),
-        ("top of the profile", |value| told(HeightProfile::new(0.0, value, 1, times())), positive),
+        ("upper end of the bins", |value| told(HeightProfile::new(0.0, value, 1, times())), positive),
         (
-            "bottom of the profile",
+            "lower end of the bins",
             |value| told(HeightProfile::new(value, 2.0, 1, times())),
             |value| value.is_finite() && value < 2.0,
         ),
-        ("top of the profile", |value| told(EnergyChangeProfile::new(0.0, value, 1, times())), positive),
-        ("edge of the grid", |value| told(grid(value)), |value| value > 1.0 && value.is_finite()),
+        ("upper end of the bins", |value| told(EnergyChangeProfile::new(0.0, value, 1, times())), positive),
+        ("range of the correlation", |value| told(PairCorrelation::new(value, 1, times())), positive),
+        ("length of a wall", |value| told(WallStress::new(times()).with_wall(0, value)), positive),
+        ("upper end of the bins", |value| told(Histogram::new(0.0, value, 1)), positive),
+        ("edge of the region", |value| told(grid(value)), |value| value > 1.0 && value.is_finite()),
         ("translational temperature", |value| told(Maxwellian::new(value)), scale),
         (
             "rotational temperature",
@@ -161,7 +167,7 @@ fn each_number_is_taken_or_named() {
                 Ok(()) => assert!(takes(value), "{name} {value:e} was taken"),
                 Err(error) => {
                     assert!(!takes(value), "{value:e} was refused: {error}");
-                    let derived = ["area of", "peak", "period", "top of"];
+                    let derived = ["area of", "peak", "period", "upper end of"];
                     let said = error.rsplit(' ').next().unwrap().parse::<f64>();
                     let by_itself = error.starts_with(name)
                         && said.is_ok_and(|said| said == value || said.is_nan() && value.is_nan());

@@ -10,8 +10,10 @@ use granular_edmd::collision::{
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::Maxwellian;
 use granular_edmd::observable::{
-    CenterOfMass, CollisionCounts, Energies, EnergyChange, EnergyChangeProfile, Fields, HeightProfile,
-    Observer, OrderParameters, SampleTimes, Series, Temperatures,
+    CenterOfMass, CollisionCounts, CollisionHistograms, Energies, EnergyChange, EnergyChangeProfile, Fields,
+    Grid, HeightProfile, MeanSquaredDisplacement, Observer, OrderParameters, PairCorrelation, SampleTimes,
+    Series, Stress, Temperatures, TemperaturesAboutFlow, TimeCorrelation, Velocities, VelocityDistribution,
+    WallStress,
 };
 use granular_edmd::simulation::Checkpoint;
 use granular_edmd::statistics::BlockedMean;
@@ -150,8 +152,20 @@ fn measurements_with_a_field_too_many_are_refused() {
     let mut layers = EnergyChangeProfile::new(0.0, 10.0, 1, times.starting_at(0.3).unwrap()).unwrap();
     let mut heights = HeightProfile::new(0.0, 10.0, 2, times).unwrap();
     let mut fields = Fields::new(region, 1, 1, times).unwrap();
+    let grid = Grid::new(region, 2, 1).unwrap();
+    let mut pairs = PairCorrelation::new(1.0, 2, times).unwrap().within(region).unwrap();
+    let mut displacement = MeanSquaredDisplacement::new(times, 2).unwrap();
+    let mut memory = TimeCorrelation::new(Velocities, times, 2).unwrap();
+    let mut stress = Stress::new(times).within(region).unwrap();
+    let mut walls = WallStress::new(times).with_wall(0, 10.0).unwrap();
+    let mut velocities = VelocityDistribution::new(3.0, 2, times).unwrap().about_flow(grid);
+    let mut histograms = CollisionHistograms::new(3.0, 3.0, 2).unwrap();
     let end = run.time() + 5.0;
-    let mut all = (&mut series, &mut change, (&mut counts, &mut layers), &mut heights, &mut fields);
+    let mut structure = (&mut pairs, &mut displacement, &mut memory, &mut velocities, &mut histograms);
+    let mut all = (
+        (&mut series, &mut change, (&mut counts, &mut layers), &mut heights, &mut fields),
+        (&mut structure, &mut stress, &mut walls),
+    );
     let all: &mut dyn Observer = &mut all;
     run.run_until(end, all).unwrap();
     assert!(change.disks().count() > 2);
@@ -161,6 +175,15 @@ fn measurements_with_a_field_too_many_are_refused() {
     refuses(&layers);
     refuses(&heights);
     refuses(&fields);
+    refuses(&grid);
+    refuses(&TemperaturesAboutFlow::new(grid));
+    refuses(&pairs);
+    refuses(&displacement);
+    refuses_intruders::<TimeCorrelation<Velocities>>(&serde_json::to_value(&memory).unwrap());
+    refuses(&stress);
+    refuses(&walls);
+    refuses(&velocities);
+    refuses(&histograms);
     refuses_intruders::<Series<(CenterOfMass, Energies)>>(&serde_json::to_value(&series).unwrap());
     let blocked = BlockedMean::from_iter([1.0, 2.0, 3.0]);
     refuses(&blocked);

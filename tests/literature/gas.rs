@@ -61,6 +61,33 @@ impl Gas {
     }
 }
 
+/// Returns a gas of this many disks of diameter and mass 1 in a box that is periodic both ways, at this packing
+/// fraction and at temperature 1, after twenty collisions per disk.
+pub(crate) fn periodic_gas<R: CollisionRule>(
+    count: usize,
+    packing_fraction: f64,
+    rule: R,
+    seed: u64,
+) -> Result<Simulation<R>, Box<dyn Error>> {
+    let side = (0.25 * PI * count as f64 / packing_fraction).sqrt();
+    let container = Container::periodic(side, side)?;
+    let disks = initial::random(&container, count, 0.5, side, seed)?;
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, seed)?;
+    let mut simulation = Simulation::builder(rule, container).disks(disks).build()?;
+    run_for(&mut simulation, 20.0, &mut ())?;
+    Ok(simulation)
+}
+
+/// Returns the pair correlation at contact of equal disks (Henderson, Mol. Phys. 30, 971 (1975)).
+pub(crate) fn contact_value(packing_fraction: f64) -> f64 {
+    (1.0 - 7.0 / 16.0 * packing_fraction) / (1.0 - packing_fraction).powi(2)
+}
+
+/// Returns the collisions per disk and time of equal disks at temperature 1 (Enskog).
+pub(crate) fn collision_rate(packing_fraction: f64) -> f64 {
+    2.0 * PI.sqrt() * (4.0 * packing_fraction / PI) * contact_value(packing_fraction)
+}
+
 /// Gives the disks the spins of a Maxwellian, from the velocities of another gas.
 fn with_spins(disks: Vec<Disk>, temperature: f64, seed: u64) -> Result<Vec<Disk>, ParameterError> {
     let other = initial::with_maxwellian_velocities(disks.clone(), temperature, seed + 1000)?;

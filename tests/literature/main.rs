@@ -7,6 +7,7 @@
 
 mod atmosphere;
 mod collapse;
+mod collisions;
 mod cooling;
 mod equilibrium;
 mod figure_2;
@@ -16,8 +17,12 @@ mod mixtures;
 mod order_parameters;
 mod plate;
 mod reversal;
+mod stress;
+mod structure;
 mod superball;
 mod thermal_walls;
+mod transport;
+mod velocities;
 
 /// The result of a test.
 type Outcome = Result<(), Box<dyn std::error::Error>>;

@@ -15,24 +15,24 @@ use granular_edmd::{Disk, Kind, Simulation, initial};
 use crate::gas::run_for;
 use crate::{Outcome, agrees};
 
-const SMALL: Kind = Kind::new(0);
-const LARGE: Kind = Kind::new(1);
+pub(crate) const SMALL: Kind = Kind::new(0);
+pub(crate) const LARGE: Kind = Kind::new(1);
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 /// A kind of disks in a gas.
 #[derive(Debug, Clone, Copy)]
-struct Species {
-    count: usize,
-    radius: f64,
-    mass: f64,
+pub(crate) struct Species {
+    pub(crate) count: usize,
+    pub(crate) radius: f64,
+    pub(crate) mass: f64,
 }
 
 /// A gas of two species.
 #[derive(Debug, Clone, Copy)]
-struct Mixture {
-    species: [Species; 2],
-    packing_fraction: f64,
+pub(crate) struct Mixture {
+    pub(crate) species: [Species; 2],
+    pub(crate) packing_fraction: f64,
 }
 
 impl Mixture {
@@ -46,7 +46,7 @@ impl Mixture {
     }
 
     /// Returns the pair correlation at contact (Jenkins and Mancini, J. Appl. Mech. 54, 27 (1987)).
-    fn correlation(&self, i: usize, j: usize) -> f64 {
+    pub(crate) fn correlation(&self, i: usize, j: usize) -> f64 {
         let sum =
             |power: i32| -> f64 { self.species.iter().map(|s| s.count as f64 * s.radius.powi(power)).sum() };
         let (a, b) = (self.species[i].radius, self.species[j].radius);
@@ -55,7 +55,7 @@ impl Mixture {
         1.0 / clear + 9.0 / 16.0 * sizes * filled / (clear * clear)
     }
 
-    fn simulation<R: CollisionRule>(&self, rule: R, seed: u64) -> Result<Simulation<R>> {
+    pub(crate) fn simulation<R: CollisionRule>(&self, rule: R, seed: u64) -> Result<Simulation<R>> {
         let side = self.volume().sqrt();
         let container = Container::periodic(side, side)?;
         let mut disks = Vec::new();

@@ -3,6 +3,7 @@
 
 #[cfg(feature = "serde")]
 mod measurements;
+mod measures;
 mod observables;
 mod observers;
 mod profiles_and_fields;

@@ -4,10 +4,12 @@ use granular_edmd::boundary::{Boundary, Container, Region, Wall};
 use granular_edmd::collision::{ContactDuration, Frictional};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    CenterOfMass, CollisionCounts, Energies, EnergyChange, EnergyChangeProfile, Fields, HeightProfile,
-    Moment, Observer, OrderParameters, SampleTimes, Series, Temperatures,
+    CenterOfMass, CollisionCounts, CollisionHistograms, Energies, EnergyChange, EnergyChangeProfile, Fields,
+    Grid, HeightProfile, MeanSquaredDisplacement, Moment, Observer, OrderParameters, PairCorrelation,
+    SampleTimes, Series, Stress, Temperatures, TemperaturesAboutFlow, TimeCorrelation, Velocities,
+    VelocityDistribution, WallStress,
 };
-use granular_edmd::statistics::{BlockedMean, Estimate, RunningMean};
+use granular_edmd::statistics::{BlockedMean, Estimate, Histogram, RunningMean};
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{ParameterError, Simulation, initial};
 use serde::Serialize;
@@ -23,8 +25,9 @@ type Watchers = (
     Series<((OrderParameters, CenterOfMass), (Energies, Temperatures))>,
     (EnergyChange, CollisionCounts),
     EnergyChangeProfile,
-    HeightProfile,
-    Fields,
+    (HeightProfile, Fields, VelocityDistribution, CollisionHistograms),
+    (PairCorrelation, MeanSquaredDisplacement, TimeCorrelation<Velocities>),
+    (Stress, WallStress, Series<TemperaturesAboutFlow>),
 );
 
 const HALF: f64 = 60.1;
@@ -34,12 +37,27 @@ fn watchers() -> Result<Watchers, ParameterError> {
     let times = SampleTimes::every(0.3)?;
     let observables = ((OrderParameters, CenterOfMass), (Energies, Temperatures));
     let region = region(DVec2::ZERO, DVec2::new(10.0, 20.0));
+    let grid = Grid::new(region, 2, 2)?;
     Ok((
         Series::new(observables, times),
         (EnergyChange::default(), CollisionCounts::since(0.0)),
         EnergyChangeProfile::new(0.0, 20.0, 5, times.starting_at(0.7)?)?,
-        HeightProfile::new(0.0, 20.0, 7, times)?,
-        Fields::new(region, 3, 4, times)?,
+        (
+            HeightProfile::new(0.0, 20.0, 7, times)?,
+            Fields::new(region, 3, 4, times)?,
+            VelocityDistribution::new(3.0, 6, times)?.about_flow(grid),
+            CollisionHistograms::new(5.0, 5.0, 6)?,
+        ),
+        (
+            PairCorrelation::new(2.0, 8, times)?.within(region)?,
+            MeanSquaredDisplacement::new(times, 5)?,
+            TimeCorrelation::new(Velocities, times, 5)?,
+        ),
+        (
+            Stress::new(times).within(region)?,
+            WallStress::new(times).with_wall(0, 10.0)?,
+            Series::new(TemperaturesAboutFlow::new(grid), times),
+        ),
     ))
 }
 
@@ -169,7 +187,7 @@ fn forged_measurements_are_refused() -> Outcome {
     for (at, number) in [("/interval", json!(0.0)), ("/first", json!("soon")), ("/beat", json!(-1))] {
         assert!(refused::<SampleTimes>(forged(&times, at, number)), "{at}");
     }
-    let (series, (_, counts), profile, heights, fields) = &watchers()?;
+    let (series, (_, counts), profile, (heights, fields, ..), (pairs, displacement, _), _) = &watchers()?;
     assert!(refused::<Series<((OrderParameters, CenterOfMass), (Energies, Temperatures))>>(forged(
         series,
         "/times",
@@ -182,22 +200,38 @@ fn forged_measurements_are_refused() -> Outcome {
         assert!(refused::<EnergyChangeProfile>(forged(profile, at, number)), "{at}");
     }
     for (at, number) in [
-        ("/bins/height", json!(-1.0)),
-        ("/bins/height", json!(1e308)),
+        ("/bins/width", json!(-1.0)),
+        ("/bins/width", json!(1e308)),
         ("/bins/count", json!(0)),
         ("/sums", json!([0.0])),
     ] {
         assert!(refused::<HeightProfile>(forged(heights, at, number)), "{at}");
     }
     for (at, number) in [
-        ("/columns", json!(4)),
-        ("/rows", json!(u64::MAX)),
-        ("/max/0", json!(-1.0)),
+        ("/grid/columns", json!(4)),
+        ("/grid/rows", json!(u64::MAX)),
+        ("/grid/region/max/0", json!(-1.0)),
         ("/sums/0/count", json!(1)),
         ("/sums/0/area", json!(1.0)),
         ("/sums/0/velocity/1/squares", json!(1.0)),
     ] {
         assert!(refused::<Fields>(forged(fields, at, number)), "{at}");
+    }
+    for (at, number) in [
+        ("/bins/low", json!(-1.0)),
+        ("/bins/count", json!(9)),
+        ("/pairs", json!([])),
+        ("/pairs/0", json!([{ "blocks": { "count": 1, "mean": 0.0, "squares": 0.0 }, "waiting": 0.0 }])),
+        ("/region/max/0", json!(-1.0)),
+    ] {
+        assert!(refused::<PairCorrelation>(forged(pairs, at, number)), "{at}");
+    }
+    for (at, number) in [("/lags/means", json!([])), ("/lags/past", json!([[], [], [], [], [], [], []]))] {
+        assert!(refused::<MeanSquaredDisplacement>(forged(displacement, at, number)), "{at}");
+    }
+    let histogram = Histogram::new(0.0, 1.0, 2)?;
+    for (at, number) in [("/counts", json!([1])), ("/counts/0", json!(u64::MAX)), ("/below", json!(-1))] {
+        assert!(refused::<Histogram>(forged(&histogram, at, number)), "{at}");
     }
     Ok(())
 }

@@ -8,9 +8,10 @@ use granular_edmd::boundary::{Boundary, Container, Domain};
 use granular_edmd::collision::{Contact, Impulse};
 use granular_edmd::observable::laws::{self, Violation};
 use granular_edmd::observable::{
-    CenterOfMass, Collision, CollisionCounts, EnergyChange, EnergyChangeProfile, Fields, HeightProfile,
-    Moment, Observable, Observer, Partner, SampleTimes, Series, Snapshot, Verdict, from_fn, on_collision,
-    on_sample, stop_when, stop_when_sampled,
+    CenterOfMass, Collision, CollisionCounts, CollisionHistograms, EnergyChange, EnergyChangeProfile, Fields,
+    HeightProfile, MeanSquaredDisplacement, Moment, Observable, Observer, PairCorrelation, Partner,
+    SampleTimes, Series, Snapshot, Stress, TimeCorrelation, Velocities, VelocityDistribution, Verdict,
+    WallStress, from_fn, on_collision, on_sample, stop_when, stop_when_sampled,
 };
 
 type Outcome = Result<(), ParameterError>;
@@ -247,6 +248,15 @@ fn all_observers_keep_their_contract() -> Outcome {
     assert!(all.1.0.disks().count() > 10 && all.1.1.collisions_with_wall(3) > 10);
     drop(all);
     assert!(collisions > 100 && samples > 50);
+    let mut measures = (
+        (PairCorrelation::new(2.0, 4, times)?, MeanSquaredDisplacement::new(times, 3)?),
+        (TimeCorrelation::new(Velocities, times, 3)?, VelocityDistribution::new(3.0, 4, times)?.about_mean()),
+        (Stress::new(times).within(region)?, WallStress::new(times).with_wall(1, 10.0)?),
+        CollisionHistograms::new(3.0, 3.0, 4)?,
+    );
+    laws::check(&mut measures).unwrap();
+    assert!(measures.0.0.samples() > 50 && measures.2.0.samples() > 50);
+    assert!(measures.3.impulse().count() > 10);
     laws::check(&mut stop_when(|_: &Collision| true)).unwrap();
     laws::check(&mut stop_when_sampled(times, |_: &Snapshot<'_>| true)).unwrap();
     laws::check(&mut Tally { verdict: Some("disk full"), ..Tally::default() }).unwrap();

@@ -5,9 +5,9 @@ use glam::DVec2;
 use super::Enclosure;
 use crate::boundary::{Boundary, Domain};
 use crate::collision::Elastic;
-use crate::initial::bins::Bins;
 use crate::initial::{PlacementError, placed_at_random, with_maxwellian_velocities};
 use crate::observable::{Collision, stop_when};
+use crate::squares::Squares;
 use crate::{Disk, ParameterError, Simulation};
 
 /// Area fraction at which the disks begin to grow. Random places are found soon, at any mix of radii.
@@ -92,14 +92,14 @@ impl<'a> Packing<'a> {
     /// Lets each disk grow into the room around it.
     pub(super) fn grow<B: Boundary + ?Sized>(&mut self, room: &Enclosure<B>) -> Result<(), ParameterError> {
         let domain = room.domain();
-        let mut bins = Bins::new(&domain, self.full.iter().map(Disk::radius));
+        let mut squares = Squares::new(&domain, self.full.iter().map(Disk::radius));
         for (index, (disk, full)) in self.grown.iter().zip(self.full).enumerate() {
             // Whoever is further away than both shall reach is in nobody's way.
-            bins.add(disk.position(), full.radius(), index);
+            squares.add(disk.position(), full.radius(), index);
         }
         for index in 0..self.grown.len() {
             let disk = self.grown[index];
-            let radius = self.free_radius(index, &domain, &bins);
+            let radius = self.free_radius(index, &domain, &squares);
             let radius = radius.min(radius_inside(room, disk.position(), radius));
             // Disks that grow later see this disk as it is now, so that no two grow into the same gap.
             if radius > disk.radius() {
@@ -110,7 +110,7 @@ impl<'a> Packing<'a> {
     }
 
     /// Returns the radius at which a disk leaves its neighbors room to grow, too, and at most its own.
-    fn free_radius(&self, index: usize, domain: &Domain, bins: &Bins) -> f64 {
+    fn free_radius(&self, index: usize, domain: &Domain, squares: &Squares) -> f64 {
         let (disk, full) = (&self.grown[index], self.full[index].radius());
         let most = |other: usize| {
             let (neighbor, neighbor_full) = (&self.grown[other], self.full[other].radius());
@@ -122,7 +122,7 @@ impl<'a> Packing<'a> {
         if disk.radius() >= full {
             return full;
         }
-        bins.near(disk.position(), full).filter(|&other| other != index).map(most).fold(full, f64::min)
+        squares.near(disk.position(), full).filter(|&other| other != index).map(most).fold(full, f64::min)
     }
 }
 

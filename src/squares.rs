@@ -12,21 +12,28 @@ const MARGIN: f64 = 1.0 + 1e-9;
 
 /// Squares for finding the disks near a place.
 ///
-/// A disk is entered in all squares that it reaches. Their side is the root of the mean square of the
-/// diameters. So there are a few entries for each disk, and a few disks in each square, at any mix of radii.
-pub(super) struct Bins {
+/// A disk is entered in all squares that it reaches; one that is entered as a point is in one square, and is
+/// found once.
+pub(crate) struct Squares {
     domain: Domain,
     columns: Axis,
     rows: Axis,
     disks: HashMap<(i64, i64), Vec<usize>>,
 }
 
-impl Bins {
+impl Squares {
     /// Makes empty squares for disks of these radii.
-    pub(super) fn new(domain: &Domain, radii: impl ExactSizeIterator<Item = f64>) -> Self {
+    ///
+    /// Their side is the root of the mean square of the diameters. So there are a few entries for each disk,
+    /// and a few disks in each square, at any mix of radii.
+    pub(crate) fn new(domain: &Domain, radii: impl ExactSizeIterator<Item = f64>) -> Self {
         let count = radii.len().max(1) as f64;
         let squares: f64 = radii.map(|radius| 4.0 * radius * radius).sum();
-        let side = if squares > 0.0 { (squares / count).sqrt() } else { 1.0 };
+        Self::with_side(domain, if squares > 0.0 { (squares / count).sqrt() } else { 1.0 })
+    }
+
+    /// Makes empty squares of about this side.
+    pub(crate) fn with_side(domain: &Domain, side: f64) -> Self {
         let Domain { left, right, bottom, top, .. } = *domain;
         let columns = Axis::new(domain.periodic_sides.then_some((left, right)), side);
         let rows = Axis::new(domain.periodic_ends.then_some((bottom, top)), side);
@@ -42,19 +49,20 @@ impl Bins {
     }
 
     /// Adds a disk of this index and radius.
-    pub(super) fn add(&mut self, site: DVec2, radius: f64, disk: usize) {
+    pub(crate) fn add(&mut self, site: DVec2, radius: f64, disk: usize) {
         for square in self.squares(site, radius) {
             self.disks.entry(square).or_default().push(disk);
         }
     }
 
-    /// Names all disks that may overlap one of this radius, and some others, some of them several times.
-    pub(super) fn near(&self, site: DVec2, radius: f64) -> impl Iterator<Item = usize> {
+    /// Names all disks that may overlap one of this radius, and some others, some of them several times. Disks
+    /// that were entered with radius 0 are named once.
+    pub(crate) fn near(&self, site: DVec2, radius: f64) -> impl Iterator<Item = usize> {
         self.squares(site, radius).filter_map(|square| self.disks.get(&square)).flatten().copied()
     }
 
     /// Tells whether a disk of this radius at this place overlaps none of those placed.
-    pub(super) fn is_free(&self, site: DVec2, radius: f64, placed: &[Disk]) -> bool {
+    pub(crate) fn is_free(&self, site: DVec2, radius: f64, placed: &[Disk]) -> bool {
         self.near(site, radius).all(|other| {
             let contact = radius + placed[other].radius();
             self.domain.separation(site, placed[other].position()).length_squared() > contact * contact
@@ -89,7 +97,7 @@ impl Axis {
 
 #[cfg(test)]
 mod tests {
-    use super::Bins;
+    use super::Squares;
     use crate::Disk;
     use crate::boundary::{Boundary, Container};
     use crate::initial::{Radii, homogeneous};
@@ -111,13 +119,13 @@ mod tests {
                 .map(|disk| disk.with_position(site()))
                 .collect::<Result<_, _>>()?;
             let domain = container.domain();
-            let mut bins = Bins::new(&domain, disks.iter().map(Disk::radius));
+            let mut squares = Squares::new(&domain, disks.iter().map(Disk::radius));
             for (index, disk) in disks.iter().enumerate() {
-                bins.add(disk.position(), disk.radius(), index);
+                squares.add(disk.position(), disk.radius(), index);
             }
             for (a, b) in disks.iter().flat_map(|a| disks.iter().enumerate().map(move |b| (a, b))) {
                 let distance = domain.separation(a.position(), b.1.position()).length();
-                let is_near = bins.near(a.position(), a.radius()).any(|index| index == b.0);
+                let is_near = squares.near(a.position(), a.radius()).any(|index| index == b.0);
                 assert!(is_near || distance > a.radius() + b.1.radius());
             }
         }

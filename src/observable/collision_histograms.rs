@@ -1,0 +1,97 @@
+//! How disks meet: histograms over collisions.
+
+use super::{Collision, Observer, Partner};
+use crate::ParameterError;
+use crate::statistics::Histogram;
+
+/// An observer of how surfaces meet: histograms of obliqueness, closing speed and normal impulse.
+///
+/// The obliqueness is the sine of the angle of impact, `$b = v_t/\sqrt{v_n^2 + v_t^2}$` in `[-1, 1]`, from the
+/// relative velocity of the *surfaces*: 0 is head-on. Of disks that do not rotate it is the impact parameter
+/// over the distance of the centers. In a gas of temperature `$T$` of equal disks that do not rotate,
+///
+/// ```math
+/// p(b) = \frac12,\qquad p(v_n) = \frac{v_n}{2T/m}\,e^{-m v_n^2/4T} .
+/// ```
+///
+/// Collisions between disks count, unless a wall is chosen.
+///
+/// ```
+/// use granular_edmd::collision::{Contact, Impulse};
+/// use granular_edmd::observable::{Collision, CollisionHistograms, Observer, Partner};
+///
+/// let mut histograms = CollisionHistograms::new(10.0, 20.0, 4)?;
+/// let (contact, impulse) = (Contact::new(3.0, 4.0, 0.5, 0.5 / 3.0), Impulse::new(6.0, 0.0));
+/// histograms.on_collision(&Collision::new(0.5, 7, Partner::Disk(8), contact, impulse));
+/// let obliqueness: Vec<u64> = histograms.obliqueness().bins().map(|bin| bin.count).collect();
+/// assert_eq!(obliqueness, [0, 0, 0, 1]);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct CollisionHistograms {
+    wall: Option<usize>,
+    obliqueness: Histogram,
+    closing_speed: Histogram,
+    impulse: Histogram,
+}
+
+impl CollisionHistograms {
+    /// Creates histograms of closing speeds up to `speed` and impulses up to `impulse`, each in this many
+    /// bins.
+    ///
+    /// # Errors
+    /// If the speed or the impulse is not finite and positive, or the number of bins is not in `1..=2^20`.
+    pub fn new(speed: f64, impulse: f64, bins: usize) -> Result<Self, ParameterError> {
+        Ok(Self {
+            wall: None,
+            obliqueness: Histogram::new(-1.0, 1.0, bins)?,
+            closing_speed: Histogram::new(0.0, speed, bins)?,
+            impulse: Histogram::new(0.0, impulse, bins)?,
+        })
+    }
+
+    /// Returns the same histograms for the collisions with the wall of this index.
+    pub fn with_wall(self, wall: usize) -> Self {
+        Self { wall: Some(wall), ..self }
+    }
+
+    /// Returns the histogram of the obliqueness.
+    pub const fn obliqueness(&self) -> &Histogram {
+        &self.obliqueness
+    }
+
+    /// Returns the histogram of the speed at which the surfaces close, `$v_n$`.
+    pub const fn closing_speed(&self) -> &Histogram {
+        &self.closing_speed
+    }
+
+    /// Returns the histogram of the normal impulse, `$\Delta_n$`.
+    pub const fn impulse(&self) -> &Histogram {
+        &self.impulse
+    }
+
+    /// Forgets all collisions so far.
+    pub fn clear(&mut self) {
+        for histogram in [&mut self.obliqueness, &mut self.closing_speed, &mut self.impulse] {
+            histogram.clear();
+        }
+    }
+}
+
+impl Observer for CollisionHistograms {
+    fn on_collision(&mut self, collision: &Collision) {
+        let counts = match collision.partner {
+            Partner::Disk(_) => self.wall.is_none(),
+            Partner::Wall(wall) => self.wall == Some(wall),
+        };
+        if !counts {
+            return;
+        }
+        let (closing, slip) = (collision.contact.closing_speed(), collision.contact.slip_speed());
+        // Two surfaces at rest have no angle; their quotient is NaN, which is left out.
+        self.obliqueness.push(slip / (closing * closing + slip * slip).sqrt());
+        self.closing_speed.push(closing);
+        self.impulse.push(collision.impulse.normal());
+    }
+}

@@ -1,0 +1,159 @@
+//! Grids of cells, and the sums over the disks in each cell.
+
+use glam::DVec2;
+
+use crate::boundary::Region;
+use crate::quantity::{accept, finite};
+use crate::statistics::Moments;
+use crate::{Disk, ParameterError};
+
+/// Largest number of cells of a grid.
+const MOST_CELLS: usize = 1 << 22;
+
+/// Equal cells over a region, in columns and rows.
+///
+/// A disk is in the cell of its center.
+///
+/// ```
+/// use granular_edmd::boundary::Region;
+/// use granular_edmd::glam::DVec2;
+/// use granular_edmd::observable::Grid;
+///
+/// let grid = Grid::new(Region::new(DVec2::ZERO, DVec2::new(4.0, 2.0)), 4, 1)?;
+/// assert_eq!((grid.shape(), grid.cell_size()), ((4, 1), DVec2::new(1.0, 2.0)));
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawGrid"))]
+pub struct Grid {
+    region: Region,
+    columns: usize,
+    rows: usize,
+}
+
+impl Grid {
+    /// Creates a grid of `columns` times `rows` cells over a region.
+    ///
+    /// # Errors
+    /// If an edge of the region is not finite, the region has no area, or the number of cells is not in
+    /// `1..=2^22`.
+    pub fn new(region: Region, columns: usize, rows: usize) -> Result<Self, ParameterError> {
+        checked_region(region)?;
+        let grid = Self { region, columns, rows };
+        let cells = columns.saturating_mul(rows);
+        accept((1..=MOST_CELLS).contains(&cells), "number of cells", "in 1..=2^22", cells as f64)?;
+        let cell = grid.cell_size();
+        accept((cell.x * cell.y).is_normal(), "area of a cell", "finite and positive", cell.x * cell.y)?;
+        Ok(grid)
+    }
+
+    /// Returns the number of columns and rows.
+    pub const fn shape(&self) -> (usize, usize) {
+        (self.columns, self.rows)
+    }
+
+    /// Returns the width and the height of a cell.
+    pub fn cell_size(&self) -> DVec2 {
+        (self.region.max - self.region.min) / DVec2::new(self.columns as f64, self.rows as f64)
+    }
+
+    /// Returns the number of cells.
+    pub(super) const fn count(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// Returns the middle of a cell.
+    pub(super) fn center(&self, column: usize, row: usize) -> DVec2 {
+        self.region.min + self.cell_size() * DVec2::new(column as f64 + 0.5, row as f64 + 0.5)
+    }
+
+    /// Returns the cell that holds this position, counted row by row from below.
+    pub(super) fn find(&self, position: DVec2) -> Option<usize> {
+        let scaled = (position - self.region.min) / self.cell_size();
+        let inside = scaled.x >= 0.0
+            && scaled.y >= 0.0
+            && scaled.x < self.columns as f64
+            && scaled.y < self.rows as f64;
+        inside.then(|| scaled.y as usize * self.columns + scaled.x as usize)
+    }
+
+    /// Returns the sums over the disks in each cell.
+    pub(super) fn sums(&self, disks: &[Disk]) -> Vec<CellSums> {
+        let mut sums = vec![CellSums::default(); self.count()];
+        for disk in disks {
+            if let Some(cell) = self.find(disk.position()) {
+                sums[cell].add(disk);
+            }
+        }
+        sums
+    }
+}
+
+/// Returns the region if it is finite and has an area.
+pub(super) fn checked_region(region: Region) -> Result<Region, ParameterError> {
+    let Region { min, max, .. } = region;
+    let edges = [min.x, min.y, max.x, max.y];
+    edges.into_iter().try_for_each(|edge| finite("edge of the region", edge).map(|_| ()))?;
+    let size = max - min;
+    let area = if size.min_element() > 0.0 { size.x * size.y } else { 0.0 };
+    accept(area.is_normal(), "area of the region", "finite and positive", area)?;
+    Ok(region)
+}
+
+/// Sums over the disks seen in a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub(super) struct CellSums {
+    pub(super) count: u64,
+    pub(super) area: f64,
+    /// Components of the velocity, weighted by mass.
+    pub(super) velocity: [Moments; 2],
+    /// Angular velocity, weighted by moment of inertia.
+    pub(super) angular_velocity: Moments,
+}
+
+impl CellSums {
+    pub(super) fn add(&mut self, disk: &Disk) {
+        self.count += 1;
+        self.area += std::f64::consts::PI * disk.radius() * disk.radius();
+        self.velocity[0].push(disk.velocity().x, disk.mass());
+        self.velocity[1].push(disk.velocity().y, disk.mass());
+        self.angular_velocity.push(disk.angular_velocity(), disk.moment_of_inertia());
+    }
+
+    /// Returns the velocity of the flow.
+    pub(super) const fn flow(&self) -> DVec2 {
+        DVec2::new(self.velocity[0].mean, self.velocity[1].mean)
+    }
+
+    /// Checks that sums from a file can be those of disks.
+    #[cfg(feature = "serde")]
+    pub(super) fn check(&self) -> Result<(), ParameterError> {
+        crate::quantity::non_negative("area of the disks in a cell", self.area)?;
+        let weights =
+            [self.area, self.velocity[0].weight, self.velocity[1].weight, self.angular_velocity.weight];
+        let sound = weights.into_iter().all(|weight| (weight > 0.0) == (self.count > 0));
+        let requirement = "0 if and only if their area and mass are";
+        accept(sound, "number of disks in a cell", requirement, self.count as f64)?;
+        Ok(())
+    }
+}
+
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "Grid")]
+struct RawGrid {
+    region: Region,
+    columns: usize,
+    rows: usize,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawGrid> for Grid {
+    type Error = ParameterError;
+
+    fn try_from(RawGrid { region, columns, rows }: RawGrid) -> Result<Self, ParameterError> {
+        Self::new(region, columns, rows)
+    }
+}

@@ -1,0 +1,113 @@
+//! Means over pairs of samples, by the time between the two.
+
+use std::collections::VecDeque;
+
+use super::SampleTimes;
+use crate::ParameterError;
+use crate::quantity::accept;
+use crate::statistics::{BlockedMean, Estimate};
+
+/// Largest number of lags.
+const MOST_LAGS: usize = 1 << 20;
+
+/// Rounding of a sample time, relative to it and to the interval.
+const ROUNDING: f64 = 1e-9;
+
+/// The last samples of a run, and means over pairs of a sample and a later one: every sample is an origin.
+///
+/// Samples are equally spaced. After a gap, or before another run, the samples so far are forgotten and the
+/// means are kept.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(try_from = "RawLags<V>", bound(deserialize = "V: serde::Deserialize<'de>"))
+)]
+pub(super) struct Lags<V> {
+    pub(super) sample_times: SampleTimes,
+    /// Time of the latest sample.
+    latest: Option<f64>,
+    /// The samples, from the latest on back.
+    past: VecDeque<V>,
+    /// Means for the lags of 0, 1, 2, … intervals.
+    means: Vec<BlockedMean>,
+}
+
+impl<V> Lags<V> {
+    /// Creates means for lags of 0 to `longest` intervals.
+    pub(super) fn new(times: SampleTimes, longest: usize) -> Result<Self, ParameterError> {
+        accept((1..=MOST_LAGS).contains(&longest), "number of lags", "in 1..=2^20", longest as f64)?;
+        let means = vec![BlockedMean::new(); longest + 1];
+        Ok(Self { sample_times: times, latest: None, past: VecDeque::new(), means })
+    }
+
+    /// Returns the longest lag, as a number of intervals.
+    pub(super) const fn longest(&self) -> usize {
+        self.means.len() - 1
+    }
+
+    /// Takes a sample, and its pairs with all earlier ones. A pair whose value is NaN is left out.
+    pub(super) fn push(&mut self, time: f64, sample: V, pair: impl Fn(&V, &V) -> f64) {
+        let interval = self.sample_times.interval();
+        let rounding = ROUNDING * (time.abs() + interval);
+        if self.latest.is_none_or(|latest| (time - latest - interval).abs() > rounding) {
+            self.forget_samples();
+        }
+        self.latest = Some(time);
+        self.past.truncate(self.longest());
+        self.past.push_front(sample);
+        let latest = &self.past[0];
+        for (mean, earlier) in self.means.iter_mut().zip(&self.past) {
+            let value = pair(earlier, latest);
+            if !value.is_nan() {
+                mean.push(value);
+            }
+        }
+    }
+
+    /// Returns the sample taken so many intervals before the latest one.
+    pub(super) fn before(&self, lag: usize) -> Option<&V> {
+        self.past.get(lag)
+    }
+
+    /// Iterates over the lags as times, with the means.
+    pub(super) fn iter(&self) -> impl ExactSizeIterator<Item = (f64, Estimate)> {
+        let interval = self.sample_times.interval();
+        self.means.iter().enumerate().map(move |(lag, mean)| (lag as f64 * interval, mean.estimate()))
+    }
+
+    /// Begins with new origins.
+    pub(super) fn forget_samples(&mut self) {
+        self.past.clear();
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.forget_samples();
+        self.means.fill(BlockedMean::new());
+    }
+}
+
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "Lags")]
+struct RawLags<V> {
+    sample_times: SampleTimes,
+    latest: Option<f64>,
+    past: VecDeque<V>,
+    means: Vec<BlockedMean>,
+}
+
+#[cfg(feature = "serde")]
+impl<V> TryFrom<RawLags<V>> for Lags<V> {
+    type Error = ParameterError;
+
+    fn try_from(raw: RawLags<V>) -> Result<Self, ParameterError> {
+        let RawLags { sample_times, latest, past, means } = raw;
+        crate::quantity::finite("time of the latest sample", latest.unwrap_or(0.0))?;
+        let lags = means.len().saturating_sub(1);
+        accept((1..=MOST_LAGS).contains(&lags), "number of lags", "in 1..=2^20", lags as f64)?;
+        let fits = past.len() <= means.len();
+        accept(fits, "number of samples that are kept", "at most that of the lags", past.len() as f64)?;
+        Ok(Self { sample_times, latest, past, means })
+    }
+}

@@ -1,0 +1,121 @@
+//! Mean squared displacements and the diffusion coefficient.
+
+use glam::DVec2;
+
+use super::lags::Lags;
+use super::{Moment, Observer, SampleTimes, Snapshot};
+use crate::ParameterError;
+use crate::statistics::{BlockedMean, Estimate};
+
+/// An observer of the mean squared displacement of the disks, `$\langle|\vec r(t) - \vec r(0)|^2\rangle$`, and
+/// of their coefficient of self-diffusion.
+///
+/// Every sample is a time origin, and the lags are whole numbers of intervals. Positions are unwrapped at
+/// periodic sides and ends. A drift of all disks counts as displacement. The disks must stay the same while
+/// they are followed: if their number or the periods of the domain change, or if time jumps, the observer
+/// begins with new origins. The errors come from blocks of origins.
+///
+/// A sample costs time and memory in proportion to the number of disks and of lags.
+///
+/// ```
+/// use granular_edmd::boundary::Container;
+/// use granular_edmd::collision::Elastic;
+/// use granular_edmd::glam::DVec2;
+/// use granular_edmd::observable::{MeanSquaredDisplacement, SampleTimes};
+/// use granular_edmd::{Disk, Simulation};
+///
+/// let disk = Disk::new(DVec2::ONE, 0.5)?.with_velocity(DVec2::new(3.0, 4.0))?;
+/// let mut displacement = MeanSquaredDisplacement::new(SampleTimes::every(1.0)?, 4)?;
+/// let container = Container::periodic(8.0, 8.0)?;
+/// Simulation::builder(Elastic, container).disks(vec![disk]).build()?.run_until(20.0, &mut displacement)?;
+/// // A free disk of speed 5.
+/// let (time, squared) = displacement.iter().nth(3).unwrap();
+/// assert_eq!(time, 3.0);
+/// assert!((squared.mean() - 225.0).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct MeanSquaredDisplacement {
+    lags: Lags<Vec<DVec2>>,
+    periods: DVec2,
+    /// Slopes of the displacement over time in the second half of the lags, over four.
+    diffusion: BlockedMean,
+}
+
+impl MeanSquaredDisplacement {
+    /// Creates displacements over 0 to `lags` intervals of the sample times.
+    ///
+    /// # Errors
+    /// If the number of lags is not in `1..=2^20`.
+    pub fn new(times: SampleTimes, lags: usize) -> Result<Self, ParameterError> {
+        Ok(Self { lags: Lags::new(times, lags)?, periods: DVec2::ZERO, diffusion: BlockedMean::new() })
+    }
+
+    /// Iterates over the lags as times, with the mean squared displacements.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (f64, Estimate)> {
+        self.lags.iter()
+    }
+
+    /// Returns the coefficient of self-diffusion, from the slope over the second half of the lags (Einstein
+    /// 1905, in two dimensions),
+    ///
+    /// ```math
+    /// D = \frac{\langle r^2(t)\rangle - \langle r^2(t/2)\rangle}{4\,(t - t/2)} .
+    /// ```
+    ///
+    /// The longest lag `$t$` should be many times the mean free time. In two dimensions, the slope keeps
+    /// growing slowly with `$t$` (Alder and Wainwright 1970), so tell both.
+    pub fn diffusion_coefficient(&self) -> Estimate {
+        self.diffusion.estimate()
+    }
+
+    /// Forgets all samples so far.
+    pub fn clear(&mut self) {
+        self.lags.clear();
+        self.diffusion = BlockedMean::new();
+    }
+
+    /// Returns the slope over the second half of the lags, up to the latest sample.
+    fn slope(&self) -> Option<f64> {
+        let (longest, half) = (self.lags.longest(), self.lags.longest() / 2);
+        let (latest, middle, earliest) =
+            (self.lags.before(0)?, self.lags.before(half)?, self.lags.before(longest)?);
+        let gain = squared_displacement(earliest, latest) - squared_displacement(middle, latest);
+        Some(gain / ((longest - half) as f64 * self.lags.sample_times.interval()))
+    }
+}
+
+/// Returns the mean squared distance; NaN without disks, or for different numbers of them.
+fn squared_displacement(from: &[DVec2], to: &[DVec2]) -> f64 {
+    if from.len() != to.len() {
+        return f64::NAN;
+    }
+    let squares = from.iter().zip(to).map(|(from, to)| from.distance_squared(*to));
+    squares.sum::<f64>() / to.len() as f64
+}
+
+impl Observer for MeanSquaredDisplacement {
+    fn on_start(&mut self, moment: &Moment) {
+        self.lags.sample_times.start_at(moment.time());
+    }
+
+    fn next_sample(&self) -> f64 {
+        self.lags.sample_times.upcoming()
+    }
+
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        let domain = snapshot.domain();
+        let places: Vec<DVec2> = snapshot.disks().iter().map(|disk| domain.unwrapped(disk)).collect();
+        let same_number = self.lags.before(0).is_none_or(|before| before.len() == places.len());
+        if !same_number || self.periods != domain.periods() {
+            self.periods = domain.periods();
+            self.lags.forget_samples();
+        }
+        self.lags.push(snapshot.time(), places, |from, to| squared_displacement(from, to));
+        if let Some(slope) = self.slope().filter(|slope| !slope.is_nan()) {
+            self.diffusion.push(0.25 * slope);
+        }
+        self.lags.sample_times.advance_past(snapshot.time());
+    }
+}

@@ -1,0 +1,236 @@
+//! The pair correlation function.
+
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+
+use glam::DVec2;
+
+use super::grid::checked_region;
+use super::{Moment, Observer, SampleTimes, Snapshot, Verdict};
+use crate::boundary::{Domain, Region};
+use crate::quantity::{accept, positive};
+use crate::squares::Squares;
+use crate::statistics::{Bins, BlockedMean, Estimate, RunningMean};
+use crate::{Disk, Kind, ParameterError};
+
+/// An observer of the pair correlation function `$g(r)$`, also called radial distribution function.
+///
+/// It is the number of disks around a disk at a distance `$r$`, over the number in a gas without
+/// correlations,
+///
+/// ```math
+/// g(r) = \frac{\langle N_{ij}(r)\rangle}{\langle N_i (N_j - \delta_{ij})/A\rangle\; 2\pi r\,\Delta r} .
+/// ```
+///
+/// `$N_{ij}(r)$` counts the pairs of a disk `$i$` in a region and a partner `$j$` anywhere, by the distance of
+/// the centers and by the nearest image. `$N_i$` and `$N_j$` count the disks in the region, whose area is
+/// `$A$`. Shells have their exact areas. In a periodic box, the region is the whole domain. At walls it is
+/// the domain less the range, so that all shells lie inside; or it is the region given by
+/// [`within`](Self::within), which should keep that distance, too. Where the density varies, under gravity
+/// for example, choose a thin layer.
+///
+/// The errors are those of the numbers of pairs, from blocks of samples. At walls, disks come into the
+/// region and leave it; the errors are then too large rather than too small. The cost of a sample is
+/// proportional to the number of disks.
+///
+/// A run ends with an error if the range is more than half of a period, or if no finite region is left
+/// between the walls.
+///
+/// ```
+/// use granular_edmd::boundary::Container;
+/// use granular_edmd::collision::Elastic;
+/// use granular_edmd::observable::{PairCorrelation, SampleTimes};
+/// use granular_edmd::{Simulation, initial};
+///
+/// let container = Container::periodic(30.0, 30.0)?;
+/// let disks = initial::random(&container, 200, 0.5, 30.0, 1)?;
+/// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
+/// let mut correlation = PairCorrelation::new(3.0, 30, SampleTimes::every(1.0)?)?;
+/// Simulation::builder(Elastic, container).disks(disks).build()?.run_until(50.0, &mut correlation)?;
+/// let values: Vec<f64> = correlation.iter().map(|(_, value)| value.mean()).collect();
+/// // Disks of diameter 1 do not overlap; at contact there are more than in a gas without correlations.
+/// assert!(values[..10].iter().all(|&value| value == 0.0));
+/// assert!(values[10] > 1.2 && (values[29] - 1.0).abs() < 0.1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawPairCorrelation"))]
+pub struct PairCorrelation {
+    bins: Bins,
+    sample_times: SampleTimes,
+    kinds: Option<[Kind; 2]>,
+    region: Option<Region>,
+    /// Numbers of pairs over the area of the shell, for each bin.
+    pairs: Vec<BlockedMean>,
+    /// The same number in a gas without correlations.
+    uncorrelated: RunningMean,
+    /// The reason why nothing can be measured in this run.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    fault: Option<ParameterError>,
+}
+
+impl PairCorrelation {
+    /// Creates a correlation of all disks up to the distance `range` of their centers, in this many bins.
+    ///
+    /// # Errors
+    /// If the range is not finite and positive, or the number of bins is not in `1..=2^20`.
+    pub fn new(range: f64, bins: usize, times: SampleTimes) -> Result<Self, ParameterError> {
+        positive("range of the correlation", range)?;
+        Ok(Self {
+            bins: Bins::new(0.0, range, bins)?,
+            sample_times: times,
+            kinds: None,
+            region: None,
+            pairs: vec![BlockedMean::new(); bins],
+            uncorrelated: RunningMean::default(),
+            fault: None,
+        })
+    }
+
+    /// Returns the same correlation between disks of two kinds, which may be the same: of disks of the second
+    /// kind around one of the first.
+    pub fn between(self, first: Kind, second: Kind) -> Self {
+        Self { kinds: Some([first, second]), ..self }
+    }
+
+    /// Returns the same correlation around the disks in a region.
+    ///
+    /// # Errors
+    /// If an edge of the region is not finite, or the region has no area.
+    pub fn within(self, region: Region) -> Result<Self, ParameterError> {
+        Ok(Self { region: Some(checked_region(region)?), ..self })
+    }
+
+    /// Returns the largest distance.
+    pub fn range(&self) -> f64 {
+        self.bins.edge(self.bins.count())
+    }
+
+    /// Returns how many samples were taken.
+    pub const fn samples(&self) -> u64 {
+        self.uncorrelated.count()
+    }
+
+    /// Iterates over the distances of the middles of the bins, with `$g$` there; NaN before there are disks.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (f64, Estimate)> {
+        let scale = 1.0 / self.uncorrelated.mean();
+        self.pairs
+            .iter()
+            .enumerate()
+            .map(move |(bin, pairs)| (self.bins.middle(bin), pairs.estimate().scaled(scale)))
+    }
+
+    /// Forgets all samples so far.
+    pub fn clear(&mut self) {
+        self.pairs.fill(BlockedMean::new());
+        self.uncorrelated = RunningMean::default();
+    }
+
+    /// Returns the region around whose disks partners are counted.
+    fn counted(&self, domain: &Domain) -> Result<Region, ParameterError> {
+        let periods = domain.periods();
+        for period in [periods.x, periods.y].into_iter().filter(|&period| period > 0.0) {
+            let fits = 2.0 * self.range() <= period;
+            accept(fits, "range of the correlation", "at most half of the period", self.range())?;
+        }
+        if let Some(region) = self.region {
+            return Ok(region);
+        }
+        let inset = |periodic: bool| if periodic { 0.0 } else { self.range() };
+        let inset = DVec2::new(inset(domain.periodic_sides), inset(domain.periodic_ends));
+        let min = DVec2::new(domain.left, domain.bottom) + inset;
+        let max = DVec2::new(domain.right, domain.top) - inset;
+        let (is_left, requirement) =
+            (min.cmplt(max).all(), "less than half of the distance between walls, or have a region");
+        accept(is_left && max.is_finite(), "range of the correlation", requirement, self.range())?;
+        Ok(Region::new(min, max))
+    }
+
+    fn is_of(&self, which: usize, disk: &Disk) -> bool {
+        self.kinds.is_none_or(|kinds| kinds[which] == disk.kind())
+    }
+
+    /// Returns how many ordered pairs there are at the distances of each bin.
+    fn count(&self, disks: &[Disk], domain: &Domain, region: &Region) -> Vec<u64> {
+        let mut counts = vec![0; self.bins.count()];
+        let range = self.range();
+        let mut squares = Squares::with_side(domain, range);
+        for (index, disk) in disks.iter().enumerate().filter(|(_, disk)| self.is_of(1, disk)) {
+            squares.add(disk.position(), 0.0, index);
+        }
+        let around = |disk: &&Disk| self.is_of(0, disk) && region.contains(disk.position());
+        for disk in disks.iter().filter(around) {
+            for other in squares.near(disk.position(), range).map(|index| &disks[index]) {
+                let distance = domain.separation(disk.position(), other.position()).length();
+                if let Some(bin) = self.bins.find(distance).filter(|_| !std::ptr::eq(disk, other)) {
+                    counts[bin] += 1;
+                }
+            }
+        }
+        counts
+    }
+}
+
+impl Observer for PairCorrelation {
+    fn on_start(&mut self, moment: &Moment) {
+        self.fault = self.counted(&moment.domain()).err();
+        self.sample_times.start_at(moment.time());
+    }
+
+    fn next_sample(&self) -> f64 {
+        self.sample_times.upcoming()
+    }
+
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        self.sample_times.advance_past(snapshot.time());
+        let (disks, domain) = (snapshot.disks(), snapshot.domain());
+        let Ok(region) = self.counted(&domain) else { return };
+        let inside = |which| {
+            let inside = |disk: &&Disk| self.is_of(which, disk) && region.contains(disk.position());
+            disks.iter().filter(inside).count() as f64
+        };
+        let itself = if self.kinds.is_none_or(|[first, second]| first == second) { 1.0 } else { 0.0 };
+        let partners = (inside(1) - itself).max(0.0);
+        self.uncorrelated.push(inside(0) * partners / region.area());
+        for (bin, count) in self.count(disks, &domain, &region).into_iter().enumerate() {
+            let (low, high) = (self.bins.edge(bin), self.bins.edge(bin + 1));
+            self.pairs[bin].push(count as f64 / (PI * (high - low) * (high + low)));
+        }
+    }
+
+    fn verdict(&mut self) -> Verdict {
+        self.fault.take().map_or(Ok(ControlFlow::Continue(())), |fault| Err(fault.into()))
+    }
+}
+
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "PairCorrelation")]
+struct RawPairCorrelation {
+    bins: Bins,
+    sample_times: SampleTimes,
+    kinds: Option<[Kind; 2]>,
+    region: Option<Region>,
+    pairs: Vec<BlockedMean>,
+    uncorrelated: RunningMean,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawPairCorrelation> for PairCorrelation {
+    type Error = ParameterError;
+
+    fn try_from(raw: RawPairCorrelation) -> Result<Self, ParameterError> {
+        let RawPairCorrelation { bins, sample_times, kinds, region, pairs, uncorrelated } = raw;
+        bins.check_count(pairs.len())?;
+        let starts_at_zero = bins.edge(0) == 0.0;
+        accept(starts_at_zero, "least distance of the correlation", "0", bins.edge(0))?;
+        for mean in &pairs {
+            let count = mean.count();
+            let fits = count == uncorrelated.count();
+            accept(fits, "number of samples of a bin", "that of the correlation", count as f64)?;
+        }
+        let region = region.map(checked_region).transpose()?;
+        Ok(Self { bins, sample_times, kinds, region, pairs, uncorrelated, fault: None })
+    }
+}

@@ -1,0 +1,246 @@
+//! The stress in a gas, from momentum that flies and that collides.
+
+use std::ops::ControlFlow;
+
+use glam::DVec2;
+
+use super::grid::checked_region;
+use super::stretch::Stretch;
+use super::{Collision, Moment, Observer, SampleTimes, Snapshot, Verdict};
+use crate::ParameterError;
+use crate::boundary::{Domain, Region};
+use crate::quantity::accept;
+use crate::statistics::{BlockedMean, Estimate};
+
+/// A stress tensor, positive where the disks push: the pressure tensor; made by [`Stress`].
+///
+/// The first letter is the direction of the momentum, the second that of the normal of the line through
+/// which it passes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct StressTensor {
+    /// Normal stress on vertical lines, `$P_{xx}$`.
+    pub xx: Estimate,
+    /// Shear stress on horizontal lines, `$P_{xy}$`.
+    pub xy: Estimate,
+    /// Shear stress on vertical lines, `$P_{yx}$`.
+    pub yx: Estimate,
+    /// Normal stress on horizontal lines, `$P_{yy}$`.
+    pub yy: Estimate,
+    /// Pressure, `$(P_{xx} + P_{yy})/2$`.
+    pub pressure: Estimate,
+}
+
+/// An observer of the stress of all disks, or of those in a region (Irving and Kirkwood 1950).
+///
+/// ```math
+/// P_{ab} = \frac1A\Big\langle\sum_i m_i v_{i,a} v_{i,b}\Big\rangle
+/// + \frac1{A\,t}\sum_{\rm collisions} \Delta_a\, r_b ,
+/// ```
+///
+/// in units of energy per area. The kinetic part is sampled; velocities are those in the frame of the
+/// container. The collisional part is exact: the impulse `$\vec\Delta$` on a disk, normal and tangential, times
+/// the vector `$\vec r$` to its center from that of the partner, or from the point of a wall that it touches. In
+/// a region, the share of that vector counts which lies inside. Each interval between two samples gives one
+/// value of the stress, and the errors come from blocks of these.
+///
+/// In a box without gravity, the stress is the pressure on the walls. Without a region the area is that of
+/// the domain, walls at rest included; a run ends with an error if it is infinite. Of the disks of one kind
+/// ([`OfKind`](super::OfKind)), the kinetic part is that of the kind, and the collisional part that of all
+/// its collisions.
+///
+/// ```
+/// use granular_edmd::boundary::Container;
+/// use granular_edmd::collision::Elastic;
+/// use granular_edmd::observable::{SampleTimes, Stress};
+/// use granular_edmd::{Simulation, initial};
+///
+/// // A gas of temperature 1 and packing fraction 0.1 in a periodic box, Z = 1.23.
+/// let container = Container::periodic(40.0, 40.0)?;
+/// let disks = initial::random(&container, 204, 0.5, 40.0, 1)?;
+/// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
+/// let mut stress = Stress::new(SampleTimes::every(1.0)?);
+/// Simulation::builder(Elastic, container).disks(disks).build()?.run_until(200.0, &mut stress)?;
+/// let ideal = 204.0 / 1600.0;
+/// assert!((stress.tensor().pressure.mean() / ideal - 1.23).abs() < 0.03);
+/// assert!((stress.kinetic().pressure.mean() / ideal - 1.0).abs() < 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct Stress {
+    stretch: Stretch,
+    region: Option<Region>,
+    /// The domain of the run.
+    domain: Option<Domain>,
+    /// Impulse times distance since the latest sample.
+    transferred: [f64; 4],
+    kinetic: Tensor,
+    collisional: Tensor,
+    total: Tensor,
+    /// The reason why nothing can be measured in this run.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    fault: Option<ParameterError>,
+}
+
+impl Stress {
+    /// Creates the stress of all disks in the domain, with a value for each interval of the sample times.
+    pub fn new(times: SampleTimes) -> Self {
+        Self {
+            stretch: Stretch::new(times),
+            region: None,
+            domain: None,
+            transferred: [0.0; 4],
+            kinetic: Tensor::default(),
+            collisional: Tensor::default(),
+            total: Tensor::default(),
+            fault: None,
+        }
+    }
+
+    /// Returns the same stress in a region inside the domain.
+    ///
+    /// # Errors
+    /// If an edge of the region is not finite, or the region has no area.
+    pub fn within(self, region: Region) -> Result<Self, ParameterError> {
+        Ok(Self { region: Some(checked_region(region)?), ..self })
+    }
+
+    /// Returns the stress.
+    pub fn tensor(&self) -> StressTensor {
+        self.total.estimate()
+    }
+
+    /// Returns the part of the momentum that flies, `$\langle\sum m v_a v_b\rangle/A$`.
+    pub fn kinetic(&self) -> StressTensor {
+        self.kinetic.estimate()
+    }
+
+    /// Returns the part of the momentum that collides.
+    pub fn collisional(&self) -> StressTensor {
+        self.collisional.estimate()
+    }
+
+    /// Returns how many intervals were measured.
+    pub fn samples(&self) -> u64 {
+        self.total.pressure.count()
+    }
+
+    /// Forgets all that was measured so far.
+    pub fn clear(&mut self) {
+        self.transferred = [0.0; 4];
+        for tensor in [&mut self.kinetic, &mut self.collisional, &mut self.total] {
+            *tensor = Tensor::default();
+        }
+    }
+
+    /// Returns the share of the way between two places that lies in the region.
+    fn share_inside(&self, from: DVec2, to: DVec2) -> f64 {
+        let (Some(region), Some(domain)) = (self.region, self.domain) else { return 1.0 };
+        domain.images().map(|image| share_in(&region, from + image, to + image)).sum()
+    }
+
+    fn area(&self, domain: &Domain) -> f64 {
+        self.region.map_or_else(|| domain.width() * domain.height(), |region| region.area())
+    }
+}
+
+/// Returns the share of a segment that lies in a rectangle (Liang and Barsky 1984).
+fn share_in(region: &Region, from: DVec2, to: DVec2) -> f64 {
+    let way = to - from;
+    let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
+    for (start, step, low, high) in
+        [(from.x, way.x, region.min.x, region.max.x), (from.y, way.y, region.min.y, region.max.y)]
+    {
+        if step == 0.0 {
+            if start < low || start >= high {
+                return 0.0;
+            }
+            continue;
+        }
+        let (first, second) = ((low - start) / step, (high - start) / step);
+        enters = enters.max(first.min(second));
+        leaves = leaves.min(first.max(second));
+    }
+    (leaves - enters).max(0.0)
+}
+
+impl Observer for Stress {
+    fn on_start(&mut self, moment: &Moment) {
+        self.domain = Some(moment.domain());
+        let area = self.area(&moment.domain());
+        let requirement = "finite: choose a region";
+        self.fault = accept(area.is_finite(), "area of the domain", requirement, area).err();
+        if self.stretch.begin(moment.time()) {
+            self.transferred = [0.0; 4];
+        }
+    }
+
+    fn on_collision(&mut self, collision: &Collision) {
+        let (normal, impulse) = (collision.normal, collision.impulse);
+        let share = self.share_inside(collision.partner_position(), collision.position);
+        let kick = normal * impulse.normal() + normal.perp() * impulse.tangential();
+        let way = normal * (collision.distance * share);
+        for (sum, part) in self.transferred.iter_mut().zip(products(kick, way)) {
+            *sum += part;
+        }
+    }
+
+    fn next_sample(&self) -> f64 {
+        self.stretch.sample_times.upcoming()
+    }
+
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        let transferred = std::mem::take(&mut self.transferred);
+        let Some(duration) = self.stretch.finish(snapshot.time()) else { return };
+        let area = self.area(&snapshot.domain());
+        let collisional = transferred.map(|sum| sum / (area * duration));
+        let mut kinetic = [0.0; 4];
+        let inside = |place| self.region.is_none_or(|region| region.contains(place));
+        for disk in snapshot.disks().iter().filter(|disk| inside(disk.position())) {
+            let parts = products(disk.velocity() * (disk.mass() / area), disk.velocity());
+            for (sum, part) in kinetic.iter_mut().zip(parts) {
+                *sum += part;
+            }
+        }
+        self.kinetic.push(kinetic);
+        self.collisional.push(collisional);
+        self.total.push([0, 1, 2, 3].map(|entry| kinetic[entry] + collisional[entry]));
+    }
+
+    fn on_end(&mut self, moment: &Moment) {
+        self.stretch.pause(moment.time());
+    }
+
+    fn verdict(&mut self) -> Verdict {
+        self.fault.take().map_or(Ok(ControlFlow::Continue(())), |fault| Err(fault.into()))
+    }
+}
+
+/// Returns the products of components, in the order xx, xy, yx, yy.
+fn products(first: DVec2, second: DVec2) -> [f64; 4] {
+    [first.x * second.x, first.x * second.y, first.y * second.x, first.y * second.y]
+}
+
+/// Means of the components, and of the pressure.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+struct Tensor {
+    components: [BlockedMean; 4],
+    pressure: BlockedMean,
+}
+
+impl Tensor {
+    fn push(&mut self, values: [f64; 4]) {
+        for (mean, value) in self.components.iter_mut().zip(values) {
+            mean.push(value);
+        }
+        self.pressure.push(0.5 * (values[0] + values[3]));
+    }
+
+    fn estimate(&self) -> StressTensor {
+        let [xx, xy, yx, yy] = [0, 1, 2, 3].map(|entry: usize| self.components[entry].estimate());
+        StressTensor { xx, xy, yx, yy, pressure: self.pressure.estimate() }
+    }
+}

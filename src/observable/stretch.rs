@@ -1,0 +1,52 @@
+//! Stretches of time between samples, over which impulses are summed.
+
+use super::SampleTimes;
+
+/// Rounding of a time, relative to it and to the interval.
+const ROUNDING: f64 = 1e-9;
+
+/// The stretch of time since the latest sample.
+///
+/// A stretch counts if it is a whole interval of the clock. A run that begins off the beat begins with a part
+/// of one, which does not count. A run that goes on where the one before ended goes on with its stretch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub(super) struct Stretch {
+    pub(super) sample_times: SampleTimes,
+    start: Option<f64>,
+    /// End of the latest run.
+    end: Option<f64>,
+}
+
+impl Stretch {
+    pub(super) const fn new(times: SampleTimes) -> Self {
+        Self { sample_times: times, start: None, end: None }
+    }
+
+    fn is_near(&self, one: f64, other: f64) -> bool {
+        (one - other).abs() <= ROUNDING * (other.abs() + self.sample_times.interval())
+    }
+
+    /// Notes that a run starts at this time. Returns true if it begins a new stretch.
+    pub(super) fn begin(&mut self, time: f64) -> bool {
+        self.sample_times.start_at(time);
+        let goes_on = self.start.is_some() && self.end.is_some_and(|end| self.is_near(end, time));
+        if !goes_on {
+            self.start = Some(time);
+        }
+        !goes_on
+    }
+
+    /// Notes that a run ends at this time.
+    pub(super) fn pause(&mut self, time: f64) {
+        self.end = Some(time);
+    }
+
+    /// Begins a new stretch at the time of a sample. Returns the length of the one before if it counts.
+    pub(super) fn finish(&mut self, time: f64) -> Option<f64> {
+        let interval = self.sample_times.interval();
+        let start = self.start.replace(time);
+        self.sample_times.advance_past(time);
+        start.filter(|start| self.is_near(start + interval, time)).map(|start| time - start)
+    }
+}

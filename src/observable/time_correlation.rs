@@ -1,0 +1,142 @@
+//! Correlation functions in time.
+
+use glam::DVec2;
+
+use super::lags::Lags;
+use super::{Moment, Observable, Observer, SampleTimes, Snapshot};
+use crate::ParameterError;
+use crate::statistics::Estimate;
+
+/// A value that can be correlated with another one of its type.
+///
+/// Implement it for the value of an observable of your own. NaN stands for no product.
+///
+/// ```
+/// use granular_edmd::glam::DVec2;
+/// use granular_edmd::observable::InnerProduct;
+/// assert_eq!(2.0.inner_product(&3.0), 6.0);
+/// assert_eq!(DVec2::new(1.0, 2.0).inner_product(&DVec2::new(3.0, 4.0)), 11.0);
+/// assert_eq!(vec![1.0, 2.0].inner_product(&vec![3.0, 4.0]), 5.5);
+/// ```
+pub trait InnerProduct {
+    /// Returns the product of two values.
+    fn inner_product(&self, other: &Self) -> f64;
+}
+
+impl InnerProduct for f64 {
+    fn inner_product(&self, other: &Self) -> f64 {
+        self * other
+    }
+}
+
+impl InnerProduct for DVec2 {
+    fn inner_product(&self, other: &Self) -> f64 {
+        self.dot(*other)
+    }
+}
+
+/// The mean of the products of entries at the same place; NaN without entries, or for different numbers of
+/// them.
+impl<T: InnerProduct> InnerProduct for Vec<T> {
+    fn inner_product(&self, other: &Self) -> f64 {
+        if self.len() != other.len() {
+            return f64::NAN;
+        }
+        let products = self.iter().zip(other).map(|(one, other)| one.inner_product(other));
+        products.sum::<f64>() / self.len() as f64
+    }
+}
+
+/// The velocities of all disks, in their order.
+///
+/// Their [`TimeCorrelation`] is the velocity autocorrelation function.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Velocities;
+
+impl Observable for Velocities {
+    type Value = Vec<DVec2>;
+
+    fn measure(&self, snapshot: &Snapshot<'_>) -> Vec<DVec2> {
+        snapshot.disks().iter().map(crate::Disk::velocity).collect()
+    }
+}
+
+/// An observer of the correlation function of an observable in time, `$C(t) = \langle A(0)\cdot A(t)\rangle$`.
+///
+/// Every sample is a time origin, and the lags are whole numbers of intervals. The product is that of
+/// [`InnerProduct`]: of vectors the dot product, of lists the mean over the entries. No mean is taken off:
+/// for fluctuations, subtract the mean in the observable if it is known, or use
+/// [`autocorrelation`](crate::statistics::autocorrelation) of a series. After a gap in time, and at another
+/// number of entries, new origins begin. The errors come from blocks of origins.
+///
+/// A sample costs time and memory in proportion to the number of lags.
+///
+/// ```
+/// use granular_edmd::boundary::Container;
+/// use granular_edmd::collision::Elastic;
+/// use granular_edmd::observable::{SampleTimes, TimeCorrelation, Velocities};
+/// use granular_edmd::{Simulation, initial};
+///
+/// let container = Container::periodic(20.0, 20.0)?;
+/// let disks = initial::random(&container, 100, 0.5, 20.0, 1)?;
+/// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
+/// let mut correlation = TimeCorrelation::new(Velocities, SampleTimes::every(0.5)?, 10)?;
+/// Simulation::builder(Elastic, container).disks(disks).build()?.run_until(100.0, &mut correlation)?;
+/// let values: Vec<f64> = correlation.iter().map(|(_, value)| value.mean()).collect();
+/// // Twice the temperature at once, and less later.
+/// assert!((values[0] - 2.0).abs() < 0.01 && values[1] < 0.8 * values[0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        deny_unknown_fields,
+        bound(
+            serialize = "Q: serde::Serialize, Q::Value: serde::Serialize",
+            deserialize = "Q: serde::Deserialize<'de>, Q::Value: serde::Deserialize<'de>"
+        )
+    )
+)]
+pub struct TimeCorrelation<Q: Observable> {
+    observable: Q,
+    lags: Lags<Q::Value>,
+}
+
+impl<Q: Observable> TimeCorrelation<Q> {
+    /// Creates a correlation of `observable` over 0 to `lags` intervals of the sample times.
+    ///
+    /// # Errors
+    /// If the number of lags is not in `1..=2^20`.
+    pub fn new(observable: Q, times: SampleTimes, lags: usize) -> Result<Self, ParameterError> {
+        Ok(Self { observable, lags: Lags::new(times, lags)? })
+    }
+
+    /// Iterates over the lags as times, with the correlations.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (f64, Estimate)> {
+        self.lags.iter()
+    }
+
+    /// Forgets all samples so far.
+    pub fn clear(&mut self) {
+        self.lags.clear();
+    }
+}
+
+impl<Q: Observable<Value: InnerProduct>> Observer for TimeCorrelation<Q> {
+    fn on_start(&mut self, moment: &Moment) {
+        self.lags.sample_times.start_at(moment.time());
+    }
+
+    fn next_sample(&self) -> f64 {
+        self.lags.sample_times.upcoming()
+    }
+
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        let value = self.observable.measure(snapshot);
+        self.lags.push(snapshot.time(), value, InnerProduct::inner_product);
+        self.lags.sample_times.advance_past(snapshot.time());
+    }
+}

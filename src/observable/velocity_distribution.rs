@@ -1,0 +1,219 @@
+//! Distributions of velocities, and their cumulants.
+
+use glam::DVec2;
+
+use super::grid::CellSums;
+use super::{Grid, Moment, Observer, SampleTimes, Snapshot};
+use crate::statistics::{BlockedMean, Estimate, Histogram};
+use crate::{Disk, ParameterError};
+
+/// An observer of the distribution of velocities: histograms of both components and of the speed, cumulants
+/// and kurtosis.
+///
+/// Velocities are in units of the thermal speed of their sample, `$\vec c = \vec v/\sqrt{2T/m}$`, so that a gas
+/// may cool or heat. Of a Maxwellian gas the histograms show `$p(c_x) = e^{-c_x^2}/\sqrt\pi$` and
+/// `$p(c) = 2c\,e^{-c^2}$`. The cumulants are the coefficients of the Sonine expansion in two dimensions,
+///
+/// ```math
+/// a_2 = \tfrac12\langle c^4\rangle - 1,\qquad a_3 = 1 + 3a_2 - \tfrac16\langle c^6\rangle .
+/// ```
+///
+/// Moments of few disks are smaller than those of their distribution, since the sample itself defines `$T$`
+/// and the mean. They are therefore taken relative to the moments of a Maxwellian gas of as many disks, which
+/// makes all cumulants of such a gas 0 at any number of disks. Errors come from blocks of samples.
+///
+/// Velocities are those in the frame of the container, unless the mean velocity is taken off
+/// ([`about_mean`](Self::about_mean), [`about_flow`](Self::about_flow)).
+///
+/// ```
+/// use granular_edmd::boundary::Container;
+/// use granular_edmd::collision::Elastic;
+/// use granular_edmd::observable::{SampleTimes, VelocityDistribution};
+/// use granular_edmd::{Simulation, initial};
+///
+/// let container = Container::periodic(20.0, 20.0)?;
+/// let disks = initial::random(&container, 100, 0.5, 20.0, 1)?;
+/// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
+/// let mut velocities = VelocityDistribution::new(4.0, 20, SampleTimes::every(2.0)?)?.about_mean();
+/// Simulation::builder(Elastic, container).disks(disks).build()?.run_until(400.0, &mut velocities)?;
+/// assert!(velocities.second_cumulant().mean().abs() < 0.05);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct VelocityDistribution {
+    sample_times: SampleTimes,
+    frame: Frame,
+    components: [Histogram; 2],
+    speed: Histogram,
+    cumulants: [BlockedMean; 2],
+    excess_kurtosis: [BlockedMean; 2],
+}
+
+/// The velocity that is taken off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+enum Frame {
+    Container,
+    Mean,
+    Flow(Grid),
+}
+
+impl VelocityDistribution {
+    /// Creates histograms with this many bins each: of the components from `-largest` to `largest`, of the
+    /// speed from 0 to `largest`, in units of the thermal speed.
+    ///
+    /// # Errors
+    /// If `largest` is not finite and positive, or the number of bins is not in `1..=2^20`.
+    pub fn new(largest: f64, bins: usize, times: SampleTimes) -> Result<Self, ParameterError> {
+        let speed = Histogram::new(0.0, largest, bins)?;
+        let component = Histogram::new(-largest, largest, bins)?;
+        Ok(Self {
+            sample_times: times,
+            frame: Frame::Container,
+            components: [component.clone(), component],
+            speed,
+            cumulants: Default::default(),
+            excess_kurtosis: Default::default(),
+        })
+    }
+
+    /// Returns the same distribution about the mean velocity of all disks, weighted by mass, in each sample.
+    pub fn about_mean(self) -> Self {
+        Self { frame: Frame::Mean, ..self }
+    }
+
+    /// Returns the same distribution about the mean velocity in each cell of a grid, weighted by mass, in each
+    /// sample. Disks outside the grid are left out.
+    pub fn about_flow(self, grid: Grid) -> Self {
+        Self { frame: Frame::Flow(grid), ..self }
+    }
+
+    /// Returns the histogram of the horizontal component.
+    pub const fn horizontal(&self) -> &Histogram {
+        &self.components[0]
+    }
+
+    /// Returns the histogram of the vertical component.
+    pub const fn vertical(&self) -> &Histogram {
+        &self.components[1]
+    }
+
+    /// Returns the histogram of the speed.
+    pub const fn speed(&self) -> &Histogram {
+        &self.speed
+    }
+
+    /// Returns `$a_2$`, 0 for a Maxwellian gas.
+    pub fn second_cumulant(&self) -> Estimate {
+        self.cumulants[0].estimate()
+    }
+
+    /// Returns `$a_3$`, 0 for a Maxwellian gas.
+    pub fn third_cumulant(&self) -> Estimate {
+        self.cumulants[1].estimate()
+    }
+
+    /// Returns the excess kurtosis of the horizontal and of the vertical component,
+    /// `$\langle c_x^4\rangle/\langle c_x^2\rangle^2 - 3$`, 0 for a Maxwellian gas.
+    pub fn excess_kurtosis(&self) -> [Estimate; 2] {
+        [self.excess_kurtosis[0].estimate(), self.excess_kurtosis[1].estimate()]
+    }
+
+    /// Forgets all samples so far.
+    pub fn clear(&mut self) {
+        self.components.iter_mut().for_each(Histogram::clear);
+        self.speed.clear();
+        (self.cumulants, self.excess_kurtosis) = Default::default();
+    }
+}
+
+impl Frame {
+    /// Returns the scaled velocities `$\sqrt m(v - u)$` of the disks, each with the share of its variance that
+    /// is left when the mean is taken off, and the degrees of freedom of each component.
+    fn peculiar(&self, disks: &[Disk]) -> (Vec<(DVec2, f64)>, f64) {
+        match self {
+            Self::Container => {
+                let scaled = disks.iter().map(|disk| (disk.velocity() * disk.mass().sqrt(), 1.0));
+                (scaled.collect(), disks.len() as f64)
+            }
+            Self::Mean => {
+                let mut all = CellSums::default();
+                for disk in disks {
+                    all.add(disk);
+                }
+                about(&[all], disks, |_| Some(0))
+            }
+            Self::Flow(grid) => about(&grid.sums(disks), disks, |disk| grid.find(disk.position())),
+        }
+    }
+}
+
+/// Returns what [`Frame::peculiar`] does, about the mean velocity in each cell.
+fn about(
+    cells: &[CellSums],
+    disks: &[Disk],
+    cell_of: impl Fn(&Disk) -> Option<usize>,
+) -> (Vec<(DVec2, f64)>, f64) {
+    let scaled = |disk: &Disk| {
+        let cell = &cells[cell_of(disk)?];
+        let left = 1.0 - disk.mass() / cell.velocity[0].weight;
+        Some(((disk.velocity() - cell.flow()) * disk.mass().sqrt(), left))
+    };
+    let peculiar: Vec<_> = disks.iter().filter_map(scaled).collect();
+    let taken = cells.iter().filter(|cell| cell.count > 0).count();
+    let freedom = peculiar.len() as f64 - taken as f64;
+    (peculiar, freedom)
+}
+
+/// Returns a moment of a normal distribution over that of as many independent numbers.
+///
+/// `moment` is the sum of the powers `order` of numbers, `squares` that of their squares, `shares` the sum of
+/// the powers `order`/2 of the shares of the variance that each has kept; `freedom` counts the degrees of
+/// freedom of the squares. `normal` is the moment of a normal variable of that order.
+fn relative_moment(moment: f64, squares: f64, order: i32, shares: f64, freedom: f64, normal: f64) -> f64 {
+    // The direction of a normal vector is independent of its length, so the mean of the quotient is the
+    // quotient of the means.
+    let powers = |value: f64, step: f64| (0..order / 2).map(|k| value + f64::from(k) * step).product::<f64>();
+    moment / powers(squares, 0.0) * powers(freedom, 2.0) / (normal * shares)
+}
+
+impl Observer for VelocityDistribution {
+    fn on_start(&mut self, moment: &Moment) {
+        self.sample_times.start_at(moment.time());
+    }
+
+    fn next_sample(&self) -> f64 {
+        self.sample_times.upcoming()
+    }
+
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        self.sample_times.advance_past(snapshot.time());
+        let (peculiar, freedom) = self.frame.peculiar(snapshot.disks());
+        let sum = |term: &dyn Fn(DVec2, f64) -> f64| peculiar.iter().map(|&(v, left)| term(v, left)).sum();
+        let squares: f64 = sum(&|v, _| v.length_squared());
+        if freedom < 1.0 || squares <= 0.0 {
+            return;
+        }
+        let thermal = (squares / freedom).sqrt();
+        for (velocity, _) in &peculiar {
+            self.components[0].push(velocity.x / thermal);
+            self.components[1].push(velocity.y / thermal);
+            self.speed.push(velocity.length() / thermal);
+        }
+        let (second, third) = (sum(&|_, left| left * left), sum(&|_, left| left * left * left));
+        let fourth = sum(&|v, _| v.length_squared() * v.length_squared());
+        let sixth = sum(&|v, _| v.length_squared() * v.length_squared() * v.length_squared());
+        let a2 = relative_moment(fourth, squares, 4, second, 2.0 * freedom, 8.0) - 1.0;
+        let a3 = 1.0 + 3.0 * a2 - relative_moment(sixth, squares, 6, third, 2.0 * freedom, 48.0);
+        self.cumulants[0].push(a2);
+        self.cumulants[1].push(a3);
+        for (axis, mean) in self.excess_kurtosis.iter_mut().enumerate() {
+            let squares = sum(&|v, _| v[axis] * v[axis]);
+            let fourth = sum(&|v, _| v[axis] * v[axis] * v[axis] * v[axis]);
+            if squares > 0.0 {
+                mean.push(3.0 * relative_moment(fourth, squares, 4, second, freedom, 3.0) - 3.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! The stress on walls.
+
+use std::collections::BTreeMap;
+
+use super::stretch::Stretch;
+use super::{Collision, Moment, Observer, Partner, SampleTimes, Snapshot};
+use crate::ParameterError;
+use crate::quantity::positive;
+use crate::statistics::{BlockedMean, Estimate};
+
+/// An observer of the pressure and the shear stress of the disks on walls.
+///
+/// ```math
+/// p = \frac1{L\,t}\sum\Delta_n,\qquad \tau = -\frac1{L\,t}\sum\Delta_t,
+/// ```
+///
+/// the impulse over the length of the wall and time, in units of energy per area. `$\Delta_n$` and
+/// `$\Delta_t$` are the normal and tangential [impulses](crate::collision::Impulse) on the disks, so `$p$` is
+/// positive where disks push the wall, and `$\tau$` where they drag it along the tangent, which is the normal
+/// turned counterclockwise (to the left on a floor). Each interval between two samples gives one value, and the
+/// errors come from blocks of these.
+///
+/// ```
+/// use granular_edmd::boundary::{Container, Wall};
+/// use granular_edmd::collision::Elastic;
+/// use granular_edmd::glam::DVec2;
+/// use granular_edmd::observable::{SampleTimes, WallStress};
+/// use granular_edmd::{Disk, Simulation};
+///
+/// // A ball of speed 3 between floor and lid, 2 apart for its center: each touch is 3 + 3, every 4/3.
+/// let container = Container::closed(5.0, 3.0)?;
+/// let floor = container.index(Wall::Floor).unwrap();
+/// let ball = Disk::new(DVec2::new(2.0, 1.0), 0.5)?.with_velocity(DVec2::new(0.0, 3.0))?;
+/// let mut stress = WallStress::new(SampleTimes::every(4.0)?).with_wall(floor, 5.0)?;
+/// Simulation::builder(Elastic, container).disks(vec![ball]).build()?.run_until(40.0, &mut stress)?;
+/// assert!((stress.pressure(floor).unwrap().mean() - 4.5 / 5.0).abs() < 1e-12);
+/// assert_eq!(stress.shear(floor).unwrap().mean(), 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct WallStress {
+    stretch: Stretch,
+    walls: BTreeMap<usize, Received>,
+}
+
+/// What a wall received.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+struct Received {
+    length: f64,
+    /// Normal and tangential impulse since the latest sample.
+    impulse: [f64; 2],
+    means: [BlockedMean; 2],
+}
+
+impl WallStress {
+    /// Creates an observer of no walls, with a value for each interval of the sample times.
+    pub const fn new(times: SampleTimes) -> Self {
+        Self { stretch: Stretch::new(times), walls: BTreeMap::new() }
+    }
+
+    /// Watches the wall of this index, which has this length.
+    ///
+    /// # Errors
+    /// If the length is not finite and positive.
+    pub fn with_wall(mut self, wall: usize, length: f64) -> Result<Self, ParameterError> {
+        let length = positive("length of a wall", length)?;
+        let received = Received { length, impulse: [0.0; 2], means: Default::default() };
+        self.walls.insert(wall, received);
+        Ok(self)
+    }
+
+    /// Returns the pressure on a wall, or `None` if the wall is not watched.
+    pub fn pressure(&self, wall: usize) -> Option<Estimate> {
+        self.walls.get(&wall).map(|wall| wall.means[0].estimate())
+    }
+
+    /// Returns the shear stress on a wall, or `None` if the wall is not watched.
+    pub fn shear(&self, wall: usize) -> Option<Estimate> {
+        self.walls.get(&wall).map(|wall| wall.means[1].estimate())
+    }
+
+    /// Forgets all that was measured so far.
+    pub fn clear(&mut self) {
+        for received in self.walls.values_mut() {
+            (received.impulse, received.means) = ([0.0; 2], Default::default());
+        }
+    }
+}
+
+impl Observer for WallStress {
+    fn on_start(&mut self, moment: &Moment) {
+        if self.stretch.begin(moment.time()) {
+            self.walls.values_mut().for_each(|received| received.impulse = [0.0; 2]);
+        }
+    }
+
+    fn on_collision(&mut self, collision: &Collision) {
+        let Partner::Wall(wall) = collision.partner else { return };
+        if let Some(received) = self.walls.get_mut(&wall) {
+            received.impulse[0] += collision.impulse.normal();
+            received.impulse[1] -= collision.impulse.tangential();
+        }
+    }
+
+    fn next_sample(&self) -> f64 {
+        self.stretch.sample_times.upcoming()
+    }
+
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        let duration = self.stretch.finish(snapshot.time());
+        for received in self.walls.values_mut() {
+            let impulse = std::mem::take(&mut received.impulse);
+            let Some(duration) = duration else { continue };
+            for (mean, impulse) in received.means.iter_mut().zip(impulse) {
+                mean.push(impulse / (received.length * duration));
+            }
+        }
+    }
+
+    fn on_end(&mut self, moment: &Moment) {
+        self.stretch.pause(moment.time());
+    }
+}

@@ -1,0 +1,37 @@
+//! Autocorrelation of series in memory.
+
+use super::{BlockedMean, Estimate, block_average};
+use crate::ParameterError;
+use crate::quantity::accept;
+
+/// Returns the autocorrelation of a time series for lags of 0 to `lags` samples,
+///
+/// ```math
+/// \rho_k = \frac{\langle(x_i-\bar x)(x_{i+k}-\bar x)\rangle}{\langle(x_i-\bar x)^2\rangle},
+/// ```
+///
+/// with errors from blocks of the products. If all samples are equal, the result is NaN.
+///
+/// # Errors
+/// If the series has no more than `lags + 1` samples, or one is not finite or above 1e100 in size.
+///
+/// ```
+/// use granular_edmd::statistics::autocorrelation;
+/// let wave: Vec<f64> = (0..4000).map(|k| f64::from([0, 1, 0, -1][k % 4])).collect();
+/// let correlation: Vec<f64> = autocorrelation(&wave, 2)?.iter().map(|lag| lag.mean()).collect();
+/// assert_eq!(correlation[0], 1.0);
+/// assert!(correlation[1].abs() < 1e-3 && (correlation[2] + 1.0).abs() < 1e-3);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+pub fn autocorrelation(samples: &[f64], lags: usize) -> Result<Vec<Estimate>, ParameterError> {
+    let count = samples.len();
+    let fits = count >= 2 && lags < count - 1;
+    accept(fits, "number of lags", "less than that of the samples by two at least", lags as f64)?;
+    let mean = block_average(samples)?.mean();
+    let covariance = |lag: usize| -> BlockedMean {
+        let pairs = samples.iter().zip(&samples[lag..]);
+        pairs.map(|(first, second)| (first - mean) * (second - mean)).collect()
+    };
+    let variance = covariance(0).mean();
+    Ok((0..=lags).map(|lag| covariance(lag).estimate().scaled(1.0 / variance)).collect())
+}

@@ -1,0 +1,94 @@
+//! Equal bins of a number.
+
+use crate::ParameterError;
+use crate::quantity::{accept, finite, positive};
+
+/// Largest number of bins.
+const MOST_BINS: usize = 1 << 20;
+
+/// Equal bins between two numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawBins"))]
+pub(crate) struct Bins {
+    low: f64,
+    width: f64,
+    count: usize,
+}
+
+impl Bins {
+    pub(crate) fn new(low: f64, high: f64, count: usize) -> Result<Self, ParameterError> {
+        finite("lower end of the bins", low)?;
+        accept(
+            high.is_finite() && high > low,
+            "upper end of the bins",
+            "finite and above the lower one",
+            high,
+        )?;
+        Self { low, width: (high - low) / count as f64, count }.checked()
+    }
+
+    fn checked(self) -> Result<Self, ParameterError> {
+        let Self { low, width, count } = self;
+        finite("lower end of the bins", low)?;
+        accept((1..=MOST_BINS).contains(&count), "number of bins", "in 1..=2^20", count as f64)?;
+        positive("width of a bin", width)?;
+        finite("upper end of the bins", self.edge(count))?;
+        Ok(self)
+    }
+
+    /// Checks that there are as many entries as bins.
+    #[cfg(feature = "serde")]
+    pub(crate) fn check_count(&self, count: usize) -> Result<(), ParameterError> {
+        accept(count == self.count, "number of values", "that of the bins", count as f64).map(|_| ())
+    }
+
+    pub(crate) const fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Returns the width of a bin.
+    pub(crate) const fn width(&self) -> f64 {
+        self.width
+    }
+
+    /// Returns the lower edge of a bin.
+    pub(crate) fn edge(&self, bin: usize) -> f64 {
+        self.low + bin as f64 * self.width
+    }
+
+    pub(crate) fn middle(&self, bin: usize) -> f64 {
+        self.edge(bin) + 0.5 * self.width
+    }
+
+    /// Returns the bin of a number. All numbers below the first bin count for it; numbers above the last bin
+    /// give `count` or more.
+    pub(crate) fn at_or_above(&self, value: f64) -> usize {
+        // The cast saturates: a negative number becomes 0.
+        ((value - self.low) / self.width) as usize
+    }
+
+    /// Returns the bin of a number, if there is one.
+    pub(crate) fn find(&self, value: f64) -> Option<usize> {
+        let bin = self.at_or_above(value);
+        (value >= self.low && bin < self.count).then_some(bin)
+    }
+}
+
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "Bins")]
+struct RawBins {
+    low: f64,
+    width: f64,
+    count: usize,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<RawBins> for Bins {
+    type Error = ParameterError;
+
+    fn try_from(RawBins { low, width, count }: RawBins) -> Result<Self, ParameterError> {
+        Self { low, width, count }.checked()
+    }
+}
