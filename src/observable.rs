@@ -60,6 +60,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Tables
+//! An observable that is [`Tabular`] names the numbers of its values. [`Series::write_csv`] and
+//! [`Series::write_json_lines`] write them with names and units; a tuple has the columns of its parts.
+//!
 //! # Measurements in files
 //! With the feature `serde`, the observers of this module, except for closures, can be written to a file
 //! beside the checkpoint of the run. They are read back and lent to the resumed run, and end with the same
@@ -86,6 +90,8 @@ mod sample_times;
 mod series;
 mod snapshot;
 mod stop;
+mod table;
+mod tabular;
 mod temperatures;
 
 pub use by_kind::{BetweenKinds, OfKind};
@@ -105,4 +111,5 @@ pub use sample_times::SampleTimes;
 pub use series::Series;
 pub use snapshot::Snapshot;
 pub use stop::{StopWhen, StopWhenSampled, stop_when, stop_when_sampled};
+pub use tabular::{Heading, Named, Tabular};
 pub use temperatures::{Temperature, Temperatures};

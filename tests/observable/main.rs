@@ -6,3 +6,4 @@ mod measurements;
 mod observables;
 mod observers;
 mod profiles_and_fields;
+mod tables;

@@ -8,6 +8,5 @@ mod faults;
 mod recording;
 mod round_trips;
 mod scratch;
-mod series;
 mod states;
 mod vtk;

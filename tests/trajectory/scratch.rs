@@ -1,7 +1,7 @@
 //! Folders of tests.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A folder of one test, removed when the test ends.
 pub(crate) struct Scratch(PathBuf);
@@ -16,10 +16,6 @@ impl Scratch {
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.0.join(name)
-    }
-
-    pub(crate) fn folder(&self) -> &Path {
-        &self.0
     }
 }
 

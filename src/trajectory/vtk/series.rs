@@ -31,11 +31,15 @@ impl Series {
     /// Begins a new series.
     pub(in crate::trajectory) fn create(path: &Path) -> Result<Self, RecordError> {
         let (folder, name) = place(path)?;
-        let mut file = Growing::new(media::create(path)?, 0);
         fs::create_dir(&folder).map_err(|error| match error.kind() {
             io::ErrorKind::AlreadyExists => RecordError::Exists { path: folder.clone() },
             _ => RecordError::io("create", &folder)(error),
         })?;
+        let file = media::create(path).inspect_err(|_| {
+            // The folder is new and empty, so nothing is lost.
+            let _ = fs::remove_dir(&folder);
+        });
+        let mut file = Growing::new(file?, 0);
         file.push(HEAD.as_bytes(), TAIL.as_bytes()).map_err(RecordError::io("write to", path))?;
         Ok(Self { path: path.to_owned(), folder, name, file, times: Vec::new() })
     }
