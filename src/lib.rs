@@ -70,6 +70,7 @@ pub mod boundary;
 pub mod collision;
 mod disk;
 mod error;
+#[cfg(feature = "serde")]
 mod file;
 mod fingerprint;
 mod flight;

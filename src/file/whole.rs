@@ -1,6 +1,5 @@
 //! Writes of files that are done whole or not at all.
 
-#[cfg(any(feature = "serde", test))]
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::hash::{BuildHasher, Hasher, RandomState};
@@ -41,7 +40,6 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
 }
 
 /// Tells whether a name is that of a temporary file of [`write_whole`]. Every part of the name must match.
-#[cfg(any(feature = "serde", test))]
 pub(crate) fn is_temporary(name: &OsStr) -> bool {
     let unique = name.to_str().and_then(|name| name.strip_prefix(TEMPORARY.0)?.strip_suffix(TEMPORARY.1));
     let Some(unique) = unique else { return false };

@@ -39,13 +39,17 @@ fn a_killed_series_goes_on() {
     let (head, _) = line.split_once("<DataSet timestep=\"1.5\"").unwrap();
     for cut in (head.len()..=text.len()).step_by(23) {
         fs::write(&path, &text[..cut]).unwrap();
-        for part in ["disks", "box"] {
-            let _ = fs::remove_file(scratch.path(&format!("run/{part}_000005.vtp")));
-        }
+        // The files of the last frame may be torn, or missing.
+        let last = scratch.path("run/disks_000005.vtp");
+        let bytes = fs::read(&last).unwrap();
+        fs::write(&last, &bytes[..cut % bytes.len()]).unwrap();
+        let _ = fs::remove_file(scratch.path("run/box_000005.vtp"));
         let mut recorder = Recorder::append_vtk(&path, times()).unwrap();
         assert!(recorder.times().len() >= 2, "{cut}");
         if recorder.times().len() == 6 {
-            continue;
+            // Not the work of a kill: files come before their line.
+            fs::write(&last, bytes).unwrap();
+            break;
         }
         mixture().run_until(3.0, &mut recorder).unwrap();
         drop(recorder);

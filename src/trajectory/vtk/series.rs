@@ -1,11 +1,10 @@
 //! A series of files, and the file of their times.
 
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::write_box;
-use crate::file::write_whole;
 use crate::observable::Snapshot;
 use crate::trajectory::errors::RecordError;
 use crate::trajectory::media::{self, Growing};
@@ -60,14 +59,21 @@ impl Series {
         self.folder.join(file_name(part, number))
     }
 
-    /// Writes a file of a frame. A file that a killed run has left must be the same.
+    /// Writes a file of a frame. A killed run may have left it, or its beginning.
     fn write(&self, part: &str, bytes: &[u8]) -> Result<(), RecordError> {
         let path = self.file_of(part, self.times.len());
-        match fs::read(&path) {
-            Ok(there) if there == bytes => Ok(()),
-            Ok(_) => Err(RecordError::Exists { path }),
-            Err(_) => write_whole(&path, bytes).map_err(RecordError::io("write", &path)),
-        }
+        let file = match fs::read(&path) {
+            Ok(there) if there == bytes => return Ok(()),
+            Ok(there) if bytes.starts_with(&there) => File::create(&path),
+            Ok(_) => return Err(RecordError::Exists { path }),
+            Err(_) => File::create_new(&path),
+        };
+        let mut file = file.map_err(RecordError::io("create", &path))?;
+        file.write_all(bytes).map_err(|error| {
+            // Its beginning would be no harm, but takes room on a full disk.
+            let _ = fs::remove_file(&path);
+            RecordError::io("write to", &path)(error)
+        })
     }
 }
 
