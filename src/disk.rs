@@ -8,6 +8,10 @@ use crate::{Kind, ParameterError};
 /// Range of a radius or a mass. Products of a few of them stay finite and normal.
 const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
+/// Overlap, relative to the distance of two centers at a touch, that counts as touching. It is the rounding
+/// of positions.
+pub(crate) const TOUCHING: f64 = 1e-10;
+
 /// Largest number of disks in a simulation.
 pub(crate) const MOST_DISKS: usize = 1 << 28;
 

@@ -41,6 +41,7 @@
 //! | [`kinetic`] | ⟨dE⟩ by closed form and Monte Carlo, effective inelasticity; needs no simulation |
 //! | [`initial`] | where everything starts: lattices, random places, dense packings, radii |
 //! | [`simulation`] | the engine: builder, event loop, checkpoints |
+//! | [`trajectory`] | files of disks, frame by frame, and readers |
 //! | [`observable`] | what is measured, and when |
 //! | [`scheduler`] | which event is next |
 //! | [`boundary`], [`wall`] | the walls around the disks, and how they move |
@@ -56,6 +57,7 @@
 //! | `serde` | parameters that serialize through their validating constructors, checkpoints, studies |
 //! | `rayon` | Monte Carlo and sweeps on all cores, with the same bits as on one |
 //! | `cli` | the command line of studies: the binary `granular-edmd`, and `study::cli` for your own binary |
+//! | `gzip` | trajectories in files that end in `.gz` |
 //! | `proptest` | random contacts and disks for property tests of your own rules: `strategies` |
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -93,6 +95,7 @@ pub mod statistics;
 pub mod strategies;
 #[cfg(feature = "serde")]
 pub mod study;
+pub mod trajectory;
 pub mod wall;
 
 pub use disk::Disk;

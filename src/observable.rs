@@ -69,6 +69,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Tables
+//! An observable that is [`Tabular`] names the numbers of its values. [`Series::write_csv`] and
+//! [`Series::write_json_lines`] write them with names and units; a tuple has the columns of its parts.
+//!
 //! # Measurements in files
 //! With the feature `serde`, the observers of this module, except for closures, can be written to a file
 //! beside the checkpoint of the run. They are read back and lent to the resumed run, and end with the same
@@ -101,6 +105,8 @@ mod snapshot;
 mod stop;
 mod stress;
 mod stretch;
+mod table;
+mod tabular;
 mod temperatures;
 mod temperatures_about_flow;
 mod time_correlation;
@@ -129,6 +135,7 @@ pub use series::Series;
 pub use snapshot::Snapshot;
 pub use stop::{StopWhen, StopWhenSampled, stop_when, stop_when_sampled};
 pub use stress::{Stress, StressTensor};
+pub use tabular::{Heading, Named, Tabular};
 pub use temperatures::{Temperature, Temperatures};
 pub use temperatures_about_flow::TemperaturesAboutFlow;
 pub use time_correlation::{InnerProduct, TimeCorrelation, Velocities};

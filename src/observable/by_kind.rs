@@ -1,6 +1,6 @@
 //! Observables and observers of disks of one kind, and of collisions between two.
 
-use super::{Collision, Moment, Observable, Observer, Partner, Snapshot, Verdict};
+use super::{Collision, Heading, Moment, Observable, Observer, Partner, Snapshot, Tabular, Verdict};
 use crate::{Disk, Kind};
 
 /// An observable or observer that sees only disks of one kind.
@@ -61,6 +61,18 @@ impl<T: Observable> Observable for OfKind<T> {
 
     fn measure(&self, snapshot: &Snapshot<'_>) -> T::Value {
         self.inner.measure(&snapshot.with_disks(&self.chosen(snapshot)))
+    }
+}
+
+/// The columns are those of all disks, with the kind at the end of their names: `center_y_of_kind_1`.
+impl<T: Tabular> Tabular for OfKind<T> {
+    fn headings(&self) -> Vec<Heading> {
+        let of_kind = |heading: &Heading| format!("{}_of_kind_{}", heading.name(), self.kind.number());
+        self.inner.headings().iter().map(|heading| Heading::new(of_kind(heading), heading.unit())).collect()
+    }
+
+    fn add_numbers(&self, value: &T::Value, row: &mut Vec<f64>) {
+        self.inner.add_numbers(value, row);
     }
 }
 

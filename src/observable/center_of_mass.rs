@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Observable, Snapshot};
+use super::{Heading, Observable, Snapshot, Tabular};
 
 /// The position of the center of mass, `$\sum m_i\vec r_i/\sum m_i$`, or NaN without disks. Its `y` is the
 /// `$Y_{cm}$` of the paper's Fig. 2.
@@ -33,5 +33,15 @@ impl Observable for CenterOfMass {
         let mass: f64 = snapshot.disks().iter().map(crate::Disk::mass).sum();
         let moment: DVec2 = snapshot.disks().iter().map(|disk| disk.mass() * disk.position()).sum();
         moment / mass
+    }
+}
+
+impl Tabular for CenterOfMass {
+    fn headings(&self) -> Vec<Heading> {
+        vec![Heading::new("center_x", "length"), Heading::new("center_y", "length")]
+    }
+
+    fn add_numbers(&self, value: &DVec2, row: &mut Vec<f64>) {
+        row.extend([value.x, value.y]);
     }
 }

@@ -5,7 +5,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{Collision, Moment, Observable, Observer, Snapshot, Verdict};
+use super::{Collision, Heading, Moment, Observable, Observer, Snapshot, Tabular, Verdict};
 
 /// The observer that does nothing and costs nothing.
 impl Observer for () {}
@@ -189,6 +189,15 @@ macro_rules! compose_tuple {
                 ($(self.$index.measure(snapshot),)+)
             }
         }
+
+        impl<$($name: Tabular),+> Tabular for ($($name,)+) {
+            fn headings(&self) -> Vec<Heading> {
+                [$(self.$index.headings()),+].concat()
+            }
+            fn add_numbers(&self, value: &Self::Value, row: &mut Vec<f64>) {
+                $(self.$index.add_numbers(&value.$index, row);)+
+            }
+        }
     };
 }
 
@@ -210,5 +219,23 @@ impl<T: Observable + ?Sized> Observable for Box<T> {
     type Value = T::Value;
     fn measure(&self, snapshot: &Snapshot<'_>) -> T::Value {
         (**self).measure(snapshot)
+    }
+}
+
+impl<T: Tabular + ?Sized> Tabular for &T {
+    fn headings(&self) -> Vec<Heading> {
+        (**self).headings()
+    }
+    fn add_numbers(&self, value: &T::Value, row: &mut Vec<f64>) {
+        (**self).add_numbers(value, row);
+    }
+}
+
+impl<T: Tabular + ?Sized> Tabular for Box<T> {
+    fn headings(&self) -> Vec<Heading> {
+        (**self).headings()
+    }
+    fn add_numbers(&self, value: &T::Value, row: &mut Vec<f64>) {
+        (**self).add_numbers(value, row);
     }
 }

@@ -1,6 +1,6 @@
 //! Energies per disk.
 
-use super::{Observable, Snapshot};
+use super::{Heading, Observable, Snapshot, Tabular};
 use crate::Disk;
 
 /// Mean energies per disk.
@@ -55,5 +55,19 @@ impl Observable for Energies {
             rotational: snapshot.mean(Disk::rotational_energy),
             potential: snapshot.mean(|disk| disk.mass() * snapshot.gravity() * disk.position().y),
         }
+    }
+}
+
+impl Tabular for Energies {
+    fn headings(&self) -> Vec<Heading> {
+        vec![
+            Heading::new("translational_energy", "energy"),
+            Heading::new("rotational_energy", "energy"),
+            Heading::new("potential_energy", "energy"),
+        ]
+    }
+
+    fn add_numbers(&self, value: &EnergyPerDisk, row: &mut Vec<f64>) {
+        row.extend([value.translational, value.rotational, value.potential]);
     }
 }

@@ -1,6 +1,6 @@
 //! Closures as observables and observers.
 
-use super::{Collision, Moment, Observable, Observer, SampleTimes, Snapshot};
+use super::{Collision, Moment, Named, Observable, Observer, SampleTimes, Snapshot};
 
 /// A closure that measures a snapshot; made by [`from_fn`].
 #[derive(Debug, Clone, Copy)]
@@ -27,6 +27,23 @@ where
     F: Fn(&Snapshot<'_>) -> V,
 {
     FromFn(measure)
+}
+
+impl<F> FromFn<F> {
+    /// Returns the same observable with a name and a unit for its number, so that a
+    /// [`Series`](super::Series) of it can be a table.
+    ///
+    /// ```
+    /// use granular_edmd::observable::{SampleTimes, Series, Snapshot, from_fn};
+    /// let count = from_fn(|snapshot: &Snapshot<'_>| snapshot.disks().len() as f64).named("disks", "1");
+    /// let mut table = Vec::new();
+    /// Series::new(count, SampleTimes::every(1.0)?).write_csv(&mut table)?;
+    /// assert_eq!(table, b"time [time],disks\n");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn named(self, name: impl Into<String>, unit: impl Into<String>) -> Named<Self> {
+        Named::new(self, name, unit)
+    }
 }
 
 impl<F, V> Observable for FromFn<F>

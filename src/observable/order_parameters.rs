@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{Observable, Snapshot};
+use super::{Heading, Observable, Snapshot, Tabular};
 
 /// The order parameters `$\Psi_1$` of one convection roll and `$\Psi_2$` of two.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -65,5 +65,15 @@ impl Observable for OrderParameters {
         }
         let count = snapshot.disks().len().max(1) as f64;
         ConvectionOrder { one_roll: order.one_roll / count, two_rolls: order.two_rolls / count }
+    }
+}
+
+impl Tabular for OrderParameters {
+    fn headings(&self) -> Vec<Heading> {
+        vec![Heading::new("one_roll", "length/time"), Heading::new("two_rolls", "length/time")]
+    }
+
+    fn add_numbers(&self, value: &ConvectionOrder, row: &mut Vec<f64>) {
+        row.extend([value.one_roll, value.two_rolls]);
     }
 }

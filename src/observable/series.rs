@@ -37,6 +37,11 @@ impl<Q: Observable> Series<Q> {
         Self { observable, sample_times: times, times: Vec::new(), values: Vec::new() }
     }
 
+    /// Returns the observable.
+    pub const fn observable(&self) -> &Q {
+        &self.observable
+    }
+
     /// Returns the absolute times of the samples.
     pub fn times(&self) -> &[f64] {
         &self.times

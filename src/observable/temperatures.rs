@@ -1,6 +1,6 @@
 //! Granular temperatures.
 
-use super::{Observable, Snapshot};
+use super::{Heading, Observable, Snapshot, Tabular};
 use crate::Disk;
 
 /// Granular temperatures per degree of freedom, in units of energy.
@@ -59,5 +59,19 @@ impl Observable for Temperatures {
             vertical: snapshot.mean(|disk| disk.mass() * (disk.velocity().y * disk.velocity().y)),
             rotational: 2.0 * snapshot.mean(Disk::rotational_energy),
         }
+    }
+}
+
+impl Tabular for Temperatures {
+    fn headings(&self) -> Vec<Heading> {
+        vec![
+            Heading::new("horizontal_temperature", "energy"),
+            Heading::new("vertical_temperature", "energy"),
+            Heading::new("rotational_temperature", "energy"),
+        ]
+    }
+
+    fn add_numbers(&self, value: &Temperature, row: &mut Vec<f64>) {
+        row.extend([value.horizontal, value.vertical, value.rotational]);
     }
 }

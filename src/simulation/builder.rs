@@ -13,16 +13,13 @@ use super::state::{Bodies, Clock};
 use crate::Disk;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
-use crate::disk::{MOST_DISKS, bounded};
+use crate::disk::{MOST_DISKS, TOUCHING, bounded};
 use crate::instructions::Instructions;
 use crate::quantity::finite;
 use crate::scheduler::{BySize, EventScheduler};
 
 /// Largest number of walls of a boundary.
 const MOST_WALLS: usize = 1 << 16;
-
-/// Overlap, relative to the diameter, that counts as touching. It is the rounding of positions.
-const TOUCHING: f64 = 1e-10;
 
 /// The inputs of a simulation that is being built; see [`Simulation::builder`].
 #[derive(Debug, Clone)]

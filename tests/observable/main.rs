@@ -7,3 +7,4 @@ mod measures;
 mod observables;
 mod observers;
 mod profiles_and_fields;
+mod tables;

@@ -1,0 +1,185 @@
+//! Errors of writing and reading.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::ParameterError;
+
+/// An error: a trajectory cannot be recorded. The file keeps its whole frames.
+///
+/// A message does not repeat its [source](std::error::Error::source): report the whole chain.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RecordError {
+    /// There is something of this name already.
+    #[error("{} is there already and is not overwritten; Recorder::append goes on in a file", path.display())]
+    Exists {
+        /// The path.
+        path: PathBuf,
+    },
+    /// A file cannot be used.
+    #[error("cannot {action} {}", path.display())]
+    Io {
+        /// The action that failed.
+        action: &'static str,
+        /// The path.
+        path: PathBuf,
+        /// The error of the system or of the format.
+        source: io::Error,
+    },
+    /// Another recorder writes to the file.
+    #[error("another recorder writes to {}", path.display())]
+    Locked {
+        /// The path.
+        path: PathBuf,
+    },
+    /// The name ends in `.gz`, but this program cannot compress.
+    #[error("{} would be compressed, which needs the feature `gzip` of granular-edmd", path.display())]
+    Gzip {
+        /// The path.
+        path: PathBuf,
+    },
+    /// The file has no whole frame in which a recorder could go on. It is left as it is.
+    #[error("{} has no whole frame to go on from; it is left as it is", path.display())]
+    NoFrame {
+        /// The path.
+        path: PathBuf,
+    },
+    /// The file has other frames at the times of this run, so it is of another run. It is left as it is.
+    #[error("{} is of another run: it goes to time {last}, and has {} at time {time}", path.display(),
+        if *.is_there { "another frame" } else { "no frame" })]
+    AnotherRun {
+        /// The path.
+        path: PathBuf,
+        /// Time of the frame that should be recorded.
+        time: f64,
+        /// Time of the last frame in the file.
+        last: f64,
+        /// True if the file has a frame at this time.
+        is_there: bool,
+    },
+}
+
+impl RecordError {
+    /// Returns a function that says what could not be done with a file.
+    pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Io { action, path, source }
+    }
+}
+
+/// An error: a file cannot be read into disks. Lines are counted from 1.
+///
+/// A message does not repeat its [source](std::error::Error::source): report the whole chain.
+///
+/// ```
+/// use granular_edmd::trajectory::State;
+/// let error = State::from_csv("x,y,radius\n1,1,0.5\n1.5,1,half\n".as_bytes()).unwrap_err();
+/// assert_eq!(error.to_string(), "line 3: radius must be a number, but is \"half\"");
+/// ```
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// The file cannot be opened.
+    #[error("cannot open {}", path.display())]
+    Open {
+        /// The path.
+        path: PathBuf,
+        /// The error of the system.
+        source: io::Error,
+    },
+    /// The input fails, or is not text.
+    #[error("cannot read line {line}")]
+    Io {
+        /// Number of the line.
+        line: usize,
+        /// The error of the system.
+        source: io::Error,
+    },
+    /// The input ends too early.
+    #[error("the file ends after line {line}, where {what} should follow")]
+    End {
+        /// Number of the last line.
+        line: usize,
+        /// The thing that is missing.
+        what: String,
+    },
+    /// A line is not what it must be.
+    #[error("line {line}: {what} must be {requirement}, but is {found:?}")]
+    Unexpected {
+        /// Number of the line.
+        line: usize,
+        /// The thing that is wrong.
+        what: String,
+        /// The condition that it should have met.
+        requirement: String,
+        /// What the line has in its place.
+        found: String,
+    },
+    /// Something that is needed is missing.
+    #[error("line {line}: {what} is missing")]
+    Missing {
+        /// Number of the line.
+        line: usize,
+        /// The thing that is missing.
+        what: String,
+    },
+    /// The numbers of a line make no disk.
+    #[error("line {line} is no disk")]
+    Disk {
+        /// Number of the line.
+        line: usize,
+        /// The parameter that is out of range.
+        source: ParameterError,
+    },
+    /// Something stands twice.
+    #[error("line {line}: {what} stands in line {first} already")]
+    Doubled {
+        /// Number of the second line.
+        line: usize,
+        /// Number of the first line.
+        first: usize,
+        /// The thing that stands twice, with its value.
+        what: String,
+    },
+    /// The center of a disk is outside of the box that the file gives.
+    #[error("line {line}: the disk at ({x}, {y}) is outside of the box")]
+    Outside {
+        /// Number of the line.
+        line: usize,
+        /// Horizontal position of its center.
+        x: f64,
+        /// Vertical position of its center.
+        y: f64,
+    },
+    /// Two disks overlap by more than rounding.
+    #[error("line {line}: the disk overlaps that of line {other} by {depth}")]
+    Overlap {
+        /// Number of the line.
+        line: usize,
+        /// Number of the line of the other disk.
+        other: usize,
+        /// Depth of the overlap.
+        depth: f64,
+    },
+}
+
+impl ReadError {
+    /// Creates the error of a thing that is not what it must be.
+    pub(super) fn unexpected(
+        line: usize,
+        what: impl Into<String>,
+        requirement: impl Into<String>,
+        found: impl Into<String>,
+    ) -> Self {
+        let found: String = found.into().chars().take(60).collect();
+        Self::Unexpected { line, what: what.into(), requirement: requirement.into(), found }
+    }
+
+    /// Creates the error of a thing that is missing.
+    pub(super) fn missing(line: usize, what: impl Into<String>) -> Self {
+        Self::Missing { line, what: what.into() }
+    }
+}

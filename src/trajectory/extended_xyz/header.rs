@@ -1,0 +1,126 @@
+//! The keys of a frame of extended XYZ.
+
+use crate::boundary::Domain;
+use crate::trajectory::entry::{Columns, Field};
+use crate::trajectory::errors::ReadError;
+use crate::trajectory::lines::number;
+
+/// The keys of a frame, as far as they matter here.
+pub(super) struct Header {
+    pub(super) columns: Columns,
+    pub(super) time: Option<f64>,
+    pub(super) gravity: Option<f64>,
+    pub(super) domain: Option<Domain>,
+}
+
+impl Header {
+    /// Reads the keys from their line.
+    pub(super) fn parse(keys: &str, line: usize) -> Result<Self, ReadError> {
+        let one = |key| value(keys, key).map(|value| number(key, value, line)).transpose();
+        let properties = value(keys, "Properties").ok_or_else(|| ReadError::missing(line, "`Properties`"))?;
+        Ok(Self {
+            columns: Columns::new(fields(properties, line)?, line)?,
+            time: one("Time")?,
+            gravity: one("Gravity")?,
+            domain: domain(keys, line)?,
+        })
+    }
+}
+
+/// Returns the value of a key, without its quotes.
+pub(super) fn value<'a>(keys: &'a str, key: &str) -> Option<&'a str> {
+    let mut rest = keys.trim_start();
+    while !rest.is_empty() {
+        let end = rest.find(|letter: char| letter == '=' || letter.is_whitespace()).unwrap_or(rest.len());
+        let (name, after) = rest.split_at(end);
+        let Some(after) = after.strip_prefix('=') else {
+            rest = after.trim_start();
+            continue;
+        };
+        let (value, after) = match after.strip_prefix('"') {
+            Some(quoted) => quoted.split_once('"').unwrap_or((quoted, "")),
+            None => after.split_at(after.find(char::is_whitespace).unwrap_or(after.len())),
+        };
+        if name == key {
+            return Some(value);
+        }
+        rest = after.trim_start();
+    }
+    None
+}
+
+/// Returns the fields of each disk. Columns that a disk does not have are left out of account.
+fn fields(properties: &str, line: usize) -> Result<Vec<Field>, ReadError> {
+    let parts: Vec<&str> = properties.split(':').collect();
+    let mut fields = Vec::new();
+    for part in parts.chunks(3) {
+        let wrong = |found: &str| {
+            Err(ReadError::unexpected(line, "each of `Properties`", "a name, a type and a number", found))
+        };
+        let &[name, _, count] = part else { return wrong(&part.join(":")) };
+        let Ok(count @ 1..=1000) = count.parse::<usize>() else { return wrong(&part.join(":")) };
+        let known = known(name);
+        fields.extend((0..count).map(|index| known.get(index).copied().unwrap_or(Field::Other)));
+    }
+    Ok(fields)
+}
+
+/// Returns the fields of a column, one for each component.
+fn known(name: &str) -> &'static [Field] {
+    match name {
+        "id" => &[Field::Id],
+        "species" | "kind" => &[Field::Kind],
+        "pos" => &[Field::X, Field::Y, Field::Zero],
+        "velo" | "velocity" => &[Field::VelocityX, Field::VelocityY, Field::Zero],
+        "angle" => &[Field::Angle],
+        "angular_velocity" => &[Field::AngularVelocity],
+        "radius" => &[Field::Radius],
+        "mass" => &[Field::Mass],
+        "inertia_factor" => &[Field::InertiaFactor],
+        "image" => &[Field::ImageX, Field::ImageY],
+        _ => &[],
+    }
+}
+
+/// Returns the box: as this crate writes it, or as the lattice has it.
+fn domain(keys: &str, line: usize) -> Result<Option<Domain>, ReadError> {
+    let domain = match (value(keys, "Domain"), value(keys, "Lattice")) {
+        (Some(domain), _) => {
+            let [left, right, bottom, top] = numbers("Domain", domain, line)?;
+            Domain::new(left, right, bottom, top)
+        }
+        (None, Some(lattice)) => {
+            let [width, a, _, b, height, _, _, _, _] = numbers("Lattice", lattice, line)?;
+            if a != 0.0 || b != 0.0 {
+                return Err(ReadError::unexpected(line, "Lattice", "a rectangle", lattice));
+            }
+            let [left, bottom, _] = numbers("Origin", value(keys, "Origin").unwrap_or("0 0 0"), line)?;
+            Domain::new(left, left + width, bottom, bottom + height)
+        }
+        (None, None) => return Ok(None),
+    };
+    periodic(domain, value(keys, "pbc"), line).map(Some)
+}
+
+/// Returns the box with the periodic directions of the file.
+fn periodic(domain: Domain, pbc: Option<&str>, line: usize) -> Result<Domain, ReadError> {
+    let Some(pbc) = pbc else { return Ok(domain) };
+    let flag = |letter: &str| match letter {
+        "T" | "1" | "True" | "true" => Some(true),
+        "F" | "0" | "False" | "false" => Some(false),
+        _ => None,
+    };
+    let flags: Vec<Option<bool>> = pbc.split_whitespace().map(flag).collect();
+    let &[Some(sides), Some(ends), Some(_)] = flags.as_slice() else {
+        return Err(ReadError::unexpected(line, "pbc", "three letters T or F", pbc));
+    };
+    let domain = if sides { domain.with_periodic_sides() } else { domain };
+    Ok(if ends { domain.with_periodic_ends() } else { domain })
+}
+
+/// Returns so many numbers, apart by white space.
+fn numbers<const COUNT: usize>(what: &str, text: &str, line: usize) -> Result<[f64; COUNT], ReadError> {
+    let numbers = text.split_whitespace().map(|text| number(what, text, line));
+    let numbers: Vec<f64> = numbers.collect::<Result<_, _>>()?;
+    numbers.try_into().map_err(|_| ReadError::unexpected(line, what, format!("{COUNT} numbers"), text))
+}

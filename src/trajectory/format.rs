@@ -1,0 +1,90 @@
+//! Frames, and what a format makes of them.
+
+use std::io::{self, BufRead, Write};
+
+use crate::observable::Snapshot;
+
+/// A snapshot in a trajectory, with its number.
+#[derive(Debug, Clone, Copy)]
+pub struct Frame<'a> {
+    number: usize,
+    snapshot: Snapshot<'a>,
+}
+
+impl<'a> Frame<'a> {
+    /// Creates the frame of this number. The first frame of a file has the number 0.
+    pub const fn new(number: usize, snapshot: Snapshot<'a>) -> Self {
+        Self { number, snapshot }
+    }
+
+    /// Returns the number of the frame in its file, counted from 0.
+    pub const fn number(&self) -> usize {
+        self.number
+    }
+
+    /// Returns the snapshot.
+    pub const fn snapshot(&self) -> &Snapshot<'a> {
+        &self.snapshot
+    }
+}
+
+/// A format of a trajectory: what each frame looks like in the file.
+///
+/// # Contract
+/// 1. `write_frame` depends on the frame alone: written twice, the same frame gives the same bytes.
+/// 2. `skip_frame` passes over exactly the bytes that `write_frame` wrote, and returns the time of the frame
+///    to the bit.
+///
+/// [`Recorder`](super::Recorder) makes each frame whole in memory, so a format may write in small pieces. It
+/// owns the file, its compression, and the clock.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a format of trajectories",
+    label = "a `trajectory::Format` is expected here",
+    note = "take `ExtendedXyz`, `LammpsDump`, or implement `Format` for a format of your own"
+)]
+pub trait Format {
+    /// Writes a frame.
+    ///
+    /// # Errors
+    /// If the writer fails, or the format has no place for a value of the frame.
+    fn write_frame(&self, frame: &Frame<'_>, out: &mut dyn Write) -> io::Result<()>;
+
+    /// Passes over the frame at which the input stands, and returns its time, or `None` if the input ends
+    /// before the frame does.
+    ///
+    /// [`Recorder::append`](super::Recorder::append) finds the last whole frame of a file by it. Without it,
+    /// a format records new files only.
+    ///
+    /// # Errors
+    /// If the input fails, or is not a frame of this format.
+    fn skip_frame(&self, input: &mut dyn BufRead) -> io::Result<Option<f64>> {
+        let _ = input;
+        Err(io::Error::new(io::ErrorKind::Unsupported, "the format does not say where a frame ends"))
+    }
+}
+
+/// Returns the next line without its end, or `None` if the input ends before the line does.
+pub(super) fn whole_line(input: &mut dyn BufRead) -> io::Result<Option<String>> {
+    let mut line = String::new();
+    input.read_line(&mut line)?;
+    Ok(line.strip_suffix('\n').map(|line| line.trim_end_matches('\r').to_owned()))
+}
+
+/// Passes over so many lines, and tells whether the input has them all.
+pub(super) fn skip_lines(input: &mut dyn BufRead, count: usize) -> io::Result<bool> {
+    let mut line = Vec::new();
+    for _ in 0..count {
+        line.clear();
+        input.read_until(b'\n', &mut line)?;
+        if !line.ends_with(b"\n") {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Creates the error of an input that is not a frame.
+pub(super) fn no_frame(expected: &str, found: &str) -> io::Error {
+    let start: String = found.chars().take(40).collect();
+    io::Error::new(io::ErrorKind::InvalidData, format!("expected {expected}, but found {start:?}"))
+}

@@ -1,0 +1,111 @@
+//! Compression: a file of one member, which is whole after each frame.
+//!
+//! Frames are compressed one by one, each up to a byte of its own (a sync flush), and the ending of the
+//! member follows the last one. The next frame takes the place of the ending. Members one after another would
+//! be simpler, but OVITO reads only the first.
+
+use std::io::{self, BufRead, Write};
+
+use flate2::write::DeflateEncoder;
+use flate2::{Compression, Crc, Decompress, FlushDecompress, Status};
+
+use super::format::{Format, no_frame};
+use super::one_file::Frames;
+
+/// Beginning of a member: deflated, without a name or a time, of an unknown system.
+const HEAD: [u8; 10] = [0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255];
+
+/// The last block of a member, which is empty.
+const LAST_BLOCK: [u8; 2] = [3, 0];
+
+/// Bytes with which a sync flush ends.
+const FLUSHED: [u8; 4] = [0, 0, 255, 255];
+
+/// What has gone into a member so far.
+#[derive(Debug, Default)]
+pub(super) struct Member {
+    crc: Crc,
+    has_head: bool,
+}
+
+impl Member {
+    /// Returns the bytes of the next frame as they stand in the file, and the member with it.
+    pub(super) fn packed(&self, bytes: &[u8]) -> io::Result<(Vec<u8>, Self)> {
+        let head: &[u8] = if self.has_head { &[] } else { &HEAD };
+        let mut encoder = DeflateEncoder::new(head.to_vec(), Compression::default());
+        encoder.write_all(bytes)?;
+        encoder.flush()?;
+        // The encoder would end the stream if it were finished.
+        Ok((encoder.get_ref().clone(), self.with(bytes)))
+    }
+
+    /// Returns the ending of the member.
+    pub(super) fn ending(&self) -> Vec<u8> {
+        let (sum, amount) = (self.crc.sum().to_le_bytes(), self.crc.amount().to_le_bytes());
+        [LAST_BLOCK.as_slice(), &sum, &amount].concat()
+    }
+
+    fn with(&self, bytes: &[u8]) -> Self {
+        let mut crc = Crc::new();
+        crc.combine(&self.crc);
+        crc.update(bytes);
+        Self { crc, has_head: true }
+    }
+}
+
+/// Finds the whole frames of a file, and makes the member that which they are.
+///
+/// Wherever the bytes of a sync flush stand, and only there, a frame may end. It does if all before it is one
+/// frame of the format.
+pub(super) fn frames(
+    member: &mut Member,
+    input: &mut impl BufRead,
+    format: &dyn Format,
+) -> io::Result<Frames> {
+    let mut frames = Frames::default();
+    let mut piece = vec![0; HEAD.len()];
+    input.read_exact(&mut piece)?;
+    if piece != HEAD {
+        return Err(no_frame("the head of a compressed file of granular-edmd", "another"));
+    }
+    let (mut end, mut packed, mut bytes) = (HEAD.len() as u64, Vec::new(), Vec::new());
+    let mut inflater = Decompress::new(false);
+    loop {
+        let start = packed.len();
+        if input.read_until(FLUSHED[3], &mut packed)? == 0 {
+            return Ok(frames);
+        }
+        if !inflate(&mut inflater, &packed[start..], &mut bytes) {
+            return Ok(frames);
+        }
+        let mut rest = bytes.as_slice();
+        if packed.ends_with(&FLUSHED)
+            && let Ok(Some(time)) = format.skip_frame(&mut rest)
+            && rest.is_empty()
+        {
+            end += packed.len() as u64;
+            frames.add(time, &bytes, end)?;
+            *member = member.with(&bytes);
+            packed.clear();
+            bytes.clear();
+            inflater.reset(false);
+        }
+    }
+}
+
+/// Adds what some bytes of a stream become, and tells whether the stream goes on.
+fn inflate(inflater: &mut Decompress, mut packed: &[u8], bytes: &mut Vec<u8>) -> bool {
+    loop {
+        bytes.reserve(4 * packed.len() + 1024);
+        let before = (inflater.total_in(), inflater.total_out());
+        match inflater.decompress_vec(packed, bytes, FlushDecompress::None) {
+            Ok(Status::Ok | Status::BufError) => {}
+            Ok(Status::StreamEnd) | Err(_) => return false,
+        }
+        packed = &packed[(inflater.total_in() - before.0) as usize..];
+        let is_stuck = before == (inflater.total_in(), inflater.total_out());
+        if is_stuck || (packed.is_empty() && bytes.len() < bytes.capacity()) {
+            return packed.is_empty();
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Data files of LAMMPS, so that one state runs in both codes.
+
+mod header;
+mod read;
+
+use std::f64::consts::PI;
+use std::io::{self, Write};
+
+use super::extended_xyz::{shown_depth, shown_top};
+use super::state::State;
+use crate::Disk;
+use crate::boundary::Domain;
+
+impl State {
+    /// Writes a data file of LAMMPS with `atom_style sphere`, for its `read_data`.
+    ///
+    /// The file has the box, the diameters, densities, positions, images, velocities and angular velocities.
+    /// An atom's type is the number of its [`Kind`](crate::Kind) and 1. LAMMPS takes the density as that of a
+    /// sphere, `ρ = 3m / 4πR³`. An open box ends above the highest disk, and a state without a box gets one
+    /// around the disks. The format has no place for angles, inertia factors, periodic directions and walls.
+    ///
+    /// [`from_lammps_data`](Self::from_lammps_data) reads it back to the same bits, except that a mass may
+    /// differ by one rounding.
+    ///
+    /// # Errors
+    /// If the writer fails.
+    pub fn write_lammps_data(&self, mut out: impl Write) -> io::Result<()> {
+        let disks = &self.disks;
+        let domain = self.domain.unwrap_or_else(|| around(disks));
+        let (top, half) = (shown_top(&domain, disks), 0.5 * shown_depth(disks));
+        let types = disks.iter().map(|disk| u32::from(disk.kind().number()) + 1).max().unwrap_or(1);
+        write!(out, "LAMMPS data file, atom_style sphere, written by granular-edmd")?;
+        self.time.map_or(Ok(()), |time| write!(out, ", time = {time:?}"))?;
+        writeln!(out, "\n\n{} atoms\n{types} atom types\n", disks.len())?;
+        writeln!(out, "{:?} {:?} xlo xhi\n{:?} {top:?} ylo yhi", domain.left, domain.right, domain.bottom)?;
+        writeln!(out, "{:?} {half:?} zlo zhi", -half)?;
+        if !disks.is_empty() {
+            writeln!(out, "\nAtoms # sphere\n")?;
+            disks.iter().zip(1_usize..).try_for_each(|(disk, id)| write_atom(&mut out, id, disk))?;
+            writeln!(out, "\nVelocities\n")?;
+            disks.iter().zip(1_usize..).try_for_each(|(disk, id)| write_velocity(&mut out, id, disk))?;
+        }
+        out.flush()
+    }
+}
+
+fn write_atom(out: &mut impl Write, id: usize, disk: &Disk) -> io::Result<()> {
+    let (position, [right, up]) = (disk.position(), disk.image());
+    let (kind, diameter) = (u32::from(disk.kind().number()) + 1, 2.0 * disk.radius());
+    let density = density(disk.mass(), disk.radius());
+    writeln!(out, "{id} {kind} {diameter:?} {density:?} {:?} {:?} 0.0 {right} {up} 0", position.x, position.y)
+}
+
+fn write_velocity(out: &mut impl Write, id: usize, disk: &Disk) -> io::Result<()> {
+    let (velocity, turning) = (disk.velocity(), disk.angular_velocity());
+    writeln!(out, "{id} {:?} {:?} 0.0 0.0 0.0 {turning:?}", velocity.x, velocity.y)
+}
+
+/// Returns the mass of a sphere, in the order of operations that LAMMPS has.
+fn mass(density: f64, radius: f64) -> f64 {
+    4.0 * PI / 3.0 * radius * radius * radius * density
+}
+
+/// Returns the density of a sphere of this mass: of the neighboring numbers one that gives the mass back, if
+/// there is one.
+fn density(mass: f64, radius: f64) -> f64 {
+    let density = mass / self::mass(1.0, radius);
+    let near = [density, density.next_up(), density.next_down()];
+    near.into_iter().find(|&density| self::mass(density, radius) == mass).unwrap_or(density)
+}
+
+/// Returns the rectangle around these disks.
+fn around(disks: &[Disk]) -> Domain {
+    let end = |value: fn(&Disk) -> f64| disks.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
+    if disks.is_empty() {
+        return Domain::new(0.0, 1.0, 0.0, 1.0);
+    }
+    Domain::new(
+        -end(|disk| disk.radius() - disk.position().x),
+        end(|disk| disk.radius() + disk.position().x),
+        -end(|disk| disk.radius() - disk.position().y),
+        end(|disk| disk.radius() + disk.position().y),
+    )
+}

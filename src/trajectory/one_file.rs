@@ -1,0 +1,183 @@
+//! Frames one after another in one file, which may be compressed.
+
+use std::fs::File;
+use std::hash::{DefaultHasher, Hasher};
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+use super::errors::RecordError;
+use super::format::{Format, no_frame};
+#[cfg(feature = "gzip")]
+use super::gzip::{self, Member};
+use super::media::{self, Growing};
+use super::open::is_gzip;
+use super::store::Store;
+use crate::observable::Snapshot;
+
+/// Frames in one file.
+#[derive(Debug)]
+pub(super) struct OneFile {
+    path: PathBuf,
+    file: Growing<File>,
+    packing: Packing,
+    frames: Frames,
+}
+
+/// The way in which frames become bytes of the file.
+#[derive(Debug)]
+enum Packing {
+    Plain,
+    #[cfg(feature = "gzip")]
+    Gzip(Member),
+}
+
+/// The whole frames of a file: their times, digests of their bytes, and the end of the last one.
+#[derive(Debug, Default)]
+pub(super) struct Frames {
+    times: Vec<f64>,
+    digests: Vec<u64>,
+    end: u64,
+}
+
+impl OneFile {
+    /// Begins a new file.
+    pub(super) fn create(path: &Path) -> Result<Self, RecordError> {
+        let packing = Packing::of(path)?;
+        let file = Growing::new(media::create(path)?, 0);
+        Ok(Self { path: path.to_owned(), file, packing, frames: Frames::default() })
+    }
+
+    /// Goes on after the last whole frame of a file.
+    pub(super) fn reopen(path: &Path, format: &dyn Format) -> Result<Self, RecordError> {
+        let mut packing = Packing::of(path)?;
+        let file = media::reopen(path)?;
+        let frames = packing.frames(&mut BufReader::new(&file), format);
+        let frames = frames.map_err(RecordError::io("go on in", path))?;
+        if frames.times.is_empty() {
+            return Err(RecordError::NoFrame { path: path.to_owned() });
+        }
+        Ok(Self { path: path.to_owned(), file: Growing::new(file, frames.end), packing, frames })
+    }
+
+    fn push(&mut self, bytes: &[u8]) -> io::Result<()> {
+        match &mut self.packing {
+            Packing::Plain => self.file.push(bytes, &[]),
+            #[cfg(feature = "gzip")]
+            Packing::Gzip(member) => {
+                let (piece, longer) = member.packed(bytes)?;
+                self.file.push(&piece, &longer.ending())?;
+                *member = longer;
+                Ok(())
+            }
+        }
+    }
+}
+
+impl Store for OneFile {
+    fn times(&self) -> &[f64] {
+        &self.frames.times
+    }
+
+    fn append(&mut self, snapshot: &Snapshot<'_>, bytes: &[u8]) -> Result<(), RecordError> {
+        self.push(bytes).map_err(RecordError::io("write to", &self.path))?;
+        self.frames.push(snapshot.time(), bytes, self.file.length());
+        Ok(())
+    }
+
+    fn has(&mut self, number: usize, bytes: &[u8]) -> Result<bool, RecordError> {
+        Ok(self.frames.digests.get(number) == Some(&digest(bytes)))
+    }
+
+    fn sync(&mut self) -> Result<(), RecordError> {
+        self.file.medium().sync_all().map_err(RecordError::io("write to", &self.path))
+    }
+
+    fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Packing {
+    /// Returns the packing that the name of a file asks for.
+    fn of(path: &Path) -> Result<Self, RecordError> {
+        if !is_gzip(path) {
+            return Ok(Self::Plain);
+        }
+        #[cfg(feature = "gzip")]
+        return Ok(Self::Gzip(Member::default()));
+        #[cfg(not(feature = "gzip"))]
+        return Err(RecordError::Gzip { path: path.to_owned() });
+    }
+
+    /// Finds the whole frames of a file.
+    fn frames(&mut self, input: &mut impl BufRead, format: &dyn Format) -> io::Result<Frames> {
+        match self {
+            Self::Plain => plain_frames(input, format),
+            #[cfg(feature = "gzip")]
+            Self::Gzip(member) => gzip::frames(member, input, format),
+        }
+    }
+}
+
+impl Frames {
+    fn push(&mut self, time: f64, bytes: &[u8], end: u64) {
+        self.times.push(time);
+        self.digests.push(digest(bytes));
+        self.end = end;
+    }
+
+    /// Adds a frame that was found in a file.
+    pub(super) fn add(&mut self, time: f64, bytes: &[u8], end: u64) -> io::Result<()> {
+        if self.times.last().is_some_and(|&last| last >= time) || time.is_nan() {
+            return Err(no_frame("a frame after the one before", &format!("time {time:?}")));
+        }
+        self.push(time, bytes, end);
+        Ok(())
+    }
+}
+
+/// Returns a number that differs for other bytes, for comparisons within one process.
+fn digest(bytes: &[u8]) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    hasher.write(bytes);
+    hasher.finish()
+}
+
+fn plain_frames(input: &mut impl BufRead, format: &dyn Format) -> io::Result<Frames> {
+    let mut frames = Frames::default();
+    let mut input = Copied { input, taken: Vec::new() };
+    while !input.fill_buf()?.is_empty() {
+        input.taken.clear();
+        let Some(time) = format.skip_frame(&mut input)? else { break };
+        let end = frames.end + input.taken.len() as u64;
+        frames.add(time, &input.taken, end)?;
+    }
+    Ok(frames)
+}
+
+/// A reader that keeps a copy of what was taken from it.
+struct Copied<'a, R> {
+    input: &'a mut R,
+    taken: Vec<u8>,
+}
+
+impl<R: BufRead> Read for Copied<'_, R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.input.read(buffer)?;
+        self.taken.extend(&buffer[..count]);
+        Ok(count)
+    }
+}
+
+impl<R: BufRead> BufRead for Copied<'_, R> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        self.input.fill_buf()
+    }
+
+    fn consume(&mut self, amount: usize) {
+        if let Ok(bytes) = self.input.fill_buf() {
+            self.taken.extend(&bytes[..amount.min(bytes.len())]);
+        }
+        self.input.consume(amount);
+    }
+}

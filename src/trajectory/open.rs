@@ -1,0 +1,36 @@
+//! Files to read from.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use super::errors::ReadError;
+
+/// Opens a file for the readers of this module. It is decompressed if its name ends in `.gz`, with the
+/// feature `gzip`.
+///
+/// ```
+/// use granular_edmd::trajectory::open;
+/// let error = open("there/is/no.xyz").err().unwrap();
+/// assert_eq!(error.to_string(), "cannot open there/is/no.xyz");
+/// ```
+///
+/// # Errors
+/// If the file cannot be opened, or is compressed and this program lacks the feature.
+pub fn open(path: impl AsRef<Path>) -> Result<Box<dyn BufRead>, ReadError> {
+    let path = path.as_ref();
+    let failed = |source| ReadError::Open { path: path.to_owned(), source };
+    let file = BufReader::new(File::open(path).map_err(failed)?);
+    if !is_gzip(path) {
+        return Ok(Box::new(file));
+    }
+    #[cfg(feature = "gzip")]
+    return Ok(Box::new(BufReader::new(flate2::bufread::MultiGzDecoder::new(file))));
+    #[cfg(not(feature = "gzip"))]
+    return Err(failed(std::io::Error::other("it is compressed, which needs the feature `gzip`")));
+}
+
+/// Tells whether a file is compressed, by its name.
+pub(super) fn is_gzip(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "gz")
+}

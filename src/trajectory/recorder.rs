@@ -1,0 +1,208 @@
+//! The observer that records a run.
+
+use std::fmt;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use super::errors::RecordError;
+use super::format::{Format, Frame};
+use super::one_file::OneFile;
+use super::store::Store;
+use super::vtk::{PolyData, Series};
+use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
+
+/// An observer that writes a frame to a file at set times.
+///
+/// Each frame is made whole in memory, then written. If that fails, because the disk is full, for example,
+/// the run ends with the error ([`verdict`](Observer::verdict)), and the file ends with its last whole frame.
+/// A run that goes on later takes the frame that was missed.
+///
+/// # To go on in a file
+/// After a kill, resume the run from its checkpoint and [`append`](Self::append). The frames that were
+/// written after the checkpoint come again, with the same bits: they are compared with those in the file and
+/// not written twice. If they differ, the file is of another run, and the error says so. The rest of a frame
+/// in whose middle the process died is cut off by the next frame.
+///
+/// Times of frames increase. No two recorders write to one file at a time, where the system has locks.
+///
+/// ```
+/// use granular_edmd::prelude::*;
+/// use granular_edmd::trajectory::{LammpsDump, Recorder};
+///
+/// # let folder = std::env::temp_dir().join(format!("granular-edmd-recorder-{}", std::process::id()));
+/// # std::fs::create_dir_all(&folder)?;
+/// # let path = folder.join("run.dump");
+/// let disk = Disk::new(DVec2::new(2.0, 1.0), 0.5)?.with_velocity(DVec2::X)?;
+/// let mut run = Simulation::builder(Elastic, Container::open(4.0)?).disks([disk]).build()?;
+/// let times = SampleTimes::every(1.0)?;
+/// let mut recorder = Recorder::create(&path, LammpsDump, times)?;
+/// run.run_until(3.0, &mut recorder)?;
+/// assert!(Recorder::create(&path, LammpsDump, times).is_err(), "nothing is overwritten");
+///
+/// drop(recorder);
+/// let mut recorder = Recorder::append(&path, LammpsDump, times)?;
+/// run.run_until(5.0, &mut recorder)?;
+/// assert_eq!(recorder.times(), [1.0, 2.0, 3.0, 4.0, 5.0]);
+/// # std::fs::remove_dir_all(&folder)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Recorder {
+    clock: SampleTimes,
+    format: Box<dyn Format + Send + Sync>,
+    store: Box<dyn Store + Send + Sync>,
+    /// Bytes of the present frame.
+    bytes: Vec<u8>,
+    failure: Option<RecordError>,
+    /// The clock before a frame that failed: a run which goes on takes it.
+    before_failure: Option<SampleTimes>,
+}
+
+/// Files.
+impl Recorder {
+    /// Begins a new file. It is compressed if its name ends in `.gz`, with the feature `gzip`.
+    ///
+    /// # Errors
+    /// If there is a file of this name, or it cannot be made.
+    pub fn create(
+        path: impl AsRef<Path>,
+        format: impl Format + Send + Sync + 'static,
+        times: SampleTimes,
+    ) -> Result<Self, RecordError> {
+        Ok(Self::new(format, OneFile::create(path.as_ref())?, times))
+    }
+
+    /// Goes on in a file that [`create`](Self::create) began. The whole file is read once.
+    ///
+    /// # Errors
+    /// If the file cannot be opened, is not of this format, or has no whole frame. It is then left as it is.
+    pub fn append(
+        path: impl AsRef<Path>,
+        format: impl Format + Send + Sync + 'static,
+        times: SampleTimes,
+    ) -> Result<Self, RecordError> {
+        let store = OneFile::reopen(path.as_ref(), &format)?;
+        Ok(Self::new(format, store, times))
+    }
+
+    /// Begins a series of files for ParaView: `run.pvd` has the times, and the new folder `run` beside it the
+    /// disks and the edges of the box for each frame, as [`State::write_vtk`](super::State::write_vtk) writes them.
+    ///
+    /// # Errors
+    /// If the path does not end in `.pvd`, there is a file or a folder of these names, or they cannot be
+    /// made.
+    pub fn create_vtk(path: impl AsRef<Path>, times: SampleTimes) -> Result<Self, RecordError> {
+        Ok(Self::new(PolyData, Series::create(path.as_ref())?, times))
+    }
+
+    /// Goes on in a series that [`create_vtk`](Self::create_vtk) began.
+    ///
+    /// # Errors
+    /// If the files cannot be opened, or are not such a series. They are then left as they are.
+    pub fn append_vtk(path: impl AsRef<Path>, times: SampleTimes) -> Result<Self, RecordError> {
+        Ok(Self::new(PolyData, Series::reopen(path.as_ref())?, times))
+    }
+
+    fn new(
+        format: impl Format + Send + Sync + 'static,
+        store: impl Store + Send + Sync + 'static,
+        clock: SampleTimes,
+    ) -> Self {
+        Self {
+            clock,
+            format: Box::new(format),
+            store: Box::new(store),
+            bytes: Vec::new(),
+            failure: None,
+            before_failure: None,
+        }
+    }
+}
+
+/// Frames.
+impl Recorder {
+    /// Returns the times of the frames in the file.
+    pub fn times(&self) -> &[f64] {
+        self.store.times()
+    }
+
+    /// Records a frame now, such as the state before a run: a run takes its first frame after one interval.
+    ///
+    /// # Errors
+    /// If the frame cannot be written, or the file has another frame at this time or later.
+    pub fn record(&mut self, snapshot: &Snapshot<'_>) -> Result<(), RecordError> {
+        let time = snapshot.time();
+        let last = self.times().last().copied();
+        match last.filter(|&last| time <= last) {
+            Some(last) => self.compare(snapshot, last),
+            None => {
+                self.write_frame(self.times().len(), snapshot)?;
+                self.store.append(snapshot, &self.bytes)
+            }
+        }
+    }
+
+    /// Checks that the file has this frame.
+    fn compare(&mut self, snapshot: &Snapshot<'_>, last: f64) -> Result<(), RecordError> {
+        let time = snapshot.time();
+        let number = self.times().binary_search_by(|other| other.total_cmp(&time));
+        let is_same = match number {
+            Ok(number) => {
+                self.write_frame(number, snapshot)?;
+                self.store.has(number, &self.bytes)?
+            }
+            Err(_) => false,
+        };
+        if is_same {
+            return Ok(());
+        }
+        let (path, is_there) = (self.store.path().to_owned(), number.is_ok());
+        Err(RecordError::AnotherRun { path, time, last, is_there })
+    }
+
+    /// Makes the bytes of a frame.
+    fn write_frame(&mut self, number: usize, snapshot: &Snapshot<'_>) -> Result<(), RecordError> {
+        self.bytes.clear();
+        let made = self.format.write_frame(&Frame::new(number, *snapshot), &mut self.bytes);
+        made.map_err(RecordError::io("make a frame of", self.store.path()))
+    }
+}
+
+impl Observer for Recorder {
+    fn on_start(&mut self, moment: &Moment) {
+        self.clock = self.before_failure.take().unwrap_or(self.clock);
+        self.clock.start_at(moment.time());
+    }
+
+    fn next_sample(&self) -> f64 {
+        self.clock.upcoming()
+    }
+
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        if let Err(error) = self.record(snapshot) {
+            self.failure = Some(error);
+            self.before_failure = Some(self.clock);
+        }
+        self.clock.advance_past(snapshot.time());
+    }
+
+    fn on_end(&mut self, _: &Moment) {
+        if self.failure.is_none() {
+            self.failure = self.store.sync().err();
+        }
+    }
+
+    #[inline]
+    fn verdict(&mut self) -> Verdict {
+        match self.failure.take() {
+            None => Ok(ControlFlow::Continue(())),
+            Some(error) => Err(error.into()),
+        }
+    }
+}
+
+impl fmt::Debug for Recorder {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut debug = formatter.debug_struct("Recorder");
+        debug.field("path", &self.store.path()).field("frames", &self.times().len()).finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,24 @@
+//! Places for frames, one after another.
+
+use std::path::Path;
+
+use super::errors::RecordError;
+use crate::observable::Snapshot;
+
+/// A place for the bytes of frames, one after another. What was stored is whole, whatever happens later.
+pub(super) trait Store {
+    /// Returns the times of the frames, which increase.
+    fn times(&self) -> &[f64];
+
+    /// Adds a frame. If that fails, the store is as before.
+    fn append(&mut self, snapshot: &Snapshot<'_>, bytes: &[u8]) -> Result<(), RecordError>;
+
+    /// Tells whether the frame of this number has these bytes.
+    fn has(&mut self, number: usize, bytes: &[u8]) -> Result<bool, RecordError>;
+
+    /// Waits until the system has stored everything.
+    fn sync(&mut self) -> Result<(), RecordError>;
+
+    /// Returns the path, for messages.
+    fn path(&self) -> &Path;
+}

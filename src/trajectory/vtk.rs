@@ -1,0 +1,115 @@
+//! Disks as VTK's `PolyData`, for ParaView.
+
+mod array;
+mod series;
+
+pub(super) use series::Series;
+
+use std::io::{self, Write};
+
+use glam::DVec2;
+
+use self::array::{write_array, write_numbers};
+use super::extended_xyz::shown_top;
+use super::format::{Format, Frame};
+use super::state::State;
+use crate::Disk;
+use crate::boundary::Domain;
+
+/// The format of a frame in a file of its own. It does not leave this module, since a recorder of one file
+/// would write one such file after another.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PolyData;
+
+impl Format for PolyData {
+    fn write_frame(&self, frame: &Frame<'_>, out: &mut dyn Write) -> io::Result<()> {
+        let snapshot = frame.snapshot();
+        write_disks(out, snapshot.disks(), Some(&snapshot.domain()), Some(snapshot.time()))
+    }
+}
+
+impl State {
+    /// Writes the disks as VTK's `PolyData`, a `.vtp` file for ParaView: a point for each disk.
+    ///
+    /// The arrays are `id` (from 1), `kind`, `velocity`, `angle`, `angular_velocity`, `radius`, `mass`,
+    /// `inertia_factor`, `image` and `unwrapped` (position), and `TimeValue` of the whole. Numbers are in
+    /// binary. [`Recorder::create_vtk`](super::Recorder::create_vtk) makes a series of such files. In
+    /// ParaView, the filter Glyph shows disks: a sphere of radius 1, scaled by the array `radius`.
+    ///
+    /// # Errors
+    /// If the writer fails.
+    pub fn write_vtk(&self, mut out: impl Write) -> io::Result<()> {
+        write_disks(&mut out, &self.disks, self.domain.as_ref(), self.time)?;
+        out.flush()
+    }
+}
+
+const HEAD: &str = "<?xml version=\"1.0\"?>\n\
+    <VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n";
+const TAIL: &str = "</Piece>\n</PolyData>\n</VTKFile>\n";
+
+fn write_disks(
+    out: &mut dyn Write,
+    disks: &[Disk],
+    domain: Option<&Domain>,
+    time: Option<f64>,
+) -> io::Result<()> {
+    out.write_all(HEAD.as_bytes())?;
+    write_time(out, time)?;
+    let count = disks.len();
+    writeln!(out, "<Piece NumberOfPoints=\"{count}\" NumberOfVerts=\"{count}\">\n<PointData>")?;
+    let whole = |of: fn(&Disk) -> i64| disks.iter().map(of);
+    let number = |of: fn(&Disk) -> f64| disks.iter().map(of);
+    write_array(out, "Int64", "id", 1, 1..=count as i64)?;
+    write_array(out, "Int64", "kind", 1, whole(|disk| disk.kind().number().into()))?;
+    write_numbers(out, "velocity", 3, disks.iter().flat_map(|disk| in_space(disk.velocity())))?;
+    write_numbers(out, "angle", 1, number(Disk::angle))?;
+    write_numbers(out, "angular_velocity", 1, number(Disk::angular_velocity))?;
+    write_numbers(out, "radius", 1, number(Disk::radius))?;
+    write_numbers(out, "mass", 1, number(Disk::mass))?;
+    write_numbers(out, "inertia_factor", 1, number(Disk::inertia_factor))?;
+    let images = disks.iter().flat_map(|disk| disk.image().map(i64::from));
+    write_array(out, "Int64", "image", 2, images)?;
+    let unwrapped = |disk| domain.map_or(Disk::position(disk), |domain| domain.unwrapped(disk));
+    write_numbers(out, "unwrapped", 3, disks.iter().flat_map(|disk| in_space(unwrapped(disk))))?;
+    out.write_all(b"</PointData>\n<Points>\n")?;
+    write_numbers(out, "Points", 3, disks.iter().flat_map(|disk| in_space(disk.position())))?;
+    out.write_all(b"</Points>\n<Verts>\n")?;
+    write_array(out, "Int64", "connectivity", 1, 0..count as i64)?;
+    write_array(out, "Int64", "offsets", 1, 1..=count as i64)?;
+    out.write_all(b"</Verts>\n")?;
+    out.write_all(TAIL.as_bytes())
+}
+
+/// Writes the edges of the box as lines: `periodic` is 1 for those that are no walls. An open box has no lid.
+fn write_box(out: &mut dyn Write, domain: &Domain, disks: &[Disk], time: f64) -> io::Result<()> {
+    let Domain { left, right, bottom, .. } = *domain;
+    let top = shown_top(domain, disks);
+    let corners = [(left, top), (left, bottom), (right, bottom), (right, top)].map(DVec2::from);
+    let lines = if domain.top.is_finite() { 4 } else { 3 };
+    out.write_all(HEAD.as_bytes())?;
+    write_time(out, Some(time))?;
+    writeln!(out, "<Piece NumberOfPoints=\"4\" NumberOfLines=\"{lines}\">\n<CellData>")?;
+    let periodic = [domain.periodic_sides, domain.periodic_ends].map(i64::from);
+    write_array(out, "Int64", "periodic", 1, periodic.into_iter().cycle().take(lines))?;
+    out.write_all(b"</CellData>\n<Points>\n")?;
+    write_numbers(out, "Points", 3, corners.into_iter().flat_map(in_space))?;
+    out.write_all(b"</Points>\n<Lines>\n")?;
+    let ends = (0..lines as i64).flat_map(|line| [line, (line + 1) % 4]);
+    write_array(out, "Int64", "connectivity", 1, ends)?;
+    write_array(out, "Int64", "offsets", 1, (1..=lines as i64).map(|line| 2 * line))?;
+    out.write_all(b"</Lines>\n")?;
+    out.write_all(TAIL.as_bytes())
+}
+
+fn write_time(out: &mut dyn Write, time: Option<f64>) -> io::Result<()> {
+    let Some(time) = time else { return Ok(()) };
+    out.write_all(b"<FieldData>\n")?;
+    array::write_field(out, "TimeValue", time)?;
+    out.write_all(b"</FieldData>\n")
+}
+
+/// Returns the components of a vector in space.
+fn in_space(vector: DVec2) -> [f64; 3] {
+    [vector.x, vector.y, 0.0]
+}

@@ -1,0 +1,90 @@
+//! Arrays of numbers in VTK's XML: base64 of their length and their bytes.
+
+use std::io::{self, Write};
+
+/// A number as eight bytes.
+pub(super) trait Eight {
+    fn bytes(self) -> [u8; 8];
+}
+
+impl Eight for f64 {
+    fn bytes(self) -> [u8; 8] {
+        self.to_le_bytes()
+    }
+}
+
+impl Eight for i64 {
+    fn bytes(self) -> [u8; 8] {
+        self.to_le_bytes()
+    }
+}
+
+/// Writes an array of floating-point numbers.
+pub(super) fn write_numbers(
+    out: &mut dyn Write,
+    name: &str,
+    components: usize,
+    numbers: impl Iterator<Item = f64>,
+) -> io::Result<()> {
+    write_array(out, "Float64", name, components, numbers)
+}
+
+/// Writes an array of numbers of this type.
+pub(super) fn write_array<T: Eight>(
+    out: &mut dyn Write,
+    kind: &str,
+    name: &str,
+    components: usize,
+    numbers: impl Iterator<Item = T>,
+) -> io::Result<()> {
+    let attributes = format!("NumberOfComponents=\"{components}\"");
+    write_with(out, kind, name, &attributes, numbers)
+}
+
+/// Writes a number that belongs to the whole file.
+pub(super) fn write_field(out: &mut dyn Write, name: &str, number: f64) -> io::Result<()> {
+    write_with(out, "Float64", name, "NumberOfTuples=\"1\"", std::iter::once(number))
+}
+
+fn write_with<T: Eight>(
+    out: &mut dyn Write,
+    kind: &str,
+    name: &str,
+    attributes: &str,
+    numbers: impl Iterator<Item = T>,
+) -> io::Result<()> {
+    let mut bytes = vec![0; 8];
+    numbers.for_each(|number| bytes.extend(number.bytes()));
+    let length = (bytes.len() - 8) as u64;
+    bytes[..8].copy_from_slice(&length.to_le_bytes());
+    write!(out, "<DataArray type=\"{kind}\" Name=\"{name}\" {attributes} format=\"binary\">")?;
+    out.write_all(&base64(&bytes))?;
+    out.write_all(b"</DataArray>\n")
+}
+
+/// Returns the bytes in base64 (RFC 4648).
+fn base64(bytes: &[u8]) -> Vec<u8> {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = Vec::with_capacity(bytes.len().div_ceil(3) * 4);
+    for triple in bytes.chunks(3) {
+        let bits =
+            triple.iter().fold(0_u32, |bits, &byte| bits << 8 | u32::from(byte)) << (8 * (3 - triple.len()));
+        let letters = [18, 12, 6, 0].map(|shift| LETTERS[(bits >> shift & 63) as usize]);
+        text.extend(&letters[..=triple.len()]);
+        text.extend(&b"=="[..3 - triple.len()]);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::base64;
+
+    /// The test vectors of RFC 4648, section 10.
+    #[test]
+    fn base64_is_that_of_the_standard() {
+        let text = ["", "f", "fo", "foo", "foob", "fooba", "foobar"];
+        let coded = ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"];
+        assert_eq!(text.map(|text| base64(text.as_bytes())), coded.map(|coded| coded.as_bytes().to_vec()));
+    }
+}

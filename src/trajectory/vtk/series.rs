@@ -1,0 +1,158 @@
+//! A series of files, and the file of their times.
+
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use super::write_box;
+use crate::observable::Snapshot;
+use crate::trajectory::errors::RecordError;
+use crate::trajectory::media::{self, Growing};
+use crate::trajectory::store::Store;
+
+/// Beginning of the file of times, and its ending after each frame: it is whole at any time.
+const HEAD: &str = "<?xml version=\"1.0\"?>\n\
+    <VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
+const TAIL: &str = "</Collection>\n</VTKFile>\n";
+
+/// Frames in files of their own, in a folder beside the file of times.
+#[derive(Debug)]
+pub(in crate::trajectory) struct Series {
+    path: PathBuf,
+    folder: PathBuf,
+    /// Name of the folder, as it stands in the file of times.
+    name: String,
+    file: Growing<File>,
+    times: Vec<f64>,
+}
+
+impl Series {
+    /// Begins a new series.
+    pub(in crate::trajectory) fn create(path: &Path) -> Result<Self, RecordError> {
+        let (folder, name) = place(path)?;
+        fs::create_dir(&folder).map_err(|error| match error.kind() {
+            io::ErrorKind::AlreadyExists => RecordError::Exists { path: folder.clone() },
+            _ => RecordError::io("create", &folder)(error),
+        })?;
+        let file = media::create(path).inspect_err(|_| {
+            // The folder is new and empty, so nothing is lost.
+            let _ = fs::remove_dir(&folder);
+        });
+        let mut file = Growing::new(file?, 0);
+        file.push(HEAD.as_bytes(), TAIL.as_bytes()).map_err(RecordError::io("write to", path))?;
+        Ok(Self { path: path.to_owned(), folder, name, file, times: Vec::new() })
+    }
+
+    /// Goes on after the last whole frame of a series.
+    pub(in crate::trajectory) fn reopen(path: &Path) -> Result<Self, RecordError> {
+        let (folder, name) = place(path)?;
+        let file = media::reopen(path)?;
+        let text = io::read_to_string(&file).map_err(RecordError::io("read", path))?;
+        let (times, length) = times(&text, &name);
+        if times.is_empty() {
+            return Err(RecordError::NoFrame { path: path.to_owned() });
+        }
+        Ok(Self { path: path.to_owned(), folder, name, file: Growing::new(file, length as u64), times })
+    }
+
+    fn file_of(&self, part: &str, number: usize) -> PathBuf {
+        self.folder.join(file_name(part, number))
+    }
+
+    /// Writes a file of a frame. A killed run may have left it, or its beginning.
+    fn write(&self, part: &str, bytes: &[u8]) -> Result<(), RecordError> {
+        let path = self.file_of(part, self.times.len());
+        let file = match fs::read(&path) {
+            Ok(there) if there == bytes => return Ok(()),
+            Ok(there) if bytes.starts_with(&there) => File::create(&path),
+            Ok(_) => return Err(RecordError::Exists { path }),
+            Err(_) => File::create_new(&path),
+        };
+        let mut file = file.map_err(RecordError::io("create", &path))?;
+        file.write_all(bytes).map_err(|error| {
+            // Its beginning would be no harm, but takes room on a full disk.
+            let _ = fs::remove_file(&path);
+            RecordError::io("write to", &path)(error)
+        })
+    }
+}
+
+impl Store for Series {
+    fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    fn append(&mut self, snapshot: &Snapshot<'_>, bytes: &[u8]) -> Result<(), RecordError> {
+        let mut edges = Vec::new();
+        let made = write_box(&mut edges, &snapshot.domain(), snapshot.disks(), snapshot.time());
+        made.map_err(RecordError::io("make a frame of", &self.path))?;
+        self.write("disks", bytes)?;
+        self.write("box", &edges)?;
+        let entry = entry(&self.name, self.times.len(), snapshot.time());
+        let pushed = self.file.push(entry.as_bytes(), TAIL.as_bytes());
+        pushed.map_err(RecordError::io("write to", &self.path))?;
+        self.times.push(snapshot.time());
+        Ok(())
+    }
+
+    fn has(&mut self, number: usize, bytes: &[u8]) -> Result<bool, RecordError> {
+        let path = self.file_of("disks", number);
+        Ok(fs::read(&path).map_err(RecordError::io("read", &path))? == bytes)
+    }
+
+    fn sync(&mut self) -> Result<(), RecordError> {
+        self.file.medium().sync_all().map_err(RecordError::io("write to", &self.path))
+    }
+
+    fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+/// Returns the folder of the frames, and its name in the file of times.
+fn place(path: &Path) -> Result<(PathBuf, String), RecordError> {
+    let name = path.file_stem().and_then(|name| name.to_str());
+    match name.filter(|_| path.extension().is_some_and(|ending| ending == "pvd")) {
+        Some(name) => Ok((path.with_extension(""), escaped(name))),
+        None => {
+            let reason = "the name must be of Unicode letters and end in .pvd";
+            Err(RecordError::io("use", path)(io::Error::new(io::ErrorKind::InvalidInput, reason)))
+        }
+    }
+}
+
+fn file_name(part: &str, number: usize) -> String {
+    format!("{part}_{number:06}.vtp")
+}
+
+/// Returns the lines of a frame in the file of times.
+fn entry(folder: &str, number: usize, time: f64) -> String {
+    let line = |index: usize, part: &str| {
+        let file = file_name(part, number);
+        format!(
+            "<DataSet timestep=\"{time:?}\" part=\"{index}\" name=\"{part}\" file=\"{folder}/{file}\"/>\n"
+        )
+    };
+    line(0, "disks") + &line(1, "box")
+}
+
+/// Returns the times of the whole frames in a file of times, and the length of the text up to the last one.
+fn times(text: &str, folder: &str) -> (Vec<f64>, usize) {
+    let (mut times, mut length) = (Vec::new(), HEAD.len());
+    let Some(mut rest) = text.strip_prefix(HEAD) else { return (times, 0) };
+    loop {
+        let quoted = rest.strip_prefix("<DataSet timestep=\"").and_then(|rest| rest.split_once('"'));
+        let Some(time) = quoted.and_then(|(time, _)| time.parse().ok()) else { break };
+        let entry = entry(folder, times.len(), time);
+        let Some(after) = rest.strip_prefix(entry.as_str()) else { break };
+        times.push(time);
+        length += entry.len();
+        rest = after;
+    }
+    (times, length)
+}
+
+/// Returns a text as it stands in XML.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

@@ -1,0 +1,135 @@
+//! Every fault of a file, with its line and its value.
+
+use granular_edmd::trajectory::{ReadError, State, XyzFrames};
+
+use crate::report::report;
+
+#[track_caller]
+fn assert_told<T: std::fmt::Debug>(read: Result<T, ReadError>, expected: &str) {
+    assert_eq!(report(&read.unwrap_err()), expected);
+}
+
+#[test]
+fn faults_of_tables() {
+    let cases = [
+        ("", "the file ends after line 0, where the names of the columns should follow"),
+        ("x,y\n", "line 1: the column `radius` is missing"),
+        ("x,y,radius,x\n", "line 1: the column `x` stands in line 1 already"),
+        ("x,y,radius\n1,2,0.5\n\n1,zwei,0.5\n", "line 4: y must be a number, but is \"zwei\""),
+        ("x,y,radius\n1,2\n", "line 2: a value of `radius` is missing"),
+        ("x,y,radius\n1,2,0.5,9\n", "line 2: the line must be of 3 columns, but is \"more\""),
+        ("x,y,radius\n1,2,-0.5\n", "line 2 is no disk: radius must be finite and positive, but is -0.5"),
+        (
+            "x,y,radius\n1,inf,0.5\n",
+            "line 2 is no disk: position must be finite and at most 1e60 in magnitude, but is inf",
+        ),
+        (
+            "x,y,radius,kind\n1,2,0.5,-1\n",
+            "line 2: kind must be a whole number that fits into u16, but is \"-1\"",
+        ),
+        ("x,y,radius,id\n1,2,0.5,4\n3,2,0.5,3\n5,2,0.5,4\n", "line 4: the disk 4 stands in line 2 already"),
+        ("x,y,radius\n1,2,0.5\n8,2,1\n1.75,2,0.5\n", "line 4: the disk overlaps that of line 2 by 0.25"),
+    ];
+    for (text, expected) in cases {
+        assert_told(State::from_csv(text.as_bytes()), expected);
+    }
+    assert_eq!(
+        report(&State::from_csv(&b"x,y,\xff\n"[..]).unwrap_err()),
+        "cannot read line 1: stream did not contain valid UTF-8"
+    );
+}
+
+#[test]
+fn faults_of_extended_xyz() {
+    let keys = "Lattice=\"10 0 0 0 10 0 0 0 1\" Properties=id:I:1:pos:R:3:radius:R:1";
+    let told = |text: &str, expected: &str| assert_told(State::from_xyz(text.as_bytes()), expected);
+    told("", "the file ends after line 0, where a frame should follow");
+    told("two\n", "line 1: the first line of a frame must be the number of its disks, but is \"two\"");
+    told("1\n", "the file ends after line 1, where the keys of a frame should follow");
+    told("1\nTime=1\n1 1 0 1\n", "line 2: `Properties` is missing");
+    told("1\nProperties=pos:R:3\n1 1 0\n", "line 2: the column `radius` is missing");
+    told(
+        "1\nProperties=pos:R\n",
+        "line 2: each of `Properties` must be a name, a type and a number, but is \"pos:R\"",
+    );
+    told(&format!("2\n{keys}\n1 1 1 0 0.5\n"), "the file ends after line 3, where disk 2 of 2 should follow");
+    told(
+        &format!("1\n{keys}\n1 1 1 2 0.5\n"),
+        "line 3: the third component must be 0, for disks lie in a plane, but is \"2\"",
+    );
+    told(&format!("1\n{keys}\n1 1 11 0 0.5\n"), "line 3: the disk at (1, 11) is outside of the box");
+    told(
+        &format!("2\n{keys}\n1 1 1 0 0.5\n2 1 1.5 0 0.5\n"),
+        "line 4: the disk overlaps that of line 3 by 0.5",
+    );
+    // The disks of a periodic box meet across its sides.
+    let disks = "2\n{}\n1 0.25 1 0 0.5\n2 9.75 1 0 0.5\n";
+    State::from_xyz(disks.replace("{}", keys).as_bytes()).unwrap();
+    told(
+        &disks.replace("{}", &format!("{keys} pbc=\"T F F\"")),
+        "line 4: the disk overlaps that of line 3 by 0.5",
+    );
+    told(&format!("0\n{keys} pbc=\"T F\"\n"), "line 2: pbc must be three letters T or F, but is \"T F\"");
+    told(&format!("0\n{keys} Time=now\n"), "line 2: Time must be a number, but is \"now\"");
+    let skew = keys.replace("10 0 0 0", "10 1 0 0");
+    told(&format!("0\n{skew}\n"), "line 2: Lattice must be a rectangle, but is \"10 1 0 0 10 1 0 0 1\"");
+    told(
+        "9999999999999999999999\n",
+        "line 1: the first line of a frame must be the number of its disks, but is \"9999999999999999999999\"",
+    );
+    told(
+        &format!("18446744073709551615\n{keys}\n"),
+        "the file ends after line 2, where disk 1 of 18446744073709551615 should follow",
+    );
+}
+
+#[test]
+fn frames_before_a_fault_are_read() {
+    let text = "1\nProperties=pos:R:2:radius:R:1\n1 1 0.5\n1\nProperties=pos:R:2:radius:R:1\n1 1\n1\n";
+    let frames: Vec<_> = XyzFrames::new(text.as_bytes()).collect();
+    assert_eq!(frames.len(), 2);
+    assert!(frames[0].is_ok() && frames[1].is_err());
+}
+
+#[test]
+fn faults_of_data_of_lammps() {
+    let told = |text: &str, expected: &str| assert_told(State::from_lammps_data(text.as_bytes()), expected);
+    let head = "t\n\n2 atoms\n1 atom types\n0 9 xlo xhi\n0 9 ylo yhi\n\n";
+    told("t\n\n0 9 xlo xhi\n0 9 ylo yhi\n", "line 4: the number of atoms is missing");
+    told("t\n\n1 atoms\n0 9 xlo xhi\n", "line 4: `ylo yhi` is missing");
+    told(
+        "t\n\n1 atoms\n0 9 xlo xhi\n0 9 ylo yhi\n1 0 0 xy xz yz\n",
+        "line 6: the box must be a rectangle, but is \"1 0 0 xy xz yz\"",
+    );
+    told(
+        &format!("{head}Atoms # atomic\n\n1 1 0 0 0\n"),
+        "line 8: the style of atoms must be `sphere`, but is \"atomic\"",
+    );
+    told(
+        &format!("{head}Atoms\n\n1 1 0 0 0\n"),
+        "line 10: an atom must be of 7 or 10 columns, as `sphere` has them, but is \"1 1 0 0 0\"",
+    );
+    told(&format!("{head}Atoms\n\n1 0 1 1 2 2 0\n"), "line 10: type must be from 1 to 65536, but is \"0\"");
+    told(
+        &format!("{head}Atoms\n\n1 1 1 1 2 2 0\n"),
+        "the file ends after line 10, where atom 2 of 2 should follow",
+    );
+    let atoms = format!("{head}Atoms\n\n2 1 1 1 2 2 0\n");
+    told(&format!("{atoms}2 1 1 1 4 4 0\n"), "line 11: the atom 2 stands in line 10 already");
+    told(&format!("{atoms}1 1 1 1 2.5 2 0\n"), "line 11: the disk overlaps that of line 10 by 0.5");
+    told(&format!("{atoms}1 1 1 1 9.5 2 0\n"), "line 11: the disk at (9.5, 2) is outside of the box");
+    told(
+        &format!("{atoms}1 1 0 1 4 2 0\n"),
+        "line 11 is no disk: radius must be finite and positive, but is 0",
+    );
+    let moving = format!("{atoms}1 1 1 1 4 4 0\n\nVelocities\n\n");
+    told(&format!("{moving}3 0 0 0 0 0 0\n"), "line 15: the atom 3, which has a velocity here, is missing");
+    told(
+        &format!("{moving}1 0 0 1 0 0 0\n"),
+        "line 15: the third component must be 0, for disks lie in a plane, but is \"1\"",
+    );
+    told(
+        &format!("{moving}1 0 0 0 0 0 0\n1 0 0 0 0 0 0\n"),
+        "line 16: the velocity of atom 1 stands in line 15 already",
+    );
+}

@@ -1,0 +1,287 @@
+//! Recorders: what a file holds after a run, a kill, a full disk, and a run that goes on.
+
+use std::fs;
+use std::io::{self, BufRead, Write};
+use std::path::Path;
+
+use granular_edmd::Kind;
+use granular_edmd::boundary::Domain;
+use granular_edmd::observable::{Observer, OfKind, SampleTimes, Snapshot, laws};
+use granular_edmd::simulation::RunError;
+use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, LammpsDump, RecordError, Recorder, State, open};
+
+use crate::report::report;
+use crate::scratch::Scratch;
+use crate::states::mixture;
+
+fn times() -> SampleTimes {
+    SampleTimes::every(0.5).unwrap()
+}
+
+fn snapshot(time: f64) -> Snapshot<'static> {
+    Snapshot::new(time, &[], Domain::new(0.0, 10.0, 0.0, 10.0), 1.0)
+}
+
+/// Names of files for one recorder, as far as this build can write them.
+fn names() -> Vec<&'static str> {
+    if cfg!(feature = "gzip") {
+        vec!["a.xyz", "a.dump", "a.xyz.gz", "a.dump.gz"]
+    } else {
+        vec!["a.xyz", "a.dump"]
+    }
+}
+
+fn create(path: &Path) -> Recorder {
+    if path.to_str().unwrap().contains("xyz") {
+        Recorder::create(path, ExtendedXyz, times()).unwrap()
+    } else {
+        Recorder::create(path, LammpsDump, times()).unwrap()
+    }
+}
+
+fn append(path: &Path) -> Result<Recorder, RecordError> {
+    if path.to_str().unwrap().contains("xyz") {
+        Recorder::append(path, ExtendedXyz, times())
+    } else {
+        Recorder::append(path, LammpsDump, times())
+    }
+}
+
+/// Returns the bytes of a file that a run of six frames has recorded, and the lengths of it after each frame.
+fn recorded(path: &Path) -> (Vec<u8>, Vec<usize>) {
+    let (mut run, mut recorder) = (mixture(), create(path));
+    let lengths = (1..=6).map(|frame| {
+        run.run_until(0.5 * f64::from(frame), &mut recorder).unwrap();
+        fs::metadata(path).unwrap().len() as usize
+    });
+    let lengths = lengths.collect();
+    (fs::read(path).unwrap(), lengths)
+}
+
+#[test]
+fn a_recorder_keeps_the_contract_of_observers() {
+    let scratch = Scratch::new("contract");
+    laws::check(&mut create(&scratch.path("laws.xyz"))).unwrap();
+    laws::check(&mut Recorder::create_vtk(scratch.path("laws.pvd"), times()).unwrap()).unwrap();
+}
+
+#[test]
+fn recording_does_not_change_a_run() {
+    let scratch = Scratch::new("bits");
+    let (mut plain, mut watched) = (mixture(), mixture());
+    plain.run_until(3.0, &mut ()).unwrap();
+    watched.run_until(3.0, &mut create(&scratch.path("a.xyz"))).unwrap();
+    assert_eq!(plain.disks(), watched.disks());
+}
+
+#[test]
+fn nothing_is_overwritten() {
+    let scratch = Scratch::new("overwrite");
+    let path = scratch.path("notes.xyz");
+    fs::write(&path, "my notes").unwrap();
+    let error = Recorder::create(&path, ExtendedXyz, times()).unwrap_err();
+    assert!(matches!(error, RecordError::Exists { .. }));
+    assert!(
+        report(&error).ends_with(
+            "notes.xyz is there already and is not overwritten; Recorder::append goes on in a file"
+        )
+    );
+    // Not even by going on in it.
+    for text in ["my notes", "my notes\n", "12", "", "3\nmy notes\n"] {
+        fs::write(&path, text).unwrap();
+        assert!(Recorder::append(&path, ExtendedXyz, times()).is_err(), "{text:?}");
+        assert!(Recorder::append(&path, LammpsDump, times()).is_err(), "{text:?}");
+        assert_eq!(fs::read_to_string(&path).unwrap(), text);
+    }
+    assert!(matches!(append(&scratch.path("none.xyz")), Err(RecordError::Io { action: "open", .. })));
+}
+
+/// Notes behind the frames are no frame: the recorder leaves them.
+#[test]
+fn what_others_have_appended_is_left() {
+    let scratch = Scratch::new("foreign");
+    for name in ["a.xyz", "a.dump"] {
+        let path = scratch.path(name);
+        let (mut bytes, _) = recorded(&path);
+        bytes.extend(b"my notes\n");
+        fs::write(&path, &bytes).unwrap();
+        let error = append(&path).unwrap_err();
+        assert!(report(&error).contains("found \"my notes\""), "{}", report(&error));
+        assert_eq!(fs::read(&path).unwrap(), bytes);
+    }
+}
+
+#[test]
+fn one_recorder_at_a_time_writes_to_a_file() {
+    let scratch = Scratch::new("lock");
+    let path = scratch.path("a.xyz");
+    let mut recorder = create(&path);
+    recorder.record(&snapshot(1.0)).unwrap();
+    assert!(matches!(append(&path), Err(RecordError::Locked { .. })));
+    drop(recorder);
+    append(&path).unwrap();
+}
+
+/// A process may be killed with any part of the last frame written, and the run goes on from a checkpoint
+/// that is older. The file ends as that of a run which was left alone.
+#[test]
+fn a_killed_run_goes_on_in_the_same_file() {
+    let scratch = Scratch::new("kill");
+    for name in names() {
+        let path = scratch.path(name);
+        let (whole, lengths) = recorded(&path);
+        let cuts = (lengths[2]..=whole.len()).step_by(whole.len() / 40).chain(lengths[2..].iter().copied());
+        for cut in cuts {
+            fs::write(&path, &whole[..cut]).unwrap();
+            let (mut run, mut recorder) = (mixture(), append(&path).unwrap());
+            assert!(recorder.times().len() >= 2, "{name} {cut}");
+            // Frames 3 and on, as from a checkpoint at the time of the second one.
+            run.run_until(1.0, &mut ()).unwrap();
+            run.run_until(3.0, &mut recorder).unwrap();
+            assert_eq!(recorder.times(), [0.5, 1.0, 1.5, 2.0, 2.5, 3.0]);
+            drop(recorder);
+            assert!(fs::read(&path).unwrap() == whole, "{name} cut at {cut} of {}", whole.len());
+        }
+    }
+}
+
+#[test]
+fn a_frame_of_another_run_is_refused() {
+    let scratch = Scratch::new("another");
+    for name in names().into_iter().chain(["a.pvd"]) {
+        let path = scratch.path(name);
+        let is_vtk = name.ends_with("pvd");
+        let mut recorder = if is_vtk { Recorder::create_vtk(&path, times()).unwrap() } else { create(&path) };
+        let mut run = mixture();
+        run.run_until(3.0, &mut recorder).unwrap();
+        drop(recorder);
+        let before = fs::read(&path).unwrap();
+        let mut recorder = if is_vtk { Recorder::append_vtk(&path, times()) } else { append(&path) }.unwrap();
+        let mut other = mixture();
+        other.set_gravity(0.31).unwrap();
+        let error = other.run_until(3.0, &mut recorder).unwrap_err();
+        assert!(report(&error).ends_with("it goes to time 3, and has another frame at time 0.5"), "{error}");
+        let error = recorder.record(&snapshot(0.7)).unwrap_err();
+        assert!(report(&error).ends_with("it goes to time 3, and has no frame at time 0.7"), "{error}");
+        assert_eq!(fs::read(&path).unwrap(), before);
+    }
+}
+
+#[test]
+fn disks_of_one_kind_are_recorded() {
+    let scratch = Scratch::new("kind");
+    let path = scratch.path("a.xyz");
+    let mut small = OfKind::new(Kind::new(7), create(&path));
+    let mut run = mixture();
+    run.run_until(1.0, &mut small).unwrap();
+    let state = State::from_xyz(open(&path).unwrap()).unwrap();
+    assert_eq!(state.disks().len(), 14);
+    assert!(state.disks().iter().all(|disk| disk.kind() == Kind::new(7)));
+}
+
+/// A format that fails from a time on, until it is mended.
+struct Failing(f64);
+
+impl Format for Failing {
+    fn write_frame(&self, frame: &Frame<'_>, out: &mut dyn Write) -> io::Result<()> {
+        writeln!(out, "{:?}", frame.snapshot().time())?;
+        if frame.snapshot().time() < self.0 { Ok(()) } else { Err(io::ErrorKind::StorageFull.into()) }
+    }
+
+    fn skip_frame(&self, input: &mut dyn BufRead) -> io::Result<Option<f64>> {
+        let mut line = String::new();
+        input.read_line(&mut line)?;
+        Ok(line.trim_end().parse().ok().filter(|_| line.ends_with('\n')))
+    }
+}
+
+#[test]
+fn a_failure_ends_the_run_when_it_happens() {
+    let scratch = Scratch::new("failure");
+    let path = scratch.path("own");
+    let mut run = mixture();
+    let mut recorder = Recorder::create(&path, Failing(1.2), times()).unwrap();
+    let error = run.run_until(3.0, &mut recorder).unwrap_err();
+    assert!(matches!(error, RunError::Observer { time: 1.5, .. }), "{error}");
+    assert!(report(&error).contains("cannot make a frame of"), "{}", report(&error));
+    assert_eq!(fs::read_to_string(&path).unwrap(), "0.5\n1.0\n");
+    drop(recorder);
+    // The run goes on in the file, and takes the frame that was missed.
+    let mut recorder =
+        Recorder::append(&path, Failing(f64::INFINITY), times().starting_at(1.5).unwrap()).unwrap();
+    run.run_until(2.0, &mut recorder).unwrap();
+    assert_eq!(recorder.times(), [0.5, 1.0, 1.5, 2.0]);
+}
+
+/// The same recorder goes on after a failure, too.
+#[test]
+fn a_missed_frame_is_taken_once_there_is_room() {
+    let scratch = Scratch::new("room");
+    let path = scratch.path("run.pvd");
+    let mut recorder = Recorder::create_vtk(&path, times()).unwrap();
+    let mut run = mixture();
+    run.run_until(1.0, &mut recorder).unwrap();
+    // A folder in the place of the next file.
+    let place = scratch.path("run/disks_000002.vtp");
+    fs::create_dir(&place).unwrap();
+    run.run_until(3.0, &mut recorder).unwrap_err();
+    assert_eq!(run.time(), 1.5);
+    fs::remove_dir(&place).unwrap();
+    run.run_until(3.0, &mut recorder).unwrap();
+    assert_eq!(recorder.times(), [0.5, 1.0, 1.5, 2.0, 2.5, 3.0]);
+}
+
+/// Needs a small file system: `mount -t tmpfs -o size=256k none DIR`, and `SMALL_DISK=DIR`.
+#[test]
+#[ignore = "needs a small file system, which only an administrator can make"]
+fn a_full_disk_keeps_the_whole_frames() {
+    let folder = std::env::var("SMALL_DISK").expect("SMALL_DISK names a folder on a small file system");
+    for name in names() {
+        let path = Path::new(&folder).join(name);
+        let (mut run, mut recorder) = (mixture(), create(&path));
+        let error = run.run_until(1000.0, &mut recorder).unwrap_err();
+        assert!(report(&error).contains("cannot write to"), "{}", report(&error));
+        let frames = recorder.times().len();
+        let mut next = recorder.next_sample();
+        assert!(frames > 5 && next == 0.5 * (frames + 1) as f64);
+        drop(recorder);
+        let mut recorder = append(&path).unwrap();
+        assert_eq!(recorder.times().len(), frames);
+        if name.contains("xyz") {
+            let state = State::from_xyz(open(&path).unwrap()).unwrap();
+            next = state.time().unwrap() + 0.5;
+        }
+        // Once there is room, the frame follows.
+        recorder.record(&snapshot(next)).unwrap();
+        drop(recorder);
+        assert_eq!(append(&path).unwrap().times().len(), frames + 1);
+        fs::remove_file(&path).unwrap();
+    }
+}
+
+#[cfg(not(feature = "gzip"))]
+#[test]
+fn compression_needs_its_feature() {
+    let scratch = Scratch::new("feature");
+    let path = scratch.path("a.xyz.gz");
+    assert!(matches!(Recorder::create(&path, ExtendedXyz, times()), Err(RecordError::Gzip { .. })));
+    assert!(!path.exists());
+    fs::write(&path, "").unwrap();
+    assert!(
+        report(&open(&path).err().unwrap()).ends_with("it is compressed, which needs the feature `gzip`")
+    );
+}
+
+#[cfg(feature = "gzip")]
+#[test]
+fn a_compressed_file_is_one_member_of_the_same_text() {
+    use std::io::Read;
+    let scratch = Scratch::new("gzip");
+    let (plain, packed) = (recorded(&scratch.path("a.xyz")), recorded(&scratch.path("a.xyz.gz")));
+    let mut text = Vec::new();
+    flate2::read::GzDecoder::new(packed.0.as_slice()).read_to_end(&mut text).unwrap();
+    assert!(text == plain.0);
+    assert!(2 * packed.0.len() < plain.0.len());
+    let state = State::from_xyz(open(scratch.path("a.xyz.gz")).unwrap()).unwrap();
+    assert_eq!(state.time(), Some(3.0));
+}
