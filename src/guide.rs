@@ -24,6 +24,9 @@ pub mod believe_it {}
 #[doc = include_str!("../docs/guide/draw_it.md")]
 pub mod draw_it {}
 
+#[doc = include_str!("../docs/guide/write_files.md")]
+pub mod write_files {}
+
 #[doc = include_str!("../docs/guide/bring_your_own.md")]
 pub mod bring_your_own {}
 
