@@ -159,11 +159,21 @@ impl PairCorrelation {
         for (index, disk) in disks.iter().enumerate().filter(|(_, disk)| self.is_of(1, disk)) {
             squares.add(disk.position(), 0.0, index);
         }
-        let around = |disk: &&Disk| self.is_of(0, disk) && region.contains(disk.position());
-        for disk in disks.iter().filter(around) {
-            for other in squares.near(disk.position(), range).map(|index| &disks[index]) {
-                let distance = domain.separation(disk.position(), other.position()).length();
-                if let Some(bin) = self.bins.find(distance).filter(|_| !std::ptr::eq(disk, other)) {
+        let periods = domain.periods();
+        let half = DVec2::select(periods.cmpgt(DVec2::ZERO), 0.5 * periods, DVec2::INFINITY);
+        let around = |(_, disk): &(usize, &Disk)| self.is_of(0, disk) && region.contains(disk.position());
+        for (index, disk) in disks.iter().enumerate().filter(around) {
+            for other in squares.near(disk.position(), range).filter(|&other| other != index) {
+                let (from, to) = (disk.position(), disks[other].position());
+                // Most partners are nearer than their images, and need no division.
+                let is_near = (to - from).abs().cmple(half).all();
+                let separation = if is_near { to - from } else { domain.separation(from, to) };
+                let squared = separation.length_squared();
+                // Two of three are too far; they need no root.
+                if squared > range * range {
+                    continue;
+                }
+                if let Some(bin) = self.bins.find(squared.sqrt()) {
                     counts[bin] += 1;
                 }
             }
