@@ -1,5 +1,5 @@
-//! What is measured in a gas, beside theory: pair correlation at contact, pressure from collisions in the bulk and on
-//! the walls, self-diffusion, collision angles, velocities.
+//! Measures of a gas beside theory: pair correlation at contact, pressure from collisions in the bulk and on
+//! the walls, self-diffusion, velocities and their memory.
 //!
 //! ```text
 //! cargo run --release --example measures

@@ -56,8 +56,8 @@ impl Squares {
         }
     }
 
-    /// Names all disks that may overlap one of this radius, and some others, some of them several times. Disks
-    /// that were entered with radius 0 are named once.
+    /// Names all disks that may overlap one of this radius, and some others, some of them several times.
+    /// Disks that were entered with radius 0 are named once.
     pub(crate) fn near(&self, site: DVec2, radius: f64) -> impl Iterator<Item = usize> {
         self.squares(site, radius).filter_map(|square| self.disks.get(&square)).flatten().copied()
     }
@@ -71,7 +71,7 @@ impl Squares {
     }
 }
 
-/// A hash of the number of a square, some times as fast as the usual one. Nobody chooses places to collide in it.
+/// A hash of the numbers of a square, faster than the usual one. Nobody chooses places that collide in it.
 #[derive(Default)]
 struct Mixer(u64);
 

@@ -22,8 +22,8 @@ use crate::{Disk, Kind, ParameterError};
 /// g(r) = \frac{\langle N_{ij}(r)\rangle}{\langle N_i (N_j - \delta_{ij})/A\rangle\; 2\pi r\,\Delta r} .
 /// ```
 ///
-/// `$N_{ij}(r)$` counts the pairs of a disk `$i$` in a region and a partner `$j$` anywhere, by the distance of
-/// the centers and by the nearest image. `$N_i$` and `$N_j$` count the disks in the region, whose area is
+/// `$N_{ij}(r)$` counts the pairs of a disk `$i$` in a region and a partner `$j$` anywhere, by the distance
+/// of the centers and by the nearest image. `$N_i$` and `$N_j$` count the disks in the region, whose area is
 /// `$A$`. Shells have their exact areas. In a periodic box, the region is the whole domain. At walls it is
 /// the domain less the range, so that all shells lie inside; or it is the region given by
 /// [`within`](Self::within), which should keep that distance, too. Where the density varies, under gravity

@@ -39,10 +39,10 @@ pub struct StressTensor {
 /// ```
 ///
 /// in units of energy per area. The kinetic part is sampled; velocities are those in the frame of the
-/// container. The collisional part is exact: the impulse `$\vec\Delta$` on a disk, normal and tangential, times
-/// the vector `$\vec r$` to its center from that of the partner, or from the point of a wall that it touches. In
-/// a region, the share of that vector counts which lies inside. Each interval between two samples gives one
-/// value of the stress, and the errors come from blocks of these.
+/// container. The collisional part is exact: the impulse `$\vec\Delta$` on a disk, normal and tangential,
+/// times the vector `$\vec r$` to its center from that of the partner, or from the point of a wall that it
+/// touches. In a region, the share of that vector counts which lies inside. Each interval between two samples
+/// gives one value of the stress, and the errors come from blocks of these.
 ///
 /// In a box without gravity, the stress is the pressure on the walls. Without a region the area is that of
 /// the domain, walls at rest included; a run ends with an error if it is infinite. Of the disks of one kind

@@ -17,8 +17,8 @@ use crate::statistics::{BlockedMean, Estimate};
 /// the impulse over the length of the wall and time, in units of energy per area. `$\Delta_n$` and
 /// `$\Delta_t$` are the normal and tangential [impulses](crate::collision::Impulse) on the disks, so `$p$` is
 /// positive where disks push the wall, and `$\tau$` where they drag it along the tangent, which is the normal
-/// turned counterclockwise (to the left on a floor). Each interval between two samples gives one value, and the
-/// errors come from blocks of these.
+/// turned counterclockwise (to the left on a floor). Each interval between two samples gives one value, and
+/// the errors come from blocks of these.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall};
