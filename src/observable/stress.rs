@@ -138,8 +138,9 @@ impl Stress {
 
     /// Returns the share of the way between two places that lies in the region.
     fn share_inside(&self, from: DVec2, to: DVec2) -> f64 {
-        let (Some(region), Some(domain)) = (self.region, self.domain) else { return 1.0 };
-        domain.images().map(|image| share_in(&region, from + image, to + image)).sum()
+        let Some(region) = self.region else { return 1.0 };
+        let share = |image| share_in(&region, from + image, to + image);
+        self.domain.map_or_else(|| share(DVec2::ZERO), |domain| domain.images().map(share).sum())
     }
 
     fn area(&self, domain: &Domain) -> f64 {

@@ -62,8 +62,11 @@ impl Observable for Velocities {
     }
 }
 
-/// An observer of the correlation function of an observable in time, `$C(t) = \langle A(0)\cdot
-/// A(t)\rangle$`.
+/// An observer of the correlation function of an observable in time.
+///
+/// ```math
+/// C(t) = \langle A(0)\cdot A(t)\rangle
+/// ```
 ///
 /// Every sample is a time origin, and the lags are whole numbers of intervals. The product is that of
 /// [`InnerProduct`]: of vectors the dot product, of lists the mean over the entries. No mean is taken off:

@@ -4,11 +4,12 @@ use granular_edmd::boundary::{Container, Region, Wall};
 use granular_edmd::collision::{Contact, Elastic, Impulse};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    Collision, CollisionHistograms, Grid, Moment, Observable, Observer, Partner, SampleTimes, Snapshot,
-    Stress, Temperatures, TemperaturesAboutFlow, VelocityDistribution, WallStress,
+    BetweenKinds, Collision, CollisionHistograms, Grid, Moment, Observable, Observer, OfKind,
+    PairCorrelation, Partner, SampleTimes, Snapshot, Stress, Temperatures, TemperaturesAboutFlow,
+    VelocityDistribution, WallStress,
 };
 use granular_edmd::statistics::Histogram;
-use granular_edmd::{Disk, ParameterError, Simulation, initial};
+use granular_edmd::{Disk, Kind, ParameterError, Simulation, initial};
 
 use crate::chance::{BOX, Chance, points};
 
@@ -171,5 +172,34 @@ fn a_wall_has_histograms_of_its_own() -> Outcome {
     assert_eq!(counts(histograms.obliqueness()), [1, 0, 0, 0]);
     assert_eq!(counts(histograms.closing_speed()), [0, 1, 0, 0]);
     assert_eq!(counts(histograms.impulse()), [0, 0, 0, 1]);
+    Ok(())
+}
+
+/// The parts of all pairs of kinds add up to the whole.
+#[test]
+fn measures_by_kind_are_parts_of_the_whole() -> Outcome {
+    let container = Container::periodic(20.0, 20.0)?;
+    let disks = initial::random(&container, 120, 0.5, 20.0, 1)?;
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
+    let kinds = [Kind::new(0), Kind::new(1)];
+    let kind = |(index, disk): (usize, Disk)| disk.with_kind(kinds[usize::from(index % 3 == 0)]);
+    let disks: Vec<Disk> = disks.into_iter().enumerate().map(kind).collect();
+    let pairs = [(0, 0), (0, 1), (1, 1)].map(|(i, j): (usize, usize)| (kinds[i], kinds[j]));
+    let between = pairs.map(|(i, j)| BetweenKinds::new(i, j, Stress::new(SampleTimes::every(0.5).unwrap())));
+    let histograms = CollisionHistograms::new(5.0, 5.0, 1)?;
+    let met = pairs.map(|(i, j)| BetweenKinds::new(i, j, histograms.clone()));
+    let alike = PairCorrelation::new(2.0, 4, times()?)?;
+    let mut watched = (
+        (Stress::new(SampleTimes::every(0.5)?), Vec::from(between)),
+        (histograms.clone(), Vec::from(met)),
+        (OfKind::new(kinds[1], alike.clone()), alike.between(kinds[1], kinds[1])),
+    );
+    Simulation::builder(Elastic, container).disks(disks).build()?.run_until(50.0, &mut watched)?;
+    let ((whole, stresses), (all, met), (of_kind, between)) = watched;
+    let sum: f64 = stresses.iter().map(|part| part.inner().collisional().pressure.mean()).sum();
+    assert!((sum / whole.collisional().pressure.mean() - 1.0).abs() < 1e-12);
+    let sum: u64 = met.iter().map(|part| part.inner().impulse().count()).sum();
+    assert!(sum == all.impulse().count() && sum > 1000);
+    assert!(of_kind.inner().iter().map(|(_, value)| value.mean()).eq(between.iter().map(|(_, v)| v.mean())));
     Ok(())
 }
