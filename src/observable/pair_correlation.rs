@@ -221,6 +221,7 @@ struct RawPairCorrelation {
     bins: Bins,
     sample_times: SampleTimes,
     kinds: Option<[Kind; 2]>,
+    #[serde(deserialize_with = "super::grid::region_from_file")]
     region: Option<Region>,
     pairs: Vec<BlockedMean>,
     uncorrelated: RunningMean,
@@ -240,7 +241,6 @@ impl TryFrom<RawPairCorrelation> for PairCorrelation {
             let fits = count == uncorrelated.count();
             accept(fits, "number of samples of a bin", "that of the correlation", count as f64)?;
         }
-        let region = region.map(checked_region).transpose()?;
         Ok(Self { bins, sample_times, kinds, region, pairs, uncorrelated, fault: None })
     }
 }

@@ -44,7 +44,7 @@ pub struct StressTensor {
 /// touches. In a region, the share of that vector counts which lies inside. Each interval between two samples
 /// gives one value of the stress, and the errors come from blocks of these.
 ///
-/// In a box without gravity, the stress is the pressure on the walls. Without a region the area is that of
+/// In a box without gravity, the normal stress is the pressure on the walls. Without a region the area is that of
 /// the domain, walls at rest included; a run ends with an error if it is infinite. Of the disks of one kind
 /// ([`OfKind`](super::OfKind)), the kinetic part is that of the kind, and the collisional part that of all
 /// its collisions.
@@ -72,6 +72,7 @@ pub struct StressTensor {
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Stress {
     stretch: Stretch,
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "super::grid::region_from_file"))]
     region: Option<Region>,
     /// The domain of the run.
     domain: Option<Domain>,
