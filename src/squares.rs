@@ -1,6 +1,7 @@
 //! Squares for finding the disks near a place.
 
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 use glam::DVec2;
 
@@ -18,7 +19,7 @@ pub(crate) struct Squares {
     domain: Domain,
     columns: Axis,
     rows: Axis,
-    disks: HashMap<(i64, i64), Vec<usize>>,
+    disks: HashMap<(i64, i64), Vec<usize>, BuildHasherDefault<Mixer>>,
 }
 
 impl Squares {
@@ -37,7 +38,7 @@ impl Squares {
         let Domain { left, right, bottom, top, .. } = *domain;
         let columns = Axis::new(domain.periodic_sides.then_some((left, right)), side);
         let rows = Axis::new(domain.periodic_ends.then_some((bottom, top)), side);
-        Self { domain: *domain, columns, rows, disks: HashMap::new() }
+        Self { domain: *domain, columns, rows, disks: HashMap::default() }
     }
 
     /// Names the squares that a disk reaches.
@@ -55,8 +56,8 @@ impl Squares {
         }
     }
 
-    /// Names all disks that may overlap one of this radius, and some others, some of them several times. Disks
-    /// that were entered with radius 0 are named once.
+    /// Names all disks that may overlap one of this radius, and some others, some of them several times.
+    /// Disks that were entered with radius 0 are named once.
     pub(crate) fn near(&self, site: DVec2, radius: f64) -> impl Iterator<Item = usize> {
         self.squares(site, radius).filter_map(|square| self.disks.get(&square)).flatten().copied()
     }
@@ -67,6 +68,28 @@ impl Squares {
             let contact = radius + placed[other].radius();
             self.domain.separation(site, placed[other].position()).length_squared() > contact * contact
         })
+    }
+}
+
+/// A hash of the numbers of a square, faster than the usual one. Nobody chooses places that collide in it.
+#[derive(Default)]
+struct Mixer(u64);
+
+impl Hasher for Mixer {
+    fn write(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.write_i64(i64::from(byte));
+        }
+    }
+
+    fn write_i64(&mut self, number: i64) {
+        // The factor is that of Fibonacci hashing, 2⁶⁴ over the golden ratio.
+        self.0 = (self.0.rotate_left(32) ^ number as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    }
+
+    fn finish(&self) -> u64 {
+        // The table takes the low bits, of which few depend on all of the number.
+        self.0 ^ (self.0 >> 32)
     }
 }
 

@@ -6,9 +6,10 @@ use crate::statistics::Histogram;
 
 /// An observer of how surfaces meet: histograms of obliqueness, closing speed and normal impulse.
 ///
-/// The obliqueness is the sine of the angle of impact, `$b = v_t/\sqrt{v_n^2 + v_t^2}$` in `[-1, 1]`, from the
-/// relative velocity of the *surfaces*: 0 is head-on. Of disks that do not rotate it is the impact parameter
-/// over the distance of the centers. In a gas of temperature `$T$` of equal disks that do not rotate,
+/// The obliqueness is the sine of the angle of impact, `$b = v_t/\sqrt{v_n^2 + v_t^2}$` in `[-1, 1]`, from
+/// the relative velocity of the *surfaces*: 0 is head-on. Of disks that do not rotate it is the impact
+/// parameter over the distance of the centers. In a gas of temperature `$T$` of equal disks that do not
+/// rotate,
 ///
 /// ```math
 /// p(b) = \frac12,\qquad p(v_n) = \frac{v_n}{2T/m}\,e^{-m v_n^2/4T} .

@@ -101,6 +101,15 @@ pub(super) fn checked_region(region: Region) -> Result<Region, ParameterError> {
     Ok(region)
 }
 
+/// Reads a region, if there is one, through the same check.
+#[cfg(feature = "serde")]
+pub(super) fn region_from_file<'de, D: serde::Deserializer<'de>>(
+    file: D,
+) -> Result<Option<Region>, D::Error> {
+    let region: Option<Region> = serde::Deserialize::deserialize(file)?;
+    region.map(checked_region).transpose().map_err(serde::de::Error::custom)
+}
+
 /// Sums over the disks seen in a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]

@@ -7,8 +7,8 @@ use super::{Moment, Observer, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::statistics::{BlockedMean, Estimate};
 
-/// An observer of the mean squared displacement of the disks, `$\langle|\vec r(t) - \vec r(0)|^2\rangle$`, and
-/// of their coefficient of self-diffusion.
+/// An observer of the mean squared displacement of the disks, `$\langle|\vec r(t) - \vec r(0)|^2\rangle$`,
+/// and of their coefficient of self-diffusion.
 ///
 /// Every sample is a time origin, and the lags are whole numbers of intervals. Positions are unwrapped at
 /// periodic sides and ends. A drift of all disks counts as displacement. The disks must stay the same while

@@ -22,8 +22,8 @@ use crate::{Disk, Kind, ParameterError};
 /// g(r) = \frac{\langle N_{ij}(r)\rangle}{\langle N_i (N_j - \delta_{ij})/A\rangle\; 2\pi r\,\Delta r} .
 /// ```
 ///
-/// `$N_{ij}(r)$` counts the pairs of a disk `$i$` in a region and a partner `$j$` anywhere, by the distance of
-/// the centers and by the nearest image. `$N_i$` and `$N_j$` count the disks in the region, whose area is
+/// `$N_{ij}(r)$` counts the pairs of a disk `$i$` in a region and a partner `$j$` anywhere, by the distance
+/// of the centers and by the nearest image. `$N_i$` and `$N_j$` count the disks in the region, whose area is
 /// `$A$`. Shells have their exact areas. In a periodic box, the region is the whole domain. At walls it is
 /// the domain less the range, so that all shells lie inside; or it is the region given by
 /// [`within`](Self::within), which should keep that distance, too. Where the density varies, under gravity
@@ -159,11 +159,21 @@ impl PairCorrelation {
         for (index, disk) in disks.iter().enumerate().filter(|(_, disk)| self.is_of(1, disk)) {
             squares.add(disk.position(), 0.0, index);
         }
-        let around = |disk: &&Disk| self.is_of(0, disk) && region.contains(disk.position());
-        for disk in disks.iter().filter(around) {
-            for other in squares.near(disk.position(), range).map(|index| &disks[index]) {
-                let distance = domain.separation(disk.position(), other.position()).length();
-                if let Some(bin) = self.bins.find(distance).filter(|_| !std::ptr::eq(disk, other)) {
+        let periods = domain.periods();
+        let half = DVec2::select(periods.cmpgt(DVec2::ZERO), 0.5 * periods, DVec2::INFINITY);
+        let around = |(_, disk): &(usize, &Disk)| self.is_of(0, disk) && region.contains(disk.position());
+        for (index, disk) in disks.iter().enumerate().filter(around) {
+            for other in squares.near(disk.position(), range).filter(|&other| other != index) {
+                let (from, to) = (disk.position(), disks[other].position());
+                // Most partners are nearer than their images, and need no division.
+                let is_near = (to - from).abs().cmple(half).all();
+                let separation = if is_near { to - from } else { domain.separation(from, to) };
+                let squared = separation.length_squared();
+                // Two of three are too far; they need no root.
+                if squared > range * range {
+                    continue;
+                }
+                if let Some(bin) = self.bins.find(squared.sqrt()) {
                     counts[bin] += 1;
                 }
             }
@@ -211,6 +221,7 @@ struct RawPairCorrelation {
     bins: Bins,
     sample_times: SampleTimes,
     kinds: Option<[Kind; 2]>,
+    #[serde(deserialize_with = "super::grid::region_from_file")]
     region: Option<Region>,
     pairs: Vec<BlockedMean>,
     uncorrelated: RunningMean,
@@ -230,7 +241,6 @@ impl TryFrom<RawPairCorrelation> for PairCorrelation {
             let fits = count == uncorrelated.count();
             accept(fits, "number of samples of a bin", "that of the correlation", count as f64)?;
         }
-        let region = region.map(checked_region).transpose()?;
         Ok(Self { bins, sample_times, kinds, region, pairs, uncorrelated, fault: None })
     }
 }

@@ -62,7 +62,11 @@ impl Observable for Velocities {
     }
 }
 
-/// An observer of the correlation function of an observable in time, `$C(t) = \langle A(0)\cdot A(t)\rangle$`.
+/// An observer of the correlation function of an observable in time.
+///
+/// ```math
+/// C(t) = \langle A(0)\cdot A(t)\rangle
+/// ```
 ///
 /// Every sample is a time origin, and the lags are whole numbers of intervals. The product is that of
 /// [`InnerProduct`]: of vectors the dot product, of lists the mean over the entries. No mean is taken off:
@@ -75,17 +79,19 @@ impl Observable for Velocities {
 /// ```
 /// use granular_edmd::boundary::Container;
 /// use granular_edmd::collision::Elastic;
-/// use granular_edmd::observable::{SampleTimes, TimeCorrelation, Velocities};
+/// use granular_edmd::observable::{SampleTimes, Temperatures, TimeCorrelation, Velocities};
 /// use granular_edmd::{Simulation, initial};
 ///
 /// let container = Container::periodic(20.0, 20.0)?;
 /// let disks = initial::random(&container, 100, 0.5, 20.0, 1)?;
 /// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
 /// let mut correlation = TimeCorrelation::new(Velocities, SampleTimes::every(0.5)?, 10)?;
-/// Simulation::builder(Elastic, container).disks(disks).build()?.run_until(100.0, &mut correlation)?;
+/// let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
+/// run.run_until(100.0, &mut correlation)?;
 /// let values: Vec<f64> = correlation.iter().map(|(_, value)| value.mean()).collect();
 /// // Twice the temperature at once, and less later.
-/// assert!((values[0] - 2.0).abs() < 0.01 && values[1] < 0.8 * values[0]);
+/// let temperature = run.measure(&Temperatures).translational();
+/// assert!((values[0] - 2.0 * temperature).abs() < 1e-9 && values[1] < 0.9 * values[0]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]

@@ -10,8 +10,8 @@ use crate::{Disk, ParameterError};
 /// An observer of the distribution of velocities: histograms of both components and of the speed, cumulants
 /// and kurtosis.
 ///
-/// Velocities are in units of the thermal speed of their sample, `$\vec c = \vec v/\sqrt{2T/m}$`, so that a gas
-/// may cool or heat. Of a Maxwellian gas the histograms show `$p(c_x) = e^{-c_x^2}/\sqrt\pi$` and
+/// Velocities are in units of the thermal speed of their sample, `$\vec c = \vec v/\sqrt{2T/m}$`, so that a
+/// gas may cool or heat. Of a Maxwellian gas the histograms show `$p(c_x) = e^{-c_x^2}/\sqrt\pi$` and
 /// `$p(c) = 2c\,e^{-c^2}$`. The cumulants are the coefficients of the Sonine expansion in two dimensions,
 ///
 /// ```math
@@ -83,8 +83,8 @@ impl VelocityDistribution {
         Self { frame: Frame::Mean, ..self }
     }
 
-    /// Returns the same distribution about the mean velocity in each cell of a grid, weighted by mass, in each
-    /// sample. Disks outside the grid are left out.
+    /// Returns the same distribution about the mean velocity in each cell of a grid, weighted by mass, in
+    /// each sample. Disks outside the grid are left out.
     pub fn about_flow(self, grid: Grid) -> Self {
         Self { frame: Frame::Flow(grid), ..self }
     }
@@ -129,8 +129,8 @@ impl VelocityDistribution {
 }
 
 impl Frame {
-    /// Returns the scaled velocities `$\sqrt m(v - u)$` of the disks, each with the share of its variance that
-    /// is left when the mean is taken off, and the degrees of freedom of each component.
+    /// Returns the scaled velocities `$\sqrt m(v - u)$` of the disks, each with the share of its variance
+    /// that is left when the mean is taken off, and the degrees of freedom of each component.
     fn peculiar(&self, disks: &[Disk]) -> (Vec<(DVec2, f64)>, f64) {
         match self {
             Self::Container => {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::stretch::Stretch;
 use super::{Collision, Moment, Observer, Partner, SampleTimes, Snapshot};
 use crate::ParameterError;
-use crate::quantity::positive;
+use crate::quantity::{Checked, Quantity, Range};
 use crate::statistics::{BlockedMean, Estimate};
 
 /// An observer of the pressure and the shear stress of the disks on walls.
@@ -17,8 +17,8 @@ use crate::statistics::{BlockedMean, Estimate};
 /// the impulse over the length of the wall and time, in units of energy per area. `$\Delta_n$` and
 /// `$\Delta_t$` are the normal and tangential [impulses](crate::collision::Impulse) on the disks, so `$p$` is
 /// positive where disks push the wall, and `$\tau$` where they drag it along the tangent, which is the normal
-/// turned counterclockwise (to the left on a floor). Each interval between two samples gives one value, and the
-/// errors come from blocks of these.
+/// turned counterclockwise (to the left on a floor). Each interval between two samples gives one value, and
+/// the errors come from blocks of these.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall};
@@ -48,10 +48,18 @@ pub struct WallStress {
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 struct Received {
-    length: f64,
+    length: Checked<WallLength>,
     /// Normal and tangential impulse since the latest sample.
     impulse: [f64; 2],
     means: [BlockedMean; 2],
+}
+
+/// The quantity "length of a wall".
+enum WallLength {}
+
+impl Quantity for WallLength {
+    const NAME: &'static str = "length of a wall";
+    const RANGE: Range = Range::POSITIVE;
 }
 
 impl WallStress {
@@ -65,7 +73,7 @@ impl WallStress {
     /// # Errors
     /// If the length is not finite and positive.
     pub fn with_wall(mut self, wall: usize, length: f64) -> Result<Self, ParameterError> {
-        let length = positive("length of a wall", length)?;
+        let length = Checked::new(length)?;
         let received = Received { length, impulse: [0.0; 2], means: Default::default() };
         self.walls.insert(wall, received);
         Ok(self)
@@ -114,7 +122,7 @@ impl Observer for WallStress {
             let impulse = std::mem::take(&mut received.impulse);
             let Some(duration) = duration else { continue };
             for (mean, impulse) in received.means.iter_mut().zip(impulse) {
-                mean.push(impulse / (received.length * duration));
+                mean.push(impulse / (received.length.get() * duration));
             }
         }
     }

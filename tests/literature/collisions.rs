@@ -7,8 +7,8 @@ use granular_edmd::statistics::Histogram;
 use crate::Outcome;
 use crate::gas::{periodic_gas, run_for};
 
-/// Returns chi squared of a histogram against a cumulative distribution, over bins with 10 expected numbers or
-/// more, and how many bins these are.
+/// Returns chi squared of a histogram against a cumulative distribution, over bins with 10 expected numbers
+/// or more, and how many bins these are.
 fn chi_squared(histogram: &Histogram, cumulative: impl Fn(f64) -> f64) -> (f64, usize) {
     let all = histogram.count() as f64;
     let expected =

@@ -61,8 +61,8 @@ impl Gas {
     }
 }
 
-/// Returns a gas of this many disks of diameter and mass 1 in a box that is periodic both ways, at this packing
-/// fraction and at temperature 1, after twenty collisions per disk.
+/// Returns a gas of this many disks of diameter and mass 1 in a box that is periodic both ways, at this
+/// packing fraction and at temperature 1, after twenty collisions per disk.
 pub(crate) fn periodic_gas<R: CollisionRule>(
     count: usize,
     packing_fraction: f64,

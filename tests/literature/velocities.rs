@@ -23,8 +23,8 @@ fn a_gas_at_rest_is_maxwellian() -> Outcome {
         let cumulants = [velocities.second_cumulant(), velocities.third_cumulant()];
         for estimate in cumulants.into_iter().chain(velocities.excess_kurtosis()) {
             println!("{count} disks: {estimate}");
-            // The error of 4e5 disks, half of them independent, is 0.002 for the cumulants, and the root of 24
-            // times that for the kurtosis.
+            // The error of 4e5 disks, half of them independent, is 0.002 for the cumulants, and the root of
+            // 24 times that for the kurtosis.
             assert!(estimate.standard_error() < 0.015);
             assert!(estimate.mean().abs() < 4.0 * estimate.standard_error(), "{count} disks: {estimate}");
         }
@@ -56,8 +56,8 @@ fn cooling_cumulant(
 
 #[test]
 fn a_cooling_gas_has_the_second_cumulant_of_van_noije_and_ernst() -> Outcome {
-    // Boxes are too small for vortices, N < 4π/n(1 - r²). The theory (Granular Matter 1, 57 (1998)) is linear in
-    // a_2; direct simulation of the Boltzmann equation gives -0.026 and 0.033.
+    // Boxes are too small for vortices, N < 4π/n(1 - r²). The theory (Granular Matter 1, 57 (1998)) is linear
+    // in a_2; direct simulation of the Boltzmann equation gives -0.026 and 0.033.
     for (r, gases) in [(0.8_f64, 6), (0.6, 6)] {
         let expected = 16.0 * (1.0 - r) * (1.0 - 2.0 * r * r) / (57.0 - 25.0 * r + 30.0 * r * r * (1.0 - r));
         let measured = cooling_cumulant(r, gases)?;

@@ -187,7 +187,8 @@ fn forged_measurements_are_refused() -> Outcome {
     for (at, number) in [("/interval", json!(0.0)), ("/first", json!("soon")), ("/beat", json!(-1))] {
         assert!(refused::<SampleTimes>(forged(&times, at, number)), "{at}");
     }
-    let (series, (_, counts), profile, (heights, fields, ..), (pairs, displacement, _), _) = &watchers()?;
+    let (series, (_, counts), profile, (heights, fields, ..), (pairs, displacement, _), (stress, walls, _)) =
+        &watchers()?;
     assert!(refused::<Series<((OrderParameters, CenterOfMass), (Energies, Temperatures))>>(forged(
         series,
         "/times",
@@ -229,6 +230,8 @@ fn forged_measurements_are_refused() -> Outcome {
     for (at, number) in [("/lags/means", json!([])), ("/lags/past", json!([[], [], [], [], [], [], []]))] {
         assert!(refused::<MeanSquaredDisplacement>(forged(displacement, at, number)), "{at}");
     }
+    assert!(refused::<Stress>(forged(stress, "/region/max/0", json!(-1.0))));
+    assert!(refused::<WallStress>(forged(walls, "/walls/0/length", json!(0.0))));
     let histogram = Histogram::new(0.0, 1.0, 2)?;
     for (at, number) in [("/counts", json!([1])), ("/counts/0", json!(u64::MAX)), ("/below", json!(-1))] {
         assert!(refused::<Histogram>(forged(&histogram, at, number)), "{at}");

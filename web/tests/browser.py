@@ -77,6 +77,8 @@ class Browser:
             path.write_bytes(base64.b64decode(json.load(answer)["value"]))
 
     def close(self):
+        # Without its end, the session's Chromium would outlive the driver.
+        urllib.request.urlopen(urllib.request.Request(self.base, method="DELETE"), timeout=30)
         self.driver.terminate()
 
 
