@@ -48,6 +48,8 @@
 //! ```
 //!
 //! # A format of your own
+//! [`laws::check`] tells in a plain test whether a format keeps its contract.
+//!
 //! ```
 //! use std::io::{self, BufRead, Write};
 //! use granular_edmd::boundary::Domain;
@@ -65,6 +67,7 @@
 //!     }
 //! }
 //!
+//! granular_edmd::trajectory::laws::check(&Heights).unwrap();
 //! let mut text = Vec::new();
 //! Heights.write_frame(&Frame::new(0, Snapshot::new(0.5, &[], Domain::new(0.0, 4.0, 0.0, 6.0), 1.0)), &mut text)?;
 //! assert_eq!(text, b"0.5\n");
@@ -80,6 +83,7 @@ mod format;
 mod gzip;
 mod lammps_data;
 mod lammps_dump;
+pub mod laws;
 mod lines;
 mod media;
 mod one_file;

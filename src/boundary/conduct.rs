@@ -149,10 +149,9 @@ mod file {
                 Some(Self::ContactDuration(remedy.around(plain(*remedy.rule()))))
             } else if let Some(remedy) = rule.downcast_ref::<ElasticBelow<R>>() {
                 Some(Self::ElasticBelow(remedy.around(plain(*remedy.rule()))))
-            } else if let Some(remedy) = rule.downcast_ref::<LeastRebound<R>>() {
-                Some(Self::LeastRebound(remedy.around(plain(*remedy.rule()))))
             } else {
-                None
+                let remedy = rule.downcast_ref::<LeastRebound<R>>()?;
+                Some(Self::LeastRebound(remedy.around(plain(*remedy.rule()))))
             }
         }
 

@@ -77,10 +77,10 @@ pub(super) fn reopen(path: &Path) -> Result<File, RecordError> {
     locked(file.map_err(RecordError::io("open", path))?, path)
 }
 
-/// Takes the lock of a file, which ends with the process at the latest. Where there are no locks, it goes
-/// without.
+/// Takes the lock of a file, which ends with the process at the latest. It goes without where there are no
+/// locks, and where a lock would keep others from reading.
 fn locked(file: File, path: &Path) -> Result<File, RecordError> {
-    match file.try_lock() {
+    match if cfg!(unix) { file.try_lock() } else { Ok(()) } {
         Err(TryLockError::WouldBlock) => Err(RecordError::Locked { path: path.to_owned() }),
         Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
     }

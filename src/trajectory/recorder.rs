@@ -23,7 +23,7 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 /// not written twice. If they differ, the file is of another run, and the error says so. The rest of a frame
 /// in whose middle the process died is cut off by the next frame.
 ///
-/// Times of frames increase. No two recorders write to one file at a time, where the system has locks.
+/// Times of frames increase. On Unix, no two recorders write to one file at a time.
 ///
 /// ```
 /// use granular_edmd::prelude::*;
@@ -132,13 +132,11 @@ impl Recorder {
     pub fn record(&mut self, snapshot: &Snapshot<'_>) -> Result<(), RecordError> {
         let time = snapshot.time();
         let last = self.times().last().copied();
-        match last.filter(|&last| time <= last) {
-            Some(last) => self.compare(snapshot, last),
-            None => {
-                self.write_frame(self.times().len(), snapshot)?;
-                self.store.append(snapshot, &self.bytes)
-            }
+        if let Some(last) = last.filter(|&last| time <= last) {
+            return self.compare(snapshot, last);
         }
+        self.write_frame(self.times().len(), snapshot)?;
+        self.store.append(snapshot, &self.bytes)
     }
 
     /// Checks that the file has this frame.

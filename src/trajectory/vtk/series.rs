@@ -112,13 +112,11 @@ impl Store for Series {
 /// Returns the folder of the frames, and its name in the file of times.
 fn place(path: &Path) -> Result<(PathBuf, String), RecordError> {
     let name = path.file_stem().and_then(|name| name.to_str());
-    match name.filter(|_| path.extension().is_some_and(|ending| ending == "pvd")) {
-        Some(name) => Ok((path.with_extension(""), escaped(name))),
-        None => {
-            let reason = "the name must be of Unicode letters and end in .pvd";
-            Err(RecordError::io("use", path)(io::Error::new(io::ErrorKind::InvalidInput, reason)))
-        }
+    if let Some(name) = name.filter(|_| path.extension().is_some_and(|ending| ending == "pvd")) {
+        return Ok((path.with_extension(""), escaped(name)));
     }
+    let reason = "the name must be of Unicode letters and end in .pvd";
+    Err(RecordError::io("use", path)(io::Error::new(io::ErrorKind::InvalidInput, reason)))
 }
 
 fn file_name(part: &str, number: usize) -> String {
