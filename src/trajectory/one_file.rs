@@ -43,7 +43,7 @@ impl OneFile {
     /// Begins a new file.
     pub(super) fn create(path: &Path) -> Result<Self, RecordError> {
         let packing = Packing::of(path)?;
-        let file = Growing::new(media::create(path)?, 0);
+        let file = Growing::new(media::create(path)?, 0, Vec::new());
         Ok(Self { path: path.to_owned(), file, packing, frames: Frames::default() })
     }
 
@@ -56,7 +56,8 @@ impl OneFile {
         if frames.times.is_empty() {
             return Err(RecordError::NoFrame { path: path.to_owned() });
         }
-        Ok(Self { path: path.to_owned(), file: Growing::new(file, frames.end), packing, frames })
+        let file = Growing::new(file, frames.end, packing.ending());
+        Ok(Self { path: path.to_owned(), file, packing, frames })
     }
 
     fn push(&mut self, bytes: &[u8]) -> io::Result<()> {
@@ -110,6 +111,15 @@ impl Packing {
             (false, _) => Ok(Self::Plain),
             (true, Some(gzip)) => Ok(gzip()),
             (true, None) => Err(RecordError::Gzip { path: path.to_owned() }),
+        }
+    }
+
+    /// Returns what follows the last frame.
+    fn ending(&self) -> Vec<u8> {
+        match self {
+            Self::Plain => Vec::new(),
+            #[cfg(feature = "gzip")]
+            Self::Gzip(member) => member.ending(),
         }
     }
 

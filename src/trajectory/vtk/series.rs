@@ -38,7 +38,7 @@ impl Series {
             // The folder is new and empty, so nothing is lost.
             let _ = fs::remove_dir(&folder);
         });
-        let mut file = Growing::new(file?, 0);
+        let mut file = Growing::new(file?, 0, Vec::new());
         file.push(HEAD.as_bytes(), TAIL.as_bytes()).map_err(RecordError::io("write to", path))?;
         Ok(Self { path: path.to_owned(), folder, name, file, times: Vec::new() })
     }
@@ -52,7 +52,8 @@ impl Series {
         if times.is_empty() {
             return Err(RecordError::NoFrame { path: path.to_owned() });
         }
-        Ok(Self { path: path.to_owned(), folder, name, file: Growing::new(file, length as u64), times })
+        let file = Growing::new(file, length as u64, TAIL.into());
+        Ok(Self { path: path.to_owned(), folder, name, file, times })
     }
 
     fn file_of(&self, part: &str, number: usize) -> PathBuf {
