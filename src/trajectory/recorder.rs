@@ -15,7 +15,10 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 ///
 /// Each frame is made whole in memory, then written. If that fails, because the disk is full, for example,
 /// the run ends with the error ([`verdict`](Observer::verdict)), and the file ends with its last whole frame.
-/// A run that goes on later takes the frame that was missed.
+/// A run that goes on with the same recorder takes the frame that was missed.
+///
+/// [`OfKind`](crate::observable::OfKind) around a recorder records the disks of one kind; they are numbered
+/// among themselves. Files have the box, but not the parts of a vessel in it.
 ///
 /// # To go on in a file
 /// After a kill, resume the run from its checkpoint and [`append`](Self::append). The frames that were
@@ -191,10 +194,11 @@ impl Observer for Recorder {
 
     #[inline]
     fn verdict(&mut self) -> Verdict {
-        match self.failure.take() {
-            None => Ok(ControlFlow::Continue(())),
-            Some(error) => Err(error.into()),
+        // Asked after each collision.
+        if self.failure.is_none() {
+            return Ok(ControlFlow::Continue(()));
         }
+        self.failure.take().map_or(Ok(ControlFlow::Continue(())), |error| Err(error.into()))
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use granular_edmd::Kind;
 use granular_edmd::boundary::Domain;
-use granular_edmd::observable::{Observer, OfKind, SampleTimes, Snapshot, laws};
+use granular_edmd::observable::{OfKind, SampleTimes, Snapshot, laws};
 use granular_edmd::simulation::RunError;
 use granular_edmd::trajectory::{
     self, ExtendedXyz, Format, Frame, LammpsDump, RecordError, Recorder, State, open,
@@ -102,13 +102,13 @@ fn nothing_is_overwritten() {
 #[test]
 fn what_others_have_appended_is_left() {
     let scratch = Scratch::new("foreign");
-    for name in ["a.xyz", "a.dump"] {
+    for name in names() {
         let path = scratch.path(name);
         let (mut bytes, _) = recorded(&path);
         bytes.extend(b"my notes\n");
         fs::write(&path, &bytes).unwrap();
         let error = append(&path).unwrap_err();
-        assert!(report(&error).contains("found \"my notes\""), "{}", report(&error));
+        assert!(report(&error).contains("go on in"), "{}", report(&error));
         assert_eq!(fs::read(&path).unwrap(), bytes);
     }
 }
@@ -359,5 +359,28 @@ fn a_process_that_is_killed_leaves_whole_frames() {
         run.run_until(1.5, &mut ()).unwrap();
         run.run_until(0.5 * (frames + 2) as f64, &mut recorder).unwrap();
         assert_eq!(recorder.times().len(), frames + 2, "{name}");
+    }
+}
+
+/// Damage within a file is refused, or ends at a whole frame before it; the recorder never panics, and never
+/// takes more frames for whole than there were.
+#[test]
+fn a_damaged_file_is_left_or_cut_at_a_whole_frame() {
+    let scratch = Scratch::new("damage");
+    for name in names() {
+        let path = scratch.path(name);
+        let (whole, _) = recorded(&path);
+        for place in (0..whole.len()).step_by(whole.len() / 97) {
+            let mut bytes = whole.clone();
+            bytes[place] ^= 0x15;
+            fs::write(&path, &bytes).unwrap();
+            // Only a line more or less in the last frame looks like a frame that was not finished.
+            let least = if name.ends_with("gz") { 6 } else { 5 };
+            match append(&path) {
+                Ok(recorder) => assert!((least..=6).contains(&recorder.times().len()), "{name} {place}"),
+                Err(error) => assert!(!report(&error).is_empty()),
+            }
+            assert!(fs::read(&path).unwrap() == bytes, "{name} {place}: a look changes nothing");
+        }
     }
 }

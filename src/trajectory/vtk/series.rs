@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use super::write_box;
 use crate::observable::Snapshot;
 use crate::trajectory::errors::RecordError;
+use crate::trajectory::format::no_frame;
 use crate::trajectory::media::{self, Growing};
 use crate::trajectory::store::Store;
 
@@ -51,6 +52,9 @@ impl Series {
         let (times, length) = times(&text, &name);
         if times.is_empty() {
             return Err(RecordError::NoFrame { path: path.to_owned() });
+        }
+        if !is_torn(&text[length..], &name, times.len()) {
+            return Err(RecordError::io("go on in", path)(no_frame("an ending", &text[length..])));
         }
         let file = Growing::new(file, length as u64, TAIL.into());
         Ok(Self { path: path.to_owned(), folder, name, file, times })
@@ -149,6 +153,13 @@ fn times(text: &str, folder: &str) -> (Vec<f64>, usize) {
         rest = after;
     }
     (times, length)
+}
+
+/// Tells whether the rest of a file of times is its ending, or the beginning of a frame that was not finished.
+fn is_torn(rest: &str, folder: &str, number: usize) -> bool {
+    let time = rest.strip_prefix("<DataSet timestep=\"").and_then(|rest| rest.split_once('"'));
+    let entry = time.and_then(|(time, _)| time.parse().ok()).map(|time| entry(folder, number, time) + TAIL);
+    rest.len() <= TAIL.len() || entry.is_some_and(|entry| entry.starts_with(rest))
 }
 
 /// Returns a text as it stands in XML.
