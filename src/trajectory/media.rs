@@ -46,8 +46,8 @@ impl<M: Medium> Growing<M> {
     pub(super) fn push(&mut self, piece: &[u8], ending: &[u8]) -> io::Result<()> {
         let written = self.write(&[piece, ending].concat());
         if written.is_err() {
-            // A failure to mend is ignored: the first error is the one to report, and the next reader finds the
-            // last whole piece by itself.
+            // A failure to mend is ignored: the first error is the one to report, and the next reader finds
+            // the last whole piece by itself.
             let before = self.ending.clone();
             let _ = self.medium.cut(self.length).and_then(|()| self.write(&before));
             return written;

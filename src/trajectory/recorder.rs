@@ -87,8 +87,9 @@ impl Recorder {
         Ok(Self::new(format, store, times))
     }
 
-    /// Begins a series of files for ParaView: `run.pvd` has the times, and the new folder `run` beside it the
-    /// disks and the edges of the box for each frame, as [`State::write_vtk`](super::State::write_vtk) writes them.
+    /// Begins a series of files for ParaView. `run.pvd` has the times. The new folder `run` beside it has two
+    /// files for each frame: the disks, as [`State::write_vtk`](super::State::write_vtk) writes them, and the
+    /// edges of the box.
     ///
     /// # Errors
     /// If the path does not end in `.pvd`, there is a file or a folder of these names, or they cannot be

@@ -155,7 +155,8 @@ fn times(text: &str, folder: &str) -> (Vec<f64>, usize) {
     (times, length)
 }
 
-/// Tells whether the rest of a file of times is its ending, or the beginning of a frame that was not finished.
+/// Tells whether the rest of a file of times is its ending, or the beginning of a frame that was not
+/// finished.
 fn is_torn(rest: &str, folder: &str, number: usize) -> bool {
     let time = rest.strip_prefix("<DataSet timestep=\"").and_then(|rest| rest.split_once('"'));
     let entry = time.and_then(|(time, _)| time.parse().ok()).map(|time| entry(folder, number, time) + TAIL);
