@@ -1,7 +1,7 @@
 //! A movie of a run: one convection roll turns.
 //!
-//! 1000 disks in the paper's vibrated box. They are colored by their height once the roll turns, so that it is
-//! seen how the roll carries them around. The movie is an animated PNG, which browsers show.
+//! 1000 disks in the paper's vibrated box. They are colored by their height once the roll turns, so that it
+//! is seen how the roll carries them around. The movie is an animated PNG, which browsers show.
 //!
 //! ```text
 //! cargo run --release --example movie

@@ -15,14 +15,15 @@ pub use crate::glam::DVec2;
 pub use crate::initial::{self, Radii};
 pub use crate::observable::{
     BetweenKinds, CenterOfMass, Collision, CollisionCounts, Energies, EnergyChange, Moment, Observable,
-    Observer, OfKind, OrderParameters, Partner, SampleTimes, Series, Snapshot, Temperatures, Verdict,
-    on_collision, on_sample, stop_when, stop_when_sampled,
+    Observer, OfKind, OrderParameters, Partner, SampleTimes, Series, Snapshot, Tabular, Temperatures,
+    Verdict, on_collision, on_sample, stop_when, stop_when_sampled,
 };
 pub use crate::scheduler::EventScheduler;
 pub use crate::simulation::{
     BoxedBoundary, BoxedRule, BoxedScheduler, BoxedSimulation, Event, Limits, RunEnd, RunError, Simulation,
 };
 pub use crate::statistics::Estimate;
+pub use crate::trajectory::{ExtendedXyz, LammpsDump, Recorder};
 pub use crate::wall::{
     AccelerationBounds, BiParabolic, Fixed, Sawtooth, Sinusoidal, Triangular, WallMotion, WallState,
 };

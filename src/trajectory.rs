@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | [`ExtendedXyz`] | one file, frame after frame | OVITO, ASE, and [`XyzFrames`] to start from |
 //! | [`LammpsDump`] | one file, frame after frame | OVITO, VMD, tools around LAMMPS |
-//! | VTK's `PolyData` | a `.vtp` file for each frame, a `.pvd` file of times ([`Recorder::create_vtk`]) | ParaView, VTK |
+//! | VTK's `PolyData` | `.vtp` for each frame, `.pvd` of times ([`Recorder::create_vtk`]) | ParaView, VTK |
 //!
 //! | state of a file | read by | written by |
 //! |---|---|---|
@@ -48,6 +48,8 @@
 //! ```
 //!
 //! # A format of your own
+//! [`laws::check`] tells in a plain test whether a format keeps its contract.
+//!
 //! ```
 //! use std::io::{self, BufRead, Write};
 //! use granular_edmd::boundary::Domain;
@@ -65,8 +67,10 @@
 //!     }
 //! }
 //!
+//! granular_edmd::trajectory::laws::check(&Heights).unwrap();
+//! let snapshot = Snapshot::new(0.5, &[], Domain::new(0.0, 4.0, 0.0, 6.0), 1.0);
 //! let mut text = Vec::new();
-//! Heights.write_frame(&Frame::new(0, Snapshot::new(0.5, &[], Domain::new(0.0, 4.0, 0.0, 6.0), 1.0)), &mut text)?;
+//! Heights.write_frame(&Frame::new(0, snapshot), &mut text)?;
 //! assert_eq!(text, b"0.5\n");
 //! # Ok::<(), io::Error>(())
 //! ```
@@ -80,6 +84,7 @@ mod format;
 mod gzip;
 mod lammps_data;
 mod lammps_dump;
+pub mod laws;
 mod lines;
 mod media;
 mod one_file;

@@ -19,7 +19,8 @@ impl<Q: Tabular> Series<Q> {
     /// series.on_sample(&Snapshot::new(0.5, &[], Domain::new(0.0, 4.0, 0.0, 6.0), 1.0));
     /// let mut table = Vec::new();
     /// series.write_csv(&mut table)?;
-    /// let heading = "time [time],one_roll [length/time],two_rolls [length/time],center_x [length],center_y [length]";
+    /// let heading = "time [time],one_roll [length/time],two_rolls [length/time],\
+    ///                center_x [length],center_y [length]";
     /// assert_eq!(String::from_utf8(table)?, format!("{heading}\n0.5,0.0,0.0,NaN,NaN\n"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

@@ -4,7 +4,7 @@
 //! member follows the last one. The next frame takes the place of the ending. Members one after another would
 //! be simpler, but OVITO reads only the first.
 
-use std::io::{self, BufRead, Write};
+use std::io::{self, BufRead, Read, Write};
 
 use flate2::write::DeflateEncoder;
 use flate2::{Compression, Crc, Decompress, FlushDecompress, Status};
@@ -32,7 +32,8 @@ impl Member {
     /// Returns the bytes of the next frame as they stand in the file, and the member with it.
     pub(super) fn packed(&self, bytes: &[u8]) -> io::Result<(Vec<u8>, Self)> {
         let head: &[u8] = if self.has_head { &[] } else { &HEAD };
-        let mut encoder = DeflateEncoder::new(head.to_vec(), Compression::default());
+        // The usual level takes seven times as long for files that are hardly smaller: digits are random.
+        let mut encoder = DeflateEncoder::new(head.to_vec(), Compression::fast());
         encoder.write_all(bytes)?;
         encoder.flush()?;
         // The encoder would end the stream if it were finished.
@@ -73,10 +74,11 @@ pub(super) fn frames(
     loop {
         let start = packed.len();
         if input.read_until(FLUSHED[3], &mut packed)? == 0 {
+            // The rest of a frame in whose middle a process died.
             return Ok(frames);
         }
-        if !inflate(&mut inflater, &packed[start..], &mut bytes) {
-            return Ok(frames);
+        if !goes_on(&mut inflater, &packed[start..], &mut bytes) {
+            return check_ending(packed, input, &member.ending()).map(|()| frames);
         }
         let mut rest = bytes.as_slice();
         if packed.ends_with(&FLUSHED)
@@ -93,8 +95,17 @@ pub(super) fn frames(
     }
 }
 
-/// Adds what some bytes of a stream become, and tells whether the stream goes on.
-fn inflate(inflater: &mut Decompress, mut packed: &[u8], bytes: &mut Vec<u8>) -> bool {
+/// Checks that what follows the last whole frame is the ending, or no longer: a process may have died when it
+/// had put a part of a frame in its place.
+fn check_ending(mut packed: Vec<u8>, input: &mut impl BufRead, ending: &[u8]) -> io::Result<()> {
+    let room = (ending.len() + 1).saturating_sub(packed.len());
+    input.take(room as u64).read_to_end(&mut packed)?;
+    if packed.len() <= ending.len() { Ok(()) } else { Err(no_frame("a whole frame", "a damaged one")) }
+}
+
+/// Adds what some bytes of a stream become, and tells whether the stream goes on: it does not at its end, and
+/// where it is damaged.
+fn goes_on(inflater: &mut Decompress, mut packed: &[u8], bytes: &mut Vec<u8>) -> bool {
     loop {
         bytes.reserve(4 * packed.len() + 1024);
         let before = (inflater.total_in(), inflater.total_out());

@@ -23,12 +23,15 @@ impl Medium for File {
 pub(super) struct Growing<M> {
     medium: M,
     length: u64,
+    /// The ending that follows the last whole piece.
+    ending: Vec<u8>,
 }
 
 impl<M: Medium> Growing<M> {
-    /// Goes on in a medium after so many bytes. What follows them is cut off by the first write.
-    pub(super) const fn new(medium: M, length: u64) -> Self {
-        Self { medium, length }
+    /// Goes on in a medium after so many bytes, and an ending. What else follows them is cut off by the first
+    /// write.
+    pub(super) const fn new(medium: M, length: u64, ending: Vec<u8>) -> Self {
+        Self { medium, length, ending }
     }
 
     pub(super) const fn length(&self) -> u64 {
@@ -39,17 +42,18 @@ impl<M: Medium> Growing<M> {
         &self.medium
     }
 
-    /// Adds a piece, and an ending that the next piece replaces. If that fails, the medium ends with the last
-    /// whole piece.
+    /// Adds a piece, and an ending in the place of the last one. If that fails, the medium ends as it was.
     pub(super) fn push(&mut self, piece: &[u8], ending: &[u8]) -> io::Result<()> {
         let written = self.write(&[piece, ending].concat());
         if written.is_err() {
-            // A failure to cut is ignored: the first error is the one to report, and the next reader finds the
-            // last whole piece by itself.
-            let _ = self.medium.cut(self.length).and_then(|()| self.write(ending));
+            // A failure to mend is ignored: the first error is the one to report, and the next reader finds
+            // the last whole piece by itself.
+            let before = self.ending.clone();
+            let _ = self.medium.cut(self.length).and_then(|()| self.write(&before));
             return written;
         }
         self.length += piece.len() as u64;
+        self.ending = ending.to_vec();
         Ok(())
     }
 
@@ -77,10 +81,10 @@ pub(super) fn reopen(path: &Path) -> Result<File, RecordError> {
     locked(file.map_err(RecordError::io("open", path))?, path)
 }
 
-/// Takes the lock of a file, which ends with the process at the latest. Where there are no locks, it goes
-/// without.
+/// Takes the lock of a file, which ends with the process at the latest. It goes without where there are no
+/// locks, and where a lock would keep others from reading.
 fn locked(file: File, path: &Path) -> Result<File, RecordError> {
-    match file.try_lock() {
+    match if cfg!(unix) { file.try_lock() } else { Ok(()) } {
         Err(TryLockError::WouldBlock) => Err(RecordError::Locked { path: path.to_owned() }),
         Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
     }
@@ -124,23 +128,27 @@ mod tests {
         }
     }
 
-    /// Pieces of ten bytes and an ending of two on a disk of any size: after a failure, the whole pieces and
-    /// the ending are there, and once there is room the same piece is written.
+    /// Pieces of ten bytes and endings of two, which tell of the piece before, on a disk of any size: after a
+    /// failure the medium is as it was, and once there is room the same piece is written.
     #[test]
     fn a_full_disk_keeps_whole_pieces() {
         for room in 0..60 {
-            let mut file = Growing::new(Small { bytes: Cursor::default(), room }, 0);
+            let mut file = Growing::new(Small { bytes: Cursor::default(), room }, 0, Vec::new());
             let mut whole = Vec::new();
-            let failed = (0..10).find(|&piece| file.push(&[b'0' + piece; 10], b"..").is_err()).unwrap();
-            assert_eq!(usize::from(failed), room.saturating_sub(2) / 10);
-            (0..failed).for_each(|piece| whole.extend([b'0' + piece; 10]));
-            assert_eq!(file.length(), whole.len() as u64);
-            let bytes = file.medium().bytes.get_ref();
-            assert!(bytes.starts_with(&whole) && bytes.len() <= whole.len() + 2, "{room}");
-            file.medium.room = 1000;
-            file.push(&[b'0' + failed; 10], b"..").unwrap();
-            whole.extend([b'0' + failed; 10]);
-            assert_eq!(file.medium().bytes.get_ref(), &[whole.as_slice(), b".."].concat());
+            for piece in b'0'.. {
+                let before = file.medium().bytes.get_ref().clone();
+                if file.push(&[piece; 10], &[piece; 2]).is_err() {
+                    assert_eq!(file.medium().bytes.get_ref(), &before, "{room}");
+                    assert_eq!(usize::from(piece - b'0'), room.saturating_sub(2) / 10);
+                    file.medium.room = 1000;
+                    file.push(&[piece; 10], &[piece; 2]).unwrap();
+                    whole.extend([piece; 12]);
+                    assert_eq!(file.medium().bytes.get_ref(), &whole);
+                    break;
+                }
+                whole.extend([piece; 10]);
+                assert_eq!(file.length(), whole.len() as u64);
+            }
         }
     }
 }

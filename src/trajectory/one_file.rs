@@ -43,7 +43,7 @@ impl OneFile {
     /// Begins a new file.
     pub(super) fn create(path: &Path) -> Result<Self, RecordError> {
         let packing = Packing::of(path)?;
-        let file = Growing::new(media::create(path)?, 0);
+        let file = Growing::new(media::create(path)?, 0, Vec::new());
         Ok(Self { path: path.to_owned(), file, packing, frames: Frames::default() })
     }
 
@@ -56,7 +56,8 @@ impl OneFile {
         if frames.times.is_empty() {
             return Err(RecordError::NoFrame { path: path.to_owned() });
         }
-        Ok(Self { path: path.to_owned(), file: Growing::new(file, frames.end), packing, frames })
+        let file = Growing::new(file, frames.end, packing.ending());
+        Ok(Self { path: path.to_owned(), file, packing, frames })
     }
 
     fn push(&mut self, bytes: &[u8]) -> io::Result<()> {
@@ -98,15 +99,28 @@ impl Store for OneFile {
 }
 
 impl Packing {
+    /// Makes compressed files, in programs that can.
+    #[cfg(feature = "gzip")]
+    const GZIP: Option<fn() -> Self> = Some(|| Self::Gzip(Member::default()));
+    #[cfg(not(feature = "gzip"))]
+    const GZIP: Option<fn() -> Self> = None;
+
     /// Returns the packing that the name of a file asks for.
     fn of(path: &Path) -> Result<Self, RecordError> {
-        if !is_gzip(path) {
-            return Ok(Self::Plain);
+        match (is_gzip(path), Self::GZIP) {
+            (false, _) => Ok(Self::Plain),
+            (true, Some(gzip)) => Ok(gzip()),
+            (true, None) => Err(RecordError::Gzip { path: path.to_owned() }),
         }
-        #[cfg(feature = "gzip")]
-        return Ok(Self::Gzip(Member::default()));
-        #[cfg(not(feature = "gzip"))]
-        return Err(RecordError::Gzip { path: path.to_owned() });
+    }
+
+    /// Returns what follows the last frame.
+    fn ending(&self) -> Vec<u8> {
+        match self {
+            Self::Plain => Vec::new(),
+            #[cfg(feature = "gzip")]
+            Self::Gzip(member) => member.ending(),
+        }
     }
 
     /// Finds the whole frames of a file.

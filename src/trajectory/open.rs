@@ -17,7 +17,7 @@ use super::errors::ReadError;
 ///
 /// # Errors
 /// If the file cannot be opened, or is compressed and this program lacks the feature.
-pub fn open(path: impl AsRef<Path>) -> Result<Box<dyn BufRead>, ReadError> {
+pub fn open(path: impl AsRef<Path>) -> Result<Box<dyn BufRead + Send>, ReadError> {
     let path = path.as_ref();
     let failed = |source| ReadError::Open { path: path.to_owned(), source };
     let file = BufReader::new(File::open(path).map_err(failed)?);

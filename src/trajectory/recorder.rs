@@ -15,7 +15,10 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 ///
 /// Each frame is made whole in memory, then written. If that fails, because the disk is full, for example,
 /// the run ends with the error ([`verdict`](Observer::verdict)), and the file ends with its last whole frame.
-/// A run that goes on later takes the frame that was missed.
+/// A run that goes on with the same recorder takes the frame that was missed.
+///
+/// [`OfKind`](crate::observable::OfKind) around a recorder records the disks of one kind; they are numbered
+/// among themselves. Files have the box, but not the parts of a vessel in it.
 ///
 /// # To go on in a file
 /// After a kill, resume the run from its checkpoint and [`append`](Self::append). The frames that were
@@ -23,7 +26,7 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 /// not written twice. If they differ, the file is of another run, and the error says so. The rest of a frame
 /// in whose middle the process died is cut off by the next frame.
 ///
-/// Times of frames increase. No two recorders write to one file at a time, where the system has locks.
+/// Times of frames increase. On Unix, no two recorders write to one file at a time.
 ///
 /// ```
 /// use granular_edmd::prelude::*;
@@ -84,8 +87,9 @@ impl Recorder {
         Ok(Self::new(format, store, times))
     }
 
-    /// Begins a series of files for ParaView: `run.pvd` has the times, and the new folder `run` beside it the
-    /// disks and the edges of the box for each frame, as [`State::write_vtk`](super::State::write_vtk) writes them.
+    /// Begins a series of files for ParaView. `run.pvd` has the times. The new folder `run` beside it has two
+    /// files for each frame: the disks, as [`State::write_vtk`](super::State::write_vtk) writes them, and the
+    /// edges of the box.
     ///
     /// # Errors
     /// If the path does not end in `.pvd`, there is a file or a folder of these names, or they cannot be
@@ -132,13 +136,11 @@ impl Recorder {
     pub fn record(&mut self, snapshot: &Snapshot<'_>) -> Result<(), RecordError> {
         let time = snapshot.time();
         let last = self.times().last().copied();
-        match last.filter(|&last| time <= last) {
-            Some(last) => self.compare(snapshot, last),
-            None => {
-                self.write_frame(self.times().len(), snapshot)?;
-                self.store.append(snapshot, &self.bytes)
-            }
+        if let Some(last) = last.filter(|&last| time <= last) {
+            return self.compare(snapshot, last);
         }
+        self.write_frame(self.times().len(), snapshot)?;
+        self.store.append(snapshot, &self.bytes)
     }
 
     /// Checks that the file has this frame.
@@ -193,10 +195,11 @@ impl Observer for Recorder {
 
     #[inline]
     fn verdict(&mut self) -> Verdict {
-        match self.failure.take() {
-            None => Ok(ControlFlow::Continue(())),
-            Some(error) => Err(error.into()),
+        // Asked after each collision.
+        if self.failure.is_none() {
+            return Ok(ControlFlow::Continue(()));
         }
+        self.failure.take().map_or(Ok(ControlFlow::Continue(())), |error| Err(error.into()))
     }
 }
 

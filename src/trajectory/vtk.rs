@@ -60,7 +60,7 @@ fn write_disks(
     writeln!(out, "<Piece NumberOfPoints=\"{count}\" NumberOfVerts=\"{count}\">\n<PointData>")?;
     let whole = |of: fn(&Disk) -> i64| disks.iter().map(of);
     let number = |of: fn(&Disk) -> f64| disks.iter().map(of);
-    write_array(out, "Int64", "id", 1, 1..=count as i64)?;
+    write_array(out, "Int64", "id", 1, (1_i64..).take(count))?;
     write_array(out, "Int64", "kind", 1, whole(|disk| disk.kind().number().into()))?;
     write_numbers(out, "velocity", 3, disks.iter().flat_map(|disk| in_space(disk.velocity())))?;
     write_numbers(out, "angle", 1, number(Disk::angle))?;
@@ -75,8 +75,8 @@ fn write_disks(
     out.write_all(b"</PointData>\n<Points>\n")?;
     write_numbers(out, "Points", 3, disks.iter().flat_map(|disk| in_space(disk.position())))?;
     out.write_all(b"</Points>\n<Verts>\n")?;
-    write_array(out, "Int64", "connectivity", 1, 0..count as i64)?;
-    write_array(out, "Int64", "offsets", 1, 1..=count as i64)?;
+    write_array(out, "Int64", "connectivity", 1, (0_i64..).take(count))?;
+    write_array(out, "Int64", "offsets", 1, (1_i64..).take(count))?;
     out.write_all(b"</Verts>\n")?;
     out.write_all(TAIL.as_bytes())
 }
@@ -95,9 +95,9 @@ fn write_box(out: &mut dyn Write, domain: &Domain, disks: &[Disk], time: f64) ->
     out.write_all(b"</CellData>\n<Points>\n")?;
     write_numbers(out, "Points", 3, corners.into_iter().flat_map(in_space))?;
     out.write_all(b"</Points>\n<Lines>\n")?;
-    let ends = (0..lines as i64).flat_map(|line| [line, (line + 1) % 4]);
+    let ends = (0_i64..).take(lines).flat_map(|line| [line, (line + 1) % 4]);
     write_array(out, "Int64", "connectivity", 1, ends)?;
-    write_array(out, "Int64", "offsets", 1, (1..=lines as i64).map(|line| 2 * line))?;
+    write_array(out, "Int64", "offsets", 1, (1_i64..).take(lines).map(|line| 2 * line))?;
     out.write_all(b"</Lines>\n")?;
     out.write_all(TAIL.as_bytes())
 }

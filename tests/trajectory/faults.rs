@@ -1,8 +1,12 @@
 //! Every fault of a file, with its line and its value.
 
-use granular_edmd::trajectory::{ReadError, State, XyzFrames};
+use granular_edmd::observable::Snapshot;
+use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, ReadError, State, XyzFrames};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::report::report;
+use crate::states::{domain, random_disks};
 
 #[track_caller]
 fn assert_told<T: std::fmt::Debug>(read: Result<T, ReadError>, expected: &str) {
@@ -132,4 +136,37 @@ fn faults_of_data_of_lammps() {
         &format!("{moving}1 0 0 0 0 0 0\n1 0 0 0 0 0 0\n"),
         "line 16: the velocity of atom 1 stands in line 15 already",
     );
+}
+
+/// Files with bytes changed, doubled and left out at random: they are read or refused, and nothing panics.
+#[test]
+fn damage_does_no_harm() {
+    let mut generator = Xoshiro256PlusPlus::seed_from_u64(11);
+    let domain = domain(1);
+    let disks = &random_disks(3, &domain)[..5];
+    let snapshot = Snapshot::new(0.5, disks, domain, 1.0);
+    let mut files = [Vec::new(), Vec::new(), Vec::new()];
+    ExtendedXyz.write_frame(&Frame::new(0, snapshot), &mut files[0]).unwrap();
+    State::of(&snapshot).write_csv(&mut files[1]).unwrap();
+    State::of(&snapshot).write_lammps_data(&mut files[2]).unwrap();
+    let mut refused = 0;
+    for case in 0..6000 {
+        let mut bytes = files[case % 3].clone();
+        for _ in 0..generator.random_range(1..4) {
+            let place = generator.random_range(0..bytes.len());
+            match generator.random_range(0..4) {
+                0 => bytes[place] = generator.random_range(32..127),
+                1 => bytes[place] = *b"\n -e9.\"=#,".get(place % 11).unwrap_or(&b'0'),
+                2 => drop(bytes.remove(place)),
+                _ => bytes.insert(place, bytes[generator.random_range(0..bytes.len())]),
+            }
+        }
+        let read = match case % 3 {
+            0 => State::from_xyz(bytes.as_slice()),
+            1 => State::from_csv(bytes.as_slice()),
+            _ => State::from_lammps_data(bytes.as_slice()),
+        };
+        refused += usize::from(read.is_err());
+    }
+    assert!((1000..5500).contains(&refused), "{refused} of 6000");
 }

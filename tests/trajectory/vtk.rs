@@ -72,3 +72,18 @@ fn no_file_of_a_series_is_overwritten() {
     let error = Recorder::create_vtk(scratch.path("run.vtk"), times()).unwrap_err();
     assert!(report(&error).ends_with("the name must be of Unicode letters and end in .pvd"));
 }
+
+#[test]
+fn a_series_that_somebody_has_changed_is_left() {
+    let scratch = Scratch::new("series-changed");
+    let path = scratch.path("run.pvd");
+    mixture().run_until(3.0, &mut Recorder::create_vtk(&path, times()).unwrap()).unwrap();
+    let text = fs::read_to_string(&path).unwrap();
+    for changed in
+        [text.replace("000004", "000005"), text.clone() + "<!-- my notes -->", text.replace("2.5", "2.50")]
+    {
+        fs::write(&path, &changed).unwrap();
+        assert!(matches!(Recorder::append_vtk(&path, times()), Err(RecordError::Io { .. })), "{changed}");
+        assert_eq!(fs::read_to_string(&path).unwrap(), changed);
+    }
+}

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use super::write_box;
 use crate::observable::Snapshot;
 use crate::trajectory::errors::RecordError;
+use crate::trajectory::format::no_frame;
 use crate::trajectory::media::{self, Growing};
 use crate::trajectory::store::Store;
 
@@ -38,7 +39,7 @@ impl Series {
             // The folder is new and empty, so nothing is lost.
             let _ = fs::remove_dir(&folder);
         });
-        let mut file = Growing::new(file?, 0);
+        let mut file = Growing::new(file?, 0, Vec::new());
         file.push(HEAD.as_bytes(), TAIL.as_bytes()).map_err(RecordError::io("write to", path))?;
         Ok(Self { path: path.to_owned(), folder, name, file, times: Vec::new() })
     }
@@ -52,7 +53,11 @@ impl Series {
         if times.is_empty() {
             return Err(RecordError::NoFrame { path: path.to_owned() });
         }
-        Ok(Self { path: path.to_owned(), folder, name, file: Growing::new(file, length as u64), times })
+        if !is_torn(&text[length..], &name, times.len()) {
+            return Err(RecordError::io("go on in", path)(no_frame("an ending", &text[length..])));
+        }
+        let file = Growing::new(file, length as u64, TAIL.into());
+        Ok(Self { path: path.to_owned(), folder, name, file, times })
     }
 
     fn file_of(&self, part: &str, number: usize) -> PathBuf {
@@ -112,13 +117,11 @@ impl Store for Series {
 /// Returns the folder of the frames, and its name in the file of times.
 fn place(path: &Path) -> Result<(PathBuf, String), RecordError> {
     let name = path.file_stem().and_then(|name| name.to_str());
-    match name.filter(|_| path.extension().is_some_and(|ending| ending == "pvd")) {
-        Some(name) => Ok((path.with_extension(""), escaped(name))),
-        None => {
-            let reason = "the name must be of Unicode letters and end in .pvd";
-            Err(RecordError::io("use", path)(io::Error::new(io::ErrorKind::InvalidInput, reason)))
-        }
+    if let Some(name) = name.filter(|_| path.extension().is_some_and(|ending| ending == "pvd")) {
+        return Ok((path.with_extension(""), escaped(name)));
     }
+    let reason = "the name must be of Unicode letters and end in .pvd";
+    Err(RecordError::io("use", path)(io::Error::new(io::ErrorKind::InvalidInput, reason)))
 }
 
 fn file_name(part: &str, number: usize) -> String {
@@ -150,6 +153,14 @@ fn times(text: &str, folder: &str) -> (Vec<f64>, usize) {
         rest = after;
     }
     (times, length)
+}
+
+/// Tells whether the rest of a file of times is its ending, or the beginning of a frame that was not
+/// finished.
+fn is_torn(rest: &str, folder: &str, number: usize) -> bool {
+    let time = rest.strip_prefix("<DataSet timestep=\"").and_then(|rest| rest.split_once('"'));
+    let entry = time.and_then(|(time, _)| time.parse().ok()).map(|time| entry(folder, number, time) + TAIL);
+    rest.len() <= TAIL.len() || entry.is_some_and(|entry| entry.starts_with(rest))
 }
 
 /// Returns a text as it stands in XML.
