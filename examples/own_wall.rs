@@ -65,7 +65,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         laws::check(&base, 0.0, 20.0 * period)?;
         let container = Container::open(20.0)?.with_motion(Wall::Floor, base)?;
         let disks = initial::random(&container, 100, 0.5, 20.0, 1)?;
-        // Grains that come to rest on the base part with a speed of 0.1 at least: a run of hard grains needs that.
+        // Grains that come to rest on the base part with a speed of 0.1 at least. A run of hard grains needs
+        // that.
         let rule = LeastRebound::new(Frictional::new(0.05, 0.1)?, 0.1)?;
         let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(1.0).build()?;
         simulation.run_until(50.0, &mut ())?;

@@ -86,7 +86,8 @@ fn spacings() -> impl Iterator<Item = f64> {
     (0..=40).map(|k| LOOSE + (CLOSE - LOOSE) * f64::from(k) / 40.0)
 }
 
-/// Cuts the interior of a boundary at a height above its bottom. A cut below periodic ends makes ends of them.
+/// Cuts the interior of a boundary at a height above its bottom. A cut below periodic ends makes ends of
+/// them.
 fn cut(interior: Domain, below: f64) -> Result<Domain, ParameterError> {
     let is_within = below.is_finite() && below > interior.bottom;
     let below = accept(is_within, "height", "finite and above the bottom of the interior", below)?;

@@ -24,8 +24,8 @@ const TRIALS: usize = 10_000;
 /// reached in this way: start from a [`lattice`](super::lattice()) and let it melt.
 ///
 /// # Errors
-/// If the radius is not finite and positive, the height is not finite and above the bottom of the interior, or
-/// a disk finds no place in ten thousand trials.
+/// If the radius is not finite and positive, the height is not finite and above the bottom of the interior,
+/// or a disk finds no place in ten thousand trials.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
