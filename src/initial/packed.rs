@@ -38,7 +38,8 @@ const APART: f64 = 1e-9;
 /// # Errors
 /// If the height is not finite and above the bottom of the interior, there are more than 2²⁸ disks, or the
 /// disks do not find room or jam. The error of a jam names the area fraction of the disks in the rectangle of
-/// the interior below the height. If a periodic boundary is too narrow for the engine, or the boundary breaks its contract.
+/// the interior below the height. If a periodic boundary is too narrow for the engine, or the boundary breaks
+/// its contract.
 ///
 /// ```
 /// use std::f64::consts::PI;
