@@ -45,9 +45,10 @@ pub struct StressTensor {
 /// gives one value of the stress, and the errors come from blocks of these.
 ///
 /// In a box without gravity, the normal stress is the pressure on the walls. Without a region the area is
-/// that of the domain, walls at rest included; a run ends with an error if it is infinite. Of the disks of
-/// one kind ([`OfKind`](super::OfKind)), the kinetic part is that of the kind, and the collisional part that of all
-/// its collisions.
+/// that of the domain, walls at rest included; a run ends with an error if it is infinite.
+///
+/// Of the disks of one kind ([`OfKind`](super::OfKind)), the kinetic part is that of the kind, and the
+/// collisional part that of all its collisions.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
