@@ -22,6 +22,7 @@ export function fit(canvas) {
 
 export class Box {
   #canvas; #marks = []; #dye = null; #before = null;
+  fastest = 0; // Speed of the longest arrow.
   constructor(canvas) { this.#canvas = canvas; }
 
   // Dyes the disks by the half of the box in which they are.
@@ -103,6 +104,7 @@ export class Box {
       seen.push([cell, u, v]);
       fastest = Math.max(fastest, Math.hypot(u, v));
     }
+    this.fastest = fastest;
     const size = (WIDTH / COLUMNS) * unit;
     context.strokeStyle = context.fillStyle = INK;
     context.lineWidth = Math.max(1, unit * 0.28);
@@ -123,6 +125,12 @@ export class Box {
         circle(context, disks[4 * disk] * unit, -disks[4 * disk + 1] * unit, unit / 2);
         context.stroke();
       }
+      context.strokeStyle = '#e69f00';
+      context.lineWidth = 2.2;
+      circle(context, x * unit, -y * unit, 2 * unit);
+      context.stroke();
+      context.strokeStyle = INK;
+      context.lineWidth = 1;
       context.fillStyle = '#e69f00';
       circle(context, x * unit, -y * unit, Math.min(unit, 2 + 2.5 * Math.sqrt(strength)));
       context.fill();

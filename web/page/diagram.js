@@ -101,7 +101,7 @@ export class Diagram {
       named.add(name);
       const [x, y] = this.#place(piece[0][1], piece[0][2]);
       context.font = '600 11px system-ui, sans-serif';
-      context.fillText(name.replace(' (b)', ''), x + 6, y - 5);
+      context.fillText(name.replace(' (b)', ''), x + 6, y - 5 < TOP + 14 ? y + 20 : y - 5);
     }
   }
 

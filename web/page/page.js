@@ -69,14 +69,15 @@ function tellSpeed() {
 }
 
 function show(frame) {
-  at('oscillations').textContent = frame.oscillations < 100 && run.speed < 10 ? frame.oscillations.toFixed(2) : Math.floor(frame.oscillations);
+  at('oscillations').textContent = run.speed < 10 || !run.isPlaying ? frame.oscillations.toFixed(2) : Math.floor(frame.oscillations);
   at('psi1').textContent = signed(frame.numbers[1]);
   at('psi2').textContent = signed(frame.numbers[2]);
+  at('fastest').textContent = box.fastest.toFixed(2);
   at('height').textContent = frame.numbers[3].toFixed(1);
   at('state').textContent = frame.isReplaying ? `replaying to ${frame.until} …` : frame.state || 'settling …';
   at('hash').textContent = frame.hash.text;
   at('hash-at').textContent = frame.hash.at;
-  const [perSecond, collisions] = frame.perSecond.map((rate) => Math.round(rate).toLocaleString('en'));
+  const [perSecond, collisions] = frame.perSecond.map((rate) => (rate < 10 ? rate.toFixed(2) : Math.round(rate).toLocaleString('en')));
   at('rates').textContent = `${perSecond} oscillations and ${collisions} collisions per second, ${drawn.perSecond.toFixed(0)} frames per second`;
 }
 

@@ -58,9 +58,10 @@ export async function open(program, { width = 1280, height = 900, mobile = false
     go: async (url) => { await call('Page.navigate', { url: 'about:blank' }); await call('Page.navigate', { url }); await until('Boolean(window.rolls?.frame)'); },
     screenshot: async (full = false) => Buffer.from((await call('Page.captureScreenshot', { format: 'png', captureBeyondViewport: full })).data, 'base64'),
     close: async () => {
+      const ended = new Promise((resolve) => child.once('close', resolve));
       await send('Browser.close').catch(() => {});
-      await new Promise((resolve) => setTimeout(resolve, 300));
-      rmSync(profile, { recursive: true, force: true, maxRetries: 5 });
+      await ended;
+      rmSync(profile, { recursive: true, force: true, maxRetries: 10, retryDelay: 100 });
     },
   };
 }
