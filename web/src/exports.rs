@@ -1,0 +1,213 @@
+//! What the page calls. Numbers go in as arguments; what comes out lies in buffers whose place the page asks
+//! for, so the page never hands over an address.
+//!
+//! `no_mangle` counts as unsafe since two functions of one name would clash in the linker. These names are
+//! those of this module only, and `page/worker.js` calls them. A function that can fail returns 0, or 1 and
+//! leaves a text.
+
+#![allow(unsafe_code, reason = "the attribute no_mangle; there is no unsafe block")]
+
+use std::cell::RefCell;
+
+use granular_edmd::observable::{CenterOfMass, Energies, OrderParameters};
+
+use crate::plan::Setting;
+use crate::run::{Advance, Failure, Run};
+
+#[derive(Default)]
+struct Page {
+    run: Option<Run>,
+    numbers: Vec<f32>,
+    text: String,
+}
+
+thread_local! { static PAGE: RefCell<Page> = RefCell::default(); }
+
+/// Starts a run anew.
+#[unsafe(no_mangle)]
+pub extern "C" fn start(
+    seed: f64,
+    friction: f64,
+    q: f64,
+    gravity: f64,
+    amplitude: f64,
+    frequency: f64,
+) -> u32 {
+    let setting = setting([friction, q, gravity, amplitude, frequency]);
+    attempt(|page| {
+        page.run = Some(Run::new(seed as u64, setting)?);
+        Ok(())
+    })
+}
+
+/// Asks for another setting, and leaves the number of the oscillation from which on it acts as a text.
+#[unsafe(no_mangle)]
+pub extern "C" fn ask(friction: f64, q: f64, gravity: f64, amplitude: f64, frequency: f64) -> u32 {
+    let setting = setting([friction, q, gravity, amplitude, frequency]);
+    attempt(|page| {
+        page.text = running(&mut page.run)?.ask(setting)?.to_string();
+        Ok(())
+    })
+}
+
+/// Advances to so many oscillations, or by so many collisions, whichever comes first.
+#[unsafe(no_mangle)]
+pub extern "C" fn advance(to: f64, most_collisions: u32, marks: u32) -> u32 {
+    let advance = Advance { to, most_collisions: most_collisions.into(), marks: marks != 0 };
+    attempt(|page| Ok(running(&mut page.run)?.advance(advance).map(|_| ())?))
+}
+
+/// Goes to the next collision.
+#[unsafe(no_mangle)]
+pub extern "C" fn step() -> u32 {
+    attempt(|page| running(&mut page.run)?.step())
+}
+
+/// Returns the oscillations since the start.
+#[unsafe(no_mangle)]
+pub extern "C" fn oscillations() -> f64 {
+    ask_run(0.0, |run| run.oscillations())
+}
+
+/// Returns the collisions since the start.
+#[unsafe(no_mangle)]
+pub extern "C" fn collisions() -> f64 {
+    ask_run(0.0, |run| run.collisions() as f64)
+}
+
+/// Leaves position, angle and angular velocity of each disk.
+#[unsafe(no_mangle)]
+pub extern "C" fn disks() {
+    leave(|run, out| {
+        for disk in run.simulation().disks() {
+            let place = [disk.position().x, disk.position().y, disk.angle(), disk.angular_velocity()];
+            out.extend(place.map(|number| number as f32));
+        }
+    });
+}
+
+/// Leaves mean velocity and number of disks of each cell of the flow.
+#[unsafe(no_mangle)]
+pub extern "C" fn flow() {
+    leave(|run, out| {
+        out.extend(
+            run.watch().flow.cells().flat_map(|(mean, count)| [mean.x as f32, mean.y as f32, count as f32]),
+        );
+    });
+}
+
+/// Leaves the collisions that were marked, and forgets them.
+#[unsafe(no_mangle)]
+pub extern "C" fn marks() {
+    leave(|run, out| out.extend(run.watch().marks.drain(..).flat_map(|mark| mark.0)));
+}
+
+/// Leaves the new samples, and forgets them: oscillation, both order parameters, their noise.
+#[unsafe(no_mangle)]
+pub extern "C" fn samples() {
+    leave(|run, out| {
+        for sample in run.watch().fresh.drain(..) {
+            let order = [sample.order.one_roll, sample.order.two_rolls, sample.noise];
+            out.push(sample.oscillation as f32);
+            out.extend(order.map(|number| number as f32));
+        }
+    });
+}
+
+/// Leaves time, order parameters, height of the center of mass, energies, and height of the base.
+#[unsafe(no_mangle)]
+pub extern "C" fn numbers() {
+    leave(|run, out| {
+        let (order, center, energies) = run.simulation().measure(&(OrderParameters, CenterOfMass, Energies));
+        let time = run.simulation().time();
+        let all =
+            [time, order.one_roll, order.two_rolls, center.y, energies.translational, energies.rotational];
+        out.extend(all.map(|number| number as f32));
+        out.push(run.base() as f32);
+    });
+}
+
+/// Leaves the paper's lines; see `diagram`.
+#[unsafe(no_mangle)]
+pub extern "C" fn lines(larger_gravity: u32, largest_inelasticity: f64) -> u32 {
+    attempt(|page| {
+        page.numbers = crate::diagram::lines(larger_gravity != 0, largest_inelasticity)?;
+        Ok(())
+    })
+}
+
+/// Leaves the hash of the state as a text.
+#[unsafe(no_mangle)]
+pub extern "C" fn hash() -> u32 {
+    attempt(|page| {
+        page.text = running(&mut page.run)?.hash();
+        Ok(())
+    })
+}
+
+/// Leaves the name of the state as a text; an empty one while there are few samples.
+#[unsafe(no_mangle)]
+pub extern "C" fn state() -> u32 {
+    attempt(|page| {
+        page.text = running(&mut page.run)?.watch().state().unwrap_or_default();
+        Ok(())
+    })
+}
+
+/// Returns where the numbers lie that were left last.
+#[unsafe(no_mangle)]
+pub extern "C" fn numbers_at() -> *const f32 {
+    PAGE.with_borrow(|page| page.numbers.as_ptr())
+}
+
+/// Returns how many numbers were left last.
+#[unsafe(no_mangle)]
+pub extern "C" fn numbers_length() -> usize {
+    PAGE.with_borrow(|page| page.numbers.len())
+}
+
+/// Returns where the text lies that was left last, in UTF-8.
+#[unsafe(no_mangle)]
+pub extern "C" fn text_at() -> *const u8 {
+    PAGE.with_borrow(|page| page.text.as_ptr())
+}
+
+/// Returns how many bytes the text has that was left last.
+#[unsafe(no_mangle)]
+pub extern "C" fn text_length() -> usize {
+    PAGE.with_borrow(|page| page.text.len())
+}
+
+fn setting(numbers: [f64; 5]) -> Setting {
+    let [friction, inelasticity, gravity, amplitude, angular_frequency] = numbers;
+    Setting { friction, inelasticity, gravity, amplitude, angular_frequency }
+}
+
+fn running(run: &mut Option<Run>) -> Result<&mut Run, Failure> {
+    run.as_mut().ok_or_else(|| "no run was started".into())
+}
+
+/// Tries, and leaves the error and what caused it as a text.
+fn attempt(work: impl FnOnce(&mut Page) -> Result<(), Failure>) -> u32 {
+    PAGE.with_borrow_mut(|page| match work(page) {
+        Ok(()) => 0,
+        Err(error) => {
+            let causes = std::iter::successors(error.source(), |error| error.source());
+            page.text = causes.fold(error.to_string(), |text, cause| format!("{text}: {cause}"));
+            1
+        }
+    })
+}
+
+fn ask_run<T>(otherwise: T, question: impl FnOnce(&Run) -> T) -> T {
+    PAGE.with_borrow(|page| page.run.as_ref().map_or(otherwise, question))
+}
+
+fn leave(write: impl FnOnce(&mut Run, &mut Vec<f32>)) {
+    PAGE.with_borrow_mut(|Page { run, numbers, .. }| {
+        numbers.clear();
+        if let Some(run) = run {
+            write(run, numbers);
+        }
+    });
+}

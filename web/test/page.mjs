@@ -1,0 +1,103 @@
+// Tests the page in Chromium: node web/test/page.mjs PROGRAM [CHROMIUM]; the program is this package's binary.
+
+import { execFileSync, spawn } from 'node:child_process';
+import { strict as assert } from 'node:assert';
+
+import { open } from './browser.mjs';
+
+const [program, chromium = 'chromium'] = process.argv.slice(2);
+const SEED = 7;
+const seconds = (count) => new Promise((resolve) => setTimeout(resolve, 1000 * count));
+const step = (text) => console.log(text);
+
+// The server on a free port, and the address that it prints.
+const server = spawn(program, ['serve'], { stdio: ['ignore', 'pipe', 'inherit'] });
+const url = await new Promise((resolve, reject) => {
+  let printed = '';
+  server.stdout.on('data', (data) => { printed += data; const found = /http:\S+/.exec(printed); if (found) resolve(found[0]); });
+  server.on('exit', () => reject(new Error('the server ended')));
+});
+const page = await open(chromium);
+const plan = (...steps) => steps.map(([at, setting]) => `${at}:${setting.join(',')}`).join(';');
+const go = async (text, at, rest) => page.go(`${url}#seed=${SEED}&plan=${text}&at=${at}&${rest}`);
+const frame = (member) => page.evaluate(`rolls.frame.${member}`);
+const set = (id, value, event) => page.evaluate(`{ const at = document.getElementById('${id}'); at.value = ${value};
+  at.dispatchEvent(new Event('${event}')); }`);
+const arrived = () => page.until('!rolls.frame.isReplaying', 60);
+
+try {
+  // As somebody who opens the page finds it.
+  await page.go(url);
+  await page.until('rolls.frame.oscillations > 20');
+  const before = await page.evaluate('Array.from(rolls.frame.disks)');
+  await seconds(0.5);
+  const after = await page.evaluate('Array.from(rolls.frame.disks)');
+  assert.equal(before.length, 4000);
+  const moved = before.filter((number, i) => number !== after[i]).length;
+  assert.ok(moved > 3000, `${moved} of 4000 numbers changed`);
+  step(`disks move: ${moved} of 4000 numbers changed in half a second`);
+
+  // Two settings one after the other: rule, gravity, amplitude and frequency change on the way.
+  const steps = plan([0, [0.03, 0, 0.015625, 0.1, 10]], [40, [0.05, 0.01, 0.01, 0.1, 10]], [75, [0.05, 0.01, 0.01, 0.12, 8]]);
+  await go(steps, 150, 'paused');
+  await page.until('rolls.frame.hash.at === 150');
+  const native = execFileSync(program, ['hash', String(SEED), steps, '150']).toString().trim();
+  assert.equal(await frame('hash.text'), native);
+  step(`the hash is that of the native run: ${native}`);
+
+  // Single collisions, and sliders.
+  const count = await frame('collisions');
+  await page.evaluate('document.getElementById("step").click()');
+  await page.until(`rolls.frame.collisions === ${count + 1}`);
+  await set('speed', 1000, 'input');
+  await page.evaluate('document.getElementById("play").click()');
+  for (const [slider, id] of ['slider-0', 'slider-1', 'slider-2', 'slider-3', 'slider-4'].entries()) {
+    const steps = await page.evaluate('rolls.run.plan.length');
+    await set(id, 0.45, 'input');
+    await page.until(`rolls.run.plan.length > ${steps}`);
+    assert.notEqual(await page.evaluate(`rolls.run.plan.at(-1).setting[${slider}]`), [0.05, 0.01, 0.01, 0.12, 8][slider]);
+  }
+  await page.evaluate('document.getElementById("play").click()');
+  await seconds(0.3);
+  await page.evaluate('document.getElementById("share").click()');
+  const [shared, hash] = await page.evaluate('[location.hash, rolls.frame.hash]');
+  const [, text, at] = /plan=([^&]*)&at=(\d+)/.exec(shared);
+  assert.equal(Number(at), hash.at);
+  assert.equal(hash.text, execFileSync(program, ['hash', String(SEED), text, at]).toString().trim());
+  step(`sliders act, and the shared address leads to the same state: ${hash.text} after ${at} oscillations`);
+
+  // Convection: the same states as in the paper. One roll takes its time to come.
+  for (const [friction, name] of [[0.03, 'one roll'], [0.08, 'two rolls']]) {
+    await go(plan([0, [friction, 0, 0.015625, 0.1, 10]]), 2500, 'paused');
+    await arrived();
+    await page.until('rolls.frame.state !== ""');
+    const state = await frame('state');
+    assert.ok(state.startsWith(name), `κ = ${friction}: ${state}`);
+    step(`κ = ${friction}: ${state}`);
+  }
+
+  // Speeds, printed and not judged: they are those of the machine.
+  for (const speed of ['300', 'max']) {
+    await go(plan([0, [0.03, 0, 0.015625, 0.1, 10]]), 600, `speed=${speed}`);
+    await arrived();
+    await seconds(3.5);
+    const [oscillations, collisions] = await frame('perSecond');
+    const frames = await page.evaluate('rolls.drawn.perSecond');
+    assert.ok(oscillations > 0 && collisions > 0 && frames > 0);
+    step(`speed ${speed}: ${oscillations.toFixed(0)} oscillations/s, ${collisions.toFixed(0)} collisions/s, ${frames.toFixed(0)} frames/s`);
+  }
+
+  // An address that cannot be: said, not hidden.
+  await page.go(`${url}#plan=0:nonsense`);
+  assert.match(await page.evaluate('document.getElementById("message").textContent'), /no whole plan/);
+  await page.evaluate(`location.hash = '#seed=1&plan=0:-1,0,0.015625,0.1,10'`);
+  await page.until('document.getElementById("message").textContent.includes("friction")');
+  assert.deepEqual(page.problems, []);
+  const outside = page.requests.filter((request) => !request.startsWith(url) && !/^(about|blob|data):/.test(request));
+  assert.deepEqual(outside, []);
+  step('no errors, no requests elsewhere');
+} finally {
+  await page.close();
+  server.removeAllListeners('exit');
+  server.kill();
+}
