@@ -101,7 +101,10 @@ export class Diagram {
       named.add(name);
       const [x, y] = this.#place(piece[0][1], piece[0][2]);
       context.font = '600 11px system-ui, sans-serif';
-      context.fillText(name.replace(' (b)', ''), x + 6, y - 5 < TOP + 14 ? y + 20 : y - 5);
+      const at = [name.replace(' (b)', ''), x + 6, y - 5 < TOP + 14 ? y + 28 : y - 5];
+      Object.assign(context, { strokeStyle: 'rgb(255 255 255 / 70%)', lineWidth: 3, lineJoin: 'round' });
+      context.strokeText(...at);
+      context.fillText(...at);
     }
   }
 

@@ -28,6 +28,7 @@ window.rolls = { get frame() { return shown; }, get run() { return run; }, drawn
 
 function start(next) {
   run = next;
+  say(run.isBroken ? 'The address holds no whole plan; this is the run from the start.' : '');
   box.forget(); plot.forget(); diagram.forget();
   sliders.show(run.plan.at(-1).setting);
   at('seed').value = run.seed;
@@ -98,7 +99,7 @@ function draw() {
 }
 
 const replies = {
-  loaded() { say(run.isBroken ? 'The address holds no whole plan; this is the run from the start.' : ''); start(run); order('want'); requestAnimationFrame(draw); },
+  loaded() { start(run); order('want'); requestAnimationFrame(draw); },
   frame(frame) {
     shown = frame;
     fresh = true;
@@ -124,7 +125,7 @@ function address() {
 
 at('play').onclick = () => play(!run.isPlaying);
 at('step').onclick = () => { run.isPlaying = false; showPlaying(); order('step'); };
-at('restart').onclick = () => { say(''); start({ ...run, plan: [{ at: 0, setting: [...sliders.values] }], at: 0, isPlaying: true }); };
+at('restart').onclick = () => { start({ ...run, plan: [{ at: 0, setting: [...sliders.values] }], at: 0, isPlaying: true, isBroken: false }); };
 at('seed').onchange = () => { if (at('seed').checkValidity() && at('seed').value !== '') { run.seed = Number(at('seed').value); at('restart').click(); } };
 at('speed').oninput = () => { run.speed = speedOf(Number(at('speed').value)); tellSpeed(); order('speed', run.speed); };
 at('share').onclick = async () => {

@@ -5,9 +5,11 @@ const COLLISIONS = 2000; // Most collisions of one call, about a millisecond.
 const MARKED = 3; // Oscillations per second below which collisions are marked.
 
 let library;
-let speed = 300, playing = false, target = 0, clock = 0, wanted = false, isTurning = false;
+let speed = 300, playing = false, target = 0, clock = 0, isTurning = false;
 let ahead = [], until = 0; // What is still to be replayed.
 let hash = { text: '', at: -1, when: 0 };
+let state = { text: '', until: 0 };
+let isStarted = false, isFrameOwed = false;
 let rates = { since: 0, oscillations: 0, collisions: 0, perSecond: [0, 0] };
 
 const turn = new MessageChannel();
@@ -26,8 +28,11 @@ function start({ seed, plan, at, isPlaying }) {
   ahead = plan.slice(1);
   until = at;
   playing = isPlaying;
+  state.until = 0;
   hash = { text: '', at: -1, when: 0 };
   begin();
+  isStarted = true;
+  if (isFrameOwed) frame();
 }
 
 function begin() {
@@ -92,14 +97,21 @@ function measure() {
   rates = { since: now, oscillations, collisions, perSecond };
 }
 
+// The name of the state takes half a millisecond, so it is kept for a moment.
+function stateName() {
+  const now = performance.now();
+  if (now > state.until) state = { text: told(library.state), until: now + 300 };
+  return state.text;
+}
+
 function frame() {
+  isFrameOwed = false;
   const disks = left(library.disks), flow = left(library.flow);
   const message = {
     disks, flow, marks: left(library.marks), samples: left(library.samples), numbers: left(library.numbers),
-    oscillations: library.oscillations(), collisions: library.collisions(), state: told(library.state), hash, perSecond: rates.perSecond,
+    oscillations: library.oscillations(), collisions: library.collisions(), state: stateName(), hash, perSecond: rates.perSecond,
     isReplaying: isReplaying(), until,
   };
-  wanted = false;
   postMessage({ frame: message }, [disks.buffer, flow.buffer]);
 }
 
@@ -111,8 +123,9 @@ function fail(error) {
 
 const orders = {
   start,
-  want() { frame(); },
-  ask(setting) { postMessage({ asked: Number(told(() => library.ask(...setting))), setting }); },
+  want() { if (isStarted) frame(); else isFrameOwed = true; },
+  // Whoever changes a setting leaves the rest of a plan behind.
+  ask(setting) { [ahead, until] = [[], 0]; postMessage({ asked: Number(told(() => library.ask(...setting))), setting }); },
   speed(value) { speed = value; target = library.oscillations(); clock = performance.now(); },
   play(value) { playing = value; begin(); },
   step() { playing = false; check(library.step()); postMessage({ stepped: true }); },

@@ -54,7 +54,7 @@ pub extern "C" fn ask(friction: f64, q: f64, gravity: f64, amplitude: f64, frequ
 #[unsafe(no_mangle)]
 pub extern "C" fn advance(to: f64, most_collisions: u32, marks: u32) -> u32 {
     let advance = Advance { to, most_collisions: most_collisions.into(), marks: marks != 0 };
-    attempt(|page| Ok(running(&mut page.run)?.advance(advance).map(|_| ())?))
+    attempt(|page| running(&mut page.run)?.advance(advance).map(|_| ()))
 }
 
 /// Goes to the next collision.
@@ -66,7 +66,7 @@ pub extern "C" fn step() -> u32 {
 /// Returns the oscillations since the start.
 #[unsafe(no_mangle)]
 pub extern "C" fn oscillations() -> f64 {
-    ask_run(0.0, |run| run.oscillations())
+    ask_run(0.0, Run::oscillations)
 }
 
 /// Returns the collisions since the start.

@@ -1,9 +1,9 @@
 //! Builds the page and serves it to this machine, or runs a plan without a browser.
 //!
 //! ```text
-//! cargo run --release --manifest-path web/Cargo.toml                      build, and serve on a free port
-//! cargo run --release --manifest-path web/Cargo.toml -- serve 8000        the same on this port
-//! cargo run --release --manifest-path web/Cargo.toml -- build             only build: any static server will do
+//! cargo run --release --manifest-path web/Cargo.toml                  build, and serve on a free port
+//! cargo run --release --manifest-path web/Cargo.toml -- serve 8000    the same on this port
+//! cargo run --release --manifest-path web/Cargo.toml -- build         build for any static server
 //! cargo run --release --manifest-path web/Cargo.toml -- hash 1 0:0.03,0,0.015625,0.1,10 600
 //! ```
 

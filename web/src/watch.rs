@@ -23,6 +23,9 @@ const NAMED: usize = 60;
 /// Fewest samples that name a state, and samples of one height profile.
 const FEWEST: usize = 15;
 
+/// Most samples that wait for the page, which fetches none while it is not seen.
+const MOST_FRESH: usize = 1000;
+
 /// Most collisions that are kept to be marked.
 const MOST_MARKS: usize = 200;
 
@@ -82,6 +85,9 @@ impl Watch {
         let order = OrderParameters.measure(&snapshot);
         let noise = thermal_noise(Temperatures.measure(&snapshot).vertical, 1.0, DISKS).unwrap_or(0.0);
         let sample = Sample { oscillation, order, noise };
+        if self.fresh.len() >= MOST_FRESH {
+            self.fresh.drain(..MOST_FRESH / 2);
+        }
         self.fresh.push(sample);
         self.recent.push_back(sample);
         if self.recent.len() > NAMED {

@@ -92,6 +92,10 @@ try {
   assert.match(await page.evaluate('document.getElementById("message").textContent'), /no whole plan/);
   await page.evaluate(`location.hash = '#seed=1&plan=0:-1,0,0.015625,0.1,10'`);
   await page.until('document.getElementById("message").textContent.includes("friction")');
+  await page.evaluate('document.getElementById("restart").click()');
+  await page.until('document.getElementById("message").textContent.includes("friction")');
+  await page.evaluate(`location.hash = '#seed=1&plan=0:0.1,0,0.015625,0.1,10'`);
+  await page.until('document.getElementById("message").textContent === "" && rolls.frame.oscillations > 5');
   assert.deepEqual(page.problems, []);
   const outside = page.requests.filter((request) => !request.startsWith(url) && !/^(about|blob|data):/.test(request));
   assert.deepEqual(outside, []);
