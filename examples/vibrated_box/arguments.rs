@@ -1,79 +1,124 @@
 //! The flags of the example.
 
 use std::f64::consts::TAU;
-use std::fmt;
-use std::path::PathBuf;
-use std::str::FromStr;
 
 use clap::{Parser, ValueEnum};
-use granular_edmd::collision::Frictional;
+use serde_json::{Value, json};
 
-use crate::common::command_line::{non_negative, plain, positive, whole};
+use crate::common::command_line::{Failure, non_negative, positive, whole};
+use crate::common::results::Results;
 
 /// Frictional, inelastic disks in a box with a vibrating base: convection rolls, or none.
 ///
 /// Lengths are in disk diameters, masses in disk masses, times in any unit that gravity and ω share. Prints a
-/// summary and writes a picture (disks, mean flow, series) and the series as a table. An oscillation lasts
-/// 2π/ω, also over a thermal base.
+/// summary and writes a picture (disks, mean flow, series), the series as a table, and with --json all
+/// numbers. An oscillation lasts 2π/ω, also over a thermal base. Means are over the second half of the run.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "vibrated_box", allow_negative_numbers = true)]
 pub(crate) struct Arguments {
     /// Number of disks.
     #[arg(long, default_value_t = 1000, value_parser = whole::<1_000_000>)]
     pub(crate) disks: u64,
+    /// Moment of inertia of a disk, as a part of m R²: 0.5 if it is homogeneous, 1 for a ring.
+    #[arg(long, default_value_t = 0.5, value_parser = positive)]
+    pub(crate) inertia: f64,
     /// Width of the box, in diameters.
     #[arg(long, default_value_t = 60.0, value_parser = positive)]
     pub(crate) width: f64,
-    /// Height of the lid, in diameters, or `none`.
-    #[arg(long, default_value_t = Height(Some(150.0)))]
-    pub(crate) height: Height,
+    /// Height of the lid, in diameters.
+    #[arg(long, default_value_t = 150.0, value_parser = positive)]
+    pub(crate) height: f64,
+    /// Takes the lid away.
+    #[arg(long, conflicts_with = "height")]
+    pub(crate) open: bool,
+    /// Joins the sides: a disk that leaves on one side enters on the other.
+    #[arg(long)]
+    pub(crate) periodic: bool,
     /// Gravity.
     #[arg(long, default_value_t = 0.015_625, value_parser = non_negative)]
     pub(crate) gravity: f64,
-    /// Inelasticity q = (1 - r)/2, normal and tangential, in [0, 0.5].
-    #[arg(long, default_value_t = 0.0, value_parser = inelasticity)]
+    /// Inelasticity q = (1 - r)/2 along the normal, in [0, 0.5].
+    #[arg(long, default_value_t = 0.0, value_parser = non_negative)]
     pub(crate) inelasticity: f64,
-    /// Friction κ, static and dynamic.
+    /// Inelasticity along the tangent, in [0, 1]; that along the normal unless given.
+    #[arg(long, value_parser = non_negative)]
+    pub(crate) tangential_inelasticity: Option<f64>,
+    /// Static friction κ.
     #[arg(long, default_value_t = 0.03, value_parser = non_negative)]
     pub(crate) friction: f64,
+    /// Dynamic friction, at most the static one; equal to it unless given.
+    #[arg(long, value_parser = non_negative)]
+    pub(crate) dynamic_friction: Option<f64>,
+    /// Friction of all walls, static and dynamic; that of the disks unless given.
+    #[arg(long, value_parser = non_negative)]
+    pub(crate) wall_friction: Option<f64>,
+    /// Inelasticity of all walls, normal and tangential; that of the disks unless given.
+    #[arg(long, value_parser = non_negative)]
+    pub(crate) wall_inelasticity: Option<f64>,
+    /// Base.
+    #[arg(long, value_enum, default_value = "bi-parabolic")]
+    pub(crate) base: Base,
     /// Amplitude A of the base.
     #[arg(long, default_value_t = 0.1, value_parser = positive)]
     pub(crate) amplitude: f64,
     /// Angular frequency ω of the base.
     #[arg(long, default_value_t = 10.0, value_parser = positive)]
     pub(crate) omega: f64,
+    /// Temperature of a thermal base.
+    #[arg(long, default_value_t = 1.0, value_parser = positive)]
+    pub(crate) temperature: f64,
+    /// Contact duration, 0 for none; unless given, 1e-4 of the time in which a disk with the speed of the
+    /// base moves by its diameter.
+    #[arg(long, value_parser = non_negative)]
+    pub(crate) contact_duration: Option<f64>,
     /// Length of the run, in oscillations.
     #[arg(long, default_value_t = 3000, value_parser = whole::<1_000_000_000>)]
-    pub(crate) oscillations: u64,
+    oscillations: u64,
     /// Oscillations from sample to sample.
     #[arg(long, default_value_t = 10, value_parser = whole::<1_000_000_000>)]
     pub(crate) every: u64,
     /// Seed of the first velocities and of a thermal base.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Base: `bi-parabolic`, `sinusoidal`, `triangular`, or `thermal:T0` (fixed, of the temperature T0).
-    #[arg(long, default_value_t = Base::BiParabolic)]
-    pub(crate) base: Base,
-    /// Sides of the box.
-    #[arg(long, value_enum, default_value_t = Sides::Walls)]
-    pub(crate) sides: Sides,
-    /// Contact duration of the TC model, 0 for none; unless given, 1e-4 of the time in which a disk with the
-    /// speed of the base, A ω (or √T0 over a thermal base), moves by its diameter.
-    #[arg(long, value_parser = non_negative)]
-    pub(crate) contact_duration: Option<f64>,
-    /// Folder for `vibrated_box.png` and `vibrated_box.csv`.
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    pub(crate) out: PathBuf,
-    /// Writes the results as one JSON object to this file, or to standard output for `-`. Means are over the
-    /// second half of the samples, `mean_energy_change` over all disk–disk collisions of that time; its
-    /// standard error knows that they are correlated, and is a lower bound unless
-    /// `mean_energy_change_converged`. Counts, the largest overlap, `run_seconds` and `collisions_per_second`
-    /// (disk–disk) are those of the whole run.
-    #[arg(long, value_name = "FILE")]
-    pub(crate) json: Option<PathBuf>,
+    /// Runs for 300 oscillations at most.
+    #[arg(long)]
+    quick: bool,
+    #[command(flatten)]
+    pub(crate) results: Results,
+}
+
+/// The base, which drives the disks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Base {
+    /// Pieces of parabolas, as in the paper.
+    BiParabolic,
+    Sinusoidal,
+    /// Constant speed up and down.
+    Triangular,
+    /// At rest, and of a temperature.
+    Thermal,
 }
 
 impl Arguments {
+    /// Checks what no flag alone can tell.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        if self.every > self.oscillations() {
+            let (every, oscillations) = (self.every, self.oscillations());
+            return Err(Failure::usage(format_args!(
+                "--every {every}: no sample is taken in {oscillations} oscillations"
+            )));
+        }
+        if self.gravity == 0.0 && self.open {
+            return Err(Failure::usage("--gravity 0 --open: without gravity the box needs a lid"));
+        }
+        Ok(())
+    }
+
+    /// Returns the length of the run, in oscillations.
+    pub(crate) fn oscillations(&self) -> u64 {
+        if self.quick { self.oscillations.min(300) } else { self.oscillations }
+    }
+
     /// Returns the duration of an oscillation.
     pub(crate) fn period(&self) -> f64 {
         TAU / self.omega
@@ -81,116 +126,32 @@ impl Arguments {
 
     /// Returns the scale of the speeds that the base gives to disks.
     pub(crate) fn base_speed(&self) -> f64 {
-        match self.base {
-            Base::Thermal(temperature) => temperature.sqrt(),
-            _ => self.amplitude * self.omega,
-        }
+        if self.base == Base::Thermal { self.temperature.sqrt() } else { self.amplitude * self.omega }
     }
 
-    /// Returns the contact duration of the TC model; 0 for none.
+    /// Returns the contact duration; 0 for none.
     pub(crate) fn contact_duration(&self) -> f64 {
         self.contact_duration.unwrap_or(1e-4 / self.base_speed())
     }
 
-    /// Returns the number of samples that the run takes.
-    pub(crate) fn samples(&self) -> u64 {
-        self.oscillations / self.every
+    /// Returns the name of the base.
+    pub(crate) fn base_name(&self) -> String {
+        self.base.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
     }
 
-    /// Returns the number of the sample after which means are taken.
-    pub(crate) fn settled(&self) -> u64 {
-        self.samples() / 2
-    }
-
-    /// Tells whether results on standard output would disturb the JSON there.
-    pub(crate) fn json_to_standard_output(&self) -> bool {
-        self.json.as_ref().is_some_and(|path| path.as_os_str() == "-")
-    }
-}
-
-fn inelasticity(text: &str) -> Result<f64, String> {
-    let value = non_negative(text)?;
-    Frictional::new(value, 0.0).map(|_| value).map_err(|error| format!("must be {}", error.requirement()))
-}
-
-/// The height of the lid, if there is one.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Height(pub(crate) Option<f64>);
-
-impl FromStr for Height {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        if text == "none" {
-            return Ok(Self(None));
-        }
-        positive(text).map(|height| Self(Some(height))).map_err(|error| format!("{error}, or `none`"))
-    }
-}
-
-impl fmt::Display for Height {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.0 {
-            Some(height) => formatter.write_str(&plain(height)),
-            None => formatter.write_str("none"),
-        }
-    }
-}
-
-/// The base, which drives the disks.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Base {
-    BiParabolic,
-    Sinusoidal,
-    Triangular,
-    Thermal(f64),
-}
-
-impl FromStr for Base {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "bi-parabolic" => Ok(Self::BiParabolic),
-            "sinusoidal" => Ok(Self::Sinusoidal),
-            "triangular" => Ok(Self::Triangular),
-            _ => match text.strip_prefix("thermal:") {
-                Some(temperature) => {
-                    let temperature = positive(temperature);
-                    temperature.map(Self::Thermal).map_err(|error| format!("the temperature {error}"))
-                }
-                None => Err("must be bi-parabolic, sinusoidal, triangular or thermal:T0".to_owned()),
-            },
-        }
-    }
-}
-
-impl fmt::Display for Base {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::BiParabolic => formatter.write_str("bi-parabolic"),
-            Self::Sinusoidal => formatter.write_str("sinusoidal"),
-            Self::Triangular => formatter.write_str("triangular"),
-            Self::Thermal(temperature) => write!(formatter, "thermal:{temperature}"),
-        }
-    }
-}
-
-/// The sides of the box.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Sides {
-    /// Walls with the friction and inelasticity of the disks.
-    Walls,
-    /// A disk that leaves on one side enters on the other.
-    Periodic,
-}
-
-impl Sides {
-    /// Returns the word for the sides.
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            Self::Walls => "walls",
-            Self::Periodic => "periodic",
-        }
+    /// Returns all parameters, for programs.
+    pub(crate) fn to_json(&self) -> Value {
+        json!({
+            "disks": self.disks, "inertia": self.inertia, "width": self.width,
+            "height": (!self.open).then_some(self.height), "periodic": self.periodic, "gravity": self.gravity,
+            "inelasticity": self.inelasticity, "friction": self.friction,
+            "tangential_inelasticity": self.tangential_inelasticity.unwrap_or(self.inelasticity),
+            "dynamic_friction": self.dynamic_friction.unwrap_or(self.friction),
+            "wall_friction": self.wall_friction, "wall_inelasticity": self.wall_inelasticity,
+            "base": self.base_name(), "amplitude": self.amplitude, "omega": self.omega,
+            "temperature": (self.base == Base::Thermal).then_some(self.temperature),
+            "contact_duration": self.contact_duration(), "oscillations": self.oscillations(),
+            "every": self.every, "seed": self.seed,
+        })
     }
 }

@@ -1,161 +1,125 @@
-//! The run: it builds the box, follows it oscillation by oscillation, and keeps what the report needs.
+//! The run: it builds the box, lets it settle for half of the time, and measures in the other half.
 
 use std::error::Error;
 use std::time::Instant;
 
-use granular_edmd::boundary::{Boundary, Container, Domain, Thermal, Wall};
-use granular_edmd::collision::{CollisionRule, ContactDuration, Frictional};
-use granular_edmd::initial::{self, PlacementError};
-use granular_edmd::observable::{
-    CenterOfMass, ConvectionOrder, Energies, EnergyChange, EnergyPerDisk, OrderParameters,
-};
-use granular_edmd::simulation::{Counters, RunError};
-use granular_edmd::statistics::Estimate;
-use granular_edmd::wall::{BiParabolic, Sinusoidal, Triangular};
-use granular_edmd::{Disk, Simulation};
+use granular_edmd::boundary::Region;
+use granular_edmd::observable::Fields;
+use granular_edmd::prelude::*;
+use granular_edmd::simulation::Counters;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::arguments::{Arguments, Base, Sides};
-use crate::common::command_line::{Failure, plain};
-use crate::common::flow::Flow;
+use crate::arguments::{Arguments, Base};
+use crate::common::command_line::Failure;
 
 const RADIUS: f64 = 0.5;
 
+/// Height of the grid of the flow, where there is no lid: in widths of the box.
+const OPEN_HEIGHT: f64 = 5.0;
+
+/// What is sampled over the whole run.
+pub(crate) type Samples = Series<(OrderParameters, CenterOfMass, Energies)>;
+
 /// The results of one run.
 pub(crate) struct Outcome {
-    pub(crate) samples: Vec<Sample>,
-    /// Energy change of disk–disk collisions in the second half, with the error of correlated collisions.
+    pub(crate) series: Samples,
+    /// Energy change of collisions of two disks in the second half, with the error of correlated collisions.
     pub(crate) energy_change: Estimate,
     /// Mean flow in the second half.
-    pub(crate) flow: Flow,
+    pub(crate) fields: Fields,
     pub(crate) disks: Vec<Disk>,
     pub(crate) counters: Counters,
     pub(crate) run_seconds: f64,
     pub(crate) final_state_hash: String,
 }
 
-/// The box at the end of an oscillation.
-pub(crate) struct Sample {
-    pub(crate) oscillation: u64,
-    pub(crate) time: f64,
-    pub(crate) order: ConvectionOrder,
-    pub(crate) center_of_mass_height: f64,
-    pub(crate) energies: EnergyPerDisk,
-}
-
 /// Runs what the flags ask for.
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let rule = Frictional::new(arguments.inelasticity, arguments.friction).map_err(Failure::usage)?;
-    match arguments.contact_duration() {
-        0.0 => simulate(rule, arguments),
-        duration => simulate(ContactDuration::new(rule, duration).map_err(Failure::usage)?, arguments),
-    }
-}
+    let mut simulation = build(arguments).map_err(Failure::usage)?;
+    let period = arguments.period();
+    let (end, settled) = (arguments.oscillations() as f64 * period, arguments.oscillations() / 2);
+    let times = |every: u64| SampleTimes::every(every as f64 * period).map_err(Failure::usage);
+    let observables = (OrderParameters, CenterOfMass, Energies);
+    let mut series = Series::new(observables, times(arguments.every)?);
+    let mut fields = grid(arguments, times(1)?).map_err(Failure::usage)?;
+    let mut energy = EnergyChange::default();
+    let bar = progress_bar(arguments.oscillations());
+    let mut progress = on_sample(times(1)?, |_: &Snapshot<'_>| bar.inc(1));
 
-fn simulate<R: CollisionRule>(rule: R, arguments: &Arguments) -> Result<Outcome, Failure> {
-    let mut simulation = build(rule, arguments)?;
-    let mut record = Record::new(&simulation.boundary().domain(), arguments);
-    let progress = progress_bar(arguments.oscillations);
-    for oscillation in 1..=arguments.oscillations {
-        record.follow(&mut simulation, oscillation, arguments).map_err(|error| stopped(&error))?;
-        progress.inc(1);
-    }
-    progress.finish_and_clear();
+    let start = Instant::now();
+    let first = simulation.run_until(settled as f64 * period, &mut (&mut series, &mut progress));
+    let second =
+        |_| simulation.run_until(end, &mut ((&mut series, &mut progress), (&mut energy, &mut fields)));
+    first.and_then(second).map_err(|error| stopped(&error))?;
+    let run_seconds = start.elapsed().as_secs_f64();
+    bar.finish_and_clear();
     let disks = simulation.disks();
     Ok(Outcome {
-        samples: record.samples,
-        energy_change: record.energy_change.disks().estimate(),
-        flow: record.flow,
+        series,
+        energy_change: energy.disks().estimate(),
+        fields,
         counters: *simulation.counters(),
-        run_seconds: record.run_seconds,
+        run_seconds,
         final_state_hash: hash(simulation.time(), &disks),
         disks,
     })
 }
 
-/// The record that is kept while the run goes on.
-struct Record {
-    samples: Vec<Sample>,
-    energy_change: EnergyChange,
-    flow: Flow,
-    run_seconds: f64,
-}
-
-impl Record {
-    fn new(domain: &Domain, arguments: &Arguments) -> Self {
-        let flow = Flow::new(*domain, columns(arguments.width));
-        Self { samples: Vec::new(), energy_change: EnergyChange::default(), flow, run_seconds: 0.0 }
-    }
-
-    /// Runs to the end of this oscillation and records it.
-    fn follow<R: CollisionRule>(
-        &mut self,
-        simulation: &mut Simulation<R, Container>,
-        oscillation: u64,
-        arguments: &Arguments,
-    ) -> Result<(), RunError> {
-        let settled = oscillation > arguments.settled() * arguments.every;
-        let end = oscillation as f64 * arguments.period();
-        let start = Instant::now();
-        simulation.run_until(end, &mut settled.then_some(&mut self.energy_change))?;
-        self.run_seconds += start.elapsed().as_secs_f64();
-        if settled {
-            self.flow.add(&simulation.snapshot());
-        }
-        if oscillation.is_multiple_of(arguments.every) {
-            self.samples.push(sample(simulation, oscillation));
-        }
-        Ok(())
-    }
-}
-
-fn build<R: CollisionRule>(rule: R, arguments: &Arguments) -> Result<Simulation<R, Container>, Failure> {
-    let container = container(arguments).map_err(|error| unusable_base(error.as_ref(), arguments))?;
-    let disks = initial::lattice(&container, arguments.disks as usize, RADIUS);
-    let disks = disks.map_err(|error| no_room(&error, arguments))?;
+fn build(
+    arguments: &Arguments,
+) -> Result<Simulation<ContactDuration<Frictional>, Container>, Box<dyn Error>> {
+    let rule = Frictional::from_inelasticity(
+        arguments.inelasticity,
+        arguments.tangential_inelasticity.unwrap_or(arguments.inelasticity),
+    )?;
+    let dynamic = arguments.dynamic_friction.unwrap_or(arguments.friction);
+    let rule = rule.with_friction(arguments.friction, dynamic)?;
+    let rule = ContactDuration::new(rule, arguments.contact_duration())?;
+    let container = container(arguments)?;
+    let disks = initial::lattice(&container, arguments.disks as usize, RADIUS)?;
+    let disks: Result<Vec<Disk>, _> =
+        disks.into_iter().map(|disk| disk.with_inertia_factor(arguments.inertia)).collect();
     let temperature = 0.5 * arguments.base_speed() * arguments.base_speed();
-    let disks = initial::with_maxwellian_velocities(disks, temperature, arguments.seed);
-    Simulation::builder(rule, container)
-        .disks(disks.map_err(Failure::usage)?)
-        .gravity(arguments.gravity)
-        .seed(arguments.seed)
-        .build()
-        .map_err(Failure::usage)
+    let disks = initial::with_maxwellian_velocities(disks?, temperature, arguments.seed)?;
+    let builder = Simulation::builder(rule, container).disks(disks);
+    Ok(builder.gravity(arguments.gravity).seed(arguments.seed).build()?)
 }
 
 fn container(arguments: &Arguments) -> Result<Container, Box<dyn Error>> {
-    let Arguments { width, amplitude, omega, .. } = *arguments;
-    let mut container = match arguments.height.0 {
-        Some(height) => Container::closed(width, height)?,
-        None => Container::open(width)?,
-    };
-    if arguments.sides == Sides::Periodic {
+    let Arguments { width, height, amplitude, omega, .. } = *arguments;
+    let mut container =
+        if arguments.open { Container::open(width)? } else { Container::closed(width, height)? };
+    if arguments.periodic {
         container = container.with_periodic_sides();
     }
-    let container = match arguments.base {
-        Base::BiParabolic => container.with_motion(Wall::Floor, BiParabolic::new(amplitude, omega)?),
-        Base::Sinusoidal => container.with_motion(Wall::Floor, Sinusoidal::new(amplitude, omega)?),
-        Base::Triangular => container.with_motion(Wall::Floor, Triangular::new(amplitude, omega)?),
-        Base::Thermal(temperature) => container.with_temperature(Wall::Floor, Thermal::new(temperature)?),
-    };
-    Ok(container?)
-}
-
-fn no_room(error: &PlacementError, arguments: &Arguments) -> Failure {
-    let Arguments { disks, height, .. } = arguments;
-    let width = plain(arguments.width);
-    match error {
-        PlacementError::NoRoom { placed, .. } => Failure::usage(format_args!(
-            "--disks {disks}: the start needs a square lattice, and a box of --width {width} --height {height} has \
-             room for {placed}"
-        )),
-        _ => Failure::usage(error),
+    if arguments.wall_friction.or(arguments.wall_inelasticity).is_some() {
+        let inelasticity = arguments.wall_inelasticity.unwrap_or(arguments.inelasticity);
+        let rule = Frictional::new(inelasticity, arguments.wall_friction.unwrap_or(arguments.friction))?;
+        let rule = ContactDuration::new(rule, arguments.contact_duration())?;
+        for wall in [Wall::Floor, Wall::Lid, Wall::Left, Wall::Right] {
+            // A box may lack a lid, or sides.
+            if container.index(wall).is_some() {
+                container = container.with_rule(wall, rule)?;
+            }
+        }
     }
+    Ok(match arguments.base {
+        Base::BiParabolic => container.with_motion(Wall::Floor, BiParabolic::new(amplitude, omega)?)?,
+        Base::Sinusoidal => container.with_motion(Wall::Floor, Sinusoidal::new(amplitude, omega)?)?,
+        Base::Triangular => container.with_motion(Wall::Floor, Triangular::new(amplitude, omega)?)?,
+        Base::Thermal => container.with_temperature(Wall::Floor, Thermal::new(arguments.temperature)?)?,
+    })
 }
 
-fn unusable_base(error: &dyn Error, arguments: &Arguments) -> Failure {
-    let (amplitude, omega) = (plain(arguments.amplitude), plain(arguments.omega));
-    Failure::usage(format_args!("--base {} --amplitude {amplitude} --omega {omega}: {error}", arguments.base))
+/// Returns a grid of about seven diameters a cell: fewer columns if the box is narrow, larger cells if it is
+/// wide.
+fn grid(arguments: &Arguments, times: SampleTimes) -> Result<Fields, ParameterError> {
+    let columns = (arguments.width / 7.0).round().clamp(4.0, 24.0);
+    let side = arguments.width / columns;
+    let height = if arguments.open { OPEN_HEIGHT * arguments.width } else { arguments.height };
+    let rows = (height / side).ceil();
+    let region = Region::new(DVec2::ZERO, DVec2::new(arguments.width, rows * side));
+    Fields::new(region, columns as usize, rows as usize, times)
 }
 
 fn stopped(error: &RunError) -> Failure {
@@ -163,17 +127,6 @@ fn stopped(error: &RunError) -> Failure {
         RunError::Stalled { .. } => Failure::run(format_args!("{error}; see --contact-duration")),
         _ => Failure::run(error),
     }
-}
-
-fn sample<R: CollisionRule>(simulation: &mut Simulation<R, Container>, oscillation: u64) -> Sample {
-    let (order, center, energies) = simulation.measure(&(OrderParameters, CenterOfMass, Energies));
-    Sample { oscillation, time: simulation.time(), order, center_of_mass_height: center.y, energies }
-}
-
-/// Returns the number of columns of the flow's grid. Cells have about seven diameters: there are fewer if the
-/// box is narrow, and they are larger if it is wide.
-fn columns(width: f64) -> usize {
-    (width / 7.0).round().clamp(4.0, 24.0) as usize
 }
 
 /// Shows how far the run is, if standard error is a terminal.

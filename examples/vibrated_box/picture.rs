@@ -1,12 +1,13 @@
 //! The picture: the disks with the mean flow over them, and the series beside them.
 
 use granular_edmd::Disk;
+use granular_edmd::observable::FieldCell;
 use kuva::plot::quiver::QuiverPivot;
 use kuva::prelude::{Layout, LinePlot, Plot, QuiverPlot, ScatterPlot};
 
-use crate::arguments::{Arguments, Base, Sides};
+use crate::arguments::{Arguments, Base};
 use crate::common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
-use crate::experiment::{Outcome, Sample};
+use crate::experiment::Outcome;
 use crate::report::Means;
 
 const HEADER: f64 = 76.0;
@@ -21,13 +22,13 @@ const MARGINS: [f64; 4] = [58.0, 12.0, 20.0, 44.0];
 const ENOUGH: f64 = 0.1;
 
 /// Draws the picture, and returns it as a PNG file.
-pub(crate) fn draw(arguments: &Arguments, outcome: &Outcome) -> Result<Vec<u8>, String> {
+pub(crate) fn draw(arguments: &Arguments, outcome: &Outcome, means: &Means) -> Result<Vec<u8>, String> {
     let view = View::of(arguments, &outcome.disks);
     let width = view.place.width + SERIES_WIDTH;
     let mut sheet = Sheet::new(width + 10.0, HEADER + HEIGHT + FOOTER);
-    write_header(&mut sheet, arguments, outcome);
+    write_header(&mut sheet, arguments, outcome, means);
     sheet.panel(view.place, MARGINS, disks_and_flow(&view, outcome), view.layout());
-    draw_series(&mut sheet, view.place.width, arguments, outcome);
+    draw_series(&mut sheet, view.place.width, arguments, outcome, means);
     sheet.png(1.6)
 }
 
@@ -43,7 +44,8 @@ struct View {
 impl View {
     fn of(arguments: &Arguments, disks: &[Disk]) -> Self {
         let highest = disks.iter().map(|disk| disk.position().y + disk.radius()).fold(0.0, f64::max);
-        let height = arguments.height.0.unwrap_or(f64::INFINITY).min(1.04 * highest);
+        let lid = if arguments.open { f64::INFINITY } else { arguments.height };
+        let height = lid.min(1.04 * highest);
         let [left, right, top, bottom] = MARGINS;
         let unit = ((HEIGHT - top - bottom) / height).min(620.0 / arguments.width);
         let size = (unit * arguments.width + left + right, unit * height + top + bottom);
@@ -65,7 +67,7 @@ fn disks_and_flow(view: &View, outcome: &Outcome) -> Vec<Plot> {
     let faces = ScatterPlot::new().with_data(centers()).with_colors(colors(&outcome.disks));
     let faces =
         faces.with_sizes(outcome.disks.iter().map(|disk| (0.86 * radius(disk)).max(radius(disk) - 0.5)));
-    vec![rims.into(), faces.into(), arrows(outcome).into()]
+    vec![rims.into(), faces.into(), arrows(view, outcome).into()]
 }
 
 /// Returns blue for disks that rotate clockwise and red for the others, in full color at twice the root mean
@@ -76,32 +78,39 @@ fn colors(disks: &[Disk]) -> Vec<String> {
     disks.iter().map(|disk| sheet::diverging(disk.angular_velocity() / full)).collect()
 }
 
+/// Returns the cells that are full enough for an arrow.
+fn seen(outcome: &Outcome) -> Vec<FieldCell> {
+    let most = outcome.fields.iter().map(|cell| cell.count).max().unwrap_or(0);
+    let enough = (ENOUGH * most as f64).max(1.0);
+    outcome.fields.iter().filter(|cell| cell.count as f64 >= enough).collect()
+}
+
+fn fastest(outcome: &Outcome) -> f64 {
+    seen(outcome).iter().map(|cell| cell.velocity.length()).fold(0.0, f64::max)
+}
+
 /// Returns the mean flow as arrows. The longest arrow is a little longer than a cell.
-fn arrows(outcome: &Outcome) -> QuiverPlot {
-    let arrows = outcome.flow.arrows(ENOUGH);
-    let scale = 1.1 * outcome.flow.pitch() / fastest(outcome).max(f64::MIN_POSITIVE);
-    let arrows = arrows.iter().map(|arrow| {
-        (arrow.position.x, arrow.position.y, scale * arrow.velocity.x, scale * arrow.velocity.y)
-    });
-    let plot = QuiverPlot::new().with_arrows(arrows).with_scale(1.0).with_pivot(QuiverPivot::Middle);
+fn arrows(view: &View, outcome: &Outcome) -> QuiverPlot {
+    let side = view.width / outcome.fields.shape().0 as f64;
+    let scale = 1.1 * side / fastest(outcome).max(f64::MIN_POSITIVE);
+    let arrow =
+        |cell: FieldCell| (cell.center.x, cell.center.y, scale * cell.velocity.x, scale * cell.velocity.y);
+    let plot = QuiverPlot::new().with_arrows(seen(outcome).into_iter().map(arrow));
+    let plot = plot.with_scale(1.0).with_pivot(QuiverPivot::Middle);
     let plot = plot.with_color(INK).with_shaft_width(2.2).with_clip_to_plot_area();
     plot.with_head_ratio(0.36).with_head_min_px(3.0).with_head_max_px(13.0)
 }
 
-fn fastest(outcome: &Outcome) -> f64 {
-    outcome.flow.arrows(ENOUGH).iter().map(|arrow| arrow.velocity.length()).fold(0.0, f64::max)
-}
-
-fn write_header(sheet: &mut Sheet, arguments: &Arguments, outcome: &Outcome) {
+fn write_header(sheet: &mut Sheet, arguments: &Arguments, outcome: &Outcome, means: &Means) {
     let Arguments { disks, width, gravity, inelasticity, friction, .. } = arguments;
-    let verdict = Means::of(outcome).verdict(arguments);
-    let title = format!("{disks} disks after {} oscillations: {verdict}", arguments.oscillations);
+    let verdict = means.verdict(arguments);
+    let title = format!("{disks} disks after {} oscillations: {verdict}", arguments.oscillations());
     let base = match arguments.base {
-        Base::Thermal(temperature) => format!("thermal base T₀ = {temperature}"),
-        base => format!("{base} base A = {}, ω = {}", arguments.amplitude, arguments.omega),
+        Base::Thermal => format!("thermal base T₀ = {}", arguments.temperature),
+        _ => format!("{} base A = {}, ω = {}", arguments.base_name(), arguments.amplitude, arguments.omega),
     };
-    let top = arguments.height.0.map_or("open above".to_owned(), |height| format!("{height} high"));
-    let sides = if arguments.sides == Sides::Periodic { ", periodic sides" } else { "" };
+    let top = if arguments.open { "open above".to_owned() } else { format!("{} high", arguments.height) };
+    let sides = if arguments.periodic { ", periodic sides" } else { "" };
     let box_and_base = format!(
         "box {width} wide, {top}{sides}    {base}    gravity g = {gravity}    inelasticity q = {inelasticity}    \
          friction κ = {friction}"
@@ -120,36 +129,38 @@ fn write_header(sheet: &mut Sheet, arguments: &Arguments, outcome: &Outcome) {
 struct Panel {
     label: &'static str,
     share: f64,
-    series: Vec<Series>,
+    lines: Vec<Line>,
 }
 
 /// A line of a panel: its color, its name, its values.
-struct Series(&'static str, &'static str, fn(&Sample) -> f64);
+struct Line(&'static str, &'static str, Vec<f64>);
 
-fn panels() -> [Panel; 3] {
+fn panels(outcome: &Outcome) -> [Panel; 3] {
+    let values = || outcome.series.values().iter();
     let order = vec![
-        Series(BLUE, "Ψ₁ one roll", |sample| sample.order.one_roll),
-        Series(ORANGE, "Ψ₂ two rolls", |sample| sample.order.two_rolls),
+        Line(BLUE, "Ψ₁ one roll", values().map(|(order, ..)| order.one_roll).collect()),
+        Line(ORANGE, "Ψ₂ two rolls", values().map(|(order, ..)| order.two_rolls).collect()),
     ];
-    let height = vec![Series(INK, "center of mass", |sample| sample.center_of_mass_height)];
+    let height = vec![Line(INK, "center of mass", values().map(|(_, center, _)| center.y).collect())];
     let energies = vec![
-        Series(BLUE, "translation", |sample| sample.energies.translational),
-        Series(GREEN, "rotation", |sample| sample.energies.rotational),
+        Line(BLUE, "translation", values().map(|(.., energy)| energy.translational).collect()),
+        Line(GREEN, "rotation", values().map(|(.., energy)| energy.rotational).collect()),
     ];
     [
-        Panel { label: "order parameters", share: 0.46, series: order },
-        Panel { label: "height", share: 0.26, series: height },
-        Panel { label: "energy per disk", share: 0.28, series: energies },
+        Panel { label: "order parameters", share: 0.46, lines: order },
+        Panel { label: "height", share: 0.26, lines: height },
+        Panel { label: "energy per disk", share: 0.28, lines: energies },
     ]
 }
 
 /// Draws the series, one panel above the other.
-fn draw_series(sheet: &mut Sheet, left: f64, arguments: &Arguments, outcome: &Outcome) {
-    let noise = 2.0 * Means::of(outcome).noise(arguments.disks);
+fn draw_series(sheet: &mut Sheet, left: f64, arguments: &Arguments, outcome: &Outcome, means: &Means) {
+    let noise = 2.0 * means.noise(arguments.disks);
     let mut top = HEADER;
-    for (index, panel) in panels().iter().enumerate() {
+    for (index, panel) in panels(outcome).iter().enumerate() {
         let place = Place { x: left, y: top, width: SERIES_WIDTH, height: panel.share * HEIGHT };
-        let mut plots: Vec<Plot> = panel.series.iter().map(|series| line(&outcome.samples, series)).collect();
+        let oscillations = || outcome.series.times().iter().map(|time| time / arguments.period());
+        let mut plots: Vec<Plot> = panel.lines.iter().map(|line| plot(oscillations(), line)).collect();
         if index == 0 {
             plots.insert(0, noise_band(arguments, noise));
         }
@@ -160,26 +171,26 @@ fn draw_series(sheet: &mut Sheet, left: f64, arguments: &Arguments, outcome: &Ou
             layout = layout.with_x_label("oscillations");
         }
         sheet.panel(place, margins, plots, layout);
-        let names: Vec<_> = panel.series.iter().map(|series| (series.0, series.1)).collect();
+        let names: Vec<_> = panel.lines.iter().map(|line| (line.0, line.1)).collect();
         sheet.key(left + MARGINS[0] + 4.0, top + 14.0, &names);
         top += place.height;
     }
 }
 
-fn line(samples: &[Sample], Series(color, _, quantity): &Series) -> Plot {
-    let points = samples.iter().map(|sample| (sample.oscillation as f64, quantity(sample)));
+fn plot(oscillations: impl Iterator<Item = f64>, Line(color, _, values): &Line) -> Plot {
+    let points = oscillations.zip(values.iter().copied());
     LinePlot::new().with_data(points).with_color(*color).with_stroke_width(1.6).into()
 }
 
 /// Returns the band in which the order parameters of a gas without flow would be.
 fn noise_band(arguments: &Arguments, noise: f64) -> Plot {
-    let ends = [0.0, arguments.oscillations as f64];
+    let ends = [0.0, arguments.oscillations() as f64];
     let line = LinePlot::new().with_data(ends.map(|x| (x, 0.0))).with_color("#b9c0c8").with_stroke_width(1.0);
     line.with_band([-noise, -noise], [noise, noise]).into()
 }
 
 fn series_layout(plots: &[Plot], arguments: &Arguments, label: &str) -> Layout {
-    let axes = sheet::axes((0.0, arguments.oscillations as f64), range(plots));
+    let axes = sheet::axes((0.0, arguments.oscillations() as f64), range(plots));
     axes.with_y_label(label)
 }
 
