@@ -154,6 +154,19 @@ impl Brick {
         }
     }
 
+    /// Returns a line along the brick: its ends, or points on an arc. A half-line is shown for a length.
+    pub(super) fn outline(&self, length: f64) -> Vec<DVec2> {
+        /// Angle between two points of an arc.
+        const STEP: f64 = std::f64::consts::PI / 60.0;
+        match self.shape {
+            Shape::Segment(segment) => {
+                let end = segment.from() + length * segment.direction();
+                vec![segment.from(), segment.to().unwrap_or(end)]
+            }
+            Shape::Arc(arc) => arc.points(STEP),
+        }
+    }
+
     /// Returns the points that place the brick.
     fn landmarks(&self) -> impl Iterator<Item = DVec2> {
         let places = match self.shape {

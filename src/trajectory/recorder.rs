@@ -4,6 +4,8 @@ use std::fmt;
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use glam::DVec2;
+
 use super::errors::RecordError;
 use super::format::{Format, Frame};
 use super::one_file::OneFile;
@@ -18,7 +20,8 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 /// A run that goes on with the same recorder takes the frame that was missed.
 ///
 /// [`OfKind`](crate::observable::OfKind) around a recorder records the disks of one kind; they are numbered
-/// among themselves. Files have the box, but not the parts of a vessel in it.
+/// among themselves. Files have the box; those for ParaView also have the parts of a vessel, if it is
+/// [shown to the recorder](Self::with_walls).
 ///
 /// # To go on in a file
 /// After a kill, resume the run from its checkpoint and [`append`](Self::append). The frames that were
@@ -104,6 +107,34 @@ impl Recorder {
     /// If the files cannot be opened, or are not such a series. They are then left as they are.
     pub fn append_vtk(path: impl AsRef<Path>, times: SampleTimes) -> Result<Self, RecordError> {
         Ok(Self::new(PolyData, Series::reopen(path.as_ref())?, times))
+    }
+
+    /// Returns the same recorder, which also writes these walls, lines of points at each time. Only series for
+    /// ParaView have room for them; other files are as before.
+    ///
+    /// ```
+    /// use granular_edmd::prelude::*;
+    /// use granular_edmd::trajectory::Recorder;
+    ///
+    /// # let folder = std::env::temp_dir().join(format!("granular-edmd-walls-{}", std::process::id()));
+    /// # std::fs::create_dir_all(&folder)?;
+    /// # let path = folder.join("run.pvd");
+    /// let drum = Part::drum(DVec2::splat(4.0), 4.0)?.with_rotation(DVec2::splat(4.0), 1.0)?;
+    /// let vessel = Vessel::around([("drum", drum)])?;
+    /// let shown = vessel.clone();
+    /// let walls = move |time| shown.outline(time).map(|(_, line)| line).collect();
+    /// let mut recorder = Recorder::create_vtk(&path, SampleTimes::every(1.0)?)?.with_walls(walls);
+    ///
+    /// let disks = initial::random(&vessel, 10, 0.5, 8.0, 1)?;
+    /// let mut run = Simulation::builder(Elastic, vessel).disks(disks).build()?;
+    /// run.run_until(3.0, &mut recorder)?;
+    /// # std::fs::remove_dir_all(&folder)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn with_walls(mut self, walls: impl Fn(f64) -> Vec<Vec<DVec2>> + Send + Sync + 'static) -> Self {
+        self.store.set_walls(Box::new(walls));
+        self
     }
 
     fn new(

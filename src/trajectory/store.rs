@@ -2,8 +2,13 @@
 
 use std::path::Path;
 
+use glam::DVec2;
+
 use super::errors::RecordError;
 use crate::observable::Snapshot;
+
+/// The walls at a time, as lines of points.
+pub(super) type Walls = Box<dyn Fn(f64) -> Vec<Vec<DVec2>> + Send + Sync>;
 
 /// A place for the bytes of frames, one after another. What was stored is whole, whatever happens later.
 pub(super) trait Store {
@@ -18,6 +23,9 @@ pub(super) trait Store {
 
     /// Waits until the system has stored everything.
     fn sync(&mut self) -> Result<(), RecordError>;
+
+    /// Takes lines that are written with each frame, if there is room for them.
+    fn set_walls(&mut self, _walls: Walls) {}
 
     /// Returns the path, for messages.
     fn path(&self) -> &Path;

@@ -15,6 +15,7 @@ use super::format::{Format, Frame};
 use super::state::State;
 use crate::Disk;
 use crate::boundary::Domain;
+use crate::observable::Snapshot;
 
 /// The format of a frame in a file of its own. It does not leave this module, since a recorder of one file
 /// would write one such file after another.
@@ -81,23 +82,34 @@ fn write_disks(
     out.write_all(TAIL.as_bytes())
 }
 
-/// Writes the edges of the box as lines: `periodic` is 1 for those that are no walls. An open box has no lid.
-fn write_box(out: &mut dyn Write, domain: &Domain, disks: &[Disk], time: f64) -> io::Result<()> {
-    let Domain { left, right, bottom, .. } = *domain;
-    let top = shown_top(domain, disks);
+/// Writes the edges of the box and other walls as lines. The array `periodic` is 1 for edges that are no
+/// walls, `part` is 1 for walls that are no edges. An open box has no lid.
+fn write_box(out: &mut dyn Write, snapshot: &Snapshot<'_>, walls: &[Vec<DVec2>]) -> io::Result<()> {
+    let domain = snapshot.domain();
+    let Domain { left, right, bottom, .. } = domain;
+    let top = shown_top(&domain, snapshot.disks());
     let corners = [(left, top), (left, bottom), (right, bottom), (right, top)].map(DVec2::from);
-    let lines = if domain.top.is_finite() { 4 } else { 3 };
+    let edges = if domain.top.is_finite() { 4 } else { 3 };
+    let points = || corners.iter().chain(walls.iter().flatten()).copied();
+    let (lines, points_count) = (edges + walls.len(), points().count());
     out.write_all(HEAD.as_bytes())?;
-    write_time(out, Some(time))?;
-    writeln!(out, "<Piece NumberOfPoints=\"4\" NumberOfLines=\"{lines}\">\n<CellData>")?;
+    write_time(out, Some(snapshot.time()))?;
+    writeln!(out, "<Piece NumberOfPoints=\"{points_count}\" NumberOfLines=\"{lines}\">\n<CellData>")?;
     let periodic = [domain.periodic_sides, domain.periodic_ends].map(i64::from);
-    write_array(out, "Int64", "periodic", 1, periodic.into_iter().cycle().take(lines))?;
+    let periodic = periodic.into_iter().cycle().take(edges).chain(walls.iter().map(|_| 0));
+    write_array(out, "Int64", "periodic", 1, periodic)?;
+    write_array(out, "Int64", "part", 1, (0..lines).map(|line| i64::from(line >= edges)))?;
     out.write_all(b"</CellData>\n<Points>\n")?;
-    write_numbers(out, "Points", 3, corners.into_iter().flat_map(in_space))?;
+    write_numbers(out, "Points", 3, points().flat_map(in_space))?;
     out.write_all(b"</Points>\n<Lines>\n")?;
-    let ends = (0_i64..).take(lines).flat_map(|line| [line, (line + 1) % 4]);
-    write_array(out, "Int64", "connectivity", 1, ends)?;
-    write_array(out, "Int64", "offsets", 1, (1_i64..).take(lines).map(|line| 2 * line))?;
+    let ends = (0_i64..).take(edges).flat_map(|line| [line, (line + 1) % 4]);
+    write_array(out, "Int64", "connectivity", 1, ends.chain(4..points_count as i64))?;
+    let sizes = (0..edges).map(|_| 2).chain(walls.iter().map(Vec::len));
+    let offsets = sizes.scan(0, |sum, size| {
+        *sum += size as i64;
+        Some(*sum)
+    });
+    write_array(out, "Int64", "offsets", 1, offsets)?;
     out.write_all(b"</Lines>\n")?;
     out.write_all(TAIL.as_bytes())
 }

@@ -136,6 +136,34 @@ fn a_motion_that_jumps_is_refused_where_it_would_jump_into_disks() {
     assert!(triangle().with_motion(DVec2::Y, Triangular::new(0.2, 3.0).unwrap()).is_ok());
 }
 
+/// Outlines lie on the parts at every time, whatever the time origin is.
+#[test]
+fn outlines_lie_on_the_parts() {
+    for part in [
+        mixed(),
+        mixed().with_rotation(DVec2::new(6.0, 6.0), 0.7).unwrap().starting_at(3.0).unwrap(),
+        mixed().with_motion(DVec2::ONE, Sinusoidal::new(0.4, 2.0).unwrap()).unwrap(),
+    ] {
+        let mut vessel = room().with("part", part).unwrap();
+        for origin in [0.0, 1024.0] {
+            vessel.set_time_origin(origin);
+            for time in [1024.0, 1030.5] {
+                let lines: Vec<_> = vessel.outline(time).collect();
+                assert!(
+                    lines.len() > 3 && lines.iter().all(|(name, line)| *name == "part" && line.len() > 1)
+                );
+                for place in lines.iter().flat_map(|(_, line)| line) {
+                    // Inside the room, no other wall is nearer.
+                    let inside =
+                        place.cmpgt(DVec2::splat(1e-3)).all() && place.cmplt(DVec2::splat(11.999)).all();
+                    let depth = vessel.overlap(*place, 1e-3, time - origin).map_or(0.0, |(_, depth)| depth);
+                    assert!(!inside || (depth - 1e-3).abs() < 1e-10, "{place} at {time}: {depth}");
+                }
+            }
+        }
+    }
+}
+
 /// Bricks are numbered as the points are, whichever way these go round, and corners too.
 #[test]
 fn bricks_count_as_points_do() {

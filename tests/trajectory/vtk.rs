@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use granular_edmd::glam::DVec2;
 use granular_edmd::observable::SampleTimes;
 use granular_edmd::trajectory::{RecordError, Recorder};
 
@@ -86,4 +87,20 @@ fn a_series_that_somebody_has_changed_is_left() {
         assert!(matches!(Recorder::append_vtk(&path, times()), Err(RecordError::Io { .. })), "{changed}");
         assert_eq!(fs::read_to_string(&path).unwrap(), changed);
     }
+}
+
+/// The parts of a vessel are lines beside the edges of the box.
+#[test]
+fn the_parts_of_a_vessel_are_lines() {
+    let scratch = Scratch::new("series-walls");
+    let path = scratch.path("run.pvd");
+    let wall = |time: f64| vec![vec![DVec2::new(time, 0.0), DVec2::ONE], vec![DVec2::ZERO; 3]];
+    let mut recorder = Recorder::create_vtk(&path, times()).unwrap().with_walls(wall);
+    mixture().run_until(1.0, &mut recorder).unwrap();
+    drop(recorder);
+    let edges = |number: u32| fs::read_to_string(scratch.path(&format!("run/box_{number:06}.vtp"))).unwrap();
+    for number in 0..2 {
+        assert!(edges(number).contains("NumberOfPoints=\"9\" NumberOfLines=\"5\""), "{}", edges(number));
+    }
+    assert!(edges(0) != edges(1));
 }

@@ -1,9 +1,11 @@
 //! Round bricks: circles, arcs and points.
 
+use std::f64::consts::TAU;
+
 use glam::DVec2;
 
 use super::path::{Beside, Path};
-use super::{MARGIN, Side, Sight};
+use super::{MARGIN, Side, Sight, direction};
 use crate::boundary::Region;
 
 /// A circle or a part of it, counterclockwise: its left side is inside. A point is a circle without a radius.
@@ -67,6 +69,20 @@ impl Arc {
     pub(super) fn ends(&self) -> Option<[(DVec2, DVec2); 2]> {
         let end = |direction: DVec2| (self.center + self.radius * direction, direction.perp());
         self.sector.map(|sector| [end(sector.start), end(sector.end)])
+    }
+
+    /// Returns points along the arc, with angles of at most this size between them.
+    pub(super) fn points(&self, step: f64) -> Vec<DVec2> {
+        let (start, angle) = match self.sector {
+            None => (DVec2::X, TAU),
+            Some(Sector { start, end, .. }) => {
+                let angle = libm::atan2(start.perp_dot(end), start.dot(end));
+                (start, if angle > 0.0 { angle } else { angle + TAU })
+            }
+        };
+        let count = (angle / step).ceil().max(1.0);
+        let at = |k: u32| direction(angle * f64::from(k) / count).rotate(start);
+        (0..=count as u32).map(|k| self.center + self.radius * at(k)).collect()
     }
 
     /// Returns the same arc after a rotation about the origin by the angle of this unit vector, and a shift.

@@ -9,7 +9,7 @@ use crate::observable::Snapshot;
 use crate::trajectory::errors::RecordError;
 use crate::trajectory::format::no_frame;
 use crate::trajectory::media::{self, Growing};
-use crate::trajectory::store::Store;
+use crate::trajectory::store::{Store, Walls};
 
 /// Beginning of the file of times, and its ending after each frame: it is whole at any time.
 const HEAD: &str = "<?xml version=\"1.0\"?>\n\
@@ -17,7 +17,6 @@ const HEAD: &str = "<?xml version=\"1.0\"?>\n\
 const TAIL: &str = "</Collection>\n</VTKFile>\n";
 
 /// Frames in files of their own, in a folder beside the file of times.
-#[derive(Debug)]
 pub(in crate::trajectory) struct Series {
     path: PathBuf,
     folder: PathBuf,
@@ -25,6 +24,7 @@ pub(in crate::trajectory) struct Series {
     name: String,
     file: Growing<File>,
     times: Vec<f64>,
+    walls: Option<Walls>,
 }
 
 impl Series {
@@ -41,7 +41,7 @@ impl Series {
         });
         let mut file = Growing::new(file?, 0, Vec::new());
         file.push(HEAD.as_bytes(), TAIL.as_bytes()).map_err(RecordError::io("write to", path))?;
-        Ok(Self { path: path.to_owned(), folder, name, file, times: Vec::new() })
+        Ok(Self { path: path.to_owned(), folder, name, file, times: Vec::new(), walls: None })
     }
 
     /// Goes on after the last whole frame of a series.
@@ -57,7 +57,7 @@ impl Series {
             return Err(RecordError::io("go on in", path)(no_frame("an ending", &text[length..])));
         }
         let file = Growing::new(file, length as u64, TAIL.into());
-        Ok(Self { path: path.to_owned(), folder, name, file, times })
+        Ok(Self { path: path.to_owned(), folder, name, file, times, walls: None })
     }
 
     fn file_of(&self, part: &str, number: usize) -> PathBuf {
@@ -89,7 +89,8 @@ impl Store for Series {
 
     fn append(&mut self, snapshot: &Snapshot<'_>, bytes: &[u8]) -> Result<(), RecordError> {
         let mut edges = Vec::new();
-        let made = write_box(&mut edges, &snapshot.domain(), snapshot.disks(), snapshot.time());
+        let walls = self.walls.as_ref().map_or_else(Vec::new, |walls| walls(snapshot.time()));
+        let made = write_box(&mut edges, snapshot, &walls);
         made.map_err(RecordError::io("make a frame of", &self.path))?;
         self.write("disks", bytes)?;
         self.write("box", &edges)?;
@@ -103,6 +104,10 @@ impl Store for Series {
     fn has(&mut self, number: usize, bytes: &[u8]) -> Result<bool, RecordError> {
         let path = self.file_of("disks", number);
         Ok(fs::read(&path).map_err(RecordError::io("read", &path))? == bytes)
+    }
+
+    fn set_walls(&mut self, walls: Walls) {
+        self.walls = Some(walls);
     }
 
     fn sync(&mut self) -> Result<(), RecordError> {
