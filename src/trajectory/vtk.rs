@@ -103,10 +103,10 @@ fn write_box(out: &mut dyn Write, snapshot: &Snapshot<'_>, walls: &[Vec<DVec2>])
     write_numbers(out, "Points", 3, points().flat_map(in_space))?;
     out.write_all(b"</Points>\n<Lines>\n")?;
     let ends = (0_i64..).take(edges).flat_map(|line| [line, (line + 1) % 4]);
-    write_array(out, "Int64", "connectivity", 1, ends.chain(4..points_count as i64))?;
+    write_array(out, "Int64", "connectivity", 1, ends.chain((4_i64..).take(points_count - 4)))?;
     let sizes = (0..edges).map(|_| 2).chain(walls.iter().map(Vec::len));
     let offsets = sizes.scan(0, |sum, size| {
-        *sum += size as i64;
+        *sum += i64::try_from(size).unwrap_or(i64::MAX);
         Some(*sum)
     });
     write_array(out, "Int64", "offsets", 1, offsets)?;
