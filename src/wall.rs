@@ -7,12 +7,14 @@
 //! | [`Sinusoidal`] | `$A\sin\omega t$` | |
 //! | [`Triangular`] | constant speed up, constant speed down | |
 //! | [`Sawtooth`] | constant speed up, instantly back | |
+//! | [`Delayed`] | any of these, from a later time on | |
 //!
 //! [`first_touch`] finds the contact for all of them and for your own motions. It only needs bounds of the
 //! acceleration on pieces of time. See [`WallMotion`] for an example, and [`laws`] for a check of your own
 //! motion.
 
 mod bi_parabolic;
+mod delayed;
 mod first_touch;
 mod fixed;
 mod forward;
@@ -26,6 +28,7 @@ mod stroke;
 mod triangular;
 
 pub use bi_parabolic::BiParabolic;
+pub use delayed::Delayed;
 pub use first_touch::{Approach, first_touch};
 pub use fixed::Fixed;
 pub(crate) use motion::Motion;

@@ -228,8 +228,8 @@ impl Vessel {
         Some(placed.first..placed.first + placed.part.all_bricks().len())
     }
 
-    /// Returns the bricks of all parts at an absolute time, for a picture: the name of the part, and a line of
-    /// points along the brick. Arcs have a point every three degrees.
+    /// Returns the bricks of all parts at an absolute time, for a picture: the name of the part, and a line
+    /// of points along the brick. Arcs have a point every three degrees.
     ///
     /// Walls of the container and single points are left out. Half-lines end after ten times the size of the
     /// container.

@@ -109,8 +109,8 @@ impl Recorder {
         Ok(Self::new(PolyData, Series::reopen(path.as_ref())?, times))
     }
 
-    /// Returns the same recorder, which also writes these walls, lines of points at each time. Only series for
-    /// ParaView have room for them; other files are as before.
+    /// Returns the same recorder, which also writes these walls, lines of points at each time. Only series
+    /// for ParaView have room for them; other files are as before.
     ///
     /// ```
     /// use granular_edmd::prelude::*;

@@ -112,7 +112,9 @@ mod file {
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
     use super::Motion;
-    use crate::wall::{BiParabolic, Fixed, Sawtooth, Sinusoidal, Triangular};
+    use crate::ParameterError;
+    use crate::wall::laws::Violation;
+    use crate::wall::{BiParabolic, Delayed, Fixed, Sawtooth, Sinusoidal, Triangular, WallMotion};
 
     /// The motions of the crate.
     #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -130,18 +132,46 @@ mod file {
     #[serde(deny_unknown_fields, rename = "Motion")]
     pub(super) struct Record {
         motion: Known,
+        /// Time from which the phase counts.
+        #[serde(default)]
+        start: f64,
         #[serde(default)]
         is_mirrored: bool,
     }
 
     impl Record {
         pub(super) fn of(motion: &dyn Any) -> Option<Self> {
-            Known::of(motion).map(|motion| Self { motion, is_mirrored: false })
+            let plain = Known::of(motion).map(|motion| (motion, 0.0));
+            let known = plain
+                .or_else(|| delayed(motion, Known::BiParabolic))
+                .or_else(|| delayed(motion, Known::Sinusoidal))
+                .or_else(|| delayed(motion, Known::Triangular))
+                .or_else(|| delayed(motion, Known::Sawtooth));
+            known.map(|(motion, start)| Self { motion, start, is_mirrored: false })
         }
 
         pub(super) fn mirrored(self) -> Self {
             Self { is_mirrored: !self.is_mirrored, ..self }
         }
+    }
+
+    /// Recognizes a motion of type `M` that begins at a time of its own.
+    fn delayed<M: WallMotion + Copy + 'static>(
+        motion: &dyn Any,
+        known: fn(M) -> Known,
+    ) -> Option<(Known, f64)> {
+        let delayed = motion.downcast_ref::<Delayed<M>>()?;
+        Some((known(*delayed.motion()), delayed.start()))
+    }
+
+    /// Makes a motion of what stands in a file, or says why it is none.
+    fn owned<M: WallMotion + Send + Sync + 'static>(motion: M, start: f64) -> Result<Motion, String> {
+        let told = |violation: Violation| violation.to_string();
+        if start == 0.0 {
+            return Motion::new(motion).map_err(told);
+        }
+        let delayed = Delayed::new(motion, start).map_err(|error: ParameterError| error.to_string())?;
+        Motion::new(delayed).map_err(told)
     }
 
     impl Known {
@@ -164,13 +194,13 @@ mod file {
 
     impl<'de> Deserialize<'de> for Motion {
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            let Record { motion, is_mirrored } = Record::deserialize(deserializer)?;
+            let Record { motion, start, is_mirrored } = Record::deserialize(deserializer)?;
             let motion = match motion {
-                Known::Fixed => Self::new(Fixed),
-                Known::BiParabolic(motion) => Self::new(motion),
-                Known::Sinusoidal(motion) => Self::new(motion),
-                Known::Triangular(motion) => Self::new(motion),
-                Known::Sawtooth(motion) => Self::new(motion),
+                Known::Fixed => owned(Fixed, start),
+                Known::BiParabolic(motion) => owned(motion, start),
+                Known::Sinusoidal(motion) => owned(motion, start),
+                Known::Triangular(motion) => owned(motion, start),
+                Known::Sawtooth(motion) => owned(motion, start),
             };
             let motion = motion.map_err(de::Error::custom)?;
             Ok(if is_mirrored { motion.mirrored() } else { motion })

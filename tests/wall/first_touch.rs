@@ -7,7 +7,7 @@ mod motions;
 use std::f64::consts::TAU;
 
 use granular_edmd::wall::{
-    AccelerationBounds, Approach, BiParabolic, Fixed, Sawtooth, Sinusoidal, Triangular, WallMotion,
+    AccelerationBounds, Approach, BiParabolic, Delayed, Fixed, Sawtooth, Sinusoidal, Triangular, WallMotion,
     WallState, first_touch,
 };
 use rand::{Rng, SeedableRng};
@@ -40,6 +40,7 @@ fn motions() -> Vec<(&'static str, Box<dyn WallMotion>)> {
         ("sinusoidal", Box::new(Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap())),
         ("triangular", Box::new(Triangular::new(AMPLITUDE, FREQUENCY).unwrap())),
         ("sawtooth", Box::new(Sawtooth::new(AMPLITUDE, FREQUENCY).unwrap())),
+        ("delayed", Box::new(Delayed::new(Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap(), 7.3).unwrap())),
         ("loose", Box::new(Loose(Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap()))),
     ]
 }

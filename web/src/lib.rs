@@ -6,7 +6,6 @@
 mod diagram;
 pub mod exports;
 mod flow;
-mod later;
 mod plan;
 mod run;
 mod watch;

@@ -5,10 +5,9 @@ use std::f64::consts::TAU;
 use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::observable::on_collision;
 use granular_edmd::simulation::{Limits, RunEnd};
-use granular_edmd::wall::WallMotion;
+use granular_edmd::wall::{Delayed, WallMotion};
 use granular_edmd::{Disk, Simulation, initial};
 
-use crate::later::Later;
 use crate::plan::{Plan, Rule, Setting};
 use crate::watch::{Mark, Watch};
 
@@ -243,6 +242,6 @@ fn numbers(disk: &Disk) -> [f64; 6] {
 
 /// Returns the box with its base, which begins an oscillation at this time.
 fn container(setting: &Setting, time: f64) -> Result<Container, Failure> {
-    let base = Later::new(setting.base()?, time);
+    let base = Delayed::new(setting.base()?, time)?;
     Ok(Container::closed(WIDTH, HEIGHT)?.with_motion(Wall::Floor, base)?)
 }
