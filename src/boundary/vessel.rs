@@ -4,6 +4,7 @@ mod error;
 #[cfg(feature = "serde")]
 mod file;
 mod index;
+mod outline;
 mod overlap;
 mod touch;
 
@@ -226,40 +227,6 @@ impl Vessel {
     pub fn walls(&self, name: &str) -> Option<Range<usize>> {
         let placed = self.parts.iter().find(|placed| placed.name == name)?;
         Some(placed.first..placed.first + placed.part.all_bricks().len())
-    }
-
-    /// Returns the bricks of all parts at an absolute time, for a picture: the name of the part, and a line
-    /// of points along the brick. Arcs have a point every three degrees.
-    ///
-    /// Walls of the container and single points are left out. Half-lines end after ten times the size of the
-    /// container.
-    ///
-    /// ```
-    /// use granular_edmd::boundary::{Part, Vessel};
-    /// use granular_edmd::glam::DVec2;
-    ///
-    /// let paddle = Part::polyline([DVec2::new(1.0, 4.0), DVec2::new(7.0, 4.0)])?;
-    /// // A quarter of a turn takes the time 1.
-    /// let paddle = paddle.with_rotation(DVec2::splat(4.0), 0.5 * std::f64::consts::PI)?;
-    /// let vessel = Vessel::around([("paddle", paddle)])?;
-    /// let lines: Vec<(&str, Vec<DVec2>)> = vessel.outline(1.0).collect();
-    /// let (name, line) = &lines[0];
-    /// assert_eq!((lines.len(), *name), (1, "paddle"));
-    /// assert!(line[0].distance(DVec2::new(4.0, 1.0)) < 1e-12);
-    /// # Ok::<(), granular_edmd::boundary::VesselError>(())
-    /// ```
-    pub fn outline(&self, time: f64) -> impl Iterator<Item = (&str, Vec<DVec2>)> {
-        let Domain { left, right, bottom, top, .. } = self.domain();
-        let height = if top.is_finite() { top - bottom } else { right - left };
-        let length = 10.0 * (right - left).max(height);
-        self.parts.iter().flat_map(move |placed| {
-            let pose = placed.part.travel().pose(placed.part.phase(time));
-            let bricks = placed.part.bricks().iter().filter(|brick| !brick.is_point());
-            let line = move |brick: &Brick| {
-                brick.outline(length).into_iter().map(|place| pose.outward(place)).collect()
-            };
-            bricks.map(move |brick| (placed.name.as_str(), line(brick)))
-        })
     }
 
     /// Returns the container.
