@@ -77,7 +77,8 @@
 //! With the feature `serde`, the observers of this module, except for closures, can be written to a file
 //! beside the checkpoint of the run. They are read back and lent to the resumed run, and end with the same
 //! bits as in a run without interruption. JSON keeps the bits if its reader rounds correctly (serde_json's
-//! `float_roundtrip`).
+//! `float_roundtrip`). It has no NaN, which some observables give without disks: take a binary format, such
+//! as postcard, for those.
 
 mod by_kind;
 mod center_of_mass;

@@ -14,9 +14,9 @@ pub use crate::collision::{
 pub use crate::glam::DVec2;
 pub use crate::initial::{self, Radii};
 pub use crate::observable::{
-    BetweenKinds, CenterOfMass, Collision, CollisionCounts, Energies, EnergyChange, Moment, Observable,
-    Observer, OfKind, OrderParameters, Partner, SampleTimes, Series, Snapshot, Tabular, Temperatures,
-    Verdict, on_collision, on_sample, stop_when, stop_when_sampled,
+    BetweenKinds, CenterOfMass, Collision, CollisionCounts, Energies, EnergyChange, Fields, Moment,
+    Observable, Observer, OfKind, OrderParameters, Partner, SampleTimes, Series, Snapshot, Tabular,
+    Temperatures, Verdict, on_collision, on_sample, stop_when, stop_when_sampled,
 };
 pub use crate::scheduler::EventScheduler;
 pub use crate::simulation::{

@@ -5,7 +5,7 @@
 //!
 //! | format | file | opened by |
 //! |---|---|---|
-//! | [`ExtendedXyz`] | one file, frame after frame | OVITO, ASE, and [`XyzFrames`] to start from |
+//! | [`ExtendedXyz`] | one file, frame after frame | OVITO (not ASE), and [`XyzFrames`] to start from |
 //! | [`LammpsDump`] | one file, frame after frame | OVITO, VMD, tools around LAMMPS |
 //! | VTK's `PolyData` | `.vtp` for each frame, `.pvd` of times ([`Recorder::create_vtk`]) | ParaView, VTK |
 //!

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::boundary::Region;
+use crate::boundary::{Domain, Region};
 use crate::quantity::{accept, finite};
 use crate::statistics::Moments;
 use crate::{Disk, ParameterError};
@@ -98,6 +98,17 @@ pub(super) fn checked_region(region: Region) -> Result<Region, ParameterError> {
     let size = max - min;
     let area = if size.min_element() > 0.0 { size.x * size.y } else { 0.0 };
     accept(area.is_normal(), "area of the region", "finite and positive", area)?;
+    Ok(region)
+}
+
+/// Returns the region if it lies inside the domain of a run.
+pub(super) fn inside(region: Region, domain: &Domain) -> Result<Region, ParameterError> {
+    let (Region { min, max, .. }, Domain { left, right, bottom, top, .. }) = (region, *domain);
+    for (edge, is_inside) in
+        [(min.x, min.x >= left), (max.x, max.x <= right), (min.y, min.y >= bottom), (max.y, max.y <= top)]
+    {
+        accept(is_inside, "edge of the region", "inside the domain", edge)?;
+    }
     Ok(region)
 }
 

@@ -13,7 +13,8 @@ use crate::statistics::{BlockedMean, Estimate};
 /// Every sample is a time origin, and the lags are whole numbers of intervals. Positions are unwrapped at
 /// periodic sides and ends. A drift of all disks counts as displacement. The disks must stay the same while
 /// they are followed: if their number or the periods of the domain change, or if time jumps, the observer
-/// begins with new origins. The errors come from blocks of origins.
+/// begins with new origins. It cannot see that disks were exchanged for as many others: clear it then. The
+/// errors come from blocks of origins.
 ///
 /// A sample costs time and memory in proportion to the number of disks and of lags.
 ///

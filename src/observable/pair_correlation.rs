@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec2;
 
-use super::grid::checked_region;
+use super::grid::{checked_region, inside};
 use super::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 use crate::boundary::{Domain, Region};
 use crate::quantity::{accept, positive};
@@ -19,22 +19,24 @@ use crate::{Disk, Kind, ParameterError};
 /// correlations,
 ///
 /// ```math
-/// g(r) = \frac{\langle N_{ij}(r)\rangle}{\langle N_i (N_j - \delta_{ij})/A\rangle\; 2\pi r\,\Delta r} .
+/// g(r) = \frac{A\,\langle N_{ij}(r)\rangle}
+/// {\langle N_i\rangle\langle N_j\rangle\,(1 - \delta_{ij}/N)\; 2\pi r\,\Delta r} .
 /// ```
 ///
 /// `$N_{ij}(r)$` counts the pairs of a disk `$i$` in a region and a partner `$j$` anywhere, by the distance
 /// of the centers and by the nearest image. `$N_i$` and `$N_j$` count the disks in the region, whose area is
-/// `$A$`. Shells have their exact areas. In a periodic box, the region is the whole domain. At walls it is
-/// the domain less the range, so that all shells lie inside; or it is the region given by
-/// [`within`](Self::within), which should keep that distance, too. Where the density varies, under gravity
-/// for example, choose a thin layer.
+/// `$A$`. A disk is not its own partner: of `$N$` disks of the kind `$j$` in the box, `$N - 1$` are partners,
+/// if `$i$` and `$j$` are of one kind. Shells have their exact areas. In a periodic box, the region is the
+/// whole domain. At walls it is the domain less the range, so that all shells lie inside; or it is the region
+/// given by [`within`](Self::within), which should keep that distance, too. Where the density varies, under
+/// gravity for example, choose a thin layer.
 ///
-/// The errors are those of the numbers of pairs, from blocks of samples. At walls, disks come into the
-/// region and leave it; the errors are then too large rather than too small. The cost of a sample is
-/// proportional to the number of disks.
+/// The errors are those of the numbers of pairs, from blocks of samples. The numbers of disks in the region
+/// count as exact, which they nearly are if it holds many disks. In a region of a few disks, the scatter of
+/// several runs tells the error. The cost of a sample is proportional to the number of disks.
 ///
-/// A run ends with an error if the range is more than half of a period, or if no finite region is left
-/// between the walls.
+/// A run ends with an error if the range is more than half of a period, if no finite region is left between
+/// the walls, or if the region is not inside the domain.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -63,8 +65,10 @@ pub struct PairCorrelation {
     region: Option<Region>,
     /// Numbers of pairs over the area of the shell, for each bin.
     pairs: Vec<BlockedMean>,
-    /// The same number in a gas without correlations.
-    uncorrelated: RunningMean,
+    /// Number of disks in the region that pairs are counted around.
+    centers: RunningMean,
+    /// Number of partners in the region, over its area.
+    partner_density: RunningMean,
     /// The reason why nothing can be measured in this run.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
@@ -83,7 +87,8 @@ impl PairCorrelation {
             kinds: None,
             region: None,
             pairs: vec![BlockedMean::new(); bins],
-            uncorrelated: RunningMean::default(),
+            centers: RunningMean::default(),
+            partner_density: RunningMean::default(),
             fault: None,
         })
     }
@@ -109,12 +114,12 @@ impl PairCorrelation {
 
     /// Returns how many samples were taken.
     pub const fn samples(&self) -> u64 {
-        self.uncorrelated.count()
+        self.centers.count()
     }
 
     /// Iterates over the distances of the middles of the bins, with `$g$` there; NaN before there are disks.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (f64, Estimate)> {
-        let scale = 1.0 / self.uncorrelated.mean();
+        let scale = 1.0 / (self.centers.mean() * self.partner_density.mean());
         self.pairs
             .iter()
             .enumerate()
@@ -124,7 +129,7 @@ impl PairCorrelation {
     /// Forgets all samples so far.
     pub fn clear(&mut self) {
         self.pairs.fill(BlockedMean::new());
-        self.uncorrelated = RunningMean::default();
+        (self.centers, self.partner_density) = (RunningMean::default(), RunningMean::default());
     }
 
     /// Returns the region around whose disks partners are counted.
@@ -135,7 +140,7 @@ impl PairCorrelation {
             accept(fits, "range of the correlation", "at most half of the period", self.range())?;
         }
         if let Some(region) = self.region {
-            return Ok(region);
+            return inside(region, domain);
         }
         let inset = |periodic: bool| if periodic { 0.0 } else { self.range() };
         let inset = DVec2::new(inset(domain.periodic_sides), inset(domain.periodic_ends));
@@ -196,13 +201,16 @@ impl Observer for PairCorrelation {
         self.sample_times.advance_past(snapshot.time());
         let (disks, domain) = (snapshot.disks(), snapshot.domain());
         let Ok(region) = self.counted(&domain) else { return };
-        let inside = |which| {
-            let inside = |disk: &&Disk| self.is_of(which, disk) && region.contains(disk.position());
-            disks.iter().filter(inside).count() as f64
+        let count = |which, is_counted: &dyn Fn(&Disk) -> bool| {
+            disks.iter().filter(|disk| self.is_of(which, disk) && is_counted(disk)).count() as f64
         };
+        let is_inside = |disk: &Disk| region.contains(disk.position());
+        let (centers, partners, all) = (count(0, &is_inside), count(1, &is_inside), count(1, &|_| true));
+        // A disk lacks itself among its partners in the box.
         let itself = if self.kinds.is_none_or(|[first, second]| first == second) { 1.0 } else { 0.0 };
-        let partners = (inside(1) - itself).max(0.0);
-        self.uncorrelated.push(inside(0) * partners / region.area());
+        let others = if all > 0.0 { 1.0 - itself / all } else { 0.0 };
+        self.centers.push(centers);
+        self.partner_density.push(partners * others / region.area());
         for (bin, count) in self.count(disks, &domain, &region).into_iter().enumerate() {
             let (low, high) = (self.bins.edge(bin), self.bins.edge(bin + 1));
             self.pairs[bin].push(count as f64 / (PI * (high - low) * (high + low)));
@@ -224,7 +232,8 @@ struct RawPairCorrelation {
     #[serde(deserialize_with = "super::grid::region_from_file")]
     region: Option<Region>,
     pairs: Vec<BlockedMean>,
-    uncorrelated: RunningMean,
+    centers: RunningMean,
+    partner_density: RunningMean,
 }
 
 #[cfg(feature = "serde")]
@@ -232,15 +241,15 @@ impl TryFrom<RawPairCorrelation> for PairCorrelation {
     type Error = ParameterError;
 
     fn try_from(raw: RawPairCorrelation) -> Result<Self, ParameterError> {
-        let RawPairCorrelation { bins, sample_times, kinds, region, pairs, uncorrelated } = raw;
+        let RawPairCorrelation { bins, sample_times, kinds, region, pairs, centers, partner_density } = raw;
         bins.check_count(pairs.len())?;
         let starts_at_zero = bins.edge(0) == 0.0;
         accept(starts_at_zero, "least distance of the correlation", "0", bins.edge(0))?;
-        for mean in &pairs {
-            let count = mean.count();
-            let fits = count == uncorrelated.count();
+        let counts = pairs.iter().map(BlockedMean::count).chain([partner_density.count()]);
+        for count in counts {
+            let fits = count == centers.count();
             accept(fits, "number of samples of a bin", "that of the correlation", count as f64)?;
         }
-        Ok(Self { bins, sample_times, kinds, region, pairs, uncorrelated, fault: None })
+        Ok(Self { bins, sample_times, kinds, region, pairs, centers, partner_density, fault: None })
     }
 }

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec2;
 
-use super::grid::checked_region;
+use super::grid::{checked_region, inside};
 use super::stretch::Stretch;
 use super::{Collision, Moment, Observer, SampleTimes, Snapshot, Verdict};
 use crate::ParameterError;
@@ -175,7 +175,9 @@ impl Observer for Stress {
         self.domain = Some(moment.domain());
         let area = self.area(&moment.domain());
         let requirement = "finite: choose a region";
-        self.fault = accept(area.is_finite(), "area of the domain", requirement, area).err();
+        let finite = accept(area.is_finite(), "area of the domain", requirement, area);
+        let within = self.region.map_or(Ok(()), |region| inside(region, &moment.domain()).map(|_| ()));
+        self.fault = finite.and(within.map(|()| area)).err();
         if self.stretch.begin(moment.time()) {
             self.transferred = [0.0; 4];
         }

@@ -31,7 +31,7 @@ impl<Q: Tabular> Series<Q> {
     pub fn write_csv(&self, mut out: impl Write) -> io::Result<()> {
         writeln!(out, "{}", self.labels()?.join(","))?;
         for row in self.rows() {
-            let cells: Vec<String> = row.iter().map(|number| format!("{number:?}")).collect();
+            let cells: Vec<String> = row?.iter().map(|number| format!("{number:?}")).collect();
             writeln!(out, "{}", cells.join(","))?;
         }
         out.flush()
@@ -59,6 +59,7 @@ impl<Q: Tabular> Series<Q> {
     pub fn write_json_lines(&self, mut out: impl Write) -> io::Result<()> {
         let labels = self.labels()?;
         for row in self.rows() {
+            let row = row?;
             let members: Vec<String> = labels.iter().zip(row).map(member).collect();
             writeln!(out, "{{{}}}", members.join(","))?;
         }
@@ -72,11 +73,17 @@ impl<Q: Tabular> Series<Q> {
         Ok(headings.iter().map(label).collect())
     }
 
-    fn rows(&self) -> impl Iterator<Item = Vec<f64>> {
-        self.iter().map(|(time, value)| {
+    /// Returns the rows, each with a number for each heading.
+    fn rows(&self) -> impl Iterator<Item = io::Result<Vec<f64>>> {
+        let columns = 1 + self.observable().headings().len();
+        self.iter().map(move |(time, value)| {
             let mut row = vec![time];
             self.observable().add_numbers(value, &mut row);
-            row
+            if row.len() == columns {
+                return Ok(row);
+            }
+            let message = format!("a row has {} numbers for {columns} headings", row.len());
+            Err(io::Error::new(io::ErrorKind::InvalidInput, message))
         })
     }
 }

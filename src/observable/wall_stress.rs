@@ -1,11 +1,12 @@
 //! The stress on walls.
 
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 
 use super::stretch::Stretch;
-use super::{Collision, Moment, Observer, Partner, SampleTimes, Snapshot};
+use super::{Collision, Moment, Observer, Partner, SampleTimes, Snapshot, Verdict};
 use crate::ParameterError;
-use crate::quantity::{Checked, Quantity, Range};
+use crate::quantity::{Checked, Quantity, Range, accept};
 use crate::statistics::{BlockedMean, Estimate};
 
 /// An observer of the pressure and the shear stress of the disks on walls.
@@ -18,7 +19,10 @@ use crate::statistics::{BlockedMean, Estimate};
 /// `$\Delta_t$` are the normal and tangential [impulses](crate::collision::Impulse) on the disks, so `$p$` is
 /// positive where disks push the wall, and `$\tau$` where they drag it along the tangent, which is the normal
 /// turned counterclockwise (to the left on a floor). Each interval between two samples gives one value, and
-/// the errors come from blocks of these.
+/// the errors come from blocks of these. What hits a wall comes back to it, so that values of short intervals
+/// are anticorrelated and the errors up to three times too large: take intervals of many collisions.
+///
+/// A run ends with an error if there is no wall of one of the indices.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall};
@@ -42,6 +46,9 @@ use crate::statistics::{BlockedMean, Estimate};
 pub struct WallStress {
     stretch: Stretch,
     walls: BTreeMap<usize, Received>,
+    /// The reason why nothing can be measured in this run.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    fault: Option<ParameterError>,
 }
 
 /// What a wall received.
@@ -65,7 +72,7 @@ impl Quantity for WallLength {
 impl WallStress {
     /// Creates an observer of no walls, with a value for each interval of the sample times.
     pub const fn new(times: SampleTimes) -> Self {
-        Self { stretch: Stretch::new(times), walls: BTreeMap::new() }
+        Self { stretch: Stretch::new(times), walls: BTreeMap::new(), fault: None }
     }
 
     /// Watches the wall of this index, which has this length.
@@ -99,6 +106,10 @@ impl WallStress {
 
 impl Observer for WallStress {
     fn on_start(&mut self, moment: &Moment) {
+        let last = self.walls.keys().last().copied().unwrap_or(0);
+        let is_there = self.walls.is_empty() || last < moment.wall_count();
+        let requirement = "less than the number of walls";
+        self.fault = accept(is_there, "index of a wall", requirement, last as f64).err();
         if self.stretch.begin(moment.time()) {
             self.walls.values_mut().for_each(|received| received.impulse = [0.0; 2]);
         }
@@ -129,5 +140,9 @@ impl Observer for WallStress {
 
     fn on_end(&mut self, moment: &Moment) {
         self.stretch.pause(moment.time());
+    }
+
+    fn verdict(&mut self) -> Verdict {
+        self.fault.take().map_or(Ok(ControlFlow::Continue(())), |fault| Err(fault.into()))
     }
 }

@@ -1,4 +1,4 @@
-//! Extended XYZ: what OVITO and ASE read, and what a run can start from.
+//! Extended XYZ: what OVITO reads, and what a run can start from.
 
 mod header;
 mod read;
@@ -23,7 +23,7 @@ use crate::boundary::Domain;
 /// | `image` | periods passed to the right and up, [`Disk::image`] |
 /// | `unwrapped` | [`Domain::unwrapped`] position |
 ///
-/// The keys are `Lattice`, `Origin` and `pbc`, which OVITO and ASE know, and `Time`, `Gravity` and `Domain`
+/// The keys are `Lattice`, `Origin` and `pbc`, which OVITO knows, and `Time`, `Gravity` and `Domain`
 /// (left, right, bottom and top, where an open top is `inf`). The lattice of an open box ends above the
 /// highest disk.
 ///

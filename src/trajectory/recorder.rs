@@ -29,6 +29,9 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 /// not written twice. If they differ, the file is of another run, and the error says so. The rest of a frame
 /// in whose middle the process died is cut off by the next frame.
 ///
+/// A checkpoint that is later than the last frame leaves a gap: the recorder takes the frames that the run
+/// comes to. After disks were removed, `id` numbers those that are left.
+///
 /// Times of frames increase. On Unix, no two recorders write to one file at a time.
 ///
 /// ```

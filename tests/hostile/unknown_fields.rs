@@ -145,7 +145,9 @@ fn measurements_with_a_field_too_many_are_refused() {
     let mut run = resume(&checkpoint()).unwrap();
     let domain = run.boundary().domain();
     let times = SampleTimes::every(0.1).unwrap();
-    let region = granular_edmd::boundary::Region::new(DVec2::ZERO, DVec2::new(domain.width(), 10.0));
+    let (low, high) =
+        (DVec2::new(domain.left, domain.bottom), DVec2::new(domain.right, domain.top.min(10.0)));
+    let region = granular_edmd::boundary::Region::new(low, high);
     let mut series = Series::new((CenterOfMass, Energies), times);
     let mut change = EnergyChange::default();
     let mut counts = CollisionCounts::since(0.0);

@@ -1,6 +1,8 @@
 //! Pair correlations of elastic disks, against the values at contact that follow from their pressure.
 
+use granular_edmd::boundary::Region;
 use granular_edmd::collision::Elastic;
+use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{PairCorrelation, SampleTimes};
 
 use crate::gas::{collision_rate, contact_value, periodic_gas, run_for};
@@ -51,6 +53,24 @@ fn far_pairs_are_not_correlated() -> Outcome {
     for (distance, value) in correlation.iter().filter(|(distance, _)| *distance > 5.0) {
         let (mean, error) = (value.mean(), value.standard_error());
         assert!(error < 4e-3 && (mean - 1.0).abs() < 4.0 * error + 2e-3, "{distance}: {value}");
+    }
+    Ok(())
+}
+
+/// Around the disks of a small part of the box, pairs are those of the whole box.
+#[test]
+fn a_part_of_the_box_has_the_correlation_of_the_whole() -> Outcome {
+    let mut gas = periodic_gas(1000, 0.3, Elastic, 3)?;
+    let times = SampleTimes::every(1.0 / collision_rate(0.3))?;
+    let part = Region::new(DVec2::splat(10.0), DVec2::splat(14.0));
+    let mut whole = PairCorrelation::new(3.0, 6, times)?;
+    let mut around = PairCorrelation::new(3.0, 6, times)?.within(part)?;
+    gas.run_until(gas.time() + 4000.0 * times.interval(), &mut (&mut whole, &mut around))?;
+    // The part holds 6 disks on average, so each bin has some 1e5 pairs; blocks of correlated samples and the
+    // scatter of the number of disks leave 1 %.
+    for ((distance, whole), (_, part)) in whole.iter().zip(around.iter()).skip(2) {
+        let off = part.mean() / whole.mean() - 1.0;
+        assert!(off.abs() < 0.04, "{distance}: {part}, not {whole}");
     }
     Ok(())
 }

@@ -82,6 +82,15 @@ fn runs_in_which_no_pair_can_be_counted_end_with_the_reason() -> Outcome {
     let said = reason(Container::closed(20.0, 12.0)?, &mut pairs);
     assert!(said.contains("or have a region, but is 7"), "{said}");
     assert!(reason(Container::open(20.0)?, &mut pairs).contains("or have a region, but is 7"));
+    let large = Region::new(DVec2::new(-1.0, 0.0), DVec2::new(5.0, 5.0));
+    let said =
+        reason(Container::closed(20.0, 12.0)?, &mut PairCorrelation::new(1.0, 3, times()?)?.within(large)?);
+    assert!(said.contains("edge of the region must be inside the domain, but is -1"), "{said}");
+    let said = reason(Container::closed(20.0, 12.0)?, &mut Stress::new(times()?).within(large)?);
+    assert!(said.contains("edge of the region must be inside the domain, but is -1"), "{said}");
+    let mut walls = WallStress::new(times()?).with_wall(3, 5.0)?.with_wall(77, 5.0)?;
+    let said = reason(Container::closed(20.0, 12.0)?, &mut walls);
+    assert!(said.contains("index of a wall must be less than the number of walls, but is 77"), "{said}");
     let said = reason(Container::open(20.0)?, &mut Stress::new(times()?));
     assert!(said.contains("area of the domain must be finite: choose a region, but is inf"), "{said}");
     Ok(())

@@ -1,10 +1,10 @@
 //! Series as tables: names, units, and numbers to the bit.
 
-use granular_edmd::boundary::{Boundary, Container};
+use granular_edmd::boundary::{Boundary, Container, Domain};
 use granular_edmd::collision::Elastic;
 use granular_edmd::observable::{
-    CenterOfMass, Energies, Heading, Observable, OfKind, OrderParameters, SampleTimes, Series, Snapshot,
-    Tabular, Temperatures, from_fn,
+    CenterOfMass, Energies, Heading, Observable, Observer, OfKind, OrderParameters, SampleTimes, Series,
+    Snapshot, Tabular, Temperatures, from_fn,
 };
 use granular_edmd::{Kind, Simulation, initial};
 
@@ -80,4 +80,29 @@ fn names_that_make_no_table_are_refused() {
         refused(number().named("a", "\"")),
         "the unit of a column must be in plain words, but is \"\\\"\""
     );
+}
+
+/// An observable that breaks its promise is told, and no row is written in the wrong columns.
+#[test]
+fn rows_have_a_number_for_each_heading() {
+    struct Short;
+    impl Observable for Short {
+        type Value = f64;
+        fn measure(&self, _: &Snapshot<'_>) -> f64 {
+            1.0
+        }
+    }
+    impl Tabular for Short {
+        fn headings(&self) -> Vec<Heading> {
+            vec![Heading::new("a", "1"), Heading::new("b", "1")]
+        }
+        fn add_numbers(&self, value: &f64, row: &mut Vec<f64>) {
+            row.push(*value);
+        }
+    }
+    let mut series = Series::new((Short, CenterOfMass), SampleTimes::every(1.0).unwrap());
+    series.on_sample(&Snapshot::new(1.0, &[], Domain::new(0.0, 4.0, 0.0, 6.0), 1.0));
+    let error = series.write_csv(Vec::new()).unwrap_err().to_string();
+    assert_eq!(error, "a row has 4 numbers for 5 headings");
+    assert_eq!(series.write_json_lines(Vec::new()).unwrap_err().to_string(), error);
 }
