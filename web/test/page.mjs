@@ -57,8 +57,10 @@ try {
     await page.until(`rolls.run.plan.length > ${steps}`);
     assert.notEqual(await page.evaluate(`rolls.run.plan.at(-1).setting[${slider}]`), [0.05, 0.01, 0.01, 0.12, 8][slider]);
   }
+  // The state is named a few times a second; a link leads to the last name, or to a later change.
+  await page.until('rolls.frame.hash.at >= rolls.run.plan.at(-1).at');
   await page.evaluate('document.getElementById("play").click()');
-  await seconds(0.3);
+  await seconds(0.7);
   await page.evaluate('document.getElementById("share").click()');
   const [shared, hash] = await page.evaluate('[location.hash, rolls.frame.hash]');
   const [, text, at] = /plan=([^&]*)&at=(\d+)/.exec(shared);
