@@ -17,7 +17,6 @@ use std::process::ExitCode;
 use clap::Parser;
 use granular_edmd::prelude::*;
 use granular_edmd::quantity::{finite, non_negative};
-use granular_edmd::roots::first_descent_of_quartic;
 use granular_edmd::study::{Axis, Column, Experiment, ExperimentError, Plan, PlanError, Protocol};
 use kuva::plot::ScatterPlot;
 use kuva::render::{figure::Figure, layout::Layout, plots::Plot};
@@ -48,6 +47,7 @@ impl CollisionRule for Viscous {
 /// A round drum about the origin, hot and turning, without gravity.
 struct Drum {
     radius: f64,
+    rim: Brick,
     spin: f64,
     heat: Thermal,
 }
@@ -61,23 +61,18 @@ impl Boundary for Drum {
     }
     fn set_time_origin(&mut self, _origin: f64) {}
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
-        region.min.abs().max(region.max.abs()).length() + radius >= self.radius
+        self.rim.may_touch(region, radius)
     }
     fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
-        let (start, free) = (flight.time(), self.radius - flight.radius());
-        let (r, v) = (flight.position(start), flight.velocity(start));
-        // The square of `free` less that of the distance from the middle, as a polynomial of the time.
-        let gap = [(free - r.length()) * (free + r.length()), -2.0 * r.dot(v), -v.length_squared(), 0.0, 0.0];
-        let wait = first_descent_of_quartic(&gap, until - start)?;
-        Some(Touch::new((start + wait).min(until), 0))
+        self.rim.first_touch(flight, until).map(|time| Touch::new(time, 0))
     }
     fn surface(&self, _wall: usize, position: DVec2, _time: f64) -> Surface<'_> {
-        let normal = -position.normalize_or(DVec2::Y);
+        let normal = self.rim.normal(position);
         let surface = Surface::new(normal, -self.spin * self.radius * normal.perp());
         surface.with_response(Response::Thermal(self.heat))
     }
     fn overlap(&self, position: DVec2, radius: f64, _time: f64) -> Option<(usize, f64)> {
-        let depth = position.length() + radius - self.radius;
+        let depth = radius - self.rim.signed_distance(position);
         (depth > 0.0).then_some((0, depth))
     }
 }
@@ -100,7 +95,8 @@ impl Experiment for Turning {
         Ok(Viscous { loss: non_negative("loss", self.loss)?, friction: Friction::new(0.1, 0.3)? })
     }
     fn boundary(&self) -> Result<Drum, ExperimentError> {
-        Ok(Drum { radius: 8.0, spin: finite("spin", self.spin)?, heat: Thermal::new(1.0)? })
+        let (radius, spin) = (8.0, finite("spin", self.spin)?);
+        Ok(Drum { radius, rim: Brick::circle(DVec2::ZERO, radius)?, spin, heat: Thermal::new(1.0)? })
     }
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
         let disks = initial::random(&self.boundary()?, self.disks, 0.5, 16.0, seed)?;

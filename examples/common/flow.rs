@@ -1,78 +1,41 @@
-//! The mean flow on a grid.
+//! A mean flow as arrows: square cells, and those that are full enough for an arrow.
 
-use granular_edmd::boundary::Domain;
+use granular_edmd::ParameterError;
+use granular_edmd::boundary::Region;
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::Snapshot;
+use granular_edmd::observable::{FieldCell, Fields, SampleTimes};
 
-/// Largest number of rows. Nothing is kept beyond it, since a disk may fly high without a lid.
-const MOST_ROWS: usize = 2000;
-
-/// The mean velocity of the disks on a grid of square cells. Each disk counts once per snapshot.
-#[derive(Debug, Clone)]
-pub(crate) struct Flow {
-    domain: Domain,
+/// Returns fields on square cells over a region, with this many columns.
+pub(crate) fn on_squares(
+    min: DVec2,
+    max: DVec2,
     columns: usize,
-    cells: Vec<Cell>,
+    times: SampleTimes,
+) -> Result<Fields, ParameterError> {
+    let side = (max.x - min.x) / columns as f64;
+    let rows = ((max.y - min.y) / side).ceil();
+    let region = Region::new(min, DVec2::new(max.x, min.y + rows * side));
+    Fields::new(region, columns, rows as usize, times)
 }
 
-#[derive(Debug, Clone, Copy, Default)]
-struct Cell {
-    count: u64,
-    velocities: DVec2,
+/// Returns the cells that hold at least this share of what the fullest cell holds.
+fn seen(fields: &Fields, share: f64) -> Vec<FieldCell> {
+    let most = fields.iter().map(|cell| cell.count).max().unwrap_or(0);
+    let enough = (share * most as f64).max(1.0);
+    fields.iter().filter(|cell| cell.count as f64 >= enough).collect()
 }
 
-/// The mean velocity at the center of a cell.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Arrow {
-    pub(crate) position: DVec2,
-    pub(crate) velocity: DVec2,
+/// Returns the largest speed of the flow in these cells.
+pub(crate) fn fastest(fields: &Fields, share: f64) -> f64 {
+    seen(fields, share).iter().map(|cell| cell.velocity.length()).fold(0.0, f64::max)
 }
 
-impl Flow {
-    /// Creates an empty flow on a grid of this many columns.
-    pub(crate) fn new(domain: Domain, columns: usize) -> Self {
-        Self { domain, columns: columns.max(1), cells: Vec::new() }
-    }
-
-    /// Returns the length of the side of a cell.
-    pub(crate) fn pitch(&self) -> f64 {
-        self.domain.width() / self.columns as f64
-    }
-
-    /// Counts the disks of a snapshot.
-    pub(crate) fn add(&mut self, snapshot: &Snapshot<'_>) {
-        for disk in snapshot.disks() {
-            if let Some(index) = self.index(disk.position()) {
-                if index >= self.cells.len() {
-                    self.cells.resize(index + 1, Cell::default());
-                }
-                self.cells[index].count += 1;
-                self.cells[index].velocities += disk.velocity();
-            }
-        }
-    }
-
-    fn index(&self, position: DVec2) -> Option<usize> {
-        let offset = (position - DVec2::new(self.domain.left, self.domain.bottom)) / self.pitch();
-        let (column, row) = (offset.x.max(0.0) as usize, offset.y.max(0.0) as usize);
-        (row < MOST_ROWS).then(|| row * self.columns + column.min(self.columns - 1))
-    }
-
-    /// Returns the arrows of the cells that hold at least this share of what the fullest cell holds.
-    pub(crate) fn arrows(&self, share: f64) -> Vec<Arrow> {
-        let most = self.cells.iter().map(|cell| cell.count).max().unwrap_or(0);
-        let enough = (share * most as f64).max(1.0);
-        let seen = self.cells.iter().enumerate().filter(|(_, cell)| cell.count as f64 >= enough);
-        seen.map(|(index, cell)| Arrow {
-            position: self.center(index),
-            velocity: cell.velocities / cell.count as f64,
-        })
-        .collect()
-    }
-
-    fn center(&self, index: usize) -> DVec2 {
-        let (row, column) = (index / self.columns, index % self.columns);
-        let corner = DVec2::new(self.domain.left, self.domain.bottom);
-        corner + self.pitch() * DVec2::new(column as f64 + 0.5, row as f64 + 0.5)
-    }
+/// Returns an arrow for each of these cells: its middle and its components. The longest is this many cells
+/// long.
+pub(crate) fn arrows(fields: &Fields, share: f64, longest: f64) -> Vec<(f64, f64, f64, f64)> {
+    let middle = |column| fields.cell(column, 0).map_or(0.0, |cell| cell.center.x);
+    let scale = longest * (middle(1) - middle(0)) / fastest(fields, share).max(f64::MIN_POSITIVE);
+    let arrow =
+        |FieldCell { center, velocity, .. }| (center.x, center.y, scale * velocity.x, scale * velocity.y);
+    seen(fields, share).into_iter().map(arrow).collect()
 }

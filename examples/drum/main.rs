@@ -36,7 +36,7 @@ use granular_edmd::prelude::*;
 use granular_edmd::statistics::BlockedMean;
 
 use common::command_line::{self, Failure, positive, whole};
-use common::flow::Flow;
+use common::flow;
 use common::results::Results;
 use measure::{Depths, Slope};
 
@@ -93,7 +93,7 @@ struct Turned {
     /// Standard deviation of the angle over time.
     scatter: f64,
     depths: Depths,
-    flow: Flow,
+    flow: Fields,
     /// The grains at the end, and how many turns the drum has done.
     disks: Vec<Disk>,
     turns: f64,
@@ -129,7 +129,7 @@ fn turned(arguments: &Arguments, rate: f64) -> Result<Turned, Box<dyn Error>> {
         ElasticBelow::new(rule, arguments.speed)?.with_tangential_response(TangentialResponse::Reversing);
     let drum = drum(arguments, rate)?;
     let disks = half_filled(arguments)?;
-    let mut flow = Flow::new(drum.domain(), (0.6 * drum.domain().width()) as usize);
+    let Domain { left, right, bottom, top, .. } = drum.domain();
     let mut simulation = Simulation::builder(rule, drum).disks(disks).gravity(1.0).build()?;
     let period = TAU / rate;
     simulation.run_until(SPIN_UP * period, &mut ())?;
@@ -137,15 +137,16 @@ fn turned(arguments: &Arguments, rate: f64) -> Result<Turned, Box<dyn Error>> {
     let mut surfaces = Vec::new();
     let mut depths = Depths::new(arguments.radius);
     let times = SampleTimes::every(period / arguments.samples as f64)?.starting_at(SPIN_UP * period)?;
+    let (low, high) = (DVec2::new(left, bottom), DVec2::new(right, top));
+    let mut flow = flow::on_squares(low, high, (0.6 * (right - left)) as usize, times)?;
     let mut watch = on_sample(times, |snapshot: &Snapshot<'_>| {
         if let Some(surface) = Slope::of(snapshot.disks(), arguments.radius) {
             depths.add(snapshot.disks(), surface.angle);
             surfaces.push((snapshot.time() / period, surface));
         }
-        flow.add(snapshot);
     });
     let turns = if arguments.quick { arguments.turns.min(0.25) } else { arguments.turns };
-    simulation.run_until((SPIN_UP + turns) * period, &mut watch)?;
+    simulation.run_until((SPIN_UP + turns) * period, &mut (&mut watch, &mut flow))?;
 
     let mut angles = BlockedMean::new();
     for (_, surface) in &surfaces {

@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use granular_edmd::glam::DVec2;
 use kuva::prelude::{LinePlot, Plot, QuiverPivot, QuiverPlot, ScatterPlot};
 
+use crate::common::flow;
 use crate::common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
 use crate::{Arguments, PIN, Turned};
 
@@ -79,13 +80,7 @@ fn inside(arguments: &Arguments, drum: &Turned, unit: f64) -> Vec<Plot> {
 
 /// Returns the mean flow as arrows. The longest arrow is two cells long.
 fn arrows(drum: &Turned) -> QuiverPlot {
-    let arrows = drum.flow.arrows(0.15);
-    let fastest = arrows.iter().map(|arrow| arrow.velocity.length()).fold(f64::MIN_POSITIVE, f64::max);
-    let scale = 2.0 * drum.flow.pitch() / fastest;
-    let arrows = arrows.iter().map(|arrow| {
-        let (place, way) = (arrow.position, scale * arrow.velocity);
-        (place.x, place.y, way.x, way.y)
-    });
+    let arrows = flow::arrows(&drum.flow, 0.15, 2.0);
     let plot = QuiverPlot::new().with_arrows(arrows).with_scale(1.0).with_pivot(QuiverPivot::Middle);
     let plot = plot.with_color(INK).with_shaft_width(1.3).with_clip_to_plot_area();
     plot.with_head_ratio(0.36).with_head_min_px(2.0).with_head_max_px(8.0)

@@ -3,7 +3,6 @@
 use std::error::Error;
 use std::time::Instant;
 
-use granular_edmd::boundary::Region;
 use granular_edmd::observable::Fields;
 use granular_edmd::prelude::*;
 use granular_edmd::simulation::Counters;
@@ -11,6 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::arguments::{Arguments, Base};
 use crate::common::command_line::Failure;
+use crate::common::flow;
 
 const RADIUS: f64 = 0.5;
 
@@ -115,11 +115,8 @@ fn container(arguments: &Arguments) -> Result<Container, Box<dyn Error>> {
 /// wide.
 fn grid(arguments: &Arguments, times: SampleTimes) -> Result<Fields, ParameterError> {
     let columns = (arguments.width / 7.0).round().clamp(4.0, 24.0);
-    let side = arguments.width / columns;
     let height = if arguments.open { OPEN_HEIGHT * arguments.width } else { arguments.height };
-    let rows = (height / side).ceil();
-    let region = Region::new(DVec2::ZERO, DVec2::new(arguments.width, rows * side));
-    Fields::new(region, columns as usize, rows as usize, times)
+    flow::on_squares(DVec2::ZERO, DVec2::new(arguments.width, height), columns as usize, times)
 }
 
 fn stopped(error: &RunError) -> Failure {

@@ -1,11 +1,11 @@
 //! The picture: the disks with the mean flow over them, and the series beside them.
 
 use granular_edmd::Disk;
-use granular_edmd::observable::FieldCell;
 use kuva::plot::quiver::QuiverPivot;
 use kuva::prelude::{Layout, LinePlot, Plot, QuiverPlot, ScatterPlot};
 
 use crate::arguments::{Arguments, Base};
+use crate::common::flow;
 use crate::common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
 use crate::experiment::Outcome;
 use crate::report::Means;
@@ -67,7 +67,7 @@ fn disks_and_flow(view: &View, outcome: &Outcome) -> Vec<Plot> {
     let faces = ScatterPlot::new().with_data(centers()).with_colors(colors(&outcome.disks));
     let faces =
         faces.with_sizes(outcome.disks.iter().map(|disk| (0.86 * radius(disk)).max(radius(disk) - 0.5)));
-    vec![rims.into(), faces.into(), arrows(view, outcome).into()]
+    vec![rims.into(), faces.into(), arrows(outcome).into()]
 }
 
 /// Returns blue for disks that rotate clockwise and red for the others, in full color at twice the root mean
@@ -78,24 +78,9 @@ fn colors(disks: &[Disk]) -> Vec<String> {
     disks.iter().map(|disk| sheet::diverging(disk.angular_velocity() / full)).collect()
 }
 
-/// Returns the cells that are full enough for an arrow.
-fn seen(outcome: &Outcome) -> Vec<FieldCell> {
-    let most = outcome.fields.iter().map(|cell| cell.count).max().unwrap_or(0);
-    let enough = (ENOUGH * most as f64).max(1.0);
-    outcome.fields.iter().filter(|cell| cell.count as f64 >= enough).collect()
-}
-
-fn fastest(outcome: &Outcome) -> f64 {
-    seen(outcome).iter().map(|cell| cell.velocity.length()).fold(0.0, f64::max)
-}
-
 /// Returns the mean flow as arrows. The longest arrow is a little longer than a cell.
-fn arrows(view: &View, outcome: &Outcome) -> QuiverPlot {
-    let side = view.width / outcome.fields.shape().0 as f64;
-    let scale = 1.1 * side / fastest(outcome).max(f64::MIN_POSITIVE);
-    let arrow =
-        |cell: FieldCell| (cell.center.x, cell.center.y, scale * cell.velocity.x, scale * cell.velocity.y);
-    let plot = QuiverPlot::new().with_arrows(seen(outcome).into_iter().map(arrow));
+fn arrows(outcome: &Outcome) -> QuiverPlot {
+    let plot = QuiverPlot::new().with_arrows(flow::arrows(&outcome.fields, ENOUGH, 1.1));
     let plot = plot.with_scale(1.0).with_pivot(QuiverPivot::Middle);
     let plot = plot.with_color(INK).with_shaft_width(2.2).with_clip_to_plot_area();
     plot.with_head_ratio(0.36).with_head_min_px(3.0).with_head_max_px(13.0)
@@ -118,7 +103,7 @@ fn write_header(sheet: &mut Sheet, arguments: &Arguments, outcome: &Outcome, mea
     let legend = format!(
         "disks: colored by their spin, blue clockwise, red counterclockwise    \
          arrows: mean velocity in the second half, the longest {:.2}",
-        fastest(outcome)
+        flow::fastest(&outcome.fields, ENOUGH)
     );
     sheet.text(MARGINS[0], 28.0, 20, INK, &title);
     sheet.text(MARGINS[0], 48.0, 12, QUIET, &box_and_base);

@@ -1,4 +1,4 @@
-//! How disks meet: histograms over collisions.
+//! Histograms over collisions: angles, speeds and impulses.
 
 use super::{Collision, Observer, Partner};
 use crate::ParameterError;

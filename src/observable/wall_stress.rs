@@ -51,7 +51,7 @@ pub struct WallStress {
     fault: Option<ParameterError>,
 }
 
-/// What a wall received.
+/// The impulse that a wall received.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 struct Received {

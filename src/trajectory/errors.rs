@@ -115,7 +115,7 @@ pub enum ReadError {
         what: String,
         /// The condition that it should have met.
         requirement: String,
-        /// What the line has in its place.
+        /// The text in its place.
         found: String,
     },
     /// Something that is needed is missing.

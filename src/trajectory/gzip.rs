@@ -21,7 +21,7 @@ const LAST_BLOCK: [u8; 2] = [3, 0];
 /// Bytes with which a sync flush ends.
 const FLUSHED: [u8; 4] = [0, 0, 255, 255];
 
-/// What has gone into a member so far.
+/// The data that have gone into a member so far.
 #[derive(Debug, Default)]
 pub(super) struct Member {
     crc: Crc,
