@@ -141,7 +141,7 @@ fn in_the_bulk(gas: &Gas, intervals: u32) -> Result<(), Box<dyn Error>> {
     row("p / nT, by the virial", format!("{compressibility:.4}"), expected);
     row("shear stress", stress.tensor().xy, 0.0);
     let enskog = temperature.sqrt() / (2.0 * PI.sqrt() * gas.density() * gas.contact_value());
-    row("self-diffusion, 20 to 40 mean free times", displacement.diffusion_coefficient(), enskog);
+    row("self-diffusion (Enskog is too small if dense)", displacement.diffusion_coefficient(), enskog);
     let memory: Vec<f64> = memory.iter().map(|(_, value)| value.mean()).collect();
     let decay = (memory[0] / memory[1]).ln() * 10.0 * gas.collision_rate();
     row(
