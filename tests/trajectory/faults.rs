@@ -76,6 +76,11 @@ fn faults_of_extended_xyz() {
     told(&format!("0\n{keys} pbc=\"T F\"\n"), "line 2: pbc must be three letters T or F, but is \"T F\"");
     told(&format!("0\n{keys} Time=now\n"), "line 2: Time must be a number, but is \"now\"");
     let skew = keys.replace("10 0 0 0", "10 1 0 0");
+    for domain in ["3 1 0 9", "0 9 nan nan", "0 0 0 9"] {
+        let text = format!("0\nDomain=\"{domain}\" Properties=id:I:1:pos:R:3:radius:R:1\n");
+        let error = State::from_xyz(text.as_bytes()).unwrap_err().to_string();
+        assert!(error.starts_with("line 2: "), "{error}");
+    }
     told(&format!("0\n{skew}\n"), "line 2: Lattice must be a rectangle, but is \"10 1 0 0 10 1 0 0 1\"");
     told(
         "9999999999999999999999\n",
@@ -118,6 +123,9 @@ fn faults_of_data_of_lammps() {
         &format!("{head}Atoms\n\n1 1 1 1 2 2 0\n"),
         "the file ends after line 10, where atom 2 of 2 should follow",
     );
+    // Words of another program in the title are no time.
+    let other = head.replace("t\n\n2 atoms", "runtime = 7\n\n0 atoms");
+    assert_eq!(State::from_lammps_data(other.as_bytes()).unwrap().time(), None);
     let atoms = format!("{head}Atoms\n\n2 1 1 1 2 2 0\n");
     told(&format!("{atoms}2 1 1 1 4 4 0\n"), "line 11: the atom 2 stands in line 10 already");
     told(&format!("{atoms}1 1 1 1 2.5 2 0\n"), "line 11: the disk overlaps that of line 10 by 0.5");

@@ -99,6 +99,11 @@ fn domain(keys: &str, line: usize) -> Result<Option<Domain>, ReadError> {
         }
         (None, None) => return Ok(None),
     };
+    let Domain { left, right, bottom, top, .. } = domain;
+    if !(left < right && bottom < top) {
+        let found = format!("{left} to {right} and {bottom} to {top}");
+        return Err(ReadError::unexpected(line, "the box", "from smaller to larger numbers", &found));
+    }
     periodic(domain, value(keys, "pbc"), line).map(Some)
 }
 

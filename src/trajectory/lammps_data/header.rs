@@ -19,7 +19,7 @@ impl Header {
     /// Reads the header, and returns it with the name of the first section, if there is one.
     pub(super) fn read<R: BufRead>(lines: &mut Lines<R>) -> Result<(Self, Option<String>), ReadError> {
         let (title, line) = lines.need("the title")?;
-        let time = title.split_once("time = ").map(|(_, time)| number("time", time, line)).transpose();
+        let time = title.split_once(", time = ").map(|(_, time)| number("time", time, line)).transpose();
         // A title of another program may have other words after it.
         let mut header = Self { time: time.unwrap_or(None), ..Self::default() };
         while let Some((text, line)) = lines.next_filled()? {
