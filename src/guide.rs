@@ -1,5 +1,5 @@
 #![doc = include_str!("../docs/guide/index.md")]
-// Chapters are modules without items. So their code is compiled and run with the tests, and the search of the
+// Chapters are modules without items, so that the tests compile and run their code, and the search of the
 // documentation finds them.
 
 #[doc = include_str!("../docs/guide/choose_a_rule.md")]
