@@ -21,7 +21,7 @@
 //! |---|---|
 //! | [`Series`] | the values of an observable at set times |
 //! | [`EnergyChange`] | mean energy change per collision, by partner |
-//! | [`EnergyChangeProfile`] | mean energy change per disk–disk collision by height, with the temperatures there |
+//! | [`EnergyChangeProfile`] | mean energy change per disk–disk collision and temperatures, by height |
 //! | [`CollisionCounts`] | counts by partner and regime, and rates |
 //! | [`HeightProfile`] | packing fraction by height |
 //! | [`Fields`] | density, flow and temperatures on a grid |
@@ -32,7 +32,7 @@
 //! | [`WallStress`] | pressure and shear stress on walls |
 //! | [`CollisionHistograms`] | histograms of obliqueness, closing speed and impulse |
 //! | [`VelocityDistribution`] | histograms, cumulants and kurtosis of velocities |
-//! | [`OfKind`], [`BetweenKinds`] | whatever another observer keeps, for the disks of one kind or the collisions between two kinds |
+//! | [`OfKind`], [`BetweenKinds`] | what another observer keeps, for one kind or for collisions of two |
 //! | [`on_collision`], [`on_sample`] | whatever a closure keeps |
 //! | [`stop_when`], [`stop_when_sampled`] | nothing: they stop the run when a closure says so |
 //!

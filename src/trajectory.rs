@@ -5,9 +5,9 @@
 //!
 //! | format | file | opened by |
 //! |---|---|---|
-//! | [`ExtendedXyz`] | one file, frame after frame | OVITO (not ASE), and [`XyzFrames`], to start a run from |
+//! | [`ExtendedXyz`] | one file, frame after frame | OVITO (not ASE), [`XyzFrames`] to start from |
 //! | [`LammpsDump`] | one file, frame after frame | OVITO, VMD, tools around LAMMPS |
-//! | VTK's `PolyData` | a `.vtp` for each frame and a `.pvd` with the times ([`Recorder::create_vtk`]) | ParaView, VTK |
+//! | VTK's `PolyData` | `.vtp` for each frame, `.pvd` for times ([`Recorder::create_vtk`]) | ParaView, VTK |
 //!
 //! | state in a file | read by | written by |
 //! |---|---|---|

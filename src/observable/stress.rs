@@ -16,6 +16,7 @@ use crate::statistics::{BlockedMean, Estimate};
 ///
 /// The first letter is the direction of the momentum. The second letter is the normal of the line through
 /// which the momentum passes.
+#[doc(alias = "pressure tensor")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct StressTensor {
@@ -70,6 +71,7 @@ pub struct StressTensor {
 /// assert!((stress.kinetic().pressure.mean() / ideal - 1.0).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias("pressure", "virial"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]

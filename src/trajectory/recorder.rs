@@ -55,6 +55,7 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 /// # std::fs::remove_dir_all(&folder)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias("trajectory", "dump", "movie"))]
 pub struct Recorder {
     clock: SampleTimes,
     format: Box<dyn Format + Send + Sync>,
