@@ -14,6 +14,7 @@
 #[path = "../../common/mod.rs"]
 mod common;
 mod dependences;
+mod local;
 mod numbers;
 mod ramps;
 
@@ -81,6 +82,10 @@ fn main() -> ExitCode {
     })
 }
 
+/// The numbers that may govern the transitions.
+const GOVERNING: [Number; 4] =
+    [Number::EqualTemperatures, Number::MeasuredRatio, Number::LocalRatio, Number::InTheRun];
+
 /// Ramps along one parameter, or frictions on one side of the largest loss.
 struct Choice {
     name: &'static str,
@@ -103,7 +108,13 @@ const CHOICES: [Choice; 4] = [
 
 /// Prints each line under each rule, and writes all crossings.
 fn lines(ramps: &[Ramp], out: &Path) -> Result<(), Box<dyn Error>> {
-    let crossings = crossings(ramps)?;
+    let mut crossings = crossings(ramps)?;
+    for (done, (ramp, at)) in crossings.iter_mut().enumerate() {
+        at.local = Some(local::measure(ramp.gravity, at)?);
+        if (done + 1) % 10 == 0 {
+            eprintln!("{} crossings measured", done + 1);
+        }
+    }
     write_crossings(&crossings, out)?;
     for (gravity, line, mean, deviation) in TABLE {
         println!("\ng = {gravity}, {line}: paper {mean:.3} ± {deviation:.3}");
@@ -117,7 +128,7 @@ fn lines(ramps: &[Ramp], out: &Path) -> Result<(), Box<dyn Error>> {
                 continue;
             }
             println!("  {}", choice.name);
-            for number in [Number::EqualTemperatures, Number::MeasuredRatio, Number::InTheRun] {
+            for number in GOVERNING {
                 println!("    {:34}{}", number.name(), formatted(&average(number, &of_line)?));
             }
         }
@@ -149,14 +160,14 @@ fn write_crossings(crossings: &[(&Ramp, Crossing)], out: &Path) -> Result<(), Bo
         "temperature_ratio",
         "equal_temperatures",
         "measured_ratio",
+        "local_ratio",
         "in_the_run",
     ])?;
     for (ramp, at) in crossings {
         let along = if ramp.along_friction { "friction" } else { "inelasticity" };
         // The half width of a friction is that of its logarithm times the friction.
         let half_width = at.half_width * if ramp.along_friction { at.friction } else { 1.0 };
-        let numbers = [Number::EqualTemperatures, Number::MeasuredRatio, Number::InTheRun];
-        let numbers: Vec<f64> = numbers.iter().map(|number| number.at(at)).collect::<Result<_, _>>()?;
+        let numbers: Vec<f64> = GOVERNING.iter().map(|number| number.at(at)).collect::<Result<_, _>>()?;
         let rounded =
             [at.friction, at.inelasticity, half_width, at.temperature_ratio].into_iter().chain(numbers);
         let rounded: Vec<String> = rounded.map(|value| format!("{value:.5}")).collect();

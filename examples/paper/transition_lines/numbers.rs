@@ -15,9 +15,11 @@ pub(crate) enum Number {
     EqualTemperatures,
     /// The same, if sticking collisions lost what is printed as Eq. (6).
     AsPrinted,
-    /// Closed form at the ratio of temperatures that the run has.
+    /// Closed form at the ratio of the mean temperatures of the runs beside the crossing.
     MeasuredRatio,
-    /// The mean over the collisions of the run.
+    /// Closed form at the ratio of temperatures in the layers where disks collide.
+    LocalRatio,
+    /// The mean over the collisions of a run, each over the temperature of its layer.
     InTheRun,
 }
 
@@ -27,27 +29,30 @@ impl Number {
             Self::EqualTemperatures => "closed form, equal temperatures",
             Self::AsPrinted => "closed form, Eq. (6) as printed",
             Self::MeasuredRatio => "closed form, measured T_rot/T",
-            Self::InTheRun => "measured in the run",
+            Self::LocalRatio => "closed form, T_rot/T of layers",
+            Self::InTheRun => "measured, over T of layers",
         }
     }
 
-    /// Returns the number at a crossing.
+    /// Returns the number at a crossing; NaN for what is measured in layers, if it was not measured.
     pub(crate) fn at(self, crossing: &Crossing) -> Result<f64, ParameterError> {
         let q = crossing.inelasticity;
         let rule =
             Frictional::from_inelasticity(q, q)?.with_friction(crossing.friction, crossing.friction)?;
         let gas = Maxwellian::new(1.0)?;
-        Ok(match self {
-            Self::EqualTemperatures => mean_energy_change(&rule, &gas),
+        let at_ratio = |ratio| Ok(mean_energy_change(&rule, &gas.with_rotational_temperature(ratio)?));
+        match (self, crossing.local) {
+            (Self::EqualTemperatures, _) => Ok(mean_energy_change(&rule, &gas)),
             // Without the third, sticking loses three times as much in the tangent: 4q(1-q)s³ more.
-            Self::AsPrinted => {
-                mean_energy_change(&rule, &gas) - 4.0 * q * (1.0 - q) * sticking_fraction(&rule, &gas).powi(3)
+            (Self::AsPrinted, _) => {
+                let sticking = sticking_fraction(&rule, &gas).powi(3);
+                Ok(mean_energy_change(&rule, &gas) - 4.0 * q * (1.0 - q) * sticking)
             }
-            Self::MeasuredRatio => {
-                mean_energy_change(&rule, &gas.with_rotational_temperature(crossing.temperature_ratio)?)
-            }
-            Self::InTheRun => crossing.energy_change,
-        })
+            (Self::MeasuredRatio, _) => at_ratio(crossing.temperature_ratio),
+            (Self::LocalRatio, Some(local)) => at_ratio(local.temperature_ratio),
+            (Self::InTheRun, Some(local)) => Ok(local.energy_change),
+            (Self::LocalRatio | Self::InTheRun, None) => Ok(f64::NAN),
+        }
     }
 }
 

@@ -9,6 +9,8 @@ use granular_edmd::statistics::RunningMean;
 use granular_edmd::study::Plan;
 use granular_edmd::study::vibrated_box::VibratedBox;
 
+use crate::local::Local;
+
 /// Friction between the two branches of the lines: the loss is largest near it.
 const LARGEST_LOSS: f64 = 0.35;
 
@@ -22,7 +24,6 @@ struct Row {
     state: String,
     translational_energy: f64,
     rotational_energy: f64,
-    energy_change: f64,
 }
 
 /// The state at one value of a ramp.
@@ -34,8 +35,6 @@ pub(crate) struct Observation {
     pub(crate) regime: ConvectiveRegime,
     /// Rotational over translational temperature of all disks.
     pub(crate) temperature_ratio: f64,
-    /// Mean energy change of a collision in the run, over the translational temperature of all disks.
-    pub(crate) energy_change: f64,
 }
 
 /// The observations of one ramp, in friction or in inelasticity, with its bisected values.
@@ -62,7 +61,7 @@ pub(crate) struct Crossing {
     /// Half the distance of the values between which the transition lies; of the logarithm of a friction.
     pub(crate) half_width: f64,
     pub(crate) temperature_ratio: f64,
-    pub(crate) energy_change: f64,
+    pub(crate) local: Option<Local>,
 }
 
 /// Reads the ramps of all studies in a folder, in the order of their names.
@@ -92,7 +91,6 @@ fn study_of(folder: &Path) -> Result<Vec<Ramp>, Box<dyn Error>> {
             leg: row.leg,
             regime: regime(&row.state)?,
             temperature_ratio: 2.0 * row.rotational_energy / row.translational_energy,
-            energy_change: row.energy_change / row.translational_energy,
         };
         match ramps.last_mut().filter(|(index, _)| *index == row.ramp) {
             Some((_, ramp)) => ramp.observations.push(observation),
@@ -173,7 +171,7 @@ impl Ramp {
             inelasticity,
             half_width,
             temperature_ratio: mean(|seen| seen.temperature_ratio),
-            energy_change: mean(|seen| seen.energy_change),
+            local: None,
         }
     }
 }
