@@ -21,8 +21,8 @@
 //! | box that is shaken as a whole | [`Container::shaken_sideways`], [`Container::shaken_vertically`] |
 //!
 //! Parts are added, replaced and removed by name, also between runs; this is how a gate opens. With the
-//! feature `serde`, bricks, parts, vessels and containers can be written to files, and their checks are
-//! repeated when they are read. A rule or a motion of your own cannot be written.
+//! feature `serde`, bricks, parts, vessels and containers can be written to files, and reading them repeats
+//! their checks. A rule or a motion of your own cannot be written.
 //!
 //! [`Obstacles`] puts fixed round obstacles into any boundary. A geometry of your own implements
 //! [`Boundary`]; [`roots`](crate::roots) has the numerics that it needs, and [`laws`] checks it.
@@ -89,7 +89,7 @@ use crate::{Fingerprint, Flight};
 ///   a time before the origin.
 /// - All numbers of a flight are finite. The flight begins at the present, in the domain, and ends (`until`)
 ///   where the disk leaves a cell, at most two epochs later. In an epoch, a typical disk goes some tens of
-///   diameters. A flight ends at a periodic side.
+///   diameters. A flight ends at a periodic side or end.
 /// - It asks `first_touch` only in cells for which `may_touch` holds with the largest of all radii. Cells at
 ///   the edges of the domain reach to infinity.
 /// - It asks `surface` about a touch that `first_touch` found: with its wall, its time, and the position of
@@ -100,7 +100,7 @@ use crate::{Fingerprint, Flight};
 /// # Boundaries that break the contract
 /// [`laws::check`] finds most faults. A missed touch lets a disk leave the domain unseen. An early touch
 /// turns disks back in mid-air. A touch with a wall that the disk is leaving comes again at once, until the
-/// run ends for want of progress. A velocity or normal that is not finite ends the run with an error.
+/// run ends for lack of progress. A velocity or normal that is not finite ends the run with an error.
 ///
 /// ```
 /// use std::borrow::Cow;
@@ -172,7 +172,7 @@ pub trait Boundary {
         self.domain()
     }
 
-    /// Returns how many walls there are; their indices are less than this.
+    /// Returns the number of walls; their indices are less than this.
     fn wall_count(&self) -> usize;
 
     /// Returns the name of a wall, for messages.

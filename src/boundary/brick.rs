@@ -1,4 +1,4 @@
-//! Bricks: the shapes of which vessels are built, and when a disk first touches one.
+//! Bricks: the shapes of which vessels are built, and the first touch of one by a disk.
 
 mod arc;
 mod constructors;

@@ -168,7 +168,7 @@ impl Container {
         Ok(self)
     }
 
-    /// Returns the same container with a wall of this kind. Rules find the kind in the contact.
+    /// Returns the same container with a wall of this kind, as rules find it in the contact.
     ///
     /// # Errors
     /// If the container has no such wall.

@@ -150,7 +150,7 @@ mod open_top {
     }
 }
 
-/// A rectangle inside the domain. Its edges may be infinite.
+/// A rectangle inside the domain, whose edges may be infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]

@@ -74,7 +74,7 @@ impl Part {
         Self { conduct: Conduct::Thermal(thermal), ..self }
     }
 
-    /// Returns the same part with this kind. Rules find the kind in the contact.
+    /// Returns the same part with this kind, as rules find it in the contact.
     #[must_use]
     pub fn with_kind(self, kind: Kind) -> Self {
         Self { kind, ..self }
@@ -160,7 +160,9 @@ impl Part {
         Ok(Self { start: finite("start of a motion", time)?, ..self })
     }
 
-    /// Returns the same part, shifted by a vector. If it turns about a point, that point shifts with it.
+    /// Returns the same part, shifted by a vector.
+    ///
+    /// If the part turns about a point, that point shifts with it.
     ///
     /// # Errors
     /// If a coordinate would not be finite.

@@ -163,7 +163,9 @@ impl Vessel {
         Ok(self)
     }
 
-    /// Puts a part into the vessel. Its walls come after those of all other parts.
+    /// Puts a part into the vessel.
+    ///
+    /// Its walls come after those of all other parts.
     ///
     /// # Errors
     /// If a part or a wall of the container already has this name, or the vessel would have more than 2¹⁶
@@ -183,7 +185,9 @@ impl Vessel {
         Ok(())
     }
 
-    /// Removes a part from the vessel. The indices of the walls after it become smaller.
+    /// Removes a part from the vessel.
+    ///
+    /// The indices of the walls after it become smaller.
     ///
     /// # Errors
     /// If there is no part of this name. The vessel then stays as it was.

@@ -13,9 +13,9 @@ pub(crate) struct Material {
     /// Radius of the surface, which rules find in the contact; infinite for a straight wall.
     pub(crate) radius: f64,
     pub(crate) inverse_mass: f64,
-    /// Velocity of the contact point per tangential impulse, `$(1 + 1/\beta)/m$`.
+    /// Velocity of the contact point per tangential impulse, (1 + 1/β)/m.
     tangential_compliance: f64,
-    /// Angular velocity per tangential impulse, `$1/(\beta m R)$`.
+    /// Angular velocity per tangential impulse, 1/(β m R).
     spin_response: f64,
     pub(crate) kind: Kind,
 }

@@ -67,7 +67,7 @@ impl Contact {
         Self { radii, ..self }
     }
 
-    /// Returns the speed v_n at which the surfaces approach, positive in a collision.
+    /// Returns the speed v_n at which the surfaces approach, which is never negative in a collision.
     #[inline]
     pub const fn closing_speed(&self) -> f64 {
         self.closing_speed

@@ -13,8 +13,8 @@ use crate::{Fingerprint, ParameterError};
 ///
 /// A disk that comes to rest on a floor then bounces at the speed `$v_c$`, once in each time `$2v_c/g$`. Many
 /// disks share the energy that the last fast collisions left them. If the tangential response loses nothing,
-/// their granular temperature stays. But it may be far below `$m v_c^2$`, and the lower it is, the more
-/// events there are. [`LeastRebound`](super::LeastRebound) bounds their number. In a gas of temperature
+/// their granular temperature stays constant. But it may be far below `$m v_c^2$`, and the lower it is, the
+/// more events there are. [`LeastRebound`](super::LeastRebound) bounds their number. In a gas of temperature
 /// `$T$`, the share `$1 - (1 + x)\,e^{-x} \approx x^2/2$` of the normal dissipation belongs to collisions
 /// below `$v_c$`, with `$x = m v_c^2/4T$`, and the remedy removes it. The page `docs/rest.md` of the
 /// repository compares the remedies.

@@ -21,7 +21,9 @@ pub enum Regime {
     ElasticBelow,
 }
 
-/// The momentum that partner 1 receives along the normal and the tangent. Partner 2 receives the opposite.
+/// The momentum that partner 1 receives along the normal and the tangent.
+///
+/// Partner 2 receives the opposite.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse};

@@ -51,7 +51,7 @@ fn friction_ratio(rule: &Frictional) -> f64 {
 ///
 /// The function is `$-\rho + 3Gs^2 + 2H\,(1-(1+s)^{-2})$` with `$H = \rho^2(1-q_t)$`, `$G = \rho - q_t - H$`.
 /// It starts negative: the loss grows with friction. For `$G<0$` it stays negative. Otherwise it rises, and
-/// its one root is the only minimum of `$\langle dE\rangle$`.
+/// its one root, if there is one, is the only minimum of `$\langle dE\rangle$`.
 struct Slope {
     ratio: f64,
     quadratic: f64,

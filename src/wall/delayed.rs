@@ -6,8 +6,8 @@ use crate::{Fingerprint, ParameterError};
 
 /// A motion whose phase counts from a given start instead of time 0.
 ///
-/// When one base replaces another between runs, it can in this way begin at its own phase 0, and does not
-/// jump. The start is no delay: before it, the wall goes through the phases before 0.
+/// A base that replaces another between runs can in this way begin at its own phase 0, without a jump. The
+/// start is no delay: before it, the wall goes through the phases before 0.
 ///
 /// ```
 /// use granular_edmd::wall::{BiParabolic, Delayed, WallMotion};

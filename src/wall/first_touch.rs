@@ -9,7 +9,7 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Least room for a step, in units of the rounding. It makes sure that a search ends.
 const LEAST_ROOM: f64 = 1e-3;
 
-/// Largest number of steps of a search. A search meets a wall that sweeps over its reach in each period
+/// Largest number of steps of a search. If a wall sweeps over its reach in each period, a search meets it
 /// within a few periods, each of which takes a few tens of steps. It needs more steps only under a wall that
 /// stays away from a large part of its stated reach.
 const MOST_STEPS: u32 = 1 << 20;

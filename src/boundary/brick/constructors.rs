@@ -45,8 +45,8 @@ impl Brick {
     /// Disks are free inside. Angles are in radians from the `$x$` axis.
     ///
     /// # Errors
-    /// If a number is not finite, the radius is not positive, or the angle from `from` to `to` is not above 0
-    /// and less than a whole turn.
+    /// If a number is not finite, the radius is not positive, or `to - from` is not above 0 and below a whole
+    /// turn.
     ///
     /// ```
     /// use std::f64::consts::PI;
@@ -88,7 +88,9 @@ impl Brick {
         Self { shape, free: Free::Left }
     }
 
-    /// Returns the same brick with the disks on its other side. A point stays as it is.
+    /// Returns the same brick with the disks on its other side.
+    ///
+    /// A point does not change.
     #[must_use]
     pub fn reversed(self) -> Self {
         let free = match self.free {

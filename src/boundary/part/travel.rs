@@ -44,17 +44,17 @@ pub(in crate::boundary) struct Pose {
 }
 
 impl Pose {
-    /// Returns a place in the frame of the part, given from outside.
+    /// Transforms a place from the frame at rest to the frame of the part.
     pub(in crate::boundary) fn inward(&self, place: DVec2) -> DVec2 {
         unturned(self.turn, place - self.shift)
     }
 
-    /// Returns a place from outside, given in the frame of the part.
+    /// Transforms a place from the frame of the part to the frame at rest.
     pub(in crate::boundary) fn outward(&self, place: DVec2) -> DVec2 {
         self.turn.rotate(place) + self.shift
     }
 
-    /// Returns a direction from outside, given in the frame of the part.
+    /// Transforms a direction from the frame of the part to the frame at rest.
     pub(in crate::boundary) fn direction_outward(&self, direction: DVec2) -> DVec2 {
         self.turn.rotate(direction)
     }
