@@ -140,7 +140,7 @@ pub fn slip_speed_after(contact: &Contact, impulse: Impulse) -> f64 {
     contact.slip_speed() - impulse.tangential() / contact.tangential_mass()
 }
 
-/// Returns the kinetic energy of the relative motion, ½μv_n² + ½μ_tv_t².
+/// Returns the kinetic energy of the relative motion, ½μ v_n² + ½μ_t v_t².
 ///
 /// A collision can lose no more than that.
 pub fn available_energy(contact: &Contact) -> f64 {
