@@ -94,8 +94,8 @@ use crate::{Fingerprint, Flight};
 ///   the edges of the domain reach to infinity.
 /// - It asks `surface` about a touch that `first_touch` found: with its wall, its time, and the position of
 ///   the disk at that time.
-/// - It asks `overlap` when a simulation is built or gets other walls, and wherever disks are placed at
-///   random.
+/// - It asks `overlap` when a simulation is built or gets other walls, and at each collision with a wall.
+///   Initial states ask it wherever they place disks.
 ///
 /// # Boundaries that break the contract
 /// [`laws::check`] finds most faults. A missed touch lets a disk leave the domain unseen. An early touch

@@ -87,7 +87,7 @@ impl Container {
     /// Creates a container without walls, which is periodic in both directions.
     ///
     /// A disk that leaves on one side enters on the other, and one that leaves above enters below, and vice
-    /// versa. A simulation needs a width and a height of at least four diameters of the largest disk.
+    /// versa. A simulation needs a width and a height of more than four diameters of the largest disk.
     ///
     /// # Errors
     /// If the width or the height is not finite and positive.
@@ -107,7 +107,7 @@ impl Container {
 
     /// Returns the same container with periodic sides: a disk that leaves on one side enters on the other.
     ///
-    /// A simulation needs a width of at least four diameters of the largest disk.
+    /// A simulation needs a width of more than four diameters of the largest disk.
     pub fn with_periodic_sides(mut self) -> Self {
         for wall in [Wall::Left, Wall::Right] {
             self.remove(wall);

@@ -293,9 +293,9 @@ impl Sighted {
     /// Tells whether this brick is nearer than another one, or is equally near and tells better what is
     /// behind it.
     ///
-    /// Two bricks that meet at the nearest point are equally far away up to rounding. The one that is seen
-    /// more from the front or the back decides whether the place is behind it, and not the one that is seen
-    /// from its end.
+    /// Two bricks that meet at the nearest point are equally far away up to rounding. Of these, the brick
+    /// whose extension beyond its ends is farther from the place decides: the place sees it less from its
+    /// end.
     pub(super) fn is_better_than(&self, other: &Self) -> bool {
         let nearer = other.nearest.distance - self.nearest.distance;
         let is_tie = nearer.abs() <= other.rounding;
