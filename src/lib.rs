@@ -31,7 +31,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The [`guide`] leads from a question to a figure, a chapter for each step.
+//! The [`guide`] leads from a question to a figure, with a chapter for each step.
 //!
 //! # Map
 //! | floor | what is there |
@@ -49,7 +49,7 @@
 //! | [`Disk`] | one grain |
 //! | [`statistics`] | means, and errors of correlated samples |
 //!
-//! Imports run downward in this order only.
+//! Imports run only downward in this order.
 //!
 //! # Features
 //! | feature | what it adds |

@@ -47,7 +47,7 @@ pub fn non_negative(name: &'static str, value: f64) -> Result<f64, ParameterErro
 /// Returns `value` if it is neither infinite nor NaN.
 ///
 /// # Errors
-/// If it is.
+/// If it is infinite or NaN.
 pub fn finite(name: &'static str, value: f64) -> Result<f64, ParameterError> {
     accept(value.is_finite(), name, "finite", value)
 }
@@ -72,7 +72,7 @@ pub fn accept(
     if valid { Ok(value) } else { Err(ParameterError::new(name, requirement, value)) }
 }
 
-/// A range of numbers that have a meaning, and the words for it.
+/// A range of numbers that have a meaning, and its description in words.
 #[derive(Clone, Copy)]
 pub(crate) struct Range {
     requirement: &'static str,
