@@ -34,14 +34,15 @@ pub enum RunEnd {
     /// The run took all the time that it may take; see
     /// [`Limits::with_wall_clock`](super::Limits::with_wall_clock).
     WallClock,
-    /// The flag for it was set; see [`Limits::with_interrupt`](super::Limits::with_interrupt).
+    /// The flag that interrupts the run was set; see
+    /// [`Limits::with_interrupt`](super::Limits::with_interrupt).
     Interrupted,
 }
 
 /// The numbers of events since the simulation was built.
 ///
-/// The engine does five kinds of events. The two kinds of collisions are physics, and observers are told of
-/// them. Cell crossings, outdated predictions and horizons are bookkeeping, which only these counts show.
+/// The engine does five kinds of events. The two kinds of collisions are physics, and observers see them.
+/// Cell crossings, outdated predictions and horizons are bookkeeping, and only these counts show them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
