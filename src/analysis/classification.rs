@@ -9,7 +9,7 @@ use crate::ParameterError;
 use crate::observable::{ConvectionOrder, DenseLayer};
 use crate::quantity::{accept, non_negative, positive};
 
-/// Returns the standard deviation of `$\Psi_1$` and of `$\Psi_2$`, which are velocities, in a gas at rest.
+/// Returns the standard deviation of Ψ₁ and of Ψ₂, which are velocities, in a gas at rest.
 ///
 /// The deviation is
 ///
@@ -39,8 +39,8 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 
 /// The criteria by which a state gets its name.
 ///
-/// The samples of `$(\Psi_1, \Psi_2)$` are divided into [distinct clusters](distinct_clusters). With
-/// `$\sigma$` the [`thermal_noise`]:
+/// The samples of `$(\Psi_1, \Psi_2)$` are divided into [distinct clusters](distinct_clusters). The names
+/// follow from these clusters and the [`thermal_noise`] `$\sigma$`:
 ///
 /// 1. A run as a whole is **collapsed** if two conditions hold. Its height profile has a compact layer, of
 ///    packing fraction above 0.60, on a gas of less than half of that. And its two-roll flow has died,
@@ -50,13 +50,13 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 ///    down.
 /// 4. A cluster is **one roll** otherwise: clockwise for a positive `$\Psi_1$`.
 ///
-/// The bound of `$3\sigma$` compares the center of a cluster with *single* samples of a gas at rest, of which
-/// a share of `$e^{-9/2}$`, one in ninety, lies as far out. Unlike an error of the mean, this bound does not
+/// The bound of `$3\sigma$` compares the center of a cluster with *single* samples of a gas at rest. A share
+/// of `$e^{-9/2}$` of these, one in ninety, lies as far out. Unlike an error of the mean, this bound does not
 /// depend on the correlation of the samples. The rolls of the paper's system are far stronger, so the number
-/// matters at their onset only. One roll is not pure `$\Psi_1$`, but its `$\Psi_2$` is small enough to keep
-/// it off the diagonal.
+/// matters only at their onset. A state of one roll has some `$\Psi_2$`, too, but so little that it stays
+/// away from the diagonal.
 ///
-/// A collapsed run keeps a weak, slow `$\Psi_2$`, whose mean needs thousands of oscillations.
+/// A collapsed run keeps a weak, slow `$\Psi_2$`, whose mean settles only after thousands of oscillations.
 ///
 /// ```
 /// use granular_edmd::analysis::{ConvectiveRegime, StateCriteria};

@@ -26,8 +26,9 @@ pub struct PlaneTransition {
 ///
 /// The observations are `$(\kappa, q)$` and the regime of all runs on a grid, in any order. Runs of the same
 /// inelasticity are compared along the friction, as on the paper's ramps. Runs of the same friction are
-/// compared along the inelasticity, since only they cross a line that runs flat through the plane. The middle
-/// of two frictions is that of their logarithms. Hysteresis is treated as in [`transitions`].
+/// compared along the inelasticity, since only these comparisons cross a line that runs flat through the
+/// plane. The middle of two frictions is the middle of their logarithms. Hysteresis is treated as in
+/// [`transitions`].
 ///
 /// The points along the friction come first, in the order of inelasticity. The points along the inelasticity
 /// follow, in the order of friction.

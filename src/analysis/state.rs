@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// The motion of the disks in one cluster of the plane of `$\Psi_1$` and `$\Psi_2$` (paper, section III).
+/// The motion of the disks in one cluster of the plane of Ψ₁ and Ψ₂ (paper, section III).
 ///
 /// ```
 /// use granular_edmd::analysis::ConvectiveState;
@@ -52,7 +52,7 @@ impl fmt::Display for ConvectiveState {
     }
 }
 
-/// The regions of the paper's Fig. 5, in the order in which they come with growing energy loss.
+/// The regions of the paper's Fig. 5, in the order of growing energy loss.
 ///
 /// ```
 /// use granular_edmd::analysis::ConvectiveRegime;
