@@ -28,8 +28,9 @@ impl Fingerprint {
         Self(OFFSET).text(name)
     }
 
-    /// Adds a parameter that is a number. Numbers with different bits count as different, even `0.0` and
-    /// `-0.0`.
+    /// Adds a parameter that is a number.
+    ///
+    /// Numbers with different bits count as different, even `0.0` and `-0.0`.
     pub const fn number(self, value: f64) -> Self {
         self.bytes(&value.to_bits().to_le_bytes())
     }

@@ -31,7 +31,7 @@ use crate::ParameterError;
 /// Returns `value` if it is finite and above zero.
 ///
 /// # Errors
-/// If it is not.
+/// If it is zero, negative, infinite or NaN.
 pub fn positive(name: &'static str, value: f64) -> Result<f64, ParameterError> {
     Range::POSITIVE.check(name, value)
 }
@@ -39,7 +39,7 @@ pub fn positive(name: &'static str, value: f64) -> Result<f64, ParameterError> {
 /// Returns `value` if it is finite and not below zero.
 ///
 /// # Errors
-/// If it is not.
+/// If it is negative, infinite or NaN.
 pub fn non_negative(name: &'static str, value: f64) -> Result<f64, ParameterError> {
     Range::NON_NEGATIVE.check(name, value)
 }

@@ -91,8 +91,9 @@ pub trait EventScheduler {
     /// Forgets everything, and takes these times, one for each disk.
     fn reset(&mut self, due: &[f64]);
 
-    /// Takes a new time for the event of `disk`, in place of its last one. The new time may be earlier or
-    /// later.
+    /// Takes a new time for the event of `disk`, in place of its last one.
+    ///
+    /// The new time may be earlier or later.
     fn set(&mut self, disk: usize, due: f64);
 
     /// Returns the disk whose event is due first, and its time, or [`NOTHING_DUE`] without disks.

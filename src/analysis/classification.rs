@@ -98,8 +98,8 @@ impl StateCriteria {
         Ok(Self { noise_multiple: non_negative("multiple of the noise", multiple)?, ..self })
     }
 
-    /// Sets the packing fraction above which a layer is compact, 0.60 unless given, and the
-    /// `$|\langle\Psi_2\rangle|$` below which rolls have died, 0.03 unless given.
+    /// Sets the packing fraction above which a layer is compact, 0.60 unless given, and the |⟨Ψ₂⟩| below
+    /// which rolls have died, 0.03 unless given.
     ///
     /// The bound on `$|\langle\Psi_2\rangle|$` is a velocity; 0.03 is meant for `$A\omega = 1$`, as in the
     /// paper.
@@ -125,7 +125,9 @@ impl StateCriteria {
         Ok(Self { least_weight: accept(valid, "least weight", "in [0, 0.5]", weight)?, ..self })
     }
 
-    /// Sets the seed of the clustering, 0 unless given. Distinct clusters do not depend on it.
+    /// Sets the seed of the clustering, 0 unless given.
+    ///
+    /// Distinct clusters do not depend on it.
     pub const fn with_seed(self, seed: u64) -> Self {
         Self { seed, ..self }
     }
@@ -182,18 +184,21 @@ pub struct Classification {
 }
 
 impl Classification {
-    /// Returns the clusters in the plane of `$\Psi_1$` (x) and `$\Psi_2$` (y).
+    /// Returns the clusters in the plane of Ψ₁ (x) and Ψ₂ (y).
     pub const fn clusters(&self) -> &Clusters {
         &self.clusters
     }
 
-    /// Iterates over the clusters with their names. A name may occur twice.
+    /// Iterates over the clusters with their names.
+    ///
+    /// A name may occur twice.
     pub fn iter(&self) -> impl Iterator<Item = (ConvectiveState, &Cluster)> {
         self.states.iter().copied().zip(self.clusters.iter())
     }
 
-    /// Returns the state with the largest weight. If several states have it, the state of the first cluster
-    /// wins.
+    /// Returns the state with the largest weight.
+    ///
+    /// If several states have it, the state of the first cluster wins.
     pub fn state(&self) -> ConvectiveState {
         let weights = self.states.iter().map(|&state| (state, self.weight(state)));
         let start = (ConvectiveState::Conductive, 0.0);

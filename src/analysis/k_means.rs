@@ -61,8 +61,9 @@ impl KMeans {
         Ok(Self { restarts, ..self })
     }
 
-    /// Finds the clusters of these points. If there are fewer different points than clusters asked for, there
-    /// are fewer clusters.
+    /// Finds the clusters of these points.
+    ///
+    /// If there are fewer different points than clusters asked for, there are fewer clusters.
     ///
     /// # Errors
     /// If there are fewer points than clusters, or a coordinate is not finite or above 1e100 in size.

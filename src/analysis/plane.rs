@@ -12,11 +12,11 @@ use crate::quantity::positive;
 pub struct PlaneTransition {
     /// The line that is crossed.
     pub line: TransitionLine,
-    /// Friction `$\kappa$` in the middle between the neighbors, on a logarithmic axis.
+    /// Friction κ in the middle between the neighbors, on a logarithmic axis.
     pub friction: f64,
-    /// Inelasticity `$q$` in the middle.
+    /// Inelasticity q in the middle between the neighbors.
     pub inelasticity: f64,
-    /// The two neighbors, as `$(\kappa, q)$`, between which the transition lies. They share one coordinate.
+    /// The two neighbors, as (κ, q), between which the transition lies. They share one coordinate.
     pub between: [(f64, f64); 2],
     /// True if the regime moves up from the first neighbor to the second.
     pub rising: bool,

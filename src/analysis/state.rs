@@ -15,13 +15,13 @@ use std::fmt;
 pub enum ConvectiveState {
     /// A state without flow, in which heat is conducted.
     Conductive,
-    /// A single roll, up on the left: `$\Psi_1 > 0$`.
+    /// A single roll, up on the left: Ψ₁ > 0.
     ClockwiseRoll,
-    /// A single roll, up on the right: `$\Psi_1 < 0$`.
+    /// A single roll, up on the right: Ψ₁ < 0.
     CounterclockwiseRoll,
-    /// Two rolls, up in the middle: `$\Psi_2 > 0$`.
+    /// Two rolls, up in the middle: Ψ₂ > 0.
     TwoRollsUp,
-    /// Two rolls, down in the middle: `$\Psi_2 < 0$`.
+    /// Two rolls, down in the middle: Ψ₂ < 0.
     TwoRollsDown,
     /// A compact layer of disks on a gas.
     Collapsed,

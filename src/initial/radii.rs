@@ -12,7 +12,9 @@ use crate::{Disk, ParameterError};
 /// doubles do not come as far.
 const FARTHEST: f64 = 9.0;
 
-/// A distribution of radii within bounds. The same seed gives the same radii on all platforms.
+/// A distribution of radii within bounds.
+///
+/// The same seed gives the same radii on all platforms.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -50,8 +52,9 @@ impl Radii {
         Self::within(Law::Uniform, smallest, largest)
     }
 
-    /// Creates a log-normal distribution of radii, cut at these bounds. The logarithm of the radius has the
-    /// standard deviation `deviation`.
+    /// Creates a log-normal distribution of radii, cut at these bounds.
+    ///
+    /// The logarithm of the radius has the standard deviation `deviation`.
     ///
     /// The density is `$\propto R^{-1}\,e^{-\ln^2(R/R_0)/2\sigma^2}$` for the median `$R_0$` of the uncut
     /// distribution and the deviation `$\sigma$`.

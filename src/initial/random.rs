@@ -52,6 +52,7 @@ pub fn random<B: Boundary + ?Sized>(
 }
 
 /// Returns these disks, of any mix of radii, at random places that do not overlap, below the height `below`.
+///
 /// Everything else is as in [`random`].
 ///
 /// # Errors

@@ -17,8 +17,8 @@ const EVENTS_PER_BUCKET: usize = 512;
 /// Number of events per disk in a page. They share the cost of dealing out the disk to the next page.
 const EVENTS_PER_DISK: usize = 2;
 
-/// Number of events per disk after which a page is turned at the latest. A page that lasts so long has too
-/// wide buckets, since it was meant to last half as long.
+/// Number of events per disk after which a page is turned at the latest. A page was meant to last half as
+/// long, so its buckets are too wide then.
 const LONGEST_PAGE: usize = 2 * EVENTS_PER_DISK;
 
 /// Number of disks in the sample from which the density of events is first estimated.
@@ -30,8 +30,9 @@ const SOON: usize = 8;
 /// Number of events that are known in order ahead of the present one, and are named as upcoming.
 const SIGHT: usize = 48;
 
-/// A calendar: a page of equally wide buckets of time. Each bucket holds, in no order, the disks that are due
-/// in it.
+/// A calendar: a page of equally wide buckets of time.
+///
+/// Each bucket holds, in no order, the disks that are due in it.
 ///
 /// - A disk that gets a new time is written to the end of the bucket of that time. Its old entry stays where
 ///   it is.

@@ -80,7 +80,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         self
     }
 
-    /// Sets the seed of the stochastic walls; 0 unless given. Without stochastic walls, it has no effect.
+    /// Sets the seed of the stochastic walls; 0 unless given.
+    ///
+    /// Without stochastic walls, it has no effect.
     pub const fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
@@ -92,7 +94,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         self
     }
 
-    /// Sets another scheduler. The trajectory is the same, bit for bit.
+    /// Sets another scheduler.
+    ///
+    /// The trajectory is the same, bit for bit.
     pub fn scheduler<T: EventScheduler>(self, scheduler: T) -> SimulationBuilder<R, B, T> {
         let Self { rule, boundary, scheduler: _, disks, gravity, seed, start_time } = self;
         SimulationBuilder { rule, boundary, scheduler, disks, gravity, seed, start_time }

@@ -107,7 +107,9 @@ pub enum BuildError {
 /// registers.
 pub(super) type Outcome<T> = Result<T, Box<RunError>>;
 
-/// An error: a run cannot go on. The simulation keeps the state in which it noticed the error.
+/// An error: a run cannot go on.
+///
+/// The simulation keeps the state in which it noticed the error.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RunError {

@@ -20,7 +20,9 @@ pub enum Event {
     },
 }
 
-/// The reason why a run ended without an error. The run can go on from there, with the same bits.
+/// The reason why a run ended without an error.
+///
+/// The run can go on from there, with the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RunEnd {
@@ -69,7 +71,9 @@ pub struct Counters {
 }
 
 impl Counters {
-    /// Returns the counts since `earlier`. The largest overlaps are those of the whole run.
+    /// Returns the counts since `earlier`.
+    ///
+    /// The largest overlaps are those of the whole run.
     #[must_use]
     pub const fn since(&self, earlier: &Self) -> Self {
         Self {

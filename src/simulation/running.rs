@@ -20,8 +20,9 @@ enum Reached {
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Runs until the absolute time `end` while `observer` watches (`&mut ()` for no observer). Returns what
-    /// ended the run: its end time, or the observer.
+    /// Runs until the absolute time `end` while `observer` watches (`&mut ()` for no observer).
+    ///
+    /// Returns what ended the run: its end time, or the observer.
     ///
     /// This is [`Self::run`] without any other limit.
     ///
@@ -35,8 +36,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.run(&Limits::until(end), observer)
     }
 
-    /// Runs up to the first of the `limits` while `observer` watches (`&mut ()` for no observer). Returns
-    /// what ended the run.
+    /// Runs up to the first of the `limits` while `observer` watches (`&mut ()` for no observer).
+    ///
+    /// Returns what ended the run.
     ///
     /// The run calls the observer at its start, at each collision, at the samples that the observer asks for,
     /// and at its end, even if it ends with an error. If the observer stops the run, the present is the time
@@ -74,8 +76,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         ended.and_then(|end| last.map(|_| end))
     }
 
-    /// Goes to the next collision, if it is not after the absolute time `end`, and returns it. If there is
-    /// none, goes to `end` and returns `None`.
+    /// Goes to the next collision, if it is not after the absolute time `end`, and returns it.
+    ///
+    /// If there is none, goes to `end` and returns `None`.
     ///
     /// The observer sees only the collision: `on_start`, `on_sample` and `on_end` are not called, so the
     /// observer's clock stands still. If the observer fails, the step returns an error. A verdict to stop has

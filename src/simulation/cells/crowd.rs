@@ -36,7 +36,7 @@ pub(super) struct Crowds {
 }
 
 impl Crowds {
-    /// Creates room for the few crowds that are usual in so many cells.
+    /// Creates room for the few crowds that are usual in this many cells.
     pub(super) fn with_room(cells: usize) -> Self {
         Self { parts: Vec::with_capacity(FEW + cells / CELLS), free: NONE }
     }

@@ -38,7 +38,9 @@ impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
 }
 
 impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, S> {
-    /// Sets another scheduler. The future is the same, bit for bit.
+    /// Sets another scheduler.
+    ///
+    /// The future is the same, bit for bit.
     pub fn scheduler<T: EventScheduler>(self, scheduler: T) -> Resumption<'a, R, B, T> {
         let Self { checkpoint, rule, boundary, another_rule, another_boundary, scheduler: _ } = self;
         Resumption { checkpoint, rule, boundary, scheduler, another_rule, another_boundary }

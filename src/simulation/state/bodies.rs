@@ -213,7 +213,7 @@ impl Bodies {
         trajectory.position -= (trajectory.velocity - before) * offset;
     }
 
-    /// Brings a disk that has passed so many periods back into the domain.
+    /// Brings a disk that has passed these numbers of periods back into the domain.
     #[inline]
     pub(in crate::simulation) fn bring_back(&mut self, disk: usize, passed: [i32; 2], periods: DVec2) {
         if passed != [0; 2] {

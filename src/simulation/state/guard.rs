@@ -49,7 +49,7 @@ impl Guard {
         window.saturating_sub(events.saturating_sub(self.before))
     }
 
-    /// Ends the window before the event at this time offset, after so many events in all. Returns the window
+    /// Ends the window before the event at this time offset, after `events` events in all. Returns the window
     /// as a standstill if time has advanced in it by less than `least_progress` for each event. In either
     /// case a new window begins, so that a caller who removes the cause can go on.
     pub(in crate::simulation) fn end_window(
