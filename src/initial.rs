@@ -59,7 +59,7 @@ pub enum PlacementError {
     Jammed {
         /// Area of all disks over that of the room, at the time when they jammed.
         reached: f64,
-        /// Area of all disks over that of the room, with the disks packed.
+        /// Area of all disks over that of the room, if the disks had their full radii.
         wanted: f64,
     },
     /// The engine, which moves the disks while they are packed, refuses them or the boundary.

@@ -255,7 +255,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Sets other walls from now on.
     ///
     /// # Errors
-    /// If the disks do not fit into the new walls. The simulation then stays as it was.
+    /// If the disks do not fit into the new walls, or there are too many walls. The simulation then stays as
+    /// it was.
     pub fn set_boundary(&mut self, mut boundary: B) -> Result<(), BuildError> {
         boundary.set_time_origin(self.clock.origin);
         let (wall_count, cells) = fit(&boundary, &self.disks(), self.clock.now)?;

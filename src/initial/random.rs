@@ -27,7 +27,7 @@ const TRIALS: usize = 10_000;
 ///
 /// # Errors
 /// If the radius is not finite and positive, the height is not finite and above the bottom of the interior,
-/// or a disk finds no place in ten thousand trials.
+/// there are more than 2²⁸ disks, or a disk finds no place in ten thousand trials.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;

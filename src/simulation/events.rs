@@ -43,7 +43,7 @@ pub enum RunEnd {
 
 /// The numbers of events since the simulation was built.
 ///
-/// The engine does five kinds of events. The two kinds of collisions are physics, and observers see them.
+/// The engine handles five kinds of events. The two kinds of collisions are physics, and observers see them.
 /// Cell crossings, outdated predictions and horizons are bookkeeping, and only these counts show them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
@@ -57,8 +57,8 @@ pub struct Counters {
     pub contact_duration_collisions: u64,
     /// Passages of a disk from one neighbor cell to another.
     pub cell_crossings: u64,
-    /// Predicted collisions whose partner had collided with another disk before they came up. They were
-    /// predicted anew.
+    /// Predicted collisions that were out of date when they came up, since the partner had had another
+    /// collision. They were predicted anew.
     pub repredictions: u64,
     /// Searches for a wall that found none up to their horizon, and were taken up again.
     pub horizons: u64,

@@ -46,9 +46,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// from there with the same bits.
     ///
     /// # Errors
-    /// If the end is not finite or before the present, the run cannot progress, a rule, boundary, scheduler
-    /// or observer breaks its contract, or an observer fails. The simulation then keeps the state of that
-    /// moment.
+    /// If the end is not finite or is before the present, the run hardly progresses, a rule, boundary,
+    /// scheduler or observer gives an impossible answer, times become too coarse, or an observer fails. The
+    /// simulation then keeps the state of that moment.
     pub fn run<O: Observer + ?Sized>(
         &mut self,
         limits: &Limits,

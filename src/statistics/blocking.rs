@@ -30,9 +30,9 @@ const FEWEST_BLOCKS: u64 = 8;
 ///
 /// The first condition suffices for a series with one correlation time. The others detect a second, longer
 /// one, whose share of the variance is small, such as heat that comes and goes in a gas whose collisions are
-/// otherwise independent. Sizes with fewer than eight blocks are not considered, so a series of less than
-/// some hundred [`Estimate::correlated_samples`] has no such blocks. The estimate is then not converged, and
-/// its error is the largest that was found.
+/// otherwise independent. Sizes with fewer than eight blocks are not considered. So if a series is shorter
+/// than some hundred times [`Estimate::correlated_samples`], no blocks meet all conditions. The estimate is
+/// then not converged, and its error is the largest that was found.
 ///
 /// # Errors
 /// If there are fewer than two samples, or one is not finite or above 1e100 in size.
