@@ -1,6 +1,6 @@
 #![doc = include_str!("../docs/guide/index.md")]
-// Chapters are modules without items, so that their code is compiled and run with the tests, and the search
-// in the documentation finds them.
+// Chapters are modules without items. So their code is compiled and run with the tests, and the search of the
+// documentation finds them.
 
 #[doc = include_str!("../docs/guide/choose_a_rule.md")]
 pub mod choose_a_rule {}
