@@ -9,7 +9,7 @@ use crate::ParameterError;
 use crate::observable::{ConvectionOrder, DenseLayer};
 use crate::quantity::{accept, non_negative, positive};
 
-/// Returns the standard deviation of `$\Psi_1$` and of `$\Psi_2$`, which are velocities, in a gas at rest.
+/// Returns the standard deviation of Ψ₁ and of Ψ₂, which are velocities, in a gas at rest.
 ///
 /// The deviation is
 ///
@@ -39,25 +39,25 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 
 /// The criteria by which a state gets its name.
 ///
-/// The samples of `$(\Psi_1, \Psi_2)$` are divided into [distinct clusters](distinct_clusters). With
-/// `$\sigma$` the [`thermal_noise`]:
+/// The samples of `$(\Psi_1, \Psi_2)$` are divided into [distinct clusters](distinct_clusters). The names
+/// follow from these clusters and the [`thermal_noise`] `$\sigma$`:
 ///
 /// 1. A run as a whole is **collapsed** if two conditions hold. Its height profile has a compact layer, of
 ///    packing fraction above 0.60, on a gas of less than half of that. And its two-roll flow has died,
 ///    `$|\langle\Psi_2\rangle| < 0.03$`.
 /// 2. A cluster is **conductive** if its center is at most `$3\sigma$` from the origin, or collapsed if the
 ///    profile has such a layer: near this transition, two rolls come and go over it.
-/// 3. A cluster is **two rolls** if `$|\Psi_2| > |\Psi_1|$`: up in the middle for a positive `$\Psi_2$`, else
-///    down.
-/// 4. A cluster is **one roll** otherwise: clockwise for a positive `$\Psi_1$`.
+/// 3. A cluster shows **two rolls** if `$|\Psi_2| > |\Psi_1|$`: up in the middle for a positive `$\Psi_2$`,
+///    else down.
+/// 4. A cluster shows **one roll** otherwise: clockwise for a positive `$\Psi_1$`.
 ///
-/// The bound of `$3\sigma$` compares the center of a cluster with *single* samples of a gas at rest, of which
-/// a share of `$e^{-9/2}$`, one in ninety, lies as far out. Unlike an error of the mean, this bound does not
+/// The bound of `$3\sigma$` compares the center of a cluster with *single* samples of a gas at rest. A share
+/// of `$e^{-9/2}$` of these, one in ninety, lies as far out. Unlike an error of the mean, this bound does not
 /// depend on the correlation of the samples. The rolls of the paper's system are far stronger, so the number
-/// matters at their onset only. One roll is not pure `$\Psi_1$`, but its `$\Psi_2$` is small enough to keep
-/// it off the diagonal.
+/// matters only at their onset. A state of one roll has some `$\Psi_2$`, too, but so little that it stays
+/// away from the diagonal.
 ///
-/// A collapsed run keeps a weak, slow `$\Psi_2$`, whose mean needs thousands of oscillations.
+/// A collapsed run keeps a weak, slow `$\Psi_2$`, whose mean settles only after thousands of oscillations.
 ///
 /// ```
 /// use granular_edmd::analysis::{ConvectiveRegime, StateCriteria};
@@ -99,8 +99,8 @@ impl StateCriteria {
         Ok(Self { noise_multiple: non_negative("multiple of the noise", multiple)?, ..self })
     }
 
-    /// Sets the packing fraction above which a layer is compact, 0.60 unless given, and the
-    /// `$|\langle\Psi_2\rangle|$` below which rolls have died, 0.03 unless given.
+    /// Sets the packing fraction above which a layer is compact, 0.60 unless given, and the |⟨Ψ₂⟩| below
+    /// which rolls have died, 0.03 unless given.
     ///
     /// The bound on `$|\langle\Psi_2\rangle|$` is a velocity; 0.03 is meant for `$A\omega = 1$`, as in the
     /// paper.
@@ -126,7 +126,9 @@ impl StateCriteria {
         Ok(Self { least_weight: accept(valid, "least weight", "in [0, 0.5]", weight)?, ..self })
     }
 
-    /// Sets the seed of the clustering, 0 unless given. Distinct clusters do not depend on it.
+    /// Sets the seed of the clustering, 0 unless given.
+    ///
+    /// Distinct clusters do not depend on it.
     pub const fn with_seed(self, seed: u64) -> Self {
         Self { seed, ..self }
     }
@@ -190,18 +192,21 @@ pub struct Classification {
 }
 
 impl Classification {
-    /// Returns the clusters in the plane of `$\Psi_1$` (x) and `$\Psi_2$` (y).
+    /// Returns the clusters in the plane of Ψ₁ (x) and Ψ₂ (y).
     pub const fn clusters(&self) -> &Clusters {
         &self.clusters
     }
 
-    /// Iterates over the clusters with their names. A name may occur twice.
+    /// Iterates over the clusters with their names.
+    ///
+    /// A name may occur twice.
     pub fn iter(&self) -> impl Iterator<Item = (ConvectiveState, &Cluster)> {
         self.states.iter().copied().zip(self.clusters.iter())
     }
 
-    /// Returns the state with the largest weight. If several states have it, the state of the first cluster
-    /// wins.
+    /// Returns the state with the largest weight.
+    ///
+    /// If several states have it, the state of the first cluster wins.
     pub fn state(&self) -> ConvectiveState {
         let weights = self.states.iter().map(|&state| (state, self.weight(state)));
         let start = (ConvectiveState::Conductive, 0.0);

@@ -17,7 +17,7 @@ pub enum BuildError {
     /// A parameter is out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// Times at the start are too coarse for disks so fast: time would stand still.
+    /// Times at the start are too coarse for such fast disks: time would stand still.
     #[error(
         "the run cannot start at time {start}: times there are {spacing:e} apart, too coarse for disks that go some tens of \
          diameters in {epoch:e}; start nearer to 0"
@@ -107,7 +107,9 @@ pub enum BuildError {
 /// registers.
 pub(super) type Outcome<T> = Result<T, Box<RunError>>;
 
-/// An error: a run cannot go on. The simulation keeps the state that it had when it noticed.
+/// An error: a run cannot go on.
+///
+/// The simulation keeps the state in which it noticed the error.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RunError {
@@ -148,7 +150,7 @@ pub enum RunError {
     /// The boundary gave an impossible answer.
     #[error("the boundary gave an impossible answer for disk {disk} at time {time}: {fault}")]
     Boundary {
-        /// The disk about which it was asked.
+        /// The disk about which the engine asked the boundary.
         disk: usize,
         /// The present.
         time: f64,
@@ -216,9 +218,9 @@ pub struct FailedCollision {
     pub wall: Option<String>,
     /// The present.
     pub time: f64,
-    /// The contact that the rule was asked about.
+    /// The contact about which the engine asked the rule.
     pub contact: Contact,
-    /// The impulse that the rule answered.
+    /// The impulse with which the rule answered.
     pub impulse: Impulse,
     /// The reason that the rule gives, if it gives one; see
     /// [`CollisionRule::explain`](crate::collision::CollisionRule::explain).
@@ -263,7 +265,8 @@ pub enum BoundaryFault {
         /// Time from the touch to the start of the flight; negative for a touch after the start.
         early_by: f64,
     },
-    /// A surface whose normal is not a unit vector, or whose velocity is not finite.
+    /// A surface whose normal is not a unit vector, whose velocity is not finite or is above 1e60, or whose
+    /// radius is zero or NaN.
     #[error("the surface of wall {wall} has the normal {normal} and the velocity {velocity}")]
     Surface {
         /// The wall.
