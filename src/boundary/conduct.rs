@@ -169,7 +169,7 @@ mod file {
 
     impl Serialize for OwnRule {
         fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-            let own = "a collision rule that is not of granular-edmd cannot be serialized";
+            let own = "only the rules of granular-edmd can be serialized, alone or in one remedy for rest";
             self.known.ok_or_else(|| S::Error::custom(own))?.serialize(serializer)
         }
     }

@@ -190,7 +190,7 @@ impl Part {
         match &mut self.travel {
             Travel::Along { direction, .. } => *direction = unit(turn.rotate(*direction))?,
             Travel::Turning { about: pivot, .. } | Travel::Spinning { about: pivot, .. } => {
-                *pivot = about + turn.rotate(*pivot - about);
+                *pivot = finite_point(about + turn.rotate(*pivot - about))?;
             }
             Travel::Rest => {}
         }

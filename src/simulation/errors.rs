@@ -91,7 +91,7 @@ pub enum BuildError {
     /// The domain has no area, or its periodic sides are so close that a disk could meet its own image.
     #[error(
         "a domain of width {width} and height {height} is too small for disks of diameter {diameter}: \
-         where it is periodic, it must be four diameters long"
+         where it is periodic, it must be longer than four diameters"
     )]
     DomainTooSmall {
         /// Width of the domain.

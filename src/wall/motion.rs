@@ -188,7 +188,7 @@ mod file {
 
     impl Serialize for Motion {
         fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-            let own = "a wall motion that is not of granular-edmd cannot be serialized";
+            let own = "only the wall motions of granular-edmd can be serialized";
             self.known.ok_or_else(|| S::Error::custom(own))?.serialize(serializer)
         }
     }

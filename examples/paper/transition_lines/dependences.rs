@@ -24,7 +24,7 @@ pub(crate) fn print(ramps: &[Ramp]) -> Result<(), Box<dyn Error>> {
         }
     }
     let stated = found.get("as-stated").copied().unwrap_or_default();
-    println!("{:34}{:34}{}", "study", "two rolls from κ", "collapse from κ");
+    println!("{:34}{:34}collapse from κ", "study", "two rolls from κ");
     for (study, means) in &found {
         let told: Vec<String> = means.iter().zip(&stated).map(|(mean, stated)| shift(mean, stated)).collect();
         println!("{study:34}{:34}{}", told[0], told[1]);

@@ -92,7 +92,7 @@ pub enum VesselError {
         name: String,
     },
     /// The vessel has more walls than the engine can number.
-    #[error("the vessel would have {count} walls; the most are {most}")]
+    #[error("the vessel would have {count} walls, but it can have {most} at most")]
     TooManyWalls {
         /// Number of walls.
         count: usize,

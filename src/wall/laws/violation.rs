@@ -108,7 +108,7 @@ pub enum Violation {
         jump: f64,
     },
     /// The motion does not repeat after its period.
-    #[error("with the period {period}, it is not at phase {later} what it is at {phase}")]
+    #[error("with the period {period}, the wall is not in the same state at phase {later} as at {phase}")]
     Period {
         /// The phase.
         phase: f64,
