@@ -102,11 +102,10 @@ pub(crate) enum Base {
 impl Arguments {
     /// Checks what no flag alone can tell.
     pub(crate) fn check(&self) -> Result<(), Failure> {
-        if self.every > self.oscillations() {
-            let (every, oscillations) = (self.every, self.oscillations());
-            return Err(Failure::usage(format_args!(
-                "--every {every}: no sample is taken in {oscillations} oscillations"
-            )));
+        let (every, oscillations) = (self.every, self.oscillations());
+        if every > oscillations {
+            let problem = format_args!("--every {every}: no sample is taken in {oscillations} oscillations");
+            return Err(Failure::usage(problem));
         }
         if self.gravity == 0.0 && self.open {
             return Err(Failure::usage("--gravity 0 --open: without gravity the box needs a lid"));
