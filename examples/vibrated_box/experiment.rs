@@ -61,14 +61,15 @@ fn build(arguments: &Arguments) -> Result<Simulation<BoxedRule, Container>, Box<
 }
 
 fn container(arguments: &Arguments) -> Result<Container, Box<dyn Error>> {
-    let Arguments { width, height, amplitude, omega, .. } = *arguments;
+    let Arguments { width, height, omega, .. } = *arguments;
+    let amplitude = arguments.amplitude();
     let container = if arguments.open { Container::open(width)? } else { Container::closed(width, height)? };
     let container = if arguments.periodic { container.with_periodic_sides() } else { container };
     Ok(match arguments.base {
         Base::BiParabolic => container.with_motion(Wall::Floor, BiParabolic::new(amplitude, omega)?)?,
         Base::Sinusoidal => container.with_motion(Wall::Floor, Sinusoidal::new(amplitude, omega)?)?,
         Base::Triangular => container.with_motion(Wall::Floor, Triangular::new(amplitude, omega)?)?,
-        Base::Thermal => container.with_temperature(Wall::Floor, Thermal::new(arguments.temperature)?)?,
+        Base::Thermal => container.with_temperature(Wall::Floor, Thermal::new(arguments.temperature())?)?,
     })
 }
 
