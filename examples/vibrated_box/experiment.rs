@@ -39,11 +39,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     simulation.run_until(settled, &mut (&mut series, &mut progress))?;
     simulation.run_until(end, &mut ((&mut series, &mut progress), (&mut energy_change, &mut fields)))?;
     Ok(Outcome {
+        run_seconds: start.elapsed().as_secs_f64(),
         series,
         energy_change: energy_change.disks().estimate(),
         fields,
         counters: *simulation.counters(),
-        run_seconds: start.elapsed().as_secs_f64(),
         final_state_hash: hash(simulation.time(), &simulation.disks()),
         disks: simulation.disks(),
     })
@@ -81,9 +81,9 @@ fn rule(arguments: &Arguments) -> Result<BoxedRule, ParameterError> {
         .with_friction(friction, arguments.dynamic_friction.unwrap_or(friction))?;
     let mut rules = RulesByKind::new(disks);
     if wall_friction.or(wall_inelasticity).is_some() {
-        let (inelasticity, friction) =
-            (wall_inelasticity.unwrap_or(inelasticity), wall_friction.unwrap_or(friction));
-        rules = rules.with(Kind::DEFAULT, Kind::WALL, Frictional::new(inelasticity, friction)?);
+        let inelasticity = wall_inelasticity.unwrap_or(inelasticity);
+        let walls = Frictional::new(inelasticity, wall_friction.unwrap_or(friction))?;
+        rules = rules.with(Kind::DEFAULT, Kind::WALL, walls);
     }
     let duration = arguments.contact_duration();
     Ok(if duration > 0.0 { Box::new(ContactDuration::new(rules, duration)?) } else { Box::new(rules) })
