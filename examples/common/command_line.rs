@@ -81,7 +81,9 @@ pub(crate) fn make_folder(out: &Path) -> Result<(), Failure> {
 
 /// Parses the command line. A mistake ends the program with one line and exit code 2.
 fn parse<A: Parser>() -> A {
-    A::try_parse().unwrap_or_else(|error| {
+    // A negative number is told by the flag that cannot take it, and is no unknown flag.
+    let matches = A::command().allow_negative_numbers(true).try_get_matches();
+    matches.and_then(|matches| A::from_arg_matches(&matches)).unwrap_or_else(|error| {
         if !error.use_stderr() {
             error.exit();
         }

@@ -134,7 +134,8 @@ fn write_all(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     series.write_csv(File::create_new(out.join("series.csv"))?)?;
     series.write_json_lines(File::create_new(out.join("series.jsonl"))?)?;
     if let Some(path) = &arguments.json {
-        serde_json::to_writer(File::create_new(path)?, &frames)?;
+        let file = File::create_new(path).map_err(|error| format!("--json {}: {error}", path.display()))?;
+        serde_json::to_writer(file, &frames)?;
     }
     Ok(())
 }

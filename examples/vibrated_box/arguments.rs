@@ -14,7 +14,6 @@ use crate::common::results::Results;
 /// summary and writes a picture (disks, mean flow, series), the series as a table, and with --json all
 /// numbers. An oscillation lasts 2π/ω, also over a thermal base. Means are over the second half of the run.
 #[derive(Debug, Clone, Parser)]
-#[command(name = "vibrated_box", allow_negative_numbers = true)]
 pub(crate) struct Arguments {
     /// Number of disks.
     #[arg(long, default_value_t = 1000, value_parser = whole::<1_000_000>)]

@@ -84,6 +84,9 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let started = parts.iter().filter(|part| folder.join(part.folder).is_dir());
     let studies: Vec<Study<VibratedBox>> =
         started.map(|part| Study::open(folder.join(part.folder))).collect::<Result<_, _>>()?;
+    if studies.is_empty() {
+        return Err(format!("--draw: there is no study in {}", folder.display()).into());
+    }
     let points = states::points(&studies)?;
     let lines = states::lines(&points)?;
     let gravity = arguments.gravity.value();
