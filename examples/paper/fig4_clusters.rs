@@ -30,6 +30,7 @@ use granular_edmd::study::{Plan, PlanError, Protocol, Record, Study};
 use kuva::plot::scatter::MarkerShape;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 
+use common::command_line::{non_negative, whole};
 use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
 
 /// Clusters of the order parameters where one roll and two coexist (paper, Fig. 4).
@@ -38,11 +39,11 @@ struct Arguments {
     #[command(flatten)]
     common: studies::Common,
     /// Friction.
-    #[arg(long, default_value_t = 0.0605)]
+    #[arg(long, default_value_t = 0.0605, value_parser = non_negative)]
     friction: f64,
     /// Independent runs.
-    #[arg(long, default_value_t = 6)]
-    runs: usize,
+    #[arg(long, default_value_t = 6, value_parser = whole::<10_000>)]
+    runs: u64,
 }
 
 impl Arguments {
@@ -51,7 +52,7 @@ impl Arguments {
         // The paper does 100 000 oscillations, samples every 100, and discards the first half.
         let protocol =
             if self.common.quick { Protocol::new(4_000, 400, 20) } else { Protocol::new(50_000, 500, 100) };
-        Plan::new(experiment, protocol, self.common.seed)?.with_repeats(self.runs)
+        Plan::new(experiment, protocol, self.common.seed)?.with_repeats(self.runs as usize)
     }
 }
 
@@ -77,7 +78,7 @@ impl Run {
 }
 
 fn main() -> ExitCode {
-    studies::end(run(&Arguments::parse()))
+    common::command_line::main(run)
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
@@ -93,7 +94,8 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let path = study.folder().join("fig4_clusters.png");
     std::fs::write(&path, draw(arguments, &study, shown)?)?;
     println!("wrote {}; the tables beside it are clusters.csv, values.csv and samples.csv", path.display());
-    Ok(())
+    let tables = ["clusters", "values"].map(|name| (name, study.folder().join(name).with_extension("csv")));
+    arguments.common.results.write_tables_as_json(&tables)
 }
 
 fn print(run: &Run) {
