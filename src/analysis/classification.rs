@@ -46,9 +46,9 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 ///    packing fraction above 0.60, on a gas of less than half of that. And its two-roll flow has died,
 ///    `$|\langle\Psi_2\rangle| < 0.03$`.
 /// 2. A cluster is **conductive** if its center is at most `$3\sigma$` from the origin.
-/// 3. A cluster is **two rolls** if `$|\Psi_2| > |\Psi_1|$`: up in the middle for a positive `$\Psi_2$`, else
-///    down.
-/// 4. A cluster is **one roll** otherwise: clockwise for a positive `$\Psi_1$`.
+/// 3. A cluster shows **two rolls** if `$|\Psi_2| > |\Psi_1|$`: up in the middle for a positive `$\Psi_2$`,
+///    else down.
+/// 4. A cluster shows **one roll** otherwise: clockwise for a positive `$\Psi_1$`.
 ///
 /// The bound of `$3\sigma$` compares the center of a cluster with *single* samples of a gas at rest. A share
 /// of `$e^{-9/2}$` of these, one in ninety, lies as far out. Unlike an error of the mean, this bound does not
