@@ -1,9 +1,10 @@
 //! Observables and observers: quantities of a state, and watchers of a run.
 //!
-//! An [`Observable`] is a pure function of a [`Snapshot`]. An [`Observer`] is told of the beginning and end
-//! of a run and of every [`Collision`]. It is shown a snapshot at the times that it asks for, and may stop
-//! the run. Both are lent to a run and read afterwards. Several of them compose as a tuple, a slice, a `Vec`,
-//! an `Option` or a `Box`. Watching never changes a trajectory.
+//! An [`Observable`] is a pure function of a [`Snapshot`]. An [`Observer`] watches a run: the engine reports
+//! the beginning and the end of the run and every [`Collision`] to it, and shows it a snapshot at the times
+//! that it asks for. An observer may stop the run. You lend it to a run and read it afterwards. Observers and
+//! observables compose as tuples and in a `Box`, observers also in a slice, a `Vec` or an `Option`. Watching
+//! never changes a trajectory.
 //!
 //! | observable | value |
 //! |---|---|
@@ -13,14 +14,14 @@
 //! | [`Temperatures`] | horizontal, vertical and rotational temperature |
 //! | [`TemperaturesAboutFlow`] | the same about the mean velocity in each cell of a [`Grid`] |
 //! | [`Velocities`] | velocities of all disks |
-//! | [`OfKind`] | any of these, of disks of one kind |
+//! | [`OfKind`] | any of these, for the disks of one kind |
 //! | [`from_fn`] | the result of a closure |
 //!
 //! | observer | keeps |
 //! |---|---|
 //! | [`Series`] | the values of an observable at set times |
 //! | [`EnergyChange`] | mean energy change per collision, by partner |
-//! | [`EnergyChangeProfile`] | the same between disks, by height, with the temperatures there |
+//! | [`EnergyChangeProfile`] | mean energy change per disk–disk collision and temperatures, by height |
 //! | [`CollisionCounts`] | counts by partner and regime, and rates |
 //! | [`HeightProfile`] | packing fraction by height |
 //! | [`Fields`] | density, flow and temperatures on a grid |
@@ -31,13 +32,13 @@
 //! | [`WallStress`] | pressure and shear stress on walls |
 //! | [`CollisionHistograms`] | histograms of obliqueness, closing speed and impulse |
 //! | [`VelocityDistribution`] | histograms, cumulants and kurtosis of velocities |
-//! | [`OfKind`], [`BetweenKinds`] | what an observer keeps, of disks of one kind, of collisions between two |
+//! | [`OfKind`], [`BetweenKinds`] | what another observer keeps, for one kind or for collisions of two |
 //! | [`on_collision`], [`on_sample`] | whatever a closure keeps |
 //! | [`stop_when`], [`stop_when_sampled`] | nothing: they stop the run when a closure says so |
 //!
 //! # An observer of your own
-//! [`SampleTimes`] is the clock of all observers here, and can serve yours. [`laws::check`] tells in a plain
-//! test whether an observer keeps its contract.
+//! [`SampleTimes`] is the clock of all observers here, and can serve yours. In a plain test, [`laws::check`]
+//! finds out whether an observer keeps its contract.
 //!
 //! ```
 //! use granular_edmd::observable::{Collision, Moment, Observer, SampleTimes, Snapshot, laws};
@@ -74,11 +75,11 @@
 //! [`Series::write_json_lines`] write them with names and units; a tuple has the columns of its parts.
 //!
 //! # Measurements in files
-//! With the feature `serde`, the observers of this module, except for closures, can be written to a file
-//! beside the checkpoint of the run. They are read back and lent to the resumed run, and end with the same
-//! bits as in a run without interruption. JSON keeps the bits if its reader rounds correctly (serde_json's
-//! `float_roundtrip`). It has no NaN, which some observables give without disks: take a binary format, such
-//! as postcard, for those.
+//! With the feature `serde`, you can write the observers of this module, except for closures, to a file
+//! beside the checkpoint of the run. Read back and lent to the resumed run, they end with the same bits as in
+//! a run without interruption. JSON keeps the bits if its reader rounds correctly (serde_json's
+//! `float_roundtrip`). JSON has no NaN, which some observables return without disks. For those, take a binary
+//! format such as postcard.
 
 mod by_kind;
 mod center_of_mass;

@@ -1,24 +1,27 @@
-//! Studies: many runs, planned as data, watched, stopped, resumed, spread over processes, and kept.
+//! Studies: many runs, planned as data and kept in a folder, which you can watch, stop, resume and spread
+//! over processes.
 //!
-//! An [`Experiment`] is what is studied: a serializable type of your own, whose fields are the parameters and
-//! whose methods say what is simulated, what is measured, and which columns the tables have. A [`Plan`] says
-//! what is done with it: a [`Protocol`] to sample it, a [`Ramp`] of one parameter up or down, a sweep of
-//! independent ramps over the grid of its [`Axis`]es, and repeats. A [`Study`] is a plan in a folder.
-//! [`Study::run`] does what is not done yet, on all cores with the feature `rayon`, in any number of
-//! processes; each finished value is written at once, as a [`Record`].
+//! An [`Experiment`] is the system under study. It is a serializable type of your own: its fields are the
+//! parameters, and its methods define the simulation, the measurements, and the columns of the tables. A
+//! [`Plan`] says what to do with it: a [`Protocol`] says when to sample, a [`Ramp`] takes one parameter up or
+//! down, each [`Axis`] adds a dimension to a grid of independent ramps, and each point of the grid may be
+//! repeated. A [`Study`] is a plan in a folder. [`Study::run`] does the values that are missing, on all cores
+//! with the feature `rayon`, in any number of processes. It writes each finished value at once, as a
+//! [`Record`].
 //!
 //! The paper's system is an experiment like any other: [`vibrated_box`].
 //!
 //! # Promises
-//! 1. A value is a function of plan, index and seed: the files of a complete study are the same bytes on any
-//!    number of threads and processes, and however often they were interrupted or killed. Only `log.jsonl`,
-//!    which has the times, differs.
-//! 2. A file is whole or not there. A damaged one is named and done again, never read as data.
-//! 3. Any number of processes run a study at the same time, started at any time: each ramp is done by one of
-//!    them. They need a file system whose locks all of them see: local ones have that, as NFS has from
-//!    version 4 on.
-//! 4. A study writes into a folder that is empty or its own, and changes or removes no file but its own.
-//! 5. A run that cannot progress is an [`Outcome`] of its value: the study goes on.
+//! 1. A value is a function of plan, index and seed: the files of a complete study have the same bytes for
+//!    any number of threads and processes, however often these were interrupted or killed. Only `log.jsonl`,
+//!    which holds wall-clock times, differs.
+//! 2. A file is whole or absent. A study names a damaged file and does its value again, and never reads it as
+//!    data.
+//! 3. Any number of processes can run a study at the same time, started at any time; one of them does each
+//!    ramp. They need a file system whose locks all of them see, such as a local one, or NFS from version 4
+//!    on.
+//! 4. A study writes only into a folder that is empty or its own, and changes or removes no file but its own.
+//! 5. If a run cannot progress, the [`Outcome`] of its value says so, and the study goes on.
 //!
 //! ```
 //! use granular_edmd::study::vibrated_box::{Base, VibratedBox};
@@ -86,22 +89,23 @@ pub use scalar::Scalar;
 use folder::Folder;
 use record::Origin;
 
-/// Version of this crate: another one may have other results.
+/// Version of this crate. Another version may have other results.
 const CRATE_VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// A [`Plan`] in a folder, with the records of what has been done of it.
+/// A [`Plan`] in a folder, with the records of its finished values.
 ///
-/// See [the module](crate::study) for an example and for what it promises.
+/// See [the module](crate::study) for an example and the promises.
+#[doc(alias("parameter scan", "ensemble", "campaign"))]
 #[derive(Debug, Clone)]
 pub struct Study<E> {
     folder: Folder,
     plan: Plan<E>,
-    /// Hash of the plan: what ties a record to its study.
+    /// Hash of the plan, which ties a record to its study.
     hash: [u8; 32],
 }
 
 impl<E: Experiment> Study<E> {
-    /// Makes a new study in a folder, which is made if it is not there and must be empty if it is.
+    /// Creates a new study in a folder, which must be empty if it exists.
     ///
     /// # Errors
     /// If the folder holds a study or anything else, or cannot be written.
@@ -116,20 +120,21 @@ impl<E: Experiment> Study<E> {
     /// Opens the study in a folder.
     ///
     /// # Errors
-    /// If there is none, or none of this experiment, or it cannot be read.
+    /// If the folder holds no study, its plan is not one of this experiment, or it cannot be read.
     pub fn open(folder: impl AsRef<Path>) -> Result<Self, StudyError> {
         let folder = Folder::new(folder.as_ref())?;
         if !folder.holds_study() {
             return Err(StudyError::Missing { path: folder.root().to_owned() });
         }
         let unreadable = |source| StudyError::Unreadable { path: folder.plan(), source };
-        // Its experiments were tried when it was put there.
+        // The experiments were tried when the plan was put there.
         let plan = Plan::from_toml_unproven(&folder.read_plan()?).map_err(unreadable)?;
         Self::in_folder(folder, plan)
     }
 
-    /// Opens the study in a folder, or makes a new one: the same command starts a study and goes on with it,
-    /// also in several processes at the same time.
+    /// Opens the study in a folder, or creates a new one.
+    ///
+    /// So the same command starts a study and goes on with it, also in several processes at the same time.
     ///
     /// # Errors
     /// If the folder holds a study with another plan, or other files and no study, or cannot be read or
@@ -144,9 +149,9 @@ impl<E: Experiment> Study<E> {
         Ok(study)
     }
 
-    /// Does as [`Self::open_or_create`] with a plan whose experiments have not been tried: they are, unless
-    /// they were when the same plan was put into the folder. In large studies that takes seconds, and each
-    /// of many processes would do it.
+    /// Opens or creates the study of a plan whose experiments have not been tried yet. It tries them, unless
+    /// the folder holds the same plan: then they were tried when that plan was put there. To try them takes
+    /// seconds in large studies, and each of many processes would do it again.
     #[cfg(feature = "cli")]
     fn open_or_create_unproven(folder: &Path, plan: Plan<E>) -> Result<Self, StudyError> {
         let known = Folder::new(folder)?;
@@ -161,7 +166,7 @@ impl<E: Experiment> Study<E> {
         Ok(Self { folder, plan, hash })
     }
 
-    /// Checks that the plan in the folder is this one: it may have been changed since it was read.
+    /// Checks that the plan in the folder is still this one, since somebody may have changed it.
     fn check_plan(&self) -> Result<(), StudyError> {
         let text = self.folder.read_plan()?;
         let ours = self.plan.to_toml()?;
@@ -180,17 +185,17 @@ impl<E: Experiment> Study<E> {
         Err(StudyError::Different { path: self.folder.root().to_owned(), differences })
     }
 
-    /// Returns its folder.
+    /// Returns the folder of the study.
     pub fn folder(&self) -> &Path {
         self.folder.root()
     }
 
-    /// Returns its plan.
+    /// Returns the plan of the study.
     pub const fn plan(&self) -> &Plan<E> {
         &self.plan
     }
 
-    /// Returns how far a ramp is.
+    /// Returns the progress of a ramp.
     pub fn status(&self, ramp: usize) -> RampStatus {
         if self.folder.is_done(ramp) {
             RampStatus::Done
@@ -208,7 +213,7 @@ impl<E: Experiment> Study<E> {
         Origin { study: self.hash, version: CRATE_VERSION.to_owned(), ramp, value, seed }
     }
 
-    /// Checks that a file is of this study and this place.
+    /// Checks that a file belongs to this study and this place in it.
     fn check_origin(&self, found: &Origin, ramp: usize, value: usize, path: &Path) -> Result<(), StudyError> {
         if found.study != self.hash {
             return Err(StudyError::Foreign { path: path.to_owned() });
@@ -225,12 +230,12 @@ impl<E: Experiment> Study<E> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RampStatus {
-    /// All its values have a record.
+    /// All values of the ramp have a record.
     Done,
-    /// A process does it now.
+    /// A process is doing the ramp.
     Running,
-    /// A process has begun it, and nobody does it now.
+    /// A process has begun the ramp, and none is doing it now.
     Begun,
-    /// Nothing has been done of it.
+    /// No process has begun the ramp.
     Waiting,
 }

@@ -1,15 +1,15 @@
-//! Trajectories in files that others open, and disks from files.
+//! Trajectories written to files for other programs, and disks read from files.
 //!
 //! A [`Recorder`] is an [`Observer`](crate::observable::Observer) that writes a frame to a file at set times.
 //! Its [`Format`] says what a frame looks like. Numbers are written so that they read back to the same bits.
 //!
 //! | format | file | opened by |
 //! |---|---|---|
-//! | [`ExtendedXyz`] | one file, frame after frame | OVITO (not ASE), and [`XyzFrames`] to start from |
+//! | [`ExtendedXyz`] | one file, frame after frame | OVITO (not ASE), [`XyzFrames`] to start from |
 //! | [`LammpsDump`] | one file, frame after frame | OVITO, VMD, tools around LAMMPS |
-//! | VTK's `PolyData` | `.vtp` for each frame, `.pvd` of times ([`Recorder::create_vtk`]) | ParaView, VTK |
+//! | VTK's `PolyData` | `.vtp` for each frame, `.pvd` for times ([`Recorder::create_vtk`]) | ParaView, VTK |
 //!
-//! | state of a file | read by | written by |
+//! | state in a file | read by | written by |
 //! |---|---|---|
 //! | extended XYZ | [`State::from_xyz`], [`XyzFrames`] | [`ExtendedXyz`] |
 //! | table of comma-separated values | [`State::from_csv`] | [`State::write_csv`] |
@@ -48,7 +48,7 @@
 //! ```
 //!
 //! # A format of your own
-//! [`laws::check`] tells in a plain test whether a format keeps its contract.
+//! In a plain test, [`laws::check`] finds out whether a format keeps its contract.
 //!
 //! ```
 //! use std::io::{self, BufRead, Write};

@@ -24,6 +24,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use granular_edmd::analysis::{Classification, ConvectiveState, StateCriteria};
 use granular_edmd::glam::DVec2;
+use granular_edmd::statistics::RunningMean;
 use granular_edmd::study::vibrated_box::{Convection, VibratedBox};
 use granular_edmd::study::{Plan, PlanError, Protocol, Record, Study};
 use kuva::plot::scatter::MarkerShape;
@@ -85,6 +86,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     runs.iter().for_each(print);
     let three = runs.iter().filter(|run| run.clusters() == 3).count();
     println!("{three} of {} runs show three clusters", runs.len());
+    print_weights(&runs);
     write_clusters(&runs, study.folder())?;
     // The first of the runs with most clusters is shown.
     let Some(shown) = runs.iter().rev().max_by_key(|run| run.clusters()) else { return Ok(()) };
@@ -99,6 +101,17 @@ fn print(run: &Run) {
     for (state, cluster) in run.found.iter() {
         let DVec2 { x, y } = cluster.center();
         println!("    {:3.0} %  Psi1 = {x:6.3}  Psi2 = {y:6.3}  {state}", 100.0 * cluster.weight());
+    }
+}
+
+/// Prints the long-time weight of each state: the mean over the runs, which are independent, and its error.
+fn print_weights(runs: &[Run]) {
+    for state in
+        [ConvectiveState::CounterclockwiseRoll, ConvectiveState::TwoRollsUp, ConvectiveState::ClockwiseRoll]
+    {
+        let weights: RunningMean = runs.iter().map(|run| run.found.weight(state)).collect();
+        let (mean, error) = (100.0 * weights.mean(), 100.0 * weights.standard_error());
+        println!("    {state}: {mean:.1} ± {error:.1} % of the time");
     }
 }
 

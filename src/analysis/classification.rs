@@ -45,7 +45,8 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 /// 1. A run as a whole is **collapsed** if two conditions hold. Its height profile has a compact layer, of
 ///    packing fraction above 0.60, on a gas of less than half of that. And its two-roll flow has died,
 ///    `$|\langle\Psi_2\rangle| < 0.03$`.
-/// 2. A cluster is **conductive** if its center is at most `$3\sigma$` from the origin.
+/// 2. A cluster is **conductive** if its center is at most `$3\sigma$` from the origin, or collapsed if the
+///    profile has such a layer: near this transition, two rolls come and go over it.
 /// 3. A cluster shows **two rolls** if `$|\Psi_2| > |\Psi_1|$`: up in the middle for a positive `$\Psi_2$`,
 ///    else down.
 /// 4. A cluster shows **one roll** otherwise: clockwise for a positive `$\Psi_1$`.
@@ -149,30 +150,37 @@ impl StateCriteria {
         let points: Vec<DVec2> =
             samples.iter().map(|order| DVec2::new(order.one_roll, order.two_rolls)).collect();
         let clusters = distinct_clusters(&points, noise, self.seed)?;
-        let collapsed = layer.is_some_and(|layer| self.is_collapsed(&clusters, layer));
-        let name = |cluster| if collapsed { ConvectiveState::Collapsed } else { self.name(cluster, noise) };
+        let compact = layer.is_some_and(|layer| self.is_compact(layer));
+        let without_flow = if compact { ConvectiveState::Collapsed } else { ConvectiveState::Conductive };
+        let has_died = compact && mean_of_two_rolls(&clusters).abs() < self.collapsed_order;
+        let flow = |cluster| if has_died { None } else { self.flow(cluster, noise) };
+        let name = |cluster| flow(cluster).unwrap_or(without_flow);
         let states = clusters.iter().map(name).collect();
         Ok(Classification { clusters, states, least_weight: self.least_weight })
     }
 
-    fn is_collapsed(&self, clusters: &Clusters, layer: DenseLayer) -> bool {
-        let mean: f64 = clusters.iter().map(|cluster| cluster.weight() * cluster.center().y).sum();
-        let on_gas = layer.least_below < 0.5 * layer.packing_fraction;
-        layer.packing_fraction > self.packing_fraction && on_gas && mean.abs() < self.collapsed_order
+    fn is_compact(&self, layer: DenseLayer) -> bool {
+        layer.packing_fraction > self.packing_fraction && layer.least_below < 0.5 * layer.packing_fraction
     }
 
-    fn name(&self, cluster: &Cluster, noise: f64) -> ConvectiveState {
+    /// Returns the name of the flow of a cluster; `None` if it is within the noise.
+    fn flow(&self, cluster: &Cluster, noise: f64) -> Option<ConvectiveState> {
         let DVec2 { x: one_roll, y: two_rolls } = cluster.center();
         if cluster.center().length() <= self.noise_multiple * noise {
-            ConvectiveState::Conductive
+            None
         } else if two_rolls.abs() > one_roll.abs() {
-            if two_rolls > 0.0 { ConvectiveState::TwoRollsUp } else { ConvectiveState::TwoRollsDown }
+            Some(if two_rolls > 0.0 { ConvectiveState::TwoRollsUp } else { ConvectiveState::TwoRollsDown })
         } else if one_roll > 0.0 {
-            ConvectiveState::ClockwiseRoll
+            Some(ConvectiveState::ClockwiseRoll)
         } else {
-            ConvectiveState::CounterclockwiseRoll
+            Some(ConvectiveState::CounterclockwiseRoll)
         }
     }
+}
+
+/// Returns the mean of `$\Psi_2$` over all samples.
+fn mean_of_two_rolls(clusters: &Clusters) -> f64 {
+    clusters.iter().map(|cluster| cluster.weight() * cluster.center().y).sum()
 }
 
 /// The clusters of a run with their names; made by [`StateCriteria::classify`].

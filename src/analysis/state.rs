@@ -74,6 +74,12 @@ pub enum ConvectiveRegime {
     Collapsed,
 }
 
+impl ConvectiveRegime {
+    /// All regimes, in the order of growing energy loss.
+    pub const ALL: [Self; 5] =
+        [Self::Conductive, Self::OneRoll, Self::Coexistence, Self::TwoRolls, Self::Collapsed];
+}
+
 impl fmt::Display for ConvectiveRegime {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.pad(match self {

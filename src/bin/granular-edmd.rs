@@ -1,4 +1,4 @@
-//! Studies of the paper's box, from plans in TOML: `granular-edmd --help`.
+//! The command `granular-edmd`, which runs studies of the paper's box from plans in TOML.
 
 use std::process::ExitCode;
 
@@ -9,7 +9,7 @@ fn main() -> ExitCode {
     cli::main(example)
 }
 
-/// Returns a plan for a box smaller than the paper's, which takes a few minutes.
+/// Returns a plan for a box smaller than the paper's, whose study takes a few minutes.
 fn example() -> Result<Plan<VibratedBox>, PlanError> {
     let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
     let experiment = VibratedBox::new(200, 30.0, base)

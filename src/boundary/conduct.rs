@@ -43,7 +43,8 @@ impl Conduct {
 
 /// A rule of any type.
 ///
-/// A rule of the crate is known as such, and goes to files and back. A rule of your own cannot.
+/// The rules in `Known` are recognized, so they can be written to files and read back. A rule of your own
+/// cannot.
 #[derive(Clone)]
 pub(super) struct OwnRule {
     rule: Arc<dyn CollisionRule + Send + Sync>,

@@ -1,12 +1,12 @@
-//! Observables and observers of disks of one kind, and of collisions between two.
+//! Observables and observers of the disks of one kind, and of the collisions between two kinds.
 
 use super::{Collision, Heading, Moment, Observable, Observer, Partner, Snapshot, Tabular, Verdict};
 use crate::{Disk, Kind};
 
 /// An observable or observer that sees only disks of one kind.
 ///
-/// Snapshots hold only these disks, in their order. Of the collisions, those are passed on in which a disk
-/// of the kind takes part. A [`Moment`] is passed on as it is; its number of disks is that of all.
+/// Its snapshots hold only these disks, in their order. It passes on the collisions in which a disk of the
+/// kind takes part. It passes on a [`Moment`] as it is, with the number of all disks.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;
@@ -31,7 +31,7 @@ pub struct OfKind<T> {
 }
 
 impl<T> OfKind<T> {
-    /// Shows `inner` only disks of this kind.
+    /// Creates a filter that shows `inner` only disks of this kind.
     pub const fn new(kind: Kind, inner: T) -> Self {
         Self { kind, inner }
     }
@@ -46,7 +46,7 @@ impl<T> OfKind<T> {
         &self.inner
     }
 
-    /// Takes the observable or observer out.
+    /// Unwraps the observable or observer inside.
     pub fn into_inner(self) -> T {
         self.inner
     }
@@ -64,7 +64,8 @@ impl<T: Observable> Observable for OfKind<T> {
     }
 }
 
-/// The columns are those of all disks, with the kind at the end of their names: `center_y_of_kind_1`.
+/// The columns are those of the observable inside, with the kind at the end of their names:
+/// `center_y_of_kind_1`.
 impl<T: Tabular> Tabular for OfKind<T> {
     fn headings(&self) -> Vec<Heading> {
         let of_kind = |heading: &Heading| format!("{}_of_kind_{}", heading.name(), self.kind.number());
@@ -104,10 +105,10 @@ impl<T: Observer> Observer for OfKind<T> {
     }
 }
 
-/// An observer that is told only of collisions between two kinds, in either order; of disks, or of a disk
-/// and a wall.
+/// An observer that sees only collisions between two kinds, in either order, of two disks or of a disk and a
+/// wall.
 ///
-/// Samples are passed on as they are.
+/// It passes on samples as they are.
 ///
 /// ```
 /// use granular_edmd::Kind;
@@ -130,7 +131,7 @@ pub struct BetweenKinds<T> {
 }
 
 impl<T> BetweenKinds<T> {
-    /// Tells `inner` only of collisions between these kinds, which may be the same.
+    /// Creates a filter that shows `inner` only collisions between these kinds, which may be the same.
     pub const fn new(first: Kind, second: Kind, inner: T) -> Self {
         Self { kinds: [first, second], inner }
     }
@@ -145,7 +146,7 @@ impl<T> BetweenKinds<T> {
         &self.inner
     }
 
-    /// Takes the observer out.
+    /// Unwraps the observer inside.
     pub fn into_inner(self) -> T {
         self.inner
     }

@@ -4,8 +4,9 @@ use glam::DVec2;
 
 use super::{Heading, Observable, Snapshot, Tabular};
 
-/// The position of the center of mass, `$\sum m_i\vec r_i/\sum m_i$`, or NaN without disks. Its `y` is the
-/// `$Y_{cm}$` of the paper's Fig. 2.
+/// The position of the center of mass, or NaN without disks.
+///
+/// It is `$\sum m_i\vec r_i/\sum m_i$`. Its `y` is the `$Y_{cm}$` of the paper's Fig. 2.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::{Collision, Observer, Partner};
 use crate::collision::Regime;
 
-/// An observer that counts collisions by partner and regime, and knows their rates.
+/// An observer that counts collisions by partner and regime, and gives their rates.
 ///
 /// ```
 /// use granular_edmd::observable::CollisionCounts;
@@ -14,6 +14,7 @@ use crate::collision::Regime;
 /// assert_eq!(counts.collisions_with_wall(3), 0);
 /// assert_eq!(counts.rate_per_disk(1000, 10.0), 0.0);
 /// ```
+#[doc(alias("collision rate", "collision frequency"))]
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawCollisionCounts"))]
@@ -28,7 +29,7 @@ pub struct CollisionCounts {
 }
 
 impl CollisionCounts {
-    /// Creates counts whose rates start at this absolute time.
+    /// Creates counts whose rates are averages from this absolute time on.
     pub fn since(start: f64) -> Self {
         Self { start, ..Self::default() }
     }
@@ -62,8 +63,9 @@ impl CollisionCounts {
         }
     }
 
-    /// Returns the disk–disk collisions per disk and time until the absolute time `now`. Each collision
-    /// counts for both partners.
+    /// Returns the number of disk–disk collisions per disk and time, up to the absolute time `now`.
+    ///
+    /// Each collision counts for both partners.
     pub fn rate_per_disk(&self, disks: usize, now: f64) -> f64 {
         2.0 * self.disks as f64 / (disks as f64 * (now - self.start))
     }

@@ -15,8 +15,8 @@ pub enum Partner {
 
 /// A collision that has just happened.
 ///
-/// At a thermal wall the contact is that of the arriving disk, and the impulse is all that the disk received.
-/// The wall also draws a new rotation for the disk, which only [`Self::energy_change`] contains.
+/// At a thermal wall, the contact describes the arriving disk, and the impulse is the whole impulse on that
+/// disk. The wall also draws a new rotation for the disk, which only [`Self::energy_change`] contains.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse};
@@ -48,21 +48,25 @@ pub struct Collision {
     pub position: DVec2,
     /// Distance of the centers, or of the center and the wall.
     pub distance: f64,
-    /// The contact as the surfaces met.
+    /// The contact in which the surfaces met, before the impulse.
     pub contact: Contact,
     /// The impulse on the disk.
     pub impulse: Impulse,
-    /// Change of the kinetic energy of the disk and of a partner disk. A moving wall gives or takes energy.
-    /// The change in the frame of the wall is [`Impulse::energy_change`].
+    /// Change of the kinetic energy of the disk, and of its partner if that is a disk.
+    ///
+    /// A moving wall gives or takes energy. [`Impulse::energy_change`] is the change in the frame of the
+    /// wall.
     pub energy_change: f64,
 }
 
 impl Collision {
-    /// Creates a collision for tests of observers. The engine fills all fields itself.
+    /// Creates a collision for tests of observers.
     ///
-    /// The fields that are not given have plain values; set them where they matter. The normal points up, the
-    /// position is the origin, and the disks have radius 1/2 (a `distance` of 1, or of 1/2 to a wall). The
-    /// `energy_change` is that of the impulse, which is right for two disks and for a wall at rest.
+    /// The engine fills all fields itself.
+    ///
+    /// The other fields have plain values; set them where they matter. The normal points up, the position is
+    /// the origin, and the disks have radius 1/2 (a `distance` of 1, or of 1/2 to a wall). The
+    /// `energy_change` follows from the impulse, which is right for two disks and for a wall at rest.
     pub fn new(time: f64, disk: usize, partner: Partner, contact: Contact, impulse: Impulse) -> Self {
         let distance = match partner {
             Partner::Disk(_) => 1.0,

@@ -4,18 +4,19 @@ use super::{Collision, Observer, Partner};
 use crate::ParameterError;
 use crate::statistics::Histogram;
 
-/// An observer of how surfaces meet: histograms of obliqueness, closing speed and normal impulse.
+/// An observer that keeps histograms of the obliqueness, the closing speed and the normal impulse of
+/// collisions.
 ///
 /// The obliqueness is the sine of the angle of impact, `$b = v_t/\sqrt{v_n^2 + v_t^2}$` in `[-1, 1]`, from
-/// the relative velocity of the *surfaces*: 0 is head-on. Of disks that do not rotate it is the impact
-/// parameter over the distance of the centers. In a gas of temperature `$T$` of equal disks that do not
-/// rotate,
+/// the relative velocity of the *surfaces*: 0 is head-on. For disks that do not rotate, it is the impact
+/// parameter divided by the distance of the centers. In a gas of equal disks that do not rotate, at the
+/// temperature `$T$`,
 ///
 /// ```math
 /// p(b) = \frac12,\qquad p(v_n) = \frac{v_n}{2T/m}\,e^{-m v_n^2/4T} .
 /// ```
 ///
-/// Collisions between disks count, unless a wall is chosen.
+/// Collisions between disks count, unless [`with_wall`](Self::with_wall) chooses a wall.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse};
@@ -62,12 +63,12 @@ impl CollisionHistograms {
         &self.obliqueness
     }
 
-    /// Returns the histogram of the speed at which the surfaces close, `$v_n$`.
+    /// Returns the histogram of the speed at which the surfaces close, v_n.
     pub const fn closing_speed(&self) -> &Histogram {
         &self.closing_speed
     }
 
-    /// Returns the histogram of the normal impulse, `$\Delta_n$`.
+    /// Returns the histogram of the normal impulse, Δ_n.
     pub const fn impulse(&self) -> &Histogram {
         &self.impulse
     }
@@ -90,7 +91,7 @@ impl Observer for CollisionHistograms {
             return;
         }
         let (closing, slip) = (collision.contact.closing_speed(), collision.contact.slip_speed());
-        // Two surfaces at rest have no angle; their quotient is NaN, which is left out.
+        // Two surfaces at rest have no angle: their quotient is NaN, which a histogram leaves out.
         self.obliqueness.push(slip / (closing * closing + slip * slip).sqrt());
         self.closing_speed.push(closing);
         self.impulse.push(collision.impulse.normal());

@@ -1,7 +1,8 @@
 //! Compositions of observers and observables.
 //!
-//! A composed observer passes all messages on to all its parts, but shows a sample only to those that asked
-//! for it. Its verdict is the first failure. Without a failure, it stops the run if one of its parts says so.
+//! A composed observer passes all messages on to all its parts, but shows a sample only to the parts that
+//! asked for it. Its verdict is the first failure of a part. Without a failure, it stops the run if one of
+//! its parts does.
 
 use std::ops::ControlFlow;
 
@@ -142,13 +143,13 @@ fn sample_if_due<T: Observer>(observer: &mut T, snapshot: &Snapshot<'_>) {
     }
 }
 
-/// Returns the earlier of two times, or NaN if one is NaN; `f64::min` would hide a broken clock from the
-/// engine.
+/// Returns the earlier of two times, or NaN if one of them is NaN: `f64::min` would hide a broken clock from
+/// the engine.
 fn earlier(first: f64, second: f64) -> f64 {
     if first < second || first.is_nan() { first } else { second }
 }
 
-/// Decides to stop if one of two verdicts says so.
+/// Returns a verdict that stops if one of the two does.
 fn either(first: ControlFlow<()>, second: ControlFlow<()>) -> ControlFlow<()> {
     if first.is_break() { first } else { second }
 }

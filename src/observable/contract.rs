@@ -1,4 +1,4 @@
-//! The traits of this module, and what both sides of each trait promise.
+//! The traits [`Observable`] and [`Observer`], and what both sides of each trait promise.
 
 use std::ops::ControlFlow;
 
@@ -11,7 +11,8 @@ use super::{Collision, Moment, Snapshot};
 /// not panic for a snapshot without disks, or of a domain without a lid, whose height is infinite. A value
 /// that is not defined is NaN.
 ///
-/// The engine measures copies of the disks, so nothing that is done here reaches the run.
+/// The engine measures copies of the disks, so nothing that an observable does reaches the run.
+#[doc(alias("compute", "measurement"))]
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observable",
     label = "an `Observable` is expected here",
@@ -29,17 +30,17 @@ pub trait Observable {
 /// An error with which an observer ends a run.
 pub type ObserverError = Box<dyn std::error::Error + Send + Sync>;
 
-/// An observer's answer to the question whether the run goes on: go on, stop here, or fail.
+/// An observer's decision on the run: go on, stop here, or fail.
 pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 
-/// A watcher of a run, told of what happens and shown samples at the times that it asks for.
+/// A watcher of a run, which receives each collision, and samples at the times that it asks for.
 ///
 /// All methods have a default, which does nothing. All times are absolute, as in
 /// [`Simulation::time`](crate::Simulation::time).
 ///
 /// # What the engine guarantees
-/// 1. Each call of `run_until` begins with `on_start` and ends with `on_end`, whether it comes to its end, is
-///    stopped, or fails.
+/// 1. Each call of `run_until` begins with `on_start` and ends with `on_end`, whether the run reaches its end
+///    time, is stopped, or fails.
 /// 2. `on_collision` is called once for each collision, in the order of their times, after the disks have
 ///    changed.
 /// 3. `on_sample` is called at the time that `next_sample` asked for, unless that is after the end of the
@@ -63,6 +64,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// An observer that breaks the first or the second promise ends the run with an error, since the run would
 /// sample forever. An observer that breaks the third or the fourth gets samples at other times than it meant.
 /// [`SampleTimes`](super::SampleTimes) keeps all four, and [`laws::check`](super::laws::check) tests them.
+#[doc(alias("callback", "hook", "fix"))]
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observer",
     label = "an `Observer` is expected here",
@@ -72,7 +74,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
     note = "lend an observer to a run as `&mut observer`, two as `&mut (&mut first, &mut second)`, none as `&mut ()`"
 )]
 pub trait Observer {
-    /// Receives the message that a run begins, or goes on.
+    /// Receives the start of a run, which may go on from an earlier run.
     fn on_start(&mut self, moment: &Moment) {
         let _ = moment;
     }
@@ -82,7 +84,7 @@ pub trait Observer {
         let _ = collision;
     }
 
-    /// Returns the time at which the next sample is wanted; infinite for never.
+    /// Returns the time at which the observer wants the next sample; infinite for never.
     fn next_sample(&self) -> f64 {
         f64::INFINITY
     }
@@ -92,16 +94,16 @@ pub trait Observer {
         let _ = snapshot;
     }
 
-    /// Receives the message that the run ends, in whichever way.
+    /// Receives the end of a run, however it ends.
     fn on_end(&mut self, moment: &Moment) {
         let _ = moment;
     }
 
-    /// Decides whether the run goes on: go on, stop it here, or fail.
+    /// Decides whether the run goes on, stops here, or fails.
     ///
     /// # Errors
-    /// If the observer cannot go on, because a disk is full or a quantity has left its range, for example.
-    /// The run then fails, too.
+    /// If the observer cannot go on, for example because a file cannot be written or a quantity has left its
+    /// range. The run then fails, too.
     fn verdict(&mut self) -> Verdict {
         Ok(ControlFlow::Continue(()))
     }

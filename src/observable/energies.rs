@@ -8,11 +8,11 @@ use crate::Disk;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct EnergyPerDisk {
-    /// Translational energy `$\langle\tfrac12 m v^2\rangle$`.
+    /// Translational energy, ⟨½ m v²⟩.
     pub translational: f64,
-    /// Rotational energy `$\langle\tfrac12 I\omega^2\rangle$`.
+    /// Rotational energy, ⟨½ I ω²⟩.
     pub rotational: f64,
-    /// Potential energy `$\langle m g y\rangle$`, zero at height 0.
+    /// Potential energy, ⟨m g y⟩, which is zero at height 0.
     pub potential: f64,
 }
 

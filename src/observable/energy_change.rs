@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use super::{Collision, Observer, Partner};
 use crate::statistics::BlockedMean;
 
-/// An observer of the mean change of kinetic energy per collision, `$\langle dE\rangle$`, for disk–disk
-/// collisions and for each wall.
+/// An observer of the mean change of kinetic energy per collision, ⟨dE⟩, for disk–disk collisions and for
+/// each wall.
 ///
 /// Collisions of one run are correlated, since the gas heats and cools. [`BlockedMean::estimate`] gives a
 /// mean whose error accounts for that. At a moving or thermal wall, the energy change is what the disk gains
@@ -18,6 +18,7 @@ use crate::statistics::BlockedMean;
 /// assert_eq!(energy_change.disks().count(), 0);
 /// assert_eq!(energy_change.wall(0).count(), 0);
 /// ```
+#[doc(alias("dissipation", "energy loss", "dE"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct EnergyChange {

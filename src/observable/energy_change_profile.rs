@@ -13,17 +13,19 @@ pub struct EnergyChangeLayer {
     pub height: f64,
     /// Energy changes of the disk–disk collisions in the layer.
     pub energy_change: BlockedMean,
-    /// Values of `$T = \tfrac12 m v^2$` of the disks seen in the layer, in the frame of the container. Their
-    /// mean is the translational temperature.
+    /// Values of ½ m v² of the disks seen in the layer, in the frame of the container.
+    ///
+    /// Their mean is the translational temperature.
     pub translational_temperature: BlockedMean,
-    /// Values of `$T_{rot} = I\omega^2$` of the disks seen in the layer. Their mean is the rotational
-    /// temperature.
+    /// Values of I ω² of the disks seen in the layer.
+    ///
+    /// Their mean is the rotational temperature.
     pub rotational_temperature: BlockedMean,
 }
 
 impl EnergyChangeLayer {
-    /// Returns `$\langle dE\rangle/T$` in this layer, or `None` before there are collisions and a
-    /// temperature.
+    /// Returns the mean energy change over the temperature in this layer, ⟨dE⟩/T, or `None` before there are
+    /// collisions and a temperature.
     pub fn relative_energy_change(&self) -> Option<f64> {
         let temperature = self.translational_temperature.mean();
         (self.energy_change.count() > 0 && temperature > 0.0).then(|| self.energy_change.mean() / temperature)
@@ -32,8 +34,7 @@ impl EnergyChangeLayer {
 
 /// An observer of the energy change per disk–disk collision by height, with the temperatures there.
 ///
-/// The profile can be compared with the kinetic theory of a gas of one temperature, layer by layer and on
-/// average.
+/// It allows a comparison with the kinetic theory of a gas of one temperature, layer by layer and on average.
 ///
 /// ```
 /// use granular_edmd::observable::{EnergyChangeProfile, SampleTimes};
@@ -53,7 +54,9 @@ pub struct EnergyChangeProfile {
 
 impl EnergyChangeProfile {
     /// Creates a profile with this many layers from the height `bottom` to `top`, with temperatures sampled
-    /// at these times. Collisions and disks outside are left out.
+    /// at these times.
+    ///
+    /// Collisions and disks outside are left out.
     ///
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of layers is not in `1..=2^20`.
@@ -68,14 +71,16 @@ impl EnergyChangeProfile {
         &self.layers
     }
 
-    /// Returns `$\langle dE/T(y)\rangle$`: the energy change over the local temperature, averaged over
-    /// collisions. The result is `None` before one layer has collisions and a temperature.
+    /// Returns the energy change over the local temperature, averaged over collisions: ⟨dE/T(y)⟩.
+    ///
+    /// The result is `None` before a layer has collisions and a temperature.
     pub fn relative_energy_change(&self) -> Option<f64> {
         self.over_collisions(EnergyChangeLayer::relative_energy_change)
     }
 
-    /// Returns `$\langle T_{rot}(y)/T(y)\rangle$`: the ratio of the local temperatures, averaged over
-    /// collisions. The result is `None` before one layer has collisions and a temperature.
+    /// Returns the ratio of the local temperatures, averaged over collisions: ⟨T_rot(y)/T(y)⟩.
+    ///
+    /// The result is `None` before a layer has collisions and a temperature.
     pub fn rotational_ratio(&self) -> Option<f64> {
         self.over_collisions(|layer| {
             let temperature = layer.translational_temperature.mean();

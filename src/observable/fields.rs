@@ -7,8 +7,9 @@ use super::{Grid, Moment, Observer, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::boundary::Region;
 
-/// The fields in one cell of a grid, averaged over all samples; made by [`Fields`]. All fields are 0 where no
-/// disk was seen.
+/// The fields in one cell of a grid, averaged over all samples; made by [`Fields`].
+///
+/// Where no disk was seen, everything but the center is 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
@@ -19,26 +20,27 @@ pub struct FieldCell {
     pub count: u64,
     /// Disks per area.
     pub number_density: f64,
-    /// Area of the disks per area. Each disk counts in the cell of its center.
+    /// Area of the disks per area.
+    ///
+    /// Each disk counts in the cell of its center.
     pub packing_fraction: f64,
-    /// Velocity of the flow, `$u = \langle mv\rangle/\langle m\rangle$`.
+    /// Velocity of the flow, u = ⟨m v⟩/⟨m⟩.
     pub velocity: DVec2,
-    /// Mean angular velocity, `$\langle I\omega\rangle/\langle I\rangle$`.
+    /// Mean angular velocity, ⟨I ω⟩/⟨I⟩.
     pub angular_velocity: f64,
-    /// Translational temperature `$T = \tfrac12\langle m|v-u|^2\rangle$`, per degree of freedom and about the
-    /// flow.
+    /// Translational temperature, T = ½⟨m|v − u|²⟩, per degree of freedom and about the flow.
     pub translational_temperature: f64,
-    /// Rotational temperature `$T_{rot} = \langle I(\omega-\bar\omega)^2\rangle$`, about the mean angular
-    /// velocity.
+    /// Rotational temperature, T_rot = ⟨I(ω − ω̄)²⟩, about the mean angular velocity.
     pub rotational_temperature: f64,
 }
 
-/// An observer that averages density, flow and temperatures on a grid over samples: the convection rolls.
+/// An observer that averages density, flow and temperatures on a grid over samples, to show convection rolls,
+/// for example.
 ///
-/// A disk counts in the cell of its center. Temperatures are about the mean velocity *of the cell*, over all
-/// samples. A flow that changes between samples, such as a roll that reverses, counts as temperature. If
-/// `$n$` disks are seen in a cell, its temperatures are too small by a factor `$1 - 1/n$`, for independent
-/// samples.
+/// A disk counts in the cell of its center. Temperatures are taken about the mean velocity *of the cell*,
+/// over all samples. A flow that changes between samples, such as a roll that reverses, counts as
+/// temperature. If `$n$` disks are seen in a cell, its temperatures are too small by a factor `$1 - 1/n$`,
+/// for independent samples.
 ///
 /// ```
 /// use granular_edmd::boundary::{Domain, Region};
@@ -57,6 +59,7 @@ pub struct FieldCell {
 /// assert_eq!(fields.cell(1, 0).unwrap().count, 0);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
+#[doc(alias("density", "velocity field", "coarse-graining"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawFields"))]
@@ -68,7 +71,9 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// Creates a grid of `columns` times `rows` cells over a region. Disks outside are left out.
+    /// Creates a grid of `columns` times `rows` cells over a region.
+    ///
+    /// Disks outside are left out.
     ///
     /// # Errors
     /// If an edge of the region is not finite, the region has no area, or the number of cells is not in
@@ -83,7 +88,7 @@ impl Fields {
         Ok(Self { grid, sample_times: times, sums: vec![CellSums::default(); grid.count()], samples: 0 })
     }
 
-    /// Returns how many samples were taken.
+    /// Returns the number of samples that were taken.
     pub const fn samples(&self) -> u64 {
         self.samples
     }
@@ -93,8 +98,9 @@ impl Fields {
         self.grid.shape()
     }
 
-    /// Returns the fields in a cell, or `None` outside the grid. Columns count from the left and rows from
-    /// below.
+    /// Returns the fields in a cell, or `None` outside the grid.
+    ///
+    /// Columns count from the left and rows from below.
     pub fn cell(&self, column: usize, row: usize) -> Option<FieldCell> {
         let (columns, rows) = self.shape();
         let inside = column < columns && row < rows;

@@ -30,8 +30,8 @@ where
 }
 
 impl<F> FromFn<F> {
-    /// Returns the same observable with a name and a unit for its number, so that a
-    /// [`Series`](super::Series) of it can be a table.
+    /// Returns the same observable with a name and a unit for its number, so that a [`Series`](super::Series)
+    /// of it can be written as a table.
     ///
     /// ```
     /// use granular_edmd::observable::{SampleTimes, Series, Snapshot, from_fn};
@@ -57,11 +57,11 @@ where
     }
 }
 
-/// A closure that is told of every collision; made by [`on_collision`].
+/// A closure that receives every collision; made by [`on_collision`].
 #[derive(Debug, Clone)]
 pub struct OnCollision<F>(F);
 
-/// Makes an observer from a closure that is told of every collision.
+/// Makes an observer from a closure that receives every collision.
 ///
 /// ```
 /// use granular_edmd::observable::{Collision, Observer, on_collision};
@@ -80,14 +80,14 @@ impl<F: FnMut(&Collision)> Observer for OnCollision<F> {
     }
 }
 
-/// A closure that is shown samples; made by [`on_sample`].
+/// A closure that receives samples; made by [`on_sample`].
 #[derive(Debug, Clone)]
 pub struct OnSample<F> {
     times: SampleTimes,
     watch: F,
 }
 
-/// Makes an observer from a closure that is shown a snapshot at each of these times.
+/// Makes an observer from a closure that receives a snapshot at each of these times.
 ///
 /// ```
 /// use granular_edmd::observable::{Observer, SampleTimes, Snapshot, on_sample};

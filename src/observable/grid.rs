@@ -112,7 +112,7 @@ pub(super) fn inside(region: Region, domain: &Domain) -> Result<Region, Paramete
     Ok(region)
 }
 
-/// Reads a region, if there is one, through the same check.
+/// Reads a region from a file, if there is one, and checks it with [`checked_region`].
 #[cfg(feature = "serde")]
 pub(super) fn region_from_file<'de, D: serde::Deserializer<'de>>(
     file: D,
@@ -147,7 +147,7 @@ impl CellSums {
         DVec2::new(self.velocity[0].mean, self.velocity[1].mean)
     }
 
-    /// Checks that sums from a file can be those of disks.
+    /// Checks that disks can have given the sums from a file.
     #[cfg(feature = "serde")]
     pub(super) fn check(&self) -> Result<(), ParameterError> {
         crate::quantity::non_negative("area of the disks in a cell", self.area)?;

@@ -15,7 +15,7 @@ pub struct DenseLayer {
     pub height: f64,
     /// Packing fraction in the bin.
     pub packing_fraction: f64,
-    /// Least packing fraction of the bins below. If there are none, it is that of the bin itself.
+    /// Least packing fraction of the bins below, or that of the bin itself if there are none.
     pub least_below: f64,
 }
 
@@ -25,8 +25,9 @@ impl DenseLayer {
         Self { height, packing_fraction, least_below }
     }
 
-    /// Returns the densest layer of a profile, the lowest of equal ones. The profile gives heights and
-    /// packing fractions from the bottom up.
+    /// Returns the densest layer of a profile, the lowest of equal ones.
+    ///
+    /// The profile gives heights and packing fractions from the bottom up.
     ///
     /// ```
     /// use granular_edmd::observable::DenseLayer;
@@ -48,7 +49,8 @@ impl DenseLayer {
 
 /// An observer that averages the packing fraction by height over samples.
 ///
-/// The packing fraction `$\phi(y)$` is the area of the disks between two heights, over the area there,
+/// The packing fraction `$\phi(y)$` is the area of the disks between two heights, divided by the area of the
+/// box there,
 ///
 /// ```math
 /// \phi_k = \frac{1}{L_x\,\Delta y}\Big\langle\sum_i A_i(y_k, y_k + \Delta y)\Big\rangle.
@@ -72,6 +74,7 @@ impl DenseLayer {
 /// assert!(profile.iter().zip(expected).all(|((_, packing), expected)| (packing - expected).abs() < 1e-15));
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
+#[doc(alias("density profile", "volume fraction"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawHeightProfile"))]
@@ -84,7 +87,9 @@ pub struct HeightProfile {
 }
 
 impl HeightProfile {
-    /// Creates a profile with this many bins from the height `bottom` to `top`. Disks outside are left out.
+    /// Creates a profile with this many bins from the height `bottom` to `top`.
+    ///
+    /// Disks outside are left out.
     ///
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of bins is not in `1..=2^20`.
@@ -93,12 +98,12 @@ impl HeightProfile {
         Ok(Self { bins, sample_times: times, sums: vec![0.0; bins.count()], samples: 0 })
     }
 
-    /// Returns how many samples were taken.
+    /// Returns the number of samples that were taken.
     pub const fn samples(&self) -> u64 {
         self.samples
     }
 
-    /// Iterates over the heights of the middles of the bins, with the mean packing fractions; these are 0
+    /// Iterates over the heights of the middles of the bins, with the mean packing fractions, which are 0
     /// before the first sample.
     pub fn iter(&self) -> impl Iterator<Item = (f64, f64)> {
         let samples = self.samples.max(1) as f64;
@@ -119,7 +124,7 @@ impl HeightProfile {
 
     fn add(&mut self, disk: &Disk, width: f64) {
         let (height, radius) = (disk.position().y, disk.radius());
-        // A disk outside lands at an end of the profile. It has no area in the bin there.
+        // A disk outside the profile counts in the bin at the end of the profile, where it has no area.
         let first = self.bins.at_or_above(height - radius);
         let last = self.bins.at_or_above(height + radius).min(self.bins.count() - 1);
         let mut below = area_below(self.bins.edge(first) - height, radius);

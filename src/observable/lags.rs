@@ -1,4 +1,4 @@
-//! Means over pairs of samples, by the time between the two.
+//! Means over pairs of samples, by the time between the two samples.
 
 use std::collections::VecDeque;
 
@@ -10,13 +10,13 @@ use crate::statistics::{BlockedMean, Estimate};
 /// Largest number of lags.
 const MOST_LAGS: usize = 1 << 20;
 
-/// Rounding of a sample time, relative to it and to the interval.
+/// Rounding of a sample time, relative to the sum of the time and the interval.
 const ROUNDING: f64 = 1e-9;
 
 /// The last samples of a run, and means over pairs of a sample and a later one: every sample is an origin.
 ///
-/// Samples are equally spaced. After a gap, or before another run, the samples so far are forgotten and the
-/// means are kept.
+/// Samples are equally spaced. After a gap, or before another run, it forgets the samples so far and keeps
+/// the means.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -27,7 +27,7 @@ pub(super) struct Lags<V> {
     pub(super) sample_times: SampleTimes,
     /// Time of the latest sample.
     latest: Option<f64>,
-    /// The samples, from the latest on back.
+    /// The samples, latest first.
     past: VecDeque<V>,
     /// Means for the lags of 0, 1, 2, … intervals.
     means: Vec<BlockedMean>,
@@ -46,7 +46,7 @@ impl<V> Lags<V> {
         self.means.len() - 1
     }
 
-    /// Takes a sample, and its pairs with all earlier ones. A pair whose value is NaN is left out.
+    /// Adds a sample and its pairs with the earlier ones. It leaves out pairs whose value is NaN.
     pub(super) fn push(&mut self, time: f64, sample: V, pair: impl Fn(&V, &V) -> f64) {
         let interval = self.sample_times.interval();
         let rounding = ROUNDING * (time.abs() + interval);
@@ -65,7 +65,7 @@ impl<V> Lags<V> {
         }
     }
 
-    /// Returns the sample taken so many intervals before the latest one.
+    /// Returns the sample taken this many intervals before the latest one.
     pub(super) fn before(&self, lag: usize) -> Option<&V> {
         self.past.get(lag)
     }
@@ -76,7 +76,7 @@ impl<V> Lags<V> {
         self.means.iter().enumerate().map(move |(lag, mean)| (lag as f64 * interval, mean.estimate()))
     }
 
-    /// Begins with new origins.
+    /// Forgets the samples, so that the next sample is a new origin.
     pub(super) fn forget_samples(&mut self) {
         self.past.clear();
     }

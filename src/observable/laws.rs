@@ -1,7 +1,7 @@
 //! Checks of an observer's contract, for observers of your own.
 //!
-//! An observer cannot change a trajectory, whatever it does, since the engine shows copies. The observer is
-//! responsible for its clock, which can hang a run or ask for samples that never come.
+//! An observer cannot change a trajectory, whatever it does, since the engine shows it copies. But the
+//! observer is responsible for its clock: a wrong clock can hang a run, or wait for samples that never come.
 
 use glam::DVec2;
 use thiserror::Error;
@@ -18,7 +18,7 @@ pub enum Violation {
     /// The time of the next sample is NaN.
     #[error("after the time {after} the next sample is at NaN")]
     NotANumber {
-        /// Absolute time of the start or the sample before.
+        /// Absolute time of the preceding start or sample.
         after: f64,
     },
     /// After the start of a run, the next sample is before the start.
@@ -40,9 +40,9 @@ pub enum Violation {
     /// The time of the next sample changed without a start or a sample, so the engine did not see it.
     #[error("between two samples the next one moved from {before} to {next}")]
     Moved {
-        /// Absolute time of the next sample after the start or the sample before.
+        /// Absolute time of the next sample, as it was after the preceding start or sample.
         before: f64,
-        /// Absolute time of the next sample after a collision, a verdict or the end of a run.
+        /// Absolute time of the next sample, as it is after a collision, a verdict or the end of a run.
         next: f64,
     },
 }
@@ -61,11 +61,11 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Checks that an observer keeps its contract in a few runs of a made-up system.
 ///
-/// The runs have three disks and four walls, collisions of each partner and regime, and up to fifty samples
-/// each, at the times that the observer asks for. The first run starts at time 0, the second goes on where
-/// the first ended, the third starts later and off the beat, and the last is another run from a time
-/// before 0. A run ends where the observer stops it or fails. The checked observer has collected all of this,
-/// so make a new one for a measurement.
+/// The runs have three disks and four walls, collisions with each partner and in several regimes, and up to
+/// fifty samples each, at the times that the observer asks for. The first run starts at time 0, the second
+/// goes on where the first ended, the third starts later and off the beat, and the last is another run from a
+/// time before 0. A run ends early if the observer stops it or fails. The observer keeps what it has
+/// collected in the check, so make a new one for a measurement.
 ///
 /// # Errors
 /// The first promise that is broken.
@@ -160,7 +160,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         if next.is_nan() { Err(Violation::NotANumber { after: self.now }) } else { Ok(next) }
     }
 
-    /// Asks for the verdict, and checks that the clock has not moved since the engine read it.
+    /// Asks for the verdict, and checks that the clock has not moved since it was last read.
     fn goes_on(&mut self) -> Result<bool, Violation> {
         let goes_on = self.observer.verdict().is_ok_and(|verdict| verdict.is_continue());
         let next = self.next_sample()?;

@@ -7,13 +7,13 @@ use super::{Moment, Observer, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::statistics::{BlockedMean, Estimate};
 
-/// An observer of the mean squared displacement of the disks, `$\langle|\vec r(t) - \vec r(0)|^2\rangle$`,
-/// and of their coefficient of self-diffusion.
+/// An observer of the mean squared displacement of the disks, ⟨|r(t) − r(0)|²⟩, and of their coefficient of
+/// self-diffusion.
 ///
 /// Every sample is a time origin, and the lags are whole numbers of intervals. Positions are unwrapped at
 /// periodic sides and ends. A drift of all disks counts as displacement. The disks must stay the same while
 /// they are followed: if their number or the periods of the domain change, or if time jumps, the observer
-/// begins with new origins. It cannot see that disks were exchanged for as many others: clear it then. The
+/// begins with new origins. It cannot notice that disks were replaced by as many others: clear it then. The
 /// errors come from blocks of origins.
 ///
 /// A sample costs time and memory in proportion to the number of disks and of lags.
@@ -35,17 +35,18 @@ use crate::statistics::{BlockedMean, Estimate};
 /// assert!((squared.mean() - 225.0).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias("MSD", "diffusion"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct MeanSquaredDisplacement {
     lags: Lags<Vec<DVec2>>,
     periods: DVec2,
-    /// Slopes of the displacement over time in the second half of the lags, over four.
+    /// Slopes of the mean squared displacement over the second half of the lags, divided by four.
     diffusion: BlockedMean,
 }
 
 impl MeanSquaredDisplacement {
-    /// Creates displacements over 0 to `lags` intervals of the sample times.
+    /// Creates an observer of displacements over 0 to `lags` intervals of the sample times.
     ///
     /// # Errors
     /// If the number of lags is not in `1..=2^20`.
@@ -58,15 +59,16 @@ impl MeanSquaredDisplacement {
         self.lags.iter()
     }
 
-    /// Returns the coefficient of self-diffusion, from the slope over the second half of the lags (Einstein
-    /// 1905, in two dimensions),
+    /// Returns the coefficient of self-diffusion, from the slope over the second half of the lags.
+    ///
+    /// In two dimensions (Einstein 1905),
     ///
     /// ```math
     /// D = \frac{\langle r^2(t)\rangle - \langle r^2(t/2)\rangle}{4\,(t - t/2)} .
     /// ```
     ///
     /// The longest lag `$t$` should be many times the mean free time. In two dimensions, the slope keeps
-    /// growing slowly with `$t$` (Alder and Wainwright 1970), so tell both.
+    /// growing slowly with `$t$` (Alder and Wainwright 1970), so report both.
     pub fn diffusion_coefficient(&self) -> Estimate {
         self.diffusion.estimate()
     }
@@ -87,7 +89,8 @@ impl MeanSquaredDisplacement {
     }
 }
 
-/// Returns the mean squared distance; NaN without disks, or for different numbers of them.
+/// Returns the mean squared distance between two lists of places; NaN if they are empty or of different
+/// lengths.
 fn squared_displacement(from: &[DVec2], to: &[DVec2]) -> f64 {
     if from.len() != to.len() {
         return f64::NAN;

@@ -24,8 +24,9 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// Creates a moment of a run with this many disks and walls. The engine creates moments, and tests may do
-    /// so.
+    /// Creates a moment of a run with this many disks and walls.
+    ///
+    /// The engine creates moments, and tests may do so.
     pub const fn new(time: f64, disk_count: usize, wall_count: usize, domain: Domain, gravity: f64) -> Self {
         Self { time, disk_count, wall_count, domain, gravity }
     }
@@ -40,7 +41,9 @@ impl Moment {
         self.disk_count
     }
 
-    /// Returns the number of walls. The indices of the walls are less than it.
+    /// Returns the number of walls.
+    ///
+    /// The indices of the walls are less than it.
     pub const fn wall_count(&self) -> usize {
         self.wall_count
     }

@@ -4,14 +4,14 @@ use std::f64::consts::TAU;
 
 use super::{Heading, Observable, Snapshot, Tabular};
 
-/// The order parameters `$\Psi_1$` of one convection roll and `$\Psi_2$` of two.
+/// The order parameters Ψ1 of one convection roll and Ψ2 of two.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct ConvectionOrder {
-    /// Order parameter `$\Psi_1$` of one roll, positive if the roll turns clockwise.
+    /// Order parameter Ψ1 of one roll, positive if the roll turns clockwise.
     pub one_roll: f64,
-    /// Order parameter `$\Psi_2$` of two rolls, positive if the flow goes up in the middle.
+    /// Order parameter Ψ2 of two rolls, positive if the flow goes up in the middle.
     pub two_rolls: f64,
 }
 
@@ -48,6 +48,7 @@ impl ConvectionOrder {
 /// assert!((order.one_roll - 1.0).abs() < 1e-12 && order.two_rolls.abs() < 1e-12);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
+#[doc(alias("convection", "psi", "Ψ1", "Ψ2"))]
 #[derive(Debug, Clone, Copy, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OrderParameters;

@@ -13,9 +13,9 @@ use crate::squares::Squares;
 use crate::statistics::{Bins, BlockedMean, Estimate, RunningMean};
 use crate::{Disk, Kind, ParameterError};
 
-/// An observer of the pair correlation function `$g(r)$`, also called radial distribution function.
+/// An observer of the pair correlation function g(r), also called radial distribution function.
 ///
-/// It is the number of disks around a disk at a distance `$r$`, over the number in a gas without
+/// It is the number of disks at a distance `$r$` from a disk, divided by that number in a gas without
 /// correlations,
 ///
 /// ```math
@@ -24,16 +24,16 @@ use crate::{Disk, Kind, ParameterError};
 /// ```
 ///
 /// `$N_{ij}(r)$` counts the pairs of a disk `$i$` in a region and a partner `$j$` anywhere, by the distance
-/// of the centers and by the nearest image. `$N_i$` and `$N_j$` count the disks in the region, whose area is
-/// `$A$`. A disk is not its own partner: of `$N$` disks of the kind `$j$` in the box, `$N - 1$` are partners,
-/// if `$i$` and `$j$` are of one kind. Shells have their exact areas. In a periodic box, the region is the
-/// whole domain. At walls it is the domain less the range, so that all shells lie inside; or it is the region
-/// given by [`within`](Self::within), which should keep that distance, too. Where the density varies, under
-/// gravity for example, choose a thin layer.
+/// of their centers, to the nearest image. `$N_i$` and `$N_j$` count the disks in the region, whose area is
+/// `$A$`. A disk is not its own partner: if `$i$` and `$j$` are of one kind, it has `$N - 1$` partners among
+/// the `$N$` disks of that kind in the box. Shells have their exact areas. In a periodic box, the region is
+/// the whole domain. The region keeps a distance of the range from walls, so that all shells lie inside the
+/// domain. A region given by [`within`](Self::within) should keep that distance, too. Where the density
+/// varies, under gravity for example, choose a thin layer.
 ///
 /// The errors are those of the numbers of pairs, from blocks of samples. The numbers of disks in the region
-/// count as exact, which they nearly are if it holds many disks. In a region of a few disks, the scatter of
-/// several runs tells the error. The cost of a sample is proportional to the number of disks.
+/// are taken as exact, which is nearly true if the region holds many disks. If it holds only a few, take the
+/// error from the scatter of several runs. The cost of a sample is proportional to the number of disks.
 ///
 /// A run ends with an error if the range is more than half of a period, if no finite region is left between
 /// the walls, or if the region is not inside the domain.
@@ -55,6 +55,7 @@ use crate::{Disk, Kind, ParameterError};
 /// assert!(values[10] > 1.2 && (values[29] - 1.0).abs() < 0.1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias("RDF", "radial distribution function", "structure"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawPairCorrelation"))]
@@ -65,7 +66,7 @@ pub struct PairCorrelation {
     region: Option<Region>,
     /// Numbers of pairs over the area of the shell, for each bin.
     pairs: Vec<BlockedMean>,
-    /// Number of disks in the region that pairs are counted around.
+    /// Number of disks in the region, around which pairs are counted.
     centers: RunningMean,
     /// Number of partners in the region, over its area.
     partner_density: RunningMean,
@@ -75,7 +76,8 @@ pub struct PairCorrelation {
 }
 
 impl PairCorrelation {
-    /// Creates a correlation of all disks up to the distance `range` of their centers, in this many bins.
+    /// Creates the correlation function of all disks, up to the distance `range` of their centers, in this
+    /// many bins.
     ///
     /// # Errors
     /// If the range is not finite and positive, or the number of bins is not in `1..=2^20`.
@@ -93,13 +95,13 @@ impl PairCorrelation {
         })
     }
 
-    /// Returns the same correlation between disks of two kinds, which may be the same: of disks of the second
-    /// kind around one of the first.
+    /// Returns the same observer for disks of the second kind around disks of the first kind, which may be
+    /// the same kind.
     pub fn between(self, first: Kind, second: Kind) -> Self {
         Self { kinds: Some([first, second]), ..self }
     }
 
-    /// Returns the same correlation around the disks in a region.
+    /// Returns the same observer, which counts pairs around the disks in a region.
     ///
     /// # Errors
     /// If an edge of the region is not finite, or the region has no area.
@@ -112,12 +114,13 @@ impl PairCorrelation {
         self.bins.edge(self.bins.count())
     }
 
-    /// Returns how many samples were taken.
+    /// Returns the number of samples that were taken.
     pub const fn samples(&self) -> u64 {
         self.centers.count()
     }
 
-    /// Iterates over the distances of the middles of the bins, with `$g$` there; NaN before there are disks.
+    /// Iterates over the distances of the middles of the bins, with g(r) there, which is NaN as long as there
+    /// are no disks.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (f64, Estimate)> {
         let scale = 1.0 / (self.centers.mean() * self.partner_density.mean());
         self.pairs
@@ -132,7 +135,7 @@ impl PairCorrelation {
         (self.centers, self.partner_density) = (RunningMean::default(), RunningMean::default());
     }
 
-    /// Returns the region around whose disks partners are counted.
+    /// Returns the region of the disks around which partners are counted.
     fn counted(&self, domain: &Domain) -> Result<Region, ParameterError> {
         let periods = domain.periods();
         for period in [periods.x, periods.y].into_iter().filter(|&period| period > 0.0) {
@@ -156,7 +159,7 @@ impl PairCorrelation {
         self.kinds.is_none_or(|kinds| kinds[which] == disk.kind())
     }
 
-    /// Returns how many ordered pairs there are at the distances of each bin.
+    /// Counts the ordered pairs at the distances of each bin.
     fn count(&self, disks: &[Disk], domain: &Domain, region: &Region) -> Vec<u64> {
         let mut counts = vec![0; self.bins.count()];
         let range = self.range();
@@ -174,7 +177,7 @@ impl PairCorrelation {
                 let is_near = (to - from).abs().cmple(half).all();
                 let separation = if is_near { to - from } else { domain.separation(from, to) };
                 let squared = separation.length_squared();
-                // Two of three are too far; they need no root.
+                // Two pairs of three are too far apart, and need no root.
                 if squared > range * range {
                     continue;
                 }
@@ -206,7 +209,7 @@ impl Observer for PairCorrelation {
         };
         let is_inside = |disk: &Disk| region.contains(disk.position());
         let (centers, partners, all) = (count(0, &is_inside), count(1, &is_inside), count(1, &|_| true));
-        // A disk lacks itself among its partners in the box.
+        // A disk is not its own partner.
         let itself = if self.kinds.is_none_or(|[first, second]| first == second) { 1.0 } else { 0.0 };
         let others = if all > 0.0 { 1.0 - itself / all } else { 0.0 };
         self.centers.push(centers);

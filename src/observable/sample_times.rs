@@ -1,10 +1,10 @@
-//! The clock of observers.
+//! The clock that tells observers when to sample.
 
 use crate::ParameterError;
 use crate::quantity::{finite, positive};
 
-/// Rounding of a time to which a run was sent, and of a beat, relative to them. Both are sums of an offset
-/// and an origin, each rounded a few times.
+/// Relative rounding of the start time of a run, and of a beat. Each is the sum of an offset and an origin,
+/// rounded a few times.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// A clock for observers, with equally spaced times of samples.
@@ -18,16 +18,16 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// so is a beat on the start, within rounding. A run of `$n$` intervals therefore gives `$n$` samples, the
 /// first after one interval. This holds for a run from time 0, from another start, from a checkpoint, or
 /// after a run to settle. There are two exceptions:
-/// - The first time of `starting_at` is a sample of a run that starts exactly there.
-/// - A clock that has run before goes on. If the next run starts on the upcoming beat, within rounding, the
-///   sample is taken, since the previous run ended too early for it. A run in pieces thus has the samples of
-///   a run in one piece.
+/// - A run that starts exactly at the first time of `starting_at` takes a sample there.
+/// - A clock that has run before goes on. If the next run starts on the upcoming beat, within rounding, it
+///   takes the sample there, since the previous run ended too early for it. A run in pieces thus has the same
+///   samples as a run in one piece.
 ///
 /// A run that starts before the last beat counts as another run, for which the clock begins anew.
 ///
-/// To sample at a fixed phase of a vibrating base, take a number of its periods as the interval and the phase
-/// as the first time. Compute the end of a run as a multiple, too (`count as f64 * interval`). Otherwise, the
-/// last sample may lie one rounding after the end.
+/// To sample at a fixed phase of a vibrating base, take a whole number of its periods as the interval, and a
+/// time of that phase as the first time. Compute the end of a run as a multiple, too
+/// (`count as f64 * interval`). Otherwise, rounding may put the last sample just after the end.
 ///
 /// ```
 /// use granular_edmd::observable::SampleTimes;
@@ -48,7 +48,9 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 #[cfg_attr(feature = "serde", serde(try_from = "RawSampleTimes"))]
 pub struct SampleTimes {
     interval: f64,
-    /// The first beat. Without one, beats are counted from time 0 in both directions.
+    /// The first beat.
+    ///
+    /// Without one, beats are counted from time 0 in both directions.
     first: Option<f64>,
     /// Number of the upcoming beat.
     beat: i64,
@@ -85,10 +87,12 @@ impl SampleTimes {
         self.time_of(self.beat)
     }
 
-    /// Goes on to the first beat after this absolute time. Call this with the time of each sample.
+    /// Goes on to the first beat after this absolute time.
+    ///
+    /// Call this with the time of each sample.
     pub fn advance_past(&mut self, time: f64) {
-        // Each further attempt skips twice as many beats. This passes the time soon, even where single
-        // intervals are lost in rounding.
+        // Each further attempt skips twice as many beats, so that the clock passes the time soon even where
+        // rounding swallows single intervals.
         let mut more = 1_i64;
         while self.beat < i64::MAX && self.upcoming() <= time {
             let skipped = ((time - self.upcoming()) / self.interval).floor().max(0.0);
@@ -97,8 +101,9 @@ impl SampleTimes {
         }
     }
 
-    /// Notes that a run starts at this absolute time. Call this from
-    /// [`Observer::on_start`](super::Observer::on_start).
+    /// Notes that a run starts at this absolute time.
+    ///
+    /// Call this from [`Observer::on_start`](super::Observer::on_start).
     pub fn start_at(&mut self, time: f64) {
         if !time.is_finite() {
             return;
@@ -112,11 +117,11 @@ impl SampleTimes {
         self.started = true;
     }
 
-    /// Goes to the first beat of a run of which no sample was taken yet.
+    /// Goes to the first beat of a run that has no sample yet.
     fn begin_anew(&mut self, time: f64, rounding: f64) {
         let Some(first) = self.first else {
-            // The cast saturates. For a large count, it may miss the beat by one; the rounding compensates
-            // for that.
+            // The cast saturates. Rounding of a large quotient may miss the beat by one, which `rounding`
+            // allows for.
             self.beat = (time / self.interval).floor() as i64;
             return self.advance_past(time + rounding);
         };

@@ -4,7 +4,8 @@ use super::{Moment, Observable, Observer, SampleTimes, Snapshot};
 
 /// An observer that keeps the values of an observable at set times.
 ///
-/// With the feature `serde` a series can be written and read, if the observable and its values can.
+/// With the feature `serde`, a series can be written to a file and read back if its observable and its values
+/// can.
 ///
 /// ```
 /// use granular_edmd::observable::{OrderParameters, SampleTimes, Series};

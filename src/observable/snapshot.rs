@@ -3,7 +3,9 @@
 use crate::Disk;
 use crate::boundary::Domain;
 
-/// The disks at one time, as copies. Nothing that is done to them reaches the run.
+/// The disks at one time, as copies.
+///
+/// Nothing that you do to them reaches the run.
 #[derive(Debug, Clone, Copy)]
 pub struct Snapshot<'a> {
     time: f64,
@@ -13,7 +15,9 @@ pub struct Snapshot<'a> {
 }
 
 impl<'a> Snapshot<'a> {
-    /// Creates a snapshot of `disks` at an absolute time. The engine creates snapshots, and tests may do so.
+    /// Creates a snapshot of `disks` at an absolute time.
+    ///
+    /// The engine creates snapshots, and tests may do so.
     pub const fn new(time: f64, disks: &'a [Disk], domain: Domain, gravity: f64) -> Self {
         Self { time, disks, domain, gravity }
     }
@@ -28,7 +32,7 @@ impl<'a> Snapshot<'a> {
         self.disks
     }
 
-    /// Returns the rectangle that holds their centers.
+    /// Returns the rectangle that holds the centers of the disks.
     pub const fn domain(&self) -> Domain {
         self.domain
     }
@@ -38,7 +42,7 @@ impl<'a> Snapshot<'a> {
         self.gravity
     }
 
-    /// Returns a snapshot of other disks, such as a choice of these, in the same place at the same time.
+    /// Returns a snapshot of other disks, such as some of these, in the same domain at the same time.
     #[must_use]
     pub const fn with_disks<'b>(&self, disks: &'b [Disk]) -> Snapshot<'b> {
         Snapshot { time: self.time, disks, domain: self.domain, gravity: self.gravity }

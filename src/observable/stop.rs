@@ -1,4 +1,4 @@
-//! Observers from closures that stop a run.
+//! Closures as observers that stop a run.
 
 use std::ops::ControlFlow;
 
@@ -11,7 +11,7 @@ pub struct StopWhen<F> {
     holds: bool,
 }
 
-/// Makes an observer that stops a run at the first collision for which the closure says so.
+/// Makes an observer that stops a run at the first collision for which the closure returns true.
 ///
 /// A later run with the same observer goes on until another collision meets the condition.
 ///
@@ -27,6 +27,7 @@ pub struct StopWhen<F> {
 /// assert!(observer.verdict()?.is_break());
 /// # Ok::<(), granular_edmd::observable::ObserverError>(())
 /// ```
+#[doc(alias = "termination")]
 pub const fn stop_when<F: FnMut(&Collision) -> bool>(condition: F) -> StopWhen<F> {
     StopWhen { condition, holds: false }
 }
@@ -55,7 +56,7 @@ pub struct StopWhenSampled<F> {
     holds: bool,
 }
 
-/// Makes an observer that stops a run at the first of these times for which the closure says so.
+/// Makes an observer that stops a run at the first of these times at which the closure returns true.
 ///
 /// A later run with the same observer goes on until another sample meets the condition.
 ///

@@ -1,4 +1,4 @@
-//! The stress in a gas, from momentum that flies and that collides.
+//! The stress in a gas, from the momentum that disks carry and the momentum that collisions transfer.
 
 use std::ops::ControlFlow;
 
@@ -12,43 +12,46 @@ use crate::boundary::{Domain, Region};
 use crate::quantity::accept;
 use crate::statistics::{BlockedMean, Estimate};
 
-/// A stress tensor, positive where the disks push: the pressure tensor; made by [`Stress`].
+/// A stress tensor with the sign of a pressure, positive where the disks push; made by [`Stress`].
 ///
-/// The first letter is the direction of the momentum, the second that of the normal of the line through
-/// which it passes.
+/// The first letter is the direction of the momentum. The second letter is the normal of the line through
+/// which the momentum passes.
+#[doc(alias = "pressure tensor")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct StressTensor {
-    /// Normal stress on vertical lines, `$P_{xx}$`.
+    /// Normal stress on vertical lines, P_xx.
     pub xx: Estimate,
-    /// Shear stress on horizontal lines, `$P_{xy}$`.
+    /// Shear stress on horizontal lines, P_xy.
     pub xy: Estimate,
-    /// Shear stress on vertical lines, `$P_{yx}$`.
+    /// Shear stress on vertical lines, P_yx.
     pub yx: Estimate,
-    /// Normal stress on horizontal lines, `$P_{yy}$`.
+    /// Normal stress on horizontal lines, P_yy.
     pub yy: Estimate,
-    /// Pressure, `$(P_{xx} + P_{yy})/2$`.
+    /// Pressure, (P_xx + P_yy)/2.
     pub pressure: Estimate,
 }
 
-/// An observer of the stress of all disks, or of those in a region (Irving and Kirkwood 1950).
+/// An observer of the stress of all disks, or of the disks in a region (Irving and Kirkwood 1950).
 ///
 /// ```math
 /// P_{ab} = \frac1A\Big\langle\sum_i m_i v_{i,a} v_{i,b}\Big\rangle
 /// + \frac1{A\,t}\sum_{\rm collisions} \Delta_a\, r_b ,
 /// ```
 ///
-/// in units of energy per area. The kinetic part is sampled; velocities are those in the frame of the
-/// container. The collisional part is exact: the impulse `$\vec\Delta$` on a disk, normal and tangential,
-/// times the vector `$\vec r$` to its center from that of the partner, or from the point of a wall that it
-/// touches. In a region, the share of that vector counts which lies inside. Each interval between two samples
-/// gives one value of the stress, and the errors come from blocks of these.
+/// in units of energy per area. The kinetic part is sampled, with velocities in the frame of the container.
+/// The collisional part is exact. Each collision adds the impulse `$\vec\Delta$` on a disk, normal and
+/// tangential, times the vector `$\vec r$`, which points to the center of the disk from the center of its
+/// partner, or from the point where it touches a wall. In a region, only the share of `$\vec r$` inside the
+/// region counts. Each interval between two samples gives one value of the stress, and the errors come from
+/// blocks of these values.
 ///
-/// In a box without gravity, the normal stress is the pressure on the walls. Without a region the area is
-/// that of the domain, walls at rest included; a run ends with an error if it is infinite.
+/// In a box without gravity, the normal stress is the pressure on the walls. Without a region, the area is
+/// that of the domain, which reaches to walls at rest and to the outermost positions of moving walls. A run
+/// ends with an error if that area is infinite.
 ///
-/// Of the disks of one kind ([`OfKind`](super::OfKind)), the kinetic part is that of the kind, and the
-/// collisional part that of all its collisions.
+/// Inside an [`OfKind`](super::OfKind), the kinetic part counts the disks of the kind, and the collisional
+/// part counts all collisions in which such a disk takes part.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -68,6 +71,7 @@ pub struct StressTensor {
 /// assert!((stress.kinetic().pressure.mean() / ideal - 1.0).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias("pressure", "virial"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -77,7 +81,7 @@ pub struct Stress {
     region: Option<Region>,
     /// The domain of the run.
     domain: Option<Domain>,
-    /// Impulse times distance since the latest sample.
+    /// Sum of impulse times distance over the collisions since the latest sample.
     transferred: [f64; 4],
     kinetic: Tensor,
     collisional: Tensor,
@@ -88,7 +92,7 @@ pub struct Stress {
 }
 
 impl Stress {
-    /// Creates the stress of all disks in the domain, with a value for each interval of the sample times.
+    /// Creates an observer of the stress of all disks, with a value for each interval of the sample times.
     pub fn new(times: SampleTimes) -> Self {
         Self {
             stretch: Stretch::new(times),
@@ -102,7 +106,7 @@ impl Stress {
         }
     }
 
-    /// Returns the same stress in a region inside the domain.
+    /// Returns the same observer for the stress in a region inside the domain.
     ///
     /// # Errors
     /// If an edge of the region is not finite, or the region has no area.
@@ -115,22 +119,24 @@ impl Stress {
         self.total.estimate()
     }
 
-    /// Returns the part of the momentum that flies, `$\langle\sum m v_a v_b\rangle/A$`.
+    /// Returns the kinetic part of the stress, from the momentum that disks carry.
+    ///
+    /// It is `$\langle\sum m v_a v_b\rangle/A$`.
     pub fn kinetic(&self) -> StressTensor {
         self.kinetic.estimate()
     }
 
-    /// Returns the part of the momentum that collides.
+    /// Returns the collisional part of the stress, from the momentum that collisions transfer.
     pub fn collisional(&self) -> StressTensor {
         self.collisional.estimate()
     }
 
-    /// Returns how many intervals were measured.
+    /// Returns the number of intervals that were measured.
     pub fn samples(&self) -> u64 {
         self.total.pressure.count()
     }
 
-    /// Forgets all that was measured so far.
+    /// Forgets all measurements so far.
     pub fn clear(&mut self) {
         self.transferred = [0.0; 4];
         for tensor in [&mut self.kinetic, &mut self.collisional, &mut self.total] {
@@ -138,7 +144,8 @@ impl Stress {
         }
     }
 
-    /// Returns the share of the way between two places that lies in the region.
+    /// Returns the share of the segment between two places that lies in the region, summed over the images of
+    /// the segment in a periodic box.
     fn share_inside(&self, from: DVec2, to: DVec2) -> f64 {
         let Some(region) = self.region else { return 1.0 };
         let share = |image| share_in(&region, from + image, to + image);

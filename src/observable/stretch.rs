@@ -2,13 +2,14 @@
 
 use super::SampleTimes;
 
-/// Rounding of a time, relative to it and to the interval.
+/// Rounding of a time, relative to the sum of the time and the interval.
 const ROUNDING: f64 = 1e-9;
 
 /// The stretch of time since the latest sample.
 ///
 /// A stretch counts if it is a whole interval of the clock. A run that begins off the beat begins with a part
-/// of one, which does not count. A run that goes on where the one before ended goes on with its stretch.
+/// of an interval, which does not count. A run that begins where the previous run ended continues the stretch
+/// of that run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(super) struct Stretch {
@@ -27,7 +28,7 @@ impl Stretch {
         (one - other).abs() <= ROUNDING * (other.abs() + self.sample_times.interval())
     }
 
-    /// Notes that a run starts at this time. Returns true if it begins a new stretch.
+    /// Notes that a run starts at this time, and returns true if the run begins a new stretch.
     pub(super) fn begin(&mut self, time: f64) -> bool {
         self.sample_times.start_at(time);
         let goes_on = self.start.is_some() && self.end.is_some_and(|end| self.is_near(end, time));
@@ -42,7 +43,8 @@ impl Stretch {
         self.end = Some(time);
     }
 
-    /// Begins a new stretch at the time of a sample. Returns the length of the one before if it counts.
+    /// Begins a new stretch at the time of a sample, and returns the length of the previous stretch if that
+    /// counts.
     pub(super) fn finish(&mut self, time: f64) -> Option<f64> {
         let interval = self.sample_times.interval();
         let start = self.start.replace(time);

@@ -6,8 +6,10 @@ use super::{Heading, Series, Tabular};
 
 impl<Q: Tabular> Series<Q> {
     /// Writes the series as comma-separated values: a line of headings, such as `center_y [length]`, and a
-    /// line for each time. Pure numbers have no unit there. Numbers read back to the same bits; those that
-    /// are not defined are `NaN`.
+    /// line for each time.
+    ///
+    /// The heading of a pure number has no unit. Numbers read back to the same bits. A number that is not
+    /// defined is `NaN`.
     ///
     /// ```
     /// use granular_edmd::boundary::Domain;
@@ -26,8 +28,8 @@ impl<Q: Tabular> Series<Q> {
     /// ```
     ///
     /// # Errors
-    /// If the writer fails, two columns have the same name, or a name or a unit has letters that a table does
-    /// not take.
+    /// If the writer fails, two columns have the same name, or a name or a unit has characters that a table
+    /// cannot hold.
     pub fn write_csv(&self, mut out: impl Write) -> io::Result<()> {
         writeln!(out, "{}", self.labels()?.join(","))?;
         for row in self.rows() {
@@ -38,8 +40,9 @@ impl<Q: Tabular> Series<Q> {
     }
 
     /// Writes the series as JSON lines: an object for each time, with the headings of
-    /// [`write_csv`](Self::write_csv) as keys. Numbers read back to the same bits; those that are not finite
-    /// are `null`.
+    /// [`write_csv`](Self::write_csv) as keys.
+    ///
+    /// Numbers read back to the same bits. A number that is not finite is `null`.
     ///
     /// ```
     /// use granular_edmd::boundary::Domain;
@@ -55,7 +58,7 @@ impl<Q: Tabular> Series<Q> {
     /// ```
     ///
     /// # Errors
-    /// As [`write_csv`](Self::write_csv).
+    /// The same as for [`write_csv`](Self::write_csv).
     pub fn write_json_lines(&self, mut out: impl Write) -> io::Result<()> {
         let labels = self.labels()?;
         for row in self.rows() {
@@ -66,7 +69,7 @@ impl<Q: Tabular> Series<Q> {
         out.flush()
     }
 
-    /// Returns the headings of all columns as they stand in files.
+    /// Returns the headings of all columns as they appear in files.
     fn labels(&self) -> io::Result<Vec<String>> {
         let headings = [vec![Heading::new("time", "time")], self.observable().headings()].concat();
         check(&headings)?;
@@ -97,7 +100,7 @@ fn member((label, number): (&String, f64)) -> String {
     if number.is_finite() { format!("\"{label}\":{number:?}") } else { format!("\"{label}\":null") }
 }
 
-/// Checks that all names can be told apart, and that names and units need no quotes.
+/// Checks that all names differ, and that names and units need no quotes.
 fn check(headings: &[Heading]) -> io::Result<()> {
     let refuse = |message: String| Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     for (index, heading) in headings.iter().enumerate() {

@@ -10,8 +10,9 @@ pub struct Heading {
 }
 
 impl Heading {
-    /// Creates the heading of a column. The unit is in words, such as `length/time`, or `1` for a pure
-    /// number.
+    /// Creates the heading of a column.
+    ///
+    /// The unit is in words, such as `length/time`, or `1` for a pure number.
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { name: name.into(), unit: unit.into() }
     }
@@ -29,12 +30,14 @@ impl Heading {
 
 /// An observable whose values are rows of numbers, each with a name and a unit.
 ///
-/// The observables of this module are tabular, and so are tuples of them. A closure becomes tabular by
-/// [`named`](super::FromFn::named).
+/// [`OrderParameters`](super::OrderParameters), [`CenterOfMass`](super::CenterOfMass),
+/// [`Energies`](super::Energies) and [`Temperatures`](super::Temperatures) are tabular, and so are tuples of
+/// them, and an [`OfKind`](super::OfKind) around them. [`named`](super::FromFn::named) makes a closure
+/// tabular.
 ///
 /// # Contract
-/// `add_numbers` adds as many numbers as there are headings, in their order. Names are of letters, digits and
-/// underscores.
+/// `add_numbers` adds as many numbers as there are headings, in their order. Names consist of ASCII letters,
+/// digits and underscores.
 ///
 /// ```
 /// use granular_edmd::observable::{Heading, Observable, Snapshot, Tabular};

@@ -8,11 +8,11 @@ use crate::Disk;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Temperature {
-    /// Horizontal temperature `$T_x = \langle m v_x^2\rangle$`.
+    /// Horizontal temperature, T_x = ⟨m v_x²⟩.
     pub horizontal: f64,
-    /// Vertical temperature `$T_y = \langle m v_y^2\rangle$`.
+    /// Vertical temperature, T_y = ⟨m v_y²⟩.
     pub vertical: f64,
-    /// Rotational temperature `$T_{rot} = \langle I\omega^2\rangle$`.
+    /// Rotational temperature, T_rot = ⟨I ω²⟩.
     pub rotational: f64,
 }
 
@@ -22,7 +22,7 @@ impl Temperature {
         Self { horizontal, vertical, rotational }
     }
 
-    /// Returns the translational temperature `$T = (T_x + T_y)/2$`.
+    /// Returns the translational temperature, T = (T_x + T_y)/2.
     pub fn translational(&self) -> f64 {
         0.5 * (self.horizontal + self.vertical)
     }
@@ -46,6 +46,7 @@ impl Temperature {
 /// assert_eq!((temperature.horizontal, temperature.vertical, temperature.rotational), (1.0, 4.0, 2.0));
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
+#[doc(alias = "granular temperature")]
 #[derive(Debug, Clone, Copy, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Temperatures;

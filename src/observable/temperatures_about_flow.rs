@@ -2,7 +2,7 @@
 
 use super::{Grid, Observable, Snapshot, Temperature};
 
-/// The temperatures about the mean flow: of the velocities less the mean velocity in each cell of a grid.
+/// The temperatures about the mean flow, from the velocities minus the mean velocity in each cell of a grid.
 ///
 /// With `$C$` cells that hold disks and `$N$` disks in the grid,
 ///
@@ -13,7 +13,7 @@ use super::{Grid, Observable, Snapshot, Temperature};
 /// with `$u = \sum m v/\sum m$` in the cell of the disk, and likewise for `$y$` and the rotation about the
 /// mean spin. A gas at rest has the same temperature on any grid, since each mean takes one degree of
 /// freedom. Flow that varies within a cell still counts: a shear rate `$\gamma$` across a cell of height
-/// `$h$` adds `$m\gamma^2h^2/12$` to `$T_x$`. The values are NaN where no cell holds two disks.
+/// `$h$` adds `$m\gamma^2h^2/12$` to `$T_x$`. The values are NaN if no cell holds two disks.
 ///
 /// ```
 /// use granular_edmd::boundary::{Domain, Region};
@@ -37,7 +37,9 @@ pub struct TemperaturesAboutFlow {
 }
 
 impl TemperaturesAboutFlow {
-    /// Creates temperatures about the mean velocity in each cell of this grid. Disks outside are left out.
+    /// Creates temperatures about the mean velocity in each cell of this grid.
+    ///
+    /// Disks outside are left out.
     pub const fn new(grid: Grid) -> Self {
         Self { grid }
     }

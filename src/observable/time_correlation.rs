@@ -9,7 +9,7 @@ use crate::statistics::Estimate;
 
 /// A value that can be correlated with another one of its type.
 ///
-/// Implement it for the value of an observable of your own. NaN stands for no product.
+/// Implement it for the value of an observable of your own. Return NaN if two values have no product.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;
@@ -35,8 +35,8 @@ impl InnerProduct for DVec2 {
     }
 }
 
-/// The mean of the products of entries at the same place; NaN without entries, or for different numbers of
-/// them.
+/// The product is the mean of the products of entries at the same place. It is NaN if the lists are empty or
+/// of different lengths.
 impl<T: InnerProduct> InnerProduct for Vec<T> {
     fn inner_product(&self, other: &Self) -> f64 {
         if self.len() != other.len() {
@@ -69,10 +69,11 @@ impl Observable for Velocities {
 /// ```
 ///
 /// Every sample is a time origin, and the lags are whole numbers of intervals. The product is that of
-/// [`InnerProduct`]: of vectors the dot product, of lists the mean over the entries. No mean is taken off:
-/// for fluctuations, subtract the mean in the observable if it is known, or use
-/// [`autocorrelation`](crate::statistics::autocorrelation) of a series. After a gap in time, and at another
-/// number of entries, new origins begin. The errors come from blocks of origins.
+/// [`InnerProduct`]: the dot product of vectors, and the mean over the entries of lists. No mean is
+/// subtracted. For fluctuations, subtract the mean in the observable if it is known, or use
+/// [`autocorrelation`](crate::statistics::autocorrelation) of a series. After a gap in time, the observer
+/// begins with new origins. Pairs without a product, such as lists of different lengths, are left out. The
+/// errors come from blocks of origins.
 ///
 /// A sample costs time and memory in proportion to the number of lags.
 ///
@@ -94,6 +95,7 @@ impl Observable for Velocities {
 /// assert!((values[0] - 2.0 * temperature).abs() < 1e-9 && values[1] < 0.9 * values[0]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias("autocorrelation", "VACF"))]
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -112,7 +114,7 @@ pub struct TimeCorrelation<Q: Observable> {
 }
 
 impl<Q: Observable> TimeCorrelation<Q> {
-    /// Creates a correlation of `observable` over 0 to `lags` intervals of the sample times.
+    /// Creates the correlation function of `observable` over 0 to `lags` intervals of the sample times.
     ///
     /// # Errors
     /// If the number of lags is not in `1..=2^20`.

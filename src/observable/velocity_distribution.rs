@@ -10,20 +10,20 @@ use crate::{Disk, ParameterError};
 /// An observer of the distribution of velocities: histograms of both components and of the speed, cumulants
 /// and kurtosis.
 ///
-/// Velocities are in units of the thermal speed of their sample, `$\vec c = \vec v/\sqrt{2T/m}$`, so that a
-/// gas may cool or heat. Of a Maxwellian gas the histograms show `$p(c_x) = e^{-c_x^2}/\sqrt\pi$` and
+/// Velocities are in units of the thermal speed of their sample, `$\vec c = \vec v/\sqrt{2T/m}$`, so that the
+/// gas may cool or heat. For a Maxwellian gas, the histograms show `$p(c_x) = e^{-c_x^2}/\sqrt\pi$` and
 /// `$p(c) = 2c\,e^{-c^2}$`. The cumulants are the coefficients of the Sonine expansion in two dimensions,
 ///
 /// ```math
 /// a_2 = \tfrac12\langle c^4\rangle - 1,\qquad a_3 = 1 + 3a_2 - \tfrac16\langle c^6\rangle .
 /// ```
 ///
-/// Moments of few disks are smaller than those of their distribution, since the sample itself defines `$T$`
-/// and the mean. They are therefore taken relative to the moments of a Maxwellian gas of as many disks, which
-/// makes all cumulants of such a gas 0 at any number of disks. Errors come from blocks of samples.
+/// Moments of a few disks are smaller than the moments of their distribution, since the sample itself defines
+/// `$T$` and the mean. The moments are therefore divided by the moments of a Maxwellian gas of as many disks.
+/// Thus, all cumulants of a Maxwellian gas are 0 for any number of disks. Errors come from blocks of samples.
 ///
-/// Velocities are those in the frame of the container, unless the mean velocity is taken off
-/// ([`about_mean`](Self::about_mean), [`about_flow`](Self::about_flow)).
+/// Velocities are taken in the frame of the container, unless [`about_mean`](Self::about_mean) or
+/// [`about_flow`](Self::about_flow) subtracts a mean velocity.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -39,6 +39,7 @@ use crate::{Disk, ParameterError};
 /// assert!(velocities.second_cumulant().mean().abs() < 0.05);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias("Sonine", "kurtosis", "Maxwellian"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct VelocityDistribution {
@@ -50,7 +51,7 @@ pub struct VelocityDistribution {
     excess_kurtosis: [BlockedMean; 2],
 }
 
-/// The velocity that is taken off.
+/// The velocity that is subtracted from each disk's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Frame {
@@ -84,7 +85,9 @@ impl VelocityDistribution {
     }
 
     /// Returns the same distribution about the mean velocity in each cell of a grid, weighted by mass, in
-    /// each sample. Disks outside the grid are left out.
+    /// each sample.
+    ///
+    /// Disks outside the grid are left out.
     pub fn about_flow(self, grid: Grid) -> Self {
         Self { frame: Frame::Flow(grid), ..self }
     }
@@ -104,18 +107,19 @@ impl VelocityDistribution {
         &self.speed
     }
 
-    /// Returns `$a_2$`, 0 for a Maxwellian gas.
+    /// Returns the second cumulant, a₂, which is 0 for a Maxwellian gas.
     pub fn second_cumulant(&self) -> Estimate {
         self.cumulants[0].estimate()
     }
 
-    /// Returns `$a_3$`, 0 for a Maxwellian gas.
+    /// Returns the third cumulant, a₃, which is 0 for a Maxwellian gas.
     pub fn third_cumulant(&self) -> Estimate {
         self.cumulants[1].estimate()
     }
 
-    /// Returns the excess kurtosis of the horizontal and of the vertical component,
-    /// `$\langle c_x^4\rangle/\langle c_x^2\rangle^2 - 3$`, 0 for a Maxwellian gas.
+    /// Returns the excess kurtosis of the horizontal and of the vertical component.
+    ///
+    /// It is `$\langle c_x^4\rangle/\langle c_x^2\rangle^2 - 3$`, which is 0 for a Maxwellian gas.
     pub fn excess_kurtosis(&self) -> [Estimate; 2] {
         [self.excess_kurtosis[0].estimate(), self.excess_kurtosis[1].estimate()]
     }
@@ -129,8 +133,8 @@ impl VelocityDistribution {
 }
 
 impl Frame {
-    /// Returns the scaled velocities `$\sqrt m(v - u)$` of the disks, each with the share of its variance
-    /// that is left when the mean is taken off, and the degrees of freedom of each component.
+    /// Returns the scaled velocities √m (v − u) of the disks, each with the share of its variance that
+    /// remains once the mean is subtracted, and the degrees of freedom of each component.
     fn peculiar(&self, disks: &[Disk]) -> (Vec<(DVec2, f64)>, f64) {
         match self {
             Self::Container => {
@@ -149,7 +153,7 @@ impl Frame {
     }
 }
 
-/// Returns what [`Frame::peculiar`] does, about the mean velocity in each cell.
+/// Returns the result of [`Frame::peculiar`] about the mean velocity in each cell.
 fn about(
     cells: &[CellSums],
     disks: &[Disk],
@@ -166,11 +170,13 @@ fn about(
     (peculiar, freedom)
 }
 
-/// Returns a moment of a normal distribution over that of as many independent numbers.
+/// Returns a moment of some numbers, divided by its mean for as many normal numbers with the same sum of
+/// squares.
 ///
-/// `moment` is the sum of the powers `order` of numbers, `squares` that of their squares, `shares` the sum of
-/// the powers `order`/2 of the shares of the variance that each has kept; `freedom` counts the degrees of
-/// freedom of the squares. `normal` is the moment of a normal variable of that order.
+/// `moment` is the sum of the numbers to the power `order`, and `squares` the sum of their squares. Each
+/// number has kept a share of its variance; `shares` is the sum of these shares to the power `order`/2.
+/// `freedom` counts the degrees of freedom of the squares, and `normal` is the moment of this order of one
+/// normal number.
 fn relative_moment(moment: f64, squares: f64, order: i32, shares: f64, freedom: f64, normal: f64) -> f64 {
     // The direction of a normal vector is independent of its length, so the mean of the quotient is the
     // quotient of the means.

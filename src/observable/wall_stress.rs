@@ -15,14 +15,15 @@ use crate::statistics::{BlockedMean, Estimate};
 /// p = \frac1{L\,t}\sum\Delta_n,\qquad \tau = -\frac1{L\,t}\sum\Delta_t,
 /// ```
 ///
-/// the impulse over the length of the wall and time, in units of energy per area. `$\Delta_n$` and
-/// `$\Delta_t$` are the normal and tangential [impulses](crate::collision::Impulse) on the disks, so `$p$` is
-/// positive where disks push the wall, and `$\tau$` where they drag it along the tangent, which is the normal
-/// turned counterclockwise (to the left on a floor). Each interval between two samples gives one value, and
-/// the errors come from blocks of these. What hits a wall comes back to it, so that values of short intervals
-/// are anticorrelated and the errors up to three times too large: take intervals of many collisions.
+/// in units of energy per area, for a wall of length `$L$` over a time `$t$`. `$\Delta_n$` and `$\Delta_t$`
+/// are the normal and tangential [impulses](crate::collision::Impulse) on the disks. So `$p$` is positive
+/// where disks push the wall, and `$\tau$` where they drag it along the tangent, which is the normal turned
+/// counterclockwise (to the left on a floor). Each interval between two samples gives one value, and the
+/// errors come from blocks of these values. A disk that hits a wall comes back to it, so the values of short
+/// intervals are anticorrelated, and their errors up to three times too large: take intervals of many
+/// collisions.
 ///
-/// A run ends with an error if there is no wall of one of the indices.
+/// A run ends with an error if an index is not that of a wall.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Wall};
@@ -41,6 +42,7 @@ use crate::statistics::{BlockedMean, Estimate};
 /// assert_eq!(stress.shear(floor).unwrap().mean(), 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias("pressure", "wall force"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct WallStress {
@@ -70,12 +72,12 @@ impl Quantity for WallLength {
 }
 
 impl WallStress {
-    /// Creates an observer of no walls, with a value for each interval of the sample times.
+    /// Creates an observer that watches no wall yet and gives a value for each interval of the sample times.
     pub const fn new(times: SampleTimes) -> Self {
         Self { stretch: Stretch::new(times), walls: BTreeMap::new(), fault: None }
     }
 
-    /// Watches the wall of this index, which has this length.
+    /// Returns the same observer, which also watches the wall of this index and length.
     ///
     /// # Errors
     /// If the length is not finite and positive.

@@ -1,7 +1,7 @@
 //! The command line of a study: `new`, `check`, `prepare`, `run`, `status` and `tables`, for any experiment.
 //!
-//! The `main` of a program of your own is one call of [`main`]; the binary `granular-edmd` is that for the
-//! paper's box.
+//! In a program of your own, `main` is one call of [`main`]. The binary `granular-edmd` is such a program for
+//! the paper's box.
 //!
 //! ```no_run
 //! use granular_edmd::study::vibrated_box::{Base, VibratedBox};
@@ -14,16 +14,16 @@
 //! ```
 //!
 //! `status --json` prints one object: the number of ramps, and the indices of those that are done, running,
-//! begun and waiting. Tables are CSV files with a first line of names; `columns.csv` has the units of all
-//! of them.
+//! begun and waiting. Tables are CSV files whose first line has the names of the columns; `columns.csv` has
+//! the units of all columns.
 //!
 //! | exit code | meaning |
 //! |---|---|
 //! | 0 | all that was asked for is done |
-//! | 1 | it failed; one line on standard error says why |
+//! | 1 | the command failed; one line on standard error says why |
 //! | 2 | the command line or the plan cannot be used |
-//! | 3 | other processes do the rest (`--no-wait`), or, of `status`, there is a rest |
-//! | 130 | stopped by Ctrl-C or SIGTERM, with all that was done saved: the same command goes on |
+//! | 3 | other processes do the rest (`--no-wait`); from `status`: not all ramps are done |
+//! | 130 | stopped by Ctrl-C or SIGTERM with all work saved; the same command goes on |
 
 mod template;
 mod watch;
@@ -55,15 +55,15 @@ struct Arguments {
 enum Command {
     /// Writes a commented plan to begin with.
     New {
-        /// File to write; standard output if there is none. A file that is there is left as it is.
+        /// File to write; standard output if not given. An existing file is not overwritten.
         file: Option<PathBuf>,
     },
-    /// Checks a plan, and tells how much it is.
+    /// Checks a plan, and prints how many ramps and values it has.
     Check {
         /// The plan, in TOML.
         plan: PathBuf,
     },
-    /// Makes a folder that `row` can work in: one for each ramp, and `workflow.toml`. A run needs none of it.
+    /// Makes a study a workspace of `row`: a folder for each ramp, and `workflow.toml`. No run needs this.
     Prepare {
         /// The plan, in TOML.
         plan: PathBuf,
@@ -71,39 +71,39 @@ enum Command {
         #[arg(long)]
         out: PathBuf,
     },
-    /// Does what is not done yet of a plan, beside any other process that does the same.
+    /// Does the values of a plan that are not finished, alone or beside other processes that do the same.
     Run {
         /// The plan, in TOML.
         plan: PathBuf,
         /// Folder of the study: empty, or one with this plan.
         #[arg(long)]
         out: PathBuf,
-        /// Does this ramp alone, counted from 0.
+        /// Index of the only ramp to do, counted from 0.
         #[arg(long)]
         ramp: Option<usize>,
         /// Number of threads; one for each processor if not given.
         #[arg(long)]
         threads: Option<usize>,
-        /// Ends when all that is left is done by other processes.
+        /// Ends as soon as other processes do all that is left.
         #[arg(long)]
         no_wait: bool,
     },
-    /// Tells how far a study is.
+    /// Prints the progress of a study.
     Status {
         /// Folder of the study.
         folder: PathBuf,
-        /// Tells it as JSON, with the indices of the ramps.
+        /// Prints JSON, with the indices of the ramps.
         #[arg(long)]
         json: bool,
     },
-    /// Writes the tables of what is done.
+    /// Writes the tables of all finished values.
     Tables {
         /// Folder of the study.
         folder: PathBuf,
     },
 }
 
-/// The end of a command.
+/// The way in which a command ended.
 enum End {
     Done,
     /// Other processes do the rest.
@@ -111,7 +111,7 @@ enum End {
     Interrupted,
 }
 
-/// A reason for which a command fails.
+/// The reason why a command failed.
 enum Failure {
     Plan(Box<dyn Error>),
     Run(Box<dyn Error>),
@@ -132,8 +132,9 @@ impl From<PlanError> for Failure {
     }
 }
 
-/// Does what the command line of the program says, with plans of this experiment; `example` is the plan that
-/// `new` writes.
+/// Runs the command line of a program, with plans of this experiment.
+///
+/// The command `new` writes the plan that `example` returns.
 pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>) -> ExitCode {
     let ended = match Arguments::parse().command {
         Command::New { file } => new(example, file.as_deref()),
@@ -152,7 +153,7 @@ pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>)
     }
 }
 
-/// Tells of an error with its sources in one line.
+/// Prints an error and its sources in one line.
 fn report(error: &dyn Error, code: u8) -> ExitCode {
     let sources = std::iter::successors(error.source(), |&source| source.source()).map(ToString::to_string);
     let told: Vec<String> = std::iter::once(error.to_string()).chain(sources).collect();
@@ -160,7 +161,7 @@ fn report(error: &dyn Error, code: u8) -> ExitCode {
     ExitCode::from(code)
 }
 
-/// Prints a line; somebody who has stopped reading misses nothing.
+/// Prints a line. A reader that is gone is no error.
 fn say(line: &str) {
     let _ = writeln!(std::io::stdout(), "{line}");
 }
@@ -183,7 +184,7 @@ fn read(path: &Path) -> Result<String, Failure> {
     Ok(fs::read_to_string(path).map_err(StudyError::io("read", path))?)
 }
 
-/// Opens or makes the study of a plan in a folder.
+/// Opens or creates the study of a plan in a folder.
 fn study<E: Experiment>(path: &Path, folder: &Path) -> Result<Study<E>, Failure> {
     let plan = Plan::from_toml_unproven(&read(path)?)?;
     Ok(Study::open_or_create_unproven(folder, plan)?)

@@ -1,4 +1,4 @@
-//! Columns of tables: name, unit and value, said once.
+//! Columns of tables, each defined once by its name, unit and value.
 
 use std::fmt;
 
@@ -36,8 +36,10 @@ pub(super) enum Kind<E: Experiment> {
 }
 
 impl<E: Experiment> Column<E> {
-    /// Makes a column of a quantity of each sample: its value in the table of samples, its mean, with error
-    /// and number of independent samples, in that of values.
+    /// Creates a column from a quantity of each sample.
+    ///
+    /// The table of samples has its values. The table of values has its mean, with the error and the number
+    /// of independent samples.
     pub fn sampled<T: Into<Scalar>>(
         name: &'static str,
         unit: &'static str,
@@ -47,7 +49,7 @@ impl<E: Experiment> Column<E> {
         Self { name, unit, kind, in_samples: true, in_values: true }
     }
 
-    /// Makes a column of a quantity of each record, in the table of values.
+    /// Creates a column of the table of values from a quantity of each record.
     pub fn of_record<T: Into<Scalar>>(
         name: &'static str,
         unit: &'static str,
@@ -57,7 +59,7 @@ impl<E: Experiment> Column<E> {
         Self { name, unit, kind, in_samples: false, in_values: true }
     }
 
-    /// Makes a column of a quantity of each record that has an error, in the table of values.
+    /// Creates a column of the table of values from a quantity of each record that has an error.
     pub fn estimated(
         name: &'static str,
         unit: &'static str,
@@ -66,22 +68,22 @@ impl<E: Experiment> Column<E> {
         Self { name, unit, kind: Kind::Estimate(Box::new(value)), in_samples: false, in_values: true }
     }
 
-    /// Returns the same column in the table of samples alone.
+    /// Returns the same column for the table of samples alone.
     pub fn in_samples_only(self) -> Self {
         Self { in_values: false, ..self }
     }
 
-    /// Returns the same column in the table of values alone.
+    /// Returns the same column for the table of values alone.
     pub fn in_values_only(self) -> Self {
         Self { in_samples: false, ..self }
     }
 
-    /// Returns its name.
+    /// Returns the name of the column.
     pub const fn name(&self) -> &'static str {
         self.name
     }
 
-    /// Returns its unit.
+    /// Returns the unit of the column.
     pub const fn unit(&self) -> &'static str {
         self.unit
     }
@@ -98,12 +100,12 @@ impl<E: Experiment> Column<E> {
         self.in_values
     }
 
-    /// Returns whether its values have an error.
+    /// Returns whether the values of the column have an error.
     pub(super) const fn has_error(&self) -> bool {
         !matches!(self.kind, Kind::Record(_))
     }
 
-    /// Returns the estimate of a record; `None` of a column that has no error.
+    /// Returns the estimate for a record; `None` for a column that has no error.
     pub(super) fn estimate(&self, record: &Record<E>) -> Option<Estimate> {
         match &self.kind {
             Kind::Sample(value) => Some(record.mean(|sample| value(sample).number().unwrap_or(f64::NAN))),
@@ -120,7 +122,7 @@ impl<E: Experiment> fmt::Debug for Column<E> {
     }
 }
 
-/// A table beyond those of values and samples: some rows for each record.
+/// A table besides those of values and samples, with some rows for each record.
 ///
 /// ```
 /// use granular_edmd::study::{Table, vibrated_box::{Convection, VibratedBox}};
@@ -137,10 +139,10 @@ pub struct Table<E: Experiment> {
 }
 
 impl<E: Experiment> Table<E> {
-    /// Makes a table of this name, with these names and units of columns, whose rows are those of each record
-    /// in turn.
+    /// Creates a table from its name, the names and units of its columns, and a function that returns the
+    /// rows of each record.
     ///
-    /// A row has a number for each column: missing ones are NaN, and those beyond are left out.
+    /// A row has a number for each column: missing numbers are NaN, and surplus numbers are left out.
     pub fn new(
         name: &'static str,
         columns: &'static [(&'static str, &'static str)],
@@ -149,12 +151,12 @@ impl<E: Experiment> Table<E> {
         Self { name, columns, rows: Box::new(rows) }
     }
 
-    /// Returns its name: that of its file, without the ending.
+    /// Returns the name of the table, which is that of its file without the ending.
     pub const fn name(&self) -> &'static str {
         self.name
     }
 
-    /// Returns the names and units of its columns.
+    /// Returns the names and units of the columns.
     pub const fn columns(&self) -> &'static [(&'static str, &'static str)] {
         self.columns
     }
@@ -171,18 +173,18 @@ impl<E: Experiment> fmt::Debug for Table<E> {
     }
 }
 
-/// Names of the tables that each study has, and of columns that each table has.
+/// Names that are taken: those of the tables of every study, and those of the columns of every table.
 const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
 const PLACE: [&str; 10] =
     ["ramp", "point", "value", "leg", "repeat", "repeats", "seed", "outcome", "samples", "not_converged"];
 
-/// Returns the names of the columns that follow one of a mean: its error, and the number of independent
-/// samples.
+/// Returns the names of the two columns that follow a column of means: the error, and the number of
+/// independent samples.
 pub(super) fn error_names(name: &str) -> [String; 2] {
     ["error", "independent_samples"].map(|ending| format!("{name}_{ending}"))
 }
 
-/// Checks that all names of an experiment's columns and tables can be told apart, and be names.
+/// Checks that the names of an experiment's columns and tables are valid and all different.
 pub(super) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanError> {
     let (columns, tables) = (E::columns(), E::tables());
     let taken = [PLACE.as_slice(), varied].concat();

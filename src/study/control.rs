@@ -9,17 +9,17 @@ use std::time::Duration;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// Index of the ramp that has just got on.
+    /// Index of the ramp that has just made progress.
     pub ramp: usize,
-    /// Index of its value.
+    /// Index of the value in that ramp.
     pub value: usize,
-    /// Steps done in all: about as many as sampling intervals.
+    /// Number of steps that are done in all ramps; a step is about one sampling interval.
     pub done: u64,
-    /// Steps of the whole study.
+    /// Number of steps in all ramps that are to be run.
     pub total: u64,
 }
 
-/// Means to watch and stop a study; nothing here has an influence on results.
+/// The means to watch and stop a study, none of which influences results.
 ///
 /// ```
 /// use granular_edmd::study::{Control, Progress};
@@ -39,32 +39,36 @@ pub struct Control<'a> {
 }
 
 impl Default for Control<'_> {
-    /// Makes the control of a study that nobody watches or stops: values half done are saved every minute,
-    /// and ramps that other processes do are waited for.
+    /// Creates the control of a study that nobody watches or stops. The study saves unfinished values every
+    /// minute, and waits for ramps that other processes do.
     fn default() -> Self {
         Self { progress: None, interrupt: None, save_interval: Duration::from_secs(60), waits: true }
     }
 }
 
 impl<'a> Control<'a> {
-    /// Tells `progress` of every step, from whatever thread did it.
+    /// Returns the same control, which calls `progress` after every step, from the thread that did the step.
     pub fn with_progress(self, progress: &'a (dyn Fn(&Progress) + Sync)) -> Self {
         Self { progress: Some(progress), ..self }
     }
 
-    /// Stops soon after `interrupt` becomes true, with all that was done saved.
+    /// Returns the same control, which saves all work and stops soon after `interrupt` becomes true.
     pub fn with_interrupt(self, interrupt: &'a AtomicBool) -> Self {
         Self { interrupt: Some(interrupt), ..self }
     }
 
-    /// Saves values half done after each interval of this length: that much is lost at most when the process
-    /// is killed.
+    /// Returns the same control, which saves unfinished values after each interval of this length.
+    ///
+    /// A process that is killed loses no more than the work since the last save.
+    #[doc(alias = "checkpoint")]
     pub fn with_save_interval(self, interval: Duration) -> Self {
         Self { save_interval: interval, ..self }
     }
 
-    /// Returns at once when all that is left is done by other processes, which may yet be killed;
-    /// [`Summary::elsewhere`] names it.
+    /// Returns the same control, which does not wait for ramps that other processes do.
+    ///
+    /// A run then returns as soon as only such ramps are left. [`Summary::elsewhere`] names them, since their
+    /// processes may yet be killed.
     pub fn without_waiting(self) -> Self {
         Self { waits: false, ..self }
     }
@@ -90,13 +94,13 @@ impl fmt::Debug for Control<'_> {
     }
 }
 
-/// The outcome of a run of a study.
+/// The summary of a run of a study.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Summary {
-    /// Values that have a record now.
+    /// Number of values that have a record now.
     pub finished: usize,
-    /// Values of the study, or of the ramps that were to be run.
+    /// Number of values of the study, or of the ramps that were to be run.
     pub total: usize,
     /// Ramps that other processes are doing.
     pub elsewhere: Vec<usize>,
@@ -105,13 +109,13 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Returns whether all that was to be run is complete.
+    /// Returns true if all ramps that were to be run are complete.
     pub const fn is_complete(&self) -> bool {
         self.finished == self.total
     }
 }
 
-/// Counts the steps of all threads.
+/// A counter of the steps of all threads.
 pub(super) struct Meter<'a> {
     control: &'a Control<'a>,
     done: AtomicU64,
@@ -123,12 +127,12 @@ impl<'a> Meter<'a> {
         Self { control, done: AtomicU64::new(0), total: AtomicU64::new(total) }
     }
 
-    /// Takes note of steps that are to be done, too.
+    /// Adds further steps that are to be done.
     pub(super) fn extend(&self, steps: u64) {
         self.total.fetch_add(steps, Ordering::Relaxed);
     }
 
-    /// Takes note of steps that were done.
+    /// Adds steps that are done, and reports the progress.
     pub(super) fn advance(&self, ramp: usize, value: usize, steps: u64) {
         let done = self.done.fetch_add(steps, Ordering::Relaxed) + steps;
         if let Some(progress) = self.control.progress {

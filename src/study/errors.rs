@@ -10,7 +10,7 @@ use super::parameters::Difference;
 use crate::ParameterError;
 use crate::simulation::CheckpointError;
 
-/// A plan that cannot be carried out.
+/// An error in a plan, which therefore cannot be carried out.
 ///
 /// A message does not repeat its [source](std::error::Error::source): report the whole chain.
 #[derive(Debug, Error)]
@@ -22,10 +22,10 @@ pub enum PlanError {
     /// The text is not a plan, or the plan cannot be a text.
     #[error("{0}")]
     Toml(String),
-    /// The parameters of a value are refused by the experiment.
+    /// The experiment refuses the parameters of a value.
     #[error("the experiment cannot be{place}")]
     Experiment {
-        /// The parameters that vary, with their values; empty for the experiment as it is given.
+        /// The parameters that vary, with their values; empty for the experiment as it is in the plan.
         place: String,
         /// The reason.
         source: ExperimentError,
@@ -37,7 +37,7 @@ pub enum PlanError {
         parameter: String,
         /// The names of the parameters that have a value.
         known: Vec<String>,
-        /// The reason for which it is not one.
+        /// The reason why it is not a parameter.
         reason: String,
     },
     /// A short name stands for several parameters.
@@ -48,7 +48,7 @@ pub enum PlanError {
         /// The parameters that it may be.
         known: Vec<String>,
     },
-    /// The parameter cannot change with the disks in place.
+    /// The parameter of a ramp cannot change with the disks in place.
     #[error("{parameter} cannot be ramped with the disks in place; sweep it instead")]
     NotRampable {
         /// The parameter.
@@ -83,18 +83,18 @@ pub enum PlanError {
         parameter: String,
         /// The value.
         value: f64,
-        /// The one before it.
+        /// The value before it.
         before: f64,
     },
     /// There are more ramps or values than can be numbered.
     #[error("{count} ramps and values are too many: at most {most} are possible")]
     TooMany {
-        /// The number of them.
+        /// The number of ramps and values.
         count: u128,
         /// The largest possible number.
         most: usize,
     },
-    /// A column or a table of the experiment has a name that is taken or cannot be one.
+    /// A column or a table of the experiment has a name that is taken or not valid.
     #[error("{name:?} cannot be the name of a {what}: {reason}")]
     Name {
         /// The name.
@@ -106,13 +106,13 @@ pub enum PlanError {
     },
 }
 
-/// A study cannot be made, opened, run or read.
+/// An error in creating, opening, running or reading a study.
 ///
 /// A message does not repeat its [source](std::error::Error::source): report the whole chain.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum StudyError {
-    /// The plan is no good.
+    /// The plan cannot be carried out.
     #[error(transparent)]
     Plan(#[from] PlanError),
     /// The plan of a folder cannot be read as one of this experiment.
@@ -126,7 +126,7 @@ pub enum StudyError {
     /// The path of the folder is empty.
     #[error("the path of a study's folder is empty; take `.` for this folder")]
     NoPath,
-    /// The folder holds files, and none of them is a plan: a study would mix its own with them.
+    /// The folder holds files but no plan, so a study would mix its own files with them.
     #[error("{} holds other files ({}) and no study; choose an empty folder", path.display(), name)]
     Occupied {
         /// The folder.
@@ -152,19 +152,19 @@ pub enum StudyError {
         /// The answer of the system.
         source: io::Error,
     },
-    /// There is a study already.
+    /// The folder holds a study already.
     #[error("{} holds a study already", path.display())]
     Exists {
         /// The folder.
         path: PathBuf,
     },
-    /// There is no study.
+    /// The folder holds no study.
     #[error("{} holds no study", path.display())]
     Missing {
         /// The folder.
         path: PathBuf,
     },
-    /// There is a study with another plan.
+    /// The folder holds a study with another plan.
     #[error("{} holds a study with another plan; choose another folder: {}", path.display(), told(differences))]
     Different {
         /// The folder.
@@ -180,7 +180,7 @@ pub enum StudyError {
         /// The damage.
         reason: &'static str,
     },
-    /// A record is of another plan: one of the two was changed by hand.
+    /// A record belongs to another plan, so somebody has changed the record or the plan.
     #[error("{} is of another plan than that in its folder; take a new folder for a new one", path.display())]
     Foreign {
         /// The file.
@@ -221,19 +221,19 @@ pub enum StudyError {
     Encode {
         /// The file.
         path: PathBuf,
-        /// The reason; its type is an affair of this crate.
+        /// The reason, whose type is not part of the public API.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
 }
 
 impl StudyError {
-    /// Turns an error of the system into one that says where and what for.
+    /// Returns a function that turns an error of the system into one that names the action and the file.
     pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::Io { action, path: path.to_owned(), source }
     }
 }
 
-/// Tells of the first differences.
+/// Returns the first differences as text.
 fn told(differences: &[Difference]) -> String {
     const FIRST: usize = 5;
     let told: Vec<String> = differences.iter().take(FIRST).map(ToString::to_string).collect();

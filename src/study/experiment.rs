@@ -1,4 +1,4 @@
-//! The trait of everything that can be studied.
+//! The trait of experiments: systems that can be studied.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -12,30 +12,33 @@ use crate::quantity::{finite, positive};
 use crate::simulation::Checkpoint;
 use crate::{Disk, Simulation};
 
-/// A reason why an experiment cannot be: whatever error its parts gave.
+/// A reason why an experiment cannot be built or changed: any error of its parts.
 pub type ExperimentError = Box<dyn std::error::Error + Send + Sync>;
 
 /// The simulation of an experiment.
 pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundary>;
 
-/// A system to be studied, as the data of its parameters: what is simulated, what is measured, and what is
-/// told of it.
+/// A system under study, given by its parameters: its simulation, its measurements, and the columns of its
+/// tables.
 ///
-/// A study is made of a serializable type of your own. Its fields are the parameters: a [`Plan`](super::Plan)
-/// sets them by name (`"friction"`, `"base.amplitude"`), and its methods say what they mean. With
-/// `#[serde(deny_unknown_fields)]` a slip of the pen in a plan is told; without, it is told only of
-/// parameters that vary. [`VibratedBox`](super::vibrated_box::VibratedBox) is one such type.
+/// An experiment is a serializable type of your own. Its fields are the parameters, which a
+/// [`Plan`](super::Plan) sets by name (`"friction"`, `"base.amplitude"`), and its methods say what the
+/// parameters mean. With `#[serde(deny_unknown_fields)]`, any misspelled name in a plan is an error. Without
+/// it, only the misspelled name of a parameter that varies is an error.
+/// [`VibratedBox`](super::vibrated_box::VibratedBox) is one such type.
 ///
 /// # Contract
-/// 1. All methods are functions of the parameters and their arguments: no clock, no other random numbers.
-///    This is what makes the files of a study the same bytes, however they come about.
-/// 2. [`rule`](Self::rule) and [`boundary`](Self::boundary) are what the simulation of [`build`](Self::build)
-///    has: a run is resumed with them.
-/// 3. Samples and observer read back as they were written, in a format that does not describe itself: no
-///    `#[serde(untagged)]`, `flatten`, or `skip_serializing_if` in them. A study notices, and says so.
+/// 1. All methods are functions of the parameters and their arguments: they use no clock and no other random
+///    numbers. This gives the files of a study the same bytes, however they come about.
+/// 2. [`rule`](Self::rule) and [`boundary`](Self::boundary) return the rule and the walls of the simulation
+///    that [`build`](Self::build) makes, since a run is resumed with them.
+/// 3. Samples and observer read back as they were written, in a format that does not describe itself. So
+///    their types must not have `#[serde(untagged)]`, `flatten`, or `skip_serializing_if`. A study that
+///    cannot read them back ends with an error.
 ///
-/// A study guarantees: `sample` is called at the times of the protocol, in order; the observer has seen
-/// everything since the value has settled, and is kept, written and read back where a run is interrupted.
+/// A study guarantees that it calls `sample` at the times of the protocol, in order, and that the observer
+/// has seen everything since the value settled. Where a run is interrupted, the study writes the observer and
+/// reads it back.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -93,25 +96,25 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
     note = "implement `study::Experiment` for the type whose fields are your parameters"
 )]
 pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
-    /// Rule of the collisions.
+    /// Type of the collision rule.
     type Rule: CollisionRule;
-    /// The walls.
+    /// Type of the walls.
     type Boundary: Boundary;
-    /// Observer of the collisions; `()` for none.
+    /// Type of the observer; `()` for none.
     type Observer: Observer + Default + Serialize + DeserializeOwned;
-    /// Data kept of each moment of sampling: numbers, lists, anything that can be written.
+    /// Type of the data that a sample keeps: numbers, lists, anything that can be serialized.
     type Sample: Serialize + DeserializeOwned;
 
-    /// Returns the rule of these parameters.
+    /// Returns the collision rule of these parameters.
     ///
     /// # Errors
-    /// If there is none.
+    /// If the parameters do not give a rule.
     fn rule(&self) -> Result<Self::Rule, ExperimentError>;
 
     /// Returns the walls of these parameters.
     ///
     /// # Errors
-    /// If there are none.
+    /// If the parameters do not give walls.
     fn boundary(&self) -> Result<Self::Boundary, ExperimentError>;
 
     /// Returns the disks at the start.
@@ -125,33 +128,35 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         0.0
     }
 
-    /// Returns the time of a cycle, the unit of a [`Protocol`](super::Protocol): the period of what drives
-    /// the disks.
+    /// Returns the duration of a cycle, the unit of time of a [`Protocol`](super::Protocol), such as the
+    /// period of a vibrating base.
     fn cycle(&self) -> f64 {
         1.0
     }
 
-    /// Returns the observer that a value begins with.
+    /// Returns the observer with which a value begins.
     fn observer(&self) -> Self::Observer {
         Self::Observer::default()
     }
 
-    /// Returns the sample of this moment. The observer may be read and changed: emptied for the interval
-    /// until the next sample, or used to add up over all samples.
+    /// Returns the sample of this moment.
+    ///
+    /// It may read and change the observer: empty it for the interval until the next sample, or leave it to
+    /// add up over all samples.
     fn sample(&self, snapshot: &Snapshot<'_>, observer: &mut Self::Observer) -> Self::Sample;
 
-    /// Returns the columns of the tables, each said once: its name, its unit, and its value.
+    /// Returns the columns of the tables, each with its name, unit and value.
     fn columns() -> Vec<Column<Self>>;
 
-    /// Returns tables beyond those of values and samples, of profiles for example.
+    /// Returns further tables besides those of values and samples, of profiles for example.
     fn tables() -> Vec<Table<Self>> {
         Vec::new()
     }
 
-    /// Builds the simulation of a first value.
+    /// Builds the simulation with which a ramp begins.
     ///
     /// # Errors
-    /// If that cannot be.
+    /// If the rule, the walls, the disks or the simulation cannot be made.
     fn build(&self, seed: u64) -> Result<Run<Self>, ExperimentError> {
         Ok(Simulation::builder(self.rule()?, self.boundary()?)
             .disks(self.disks(derived_seed(seed, 0))?)
@@ -160,10 +165,10 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
             .build()?)
     }
 
-    /// Takes a simulation of other parameters, those of the value before, to these ones.
+    /// Changes a simulation from the parameters of the previous value to these.
     ///
-    /// Unless said otherwise, rule, walls and gravity become those of these parameters; walls that are the
-    /// same, by their fingerprint, stay.
+    /// By default, the simulation gets the rule, walls and gravity of these parameters. Walls with the same
+    /// fingerprint stay as they are.
     ///
     /// # Errors
     /// If the disks do not fit into the walls.
@@ -181,10 +186,12 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         Ok(())
     }
 
-    /// Checks that the parameters have a meaning. A plan asks for each of its values, before anything is run.
+    /// Checks that the parameters are valid.
+    ///
+    /// A plan calls this for each of its values, before anything runs.
     ///
     /// # Errors
-    /// If they do not.
+    /// If they are not.
     fn check(&self) -> Result<(), ExperimentError> {
         self.rule()?;
         self.boundary()?;
@@ -193,17 +200,18 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         Ok(())
     }
 
-    /// Returns whether a parameter, by its whole name, can change with the disks in place.
+    /// Returns whether the parameter of this whole name can change with the disks in place.
     fn can_be_ramped(parameter: &str) -> bool {
         let _ = parameter;
         true
     }
 
-    /// Checks what was read from a file, beyond its checksum, its place and its time: says why it cannot be
-    /// of these parameters.
+    /// Checks that the contents of a file can belong to these parameters.
+    ///
+    /// The study has already checked the checksum, the place and the time.
     ///
     /// # Errors
-    /// The reason, if there is one.
+    /// The reason why they cannot, if there is one.
     fn check_measured(
         &self,
         samples: &[Self::Sample],

@@ -1,4 +1,4 @@
-//! The files of a study: whole or absent, and sealed where they hold records.
+//! The files of a study, each whole or absent, and sealed if it holds a record.
 
 use std::fs;
 use std::io;
@@ -18,27 +18,28 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     write_whole(path, bytes).map_err(StudyError::io("write", path))
 }
 
-/// Writes a file that is not there yet, whole or not at all; returns false if there is one already, which
-/// stays.
+/// Writes a new file, whole or not at all. If there is one already, it stays, and the function returns false.
 ///
-/// A link, unlike a rename, never takes the place of another file: of two writers one wins, also on file
-/// systems of a network.
+/// A link, unlike a rename, never takes the place of another file: one of two writers wins, also on a network
+/// file system.
 pub(super) fn publish(path: &Path, bytes: &[u8]) -> Result<bool, StudyError> {
     let draft = path.with_file_name(unique_name());
     write(&draft, bytes)?;
     let published = match fs::hard_link(&draft, path) {
         Ok(()) => Ok(true),
         Err(_) if path.exists() => Ok(false),
-        // A file system without links; the lock of the folder keeps other writers away.
+        // The file system has no links; the lock of the folder keeps other writers away.
         Err(_) => write(path, bytes).map(|()| true),
     };
     remove(&draft)?;
     published
 }
 
-/// Writes a file by way of another folder, whose lock is held, so that nobody removes it half written.
+/// Writes a file by way of another folder, whose lock the caller holds, so that nobody removes the file half
+/// written.
 ///
-/// It is not asked to outlast a loss of power: the one who needs it compares it and writes it again.
+/// The file may be lost with a loss of power, since nothing asks the system to store it at once. A caller
+/// that needs it compares it and writes it again.
 pub(super) fn move_in(by: &Path, path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     let draft = by.join(unique_name());
     let written = fs::write(&draft, bytes).and_then(|()| fs::rename(&draft, path));
@@ -48,7 +49,7 @@ pub(super) fn move_in(by: &Path, path: &Path, bytes: &[u8]) -> Result<(), StudyE
     written.map_err(StudyError::io("write", path))
 }
 
-/// Writes data with magic, version and checksum; they must read back as they were written.
+/// Writes data with a magic number, a version and a checksum. The data must read back as they were written.
 pub(super) fn write_sealed<T: DeserializeOwned + Serialize>(
     path: &Path,
     data: &impl Serialize,

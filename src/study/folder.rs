@@ -1,7 +1,7 @@
-//! The folder of a study: its files, and the locks of those who write them.
+//! The folder of a study, with its files and the locks of the processes that write them.
 //!
-//! Whoever writes into the folder of a study, or into that of a ramp, holds its lock; so a temporary file
-//! that is found under the lock has a writer that is dead.
+//! A process that writes into the folder of a study or of a ramp holds the lock of that folder. So the next
+//! holder of the lock knows that the writer of a temporary file there is dead.
 
 use std::fs;
 use std::io;
@@ -13,7 +13,7 @@ use super::lock::{self, Lock};
 use super::log;
 use crate::file::is_temporary;
 
-/// Told to a stranger in the folder of a study.
+/// Text of the README in the folder of a study, for somebody who comes across it.
 const ABOUT: &str = "\
 A study by granular-edmd (event-driven molecular dynamics of frictional, inelastic, rotating disks).
 
@@ -78,7 +78,7 @@ impl Folder {
         self.plan().exists()
     }
 
-    /// Puts a plan into the folder, which is made if it is not there; returns false if there is one already.
+    /// Puts a plan into the folder, which it creates if needed; returns false if there is a plan already.
     pub(super) fn create(&self, plan: &str) -> Result<bool, StudyError> {
         self.check_free()?;
         fs::create_dir_all(&self.root).map_err(StudyError::io("create", &self.root))?;
@@ -89,12 +89,12 @@ impl Folder {
         Ok(is_new)
     }
 
-    /// Writes what tells a stranger about the folder, if it is not there.
+    /// Writes the README of the folder, if it is not there.
     fn write_about(&self) -> Result<(), StudyError> {
         file::publish(&self.root.join(README), ABOUT.as_bytes()).map(drop)
     }
 
-    /// Checks that there is nothing in the folder, or only what was there before a plan of ours came, or the
+    /// Checks that the folder has a plan, or nothing but a lock and temporary files, which come before a
     /// plan.
     fn check_free(&self) -> Result<(), StudyError> {
         let Some(stranger) = self.stranger()? else { return Ok(()) };
@@ -108,7 +108,7 @@ impl Folder {
     fn stranger(&self) -> Result<Option<String>, StudyError> {
         let cannot_read = || StudyError::io("read", &self.root);
         let entries = match fs::read_dir(&self.root) {
-            // The attempt to make it tells why it cannot be, if it cannot.
+            // There is no such folder. The attempt to create it gives the error, if that fails.
             Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
                 return Ok(None);
             }
@@ -130,7 +130,7 @@ impl Folder {
         fs::read_to_string(self.plan()).map_err(StudyError::io("read", &self.plan()))
     }
 
-    /// Takes the lock of a ramp, in its folder; `None` if somebody does the ramp.
+    /// Takes the lock of a ramp, in its folder; returns `None` if somebody does the ramp.
     pub(super) fn take(&self, ramp: usize) -> Result<Option<Lock>, StudyError> {
         let folder = self.ramp(ramp);
         fs::create_dir_all(&folder).map_err(StudyError::io("create", &folder))?;
@@ -145,7 +145,8 @@ impl Folder {
         Lock::is_taken(&self.ramp(ramp))
     }
 
-    /// Returns whether somebody has ever done something of a ramp; its folder may have been made beforehand.
+    /// Returns whether a process has ever begun a ramp. The folder alone does not say so, since it may have
+    /// been prepared.
     pub(super) fn is_begun(&self, ramp: usize) -> bool {
         self.ramp(ramp).join(lock::NAME).exists()
     }
@@ -154,29 +155,29 @@ impl Folder {
         self.done(ramp).exists()
     }
 
-    /// Says of a ramp that it is done.
+    /// Marks a ramp as done.
     pub(super) fn mark_done(&self, ramp: usize) -> Result<(), StudyError> {
         let path = self.done(ramp);
         if path.exists() { Ok(()) } else { file::write(&path, b"") }
     }
 
-    /// Takes back that a ramp is done.
+    /// Removes the mark that a ramp is done.
     pub(super) fn mark_undone(&self, ramp: usize) -> Result<(), StudyError> {
         file::remove(&self.done(ramp))
     }
 
-    /// Returns whether all ramps are done and the tables tell of all of them.
+    /// Returns whether all ramps are done and in the tables.
     pub(super) fn is_complete(&self) -> bool {
         self.complete().exists()
     }
 
-    /// Says that the tables tell of all ramps.
+    /// Marks that all ramps are in the tables.
     pub(super) fn mark_complete(&self) -> Result<(), StudyError> {
         let _lock = Lock::take(&self.root)?;
         if self.is_complete() { Ok(()) } else { file::write(&self.complete(), b"") }
     }
 
-    /// Takes back that the study is complete: a value comes that may not be in the tables.
+    /// Removes the mark that the study is complete, before a value comes that may not be in the tables.
     pub(super) fn mark_incomplete(&self) -> Result<(), StudyError> {
         file::remove(&self.complete())
     }
@@ -185,14 +186,14 @@ impl Folder {
         self.root.join("done")
     }
 
-    /// Writes tables, by their names.
+    /// Writes tables, each to a file of its name.
     pub(super) fn write_tables<'a>(
         &self,
         tables: impl IntoIterator<Item = (&'a str, &'a str)>,
     ) -> Result<(), StudyError> {
         let _lock = Lock::take(&self.root)?;
         file::remove_temporaries(&self.root)?;
-        // Whoever made the plan may have been killed before it wrote this.
+        // The process that put the plan here may have been killed before it wrote the README.
         self.write_about()?;
         tables
             .into_iter()

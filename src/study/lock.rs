@@ -1,24 +1,24 @@
-//! One process at a time.
+//! Locks, which let one process at a time write into a folder.
 
 use std::fs::{File, TryLockError};
 use std::path::Path;
 
 use super::errors::StudyError;
 
-/// Name of the file that is locked, in each folder.
+/// Name of the file in each folder that is locked.
 pub(super) const NAME: &str = "lock";
 
-/// The right to write into a folder; it ends with the process at the latest, however that ends.
+/// The right to write into a folder; it ends with the process at the latest, however the process ends.
 ///
-/// The file stays, and stays empty: to remove it would let two processes hold locks of two files of the same
-/// name.
+/// The file stays, and stays empty. If it were removed, two processes could hold the locks of two different
+/// files of the same name.
 #[derive(Debug)]
 pub(super) struct Lock {
     file: File,
 }
 
 impl Lock {
-    /// Takes the lock of a folder; `None` if somebody has it.
+    /// Takes the lock of a folder; returns `None` if somebody has it.
     pub(super) fn try_take(folder: &Path) -> Result<Option<Self>, StudyError> {
         let path = folder.join(NAME);
         let file = open(&path)?;
@@ -29,7 +29,7 @@ impl Lock {
         }
     }
 
-    /// Takes the lock of a folder, as soon as nobody else has it.
+    /// Waits until nobody else has the lock of a folder, and takes it.
     pub(super) fn take(folder: &Path) -> Result<Self, StudyError> {
         let path = folder.join(NAME);
         let file = open(&path)?;
@@ -37,7 +37,7 @@ impl Lock {
         Ok(Self { file })
     }
 
-    /// Returns whether somebody has the lock of a folder; nobody has it where it cannot be told.
+    /// Returns whether somebody has the lock of a folder; false if that cannot be found out.
     pub(super) fn is_taken(folder: &Path) -> bool {
         let Ok(file) = File::open(folder.join(NAME)) else { return false };
         match file.try_lock_shared() {
@@ -59,8 +59,8 @@ fn open(path: &Path) -> Result<File, StudyError> {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // Closing the file would not give the lock back while a process that was forked meanwhile, to start
-        // another program, has it open, too.
+        // A process that was forked meanwhile, to start another program, may have the file open, too. Then to
+        // close the file here would not give the lock back.
         let _ = self.file.unlock();
     }
 }

@@ -1,4 +1,4 @@
-//! The log of a study: lines that all its processes write.
+//! The log of a study, to which all its processes add lines.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -6,19 +6,19 @@ use std::path::Path;
 
 /// Adds a line to a file, under the lock of that file.
 ///
-/// Without it, two hosts that append over a network write to the same place. A line that was cut short by a
-/// kill or a full disk goes first: every line is whole.
+/// Without the lock, two hosts that append over a network write to the same place. If a kill or a full drive
+/// has cut the last line short, that line is removed first, so that every line is whole.
 pub(super) fn append(path: &Path, line: &str) -> io::Result<()> {
     let mut file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
     file.lock()?;
     let written = to_last_line_end(&mut file).and_then(|()| file.write_all(format!("{line}\n").as_bytes()));
-    // Closing the file would not give the lock back while a process that was forked meanwhile has it open,
-    // too.
+    // A process that was forked meanwhile may have the file open, too. Then to close the file here would not
+    // give the lock back.
     let _ = file.unlock();
     written
 }
 
-/// Goes to the end of the last whole line, and removes what is behind it.
+/// Goes to the end of the last whole line, and removes what follows it.
 fn to_last_line_end(file: &mut File) -> io::Result<()> {
     let end = file.seek(SeekFrom::End(0))?;
     let mut last = [b'\n'];

@@ -1,4 +1,5 @@
-//! One value of a ramp, from its start to its record: a pure function of plan, index and the record before.
+//! One value of a ramp, from its start to its record, as a pure function of the plan, the index and the
+//! record from which it starts.
 
 use super::errors::StudyError;
 use super::experiment::{Experiment, ExperimentError, Run};
@@ -8,21 +9,21 @@ use super::{Plan, Protocol};
 use crate::Simulation;
 use crate::simulation::{Checkpoint, CheckpointError, Counters, RunEnd, RunError};
 
-/// The value that is to be done.
+/// A value that is to be done.
 pub(super) struct Value<'a, E: Experiment> {
     pub(super) plan: &'a Plan<E>,
     pub(super) origin: Origin,
     pub(super) experiment: E,
     pub(super) step: Step,
-    /// The record of the value before, if there is one.
+    /// The record from which the value starts, if there is one.
     pub(super) before: Option<&'a Record<E>>,
 }
 
-/// A value half done, as data: where it is, what has been done of it, and its state.
+/// An unfinished value as data: its place, the work that is done, and its state.
 pub(super) type Partial<E> =
     (Origin, Work<<E as Experiment>::Sample, <E as Experiment>::Observer>, Checkpoint);
 
-/// Part of a value that has been done.
+/// The part of a value that is done.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Work<S, O> {
@@ -51,7 +52,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         Ok(Active { value: self, work: Work { start, steps: 0, counters, measured }, run })
     }
 
-    /// Goes on with the value where it was saved; says why, if that cannot be.
+    /// Goes on with the value where it was saved. The error says why that is impossible.
     pub(super) fn go_on(&'a self, (_, work, state): Partial<E>) -> Result<Active<'a, E>, &'static str> {
         work.check(self.plan.protocol())?;
         check(work.start == self.start(), "it starts elsewhere")?;
@@ -63,7 +64,8 @@ impl<'a, E: Experiment> Value<'a, E> {
         Ok(Active { value: self, work, run })
     }
 
-    /// Returns the time at which the value starts: in whole cycles, as long as cycles are of one length.
+    /// Returns the time at which the value starts, in whole cycles as long as the length of a cycle stays the
+    /// same.
     fn start(&self) -> Cycles {
         let Some(before) = self.before else { return Cycles::START };
         let (end, cycle) = (before.contents.end, before.experiment.cycle());
@@ -86,7 +88,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         Ok(run)
     }
 
-    /// Resumes a saved state under the rule and in the walls that it was saved with.
+    /// Resumes a saved state with the rule and the walls of the experiment that saved it.
     fn resume(state: &Checkpoint, saved: &E) -> Result<Run<E>, Unresumed> {
         let rule = saved.rule().map_err(Unresumed::Experiment)?;
         let boundary = saved.boundary().map_err(Unresumed::Experiment)?;
@@ -98,14 +100,14 @@ impl<'a, E: Experiment> Value<'a, E> {
     }
 }
 
-/// Reason for which a state cannot go on.
+/// The reason why a state cannot go on.
 enum Unresumed {
     Experiment(ExperimentError),
     Checkpoint(CheckpointError),
 }
 
 impl<E: Experiment> Active<'_, E> {
-    /// Returns how many steps are done.
+    /// Returns the number of steps that are done.
     pub(super) const fn steps(&self) -> u64 {
         self.work.steps
     }
@@ -114,7 +116,7 @@ impl<E: Experiment> Active<'_, E> {
         self.work.steps >= self.value.plan.protocol().steps()
     }
 
-    /// Does the next step: settles on, or takes a sample. The observer may end the value in it.
+    /// Does the next step, which settles or takes a sample. The observer may end the value during the step.
     pub(super) fn step(&mut self) -> Result<RunEnd, RunError> {
         let protocol = self.value.plan.protocol();
         let (step, cycle) = (self.work.steps, self.value.experiment.cycle());
@@ -144,7 +146,7 @@ impl<E: Experiment> Active<'_, E> {
         self.run.run_until(end, observer)
     }
 
-    /// Returns the value as data, to go on with later.
+    /// Returns the unfinished value as data, to go on with it later.
     pub(super) fn partial(&self) -> (&Origin, &Work<E::Sample, E::Observer>, Checkpoint) {
         (&self.value.origin, &self.work, self.run.checkpoint())
     }
@@ -163,7 +165,8 @@ impl<E: Experiment> Active<'_, E> {
         self.into_record(Outcome::Stopped { time }, Cycles { since: time, count: 0 }, state)
     }
 
-    /// Returns the record of a value that the engine could not finish: the next one starts as this one did.
+    /// Returns the record of a value that the engine could not finish. The next value starts from the state
+    /// in which this one started.
     pub(super) fn failed(self, error: &RunError) -> Result<Record<E>, StudyError> {
         let (time, reason) = (self.run.time(), chain(error));
         let outcome = match error {
@@ -191,7 +194,7 @@ impl<E: Experiment> Active<'_, E> {
 }
 
 impl<S, O> Work<S, O> {
-    /// Checks that it is what a value can be at some step.
+    /// Checks that a value can have come this far under the protocol.
     fn check(&self, protocol: &Protocol) -> Result<(), &'static str> {
         check(self.steps <= protocol.steps(), "it is longer than the protocol")?;
         let samples = protocol.samples_of(self.steps);

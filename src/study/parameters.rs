@@ -12,12 +12,12 @@ pub(super) fn tree(experiment: &impl Serialize) -> Result<Table, PlanError> {
     Table::try_from(experiment).map_err(|error| PlanError::Toml(error.to_string()))
 }
 
-/// Makes an experiment of a tree of names.
+/// Creates an experiment from a tree of names.
 pub(super) fn experiment<E: DeserializeOwned>(tree: Table) -> Result<E, String> {
     E::deserialize(Value::Table(tree)).map_err(|error| error.to_string().trim().to_owned())
 }
 
-/// Returns the names of all parameters: those inside others behind a dot.
+/// Returns the whole names of all parameters, in which a dot separates a group and its parts.
 pub(super) fn names(tree: &Table) -> Vec<String> {
     let mut names = Vec::new();
     for (name, value) in tree {
@@ -59,9 +59,9 @@ pub(super) fn set(tree: &mut Table, name: &str, to: &Scalar) -> bool {
     }
 }
 
-/// Returns the whole name of a parameter: its last part is enough where no other ends so.
+/// Returns the whole name of a parameter. Its last part is enough if no other parameter ends with it.
 ///
-/// A name that is not there is returned as it is: it may be that of a parameter without a value.
+/// An unknown name is returned as it is, since it may be that of a parameter without a value.
 pub(super) fn whole_name(tree: &Table, name: &str) -> Result<String, PlanError> {
     if get(tree, name).is_some() {
         return Ok(name.to_owned());
@@ -75,8 +75,8 @@ pub(super) fn whole_name(tree: &Table, name: &str) -> Result<String, PlanError> 
     }
 }
 
-/// Sets a parameter of an experiment and reads it back, as it has become; an error says why there is none of
-/// this name.
+/// Sets a parameter of an experiment, and returns its value as it reads back. The error says why there is no
+/// such parameter, or why the experiment refuses the value.
 pub(super) fn probe<E: Serialize + DeserializeOwned>(
     base: &Table,
     parameter: &str,
@@ -103,21 +103,23 @@ pub(super) fn probe<E: Serialize + DeserializeOwned>(
     found.ok_or_else(|| unknown("the experiment ignores it".to_owned()))
 }
 
-/// Names the values of parameters, for errors.
+/// Returns the names and values of parameters as text, for errors.
 pub(super) fn place(varied: &[(&str, &Scalar)]) -> String {
     let varied: Vec<String> = varied.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     if varied.is_empty() { String::new() } else { format!(" at {}", varied.join(", ")) }
 }
 
-/// A field in which two plans differ; absent fields are `None`.
+/// A field in which two plans differ.
+///
+/// The value of an absent field is `None`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Difference {
-    /// The name of the field, with those that it is in.
+    /// The name of the field, after the names of the groups that contain it.
     pub field: String,
-    /// Its value in the plan that is there.
+    /// The value in the plan of the folder.
     pub old: Option<String>,
-    /// Its value in the plan that was given.
+    /// The value in the plan that was given.
     pub new: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! A study as data.
+//! Plans: studies as data.
 
 mod text;
 mod validation;
@@ -12,18 +12,18 @@ use super::refinement::{Seen, Step};
 use super::{Axis, Experiment, Leg, Protocol, Ramp, Scalar};
 use crate::quantity::accept;
 
-/// Plan of a study, as data: an experiment, how each value is sampled, what is ramped, what is swept, and
-/// how often.
+/// The plan of a study as data: an experiment, its sampling, its ramp, its sweep, and its number of repeats.
 ///
-/// The axes of the sweep span a grid. Each of its points is a ramp, independent of all others, and is done as
-/// often as there are repeats, each with a seed of its own; each step of a ramp is a *value*. Without axes
-/// there is one ramp, without a ramp one value in each.
+/// The axes of the sweep span a grid. Each repeat of each point is a ramp, with a seed of its own and
+/// independent of all others. Each step of a ramp is a *value*. Without axes, the grid has one point. Without
+/// a ramp, each point has one value.
 ///
-/// Axes and ramps vary parameters of the experiment by name: that of its field, with those that it is in
-/// before it (`base.bi_parabolic.amplitude`). The last part is enough where no other parameter ends so.
+/// Axes and ramps vary parameters of the experiment by name. The whole name is that of the field, after the
+/// names of the groups that contain it (`base.bi_parabolic.amplitude`). The last part is enough if no other
+/// parameter ends with it.
 ///
-/// A point is a function of plan, index and seed alone. The seed of a ramp is `$\mathrm{BLAKE3}(\text{seed},
-/// \text{index})$`, the first eight bytes; repeats are the last and fastest part of the index.
+/// A ramp is a function of plan, index and seed alone. The seed of a ramp is the first eight bytes of
+/// `$\mathrm{BLAKE3}(\text{seed}, \text{index})$`. In the index of a ramp, the repeat counts fastest.
 ///
 /// ```
 /// use granular_edmd::study::{Plan, Scalar, vibrated_box::VibratedBox};
@@ -47,6 +47,7 @@ use crate::quantity::accept;
 /// assert!(error.to_string().contains("unknown field `sede`"));
 /// # Ok::<(), granular_edmd::study::PlanError>(())
 /// ```
+#[doc(alias("sweep", "TOML"))]
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan<E> {
     seed: u64,
@@ -72,7 +73,7 @@ const fn is_one(count: &usize) -> bool {
 }
 
 impl<E: Experiment> Plan<E> {
-    /// Makes the plan of one value.
+    /// Creates the plan of one value.
     ///
     /// # Errors
     /// If the experiment refuses its parameters, the protocol is out of range, or the seed is not below
@@ -82,48 +83,50 @@ impl<E: Experiment> Plan<E> {
         Self { seed, repeats: 1, experiment, protocol, ramp, sweep, tree, varied }.checked()
     }
 
-    /// Returns the same plan with a ramp in each point.
+    /// Returns the same plan with a ramp at each point.
     ///
     /// # Errors
-    /// If the parameter cannot be ramped, is swept, or is none of the experiment's, or its values are refused
-    /// or do not increase.
+    /// If the parameter cannot be ramped, is swept already, or does not belong to the experiment, or if its
+    /// values are refused or do not increase.
     pub fn with_ramp(self, ramp: Ramp) -> Result<Self, PlanError> {
         Self { ramp: Some(ramp), ..self }.checked()
     }
 
-    /// Returns the same plan with one more axis; that of the last one changes fastest.
+    /// Returns the same plan with one more axis.
+    ///
+    /// The value of the last axis changes fastest.
     ///
     /// # Errors
-    /// If the parameter varies already or is none of the experiment's, or a value is refused.
+    /// If the parameter varies already or does not belong to the experiment, or if a value is refused.
     pub fn with_axis(mut self, axis: Axis) -> Result<Self, PlanError> {
         self.sweep.push(axis);
         self.checked()
     }
 
-    /// Returns the same plan with each point done so often, with different seeds.
+    /// Returns the same plan with this many repeats of each point, with different seeds.
     ///
     /// # Errors
-    /// If it is 0, or there are too many values then.
+    /// If the number is 0, or the plan then has too many values.
     pub fn with_repeats(self, repeats: usize) -> Result<Self, PlanError> {
         Self { repeats, ..self }.checked()
     }
 
-    /// Returns how values are sampled.
+    /// Returns the protocol by which values are sampled.
     pub const fn protocol(&self) -> &Protocol {
         &self.protocol
     }
 
-    /// Returns the seed of all seeds.
+    /// Returns the seed from which all others follow.
     pub const fn seed(&self) -> u64 {
         self.seed
     }
 
-    /// Returns how often each point is done.
+    /// Returns the number of repeats of each point.
     pub const fn repeats(&self) -> usize {
         self.repeats
     }
 
-    /// Returns the number of ramps: points of the grid, each as often as there are repeats.
+    /// Returns the number of ramps, which is the number of points times the number of repeats.
     pub fn ramps(&self) -> usize {
         self.points() * self.repeats
     }
@@ -149,12 +152,12 @@ impl<E: Experiment> Plan<E> {
         derived_seed(self.seed, ramp as u64)
     }
 
-    /// Returns the way on which a value is come to; `None` without a ramp.
+    /// Returns the direction from which a ramp comes to a value; `None` without a ramp.
     pub fn leg(&self, value: usize) -> Option<Leg> {
         self.step(value).map(|(leg, _)| leg)
     }
 
-    /// Returns the parameters that vary, and what they are in a value: none for one that there is not.
+    /// Returns the parameters that vary, as they are in a value; empty if there is no such value.
     pub fn parameters(&self, ramp: usize, value: usize) -> Vec<(&str, Scalar)> {
         if ramp >= self.ramps() || value >= self.values() {
             return Vec::new();
@@ -162,7 +165,7 @@ impl<E: Experiment> Plan<E> {
         self.parameters_at(ramp, self.step(value).map(|(_, at)| at))
     }
 
-    /// Returns the parameters that vary, and what they are where the ramped one is `at`.
+    /// Returns the parameters that vary, as they are where the ramped parameter is `at`.
     pub(super) fn parameters_at(&self, ramp: usize, at: Option<f64>) -> Vec<(&str, Scalar)> {
         let mut rest = ramp / self.repeats;
         let mut found: Vec<(&str, Scalar)> = Vec::with_capacity(self.varied.len());
@@ -179,7 +182,7 @@ impl<E: Experiment> Plan<E> {
     /// Returns the experiment of a value.
     ///
     /// # Errors
-    /// If there are not so many ramps or values.
+    /// If there is no such ramp or value.
     pub fn experiment(&self, ramp: usize, value: usize) -> Result<E, PlanError> {
         accept(ramp < self.ramps(), "index of a ramp", "below the number of ramps", ramp as f64)?;
         accept(value < self.values(), "index of a value", "below the number of values", value as f64)?;
@@ -196,7 +199,7 @@ impl<E: Experiment> Plan<E> {
         self.ramp.as_ref()
     }
 
-    /// Returns whether transitions are bisected, so that ramps have more values than the plan names.
+    /// Returns whether ramps bisect transitions, and so have more values than the plan names.
     pub(super) fn is_refined(&self) -> bool {
         self.ramp.as_ref().is_some_and(|ramp| ramp.refine().is_some())
     }
@@ -213,7 +216,7 @@ impl<E: Experiment> Plan<E> {
         let mut tree = self.tree.clone();
         for (name, (_, to)) in self.varied.iter().zip(varied) {
             let to = parameters::get(&tree, name).map_or_else(|| to.clone(), |known| to.clone().like(known));
-            // Names were tried when the plan was made.
+            // The names were tried when the plan was made, so this succeeds.
             let _ = parameters::set(&mut tree, name, &to);
         }
         let refused = |reason: String| Self::refused(varied, reason.into());
@@ -230,7 +233,7 @@ impl<E: Experiment> Plan<E> {
     }
 }
 
-/// Returns a seed for one of many things that need one.
+/// Returns the seed of this index that follows from another seed.
 pub(super) fn derived_seed(seed: u64, index: u64) -> u64 {
     let bytes = [seed.to_le_bytes(), index.to_le_bytes()].concat();
     let hash = blake3::hash(&bytes);

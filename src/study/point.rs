@@ -1,9 +1,10 @@
-//! All repeats of a value, together.
+//! Points: values with all their repeats.
 
 use super::{Experiment, Leg, Record};
 use crate::statistics::Estimate;
 
-/// A value of a point of the grid, with the records of its repeats: same parameters, different seeds.
+/// A value at a point of the grid, with the records of its repeats, which have the same parameters and
+/// different seeds.
 ///
 /// ```
 /// # use granular_edmd::study::vibrated_box::{Base, VibratedBox};
@@ -31,13 +32,13 @@ pub struct Point<E: Experiment> {
 }
 
 impl<E: Experiment> Point<E> {
-    /// Makes a point of the records of its repeats; `None` if there are none.
+    /// Creates a point from the records of its repeats; `None` if there are none.
     pub(super) fn of(index: usize, value: usize, records: Vec<Record<E>>) -> Option<Self> {
         let experiment = records.first()?.experiment().clone();
         Some(Self { index, value, experiment, records })
     }
 
-    /// Returns its index in the grid.
+    /// Returns the index of the point in the grid.
     pub const fn index(&self) -> usize {
         self.index
     }
@@ -47,7 +48,7 @@ impl<E: Experiment> Point<E> {
         self.value
     }
 
-    /// Returns the way on which the value was come to; `None` without a ramp.
+    /// Returns the direction from which the ramp came to the value; `None` without a ramp.
     pub fn leg(&self) -> Option<Leg> {
         self.records.first().and_then(Record::leg)
     }
@@ -62,13 +63,13 @@ impl<E: Experiment> Point<E> {
         &self.records
     }
 
-    /// Returns the mean of a quantity over the samples of all repeats, as [`Estimate::over_repeats`] does.
+    /// Returns the mean of a quantity over the samples of all repeats, by [`Estimate::over_repeats`].
     pub fn mean(&self, quantity: impl Fn(&E::Sample) -> f64) -> Estimate {
         Estimate::over_repeats(self.records.iter().map(|record| record.mean(&quantity)))
     }
 
-    /// Returns the mean of the column of this name over all repeats; `None` if there is none, or none that
-    /// has an error.
+    /// Returns the mean of the column of this name over all repeats; `None` if there is no such column, or it
+    /// has no error.
     pub fn estimate(&self, column: &str) -> Option<Estimate> {
         let columns = E::columns();
         let column = columns.iter().find(|known| known.name() == column && known.has_error())?;

@@ -3,12 +3,13 @@
 use crate::ParameterError;
 use crate::quantity::accept;
 
-/// Longest value and largest number of samples: products stay exact.
+/// Greatest length of a value in cycles, and largest number of samples, for which products stay exact.
 const MOST: u64 = 1 << 40;
 
-/// Settle, then sample at equal intervals, always at the same phase of the base.
+/// The schedule of a value: settle, then sample at equal intervals, always at the same phase of the base.
 ///
-/// All in cycles: periods of the base, or units of time if it does not oscillate.
+/// All times are in cycles ([`Experiment::cycle`](super::Experiment::cycle)): periods of the base, or units
+/// of time if it does not oscillate.
 ///
 /// ```
 /// use granular_edmd::study::Protocol;
@@ -31,29 +32,29 @@ const fn end() -> f64 {
 }
 
 impl Protocol {
-    /// Makes the protocol that settles for `settle` cycles, then takes `samples` samples, one at the end of
-    /// each `every` cycles.
+    /// Creates the protocol that settles for `settle` cycles, then takes `samples` samples, one at the end of
+    /// each interval of `every` cycles.
     pub const fn new(settle: u64, samples: u64, every: u64) -> Self {
         Self { settle, samples, every, phase: 1.0 }
     }
 
-    /// Returns the same protocol with samples at this phase of their cycle, in `(0, 1]`; 1, its end, unless
-    /// given.
+    /// Returns the same protocol with samples at this phase of their cycle, in `(0, 1]`; the default is 1,
+    /// the end of the cycle.
     pub const fn with_phase(self, phase: f64) -> Self {
         Self { phase, ..self }
     }
 
-    /// Returns how many samples a value has.
+    /// Returns the number of samples of a value.
     pub const fn samples(&self) -> u64 {
         self.samples
     }
 
-    /// Returns how many cycles a value lasts.
+    /// Returns the number of cycles that a value lasts.
     pub const fn cycles(&self) -> u64 {
         self.settle.saturating_add(self.samples.saturating_mul(self.every))
     }
 
-    /// Returns how many steps a value is done in: some without a sample to settle, then one for each sample.
+    /// Returns the number of steps of a value: some without a sample, to settle, then one for each sample.
     pub(super) const fn steps(&self) -> u64 {
         self.settling_steps() + self.samples
     }
@@ -62,8 +63,7 @@ impl Protocol {
         self.settle.div_ceil(self.every)
     }
 
-    /// Returns the cycles from the start of a value to the end of the step of this number, which counts from
-    /// 0.
+    /// Returns the cycles from the start of a value to the end of this step; steps are counted from 0.
     pub(super) fn end_of(&self, step: u64) -> u64 {
         let settling = self.settling_steps();
         if step < settling {
@@ -78,7 +78,7 @@ impl Protocol {
         steps.checked_sub(1).map_or(0, |last| self.end_of(last))
     }
 
-    /// Returns how many samples this many steps take.
+    /// Returns the number of samples in this many steps.
     pub(super) const fn samples_of(&self, steps: u64) -> u64 {
         steps.saturating_sub(self.settling_steps())
     }
@@ -88,7 +88,7 @@ impl Protocol {
         step >= self.settling_steps()
     }
 
-    /// Returns how far before the end of its step a sample is taken, in cycles.
+    /// Returns the time from a sample to the end of its step, in cycles.
     pub(super) const fn lead(&self) -> f64 {
         1.0 - self.phase
     }

@@ -1,4 +1,4 @@
-//! The values that a parameter takes, one after the other or side by side.
+//! Ramps and axes: the values that a parameter takes, one after the other or side by side.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use super::Scalar;
 use super::errors::PlanError;
 use crate::quantity::positive;
 
-/// The way through the values of a [`Ramp`].
+/// The order in which a [`Ramp`] goes through its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -20,7 +20,7 @@ pub enum Course {
     UpAndDown,
 }
 
-/// Direction from which a ramp comes to a value.
+/// The direction from which a ramp comes to a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Leg {
@@ -39,7 +39,8 @@ impl fmt::Display for Leg {
     }
 }
 
-/// A parameter that changes step by step, each value from the last state of the one before: hysteresis shows.
+/// A parameter that changes step by step, where each value starts from the last state of the previous one, so
+/// that hysteresis shows.
 ///
 /// ```
 /// use granular_edmd::study::{Course, Leg, Ramp};
@@ -47,6 +48,7 @@ impl fmt::Display for Leg {
 /// let path: Vec<(Leg, f64)> = ramp.path().collect();
 /// assert_eq!(path[1..4], [(Leg::Up, 0.2), (Leg::Up, 0.3), (Leg::Down, 0.2)]);
 /// ```
+#[doc(alias("hysteresis", "annealing"))]
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ramp {
@@ -58,40 +60,41 @@ pub struct Ramp {
     refine: Option<Width>,
 }
 
-/// Width to which a transition is bisected; in a plan `refine = { relative = 0.01 }`.
+/// The width to which transitions are bisected, in a plan `refine = { relative = 0.01 }`.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Width {
-    /// In the unit of the parameter.
+    /// A width in the unit of the parameter.
     Absolute(f64),
-    /// A share of the value itself, for parameters that go over orders of magnitude. All values must be
-    /// positive.
+    /// A share of the value itself, for parameters that go over orders of magnitude.
+    ///
+    /// All values must be positive.
     Relative(f64),
 }
 
 impl Ramp {
-    /// Makes a ramp of the parameter of this name through these values, which increase.
+    /// Creates a ramp of the parameter of this name through these values, which must increase.
     pub fn new(parameter: impl Into<String>, values: impl Into<Vec<f64>>, course: Course) -> Self {
         Self { parameter: parameter.into(), values: values.into(), course, refine: None }
     }
 
-    /// Returns the same ramp with each transition between two of its values bisected until it is known to
-    /// this width.
+    /// Returns the same ramp, which bisects each transition between two of its values down to this width.
     ///
-    /// Transitions are changes of [`Experiment::state`](super::Experiment::state). Only neighbors of
-    /// different states are looked between. A ramp up brackets transitions from below, one down from above.
-    /// The values of a bisection come after those of the ramp, each from the last state on the near side.
+    /// A transition is a change of [`Experiment::state`](super::Experiment::state). The ramp looks for
+    /// transitions only between neighbors of different states. A ramp up brackets transitions from below, a
+    /// ramp down from above. The values of a bisection come after those of the ramp, each from the last state
+    /// on the near side.
     pub fn with_refinement(self, width: Width) -> Self {
         Self { refine: Some(width), ..self }
     }
 
-    /// Returns the width to which transitions are bisected.
+    /// Returns the width to which transitions are bisected, if they are.
     pub const fn refine(&self) -> Option<Width> {
         self.refine
     }
 
-    /// Returns whether a value is between the first and the last.
+    /// Returns whether a value lies between the first and the last one.
     pub(super) fn spans(&self, at: f64) -> bool {
         self.values.first().is_some_and(|low| *low <= at)
             && self.values.last().is_some_and(|high| at <= *high)
@@ -102,17 +105,17 @@ impl Ramp {
         &self.parameter
     }
 
-    /// Returns its values in the order in which they come.
+    /// Returns the values in the order in which the ramp comes to them, with the directions.
     pub fn path(&self) -> impl Iterator<Item = (Leg, f64)> {
         (0..self.len()).filter_map(|index| self.at(index))
     }
 
-    /// Returns how many values come.
+    /// Returns the number of values that the ramp comes to.
     pub(super) fn len(&self) -> usize {
         self.ups() + self.downs()
     }
 
-    /// Returns the value of this index, and the way to it.
+    /// Returns the value of this index, and the direction from which the ramp comes to it.
     pub(super) fn at(&self, index: usize) -> Option<(Leg, f64)> {
         if index < self.ups() {
             return Some((Leg::Up, self.values[index]));
@@ -156,13 +159,15 @@ impl Ramp {
     }
 }
 
-/// A parameter that differs between ramps: each of its values starts afresh, independent of all others.
+/// A parameter that differs between ramps, so that each of its values starts afresh, independent of all
+/// others.
 ///
 /// ```
 /// use granular_edmd::study::Axis;
 /// assert_eq!(Axis::new("inelasticity", [0.0, 0.01]).values().len(), 2);
 /// assert_eq!(Axis::new("sides", ["hard", "periodic"]).parameter(), "sides");
 /// ```
+#[doc(alias("sweep", "parameter scan"))]
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Axis {
@@ -171,7 +176,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Makes an axis of the parameter of this name with these values, in any order.
+    /// Creates an axis of the parameter of this name with these values, in any order.
     pub fn new(parameter: impl Into<String>, values: impl IntoIterator<Item: Into<Scalar>>) -> Self {
         Self { parameter: parameter.into(), values: values.into_iter().map(Into::into).collect() }
     }
@@ -181,12 +186,13 @@ impl Axis {
         &self.parameter
     }
 
-    /// Returns its values.
+    /// Returns the values of the axis.
     pub fn values(&self) -> &[Scalar] {
         &self.values
     }
 
-    /// Takes each value as the parameter does, which may know another kind of numbers.
+    /// Replaces the values by the ones that the parameter takes them for, which may be another kind of
+    /// number.
     pub(super) fn set_values(&mut self, values: Vec<Scalar>) {
         self.values = values;
     }

@@ -1,4 +1,4 @@
-//! Results of a study: records one by one, points, transitions, and all of it as tables.
+//! The results of a study: records, points and transitions, and tables of all of them.
 
 use super::errors::StudyError;
 use super::record::{Contents, Record};
@@ -24,16 +24,16 @@ impl<E: Experiment> Study<E> {
         Ok(Some(record))
     }
 
-    /// Returns all finished records, ramp by ramp, read one by one.
+    /// Iterates over all finished records, ramp by ramp, and reads them one by one.
     pub fn records(&self) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
         (0..self.plan.ramps()).flat_map(|ramp| self.ramp_records(ramp))
     }
 
-    /// Returns all finished records of a ramp, read one by one.
+    /// Iterates over all finished records of a ramp, and reads them one by one.
     pub fn ramp_records(&self, ramp: usize) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
         let values = self.plan.values();
         let own = (0..values).filter_map(move |value| self.record(ramp, value).transpose());
-        // The values of a refinement have no gaps, and their number is known at the end only.
+        // The values of a refinement have no gaps, and their number is known only at the end.
         let is_refined = self.plan.is_refined();
         let more = (values..)
             .take_while(move |_| is_refined)
@@ -41,7 +41,7 @@ impl<E: Experiment> Study<E> {
         own.chain(more)
     }
 
-    /// Returns a value of a point of the grid, with all repeats that are finished; `None` if none is.
+    /// Returns a value at a point of the grid, with all its finished repeats; `None` if there are none.
     ///
     /// # Errors
     /// If a record is damaged, of another study, or cannot be read.
@@ -52,16 +52,17 @@ impl<E: Experiment> Study<E> {
         Ok(Point::of(index, value, records.collect::<Result<_, _>>()?))
     }
 
-    /// Returns all values of all points of the grid of which a repeat is finished, read one by one.
+    /// Iterates over all values at all points of the grid that have a finished repeat, and reads them one by
+    /// one.
     ///
-    /// The values that a refinement adds are others in each repeat, and are not among them.
+    /// The values that a refinement adds differ between repeats, and are not among them.
     pub fn points(&self) -> impl Iterator<Item = Result<Point<E>, StudyError>> {
         let values = move |index| (0..self.plan.values()).map(move |value| (index, value));
         let places = (0..self.plan.points()).flat_map(values);
         places.filter_map(|(index, value)| self.point(index, value).transpose())
     }
 
-    /// Returns the transitions that a refined ramp has bracketed; none before all of them are.
+    /// Returns the transitions that a refined ramp has bracketed; empty before all of them are.
     ///
     /// # Errors
     /// If a record is damaged, of another study, or cannot be read.
@@ -75,9 +76,9 @@ impl<E: Experiment> Study<E> {
         self.plan.ramp().map_or_else(Vec::new, |ramp| ramp.brackets(seen))
     }
 
-    /// Writes the tables of all records that there are; returns how many.
+    /// Writes the tables of all finished records, and returns the number of these records.
     ///
-    /// A run does this when all is done; in between, it is for looking.
+    /// A run does this when all ramps are done. Call it earlier to look at what is there.
     ///
     /// # Errors
     /// If a record is damaged, or a file cannot be read or written.

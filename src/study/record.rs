@@ -7,31 +7,36 @@ use super::{Experiment, Leg, Plan, Scalar, parameters};
 use crate::simulation::{Checkpoint, Counters};
 use crate::statistics::{BlockedMean, Estimate};
 
-/// Rounding of a time that was run to, relative to it.
+/// Relative rounding of the time at which a run ended.
 const TIME_ROUNDING: f64 = 1e-12;
 
-/// Way in which a value ended.
+/// The way in which a value ended.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Outcome {
     /// All samples were taken.
     Completed,
-    /// The observer ended the value: there are only the samples until then. The next value of the ramp starts
-    /// from there.
+    /// The observer ended the value.
+    ///
+    /// There are only the samples until then. The next value of the ramp starts from the state at that time.
     Stopped {
         /// Time since the start of the ramp.
         time: f64,
     },
-    /// Events piled up in vanishing time, as in an inelastic collapse: there are only the samples until then.
-    /// The next value of the ramp starts from the state in which this one did.
+    /// Events piled up in vanishing time, as in an inelastic collapse.
+    ///
+    /// There are only the samples until then. The next value of the ramp starts from the state in which this
+    /// one started.
     Stalled {
         /// Time since the start of the ramp.
         time: f64,
         /// Message of the engine.
         reason: String,
     },
-    /// The engine gave up for another reason; else as stalled.
+    /// The engine gave up for another reason.
+    ///
+    /// The samples and the next value are as for a stalled value.
     Failed {
         /// Time since the start of the ramp.
         time: f64,
@@ -41,7 +46,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Returns a word for it.
+    /// Returns the outcome in one word.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Completed => "completed",
@@ -55,12 +60,13 @@ impl Outcome {
 /// A finished value: its parameters, samples, counts and last state.
 ///
 /// Samples, observer and times are those of the measured part, after the value has settled.
+#[doc(alias("checkpoint", "restart"))]
 pub struct Record<E: Experiment> {
     pub(super) experiment: E,
     pub(super) contents: Contents<E::Sample, E::Observer>,
 }
 
-/// A record as in its file; the experiment follows from the plan.
+/// A record as it is in its file, without the experiment, which follows from the plan.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Contents<S, O> {
     pub(super) origin: Origin,
@@ -74,7 +80,7 @@ pub(super) struct Contents<S, O> {
     pub(super) state: Checkpoint,
 }
 
-/// Results of a value.
+/// The measurements of a value.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Measured<S, O> {
     pub(super) times: Vec<f64>,
@@ -95,8 +101,8 @@ pub(super) struct Origin {
     pub(super) seed: u64,
 }
 
-/// A time, counted in whole cycles since one that was a time of its own: products of whole numbers do not
-/// drift.
+/// A time, as a number of whole cycles since some absolute time. The product of a cycle and a whole number
+/// does not drift as a sum of cycles does.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Cycles {
     /// Absolute time from which cycles are counted.
@@ -107,14 +113,14 @@ pub(super) struct Cycles {
 impl Cycles {
     pub(super) const START: Self = Self { since: 0.0, count: 0 };
 
-    /// Returns the absolute time of so many more cycles of this length.
+    /// Returns the absolute time after this many more cycles of this length.
     pub(super) fn time(&self, more: f64, cycle: f64) -> f64 {
         self.since + (self.count as f64 + more) * cycle
     }
 }
 
 impl<E: Experiment> Record<E> {
-    /// Checks that it is what its place in this study can hold; else says why not.
+    /// Checks that the record can belong to its place in this study. The error says why it cannot.
     pub(super) fn check(&self, plan: &Plan<E>) -> Result<(), &'static str> {
         let Contents { origin, leg, at, outcome, end, measured, state, .. } = &self.contents;
         let protocol = plan.protocol();
@@ -133,27 +139,27 @@ impl<E: Experiment> Record<E> {
         measured.check(&self.experiment, state)
     }
 
-    /// Returns the index of its ramp.
+    /// Returns the index of the ramp.
     pub const fn ramp(&self) -> usize {
         self.contents.origin.ramp
     }
 
-    /// Returns its index in the ramp.
+    /// Returns the index of the value in the ramp.
     pub const fn value(&self) -> usize {
         self.contents.origin.value
     }
 
-    /// Returns the seed of its ramp.
+    /// Returns the seed of the ramp.
     pub const fn seed(&self) -> u64 {
         self.contents.origin.seed
     }
 
-    /// Returns the version of this crate that made it.
+    /// Returns the version of this crate that made the record.
     pub fn version(&self) -> &str {
         &self.contents.origin.version
     }
 
-    /// Returns the way on which it was come to; `None` without a ramp.
+    /// Returns the direction from which the ramp came to the value; `None` without a ramp.
     pub const fn leg(&self) -> Option<Leg> {
         self.contents.leg
     }
@@ -163,7 +169,7 @@ impl<E: Experiment> Record<E> {
         self.contents.at
     }
 
-    /// Returns the record as the way through the ramp depends on it.
+    /// Returns the parts of the record on which the path of the ramp depends.
     pub(super) fn seen(&self) -> Seen {
         Seen { leg: self.leg(), at: self.at(), state: E::state(self) }
     }
@@ -173,25 +179,25 @@ impl<E: Experiment> Record<E> {
         &self.experiment
     }
 
-    /// Returns a parameter of the experiment by its name, as in a [`Plan`]; `None` if it has none of this
-    /// name.
+    /// Returns a parameter of the experiment by its name, as in a [`Plan`]; `None` if there is no parameter
+    /// of this name.
     pub fn parameter(&self, name: &str) -> Option<Scalar> {
         let tree = parameters::tree(&self.experiment).ok()?;
         let name = parameters::whole_name(&tree, name).ok()?;
         parameters::get(&tree, &name).and_then(Scalar::of_toml)
     }
 
-    /// Returns how it ended.
+    /// Returns the way in which the value ended.
     pub const fn outcome(&self) -> &Outcome {
         &self.contents.outcome
     }
 
-    /// Returns its samples.
+    /// Returns the samples.
     pub fn samples(&self) -> &[E::Sample] {
         &self.contents.measured.samples
     }
 
-    /// Returns the times of its samples, since the start of the ramp.
+    /// Returns the times of the samples, since the start of the ramp.
     pub fn times(&self) -> &[f64] {
         &self.contents.measured.times
     }
@@ -201,25 +207,26 @@ impl<E: Experiment> Record<E> {
         &self.contents.measured.observer
     }
 
-    /// Returns what happened in it, settling included; the largest overlap is that since the start of the
-    /// ramp.
+    /// Returns the counters of the value, settling included.
+    ///
+    /// The largest overlap is that since the start of the ramp.
     pub const fn counters(&self) -> &Counters {
         &self.contents.counters
     }
 
-    /// Returns the state at its end.
+    /// Returns the state at the end of the value.
     pub const fn state(&self) -> &Checkpoint {
         &self.contents.state
     }
 
-    /// Returns the mean of a quantity over the samples, with an error that knows that they are correlated.
+    /// Returns the mean of a quantity over the samples, with an error that accounts for their correlation.
     ///
-    /// NaN is the mean of no samples, and the error of fewer than two.
+    /// The mean is NaN without samples, and the error is NaN for fewer than two.
     pub fn mean(&self, quantity: impl Fn(&E::Sample) -> f64) -> Estimate {
         self.samples().iter().map(quantity).collect::<BlockedMean>().estimate()
     }
 
-    /// Returns the mean of the column of this name; `None` if there is none, or none that has an error.
+    /// Returns the mean of the column of this name; `None` if there is no such column, or it has no error.
     pub fn estimate(&self, column: &str) -> Option<Estimate> {
         let columns = E::columns();
         let mut named = columns.iter().filter(|known| known.name() == column);
@@ -256,7 +263,7 @@ impl<E: Experiment> fmt::Debug for Record<E> {
 }
 
 impl<S, O> Measured<S, O> {
-    /// Checks that it can have been measured.
+    /// Checks that the times, the samples and the observer can have been measured.
     pub(super) fn check<E>(&self, experiment: &E, state: &Checkpoint) -> Result<(), &'static str>
     where
         E: Experiment<Sample = S, Observer = O>,
@@ -272,7 +279,7 @@ pub(super) fn check(valid: bool, reason: &'static str) -> Result<(), &'static st
     if valid { Ok(()) } else { Err(reason) }
 }
 
-/// Checks that a state is of this time.
+/// Checks that a state is that of this time.
 pub(super) fn check_state(state: &Checkpoint, time: f64) -> Result<(), &'static str> {
     check((state.time() - time).abs() <= TIME_ROUNDING * time, "its state is of another time")
 }

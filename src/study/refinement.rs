@@ -1,10 +1,10 @@
-//! The way through the values of a ramp: its own, then those that bracket transitions between states.
+//! The path of a ramp: first its own values, then those that bracket transitions between states.
 
 use std::ops::Range;
 
 use super::{Leg, Ramp, Width};
 
-/// A value that is done, as far as the way depends on it.
+/// The parts of a finished value on which the path depends.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Seen {
     pub(super) leg: Option<Leg>,
@@ -12,7 +12,7 @@ pub(super) struct Seen {
     pub(super) state: Option<String>,
 }
 
-/// The next value: where it is, and after which one it comes.
+/// The next value on a path, and the index of the value from which it starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Step {
     pub(super) leg: Option<Leg>,
@@ -24,13 +24,13 @@ pub(super) struct Step {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Bracket {
-    /// The way on which the transition was come to: from below or from above.
+    /// The direction from which the ramp came to the transition: from below or from above.
     pub leg: Option<Leg>,
-    /// The value on the side that was come from.
+    /// The value on the side from which the ramp came.
     pub near: f64,
     /// The value on the other side.
     pub far: f64,
-    /// The state on the side that was come from.
+    /// The state on the side from which the ramp came.
     pub from: String,
     /// The state on the other side; empty if the record there shows none.
     pub to: String,
@@ -42,13 +42,12 @@ impl Ramp {
         self.search(seen).err()
     }
 
-    /// Returns the transitions between the values that are done, as far as they are bracketed to the wanted
-    /// width.
+    /// Returns the brackets of all transitions; empty before all of them have the wanted width.
     pub(super) fn brackets(&self, seen: &[Seen]) -> Vec<Bracket> {
         self.search(seen).unwrap_or_default()
     }
 
-    /// Returns all brackets, or the next value that they need.
+    /// Returns all brackets. The error is the next value that they need.
     fn search(&self, seen: &[Seen]) -> Result<Vec<Bracket>, Step> {
         let own = self.len();
         if let Some((leg, at)) = self.at(seen.len()) {
@@ -67,18 +66,18 @@ impl Ramp {
 struct Search<'a> {
     seen: &'a [Seen],
     width: Width,
-    /// The values of bisections that are not used yet.
+    /// The indices of the bisections' values that the search has not used yet.
     halves: Range<usize>,
     brackets: Vec<Bracket>,
 }
 
 impl Search<'_> {
-    /// Narrows the transitions between two neighbors of the ramp, in the order of the way; the next value, if
-    /// they need one more.
+    /// Narrows the transitions between two neighbors of the ramp, in the order of the path. The error is the
+    /// next value that they need.
     ///
     /// Each value starts from the last state on the near side of its transition, so that a bracket belongs to
-    /// the way on which it was come to. Of several transitions the first is narrowed first: all other states
-    /// are beyond it.
+    /// the direction from which the ramp came. The first of several transitions is narrowed first: all states
+    /// but the near one count as beyond it.
     fn between(&mut self, mut near: usize, far: usize) -> Result<(), Step> {
         if self.seen[far].state.is_none() {
             return Ok(());
@@ -106,16 +105,16 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Returns the value between two others; `None` if they are close enough.
+    /// Returns the middle between two values; `None` if they are close enough.
     fn middle(&self, near: usize, far: usize) -> Option<f64> {
         let [near, far] = [near, far].map(|index| self.seen[index].at.unwrap_or(f64::NAN));
         let at = near + 0.5 * (far - near);
-        // Below the spacing of doubles there is nothing between.
+        // There is no number between two neighboring doubles.
         let is_between = (near < at && at < far) || (far < at && at < near);
         (is_between && !self.width.holds(near, far)).then_some(at)
     }
 
-    /// Returns the index of the next value of a bisection; the step to it, if it is not done.
+    /// Returns the index of the next value of a bisection. The error is the step to it, if it is not done.
     fn half(&mut self, step: Step) -> Result<usize, Step> {
         self.halves.next().ok_or(step)
     }
@@ -130,7 +129,7 @@ impl Bracket {
 }
 
 impl Width {
-    /// Returns whether two values are as close as this.
+    /// Returns whether two values are within this width of each other.
     fn holds(self, near: f64, far: f64) -> bool {
         (far - near).abs()
             <= match self {
@@ -145,7 +144,7 @@ mod tests {
     use super::*;
     use crate::study::Course;
 
-    /// Walks a ramp through states that are a function of place and way.
+    /// Walks a ramp through states that are a function of the value and the direction.
     fn walk_through<'a>(
         ramp: &Ramp,
         state: impl Fn(f64, Leg) -> Option<&'a str>,
@@ -218,7 +217,7 @@ mod tests {
         }
     }
 
-    /// A value that shows no state, as one that has stalled, is beyond the transition, and nothing is sought
+    /// A value that shows no state, such as a stalled one, is beyond the transition, and nothing is searched
     /// beyond it.
     #[test]
     fn a_value_without_a_state_ends_a_search() {

@@ -1,4 +1,4 @@
-//! Doing what is not done yet.
+//! Runs of a study, which do the values that are missing.
 
 mod one_value;
 
@@ -14,7 +14,7 @@ use super::experiment::Experiment;
 use super::record::Record;
 use super::refinement::Step;
 
-/// Time between two looks at ramps that others do.
+/// Time between two looks at ramps that other processes do.
 const PATIENCE: Duration = Duration::from_millis(100);
 
 /// Data that all threads of a running study share.
@@ -23,22 +23,25 @@ struct Shift<'a, E: Experiment> {
     control: &'a Control<'a>,
     meter: Meter<'a>,
     finished: AtomicUsize,
-    /// Values that refinements have added.
+    /// Number of values that refinements have added.
     more: AtomicUsize,
     redone: Mutex<Vec<PathBuf>>,
-    /// Ramps that others do.
+    /// Ramps that other processes do.
     elsewhere: Mutex<Vec<usize>>,
-    /// A thread has met an error: the others stop as if interrupted.
+    /// True once a thread has met an error.
+    ///
+    /// The others then stop as if interrupted.
     broken: AtomicBool,
 }
 
 impl<E: Experiment> Study<E> {
     /// Does all values that have no record yet, and writes the tables.
     ///
-    /// Any number of processes may do this at the same time, and [`Self::run_ramp`]: each ramp is done by one
-    /// of them. Ramps that others do are waited for, and taken over from a process that was killed. Ramps are
-    /// done in parallel with the feature `rayon`, in the pool that this is called from. Interrupted, it
-    /// returns with all that was done saved; run again, it goes on, with the same result.
+    /// Any number of processes may call this and [`Self::run_ramp`] at the same time; one of them does each
+    /// ramp. A run waits for ramps that other processes do, and takes over the ramps of a process that was
+    /// killed. With the feature `rayon`, it does ramps in parallel, in the thread pool from which it is
+    /// called. A run that is interrupted returns with all work saved. The next run goes on from there, with
+    /// the same result.
     ///
     /// # Errors
     /// If the plan of the folder has changed, files cannot be read or written, records were made by another
@@ -51,7 +54,7 @@ impl<E: Experiment> Study<E> {
     /// done.
     ///
     /// # Errors
-    /// As [`Self::run`]; also if there is no such ramp.
+    /// The same as for [`Self::run`], and if there is no such ramp.
     pub fn run_ramp(&self, ramp: usize, control: &Control<'_>) -> Result<Summary, StudyError> {
         let ramps = self.plan().ramps();
         if ramp >= ramps {
@@ -67,8 +70,8 @@ impl<E: Experiment> Study<E> {
         let is_whole = ramps.len() == self.plan().ramps();
         let shift = Shift::new(self, control, ramps.len());
         let elsewhere = shift.all(ramps)?;
-        // A run of the whole study brings back lost tables; one of many tasks that finds all done leaves
-        // them.
+        // A run of the whole study writes lost tables again. One of many tasks that finds everything done
+        // leaves the tables as they are.
         if elsewhere.is_empty() && self.is_done(last) && (is_whole || !self.folder.is_complete()) {
             self.write_tables()?;
             self.folder.mark_complete()?;
@@ -79,8 +82,8 @@ impl<E: Experiment> Study<E> {
         Ok(Summary { finished: shift.finished.into_inner(), total, elsewhere, redone })
     }
 
-    /// Returns whether all ramps are done. Those after `first` are looked at first: they are the last to be
-    /// done.
+    /// Returns whether all ramps are done. It looks first at the ramps after `first`, which are the last to
+    /// be done.
     fn is_done(&self, first: usize) -> bool {
         let ramps = self.plan().ramps();
         (1..=ramps).map(|step| (first + step) % ramps).all(|ramp| self.folder.is_done(ramp))
@@ -116,8 +119,8 @@ impl<'a, E: Experiment> Shift<'a, E> {
         }
     }
 
-    /// Does ramps until each is done, by somebody; returns those that others do, if they are not to be waited
-    /// for.
+    /// Does ramps until each of them is done, here or elsewhere. If it need not wait, it returns the ramps
+    /// that other processes do.
     fn all(&self, mut ramps: Vec<usize>) -> Result<Vec<usize>, StudyError> {
         loop {
             for_each_ramp(&ramps, |ramp| {
@@ -132,7 +135,7 @@ impl<'a, E: Experiment> Shift<'a, E> {
         }
     }
 
-    /// Does a ramp, value after value, as far as it gets.
+    /// Does a ramp, value after value, until it is done or must stop.
     fn ramp(&self, ramp: usize) -> Result<(), StudyError> {
         if self.must_stop() {
             return Ok(());
@@ -162,7 +165,7 @@ impl<'a, E: Experiment> Shift<'a, E> {
         folder.mark_done(ramp)
     }
 
-    /// Does a value, after that which it comes from: the last one, or one that a bisection goes back to.
+    /// Does a value that starts from the last one, or from the one to which a bisection goes back.
     fn next(
         &self,
         ramp: usize,

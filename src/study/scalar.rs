@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// A single value: of a parameter that varies, or in a cell of a table.
+/// A single value of a parameter that varies, or of a cell in a table.
 ///
 /// ```
 /// use granular_edmd::study::Scalar;
@@ -24,7 +24,7 @@ pub enum Scalar {
 }
 
 impl Scalar {
-    /// Returns its number; `None` for a word or a switch.
+    /// Returns the number; `None` for a word or a switch.
     pub const fn number(&self) -> Option<f64> {
         match self {
             Self::Number(number) => Some(*number),
@@ -33,7 +33,7 @@ impl Scalar {
         }
     }
 
-    /// Returns the scalar that a TOML value is; `None` for a table, a list or a date.
+    /// Returns the scalar of a TOML value; `None` for a table, a list or a date.
     pub(super) fn of_toml(value: &toml::Value) -> Option<Self> {
         match value {
             toml::Value::Boolean(flag) => Some(Self::Flag(*flag)),
@@ -53,10 +53,10 @@ impl Scalar {
         }
     }
 
-    /// Returns the same value in the kind of another one, where nothing is lost: 1.0 where there are
-    /// integers.
+    /// Returns the same value as the kind of number that `other` is, if nothing is lost: 1.0 becomes the
+    /// integer 1, for example.
     pub(super) fn like(self, other: &toml::Value) -> Self {
-        /// Beyond this size not all whole numbers are doubles.
+        /// Up to this size, all whole numbers are doubles.
         const EXACT: f64 = 9_007_199_254_740_992.0;
         match (other, self) {
             (toml::Value::Integer(_), Self::Number(number))
@@ -109,14 +109,14 @@ impl From<i64> for Scalar {
     }
 }
 
-/// The largest numbers become the largest that a table takes.
+/// Numbers too large for a table become the largest number that it takes.
 impl From<u64> for Scalar {
     fn from(number: u64) -> Self {
         Self::Integer(i64::try_from(number).unwrap_or(i64::MAX))
     }
 }
 
-/// The largest numbers become the largest that a table takes.
+/// Numbers too large for a table become the largest number that it takes.
 impl From<usize> for Scalar {
     fn from(number: usize) -> Self {
         Self::from(number as u64)

@@ -1,5 +1,5 @@
-//! The folder of a study as a workspace: a folder for each ramp, before anything is done, and a file that
-//! says which it is.
+//! The folder of a study as a workspace, with a folder for each ramp before anything is done, and a file of
+//! its parameters there.
 
 use std::fmt::Write;
 use std::fs;
@@ -12,10 +12,10 @@ use super::{Experiment, Plan, Scalar, Study, file};
 const VALUE: &str = "value.json";
 
 impl<E: Experiment> Study<E> {
-    /// Makes the folders of all ramps, each with its swept parameters in a file `value.json`, for engines
-    /// that go by folders.
+    /// Creates the folders of all ramps, each with its swept parameters in a file `value.json`, for workflow
+    /// engines that go by folders.
     ///
-    /// A run needs none of it. It may be done at any time, beside runs, and again.
+    /// No run needs this. You may call it at any time, also beside runs, and repeat it.
     ///
     /// # Errors
     /// If the plan of the folder has changed, or files cannot be read or written.
@@ -30,15 +30,15 @@ impl<E: Experiment> Study<E> {
             if fs::read(&path).is_ok_and(|found| found == value.as_bytes()) {
                 continue;
             }
-            // By way of the folder whose lock is held: whoever does the ramp removes what it finds half
-            // written in its own.
+            // The file comes by way of the root, whose lock is held. The process that does the ramp removes
+            // temporary files from the folder of the ramp.
             file::move_in(root, &path, value.as_bytes())?;
         }
         Ok(())
     }
 }
 
-/// Returns what tells a ramp from the others, in JSON.
+/// Returns the parameters that distinguish a ramp from the others, as JSON.
 fn value<E: Experiment>(plan: &Plan<E>, ramp: usize) -> String {
     let mut fields = vec![("ramp", Scalar::from(ramp as u64))];
     fields.extend((plan.repeats() > 1).then(|| ("repeat", Scalar::from((ramp % plan.repeats()) as u64))));

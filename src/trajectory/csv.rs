@@ -11,12 +11,12 @@ impl State {
     /// Reads disks from a table of comma-separated values.
     ///
     /// The first line names the columns: `x`, `y` and `radius`, and any of `id`, `kind`, `vx`, `vy`, `angle`,
-    /// `angular_velocity`, `mass`, `inertia_factor`, `image_x` and `image_y`. A disk is as
-    /// [`Disk::new`](crate::Disk::new) makes it where there is no column. A table has no time and no box.
+    /// `angular_velocity`, `mass`, `inertia_factor`, `image_x` and `image_y`. Where there is no column, a
+    /// disk has the value that [`Disk::new`](crate::Disk::new) gives it. A table has no time and no box.
     ///
     /// # Errors
-    /// If the input fails, a column is missing, unknown or there twice, a number cannot be read or is out of
-    /// range, a value is missing, an `id` stands twice, or disks overlap. The error names the line.
+    /// If the input fails, a column is missing, is unknown or appears twice, a number cannot be read or is
+    /// out of range, a value is missing, an `id` appears twice, or disks overlap. The error names the line.
     ///
     /// ```
     /// use granular_edmd::trajectory::State;
@@ -28,7 +28,7 @@ impl State {
     pub fn from_csv(input: impl BufRead) -> Result<Self, ReadError> {
         let mut lines = Lines::new(input);
         let (names, line) = lines.need("the names of the columns")?;
-        // Some programs begin a text with a mark of its encoding.
+        // Some programs begin a text with a byte order mark.
         let names = names.trim_start_matches('\u{feff}').split(',');
         let fields = names.map(|name| field(name, line)).collect::<Result<_, _>>()?;
         let columns = Columns::new(fields, line)?;

@@ -1,4 +1,4 @@
-//! Disks of a file, with their lines.
+//! Disks of a file, with the numbers of their lines.
 
 use glam::DVec2;
 
@@ -9,7 +9,7 @@ use crate::boundary::Domain;
 use crate::disk::TOUCHING;
 use crate::{Disk, Kind, ParameterError};
 
-/// A column of a file: a part of a disk.
+/// A column of a file, which gives one property of a disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Field {
     Id,
@@ -27,7 +27,7 @@ pub(super) enum Field {
     ImageY,
     /// A third component, which must be 0.
     Zero,
-    /// A column that a disk does not have.
+    /// A column that no property of a disk belongs to.
     Other,
 }
 
@@ -60,7 +60,7 @@ impl Field {
 pub(super) struct Columns(Vec<Field>);
 
 impl Columns {
-    /// Checks that there is enough for a disk, and nothing twice.
+    /// Checks that the columns are enough for a disk, and that none appears twice.
     pub(super) fn new(fields: Vec<Field>, line: usize) -> Result<Self, ReadError> {
         for needed in [Field::X, Field::Y, Field::Radius] {
             if !fields.contains(&needed) {
@@ -195,7 +195,8 @@ pub(super) struct Entry {
 }
 
 impl Entry {
-    /// Returns the disks in the order of their ids, if none stands twice, is outside, or overlaps another.
+    /// Returns the disks in the order of their ids, if no id appears twice, no disk is outside the box, and
+    /// none overlaps another.
     pub(super) fn checked(mut entries: Vec<Self>, domain: Option<&Domain>) -> Result<Vec<Disk>, ReadError> {
         entries.sort_by_key(|entry| entry.id);
         for pair in entries.windows(2) {
@@ -219,7 +220,7 @@ impl Entry {
         }
     }
 
-    /// Tells whether the center is outside of a box by more than rounding.
+    /// Returns true if the center is outside a box by more than rounding.
     fn is_outside(&self, domain: &Domain) -> bool {
         let (DVec2 { x, y }, slack) = (self.disk.position(), TOUCHING * self.disk.radius());
         let is_inside = (domain.left - slack..=domain.right + slack).contains(&x)

@@ -7,13 +7,15 @@ use thiserror::Error;
 
 use crate::ParameterError;
 
-/// An error: a trajectory cannot be recorded. The file keeps its whole frames.
+/// An error in recording a trajectory.
+///
+/// The file keeps its whole frames.
 ///
 /// A message does not repeat its [source](std::error::Error::source): report the whole chain.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// There is something of this name already.
+    /// A file or folder of this name exists already.
     #[error("{} is there already and is not overwritten; Recorder::append goes on in a file", path.display())]
     Exists {
         /// The path.
@@ -41,19 +43,23 @@ pub enum RecordError {
         /// The path.
         path: PathBuf,
     },
-    /// The file has no whole frame in which a recorder could go on. It is left as it is.
+    /// The file has no whole frame after which a recorder could go on.
+    ///
+    /// The file is left as it is.
     #[error("{} has no whole frame to go on from; it is left as it is", path.display())]
     NoFrame {
         /// The path.
         path: PathBuf,
     },
-    /// The file has other frames at the times of this run, so it is of another run. It is left as it is.
+    /// The file is of another run, since it has another frame, or none, at a time of this run.
+    ///
+    /// The file is left as it is.
     #[error("{} is of another run: it goes to time {last}, and has {} at time {time}", path.display(),
         if *.is_there { "another frame" } else { "no frame" })]
     AnotherRun {
         /// The path.
         path: PathBuf,
-        /// Time of the frame that should be recorded.
+        /// Time of the frame that was to be recorded.
         time: f64,
         /// Time of the last frame in the file.
         last: f64,
@@ -63,14 +69,16 @@ pub enum RecordError {
 }
 
 impl RecordError {
-    /// Returns a function that says what could not be done with a file.
+    /// Returns a function that turns an error of the system into one that names the action and the file.
     pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::Io { action, path, source }
     }
 }
 
-/// An error: a file cannot be read into disks. Lines are counted from 1.
+/// An error in reading disks from a file.
+///
+/// Lines are counted from 1.
 ///
 /// A message does not repeat its [source](std::error::Error::source): report the whole chain.
 ///
@@ -106,7 +114,7 @@ pub enum ReadError {
         /// The thing that is missing.
         what: String,
     },
-    /// A line is not what it must be.
+    /// A part of a line is not what it must be.
     #[error("line {line}: {what} must be {requirement}, but is {found:?}")]
     Unexpected {
         /// Number of the line.
@@ -118,7 +126,7 @@ pub enum ReadError {
         /// The text in its place.
         found: String,
     },
-    /// Something that is needed is missing.
+    /// A part that is needed is missing.
     #[error("line {line}: {what} is missing")]
     Missing {
         /// Number of the line.
@@ -126,7 +134,7 @@ pub enum ReadError {
         /// The thing that is missing.
         what: String,
     },
-    /// The numbers of a line make no disk.
+    /// The numbers of a line do not make a disk.
     #[error("line {line} is no disk")]
     Disk {
         /// Number of the line.
@@ -134,24 +142,24 @@ pub enum ReadError {
         /// The parameter that is out of range.
         source: ParameterError,
     },
-    /// Something stands twice.
+    /// Something appears twice.
     #[error("line {line}: {what} stands in line {first} already")]
     Doubled {
         /// Number of the second line.
         line: usize,
         /// Number of the first line.
         first: usize,
-        /// The thing that stands twice, with its value.
+        /// The thing that appears twice, with its value.
         what: String,
     },
-    /// The center of a disk is outside of the box that the file gives.
+    /// The center of a disk is outside the box that the file gives.
     #[error("line {line}: the disk at ({x}, {y}) is outside of the box")]
     Outside {
         /// Number of the line.
         line: usize,
-        /// Horizontal position of its center.
+        /// Horizontal position of the center.
         x: f64,
-        /// Vertical position of its center.
+        /// Vertical position of the center.
         y: f64,
     },
     /// Two disks overlap by more than rounding.
@@ -167,7 +175,7 @@ pub enum ReadError {
 }
 
 impl ReadError {
-    /// Creates the error of a thing that is not what it must be.
+    /// Creates the error for a part that is not what it must be.
     pub(super) fn unexpected(
         line: usize,
         what: impl Into<String>,
@@ -178,7 +186,7 @@ impl ReadError {
         Self::Unexpected { line, what: what.into(), requirement: requirement.into(), found }
     }
 
-    /// Creates the error of a thing that is missing.
+    /// Creates the error for a part that is missing.
     pub(super) fn missing(line: usize, what: impl Into<String>) -> Self {
         Self::Missing { line, what: what.into() }
     }

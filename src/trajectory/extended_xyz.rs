@@ -1,4 +1,4 @@
-//! Extended XYZ: what OVITO reads, and what a run can start from.
+//! The extended XYZ format, which OVITO reads and from which a run can start.
 
 mod header;
 mod read;
@@ -19,9 +19,9 @@ use crate::boundary::Domain;
 /// | `species` | number of its [`Kind`](crate::Kind) |
 /// | `pos`, `velo` | position and velocity of the center; `z` is 0 |
 /// | `angle`, `angular_velocity` | in radians, counterclockwise |
-/// | `radius`, `mass`, `inertia_factor` | as [`Disk`] has them |
-/// | `image` | periods passed to the right and up, [`Disk::image`] |
-/// | `unwrapped` | [`Domain::unwrapped`] position |
+/// | `radius`, `mass`, `inertia_factor` | as in [`Disk`] |
+/// | `image` | periods that the disk has passed to the right and up, from [`Disk::image`] |
+/// | `unwrapped` | position from [`Domain::unwrapped`] |
 ///
 /// The keys are `Lattice`, `Origin` and `pbc`, which OVITO knows, and `Time`, `Gravity` and `Domain`
 /// (left, right, bottom and top, where an open top is `inf`). The lattice of an open box ends above the
@@ -45,6 +45,7 @@ use crate::boundary::Domain;
 /// assert_eq!(state.domain(), Some(snapshot.domain()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias("OVITO", "trajectory"))]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ExtendedXyz;
 
@@ -103,7 +104,8 @@ const fn letter(is_periodic: bool) -> char {
     if is_periodic { 'T' } else { 'F' }
 }
 
-/// Returns the top of the box for programs that know no open ones: above the highest disk.
+/// Returns the top of the box, above the highest disk if the box is open, for programs that know no open
+/// boxes.
 pub(super) fn shown_top(domain: &Domain, disks: &[Disk]) -> f64 {
     if domain.top.is_finite() {
         return domain.top;

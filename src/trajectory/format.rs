@@ -1,4 +1,4 @@
-//! Frames, and what a format makes of them.
+//! Frames of a trajectory, and the trait of the formats in which they are written.
 
 use std::io::{self, BufRead, Write};
 
@@ -12,7 +12,9 @@ pub struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// Creates the frame of this number. The first frame of a file has the number 0.
+    /// Creates the frame of this number.
+    ///
+    /// The first frame of a file has the number 0.
     pub const fn new(number: usize, snapshot: Snapshot<'a>) -> Self {
         Self { number, snapshot }
     }
@@ -28,15 +30,15 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// A format of a trajectory: what each frame looks like in the file.
+/// A format of trajectories, which decides what each frame looks like in the file.
 ///
 /// # Contract
 /// 1. `write_frame` depends on the frame alone: written twice, the same frame gives the same bytes.
-/// 2. `skip_frame` passes over exactly the bytes that `write_frame` wrote, and returns the time of the frame
-///    to the bit.
+/// 2. `skip_frame` skips exactly the bytes that `write_frame` wrote, and returns the time of the frame to the
+///    bit.
 ///
-/// [`Recorder`](super::Recorder) makes each frame whole in memory, so a format may write in small pieces. It
-/// owns the file, its compression, and the clock.
+/// [`Recorder`](super::Recorder) makes each frame whole in memory, so a format may write in small pieces. The
+/// recorder owns the file, its compression, and the clock.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a format of trajectories",
     label = "a `trajectory::Format` is expected here",
@@ -49,11 +51,11 @@ pub trait Format {
     /// If the writer fails, or the format has no place for a value of the frame.
     fn write_frame(&self, frame: &Frame<'_>, out: &mut dyn Write) -> io::Result<()>;
 
-    /// Passes over the frame at which the input stands, and returns its time, or `None` if the input ends
-    /// before the frame does.
+    /// Skips the next frame of the input, and returns its time, or `None` if the input ends before the frame
+    /// does.
     ///
-    /// [`Recorder::append`](super::Recorder::append) finds the last whole frame of a file by it. Without it,
-    /// a format records new files only.
+    /// [`Recorder::append`](super::Recorder::append) needs it to find the last whole frame of a file. A
+    /// format without it records new files only.
     ///
     /// # Errors
     /// If the input fails, or is not a frame of this format.
@@ -70,7 +72,7 @@ pub(super) fn whole_line(input: &mut dyn BufRead) -> io::Result<Option<String>> 
     Ok(line.strip_suffix('\n').map(|line| line.trim_end_matches('\r').to_owned()))
 }
 
-/// Passes over so many lines, and tells whether the input has them all.
+/// Skips this many lines, and returns false if the input ends before that.
 pub(super) fn skip_lines(input: &mut dyn BufRead, count: usize) -> io::Result<bool> {
     let mut line = Vec::new();
     for _ in 0..count {

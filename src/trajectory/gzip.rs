@@ -1,8 +1,8 @@
-//! Compression: a file of one member, which is whole after each frame.
+//! Compressed trajectories, as a gzip file of one member that is whole after each frame.
 //!
-//! Frames are compressed one by one, each up to a byte of its own (a sync flush), and the ending of the
-//! member follows the last one. The next frame takes the place of the ending. Members one after another would
-//! be simpler, but OVITO reads only the first.
+//! Frames are compressed one by one. Each ends at a whole byte (a sync flush), and the ending of the member
+//! follows the last frame. The next frame takes the place of the ending. A member for each frame would be
+//! simpler, but OVITO reads only the first member.
 
 use std::io::{self, BufRead, Read, Write};
 
@@ -21,7 +21,7 @@ const LAST_BLOCK: [u8; 2] = [3, 0];
 /// Bytes with which a sync flush ends.
 const FLUSHED: [u8; 4] = [0, 0, 255, 255];
 
-/// The data that have gone into a member so far.
+/// A member as far as it is written: the checksum of its data, and whether it has begun.
 #[derive(Debug, Default)]
 pub(super) struct Member {
     crc: Crc,
@@ -29,14 +29,15 @@ pub(super) struct Member {
 }
 
 impl Member {
-    /// Returns the bytes of the next frame as they stand in the file, and the member with it.
+    /// Returns the compressed bytes of the next frame, and the member that includes it.
     pub(super) fn packed(&self, bytes: &[u8]) -> io::Result<(Vec<u8>, Self)> {
         let head: &[u8] = if self.has_head { &[] } else { &HEAD };
-        // The usual level takes seven times as long for files that are hardly smaller: digits are random.
+        // The usual level takes several times as long for files that are hardly smaller, since digits are
+        // random.
         let mut encoder = DeflateEncoder::new(head.to_vec(), Compression::fast());
         encoder.write_all(bytes)?;
         encoder.flush()?;
-        // The encoder would end the stream if it were finished.
+        // The bytes are copied out, since to finish the encoder would end the stream.
         Ok((encoder.get_ref().clone(), self.with(bytes)))
     }
 
@@ -54,10 +55,10 @@ impl Member {
     }
 }
 
-/// Finds the whole frames of a file, and makes the member that which they are.
+/// Finds the whole frames of a file, and adds them to the member.
 ///
-/// Wherever the bytes of a sync flush stand, and only there, a frame may end. It does if all before it is one
-/// frame of the format.
+/// A frame can end only at the bytes of a sync flush. It does end there if everything since the last frame is
+/// exactly one frame of the format.
 pub(super) fn frames(
     member: &mut Member,
     input: &mut impl BufRead,
@@ -74,7 +75,7 @@ pub(super) fn frames(
     loop {
         let start = packed.len();
         if input.read_until(FLUSHED[3], &mut packed)? == 0 {
-            // The rest of a frame in whose middle a process died.
+            // A process died in the middle of a frame and left this rest.
             return Ok(frames);
         }
         if !goes_on(&mut inflater, &packed[start..], &mut bytes) {
@@ -95,16 +96,16 @@ pub(super) fn frames(
     }
 }
 
-/// Checks that what follows the last whole frame is the ending, or no longer: a process may have died when it
-/// had put a part of a frame in its place.
+/// Checks that no more bytes follow the last whole frame than the ending has. They need not be the ending,
+/// since a process may have died after it wrote part of a frame over the ending.
 fn check_ending(mut packed: Vec<u8>, input: &mut impl BufRead, ending: &[u8]) -> io::Result<()> {
     let room = (ending.len() + 1).saturating_sub(packed.len());
     input.take(room as u64).read_to_end(&mut packed)?;
     if packed.len() <= ending.len() { Ok(()) } else { Err(no_frame("a whole frame", "a damaged one")) }
 }
 
-/// Adds what some bytes of a stream become, and tells whether the stream goes on: it does not at its end, and
-/// where it is damaged.
+/// Decompresses some bytes of a stream, and returns whether the stream goes on. It does not go on after its
+/// end, or where it is damaged.
 fn goes_on(inflater: &mut Decompress, mut packed: &[u8], bytes: &mut Vec<u8>) -> bool {
     loop {
         bytes.reserve(4 * packed.len() + 1024);

@@ -1,4 +1,4 @@
-//! Data files of LAMMPS, so that one state runs in both codes.
+//! Data files of LAMMPS, with which one state runs in both codes.
 
 mod header;
 mod read;
@@ -15,9 +15,10 @@ impl State {
     /// Writes a data file of LAMMPS with `atom_style sphere`, for its `read_data`.
     ///
     /// The file has the box, the diameters, densities, positions, images, velocities and angular velocities.
-    /// An atom's type is the number of its [`Kind`](crate::Kind) and 1. LAMMPS takes the density as that of a
-    /// sphere, `ρ = 3m / 4πR³`. An open box ends above the highest disk, and a state without a box gets one
-    /// around the disks. The format has no place for angles, inertia factors, periodic directions and walls.
+    /// The type of an atom is the number of its [`Kind`](crate::Kind) plus 1. LAMMPS takes the density as
+    /// that of a sphere, `ρ = 3m / 4πR³`. An open box ends above the highest disk, and a state without a box
+    /// gets one around the disks. The format has no place for angles, inertia factors, periodic directions
+    /// and walls.
     ///
     /// [`from_lammps_data`](Self::from_lammps_data) reads it back to the same bits, except that a mass may
     /// differ by one rounding.
@@ -56,13 +57,13 @@ fn write_velocity(out: &mut impl Write, id: usize, disk: &Disk) -> io::Result<()
     writeln!(out, "{id} {:?} {:?} 0.0 0.0 0.0 {turning:?}", velocity.x, velocity.y)
 }
 
-/// Returns the mass of a sphere, in the order of operations that LAMMPS has.
+/// Returns the mass of a sphere, with the operations in the order of LAMMPS.
 fn mass(density: f64, radius: f64) -> f64 {
     4.0 * PI / 3.0 * radius * radius * radius * density
 }
 
-/// Returns the density of a sphere of this mass: of the neighboring numbers one that gives the mass back, if
-/// there is one.
+/// Returns the density of a sphere of this mass, or a neighboring number if only that gives back the same
+/// mass.
 fn density(mass: f64, radius: f64) -> f64 {
     let density = mass / self::mass(1.0, radius);
     let near = [density, density.next_up(), density.next_down()];

@@ -1,4 +1,4 @@
-//! Dumps as LAMMPS writes them.
+//! Dump files in the format of LAMMPS.
 
 use std::io::{self, BufRead, Write};
 
@@ -11,9 +11,9 @@ use crate::boundary::Domain;
 ///
 /// | column | |
 /// |---|---|
-/// | `id`, `type` | number of the disk, from 1; number of its [`Kind`](crate::Kind) and 1 |
+/// | `id`, `type` | number of the disk, from 1; number of its [`Kind`](crate::Kind) plus 1 |
 /// | `x y z`, `xu yu` | position of the center, also unwrapped; `z` is 0 |
-/// | `ix iy` | periods passed to the right and up |
+/// | `ix iy` | periods that the disk has passed to the right and up |
 /// | `vx vy` | velocity of the center |
 /// | `angle`, `omegaz` | angle and angular velocity in radians, counterclockwise |
 /// | `radius`, `mass` | of the disk |
@@ -34,6 +34,7 @@ use crate::boundary::Domain;
 /// assert!(text.contains("ITEM: BOX BOUNDS pp ff pp\n0.0 4.0\n0.0 6.0\n"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias("OVITO", "VMD", "trajectory"))]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct LammpsDump;
 
@@ -48,7 +49,7 @@ impl Format for LammpsDump {
         let sides = if domain.periodic_sides { "pp" } else { "ff" };
         let open = if domain.top.is_finite() { "ff" } else { "fs" };
         let ends = if domain.periodic_ends { "pp" } else { open };
-        // Units stand once in a file: where they come again, OVITO finds the first frame only.
+        // Units appear once in a file: if they came again, OVITO would find only the first frame.
         if frame.number() == 0 {
             writeln!(out, "ITEM: UNITS\nlj")?;
         }
@@ -78,13 +79,13 @@ impl Format for LammpsDump {
     }
 }
 
-/// Passes over a line that begins so, and returns the line after it.
+/// Skips a line that must begin with this name, and returns the line after it.
 fn item(input: &mut dyn BufRead, name: &str) -> io::Result<Option<String>> {
     let Some(line) = whole_line(input)? else { return Ok(None) };
     after(name, &line, input)
 }
 
-/// Returns the line after this one, which must begin so.
+/// Checks that a line begins with this name, and returns the line after it.
 fn after(name: &str, line: &str, input: &mut dyn BufRead) -> io::Result<Option<String>> {
     if line.starts_with(name) { whole_line(input) } else { Err(no_frame(&format!("`{name}`"), line)) }
 }

@@ -14,7 +14,7 @@ use crate::{Disk, ParameterError};
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Violation {
-    /// A frame cannot be written, or not be passed over.
+    /// A frame cannot be written or skipped.
     #[error("frame {number}: {reason}")]
     Failed {
         /// Number of the frame.
@@ -28,27 +28,27 @@ pub enum Violation {
         /// Number of the frame.
         number: usize,
     },
-    /// The time that was read is not that of the frame.
+    /// The time that was read is not the time of the frame.
     #[error("frame {number} of time {written} is read as one of time {read}")]
     Time {
         /// Number of the frame.
         number: usize,
-        /// Its time.
+        /// Time of the frame.
         written: f64,
         /// The time that was read.
         read: f64,
     },
-    /// The format passed over more or fewer bytes than it had written.
+    /// The format skipped more or fewer bytes than it had written.
     #[error("frame {number} has {written} bytes, of which {read} are passed over")]
     Length {
         /// Number of the frame.
         number: usize,
         /// Number of its bytes.
         written: usize,
-        /// Number of the bytes that were passed over.
+        /// Number of the bytes that were skipped.
         read: usize,
     },
-    /// The beginning of a frame was not seen to be one.
+    /// The format did not notice that a frame was cut short.
     #[error("frame {number}, cut after {kept} of its {written} bytes, does not answer `None`")]
     Torn {
         /// Number of the frame.
@@ -62,7 +62,7 @@ pub enum Violation {
 
 /// Checks that a format keeps its contract, with some frames of made-up disks.
 ///
-/// A format that cannot pass over frames ([`io::ErrorKind::Unsupported`]) is checked as far as it goes.
+/// A format that cannot skip frames ([`io::ErrorKind::Unsupported`]) is checked as far as it goes.
 ///
 /// # Errors
 /// The first promise that is broken.
@@ -107,7 +107,7 @@ pub fn check(format: &dyn Format) -> Result<(), Violation> {
     Ok(())
 }
 
-/// Checks that every beginning of a frame is seen to be one.
+/// Checks that the format notices a frame that is cut short, at whatever byte.
 fn check_torn(format: &dyn Format, number: usize, frame: &[u8]) -> Result<(), Violation> {
     let written = frame.len();
     match (1..written).find(|&kept| !matches!(format.skip_frame(&mut &frame[..kept]), Ok(None))) {
@@ -126,7 +126,7 @@ fn disks() -> Result<[Disk; 3], ParameterError> {
     ])
 }
 
-/// Returns frames of no disk, one and all, in boxes that are closed, open and periodic.
+/// Returns snapshots of no disk, one disk and all disks, in boxes that are closed, open and periodic.
 fn snapshots(disks: &[Disk]) -> [Snapshot<'_>; 4] {
     let closed = Domain::new(0.0, 7.0, -0.1, 9.0);
     let open = Domain::new(0.0, 7.0, -0.1, f64::INFINITY).with_periodic_sides();

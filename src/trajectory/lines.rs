@@ -17,7 +17,7 @@ impl<R: BufRead> Lines<R> {
         Self { input, text: String::new(), line: 0 }
     }
 
-    /// Returns the number of the last line.
+    /// Returns the number of the line that was read last.
     pub(super) const fn line(&self) -> usize {
         self.line
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::errors::RecordError;
 
-/// Bytes that can grow and be cut: a file, or what stands for one in tests.
+/// Bytes that can grow and be cut: a file, or its stand-in for tests.
 pub(super) trait Medium: Write + Seek {
     /// Cuts the bytes to this length.
     fn cut(&mut self, length: u64) -> io::Result<()>;
@@ -28,8 +28,8 @@ pub(super) struct Growing<M> {
 }
 
 impl<M: Medium> Growing<M> {
-    /// Goes on in a medium after so many bytes, and an ending. What else follows them is cut off by the first
-    /// write.
+    /// Creates a file that goes on in a medium after this many bytes and an ending. The first write cuts off
+    /// whatever else follows.
     pub(super) const fn new(medium: M, length: u64, ending: Vec<u8>) -> Self {
         Self { medium, length, ending }
     }
@@ -42,12 +42,12 @@ impl<M: Medium> Growing<M> {
         &self.medium
     }
 
-    /// Adds a piece, and an ending in the place of the last one. If that fails, the medium ends as it was.
+    /// Adds a piece, and replaces the last ending by a new one. If that fails, the medium is as before.
     pub(super) fn push(&mut self, piece: &[u8], ending: &[u8]) -> io::Result<()> {
         let written = self.write(&[piece, ending].concat());
         if written.is_err() {
-            // A failure to mend is ignored: the first error is the one to report, and the next reader finds
-            // the last whole piece by itself.
+            // A failure of this repair is ignored: the first error is the one to report, and the next reader
+            // finds the last whole piece by itself.
             let before = self.ending.clone();
             let _ = self.medium.cut(self.length).and_then(|()| self.write(&before));
             return written;
@@ -65,7 +65,7 @@ impl<M: Medium> Growing<M> {
     }
 }
 
-/// Makes a new file for a recorder alone.
+/// Creates a new file, locked for one recorder.
 pub(super) fn create(path: &Path) -> Result<File, RecordError> {
     let made = File::options().read(true).write(true).create_new(true).open(path);
     let file = made.map_err(|error| match error.kind() {
@@ -75,14 +75,14 @@ pub(super) fn create(path: &Path) -> Result<File, RecordError> {
     locked(file, path)
 }
 
-/// Opens a file for a recorder alone.
+/// Opens a file, locked for one recorder.
 pub(super) fn reopen(path: &Path) -> Result<File, RecordError> {
     let file = File::options().read(true).write(true).open(path);
     locked(file.map_err(RecordError::io("open", path))?, path)
 }
 
-/// Takes the lock of a file, which ends with the process at the latest. It goes without where there are no
-/// locks, and where a lock would keep others from reading.
+/// Locks a file; the lock ends with the process at the latest. The file stays unlocked where there are no
+/// locks, and outside Unix, where a lock could keep other programs from reading.
 fn locked(file: File, path: &Path) -> Result<File, RecordError> {
     match if cfg!(unix) { file.try_lock() } else { Ok(()) } {
         Err(TryLockError::WouldBlock) => Err(RecordError::Locked { path: path.to_owned() }),
@@ -96,7 +96,7 @@ mod tests {
 
     use super::*;
 
-    /// A disk on which there is room for so many bytes.
+    /// A drive with room for this many bytes.
     struct Small {
         bytes: Cursor<Vec<u8>>,
         room: usize,
@@ -128,8 +128,8 @@ mod tests {
         }
     }
 
-    /// Pieces of ten bytes and endings of two, which tell of the piece before, on a disk of any size: after a
-    /// failure the medium is as it was, and once there is room the same piece is written.
+    /// Writes pieces of ten bytes, each with an ending of two that names the piece, to drives of many sizes.
+    /// After a failure the medium is as it was, and once there is room the same piece can be written.
     #[test]
     fn a_full_disk_keeps_whole_pieces() {
         for room in 0..60 {

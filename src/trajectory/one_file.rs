@@ -1,4 +1,4 @@
-//! Frames one after another in one file, which may be compressed.
+//! Frames one after another in one file, plain or compressed.
 
 use std::fs::File;
 use std::hash::{DefaultHasher, Hasher};
@@ -99,7 +99,7 @@ impl Store for OneFile {
 }
 
 impl Packing {
-    /// Makes compressed files, in programs that can.
+    /// Makes the packing of compressed files, in programs that can compress.
     #[cfg(feature = "gzip")]
     const GZIP: Option<fn() -> Self> = Some(|| Self::Gzip(Member::default()));
     #[cfg(not(feature = "gzip"))]
@@ -114,7 +114,7 @@ impl Packing {
         }
     }
 
-    /// Returns what follows the last frame.
+    /// Returns the bytes that follow the last frame.
     fn ending(&self) -> Vec<u8> {
         match self {
             Self::Plain => Vec::new(),
@@ -150,7 +150,7 @@ impl Frames {
     }
 }
 
-/// Returns a number that differs for other bytes, for comparisons within one process.
+/// Returns a hash of these bytes, for comparisons within one process.
 fn digest(bytes: &[u8]) -> u64 {
     let mut hasher = DefaultHasher::new();
     hasher.write(bytes);

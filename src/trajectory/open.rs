@@ -6,8 +6,9 @@ use std::path::Path;
 
 use super::errors::ReadError;
 
-/// Opens a file for the readers of this module. It is decompressed if its name ends in `.gz`, with the
-/// feature `gzip`.
+/// Opens a file for the readers of this module.
+///
+/// With the feature `gzip`, a file whose name ends in `.gz` is decompressed.
 ///
 /// ```
 /// use granular_edmd::trajectory::open;
@@ -30,7 +31,7 @@ pub fn open(path: impl AsRef<Path>) -> Result<Box<dyn BufRead + Send>, ReadError
     return Err(failed(std::io::Error::other("it is compressed, which needs the feature `gzip`")));
 }
 
-/// Tells whether a file is compressed, by its name.
+/// Returns true if the name of a file says that it is compressed.
 pub(super) fn is_gzip(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "gz")
 }

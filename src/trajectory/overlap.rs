@@ -14,9 +14,11 @@ struct Image {
     is_itself: bool,
 }
 
-/// Returns two disks that overlap by more than rounding, and the depth, if there are such disks.
+/// Returns two disks that overlap by more than rounding, and the depth of their overlap, if there are such
+/// disks.
 ///
-/// The disks are swept over along the longer side of what they fill, so that each meets only those beside it.
+/// A sweep along the longer side of the area that the disks fill compares each disk only with those beside
+/// it.
 pub(super) fn first(disks: &[Disk], domain: Option<&Domain>) -> Option<(usize, usize, f64)> {
     let images = images(disks, domain);
     let along = longer_side(disks);
@@ -59,7 +61,7 @@ fn images(disks: &[Disk], domain: Option<&Domain>) -> Vec<Image> {
     images
 }
 
-/// Returns the direction in which the disks reach further.
+/// Returns the direction in which the disks extend further.
 fn longer_side(disks: &[Disk]) -> DVec2 {
     let places = || disks.iter().map(Disk::position);
     let low = places().fold(DVec2::INFINITY, DVec2::min);

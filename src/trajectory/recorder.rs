@@ -15,24 +15,24 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 
 /// An observer that writes a frame to a file at set times.
 ///
-/// Each frame is made whole in memory, then written. If that fails, because the disk is full, for example,
-/// the run ends with the error ([`verdict`](Observer::verdict)), and the file ends with its last whole frame.
-/// A run that goes on with the same recorder takes the frame that was missed.
+/// Each frame is made whole in memory, then written. If that fails, for example because the file system is
+/// full, the run ends with the error ([`verdict`](Observer::verdict)), and the file ends with its last whole
+/// frame. The next run with the same recorder takes the frame that was missed.
 ///
-/// [`OfKind`](crate::observable::OfKind) around a recorder records the disks of one kind; they are numbered
-/// among themselves. Files have the box; those for ParaView also have the parts of a vessel, if it is
-/// [shown to the recorder](Self::with_walls).
+/// [`OfKind`](crate::observable::OfKind) around a recorder records only the disks of one kind, and `id` then
+/// numbers these. Files hold the box. Files for ParaView also hold the parts of a vessel, if
+/// [`with_walls`](Self::with_walls) gives them to the recorder.
 ///
-/// # To go on in a file
-/// After a kill, resume the run from its checkpoint and [`append`](Self::append). The frames that were
-/// written after the checkpoint come again, with the same bits: they are compared with those in the file and
-/// not written twice. If they differ, the file is of another run, and the error says so. The rest of a frame
-/// in whose middle the process died is cut off by the next frame.
+/// # Going on in a file
+/// After a kill, resume the run from its checkpoint and [`append`](Self::append). The run comes again to the
+/// frames that were written after the checkpoint, with the same bits. The recorder compares them with those
+/// in the file and does not write them twice. If they differ, the file is of another run, and the error says
+/// so. If the process died in the middle of a frame, the next frame replaces what it left.
 ///
-/// A checkpoint that is later than the last frame leaves a gap: the recorder takes the frames that the run
-/// comes to. After disks were removed, `id` numbers those that are left.
+/// A checkpoint later than the last frame leaves a gap, since the recorder takes only the frames that the run
+/// comes to. After disks are removed, `id` numbers the remaining ones.
 ///
-/// Times of frames increase. On Unix, no two recorders write to one file at a time.
+/// The times of the frames increase. On Unix, no two recorders write to one file at a time.
 ///
 /// ```
 /// use granular_edmd::prelude::*;
@@ -55,6 +55,7 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 /// # std::fs::remove_dir_all(&folder)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias("trajectory", "dump", "movie"))]
 pub struct Recorder {
     clock: SampleTimes,
     format: Box<dyn Format + Send + Sync>,
@@ -62,16 +63,19 @@ pub struct Recorder {
     /// Bytes of the present frame.
     bytes: Vec<u8>,
     failure: Option<RecordError>,
-    /// The clock before a frame that failed: a run which goes on takes it.
+    /// The clock before a frame that failed, with which the next run takes that frame again.
     before_failure: Option<SampleTimes>,
 }
 
-/// Files.
+/// Constructors.
 impl Recorder {
-    /// Begins a new file. It is compressed if its name ends in `.gz`, with the feature `gzip`.
+    /// Creates a recorder that begins a new file.
+    ///
+    /// With the feature `gzip`, the file is compressed if its name ends in `.gz`.
     ///
     /// # Errors
-    /// If there is a file of this name, or it cannot be made.
+    /// If a file of this name exists, the file cannot be created, or its name ends in `.gz` without the
+    /// feature `gzip`.
     pub fn create(
         path: impl AsRef<Path>,
         format: impl Format + Send + Sync + 'static,
@@ -80,10 +84,13 @@ impl Recorder {
         Ok(Self::new(format, OneFile::create(path.as_ref())?, times))
     }
 
-    /// Goes on in a file that [`create`](Self::create) began. The whole file is read once.
+    /// Creates a recorder that goes on in a file that [`create`](Self::create) began.
+    ///
+    /// It reads the whole file once.
     ///
     /// # Errors
-    /// If the file cannot be opened, is not of this format, or has no whole frame. It is then left as it is.
+    /// If the file cannot be opened, another recorder writes to it, it is not of this format, or it has no
+    /// whole frame. The file is then left as it is.
     pub fn append(
         path: impl AsRef<Path>,
         format: impl Format + Send + Sync + 'static,
@@ -93,27 +100,31 @@ impl Recorder {
         Ok(Self::new(format, store, times))
     }
 
-    /// Begins a series of files for ParaView. `run.pvd` has the times. The new folder `run` beside it has two
-    /// files for each frame: the disks, as [`State::write_vtk`](super::State::write_vtk) writes them, and the
-    /// edges of the box.
+    /// Creates a recorder that begins a series of files for ParaView.
+    ///
+    /// A file such as `run.pvd` holds the times. A new folder beside it, here `run`, holds two files for each
+    /// frame: the disks, as [`State::write_vtk`](super::State::write_vtk) writes them, and the edges of the
+    /// box.
     ///
     /// # Errors
-    /// If the path does not end in `.pvd`, there is a file or a folder of these names, or they cannot be
-    /// made.
+    /// If the path does not end in `.pvd`, a file or a folder of these names exists, or they cannot be
+    /// created.
     pub fn create_vtk(path: impl AsRef<Path>, times: SampleTimes) -> Result<Self, RecordError> {
         Ok(Self::new(PolyData, Series::create(path.as_ref())?, times))
     }
 
-    /// Goes on in a series that [`create_vtk`](Self::create_vtk) began.
+    /// Creates a recorder that goes on in a series that [`create_vtk`](Self::create_vtk) began.
     ///
     /// # Errors
-    /// If the files cannot be opened, or are not such a series. They are then left as they are.
+    /// If the files cannot be opened, another recorder writes to them, or they are not such a series. They
+    /// are then left as they are.
     pub fn append_vtk(path: impl AsRef<Path>, times: SampleTimes) -> Result<Self, RecordError> {
         Ok(Self::new(PolyData, Series::reopen(path.as_ref())?, times))
     }
 
-    /// Returns the same recorder, which also writes these walls, lines of points at each time. Only series
-    /// for ParaView have room for them; other files are as before.
+    /// Returns the same recorder, which also writes these walls, given as lines of points at each time.
+    ///
+    /// Only series for ParaView have room for walls; other files do not change.
     ///
     /// ```
     /// use granular_edmd::prelude::*;
@@ -163,10 +174,12 @@ impl Recorder {
         self.store.times()
     }
 
-    /// Records a frame now, such as the state before a run: a run takes its first frame after one interval.
+    /// Records a frame now, for example of the state before a run.
+    ///
+    /// A run takes its own first frame after one interval.
     ///
     /// # Errors
-    /// If the frame cannot be written, or the file has another frame at this time or later.
+    /// If the frame cannot be written, or the file reaches this time already and does not have this frame.
     pub fn record(&mut self, snapshot: &Snapshot<'_>) -> Result<(), RecordError> {
         let time = snapshot.time();
         let last = self.times().last().copied();
@@ -229,7 +242,7 @@ impl Observer for Recorder {
 
     #[inline]
     fn verdict(&mut self) -> Verdict {
-        // Asked after each collision.
+        // The engine asks after each collision, so the usual answer comes first.
         if self.failure.is_none() {
             return Ok(ControlFlow::Continue(()));
         }

@@ -4,9 +4,9 @@ use crate::Disk;
 use crate::boundary::Domain;
 use crate::observable::Snapshot;
 
-/// Disks of a file, with the time, the gravity and the box as far as the file has them.
+/// The disks of a file, with the time, gravity and the box if the file has them.
 ///
-/// No two disks overlap, and none has its center outside of the box.
+/// No two disks overlap, and none has its center outside the box.
 /// [`build`](crate::simulation::SimulationBuilder::build) checks them against the walls.
 ///
 /// ```
@@ -21,6 +21,7 @@ use crate::observable::Snapshot;
 /// assert_eq!(error.to_string(), "line 3: the disk overlaps that of line 2 by 0.5");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[doc(alias("restart", "read_data", "initial condition"))]
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
     pub(super) disks: Vec<Disk>,
@@ -30,7 +31,7 @@ pub struct State {
 }
 
 impl State {
-    /// Creates the state of a snapshot, to write it.
+    /// Creates the state of a snapshot, to write it to a file.
     pub fn of(snapshot: &Snapshot<'_>) -> Self {
         Self {
             disks: snapshot.disks().to_vec(),
@@ -40,27 +41,27 @@ impl State {
         }
     }
 
-    /// Returns the disks, in the order of their numbers in the file if it has such.
+    /// Returns the disks, in the order of their numbers if the file numbers them.
     pub fn disks(&self) -> &[Disk] {
         &self.disks
     }
 
-    /// Takes the disks out.
+    /// Returns the disks without the rest of the state.
     pub fn into_disks(self) -> Vec<Disk> {
         self.disks
     }
 
-    /// Returns the box.
+    /// Returns the box, if the file has one.
     pub const fn domain(&self) -> Option<Domain> {
         self.domain
     }
 
-    /// Returns the time.
+    /// Returns the time, if the file has one.
     pub const fn time(&self) -> Option<f64> {
         self.time
     }
 
-    /// Returns gravity, which points down.
+    /// Returns gravity, which points down, if the file has it.
     pub const fn gravity(&self) -> Option<f64> {
         self.gravity
     }

@@ -1,4 +1,4 @@
-//! Places for frames, one after another.
+//! The trait of stores of frames: one file, or a series of files.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::observable::Snapshot;
 /// The walls at a time, as lines of points.
 pub(super) type Walls = Box<dyn Fn(f64) -> Vec<Vec<DVec2>> + Send + Sync>;
 
-/// A place for the bytes of frames, one after another. What was stored is whole, whatever happens later.
+/// A store for the bytes of frames, one after another. A stored frame stays whole, whatever happens later.
 pub(super) trait Store {
     /// Returns the times of the frames, which increase.
     fn times(&self) -> &[f64];
@@ -18,13 +18,13 @@ pub(super) trait Store {
     /// Adds a frame. If that fails, the store is as before.
     fn append(&mut self, snapshot: &Snapshot<'_>, bytes: &[u8]) -> Result<(), RecordError>;
 
-    /// Tells whether the frame of this number has these bytes.
+    /// Returns whether the frame of this number has these bytes.
     fn has(&mut self, number: usize, bytes: &[u8]) -> Result<bool, RecordError>;
 
     /// Waits until the system has stored everything.
     fn sync(&mut self) -> Result<(), RecordError>;
 
-    /// Takes lines that are written with each frame, if there is room for them.
+    /// Takes the walls to write with each frame, if the store has room for walls.
     fn set_walls(&mut self, _walls: Walls) {}
 
     /// Returns the path, for messages.

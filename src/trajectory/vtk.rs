@@ -17,8 +17,8 @@ use crate::Disk;
 use crate::boundary::Domain;
 use crate::observable::Snapshot;
 
-/// The format of a frame in a file of its own. It does not leave this module, since a recorder of one file
-/// would write one such file after another.
+/// The format of a file that holds one frame. It stays inside this module, since a recorder of one file would
+/// write several such files into one.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PolyData;
 
@@ -30,12 +30,12 @@ impl Format for PolyData {
 }
 
 impl State {
-    /// Writes the disks as VTK's `PolyData`, a `.vtp` file for ParaView: a point for each disk.
+    /// Writes the disks as VTK's `PolyData`, a `.vtp` file for ParaView with a point for each disk.
     ///
     /// The arrays are `id` (from 1), `kind`, `velocity`, `angle`, `angular_velocity`, `radius`, `mass`,
-    /// `inertia_factor`, `image` and `unwrapped` (position), and `TimeValue` of the whole. Numbers are in
-    /// binary. [`Recorder::create_vtk`](super::Recorder::create_vtk) makes a series of such files. In
-    /// ParaView, the filter Glyph shows disks: a sphere of radius 1, scaled by the array `radius`.
+    /// `inertia_factor`, `image` and `unwrapped` (position), and `TimeValue` for the whole file. Numbers are
+    /// in binary. [`Recorder::create_vtk`](super::Recorder::create_vtk) makes a series of such files. In
+    /// ParaView, the filter Glyph shows the disks: choose a sphere of radius 1, scaled by the array `radius`.
     ///
     /// # Errors
     /// If the writer fails.
@@ -82,8 +82,8 @@ fn write_disks(
     out.write_all(TAIL.as_bytes())
 }
 
-/// Writes the edges of the box and other walls as lines. The array `periodic` is 1 for edges that are no
-/// walls, `part` is 1 for walls that are no edges. An open box has no lid.
+/// Writes the edges of the box and other walls as lines. The array `periodic` is 1 for edges that are not
+/// walls, and `part` is 1 for walls that are not edges. An open box has no lid.
 fn write_box(out: &mut dyn Write, snapshot: &Snapshot<'_>, walls: &[Vec<DVec2>]) -> io::Result<()> {
     let domain = snapshot.domain();
     let Domain { left, right, bottom, .. } = domain;
@@ -121,7 +121,7 @@ fn write_time(out: &mut dyn Write, time: Option<f64>) -> io::Result<()> {
     out.write_all(b"</FieldData>\n")
 }
 
-/// Returns the components of a vector in space.
+/// Returns a vector of the plane with a third component 0.
 fn in_space(vector: DVec2) -> [f64; 3] {
     [vector.x, vector.y, 0.0]
 }

@@ -6,7 +6,9 @@ use thiserror::Error;
 use crate::Flight;
 use crate::boundary::{Domain, Region};
 
-/// A way in which a boundary breaks its contract. Times are offsets from the time origin.
+/// A way in which a boundary breaks its contract.
+///
+/// Times are offsets from the time origin.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Violation {

@@ -2,7 +2,7 @@
 
 use crate::study::{Experiment, Plan, PlanError, parameters};
 
-/// Explanations of the lines of a plan, by how they begin.
+/// Explanations of lines of a plan, by the beginning of the line.
 const NOTES: [(&str, &str); 6] = [
     ("seed", "Seed of all random numbers: the same plan gives the same bytes."),
     ("repeats", "Times that each point is done, with different seeds."),
@@ -15,7 +15,7 @@ const NOTES: [(&str, &str); 6] = [
     ("[[sweep]]", "A parameter that differs between ramps, which are independent of each other."),
 ];
 
-/// Sections that a plan may have, for one that lacks them.
+/// Examples of sections that a plan may have, for a plan that lacks them.
 const EXAMPLES: [(&str, &str); 3] = [
     ("repeats", "repeats = 3   (before [experiment])"),
     ("[ramp]", "[ramp]\n# parameter = \"NAME\"\n# values = [0.1, 0.2]\n# course = \"up\""),

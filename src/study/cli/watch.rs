@@ -1,4 +1,4 @@
-//! Progress on the terminal, or in lines; and stopping.
+//! The display of progress, as a bar on a terminal or else in lines, and the signals that stop a study.
 
 use std::error::Error;
 use std::io::{IsTerminal, Write};
@@ -10,10 +10,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::study::Progress;
 
-/// Set by Ctrl-C and SIGTERM.
+/// True once Ctrl-C or SIGTERM has come.
 static STOP: AtomicBool = AtomicBool::new(false);
 
-/// Time between two lines where there is no terminal.
+/// Time between two lines if there is no terminal.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
 
 pub(super) const fn stop() -> &'static AtomicBool {
@@ -26,14 +26,14 @@ pub(super) fn is_stopped() -> bool {
 
 /// Display of a running study.
 pub(super) struct Watch {
-    /// On a terminal.
+    /// The bar, if there is a terminal.
     bar: Option<ProgressBar>,
     told: Mutex<Instant>,
 }
 
 impl Watch {
-    /// Shows progress from now on, and stops when it is asked to; asked twice, it ends at once, with what was
-    /// saved by then.
+    /// Creates the display, and lets Ctrl-C or SIGTERM stop the study. A second signal ends the process at
+    /// once, with what is saved by then.
     pub(super) fn new() -> Result<Self, Box<dyn Error>> {
         ctrlc::set_handler(|| {
             if STOP.swap(true, Ordering::Relaxed) {

@@ -1,4 +1,5 @@
-//! The workflow of `row`: what is run in the folder of a ramp, and what is there afterwards.
+//! The workflow file of `row`, with the command for the folder of a ramp and the file that the command leaves
+//! there.
 
 use std::fs::File;
 use std::io::{ErrorKind, Write};
@@ -6,7 +7,7 @@ use std::path::Path;
 
 use crate::study::StudyError;
 
-/// Writes `workflow.toml` into the folder of a study; one that is there is left as it is.
+/// Writes `workflow.toml` into the folder of a study; an existing one stays as it is.
 pub(super) fn write(folder: &Path) -> Result<(), StudyError> {
     let path = folder.join("workflow.toml");
     let program = std::env::current_exe().map_err(StudyError::io("find", Path::new("this program")))?;
@@ -16,7 +17,7 @@ pub(super) fn write(folder: &Path) -> Result<(), StudyError> {
     }
 }
 
-/// Returns a workflow of one action, which does a ramp by this program.
+/// Returns a workflow of one action, which does a ramp with this program.
 fn text(program: &Path) -> String {
     let program = program.to_string_lossy().replace('\'', r"'\''");
     let command = format!("'{program}' run plan.toml --out . --threads 1 --ramp {{directory}}");

@@ -1,4 +1,4 @@
-//! A plan as text: TOML, read through the same checks as a plan that a program makes.
+//! Plans as text in TOML, which pass the same checks as plans that a program makes.
 
 use std::fmt;
 
@@ -12,14 +12,13 @@ impl<E: Experiment> Plan<E> {
     /// Reads a plan in TOML.
     ///
     /// # Errors
-    /// If it is not TOML, a field is unknown or missing, or a value is as it should not be; the error names
-    /// it.
+    /// If the text is not TOML, a field is unknown or missing, or a value is refused. The error names it.
     pub fn from_toml(text: &str) -> Result<Self, PlanError> {
         Self::from_toml_unproven(text)?.proven()
     }
 
-    /// Reads a plan without a look at the experiment of each value, which takes seconds in large plans and is
-    /// done once only.
+    /// Reads a plan without a check of the experiment of each value, which takes seconds for large plans and
+    /// is needed only once.
     pub(in crate::study) fn from_toml_unproven(text: &str) -> Result<Self, PlanError> {
         let raw: Raw<E> = toml::from_str(text).map_err(|error| PlanError::Toml(error.to_string()))?;
         raw.plan().consistent()
@@ -28,13 +27,13 @@ impl<E: Experiment> Plan<E> {
     /// Returns the plan in TOML.
     ///
     /// # Errors
-    /// If it cannot be written so.
+    /// If the plan cannot be written as TOML.
     pub fn to_toml(&self) -> Result<String, PlanError> {
         toml::to_string(self).map_err(|error| PlanError::Toml(error.to_string()))
     }
 }
 
-/// The plan as in its file.
+/// Writes the plan as it is in its file.
 impl<E: Experiment> fmt::Display for Plan<E> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(&self.to_toml().map_err(|_| fmt::Error)?)

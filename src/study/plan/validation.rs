@@ -1,11 +1,11 @@
-//! Checks of a plan when it is made, so that nothing fails for its sake later.
+//! Checks of a plan when it is made, so that no run fails because of it later.
 
 use super::Plan;
 use crate::quantity::accept;
 use crate::study::parameters::{self, probe, whole_name};
 use crate::study::{Axis, Experiment, PlanError, Ramp, column};
 
-/// Most values of a study, all ramps together.
+/// Largest number of values of a study, in all ramps together.
 const MOST_VALUES: usize = 1_000_000;
 
 /// Largest seed: a plan has no larger integers.
@@ -23,7 +23,7 @@ impl<E: Experiment> Plan<E> {
         Ok(self)
     }
 
-    /// Returns the plan, if its parts are each as they should be.
+    /// Returns the plan, if each of its parts is valid.
     pub(super) fn consistent(mut self) -> Result<Self, PlanError> {
         accept(self.seed <= LARGEST_SEED, "seed", "below 2^63", self.seed as f64)?;
         accept(self.repeats > 0, "number of repeats", "at least 1", self.repeats as f64)?;
@@ -39,7 +39,7 @@ impl<E: Experiment> Plan<E> {
         Ok(self)
     }
 
-    /// Checks that no parameter varies twice, and that the ramped one can be.
+    /// Checks that no parameter varies twice, and that the ramped parameter can be ramped.
     fn check_varied(&self) -> Result<(), PlanError> {
         let twice = self.varied.iter().enumerate().find(|&(index, name)| self.varied[..index].contains(name));
         if let Some((_, parameter)) = twice {
@@ -53,8 +53,8 @@ impl<E: Experiment> Plan<E> {
         }
     }
 
-    /// Sets each parameter that varies for itself: that there is one of this name, and what its values
-    /// become.
+    /// Sets each parameter that varies, one by one, to check that it exists and to take its values as the
+    /// experiment reads them.
     fn try_names(&mut self) -> Result<(), PlanError> {
         for (axis, name) in self.sweep.iter_mut().zip(&self.varied) {
             let tried = axis.values().iter().map(|to| probe::<E>(&self.tree, axis.parameter(), name, to));
@@ -90,7 +90,8 @@ impl<E: Experiment> Plan<E> {
         self.check_disks()
     }
 
-    /// Checks that the disks fit in: at the first value of all axes, and at each value of each one.
+    /// Checks that the disks fit in, with all axes at their first values, and with each axis in turn at each
+    /// of its other values.
     fn check_disks(&self) -> Result<(), PlanError> {
         let mut stride = self.ramps();
         let mut ramps = vec![0];

@@ -1,4 +1,4 @@
-//! A value that is read if it is finished, gone on with if it was begun, and else done from its start.
+//! One value of a run: it is read if it is finished, continued if it was begun, and else done from its start.
 
 use std::path::Path;
 use std::sync::PoisonError;
@@ -13,7 +13,7 @@ use crate::study::record::{Contents, Origin, Record};
 use crate::study::refinement::Step;
 use crate::study::{CRATE_VERSION, file};
 
-/// Reason for which the steps of a value came to an end.
+/// The reason why the steps of a value came to an end.
 enum Pause {
     Done,
     Interrupted,
@@ -22,7 +22,7 @@ enum Pause {
 }
 
 impl<E: Experiment> Shift<'_, E> {
-    /// Returns the record of a value that is finished.
+    /// Returns the record of a value; `None` if the value is not finished.
     pub(super) fn known(
         &self,
         ramp: usize,
@@ -34,13 +34,14 @@ impl<E: Experiment> Shift<'_, E> {
         if let Some(record) = &record {
             check_version(&record.contents.origin, &self.study.folder.record(ramp, value))?;
             self.meter.advance(ramp, value, self.study.plan().protocol().steps());
-            // A process that was killed just after finishing a value has left this behind.
+            // A process that was killed just after finishing a value may have left this behind.
             file::remove(&self.study.folder.partial(ramp, value))?;
         }
         Ok(record)
     }
 
-    /// Returns a record that is of this step; a record before it may have been done again since.
+    /// Checks that a record belongs to this step. It may not, if a record before it has been done again
+    /// since.
     fn on_the_way(&self, record: Option<Record<E>>, step: Step) -> Result<Option<Record<E>>, StudyError> {
         match record {
             Some(record) if (record.leg(), record.at()) != (step.leg, step.at) => {
@@ -51,7 +52,7 @@ impl<E: Experiment> Shift<'_, E> {
         }
     }
 
-    /// Returns what a file holds; nothing, if it is damaged.
+    /// Returns the contents of a file. It logs a damaged file and returns `None`.
     fn if_sound<T>(&self, ramp: usize, read: Result<Option<T>, StudyError>) -> Result<Option<T>, StudyError> {
         match read {
             Err(StudyError::Damaged { path, reason }) => {
@@ -94,7 +95,7 @@ impl<E: Experiment> Shift<'_, E> {
         Ok(Some(record))
     }
 
-    /// Returns a value half done, as it was saved.
+    /// Returns an unfinished value as it was saved, if there is one.
     fn saved<'v>(&self, task: &'v Value<'_, E>) -> Result<Option<Active<'v, E>>, StudyError> {
         let Origin { ramp, value, .. } = task.origin;
         let path = self.study.folder.partial(ramp, value);
@@ -143,7 +144,7 @@ impl<E: Experiment> Shift<'_, E> {
     }
 }
 
-/// Checks that a file was made by this version: a study is all of one.
+/// Checks that this version made a file, since one version does a whole study.
 fn check_version(origin: &Origin, path: &Path) -> Result<(), StudyError> {
     if origin.version == CRATE_VERSION {
         return Ok(());
@@ -151,7 +152,7 @@ fn check_version(origin: &Origin, path: &Path) -> Result<(), StudyError> {
     Err(StudyError::Version { path: path.to_owned(), found: origin.version.clone(), known: CRATE_VERSION })
 }
 
-/// Returns a file by its name and that of its folder.
+/// Returns the name of a file after the name of its folder.
 fn name(path: &Path) -> String {
     let parts: Vec<_> = path.iter().rev().take(2).map(|part| part.to_string_lossy()).collect();
     parts.into_iter().rev().collect::<Vec<_>>().join("/")

@@ -5,7 +5,7 @@ use crate::trajectory::entry::{Columns, Field};
 use crate::trajectory::errors::ReadError;
 use crate::trajectory::lines::number;
 
-/// The keys of a frame, as far as they matter here.
+/// The keys of a frame that the reader needs.
 pub(super) struct Header {
     pub(super) columns: Columns,
     pub(super) time: Option<f64>,
@@ -49,7 +49,7 @@ pub(super) fn value<'a>(keys: &'a str, key: &str) -> Option<&'a str> {
     None
 }
 
-/// Returns the fields of each disk. Columns that a disk does not have are left out of account.
+/// Returns the fields of each disk, with [`Field::Other`] for columns that no property of a disk belongs to.
 fn fields(properties: &str, line: usize) -> Result<Vec<Field>, ReadError> {
     let parts: Vec<&str> = properties.split(':').collect();
     let mut fields = Vec::new();
@@ -82,7 +82,7 @@ fn known(name: &str) -> &'static [Field] {
     }
 }
 
-/// Returns the box: as this crate writes it, or as the lattice has it.
+/// Returns the box from the key `Domain`, which this crate writes, or else from the lattice.
 fn domain(keys: &str, line: usize) -> Result<Option<Domain>, ReadError> {
     let domain = match (value(keys, "Domain"), value(keys, "Lattice")) {
         (Some(domain), _) => {
@@ -123,7 +123,7 @@ fn periodic(domain: Domain, pbc: Option<&str>, line: usize) -> Result<Domain, Re
     Ok(if ends { domain.with_periodic_ends() } else { domain })
 }
 
-/// Returns so many numbers, apart by white space.
+/// Reads `COUNT` numbers, separated by white space.
 fn numbers<const COUNT: usize>(what: &str, text: &str, line: usize) -> Result<[f64; COUNT], ReadError> {
     let numbers = text.split_whitespace().map(|text| number(what, text, line));
     let numbers: Vec<f64> = numbers.collect::<Result<_, _>>()?;

@@ -11,11 +11,11 @@ use crate::trajectory::state::State;
 
 /// The frames of a file of extended XYZ, one after another, as [`State`]s.
 ///
-/// A frame needs the columns `pos` and `radius`. The others of [`ExtendedXyz`](super::ExtendedXyz) are read
-/// if they are there, and a disk is else as [`Disk::new`](crate::Disk::new) makes it. Columns of other names
-/// are left out. Disks come in the order of their `id`.
+/// A frame needs the columns `pos` and `radius`. The other columns of [`ExtendedXyz`](super::ExtendedXyz) are
+/// read if they are there. Without them, a disk has the values that [`Disk::new`](crate::Disk::new) gives it.
+/// Columns of other names are ignored. Disks come in the order of their `id`.
 ///
-/// After an error there are no more frames.
+/// The iterator ends after an error.
 ///
 /// ```
 /// use granular_edmd::trajectory::XyzFrames;
@@ -28,12 +28,12 @@ use crate::trajectory::state::State;
 /// # Ok::<(), granular_edmd::trajectory::ReadError>(())
 /// ```
 pub struct XyzFrames<R> {
-    /// The rest of the file; none after an error.
+    /// The rest of the file; `None` after an error.
     lines: Option<Lines<R>>,
 }
 
 impl<R: BufRead> XyzFrames<R> {
-    /// Reads the frames of an input, such as a file that was [opened](crate::trajectory::open).
+    /// Creates a reader of the frames of an input, such as a file that was [opened](crate::trajectory::open).
     pub const fn new(input: R) -> Self {
         Self { lines: Some(Lines::new(input)) }
     }
@@ -61,8 +61,8 @@ impl State {
     /// Reads the last frame of a file of extended XYZ.
     ///
     /// # Errors
-    /// If the input fails, a frame is not whole, or a frame is no state as [`XyzFrames`] needs it: something
-    /// is missing, stands twice, overlaps, or is outside of the box. The error names the line.
+    /// If the input fails, there is no frame, a frame is cut short, or a frame is not a valid state: a part
+    /// is missing or appears twice, disks overlap, or a disk is outside the box. The error names the line.
     pub fn from_xyz(input: impl BufRead) -> Result<Self, ReadError> {
         let missing = || ReadError::End { line: 0, what: "a frame".to_owned() };
         XyzFrames::new(input).try_fold(None, |_, state| state.map(Some))?.ok_or_else(missing)

@@ -1,4 +1,4 @@
-//! The header of a data file: everything before the first section.
+//! The header of a data file, which is everything before the first section.
 
 use std::io::BufRead;
 
@@ -6,7 +6,7 @@ use crate::boundary::Domain;
 use crate::trajectory::errors::ReadError;
 use crate::trajectory::lines::{Lines, number, whole};
 
-/// The header, as far as it matters here.
+/// The values of the header that the reader needs.
 #[derive(Debug, Default)]
 pub(super) struct Header {
     pub(super) time: Option<f64>,
@@ -20,7 +20,7 @@ impl Header {
     pub(super) fn read<R: BufRead>(lines: &mut Lines<R>) -> Result<(Self, Option<String>), ReadError> {
         let (title, line) = lines.need("the title")?;
         let time = title.split_once(", time = ").map(|(_, time)| number("time", time, line)).transpose();
-        // A title of another program may have other words after it.
+        // In a title that another program wrote, words may follow instead of a number.
         let mut header = Self { time: time.unwrap_or(None), ..Self::default() };
         while let Some((text, line)) = lines.next_filled()? {
             if text.starts_with(char::is_alphabetic) {
@@ -31,7 +31,7 @@ impl Header {
         Ok((header, None))
     }
 
-    /// Takes a line of the header.
+    /// Reads a line of the header.
     fn take(&mut self, text: &str, line: usize) -> Result<(), ReadError> {
         let words: Vec<&str> = text.split_whitespace().collect();
         let ends = |low: &str, high: &str| -> Result<_, ReadError> {
@@ -44,7 +44,7 @@ impl Header {
             [.., "xy", "xz", "yz"] | [.., "avec" | "bvec" | "cvec"] => {
                 return Err(ReadError::unexpected(line, "the box", "a rectangle", text));
             }
-            // Numbers of things that disks do not have.
+            // Numbers of things that disks do not have, such as bonds.
             _ => {}
         }
         Ok(())

@@ -15,21 +15,21 @@ use crate::trajectory::state::State;
 /// The atoms of a file by their numbers, with their lines.
 type Atoms = BTreeMap<u64, (usize, Draft)>;
 
-/// Lines in which the velocity of each atom stands.
+/// The number of the line with the velocity of each atom.
 type Seen = BTreeMap<u64, usize>;
 
 impl State {
-    /// Reads a data file of LAMMPS with `atom_style sphere`, as its `write_data` makes it.
+    /// Reads a data file of LAMMPS with `atom_style sphere`, as its command `write_data` writes it.
     ///
-    /// Disks come in the order of the atoms' numbers; the kind of a disk is the type of its atom less 1. The
+    /// Disks come in the order of the atoms' numbers. The kind of a disk is the type of its atom minus 1. The
     /// mass is that of a sphere, `m = 4π/3 ρR³`. Atoms without velocities are at rest. The box has walls on
-    /// all sides, since the file does not say which directions are periodic. Sections on other matters are
-    /// passed over. Soft particles overlap, which is an error here, as in any other file.
+    /// all sides, since the file does not say which directions are periodic. Other sections are skipped.
+    /// Particles that overlap, as soft ones do, are an error here, as in any other file.
     ///
     /// # Errors
-    /// If the input fails, the box, the number of atoms or an atom is missing, an atom or a velocity stands
-    /// twice, the style is another one, a number cannot be read or is out of range, a third component is not
-    /// 0, or disks overlap or are outside of the box. The error names the line.
+    /// If the input fails, the box, the number of atoms or an atom is missing, an atom or a velocity appears
+    /// twice, the atom style is not `sphere`, a number cannot be read or is out of range, a third component
+    /// is not 0, or disks overlap or are outside the box. The error names the line.
     ///
     /// ```
     /// use granular_edmd::trajectory::State;
@@ -100,7 +100,8 @@ fn check_style(name: &str, line: usize) -> Result<(), ReadError> {
     }
 }
 
-/// Adds an atom: number, type, diameter, density, place, and passed periods if they are there.
+/// Adds an atom from its number, type, diameter, density, position, and the periods that it has passed if
+/// they are given.
 fn add_atom(atoms: &mut Atoms, cells: &[&str], line: usize) -> Result<(), ReadError> {
     let (&[id, kind, diameter, density, x, y, z], image) =
         cells.split_first_chunk::<7>().ok_or_else(|| {
@@ -134,7 +135,7 @@ fn add_atom(atoms: &mut Atoms, cells: &[&str], line: usize) -> Result<(), ReadEr
     }
 }
 
-/// Returns the kind of a type.
+/// Returns the kind for an atom type.
 fn of_type(kind: &str, line: usize) -> Result<Kind, ReadError> {
     let number = whole::<u32>("type", kind, line)?.checked_sub(1).and_then(|kind| u16::try_from(kind).ok());
     let number = number.ok_or_else(|| ReadError::unexpected(line, "type", "from 1 to 65536", kind))?;

@@ -1,4 +1,4 @@
-//! Arrays of numbers in VTK's XML: base64 of their length and their bytes.
+//! Arrays of numbers in VTK's XML, written as base64 of their length and their bytes.
 
 use std::io::{self, Write};
 

@@ -11,12 +11,13 @@ use crate::trajectory::format::no_frame;
 use crate::trajectory::media::{self, Growing};
 use crate::trajectory::store::{Store, Walls};
 
-/// Beginning of the file of times, and its ending after each frame: it is whole at any time.
+/// Beginning and ending of the file of times. The ending follows each frame, so that the file is always
+/// whole.
 const HEAD: &str = "<?xml version=\"1.0\"?>\n\
     <VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
 const TAIL: &str = "</Collection>\n</VTKFile>\n";
 
-/// Frames in files of their own, in a folder beside the file of times.
+/// A store of frames in separate files, in a folder beside the file of times.
 pub(in crate::trajectory) struct Series {
     path: PathBuf,
     folder: PathBuf,
@@ -64,7 +65,7 @@ impl Series {
         self.folder.join(file_name(part, number))
     }
 
-    /// Writes a file of a frame. A killed run may have left it, or its beginning.
+    /// Writes one of the files of a frame. A killed run may have left that file, or its beginning.
     fn write(&self, part: &str, bytes: &[u8]) -> Result<(), RecordError> {
         let path = self.file_of(part, self.times.len());
         let file = match fs::read(&path) {
@@ -75,7 +76,7 @@ impl Series {
         };
         let mut file = file.map_err(RecordError::io("create", &path))?;
         file.write_all(bytes).map_err(|error| {
-            // Its beginning would be no harm, but takes room on a full disk.
+            // What was written would do no harm, but takes room on a full drive.
             let _ = fs::remove_file(&path);
             RecordError::io("write to", &path)(error)
         })
@@ -160,15 +161,15 @@ fn times(text: &str, folder: &str) -> (Vec<f64>, usize) {
     (times, length)
 }
 
-/// Tells whether the rest of a file of times is its ending, or the beginning of a frame that was not
-/// finished.
+/// Returns true if the rest of a file of times is no longer than its ending, or is the beginning of a frame
+/// that was not finished.
 fn is_torn(rest: &str, folder: &str, number: usize) -> bool {
     let time = rest.strip_prefix("<DataSet timestep=\"").and_then(|rest| rest.split_once('"'));
     let entry = time.and_then(|(time, _)| time.parse().ok()).map(|time| entry(folder, number, time) + TAIL);
     rest.len() <= TAIL.len() || entry.is_some_and(|entry| entry.starts_with(rest))
 }
 
-/// Returns a text as it stands in XML.
+/// Returns a text with the characters that have a meaning in XML escaped.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

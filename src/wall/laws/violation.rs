@@ -48,7 +48,7 @@ pub enum Violation {
         /// The end of the piece.
         until: f64,
     },
-    /// The pieces in a row advance so little that no search can follow them.
+    /// Pieces in a row advance so little that no search can follow them.
     #[error("{pieces} pieces of its motion lead only from phase {phase} to {until}: they are too short")]
     ShortPieces {
         /// The phase at which the first begins.
