@@ -45,8 +45,9 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 /// 1. A run as a whole is **collapsed** if two conditions hold. Its height profile has a compact layer, of
 ///    packing fraction above 0.60, on a gas of less than half of that. And its two-roll flow has died,
 ///    `$|\langle\Psi_2\rangle| < 0.03$`.
-/// 2. A cluster is **conductive** if its center is at most `$3\sigma$` from the origin, or collapsed if the
-///    profile has such a layer: near this transition, two rolls come and go over it.
+/// 2. A cluster is **conductive** if its center is at most `$3\sigma$` from the origin. It is collapsed
+///    instead if the height profile has such a layer: near this transition, two rolls come and go over the
+///    layer.
 /// 3. A cluster shows **two rolls** if `$|\Psi_2| > |\Psi_1|$`: up in the middle for a positive `$\Psi_2$`,
 ///    else down.
 /// 4. A cluster shows **one roll** otherwise: clockwise for a positive `$\Psi_1$`.
@@ -178,7 +179,7 @@ impl StateCriteria {
     }
 }
 
-/// Returns the mean of `$\Psi_2$` over all samples.
+/// Returns the mean of Ψ₂ over all samples.
 fn mean_of_two_rolls(clusters: &Clusters) -> f64 {
     clusters.iter().map(|cluster| cluster.weight() * cluster.center().y).sum()
 }
