@@ -124,7 +124,7 @@ pub enum RunError {
     /// The run hardly progresses: disks come to rest, by an inelastic collapse or under gravity, and collide
     /// ever more often.
     #[error(
-        "the run stalled at time {time}: {events} events took it only {elapsed:e} further, the last of disk {disk}{}: \
+        "the run stalled at time {time}: {events} events took it only {elapsed:e} further; disk {disk}{} is next to collide: \
          {remedy}; docs/rest.md compares the remedies, and Limits::with_least_progress allows less progress",
         Named(*.partner, .wall.as_deref())
     )]

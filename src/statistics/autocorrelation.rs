@@ -28,7 +28,7 @@ use crate::quantity::accept;
 pub fn autocorrelation(samples: &[f64], lags: usize) -> Result<Vec<Estimate>, ParameterError> {
     let count = samples.len();
     let fits = count >= 2 && lags < count - 1;
-    accept(fits, "number of lags", "less than that of the samples by two at least", lags as f64)?;
+    accept(fits, "number of lags", "at least two below the number of samples", lags as f64)?;
     let mean = block_average(samples)?.mean();
     let covariance = |lag: usize| -> BlockedMean {
         let pairs = samples.iter().zip(&samples[lag..]);

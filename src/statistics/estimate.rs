@@ -196,17 +196,27 @@ mod serial {
             accept(
                 mean.is_some() == (samples > 0),
                 "samples of an estimate",
-                "as many as it tells of",
+                "consistent with its mean and its error",
                 count,
             )?;
             let has_error = standard_error.is_some();
-            accept(has_error == (samples > 1), "samples of an estimate", "as many as it tells of", count)?;
+            accept(
+                has_error == (samples > 1),
+                "samples of an estimate",
+                "consistent with its mean and its error",
+                count,
+            )?;
             finite("mean", mean.unwrap_or(0.0))?;
             non_negative("standard error", standard_error.unwrap_or(0.0))?;
             non_negative("number of correlated samples", correlated_samples)?;
             let independent = basis == Basis::Independent;
             let alone = !independent || correlated_samples == 1.0;
-            accept(alone, "number of correlated samples, if independent,", "1", correlated_samples)?;
+            accept(
+                alone,
+                "number of correlated samples of an independent estimate",
+                "1",
+                correlated_samples,
+            )?;
             let (mean, standard_error) = (mean.unwrap_or(f64::NAN), standard_error.unwrap_or(f64::NAN));
             Ok(Self { mean, standard_error, samples, correlated_samples, basis })
         }
