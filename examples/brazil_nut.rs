@@ -28,6 +28,7 @@ use granular_edmd::prelude::*;
 use kuva::prelude::{Layout, LinePlot, Plot, ScatterPlot};
 
 use common::command_line::{self, Failure, non_negative, positive};
+use common::progress::Progress;
 use common::results::Results;
 use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
 
@@ -119,7 +120,9 @@ fn shaken(arguments: &Arguments, diameter: f64, density: f64) -> Result<Nut, Box
         }
     });
     let oscillations = if arguments.quick { arguments.oscillations.min(20) } else { arguments.oscillations };
-    simulation.run_until(period * f64::from(oscillations), &mut (&mut series, &mut watch))?;
+    let end = period * f64::from(oscillations);
+    let mut progress = Progress::of(format!("diameter {diameter}")).until(end);
+    simulation.run_until(end, &mut (&mut series, &mut watch, &mut progress))?;
 
     let point = |(k, part): (usize, &[(DVec2, DVec2)])| {
         let mean = |of: fn(&(DVec2, DVec2)) -> f64| part.iter().map(of).sum::<f64>() / POINT as f64;

@@ -13,8 +13,6 @@ mod common;
 
 use std::error::Error;
 use std::f64::consts::TAU;
-use std::fs;
-use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
@@ -29,6 +27,8 @@ use kuva::plot::quiver::QuiverPivot;
 use kuva::prelude::{Heatmap, Layout, Plot, QuiverPlot, TickFormat};
 
 use common::command_line::{self, Failure, non_negative};
+use common::progress::Progress;
+use common::results::Results;
 use common::sheet::{self, INK, Place, QUIET, Sheet};
 
 /// Density, flow and temperatures of the paper's vibrated box on a grid, averaged over time.
@@ -43,9 +43,17 @@ struct Arguments {
     /// Seed of the initial velocities.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Folder for the results.
-    #[arg(long, default_value = "out")]
-    out: PathBuf,
+    /// Runs for 200 oscillations at most.
+    #[arg(long)]
+    quick: bool,
+    #[command(flatten)]
+    results: Results,
+}
+
+impl Arguments {
+    fn oscillations(&self) -> u64 {
+        if self.quick { self.oscillations.min(200) } else { self.oscillations }
+    }
 }
 
 /// Width and height of the box.
@@ -63,21 +71,11 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let out = &arguments.out;
-    command_line::make_folder(out)?;
+    arguments.results.make_folder()?;
     let start = Instant::now();
     let (fine, coarse) = measured(arguments).map_err(Failure::run)?;
     println!("{} samples in {:.1} s", fine.samples(), start.elapsed().as_secs_f64());
-    let (picture, table) = (out.join("fields.png"), out.join("fields.csv"));
-    write_table(&table, &fine).map_err(|error| cannot_write(&table, error))?;
-    let png = draw(arguments, &fine, &coarse).map_err(Failure::run)?;
-    fs::write(&picture, png).map_err(|error| cannot_write(&picture, error))?;
-    println!("wrote {} and {}", picture.display(), table.display());
-    Ok(())
-}
-
-fn cannot_write(path: &Path, error: impl std::fmt::Display) -> Failure {
-    Failure::run(format_args!("cannot write {}: {error}", path.display()))
+    write(arguments, &fine, &coarse).map_err(Failure::run)
 }
 
 /// Returns the fields in the second half of a run, on both grids.
@@ -89,35 +87,37 @@ fn measured(arguments: &Arguments) -> Result<(Fields, Fields), Box<dyn Error>> {
     let disks = initial::with_maxwellian_velocities(disks, 0.5, arguments.seed)?;
     let rule = ContactDuration::new(Frictional::new(0.0, arguments.friction)?, 1e-4)?;
     let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
-    let end = arguments.oscillations as f64 * oscillation;
-    simulation.run_until(0.5 * end, &mut ())?;
+    let end = arguments.oscillations() as f64 * oscillation;
+    let mut progress = Progress::of("run").until(end);
+    simulation.run_until(0.5 * end, &mut progress)?;
     let times = SampleTimes::every(INTERVAL * oscillation)?.starting_at(0.5 * end)?;
     let region = Region::new(DVec2::ZERO, BOX);
     let mut fields =
         (Fields::new(region, FINE.0, FINE.1, times)?, Fields::new(region, COARSE.0, COARSE.1, times)?);
-    simulation.run_until(end, &mut fields)?;
+    simulation.run_until(end, &mut (&mut fields, &mut progress))?;
     Ok(fields)
 }
 
-fn write_table(path: &Path, fields: &Fields) -> Result<(), csv::Error> {
-    let mut table = csv::Writer::from_path(path)?;
-    table.write_record([
-        "x",
-        "height",
-        "count",
-        "packing_fraction",
-        "velocity_x",
-        "velocity_y",
-        "translational_temperature",
-        "rotational_temperature",
-    ])?;
-    for cell in fields.iter() {
+const COLUMNS: [&str; 8] = [
+    "x",
+    "height",
+    "count",
+    "packing_fraction",
+    "velocity_x",
+    "velocity_y",
+    "translational_temperature",
+    "rotational_temperature",
+];
+
+fn write(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Result<(), Box<dyn Error>> {
+    let mut table = arguments.results.table("fields", &COLUMNS)?;
+    for cell in fine.iter() {
         let flow = [cell.velocity.x, cell.velocity.y];
         let temperatures = [cell.translational_temperature, cell.rotational_temperature];
         let place = [cell.center.x, cell.center.y];
         table.serialize((place, cell.count, cell.packing_fraction, flow, temperatures))?;
     }
-    Ok(table.flush()?)
+    arguments.results.finish_table("fields", table, Some(&draw(arguments, fine, coarse)?))
 }
 
 /// Space between a panel's edge and its axes: left, right, top, bottom.
@@ -209,7 +209,7 @@ fn write_header(sheet: &mut Sheet, arguments: &Arguments, fine: &Fields, coarse:
         "{} samples in the second half of {} oscillations, seed {}; the longest arrow is {:.2}; white: fewer than {} disks \
          seen",
         fine.samples(),
-        arguments.oscillations,
+        arguments.oscillations(),
         arguments.seed,
         fastest(coarse),
         enough(fine)

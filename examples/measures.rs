@@ -9,6 +9,8 @@
 //! An elastic gas of 1000 disks in a periodic box, the same gas between walls, and one of smooth inelastic
 //! disks that cools. Theory: Henderson's contact value (Mol. Phys. 30, 971 (1975)) and Enskog's
 //! theory; for the cooling gas van Noije and Ernst (Granular Matter 1, 57 (1998)).
+//!
+//! The example writes `measures.csv`.
 
 mod common;
 
@@ -24,7 +26,8 @@ use granular_edmd::observable::{
 };
 use granular_edmd::prelude::*;
 
-use common::command_line::{self, Failure};
+use common::command_line;
+use common::results::Results;
 
 /// Measures of a gas of hard disks, beside theory.
 #[derive(Parser)]
@@ -41,12 +44,14 @@ struct Arguments {
     /// Runs for a tenth of the time.
     #[arg(long)]
     quick: bool,
+    #[command(flatten)]
+    results: Results,
 }
 
 const DISKS: usize = 1000;
 
 fn main() -> ExitCode {
-    command_line::main(|arguments| run(arguments).map_err(Failure::run))
+    command_line::main(run)
 }
 
 fn packing_fraction(text: &str) -> Result<f64, String> {
@@ -63,17 +68,34 @@ fn between(text: &str, low: f64, high: f64) -> Result<f64, String> {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    arguments.results.make_folder()?;
     let gas = Gas { packing: arguments.packing_fraction, seed: arguments.seed };
     let intervals = if arguments.quick { 100 } else { 1000 };
     println!("{DISKS} disks, packing fraction {}, {intervals} mean free times", gas.packing);
     println!("{:44} {:>24} {:>9}", "", "measured", "theory");
-    in_the_bulk(&gas, intervals)?;
-    between_walls(&gas, intervals)?;
-    while_it_cools(arguments, intervals / 100)
+    let mut rows = Rows::default();
+    in_the_bulk(&gas, intervals, &mut rows)?;
+    between_walls(&gas, intervals, &mut rows)?;
+    while_it_cools(arguments, intervals / 100, &mut rows)?;
+    let mut table = arguments.results.table("measures", &["what", "measured", "standard_error", "theory"])?;
+    rows.0.iter().try_for_each(|row| table.serialize(row))?;
+    arguments.results.finish_table("measures", table, None)
 }
 
-fn row(what: &str, measured: impl std::fmt::Display, theory: f64) {
-    println!("{what:44} {measured:>24} {theory:9.4}");
+/// The rows of the table: what was measured, the value, its standard error, and what theory says.
+#[derive(Default)]
+struct Rows(Vec<(String, f64, Option<f64>, f64)>);
+
+impl Rows {
+    fn add(&mut self, what: &str, measured: f64, theory: f64) {
+        println!("{what:44} {measured:24.4} {theory:9.4}");
+        self.0.push((what.to_owned(), measured, None, theory));
+    }
+
+    fn add_estimate(&mut self, what: &str, measured: Estimate, theory: f64) {
+        println!("{what:44} {measured:>24} {theory:9.4}");
+        self.0.push((what.to_owned(), measured.mean(), Some(measured.standard_error()), theory));
+    }
 }
 
 /// An elastic gas of disks of diameter and mass 1, at temperature 1.
@@ -120,7 +142,7 @@ fn collide<R: CollisionRule>(run: &mut Simulation<R>, per_disk: u64) -> Result<(
     run.run(&Limits::until(f64::MAX).with_most_collisions(collisions), &mut ()).map(|_| ())
 }
 
-fn in_the_bulk(gas: &Gas, intervals: u32) -> Result<(), Box<dyn Error>> {
+fn in_the_bulk(gas: &Gas, intervals: u32, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     let mut run = gas.settled(Container::periodic(gas.side(), gas.side())?, Elastic)?;
     let times = SampleTimes::every(1.0 / gas.collision_rate())?;
     let often = SampleTimes::every(0.1 / gas.collision_rate())?;
@@ -136,20 +158,21 @@ fn in_the_bulk(gas: &Gas, intervals: u32) -> Result<(), Box<dyn Error>> {
     let ideal = gas.density() * temperature;
     let compressibility = stress.tensor().pressure.mean() / ideal;
     let near: Vec<f64> = pairs.iter().skip(100).map(|(_, value)| value.mean()).collect();
-    row("pair correlation at contact", format!("{:.4}", at_contact(&near)), gas.contact_value());
+    rows.add("pair correlation at contact", at_contact(&near), gas.contact_value());
     let expected = 1.0 + 2.0 * gas.packing * gas.contact_value();
-    row("p / nT, by the virial", format!("{compressibility:.4}"), expected);
-    row("shear stress", stress.tensor().xy, 0.0);
+    rows.add("p / nT, by the virial", compressibility, expected);
+    rows.add_estimate("shear stress", stress.tensor().xy, 0.0);
     let enskog = temperature.sqrt() / (2.0 * PI.sqrt() * gas.density() * gas.contact_value());
-    row("self-diffusion (Enskog is too small if dense)", displacement.diffusion_coefficient(), enskog);
+    rows.add_estimate(
+        "self-diffusion (Enskog is too small if dense)",
+        displacement.diffusion_coefficient(),
+        enskog,
+    );
     let memory: Vec<f64> = memory.iter().map(|(_, value)| value.mean()).collect();
     let decay = (memory[0] / memory[1]).ln() * 10.0 * gas.collision_rate();
-    row(
-        "decay of the velocity autocorrelation",
-        format!("{decay:.4}"),
-        gas.collision_rate() * temperature.sqrt(),
-    );
-    row("second cumulant of the velocities", velocities.second_cumulant(), 0.0);
+    let expected = gas.collision_rate() * temperature.sqrt();
+    rows.add("decay of the velocity autocorrelation", decay, expected);
+    rows.add_estimate("second cumulant of the velocities", velocities.second_cumulant(), 0.0);
     Ok(())
 }
 
@@ -163,7 +186,7 @@ fn at_contact(values: &[f64]) -> f64 {
     mean - 0.5 * count * slope / squares
 }
 
-fn between_walls(gas: &Gas, intervals: u32) -> Result<(), Box<dyn Error>> {
+fn between_walls(gas: &Gas, intervals: u32, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     let side = gas.side();
     let container = Container::closed(side, side + 1.0)?.with_periodic_sides();
     let [floor, lid] = [Wall::Floor, Wall::Lid].map(|wall| container.index(wall).unwrap_or(0));
@@ -176,13 +199,13 @@ fn between_walls(gas: &Gas, intervals: u32) -> Result<(), Box<dyn Error>> {
     run.run_until(end, &mut (&mut stress, &mut walls))?;
     for (what, wall) in [("pressure on the floor, and in the bulk", floor), ("pressure on the lid", lid)] {
         if let Some(pressure) = walls.pressure(wall) {
-            row(what, pressure, stress.tensor().yy.mean());
+            rows.add_estimate(what, pressure, stress.tensor().yy.mean());
         }
     }
     Ok(())
 }
 
-fn while_it_cools(arguments: &Arguments, gases: u32) -> Result<(), Box<dyn Error>> {
+fn while_it_cools(arguments: &Arguments, gases: u32, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     let r = arguments.restitution;
     let mut velocities = VelocityDistribution::new(3.0, 30, SampleTimes::every(1.0)?)?.about_mean();
     for seed in 0..u64::from(gases) {
@@ -196,6 +219,10 @@ fn while_it_cools(arguments: &Arguments, gases: u32) -> Result<(), Box<dyn Error
         }
     }
     let expected = 16.0 * (1.0 - r) * (1.0 - 2.0 * r * r) / (57.0 - 25.0 * r + 30.0 * r * r * (1.0 - r));
-    row(&format!("second cumulant, cooling at r = {r}"), velocities.second_cumulant(), expected);
+    rows.add_estimate(
+        &format!("second cumulant, cooling at r = {r}"),
+        velocities.second_cumulant(),
+        expected,
+    );
     Ok(())
 }

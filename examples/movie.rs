@@ -8,7 +8,7 @@
 //! cargo run --release --example movie -- --friction 0.08 --frames 100 --out two_rolls
 //! ```
 //!
-//! The example writes `movie.png`.
+//! The example writes `movie.png`, and with `--json` the mean height of each layer over time.
 
 mod common;
 
@@ -16,14 +16,17 @@ use std::error::Error;
 use std::f64::consts::TAU;
 use std::fs::File;
 use std::io::BufWriter;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::prelude::*;
+use granular_edmd::statistics::RunningMean;
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
 use common::command_line::{self, Failure, non_negative, positive, whole};
+use common::progress::Progress;
+use common::results::Results;
 
 /// A movie of disks in a vibrated box.
 #[derive(Parser)]
@@ -46,12 +49,11 @@ struct Arguments {
     /// Seed of the initial velocities.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Takes 5 frames, after 20 oscillations.
+    /// Takes 5 frames at most, after 20 oscillations at most.
     #[arg(long)]
     quick: bool,
-    /// Folder for the results.
-    #[arg(long, default_value = "out")]
-    out: PathBuf,
+    #[command(flatten)]
+    results: Results,
 }
 
 /// Width and height of the box, and what of the height is seen.
@@ -71,17 +73,26 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    command_line::make_folder(&arguments.out)?;
-    let path = arguments.out.join("movie.png");
+    arguments.results.make_folder()?;
+    let path = arguments.results.path("movie.png");
     let frames = frames(arguments).map_err(Failure::run)?;
     write(&path, &frames).map_err(Failure::run)?;
     let size = path.metadata().map_err(Failure::run)?.len();
     println!("wrote {}: {} frames, {} kB", path.display(), frames.len(), size / 1000);
-    Ok(())
+    let numbers =
+        |frame: &Frame| serde_json::json!({ "time": frame.time, "heights_of_layers": frame.heights });
+    arguments.results.write_json(&frames.iter().map(numbers).collect()).map_err(Failure::run)
+}
+
+/// A frame of the movie: its time, the mean heights of the layers, and the picture.
+struct Frame {
+    time: f64,
+    heights: [f64; LAYERS.len()],
+    canvas: Canvas,
 }
 
 /// Runs the box, and returns the frames.
-fn frames(arguments: &Arguments) -> Result<Vec<Canvas>, Box<dyn Error>> {
+fn frames(arguments: &Arguments) -> Result<Vec<Frame>, Box<dyn Error>> {
     let oscillation = TAU / 10.0;
     let container =
         Container::closed(BOX.x, BOX.y)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?;
@@ -89,17 +100,21 @@ fn frames(arguments: &Arguments) -> Result<Vec<Canvas>, Box<dyn Error>> {
     let disks = initial::with_maxwellian_velocities(disks, 0.5, arguments.seed)?;
     let rule = ContactDuration::new(Frictional::new(0.0, arguments.friction)?, 1e-4)?;
     let mut run = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
-    let (settle, count) = if arguments.quick { (20, 5) } else { (arguments.settle, arguments.frames) };
-    run.run_until(settle as f64 * oscillation, &mut ())?;
-    let layers = layers(&run.disks());
-
+    let quick = |value: u64, most: u64| if arguments.quick { value.min(most) } else { value };
+    let (settle, count) = (quick(arguments.settle, 20), quick(arguments.frames, 5));
     let interval = arguments.oscillations as f64 * oscillation;
-    let (start, mut frames) = (run.time(), Vec::new());
+    let start = settle as f64 * oscillation;
+    let end = start + (count - 1) as f64 * interval;
+    let mut progress = Progress::of("run").until(end);
+    run.run_until(start, &mut progress)?;
+    let (layers, mut frames) = (layers(&run.disks()), Vec::new());
     let mut camera =
         on_sample(SampleTimes::every(interval)?.starting_at(start)?, |snapshot: &Snapshot<'_>| {
-            frames.push(Canvas::of(snapshot.disks(), &layers, arguments.pixels));
+            let heights = heights(snapshot.disks(), &layers);
+            let canvas = Canvas::of(snapshot.disks(), &layers, arguments.pixels);
+            frames.push(Frame { time: snapshot.time(), heights, canvas });
         });
-    run.run_until(start + (count - 1) as f64 * interval, &mut camera)?;
+    run.run_until(end, &mut (&mut camera, &mut progress))?;
     Ok(frames)
 }
 
@@ -112,6 +127,14 @@ fn layers(disks: &[Disk]) -> Vec<u8> {
         layers[disk] = (place * LAYERS.len() / disks.len()) as u8;
     }
     layers
+}
+
+/// Returns the mean height of the disks in each layer.
+fn heights(disks: &[Disk], layers: &[u8]) -> [f64; LAYERS.len()] {
+    std::array::from_fn(|layer| {
+        let of_layer = disks.iter().zip(layers).filter(|&(_, &of)| usize::from(of) == layer);
+        of_layer.map(|(disk, _)| disk.position().y).collect::<RunningMean>().mean()
+    })
 }
 
 /// A picture of palette colors: 0 is paper, 1 the walls, and from 2 on the shades of each layer.
@@ -174,8 +197,8 @@ fn palette() -> Vec<u8> {
 }
 
 /// Writes the movie, at twelve frames per second, without an end.
-fn write(path: &Path, frames: &[Canvas]) -> Result<(), Box<dyn Error>> {
-    let first = frames.first().ok_or("there are no frames")?;
+fn write(path: &Path, frames: &[Frame]) -> Result<(), Box<dyn Error>> {
+    let first = &frames.first().ok_or("there are no frames")?.canvas;
     let file = BufWriter::new(File::create(path)?);
     let mut encoder = Encoder::new(file, first.width as u32, first.height as u32);
     encoder.set_color(ColorType::Indexed);
@@ -187,7 +210,7 @@ fn write(path: &Path, frames: &[Canvas]) -> Result<(), Box<dyn Error>> {
     encoder.set_frame_delay(1, 12)?;
     let mut writer = encoder.write_header()?;
     for frame in frames {
-        writer.write_image_data(&frame.pixels)?;
+        writer.write_image_data(&frame.canvas.pixels)?;
     }
     writer.finish()?;
     Ok(())

@@ -10,6 +10,7 @@
 //!
 //! Writes `own_study.png` and the tables of the study.
 
+mod common;
 mod studies;
 
 use std::process::ExitCode;
@@ -124,11 +125,18 @@ fn plan(common: &studies::Common) -> Result<Plan<Turning>, PlanError> {
         .with_repeats(3)
 }
 
-fn main() -> ExitCode {
-    studies::end(run(&studies::Common::parse()))
+/// Spin of rough grains in a hot round drum that turns, over their loss and the spin of the drum.
+#[derive(Parser)]
+struct Arguments {
+    #[command(flatten)]
+    common: studies::Common,
 }
 
-fn run(common: &studies::Common) -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> ExitCode {
+    common::command_line::main(run)
+}
+
+fn run(Arguments { common }: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
     let Some(study) = common.complete("own_study", &plan(common)?)? else { return Ok(()) };
     let mut points = Vec::new();
     for point in study.points() {
@@ -149,5 +157,5 @@ fn run(common: &studies::Common) -> Result<(), Box<dyn std::error::Error>> {
     let layout = Layout::auto_from_plots(&plots).with_x_label("spin of the drum");
     let layout = layout.with_y_label("angular momentum of a disk");
     let figure = Figure::new(1, 1).with_plots(vec![plots]).with_layouts(vec![layout]);
-    studies::write_png(figure, &study, "own_study.png")
+    common.finish(figure, &study, "own_study.png")
 }

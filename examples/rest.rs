@@ -25,6 +25,7 @@ use granular_edmd::simulation::Counters;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 
 use common::command_line::{self, Failure, positive};
+use common::progress::Progress;
 use common::results::Results;
 use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
 
@@ -138,7 +139,8 @@ fn settled(arguments: &Arguments, remedy: Remedy) -> Result<Heap, Box<dyn Error>
         let left = Duration::from_secs_f64(seconds).saturating_sub(started.elapsed());
         Limits::until(end).with_wall_clock(left)
     };
-    let mut ended = simulation.run(&limits(SETTLED * end), &mut ());
+    let mut progress = Progress::of(format!("{} {}", remedy.name, remedy.parameter)).until(end);
+    let mut ended = simulation.run(&limits(SETTLED * end), &mut progress);
     let (mut before, mut since, mut start) = (*simulation.counters(), simulation.time(), simulation.disks());
     let (mut heat, mut samples) = (0.0, 0.0);
     if matches!(ended, Ok(RunEnd::Time)) {
@@ -146,7 +148,7 @@ fn settled(arguments: &Arguments, remedy: Remedy) -> Result<Heap, Box<dyn Error>
             heat += snapshot.disks().iter().map(Disk::translational_energy).sum::<f64>() / GRAINS as f64;
             samples += 1.0;
         });
-        ended = simulation.run(&limits(end), &mut watch);
+        ended = simulation.run(&limits(end), &mut (&mut watch, &mut progress));
     } else {
         (before, since, start) = (Counters::default(), 0.0, simulation.disks());
     }

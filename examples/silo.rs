@@ -25,6 +25,7 @@ use granular_edmd::prelude::*;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 
 use common::command_line::{self, Failure, positive};
+use common::progress::Progress;
 use common::results::Results;
 use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
 
@@ -132,7 +133,10 @@ fn measured(arguments: &Arguments, outlet: f64) -> Result<Flow, Box<dyn Error>> 
     let disks = initial::with_maxwellian_velocities(disks, 0.1, arguments.seed)?;
     let rule = ContactDuration::new(Frictional::new(0.1, 0.4)?, 1e-2)?;
     let mut run = Simulation::builder(rule, vessel.clone()).disks(disks).gravity(1.0).build()?;
-    run.run_until(SETTLE, &mut ())?;
+    let time = if arguments.quick { arguments.time.min(10.0) } else { arguments.time };
+    let begin = if arguments.quick { 2.0 } else { BEGIN };
+    let mut progress = Progress::of(format!("outlet {outlet}")).until(SETTLE + begin + time);
+    run.run_until(SETTLE, &mut progress)?;
 
     // The grains get the colors of the layers in which they lie now.
     let layer = |disk: Disk| disk.with_kind(Kind::new(((disk.position().y - FLOOR) / LAYER) as u16));
@@ -141,12 +145,10 @@ fn measured(arguments: &Arguments, outlet: f64) -> Result<Flow, Box<dyn Error>> 
     vessel.remove("gate")?;
     run.set_boundary(vessel)?;
     let (mut outside, mut left, mut shot) = (Vec::new(), 0, Vec::new());
-    let time = if arguments.quick { arguments.time.min(10.0) } else { arguments.time };
-    let begin = if arguments.quick { 2.0 } else { BEGIN };
     let refills = ((begin + time) / REFILL).ceil() as u32;
     for refill in 1..=refills {
         let elapsed = f64::from(refill) * REFILL;
-        run.run_until(SETTLE + elapsed, &mut ())?;
+        run.run_until(SETTLE + elapsed, &mut progress)?;
         let gone = refilled(&mut run, &mut outside)?;
         left += if elapsed > begin { gone } else { 0 };
         if shot.is_empty() && elapsed >= SHOT.min(begin + time) {

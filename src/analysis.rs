@@ -8,7 +8,7 @@
 //! | lines of transitions in friction and inelasticity | [`plane_transitions`] | paper, Fig. 5 |
 //! | energy loss along a line of transitions | [`line_average`] | paper, Table I |
 //!
-//! The error of a mean over a correlated series is in [`statistics`](crate::statistics).
+//! Errors of means over correlated series come from [`statistics`](crate::statistics).
 //!
 //! Everything is deterministic: the same numbers and seeds give the same bits.
 //!

@@ -1,10 +1,11 @@
 //! Boundaries: the walls around the disks, and what a touch does.
 //!
-//! [`Container`] is the rectangular box of the paper and its relatives: side walls or periodic sides, a
-//! floor that is fixed, moving or thermal, a lid or an open top, each wall with a rule of its own if
-//! wanted. Walls can slide along themselves, and the box can be shaken as a whole.
+//! [`Container`] is the rectangular box of the paper, with variations. It has side walls or periodic sides, a
+//! floor that is fixed, moving or thermal, and a lid or an open top. Each wall can have its own rule. Walls
+//! can slide along themselves, and the box can be shaken as a whole.
 //!
-//! A [`Vessel`] has any shape: a container with named [`Part`]s in it, which are made of [`Brick`]s.
+//! A [`Vessel`] can have any shape. It is a container with named [`Part`]s in it, and each part consists of
+//! [`Brick`]s.
 //!
 //! | shape | how |
 //! |---|---|
@@ -19,9 +20,9 @@
 //! | part that turns: a drum, a stirrer | [`Part::with_rotation`] |
 //! | box that is shaken as a whole | [`Container::shaken_sideways`], [`Container::shaken_vertically`] |
 //!
-//! Parts are put in, changed and taken out by name, also between runs: a gate that opens. With the feature
-//! `serde`, bricks, parts, vessels and containers go to files and come back through their checks; a rule or a
-//! motion of your own does not.
+//! Parts are added, replaced and removed by name, also between runs; this is how a gate opens. With the
+//! feature `serde`, bricks, parts, vessels and containers can be written to files, and reading them repeats
+//! their checks. A rule or a motion of your own cannot be written.
 //!
 //! [`Obstacles`] puts fixed round obstacles into any boundary. A geometry of your own implements
 //! [`Boundary`]; [`roots`](crate::roots) has the numerics that it needs, and [`laws`] checks it.
@@ -73,33 +74,33 @@ use crate::{Fingerprint, Flight};
 ///    every larger region around that one.
 /// 3. [`first_touch`](Self::first_touch) misses no touch, and finds none where a gap is open. The time of the
 ///    touch is neither before the flight nor after `until`, and its wall is less than `wall_count`.
-/// 4. A wall that the disk touches already, if only by rounding, counts at once while the disk approaches it,
-///    and never while the disk leaves it.
+/// 4. If the disk already touches a wall, even if only by rounding, that touch is found at once while the
+///    disk approaches the wall, and never while the disk leaves it.
 /// 5. [`surface`](Self::surface) gives a unit normal that points from the wall to the disk, and finite
 ///    velocities.
 /// 6. [`overlap`](Self::overlap) is `None` for a disk inside. Otherwise it is the depth to which the disk
 ///    reaches into a wall.
-/// 7. Another origin changes only the numbers of the times: the same flight touches the same wall at the same
-///    absolute time.
+/// 7. Another origin changes only the numbers by which times are given: the same flight touches the same wall
+///    at the same absolute time.
 /// 8. The same questions get the same answers, bit for bit.
 ///
 /// The engine guarantees:
-/// - The origin is set before the first question and whenever the epoch of the run moves. No time before the
-///   origin is asked for.
-/// - Flights have finite numbers, begin at the present, in the domain, and end where the disk leaves a cell,
-///   at most two epochs later (`until`). In an epoch, a typical disk goes some tens of diameters. At periodic
-///   sides, a flight ends at the side.
-/// - `first_touch` is asked only in cells for which `may_touch` holds with the largest of all radii. Cells at
+/// - It sets the origin before it asks anything, and whenever the epoch of the run moves. It never asks about
+///   a time before the origin.
+/// - All numbers of a flight are finite. The flight begins at the present, in the domain, and ends (`until`)
+///   where the disk leaves a cell, at most two epochs later. In an epoch, a typical disk goes some tens of
+///   diameters. A flight ends at a periodic side or end.
+/// - It asks `first_touch` only in cells for which `may_touch` holds with the largest of all radii. Cells at
 ///   the edges of the domain reach to infinity.
-/// - `surface` is asked at a touch that `first_touch` found, for the wall, the time and the place of the disk
-///   at that time.
-/// - `overlap` is asked when a simulation is built or gets other walls, and wherever disks are placed at
-///   random.
+/// - It asks `surface` about a touch that `first_touch` found: with its wall, its time, and the position of
+///   the disk at that time.
+/// - It asks `overlap` when a simulation is built or gets other walls, and at each collision with a wall.
+///   Initial states ask it wherever they place disks.
 ///
 /// # Boundaries that break the contract
 /// [`laws::check`] finds most faults. A missed touch lets a disk leave the domain unseen. An early touch
 /// turns disks back in mid-air. A touch with a wall that the disk is leaving comes again at once, until the
-/// run ends for want of progress. A velocity or normal that is not finite ends the run with an error.
+/// run ends for lack of progress. A velocity or normal that is not finite ends the run with an error.
 ///
 /// ```
 /// use std::borrow::Cow;
@@ -164,21 +165,24 @@ pub trait Boundary {
     /// Returns the rectangle that holds the centers of all disks at all times.
     fn domain(&self) -> Domain;
 
-    /// Returns a rectangle in the domain in which initial states are placed. It leaves out the reach of
-    /// moving walls.
+    /// Returns a rectangle in the domain in which initial states are placed.
+    ///
+    /// It leaves out the reach of moving walls.
     fn interior(&self) -> Domain {
         self.domain()
     }
 
-    /// Returns how many walls there are; their indices are less than this.
+    /// Returns the number of walls; their indices are less than this.
     fn wall_count(&self) -> usize;
 
-    /// Returns the name of a wall, for messages. The name may be a number if the index has no wall.
+    /// Returns the name of a wall, for messages.
+    ///
+    /// For an index without a wall, the name may be a number.
     fn wall_name(&self, wall: usize) -> Cow<'_, str> {
         Cow::Owned(format!("wall {wall}"))
     }
 
-    /// Measures all times from this absolute time on.
+    /// Sets the absolute time from which all times are measured.
     fn set_time_origin(&mut self, origin: f64);
 
     /// Tells whether a disk with its center in `region` can touch a wall at any time.
@@ -189,17 +193,18 @@ pub trait Boundary {
 
     /// Returns the first touch of this flight, not later than `until`.
     ///
-    /// A wall that the disk touches already counts at once while the disk approaches it, and never while the
-    /// disk leaves it.
+    /// If the disk already touches a wall, that touch is found at once while the disk approaches the wall,
+    /// and never while the disk leaves it.
     fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch>;
 
     /// Returns the surface that a disk at `position` touches at `time`.
     ///
-    /// The wall must be one of those that exist. For another index the call may panic.
+    /// The wall must exist; for any other index the call may panic.
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_>;
 
-    /// Returns a wall that a disk at `position` overlaps at `time`, and the depth. The result is `None` if
-    /// the disk is inside.
+    /// Returns a wall that a disk at `position` overlaps at `time`, and the depth.
+    ///
+    /// The result is `None` if the disk is inside.
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)>;
 
     /// Returns the fingerprint of the boundary: its name and everything that decides what it does.

@@ -13,15 +13,15 @@
 //! | [`Rough`] | normal and tangential restitution, no Coulomb limit | paper, Eqs. (3), (4) |
 //! | [`SpeedDependent`] | normal restitution that falls with speed, friction | Bizon et al. 1998 |
 //! | [`Elastic`] | none | |
-//! | [`ContactDuration`] | an adaptor: contacts soon after another lose nothing | Luding and McNamara 1998 |
-//! | [`ElasticBelow`] | an adaptor: slow contacts lose nothing | a cut-off of many codes |
-//! | [`LeastRebound`] | an adaptor: surfaces never part too slowly; drives | |
+//! | [`ContactDuration`] | an adaptor: contacts soon after others lose nothing | Luding and McNamara 1998 |
+//! | [`ElasticBelow`] | an adaptor: slow contacts lose nothing | a cutoff in many codes |
+//! | [`LeastRebound`] | an adaptor: surfaces never part too slowly, which can add energy | |
 //! | [`RulesByKind`] | a table: one rule for each pair of kinds | |
 //! | [`from_fn`] | yours, as a closure | |
 //!
 //! # A rule of your own
-//! A rule that decides the normal direction takes the tangential one from [`Friction`]. The example is a
-//! viscoelastic sphere in the first order of its law:
+//! A rule can compute the normal impulse itself and leave the tangential one to [`Friction`]. The example is
+//! a viscoelastic sphere, to the first order of its law:
 //!
 //! ```
 //! use granular_edmd::collision::{CollisionRule, Contact, Friction, Impulse, laws};
@@ -85,21 +85,21 @@ use crate::Fingerprint;
 /// The law of a collision: from a contact to an impulse.
 ///
 /// # Contract
-/// The engine calls [`Self::impulse`] once for each collision that the rule decides, of disks or with a wall.
-/// The engine guarantees of the contact:
+/// The engine calls [`Self::impulse`] once for each collision that the rule decides, between disks or with a
+/// wall. The engine guarantees about the contact:
 /// - the closing speed is finite and not negative; it may be zero;
 /// - the slip speed is finite, of either sign or zero;
 /// - the masses are finite and positive, the tangential one not above the normal one;
-/// - the radii of disks are finite and positive, that of a wall is infinite if it is straight, negative if
-///   it is hollow, and never zero.
+/// - the radii of disks are finite and positive; the radius of a wall is infinite if it is straight, negative
+///   if it is hollow, and never zero.
 ///
 /// The rule guarantees:
 /// 1. The same contact gets the same impulse every time, to the bit; a rule that needs history finds it in
 ///    the contact. Otherwise, a run would depend on what was computed before, and a resumed run would differ.
 /// 2. The impulse is finite. Otherwise, the run ends with an error that names the partners and contains the
 ///    text of [`Self::explain`].
-/// 3. The surfaces no longer close afterwards. Otherwise, they collide again at once, until the run ends as
-///    stalled.
+/// 3. The surfaces no longer close after the collision. Otherwise, they collide again at once, until the run
+///    ends as stalled.
 /// 4. The collision gains no energy, unless the rule is meant to drive. Otherwise, the system heats up
 ///    unnoticed.
 ///

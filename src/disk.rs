@@ -8,8 +8,8 @@ use crate::{Kind, ParameterError};
 /// Range of a radius or a mass. Products of a few of them stay finite and normal.
 const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
-/// Overlap, relative to the distance of two centers at a touch, that counts as touching. It is the rounding
-/// of positions.
+/// Largest overlap that still counts as touching, relative to the distance of the centers at a touch. Smaller
+/// overlaps are rounding of positions.
 pub(crate) const TOUCHING: f64 = 1e-10;
 
 /// Largest number of disks in a simulation.
@@ -20,7 +20,7 @@ pub(crate) const LARGEST: f64 = 1e60;
 
 /// A rotating hard disk: position, velocity, angle, angular velocity, radius, mass, inertia factor and kind.
 ///
-/// The moment of inertia is `$I = \beta m R^2$`, with `$\beta = 1/2$` unless another factor is given.
+/// The moment of inertia is `$I = \beta m R^2$`, where `$\beta = 1/2$` unless another factor is given.
 /// Lengths, times and masses are in any consistent units; the paper takes the diameter and the mass of a disk
 /// as units.
 ///
@@ -51,13 +51,14 @@ pub struct Disk {
 }
 
 impl Disk {
-    /// Inertia factor of a homogeneous disk: `$\beta = 1/2$` in `$I = \beta m R^2$`.
+    /// Inertia factor of a homogeneous disk: β = 1/2 in I = β m R².
     pub const HOMOGENEOUS_INERTIA_FACTOR: f64 = 0.5;
 
     /// Creates a homogeneous disk of mass 1 at rest, of [`Kind::DEFAULT`].
     ///
     /// # Errors
-    /// If the position is not finite or above 1e60 in magnitude, or the radius is not in `[1e-30, 1e30]`.
+    /// If a component of the position is not finite, or is above 1e60 in magnitude. If the radius is not in
+    /// `[1e-30, 1e30]`.
     pub fn new(position: DVec2, radius: f64) -> Result<Self, ParameterError> {
         Ok(Self {
             position: bounded_vector("position", position)?,
@@ -112,8 +113,8 @@ impl Disk {
         Ok(Self { mass: scale("mass", mass)?, ..self })
     }
 
-    /// Returns the same disk with the moment of inertia `$I = \beta m R^2$` for this `$\beta$`: 1/2 for a
-    /// homogeneous disk, 1 for a ring.
+    /// Returns the same disk with the moment of inertia I = β m R² for this factor β: 1/2 for a homogeneous
+    /// disk, 1 for a ring.
     ///
     /// # Errors
     /// If it is not in `[1e-6, 1]`.
@@ -128,7 +129,7 @@ impl Disk {
         Self { kind, ..self }
     }
 
-    /// Returns the same disk after it has passed so many periods to the right and up.
+    /// Returns the same disk as if it had passed these numbers of periods to the right and up.
     pub const fn with_image(self, image: [i32; 2]) -> Self {
         Self { image, ..self }
     }
@@ -163,7 +164,7 @@ impl Disk {
         self.mass
     }
 
-    /// Returns the inertia factor `$\beta$` in `$I = \beta m R^2$`.
+    /// Returns the inertia factor β in I = β m R².
     pub const fn inertia_factor(&self) -> f64 {
         self.inertia_factor
     }
@@ -173,31 +174,33 @@ impl Disk {
         self.kind
     }
 
-    /// Returns how many periods the disk has passed to the right and up, less those to the left and
-    /// down. Each passage counts one, whatever the period was at that time.
+    /// Returns the numbers of periods that the disk has passed to the right and up, less those to the left
+    /// and down.
     ///
-    /// At periodic sides and ends, [`Domain::unwrapped`](crate::boundary::Domain::unwrapped) makes a
-    /// position of it.
+    /// Each passage counts one, whatever the period was at that time.
+    ///
+    /// At periodic sides and ends, [`Domain::unwrapped`](crate::boundary::Domain::unwrapped) turns these
+    /// numbers into a position that does not jump.
     pub const fn image(&self) -> [i32; 2] {
         self.image
     }
 
-    /// Returns the moment of inertia about the center, `$I = \beta m R^2$`.
+    /// Returns the moment of inertia about the center, I = β m R².
     pub fn moment_of_inertia(&self) -> f64 {
         self.inertia_factor * self.mass * self.radius * self.radius
     }
 
-    /// Returns the kinetic energy of the center, `$\tfrac12 m v^2$`.
+    /// Returns the kinetic energy of the center, ½ m v².
     pub fn translational_energy(&self) -> f64 {
         0.5 * self.mass * self.velocity.length_squared()
     }
 
-    /// Returns the kinetic energy of the rotation, `$\tfrac12 I \omega^2$`.
+    /// Returns the kinetic energy of the rotation, ½ I ω².
     pub fn rotational_energy(&self) -> f64 {
         0.5 * self.moment_of_inertia() * self.angular_velocity * self.angular_velocity
     }
 
-    /// Returns a disk at rest at the origin. The numbers are those of a disk that has passed the checks.
+    /// Returns a disk at rest at the origin. The numbers must come from a disk that has passed the checks.
     #[inline]
     pub(crate) const fn at_rest(radius: f64, mass: f64, inertia_factor: f64, kind: Kind) -> Self {
         let (position, velocity) = (DVec2::ZERO, DVec2::ZERO);

@@ -4,8 +4,8 @@
 ///
 /// A checkpoint keeps the fingerprints of its rule and its boundary, and notices when a run is resumed with
 /// others. A part of your own makes its fingerprint from its name and from all numbers that decide what it
-/// does. A part that cannot do so, such as a closure, gives none and is not compared. The hash is FNV-1a with
-/// 64 bits, over bytes in a fixed order, so it is the same on every platform.
+/// does. A part that cannot do so, such as a closure, gives none, and no two such parts can be told apart.
+/// The hash is FNV-1a with 64 bits, over bytes in a fixed order, so it is the same on every platform.
 ///
 /// ```
 /// use granular_edmd::Fingerprint;
@@ -28,8 +28,9 @@ impl Fingerprint {
         Self(OFFSET).text(name)
     }
 
-    /// Adds a parameter that is a number. Numbers of different bits count as different, also `0.0` and
-    /// `-0.0`.
+    /// Adds a parameter that is a number.
+    ///
+    /// Numbers with different bits count as different, even `0.0` and `-0.0`.
     pub const fn number(self, value: f64) -> Self {
         self.bytes(&value.to_bits().to_le_bytes())
     }
@@ -61,8 +62,8 @@ impl Fingerprint {
 mod tests {
     use super::Fingerprint;
 
-    /// Checkpoints keep these numbers. After a change of the hash, each of them would be that of another
-    /// part.
+    /// Checkpoints keep these numbers. After a change of the hash, no kept number would match its part any
+    /// more.
     #[test]
     fn fingerprints_keep_their_bits() {
         let part = Fingerprint::of("Frictional").number(0.1).text("sliding");

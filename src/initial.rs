@@ -1,4 +1,4 @@
-//! Initial states: the positions and velocities at which disks start.
+//! Initial states: the positions and velocities with which disks start.
 //!
 //! | function | disks | where |
 //! |---|---|---|
@@ -8,12 +8,12 @@
 //! | [`packed_at_random`] | any | random places, up to an area fraction of 0.8 |
 //!
 //! [`Radii`] draws radii from distributions, [`homogeneous`] makes disks of them, and
-//! [`with_maxwellian_velocities`] sets them in motion. Around disks that have a place already, others are
-//! placed in a boundary with [`Obstacles`](crate::boundary::Obstacles).
+//! [`with_maxwellian_velocities`] sets them in motion. To place disks around others that have a place
+//! already, put those into the boundary as [`Obstacles`](crate::boundary::Obstacles).
 //!
-//! No disk is placed into a wall: [`Boundary::overlap`](crate::boundary::Boundary::overlap) is `None` for
-//! each at time 0. The functions therefore work in a boundary of any shape, also in one that fills only a
-//! part of its interior.
+//! The functions place no disk into a wall: at time 0,
+//! [`Boundary::overlap`](crate::boundary::Boundary::overlap) is `None` for each disk. So they work in a
+//! boundary of any shape, even in one that leaves only a part of its interior to the disks.
 
 mod lattice;
 mod packed;
@@ -57,9 +57,9 @@ pub enum PlacementError {
     /// The disks jam before they are packed.
     #[error("the disks jam at the area fraction {reached:.4}: they would need {wanted:.4}")]
     Jammed {
-        /// Area of all disks over that of the room when they had jammed.
+        /// Area of all disks over that of the room, at the time when they jammed.
         reached: f64,
-        /// Area of all disks over that of the room if they were packed.
+        /// Area of all disks over that of the room, if the disks had their full radii.
         wanted: f64,
     },
     /// The engine, which moves the disks while they are packed, refuses them or the boundary.
@@ -73,8 +73,8 @@ pub enum PlacementError {
     },
 }
 
-/// Checks that so many disks can be numbered. An open container has room for any number, and a mistyped one
-/// must not fill the memory.
+/// Checks that the engine can number this many disks. An open container has room for any number, and a
+/// mistyped number must not fill the memory.
 fn countable(count: usize) -> Result<(), ParameterError> {
     accept(count <= MOST_DISKS, "number of disks", "at most 2^28", count as f64).map(|_| ())
 }
@@ -86,8 +86,8 @@ fn spacings() -> impl Iterator<Item = f64> {
     (0..=40).map(|k| LOOSE + (CLOSE - LOOSE) * f64::from(k) / 40.0)
 }
 
-/// Cuts the interior of a boundary at a height above its bottom. A cut below periodic ends makes ends of
-/// them.
+/// Cuts the interior of a boundary at a height above its bottom. If the cut is below the upper periodic end,
+/// the ends are no longer periodic.
 fn cut(interior: Domain, below: f64) -> Result<Domain, ParameterError> {
     let is_within = below.is_finite() && below > interior.bottom;
     let below = accept(is_within, "height", "finite and above the bottom of the interior", below)?;

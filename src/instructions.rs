@@ -1,18 +1,19 @@
-//! Vector instructions that a processor may have beyond those that every processor of its kind has.
+//! Vector instructions that only some processors of an architecture have.
 //!
-//! A build for any x86-64 can rely on two numbers at a time only, but nearly all processors take four. So the
-//! hot code is compiled for each level, and [`Instructions`] names the level that this processor has. The
-//! arithmetic is the same in all copies, since Rust never contracts a product and a sum. So the bits do not
-//! depend on the level. A build for a processor with AVX2 or for another architecture has one copy only.
+//! A build for any x86-64 processor can rely only on instructions for two numbers at a time, but nearly all
+//! of these processors can take four. So the hot code is compiled for each level, and [`Instructions`] names
+//! the level that this processor has. The arithmetic is the same in all copies, since Rust never fuses a
+//! product and a sum into one instruction. So the bits do not depend on the level. A build for a processor
+//! with AVX2 or for another architecture has one copy only.
 
-/// Instructions that this processor has. No other value can be made.
+/// A level of instructions that this processor has. Values for other levels cannot be made.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Instructions(Level);
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(dead_code, reason = "not all are chosen from in all builds")]
 pub(crate) enum Level {
-    /// Those that the build relies on.
+    /// The instructions on which the build relies.
     Built,
     /// Four numbers at a time.
     Avx2,
@@ -21,23 +22,24 @@ pub(crate) enum Level {
 }
 
 impl Instructions {
-    /// Returns the best that this processor has.
+    /// Returns the best level that this processor has.
     pub(crate) fn detected() -> Self {
         [Level::Avx512, Level::Avx2].into_iter().find(|&level| has(level)).map_or(Self(Level::Built), Self)
     }
 
-    /// Returns all that this processor has.
+    /// Returns all levels that this processor has.
     #[cfg(test)]
     pub(crate) fn all() -> Vec<Self> {
         let known = [Level::Built, Level::Avx2, Level::Avx512];
         known.into_iter().filter(|&level| level == Level::Built || has(level)).map(Self).collect()
     }
 
-    /// Runs a piece of work with these instructions: a long one, or one that captures two numbers at most.
-    /// More captures would go through memory.
+    /// Runs a piece of work with these instructions.
     ///
-    /// `work` and all that is hot in it must be `#[inline(always)]`, since other code keeps to the level of
-    /// the build.
+    /// The work should be long, or capture at most two numbers, since more captures would go through memory.
+    ///
+    /// `work` and all hot functions that it calls must be `#[inline(always)]`, since other code is compiled
+    /// for the level of the build.
     #[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
     #[allow(unsafe_code)]
     pub(crate) fn run<T>(self, work: impl FnOnce() -> T) -> T {
@@ -53,13 +55,13 @@ impl Instructions {
 
         match self.0 {
             Level::Built => work(),
-            // SAFETY: only `detected` and `all` make values, and the processor has the levels of these.
+            // SAFETY: only `detected` and `all` make values, and only for levels that the processor has.
             Level::Avx2 => unsafe { avx2(work) },
             Level::Avx512 => unsafe { avx512(work) },
         }
     }
 
-    /// Runs a piece of work. Not inlined, so that all callers share one copy.
+    /// Runs a piece of work. The function is not inlined, so that all callers share one copy.
     #[cfg(not(all(target_arch = "x86_64", not(target_feature = "avx2"))))]
     #[allow(clippy::unused_self, reason = "there is no choice here")]
     #[inline(never)]
@@ -75,7 +77,7 @@ impl Instructions {
     }
 }
 
-/// Tells whether this processor has what the copy for a level is compiled for.
+/// Tells whether this processor has the instructions for which the copy of a level is compiled.
 #[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
 fn has(level: Level) -> bool {
     use std::arch::is_x86_feature_detected as has;
@@ -96,10 +98,11 @@ fn has(level: Level) -> bool {
 
 /// Makes a function that runs the copy of `$body` for the [`Instructions`] in its first argument.
 ///
-/// `$body` and all that is hot in it must be `#[inline(always)]`, since other code keeps to the level of the
-/// build. Its parameter, the number of the copy, makes the copies different functions. The compiler then
-/// inlines what each calls as if it were the only caller. The attributes are those of the copy for the level
-/// of the build. [`Instructions::run`] would be slower, since so many captures go through memory.
+/// `$body` and all hot functions that it calls must be `#[inline(always)]`, since other code is compiled for
+/// the level of the build. The constant parameter of `$body`, the number of the copy, makes the copies
+/// different functions. The compiler then inlines the functions that a copy calls as if this copy were their
+/// only caller. The attributes are those of the copy for the level of the build. [`Instructions::run`] would
+/// be slower here, since so many captures would go through memory.
 #[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
 macro_rules! compiled_for_each {
     ($(#[$attribute:meta])* $name:ident($($argument:ident: $type:ty),*) -> $output:ty = $body:ident) => {

@@ -1,4 +1,4 @@
-//! Kinds of disks and walls: what a rule and an observer tell apart.
+//! Kinds of disks and walls, by which rules and observers tell them apart.
 
 use std::fmt;
 
@@ -25,10 +25,10 @@ use std::fmt;
 pub struct Kind(u16);
 
 impl Kind {
-    /// The kind of disks that were given none, number 0.
+    /// The kind of disks that were given no other kind: number 0.
     pub const DEFAULT: Self = Self(0);
 
-    /// The kind of walls that were given none, number 65535.
+    /// The kind of walls that were given no other kind: number 65535.
     pub const WALL: Self = Self(u16::MAX);
 
     /// Creates the kind of this number.

@@ -1,4 +1,4 @@
-//! Mean energy loss per collision, the quantity that the states of the driven system follow.
+//! Mean energy loss per collision, the quantity that governs the states of the driven system.
 //!
 //! A gas of disks with Maxwellian velocities and spins ([`Maxwellian`]) collides under a rule. The mean
 //! change of kinetic energy per collision is `$\langle dE\rangle$`, negative when energy is lost. Two ways

@@ -31,28 +31,28 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The [`guide`] leads from a question to a figure, a chapter for each step.
+//! The [`guide`] leads from a question to a figure, with a chapter for each step.
 //!
 //! # Map
-//! | floor | what is there |
+//! | floor | contents |
 //! |---|---|
 //! | [`study`] (feature `serde`) | studies of your own experiments: plans, ramps, sweeps, records |
 //! | [`analysis`] | convective states, clusters, transitions |
 //! | [`kinetic`] | ⟨dE⟩ by closed form and Monte Carlo, effective inelasticity; needs no simulation |
-//! | [`initial`] | where everything starts: lattices, random places, dense packings, radii |
+//! | [`initial`] | initial states: lattices, random places, dense packings, radii |
 //! | [`simulation`] | the engine: builder, event loop, checkpoints |
 //! | [`trajectory`] | files of disks, frame by frame, and readers |
-//! | [`observable`] | what is measured, and when |
-//! | [`scheduler`] | which event is next |
-//! | [`boundary`], [`wall`] | the walls around the disks, and how they move |
-//! | [`collision`] | what a collision does |
+//! | [`observable`] | measures, and the times at which they are taken |
+//! | [`scheduler`] | the order of events |
+//! | [`boundary`], [`wall`] | the walls around the disks, and their motion |
+//! | [`collision`] | the outcome of a collision |
 //! | [`Disk`] | one grain |
 //! | [`statistics`] | means, and errors of correlated samples |
 //!
-//! Imports run downward in this order only.
+//! Imports run only downward in this order.
 //!
 //! # Features
-//! | feature | what it adds |
+//! | feature | additions |
 //! |---|---|
 //! | `serde` | parameters that serialize through their validating constructors, checkpoints, studies |
 //! | `rayon` | Monte Carlo and sweeps on all cores, with the same bits as on one |

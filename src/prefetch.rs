@@ -1,4 +1,4 @@
-//! A hint to the processor: data to fetch from memory before they are needed.
+//! A hint to the processor to fetch data from memory before they are needed.
 
 /// Asks the processor to fetch the cache line of an element. Nothing happens if there is no such element.
 ///

@@ -31,7 +31,7 @@ use crate::ParameterError;
 /// Returns `value` if it is finite and above zero.
 ///
 /// # Errors
-/// If it is not.
+/// If it is zero, negative, infinite or NaN.
 pub fn positive(name: &'static str, value: f64) -> Result<f64, ParameterError> {
     Range::POSITIVE.check(name, value)
 }
@@ -39,7 +39,7 @@ pub fn positive(name: &'static str, value: f64) -> Result<f64, ParameterError> {
 /// Returns `value` if it is finite and not below zero.
 ///
 /// # Errors
-/// If it is not.
+/// If it is negative, infinite or NaN.
 pub fn non_negative(name: &'static str, value: f64) -> Result<f64, ParameterError> {
     Range::NON_NEGATIVE.check(name, value)
 }
@@ -47,7 +47,7 @@ pub fn non_negative(name: &'static str, value: f64) -> Result<f64, ParameterErro
 /// Returns `value` if it is neither infinite nor NaN.
 ///
 /// # Errors
-/// If it is.
+/// If it is infinite or NaN.
 pub fn finite(name: &'static str, value: f64) -> Result<f64, ParameterError> {
     accept(value.is_finite(), name, "finite", value)
 }
@@ -72,7 +72,7 @@ pub fn accept(
     if valid { Ok(value) } else { Err(ParameterError::new(name, requirement, value)) }
 }
 
-/// A range of numbers that have a meaning, and the words for it.
+/// A range of numbers that have a meaning, and its description in words.
 #[derive(Clone, Copy)]
 pub(crate) struct Range {
     requirement: &'static str,

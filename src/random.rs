@@ -17,8 +17,8 @@ pub(crate) fn normal<G: Rng + ?Sized>(generator: &mut G) -> f64 {
     radius * libm::cos(std::f64::consts::TAU * uniform(generator))
 }
 
-/// Draws a Rayleigh variable, of density `$v\,e^{-v^2/2}$`: the normal speed of a disk that leaves a wall of
-/// temperature 1.
+/// Draws a Rayleigh variable, with the density v·exp(−v²/2). It is the normal speed of a disk of mass 1 that
+/// leaves a wall of temperature 1.
 pub(crate) fn rayleigh<G: Rng + ?Sized>(generator: &mut G) -> f64 {
     (-2.0 * libm::log(uniform(generator))).sqrt()
 }

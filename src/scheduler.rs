@@ -6,12 +6,12 @@
 //!
 //! | scheduler | cost of an event | use |
 //! |---|---|---|
-//! | [`BySize`] | that of the better of the next two | default |
+//! | [`BySize`] | that of the faster of the next two | default |
 //! | [`TournamentTree`] | `$O(\log N)$`, no branches | up to some ten thousand disks |
 //! | [`BucketQueue`] | `$O(1)$` | more |
 //! | [`LinearScan`] | `$O(N)$` | the oracle that tests the others |
 //!
-//! A scheduler of your own implements [`EventScheduler`] and is tested in one line by [`laws::check`].
+//! A scheduler of your own implements [`EventScheduler`], and [`laws::check`] tests it in one line.
 
 mod bucket_queue;
 mod by_size;
@@ -58,9 +58,9 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 ///
 /// # Schedulers that break the contract
 /// The engine compares each answer with the event that it keeps: a disk that does not exist, or a time other
-/// than the last one set for it, ends the run with an error. It does not notice a disk that is named although
-/// another one is due before it. Events then come out of order, and the trajectory is wrong. [`laws::check`]
-/// finds both kinds of fault.
+/// than the last one set for it, ends the run with an error. The engine does not notice if a scheduler names
+/// a disk although another one is due before it. Events then come out of order, and the trajectory is wrong.
+/// [`laws::check`] finds both kinds of fault.
 ///
 /// # Why the answer is a pair and not an `Option`
 /// The engine asks for the answer at every event. A pair comes back in two registers, and [`NOTHING_DUE`]
@@ -91,8 +91,9 @@ pub trait EventScheduler {
     /// Forgets everything, and takes these times, one for each disk.
     fn reset(&mut self, due: &[f64]);
 
-    /// Takes a new time for the event of `disk`, in place of its last one. The new time may be earlier or
-    /// later.
+    /// Takes a new time for the event of `disk`, in place of its last one.
+    ///
+    /// The new time may be earlier or later.
     fn set(&mut self, disk: usize, due: f64);
 
     /// Returns the disk whose event is due first, and its time, or [`NOTHING_DUE`] without disks.

@@ -2,8 +2,8 @@
 //!
 //! [`Simulation::builder`] checks disks, gravity and boundary and makes a [`Simulation`].
 //! [`Simulation::run_until`], [`Simulation::run`] with its [`Limits`] and [`Simulation::step_until`] advance
-//! it. Rule, boundary and gravity can be changed between runs, and disks put in and taken out
-//! ([`Simulation::insert`], [`Simulation::remove`]).
+//! it. Between runs, you can change the rule, the boundary and gravity, insert disks ([`Simulation::insert`])
+//! and remove them ([`Simulation::remove`]).
 //!
 //! # Promises
 //! 1. The same inputs give the same bits, under every scheduler, with any observer, and however a run is cut
@@ -12,12 +12,12 @@
 //!    walls.
 //! 3. A sample at time `$t$` has seen all events up to and at `$t$`.
 //! 4. A run that hardly progresses ends with [`RunError::Stalled`], within seconds. Progress is the simulated
-//!    time per event, over windows of 200 000 events and 20 more for each disk. How much of it a run needs is
-//!    up to its caller: [`Limits::with_least_progress`].
-//! 5. A checkpoint restores everything on which the future depends, except rule and boundary, which are given
-//!    again. It notices if they are others, as far as they have fingerprints.
-//! 6. A part that breaks its contract (a rule, boundary, scheduler or observer) ends the run with an error
-//!    that names what it answered. It never makes the engine go back in time, or name a disk or wall that
+//!    time per event, over windows of 200 000 events and 20 more for each disk. The caller sets how much
+//!    progress a run needs: [`Limits::with_least_progress`].
+//! 5. A checkpoint restores everything on which the future depends, except the rule and the boundary, which
+//!    the caller gives again. It notices if they are different ones, as far as they have fingerprints.
+//! 6. A part (a rule, boundary, scheduler or observer) that gives an impossible answer ends the run with an
+//!    error that names the answer. It never makes the engine go back in time, or name a disk or wall that
 //!    does not exist.
 
 mod builder;
@@ -147,7 +147,7 @@ const _: () = {
     is_sent_and_shared::<BuildError>();
 };
 
-/// Memory that is used again and again.
+/// Buffers that are used again and again.
 #[derive(Debug, Clone, Default)]
 struct Scratch {
     /// The neighbors of one disk.
@@ -159,7 +159,7 @@ struct Scratch {
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Returns the present, in absolute time.
+    /// Returns the present absolute time.
     pub fn time(&self) -> f64 {
         self.clock.time()
     }
@@ -190,8 +190,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         observable.measure(&Snapshot::new(self.time(), &disks, self.boundary.domain(), self.bodies.gravity))
     }
 
-    /// Returns the present state, for observables and observers of your own. The method needs `&mut self`,
-    /// since the copies of the disks are kept for the next snapshot.
+    /// Returns the present state, for observables and observers of your own.
+    ///
+    /// The method needs `&mut self`, since the simulation keeps the copies of the disks as a buffer for the
+    /// next snapshot.
     pub fn snapshot(&mut self) -> Snapshot<'_> {
         self.snapshot_as_of(self.time())
     }
@@ -225,8 +227,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.bodies.gravity
     }
 
-    /// Sets another rule from now on. The predictions stay, since a rule decides the outcome of a collision
-    /// and not its time.
+    /// Sets another rule from now on.
+    ///
+    /// The predictions stay, since a rule decides the outcome of a collision and not its time.
     pub fn set_rule(&mut self, rule: R) {
         self.rule = rule;
     }
@@ -234,8 +237,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Sets gravity from now on.
     ///
     /// # Errors
-    /// If gravity is not finite or above 1e60 in magnitude, or disks would fall so fast that times as late as
-    /// the present are too coarse. The simulation is then as before.
+    /// If gravity is not finite, or is above 1e60 in magnitude. If disks would fall so fast that times as
+    /// late as the present are too coarse. The simulation then stays as it was.
     pub fn set_gravity(&mut self, gravity: f64) -> Result<(), ParameterError> {
         bounded("gravity", gravity)?;
         let epoch_length = self.bodies.epoch_length_under(gravity);
@@ -252,7 +255,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Sets other walls from now on.
     ///
     /// # Errors
-    /// If the disks do not fit into them. The simulation is then as before.
+    /// If the disks do not fit into the new walls, or there are too many walls. The simulation then stays as
+    /// it was.
     pub fn set_boundary(&mut self, mut boundary: B) -> Result<(), BuildError> {
         boundary.set_time_origin(self.clock.origin);
         let (wall_count, cells) = fit(&boundary, &self.disks(), self.clock.now)?;

@@ -13,8 +13,8 @@ const MARGIN: f64 = 1.0 + 1e-9;
 
 /// Squares for finding the disks near a place.
 ///
-/// A disk is entered in all squares that it reaches; one that is entered as a point is in one square, and is
-/// found once.
+/// A disk is entered in all squares that it reaches. A disk that is entered with radius 0 is in one square,
+/// so it is found only once.
 pub(crate) struct Squares {
     domain: Domain,
     columns: Axis,
@@ -26,7 +26,7 @@ impl Squares {
     /// Makes empty squares for disks of these radii.
     ///
     /// Their side is the root of the mean square of the diameters. So there are a few entries for each disk,
-    /// and a few disks in each square, at any mix of radii.
+    /// and a few disks in each square, for any mix of radii.
     pub(crate) fn new(domain: &Domain, radii: impl ExactSizeIterator<Item = f64>) -> Self {
         let count = radii.len().max(1) as f64;
         let squares: f64 = radii.map(|radius| 4.0 * radius * radius).sum();
@@ -41,7 +41,7 @@ impl Squares {
         Self { domain: *domain, columns, rows, disks: HashMap::default() }
     }
 
-    /// Names the squares that a disk reaches.
+    /// Returns the squares that a disk reaches.
     fn squares(&self, site: DVec2, radius: f64) -> impl Iterator<Item = (i64, i64)> + use<> {
         let reach = DVec2::splat(radius * MARGIN);
         let (low, high) = (site - reach, site + reach);
@@ -56,8 +56,8 @@ impl Squares {
         }
     }
 
-    /// Names all disks that may overlap one of this radius, and some others, some of them several times.
-    /// Disks that were entered with radius 0 are named once.
+    /// Returns all disks that may overlap a disk of this radius, and some others. A disk may come several
+    /// times, but one that was entered with radius 0 comes only once.
     pub(crate) fn near(&self, site: DVec2, radius: f64) -> impl Iterator<Item = usize> {
         self.squares(site, radius).filter_map(|square| self.disks.get(&square)).flatten().copied()
     }
@@ -71,7 +71,8 @@ impl Squares {
     }
 }
 
-/// A hash of the numbers of a square, faster than the usual one. Nobody chooses places that collide in it.
+/// A hash of the numbers of a square, faster than the usual one. It need not resist attacks, since nobody
+/// chooses places in order to make hashes collide.
 #[derive(Default)]
 struct Mixer(u64);
 
@@ -88,7 +89,7 @@ impl Hasher for Mixer {
     }
 
     fn finish(&self) -> u64 {
-        // The table takes the low bits, of which few depend on all of the number.
+        // The table uses the low bits, few of which depend on the whole number.
         self.0 ^ (self.0 >> 32)
     }
 }
@@ -102,14 +103,14 @@ struct Axis {
 }
 
 impl Axis {
-    /// Divides an axis, which may begin anew between two ends, into intervals of about this size.
+    /// Divides an axis into intervals of about this size. A periodic axis begins anew after its upper end.
     fn new(period: Option<(f64, f64)>, size: f64) -> Self {
         let Some((low, high)) = period else { return Self { origin: 0.0, size, count: None } };
         let count = ((high - low) / size).floor().max(1.0);
         Self { origin: low, size: (high - low) / count, count: Some(count as i64) }
     }
 
-    /// Names the intervals between two places, each of them once.
+    /// Returns the intervals between two places, each of them once.
     fn between(&self, low: f64, high: f64) -> impl Iterator<Item = i64> + Clone + use<> {
         let index = |place: f64| ((place - self.origin) / self.size).floor() as i64;
         let (first, last, count) = (index(low), index(high), self.count);

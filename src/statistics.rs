@@ -1,4 +1,4 @@
-//! Statistics: means and histograms of numbers that come one by one, and how far each mean can be trusted.
+//! Statistics: means and histograms of numbers that come one by one, with errors that can be trusted.
 //!
 //! | question | answer |
 //! |---|---|
@@ -7,12 +7,12 @@
 //! | the same for a series in memory | [`block_average`] |
 //! | a mean, its error, and what the error rests on | [`Estimate`] |
 //! | the mean of several runs together | [`Estimate::over_repeats`] |
-//! | how long a series in memory remembers | [`autocorrelation`] |
-//! | how often numbers fall where | [`Histogram`] |
+//! | correlation of the samples of a series in memory | [`autocorrelation`] |
+//! | distribution of numbers over bins | [`Histogram`] |
 //!
 //! Collisions and samples of one run are correlated. A standard error that takes them as independent is too
-//! small, often by a factor of ten. The error of such a mean comes from blocks, and shows when the run was
-//! too short for it.
+//! small, often by a factor of ten. The error of such a mean must come from blocks, which also show whether
+//! the run was too short.
 //!
 //! ```
 //! use granular_edmd::statistics::BlockedMean;

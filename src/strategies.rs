@@ -47,7 +47,8 @@ use crate::simulation::BuildError;
 use crate::wall::{BiParabolic, Sinusoidal};
 use crate::{Disk, Kind, Simulation, initial};
 
-/// Returns positive numbers, spread evenly over the decades from `$10^\text{low}$` to `$10^\text{high}$`.
+/// Returns positive numbers, spread evenly over the decades from 10 to the power `low` to 10 to the power
+/// `high`.
 ///
 /// ```
 /// use granular_edmd::strategies::decades;
@@ -59,7 +60,7 @@ pub fn decades(low: f64, high: f64) -> impl Strategy<Value = f64> {
     (low..=high).prop_map(libm::exp10)
 }
 
-/// Returns speeds of either sign: ordinary ones, over 24 decades, or zero.
+/// Returns speeds of either sign: ordinary ones, ones spread over 24 decades, and zero.
 ///
 /// ```
 /// use proptest::prelude::*;
@@ -154,8 +155,9 @@ pub fn disk() -> impl Strategy<Value = Disk> {
     )
 }
 
-/// Returns two disks that touch and approach, of any sizes, masses and inertia. The second disk is at the
-/// origin.
+/// Returns two disks that touch and approach, of any sizes, masses and inertia.
+///
+/// The second disk is at the origin.
 ///
 /// ```
 /// use granular_edmd::collision::{Elastic, collide};
@@ -199,7 +201,8 @@ pub fn disk_closing_on_wall() -> impl Strategy<Value = (Disk, DVec2, DVec2)> {
     touching_pair().prop_map(|(disk, wall)| (disk, disk.position().normalize(), wall.velocity()))
 }
 
-/// A small system without its rule: up to thirty disks in a box, at rest or shaken, heated, periodic or open.
+/// A small system without its rule: fewer than thirty disks in a box that may be shaken, heated, periodic or
+/// open.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct SetUp {

@@ -3,15 +3,15 @@
 //! | motion | displacement | source |
 //! |---|---|---|
 //! | [`Fixed`] | none | |
-//! | [`BiParabolic`] | two parabolic arcs a period | paper, Sec. III |
+//! | [`BiParabolic`] | two parabolic arcs per period | paper, Sec. III |
 //! | [`Sinusoidal`] | `$A\sin\omega t$` | |
 //! | [`Triangular`] | constant speed up, constant speed down | |
 //! | [`Sawtooth`] | constant speed up, instantly back | |
-//! | [`Delayed`] | any of these, from a later time on | |
+//! | [`Delayed`] | any of these, with phase 0 at a later time | |
 //!
-//! [`first_touch`] finds the contact for all of them and for your own motions. It only needs bounds of the
-//! acceleration on pieces of time. See [`WallMotion`] for an example, and [`laws`] for a check of your own
-//! motion.
+//! [`first_touch`] finds the contact for all of them and for your own motions. Apart from place, velocity and
+//! reach, it needs only bounds of the acceleration on pieces of time. See [`WallMotion`] for an example, and
+//! [`laws`] for a check of your own motion.
 
 mod bi_parabolic;
 mod delayed;
@@ -83,12 +83,12 @@ impl AccelerationBounds {
 /// the run. For a motion with a period, the phase is the absolute time less some whole periods, which keeps
 /// all digits of late times. It is below one period in magnitude when an epoch of the run begins, grows as
 /// the epoch goes on, and is negative only in runs that begin at a negative time. A motion whose smallest and
-/// largest displacement are equal never moves: it is asked for small phases, whatever the time.
+/// largest displacements are equal never moves. It is asked only about small phases, whatever the time.
 ///
 /// # Contract
 /// An implementation guarantees, for every phase:
-/// 1. [`state`](Self::state) and [`acceleration`](Self::acceleration) give finite numbers, the same ones each
-///    time they are called. Only `until` may be infinite.
+/// 1. [`state`](Self::state) and [`acceleration`](Self::acceleration) give finite numbers, and the same ones
+///    each time they are called with the same phase. Only `until` may be infinite.
 /// 2. The displacement lies within [`reach`](Self::reach).
 /// 3. A piece ends later than the phase asked for, and its bounds hold for the acceleration up to its end.
 /// 4. Inside a piece, displacement and velocity are continuous, and the displacement is the integral of the
@@ -96,14 +96,14 @@ impl AccelerationBounds {
 ///    away from the disks. The state at that phase is the one after the jump.
 /// 5. If there is a [`period`](Self::period), the whole motion repeats after it.
 ///
-/// [`laws::check`] tests all of this on a stretch of phases. A container calls the methods in any order and
-/// from any thread.
+/// [`laws::check`] tests all of this between two phases. A container calls the methods in any order and from
+/// any thread.
 ///
 /// # Motions that break the contract
-/// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion that answers with
-/// numbers that are not finite at one of the phases that it tries, from 0 on. [`first_touch`] ends whatever a
-/// motion answers; its documentation tells how. Bounds that are too small, a reach that is too small or a
-/// jump toward the disks let disks pass into the wall. Bounds that are too large only cost time.
+/// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion that gives a number
+/// that is not finite at one of the phases that it tries, from 0 on. [`first_touch`] always ends, whatever a
+/// motion answers; its documentation says how. Bounds that are too small, a reach that is too small or a jump
+/// toward the disks let disks pass into the wall. Bounds that are too large only cost time.
 ///
 /// ```
 /// use granular_edmd::wall::{AccelerationBounds, Approach, WallMotion, WallState, first_touch, laws};
@@ -157,8 +157,8 @@ pub trait WallMotion {
 
     /// Returns the fingerprint of the motion: its name and all numbers that decide how it moves.
     ///
-    /// Checkpoints compare the fingerprint when a run is resumed. A boundary with a motion without a
-    /// fingerprint has none either, and is not compared.
+    /// Checkpoints compare the fingerprint when a run is resumed. If a motion has none, its boundary has none
+    /// either and is not compared.
     fn fingerprint(&self) -> Option<Fingerprint> {
         None
     }

@@ -1,11 +1,14 @@
 //! The command line of the examples, and errors in one line.
 
-use std::fmt::Display;
+use std::error::Error;
+use std::fmt::{self, Display, Formatter};
 use std::fs;
 use std::path::Path;
 use std::process::{ExitCode, exit};
 
 use clap::Parser;
+use granular_edmd::ParameterError;
+use granular_edmd::simulation::RunError;
 
 /// The reason why an example ends early.
 #[derive(Debug)]
@@ -29,20 +32,45 @@ impl Failure {
 
     /// Reports the failure in one line on standard error, and returns the exit code.
     pub(crate) fn report(&self) -> ExitCode {
-        let (message, code) = match self {
-            Self::Usage(message) => (message, 2),
-            Self::Run(message) => (message, 1),
-        };
-        eprintln!("error: {message}");
-        ExitCode::from(code)
+        eprintln!("error: {self}");
+        ExitCode::from(if matches!(self, Self::Usage(_)) { 2 } else { 1 })
+    }
+}
+
+impl Display for Failure {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        let (Self::Usage(message) | Self::Run(message)) = self;
+        formatter.write_str(message)
+    }
+}
+
+impl Error for Failure {}
+
+impl From<ParameterError> for Failure {
+    fn from(error: ParameterError) -> Self {
+        Self::usage(error)
+    }
+}
+
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        Self::run(error)
+    }
+}
+
+/// Tells an error of a run with its sources.
+impl From<Box<dyn Error>> for Failure {
+    fn from(error: Box<dyn Error>) -> Self {
+        let chain = std::iter::successors(Some(&*error), |&error| error.source());
+        Self::Run(chain.map(ToString::to_string).collect::<Vec<_>>().join(": "))
     }
 }
 
 /// Parses the command line, runs an example and reports its failure, if any.
-pub(crate) fn main<A: Parser>(run: impl FnOnce(&A) -> Result<(), Failure>) -> ExitCode {
+pub(crate) fn main<A: Parser, E: Into<Failure>>(run: impl FnOnce(&A) -> Result<(), E>) -> ExitCode {
     match run(&parse()) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
+        Err(failure) => failure.into().report(),
     }
 }
 
@@ -53,7 +81,9 @@ pub(crate) fn make_folder(out: &Path) -> Result<(), Failure> {
 
 /// Parses the command line. A mistake ends the program with one line and exit code 2.
 fn parse<A: Parser>() -> A {
-    A::try_parse().unwrap_or_else(|error| {
+    // A negative number is told by the flag that cannot take it, and is no unknown flag.
+    let matches = A::command().allow_negative_numbers(true).try_get_matches();
+    matches.and_then(|matches| A::from_arg_matches(&matches)).unwrap_or_else(|error| {
         if !error.use_stderr() {
             error.exit();
         }

@@ -3,9 +3,10 @@
 use std::error::Error;
 use std::fs::{self, File};
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
+use serde_json::{Map, Value};
 
 use super::command_line::{Failure, make_folder};
 
@@ -13,21 +14,27 @@ use super::command_line::{Failure, make_folder};
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Results {
     /// Folder for the results.
-    #[arg(long, default_value = "out")]
+    #[arg(long, value_name = "FOLDER", default_value = "out")]
     out: PathBuf,
     /// File for the numbers as JSON.
-    #[arg(long)]
+    #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 
 impl Results {
     /// Makes the folder, if there is none, and checks before a long run that there is one for the JSON.
     pub(crate) fn make_folder(&self) -> Result<(), Failure> {
+        make_folder(&self.out)?;
         let parent = self.json.as_ref().and_then(|path| path.parent());
         if let Some(folder) = parent.filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
             return Err(Failure::run(format_args!("--json: there is no folder {}", folder.display())));
         }
-        make_folder(&self.out)
+        Ok(())
+    }
+
+    /// Returns the place of a result of this name.
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.out.join(name)
     }
 
     /// Begins the table of this name, with these columns.
@@ -43,7 +50,7 @@ impl Results {
         name: &str,
         mut table: csv::Writer<File>,
         png: &[u8],
-        numbers: &serde_json::Value,
+        numbers: &Value,
     ) -> Result<(), Box<dyn Error>> {
         table.flush()?;
         self.finish_picture(name, png, numbers)
@@ -55,26 +62,66 @@ impl Results {
         name: &str,
         table: impl FnOnce(&mut dyn Write) -> io::Result<()>,
         png: &[u8],
-        numbers: &serde_json::Value,
+        numbers: &Value,
     ) -> Result<(), Box<dyn Error>> {
         table(&mut File::create(self.out.join(name).with_extension("csv"))?)?;
         self.finish_picture(name, png, numbers)
     }
 
-    fn finish_picture(
-        &self,
-        name: &str,
-        png: &[u8],
-        numbers: &serde_json::Value,
-    ) -> Result<(), Box<dyn Error>> {
+    fn finish_picture(&self, name: &str, png: &[u8], numbers: &Value) -> Result<(), Box<dyn Error>> {
         let path = self.out.join(name);
         fs::write(path.with_extension("png"), png)?;
         println!("wrote {0}.png and {0}.csv", path.display());
-        if let Some(path) = &self.json {
-            let text = serde_json::to_string_pretty(numbers)?;
-            fs::write(path, text).map_err(|error| format!("--json {}: {error}", path.display()))?;
-            println!("wrote {}", path.display());
-        }
+        self.write_json(numbers)
+    }
+
+    /// Writes numbers as JSON, if that is asked for.
+    pub(crate) fn write_json(&self, numbers: &Value) -> Result<(), Box<dyn Error>> {
+        let Some(path) = &self.json else { return Ok(()) };
+        let text = serde_json::to_string_pretty(numbers)?;
+        fs::write(path, text).map_err(|error| format!("--json {}: {error}", path.display()))?;
+        println!("wrote {}", path.display());
         Ok(())
     }
+
+    /// Ends the table of this name, writes the picture, if there is one, and the rows of the table as JSON.
+    pub(crate) fn finish_table(
+        &self,
+        name: &str,
+        mut table: csv::Writer<File>,
+        png: Option<&[u8]>,
+    ) -> Result<(), Box<dyn Error>> {
+        table.flush()?;
+        let table = self.path(name).with_extension("csv");
+        if let Some(png) = png {
+            fs::write(table.with_extension("png"), png)?;
+            println!("wrote {}", table.with_extension("png").display());
+        }
+        println!("wrote {}", table.display());
+        self.write_tables_as_json(&[(name, table)])
+    }
+
+    /// Writes tables as JSON under these names, if that is asked for: each row as an object.
+    pub(crate) fn write_tables_as_json(&self, tables: &[(&str, PathBuf)]) -> Result<(), Box<dyn Error>> {
+        if self.json.is_none() {
+            return Ok(());
+        }
+        let named = tables.iter().map(|(name, table)| Ok(((*name).to_owned(), rows(table)?)));
+        self.write_json(&Value::Object(named.collect::<Result<_, Box<dyn Error>>>()?))
+    }
+}
+
+/// Returns the rows of a table as objects. An empty cell is `null`.
+fn rows(table: &Path) -> Result<Value, Box<dyn Error>> {
+    let mut table = csv::Reader::from_path(table)?;
+    let columns = table.headers()?.clone();
+    let row = |row: csv::StringRecord| {
+        columns.iter().map(str::to_owned).zip(row.iter().map(cell)).collect::<Map<_, _>>()
+    };
+    Ok(table.records().map(|record| record.map(row)).collect::<Result<Vec<_>, _>>()?.into())
+}
+
+fn cell(text: &str) -> Value {
+    let number = || serde_json::from_str(text).ok().filter(Value::is_number);
+    if text.is_empty() { Value::Null } else { number().unwrap_or_else(|| text.into()) }
 }

@@ -37,6 +37,7 @@ use granular_edmd::statistics::BlockedMean;
 
 use common::command_line::{self, Failure, positive, whole};
 use common::flow;
+use common::progress::Progress;
 use common::results::Results;
 use measure::{Depths, Slope};
 
@@ -132,7 +133,10 @@ fn turned(arguments: &Arguments, rate: f64) -> Result<Turned, Box<dyn Error>> {
     let Domain { left, right, bottom, top, .. } = drum.domain();
     let mut simulation = Simulation::builder(rule, drum).disks(disks).gravity(1.0).build()?;
     let period = TAU / rate;
-    simulation.run_until(SPIN_UP * period, &mut ())?;
+    let turns = if arguments.quick { arguments.turns.min(0.25) } else { arguments.turns };
+    let end = (SPIN_UP + turns) * period;
+    let mut progress = Progress::of(format!("rate {rate}")).until(end);
+    simulation.run_until(SPIN_UP * period, &mut progress)?;
 
     let mut surfaces = Vec::new();
     let mut depths = Depths::new(arguments.radius);
@@ -145,8 +149,7 @@ fn turned(arguments: &Arguments, rate: f64) -> Result<Turned, Box<dyn Error>> {
             surfaces.push((snapshot.time() / period, surface));
         }
     });
-    let turns = if arguments.quick { arguments.turns.min(0.25) } else { arguments.turns };
-    simulation.run_until((SPIN_UP + turns) * period, &mut (&mut watch, &mut flow))?;
+    simulation.run_until(end, &mut (&mut watch, &mut flow, &mut progress))?;
 
     let mut angles = BlockedMean::new();
     for (_, surface) in &surfaces {

@@ -29,6 +29,7 @@ use granular_edmd::trajectory::{ExtendedXyz, LammpsDump, RecordError, Recorder, 
 use serde_json::{Value, json};
 
 use common::command_line::{self, Failure, whole};
+use common::progress::Progress;
 
 /// A run in files that other programs open.
 #[derive(Parser)]
@@ -49,10 +50,10 @@ struct Arguments {
     #[arg(long)]
     measure: bool,
     /// Folder for the results.
-    #[arg(long, default_value = "out/export")]
+    #[arg(long, value_name = "FOLDER", default_value = "out/export")]
     out: PathBuf,
     /// File for everything that the frames hold as JSON, to compare with what a reader finds.
-    #[arg(long)]
+    #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 
@@ -67,18 +68,12 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     command_line::make_folder(&arguments.out)?;
-    write_all(arguments).map_err(|error| Failure::run(in_one_line(&*error)))?;
+    write_all(arguments)?;
     println!(
         "wrote run.xyz, run.dump, run.pvd, end.csv, end.data, series.csv and series.jsonl in {}",
         arguments.out.display()
     );
     if arguments.measure { measure::print(arguments).map_err(Failure::run) } else { Ok(()) }
-}
-
-/// Returns an error and its sources.
-fn in_one_line(error: &(dyn Error + 'static)) -> String {
-    let chain = std::iter::successors(Some(error), |&error| error.source());
-    chain.map(ToString::to_string).collect::<Vec<_>>().join(": ")
 }
 
 /// Returns the run before its first oscillation: every third disk is small and light.
@@ -131,14 +126,16 @@ fn write_all(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let mut series = Series::new((CenterOfMass, OfKind::new(SMALL, Temperatures), fastest), clock);
     let mut frames = Vec::new();
     let mut expected = on_sample(clock, |snapshot: &Snapshot<'_>| frames.push(all_of(snapshot)));
-    run.run_until(end, &mut (&mut recorders, &mut series, &mut expected))?;
+    let mut progress = Progress::of("run").until(end);
+    run.run_until(end, &mut ((&mut recorders, &mut progress), &mut series, &mut expected))?;
     let state = State::of(&run.snapshot());
     state.write_csv(File::create_new(out.join("end.csv"))?)?;
     state.write_lammps_data(File::create_new(out.join("end.data"))?)?;
     series.write_csv(File::create_new(out.join("series.csv"))?)?;
     series.write_json_lines(File::create_new(out.join("series.jsonl"))?)?;
     if let Some(path) = &arguments.json {
-        serde_json::to_writer(File::create_new(path)?, &frames)?;
+        let file = File::create_new(path).map_err(|error| format!("--json {}: {error}", path.display()))?;
+        serde_json::to_writer(file, &frames)?;
     }
     Ok(())
 }

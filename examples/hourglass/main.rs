@@ -33,6 +33,7 @@ use granular_edmd::observable::stop_when_sampled;
 use granular_edmd::prelude::*;
 
 use common::command_line::{self, Failure, positive, whole};
+use common::progress::Progress;
 use common::results::Results;
 
 /// An hourglass that runs empty and is turned over: the number of grains above over time.
@@ -171,7 +172,8 @@ fn settled(arguments: &Arguments, glass: &Glass, rule: BoxedRule) -> Result<Run,
     let disks = initial::with_maxwellian_velocities(disks, 0.01, seed)?;
     let shut = Vessel::around([("glass", Part::polygon(glass.outline())?), ("gate", glass.gate()?)])?;
     let mut run = Simulation::builder(rule, shut).disks(disks).gravity(1.0).build()?;
-    if run.run(&limits(arguments, SETTLING), &mut ())? != RunEnd::Time {
+    let mut progress = Progress::of("grains that come to rest").until(SETTLING);
+    if run.run(&limits(arguments, SETTLING), &mut progress)? != RunEnd::Time {
         return Err(format!("the grains are not at rest after {} s", arguments.seconds).into());
     }
     let mut open = run.boundary().clone();
@@ -190,9 +192,13 @@ fn way(arguments: &Arguments, run: &mut Run) -> Result<Way, Box<dyn Error>> {
     let mut frames = vec![frame(0.0, up, &run.disks())];
     let (since, before) = (Instant::now(), *run.counters());
     let times = SampleTimes::every(FRAME)?.starting_at(start + FRAME)?;
+    let progress = Progress::of("grains below the neck");
     let mut empty = stop_when_sampled(times, |snapshot: &Snapshot<'_>| {
-        frames.push(frame(snapshot.time() - start, up, snapshot.disks()));
-        frames.last().is_some_and(|frame| frame.above == 0)
+        let frame = frame(snapshot.time() - start, up, snapshot.disks());
+        let (above, all) = (frame.above, frame.disks.len());
+        frames.push(frame);
+        progress.show((all - above) as u64, all as u64);
+        above == 0
     });
     let ended = run.run(&limits(arguments, start + END), &mut empty)?;
     let counters = run.counters().since(&before);

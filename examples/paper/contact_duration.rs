@@ -10,6 +10,8 @@
 //!
 //! The example writes the studies, and prints a table. After an interruption, the same command goes on.
 
+#[path = "../common/mod.rs"]
+mod common;
 #[path = "../studies/mod.rs"]
 mod studies;
 
@@ -48,7 +50,7 @@ const INELASTICITIES: [f64; 9] = [0.01, 0.02, 0.025, 0.03, 0.035, 0.04, 0.045, 0
 const FRICTION: f64 = 0.05;
 
 fn main() -> ExitCode {
-    studies::end(run(&Arguments::parse()))
+    common::command_line::main(run)
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
@@ -56,6 +58,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         ("contact_duration-friction", "friction", FRICTIONS.to_vec(), 0.0),
         ("contact_duration-inelasticity", "inelasticity", INELASTICITIES.to_vec(), FRICTION),
     ];
+    let mut tables = Vec::new();
     for (name, parameter, values, friction) in ramps {
         let plan = plan(&arguments.common, parameter, values, friction)?;
         let Some(study) = arguments.common.complete(name, &plan)? else {
@@ -63,8 +66,9 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         };
         let records: Vec<Record> = study.records().collect::<Result<_, _>>()?;
         print(parameter, &records)?;
+        tables.push((parameter, study.folder().join("values.csv")));
     }
-    Ok(())
+    arguments.common.results.write_tables_as_json(&tables)
 }
 
 fn plan(

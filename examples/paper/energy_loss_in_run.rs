@@ -4,17 +4,45 @@
 //! ```text
 //! cargo run --release --example energy_loss_in_run
 //! ```
+//!
+//! The example writes `energy_loss_in_run.csv`.
+
+#[path = "../common/mod.rs"]
+mod common;
 
 use std::error::Error;
 use std::f64::consts::TAU;
+use std::process::ExitCode;
 
+use clap::Parser;
 use granular_edmd::kinetic::{Maxwellian, mean_energy_change};
 use granular_edmd::observable::EnergyChangeProfile;
 use granular_edmd::prelude::*;
 use granular_edmd::statistics::BlockedMean;
 
-/// Numbers of oscillations before measuring, and while measuring.
-const OSCILLATIONS: (f64, f64) = (2000.0, 2000.0);
+use common::command_line;
+use common::progress::Progress;
+use common::results::Results;
+
+/// Mean energy loss of the Maxwellian gas and of the simulated one, for seven frictions.
+#[derive(Parser)]
+struct Arguments {
+    /// Seed of the initial velocities.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Measures for 200 oscillations after 200, not for 2000 after 2000.
+    #[arg(long)]
+    quick: bool,
+    #[command(flatten)]
+    results: Results,
+}
+
+impl Arguments {
+    /// Returns the number of oscillations before measuring, and while measuring.
+    fn oscillations(&self) -> f64 {
+        if self.quick { 200.0 } else { 2000.0 }
+    }
+}
 
 /// Parts of the measured time, whose scatter tells the errors.
 const PARTS: u32 = 80;
@@ -26,16 +54,31 @@ struct Measured {
     parts: [BlockedMean; 2],
 }
 
-impl Measured {
-    /// Returns a number of the whole run with its error, and a star if that is only a lower bound.
-    fn with_error(whole: Option<f64>, parts: &BlockedMean) -> String {
-        let error = parts.estimate();
-        let mark = if error.is_converged() { ' ' } else { '*' };
-        format!("{:.4} ± {:.4}{mark}", whole.unwrap_or(f64::NAN), error.standard_error())
-    }
+/// Returns a number of the whole run with its error, and a star if that is only a lower bound.
+fn with_error(whole: Option<f64>, error: &Estimate) -> String {
+    let mark = if error.is_converged() { ' ' } else { '*' };
+    format!("{:.4} ± {:.4}{mark}", whole.unwrap_or(f64::NAN), error.standard_error())
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+const COLUMNS: [&str; 9] = [
+    "friction",
+    "equal_temperatures",
+    "rotational_temperature_of_run",
+    "run",
+    "run_error",
+    "run_converged",
+    "ratio_of_temperatures",
+    "ratio_error",
+    "ratio_converged",
+];
+
+fn main() -> ExitCode {
+    command_line::main(run)
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    arguments.results.make_folder()?;
+    let mut table = arguments.results.table("energy_loss_in_run", &COLUMNS)?;
     println!("N = 1000, 60 x 150, g = 0.015625, A = 0.1, omega = 10, q = 0");
     println!(
         "<dE>/T over disk-disk collisions: Maxwellian gas with all temperatures equal, with the rotational"
@@ -45,41 +88,42 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{:>8} {:>10} {:>10} {:>18} {:>18}", "kappa", "equal T", "T_rot", "run", "T_rot/T");
     for friction in [0.01, 0.03, 0.05, 0.07, 0.1, 0.3, 1.0] {
         let rule = Frictional::new(0.0, friction)?;
-        let Measured { profile, parts: [changes, ratios] } = measured(rule)?;
-        let ratio = profile.rotational_ratio();
-        println!(
-            "{friction:8} {:10.4} {:10.4} {:>18} {:>18}",
-            mean_energy_change(&rule, &Maxwellian::new(1.0)?),
-            mean_energy_change(
-                &rule,
-                &Maxwellian::new(1.0)?.with_rotational_temperature(ratio.unwrap_or(1.0))?
-            ),
-            Measured::with_error(profile.relative_energy_change(), &changes),
-            Measured::with_error(ratio, &ratios),
-        );
+        let Measured { profile, parts } = measured(arguments, rule)?;
+        let (change, ratio) = (profile.relative_energy_change(), profile.rotational_ratio());
+        let [of_change, of_ratio] = parts.map(|part| part.estimate());
+        let gas = Maxwellian::new(1.0)?;
+        let equal = mean_energy_change(&rule, &gas);
+        let of_run = mean_energy_change(&rule, &gas.with_rotational_temperature(ratio.unwrap_or(1.0))?);
+        let shown = [with_error(change, &of_change), with_error(ratio, &of_ratio)];
+        println!("{friction:8} {equal:10.4} {of_run:10.4} {:>18} {:>18}", shown[0], shown[1]);
+        let errors = [of_change, of_ratio].map(|error| (error.standard_error(), error.is_converged()));
+        table.serialize((friction, equal, of_run, change, errors[0], ratio, errors[1]))?;
     }
-    Ok(())
+    arguments.results.finish_table("energy_loss_in_run", table, None)
 }
 
 /// Measures the paper's box, once it has settled: the whole time, and its parts.
-fn measured(rule: Frictional) -> Result<Measured, Box<dyn Error>> {
+fn measured(arguments: &Arguments, rule: Frictional) -> Result<Measured, Box<dyn Error>> {
     let base = BiParabolic::new(0.1, 10.0)?;
     let oscillation = TAU / base.angular_frequency();
     let container = Container::closed(60.0, 150.0)?.with_motion(Wall::Floor, base)?;
-    let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 1000, 0.5)?, 0.5, 1)?;
+    let disks =
+        initial::with_maxwellian_velocities(initial::lattice(&container, 1000, 0.5)?, 0.5, arguments.seed)?;
+    let name = format!("friction {}", rule.static_friction());
     let rule = ContactDuration::new(rule, 1e-4)?;
     let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
-    let settled = OSCILLATIONS.0 * oscillation;
-    simulation.run_until(settled, &mut ())?;
+    let settled = arguments.oscillations() * oscillation;
+    let mut progress = Progress::of(name).until(2.0 * settled);
+    simulation.run_until(settled, &mut progress)?;
     let from = |start, every: f64| {
         let times = SampleTimes::every(every * oscillation)?.starting_at(start)?;
         EnergyChangeProfile::new(0.0, 150.0, 75, times)
     };
     let mut measured = Measured { profile: from(settled, 10.0)?, parts: Default::default() };
     for part in 0..PARTS {
-        let at = |part: u32| settled + OSCILLATIONS.1 * oscillation * f64::from(part) / f64::from(PARTS);
+        let at = |part: u32| settled + settled * f64::from(part) / f64::from(PARTS);
         let mut profile = from(at(part), 1.0)?;
-        simulation.run_until(at(part + 1), &mut (&mut measured.profile, &mut profile))?;
+        simulation.run_until(at(part + 1), &mut (&mut measured.profile, &mut profile, &mut progress))?;
         measured.parts[0].extend(profile.relative_energy_change());
         measured.parts[1].extend(profile.rotational_ratio());
     }

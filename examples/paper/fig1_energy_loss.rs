@@ -9,8 +9,12 @@
 //! cargo run --release --example fig1_energy_loss -- --out out
 //! ```
 
+#[path = "../common/mod.rs"]
+mod common;
+
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::ParameterError;
@@ -25,18 +29,23 @@ use kuva::render::figure::Figure;
 use kuva::render::layout::{Layout, TickFormat};
 use kuva::render::plots::Plot;
 
+use common::command_line::{self, positive};
+use common::results::Results;
+
 /// Lines of equal mean energy loss per collision (paper, Fig. 1).
 #[derive(Parser)]
 struct Arguments {
-    /// Folder for the picture and the tables.
-    #[arg(long, default_value = "out")]
-    out: PathBuf,
     /// Rotational temperature in units of the translational one; the paper has 1.
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, default_value_t = 1.0, value_parser = positive)]
     rotational_temperature: f64,
     /// Seed of the Monte Carlo comparison.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Traces the lines in ten times as long steps, and takes fewer collisions for the comparison.
+    #[arg(long)]
+    quick: bool,
+    #[command(flatten)]
+    results: Results,
 }
 
 /// A part of the plane, and the levels that are drawn in it.
@@ -49,21 +58,21 @@ struct Panel {
 }
 
 impl Panel {
-    fn whole() -> Self {
+    fn whole(step: usize) -> Self {
         Self {
             name: "whole",
             logarithmic: false,
-            frictions: (0..=500).map(|step| f64::from(step) / 500.0).collect(),
+            frictions: (0..=500).step_by(step).map(|at| f64::from(at) / 500.0).collect(),
             largest_inelasticity: 0.2,
             levels: (1..=10).map(|step| -f64::from(step) / 10.0).collect(),
         }
     }
 
-    fn detail() -> Self {
+    fn detail(step: usize) -> Self {
         Self {
             name: "detail",
             logarithmic: true,
-            frictions: (-300..=100).map(|step| 10f64.powf(f64::from(step) / 100.0)).collect(),
+            frictions: (-300..=100).step_by(step).map(|at| 10f64.powf(f64::from(at) / 100.0)).collect(),
             largest_inelasticity: 0.05,
             levels: [0.02]
                 .into_iter()
@@ -146,32 +155,34 @@ impl Panel {
     }
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let arguments = Arguments::parse();
+fn main() -> ExitCode {
+    command_line::main(run)
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    arguments.results.make_folder()?;
     let gas = Maxwellian::new(1.0)?.with_rotational_temperature(arguments.rotational_temperature)?;
     println!(
         "Maxwellian gas, T = 1, T_rot = {}; q = q_n = q_t, kappa = kappa_s = kappa_d",
         gas.rotational_temperature()
     );
-    compare(&gas, arguments.seed)?;
-    std::fs::create_dir_all(&arguments.out)?;
-    let panels = [Panel::whole(), Panel::detail()];
-    tabulate(&panels, &gas, &arguments.out)?;
-    draw(&panels, &gas, &arguments.out.join("fig1_energy_loss.png"))?;
-    println!(
-        "wrote fig1_energy_loss.png, fig1_energy_loss.csv, fig1_largest_loss.csv to {}",
-        arguments.out.display()
-    );
-    Ok(())
+    let collisions = if arguments.quick { 1 << 14 } else { 1 << 20 };
+    compare(&gas, &MonteCarlo::new(arguments.seed).with_samples(collisions))?;
+    let step = if arguments.quick { 10 } else { 1 };
+    let panels = [Panel::whole(step), Panel::detail(step)];
+    let picture = arguments.results.path("fig1_energy_loss.png");
+    draw(&panels, &gas, &picture)?;
+    println!("wrote {}", picture.display());
+    tabulate(&panels, &gas, &arguments.results)
 }
 
 /// Compares closed form and Monte Carlo at the largest loss of a few inelasticities.
-fn compare(gas: &Maxwellian, seed: u64) -> Result<(), ParameterError> {
+fn compare(gas: &Maxwellian, monte_carlo: &MonteCarlo) -> Result<(), ParameterError> {
     println!("largest loss:   q   kappa     <dE>      Monte Carlo (standard error of independent samples)");
     for q in [0.0, 0.025, 0.05, 0.1, 0.2] {
         let Some(friction) = friction_of_largest_loss(&Frictional::new(q, 0.0)?, gas) else { continue };
         let rule = Frictional::new(q, friction)?;
-        let estimate = MonteCarlo::new(seed).mean_energy_change(&rule, gas);
+        let estimate = monte_carlo.mean_energy_change(&rule, gas);
         let exact = mean_energy_change(&rule, gas);
         println!(
             "            {q:5.3}  {friction:.4}  {exact:.6}  {:.6} ({:.6})",
@@ -182,11 +193,11 @@ fn compare(gas: &Maxwellian, seed: u64) -> Result<(), ParameterError> {
     Ok(())
 }
 
-fn tabulate(panels: &[Panel], gas: &Maxwellian, out: &Path) -> Result<(), Box<dyn Error>> {
-    let mut lines = csv::Writer::from_path(out.join("fig1_energy_loss.csv"))?;
-    let mut maxima = csv::Writer::from_path(out.join("fig1_largest_loss.csv"))?;
-    lines.write_record(["panel", "mean_energy_change", "piece", "friction", "inelasticity"])?;
-    maxima.write_record(["panel", "friction", "inelasticity"])?;
+fn tabulate(panels: &[Panel], gas: &Maxwellian, results: &Results) -> Result<(), Box<dyn Error>> {
+    let names = ["fig1_energy_loss", "fig1_largest_loss"];
+    let columns = ["panel", "mean_energy_change", "piece", "friction", "inelasticity"];
+    let mut lines = results.table(names[0], &columns)?;
+    let mut maxima = results.table(names[1], &["panel", "friction", "inelasticity"])?;
     for panel in panels {
         for (level, pieces) in panel.trace(gas)? {
             for (index, piece) in pieces.iter().enumerate() {
@@ -198,7 +209,12 @@ fn tabulate(panels: &[Panel], gas: &Maxwellian, out: &Path) -> Result<(), Box<dy
         panel.maxima(gas)?.iter().try_for_each(|point| maxima.serialize((panel.name, point.0, point.1)))?;
     }
     lines.flush()?;
-    Ok(maxima.flush()?)
+    maxima.flush()?;
+    let tables = names.map(|name| (name, results.path(name).with_extension("csv")));
+    for (_, path) in &tables {
+        println!("wrote {}", path.display());
+    }
+    results.write_tables_as_json(&tables)
 }
 
 fn draw(panels: &[Panel], gas: &Maxwellian, path: &Path) -> Result<(), Box<dyn Error>> {

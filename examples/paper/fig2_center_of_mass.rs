@@ -11,6 +11,8 @@
 //! The example writes `fig2_center_of_mass.png` and the tables of the study. After an interruption, the same
 //! command goes on.
 
+#[path = "../common/mod.rs"]
+mod common;
 #[path = "../studies/mod.rs"]
 mod studies;
 
@@ -67,7 +69,7 @@ struct Point {
 }
 
 fn main() -> ExitCode {
-    studies::end(run(&Arguments::parse()))
+    common::command_line::main(run)
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
@@ -75,7 +77,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let Some(study) = arguments.common.complete(name, &arguments.plan()?)? else { return Ok(()) };
     let points = points(&study)?;
     print(&points);
-    studies::write_png(figure(&points, arguments.slip), &study, "fig2_center_of_mass.png")
+    arguments.common.finish(figure(&points, arguments.slip), &study, "fig2_center_of_mass.png")
 }
 
 fn points(study: &Study<VibratedBox>) -> Result<Vec<Point>, Box<dyn Error>> {

@@ -12,6 +12,8 @@
 //! The example writes `fig3_order_parameters.png` and the tables of the study. After an interruption, the
 //! same command goes on.
 
+#[path = "../common/mod.rs"]
+mod common;
 #[path = "../studies/mod.rs"]
 mod studies;
 
@@ -56,7 +58,7 @@ impl Arguments {
 }
 
 fn main() -> ExitCode {
-    studies::end(run(&Arguments::parse()))
+    common::command_line::main(run)
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
@@ -64,7 +66,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let Some(study) = arguments.common.complete(name, &arguments.plan()?)? else { return Ok(()) };
     let records: Vec<Record> = study.records().collect::<Result<_, _>>()?;
     print(&records);
-    studies::write_png(figure(&records, &study), &study, "fig3_order_parameters.png")
+    arguments.common.finish(figure(&records, &study), &study, "fig3_order_parameters.png")
 }
 
 /// Prints means over the second half of each value, as in the paper.

@@ -24,11 +24,13 @@ use std::process::ExitCode;
 use clap::Parser;
 use granular_edmd::analysis::{Classification, ConvectiveState, StateCriteria};
 use granular_edmd::glam::DVec2;
+use granular_edmd::statistics::RunningMean;
 use granular_edmd::study::vibrated_box::{Convection, VibratedBox};
 use granular_edmd::study::{Plan, PlanError, Protocol, Record, Study};
 use kuva::plot::scatter::MarkerShape;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 
+use common::command_line::{non_negative, whole};
 use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
 
 /// Clusters of the order parameters where one roll and two coexist (paper, Fig. 4).
@@ -37,11 +39,11 @@ struct Arguments {
     #[command(flatten)]
     common: studies::Common,
     /// Friction.
-    #[arg(long, default_value_t = 0.0605)]
+    #[arg(long, default_value_t = 0.0605, value_parser = non_negative)]
     friction: f64,
     /// Independent runs.
-    #[arg(long, default_value_t = 6)]
-    runs: usize,
+    #[arg(long, default_value_t = 6, value_parser = whole::<10_000>)]
+    runs: u64,
 }
 
 impl Arguments {
@@ -50,7 +52,7 @@ impl Arguments {
         // The paper does 100 000 oscillations, samples every 100, and discards the first half.
         let protocol =
             if self.common.quick { Protocol::new(4_000, 400, 20) } else { Protocol::new(50_000, 500, 100) };
-        Plan::new(experiment, protocol, self.common.seed)?.with_repeats(self.runs)
+        Plan::new(experiment, protocol, self.common.seed)?.with_repeats(self.runs as usize)
     }
 }
 
@@ -76,7 +78,7 @@ impl Run {
 }
 
 fn main() -> ExitCode {
-    studies::end(run(&Arguments::parse()))
+    common::command_line::main(run)
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
@@ -85,13 +87,15 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     runs.iter().for_each(print);
     let three = runs.iter().filter(|run| run.clusters() == 3).count();
     println!("{three} of {} runs show three clusters", runs.len());
+    print_weights(&runs);
     write_clusters(&runs, study.folder())?;
     // The first of the runs with most clusters is shown.
     let Some(shown) = runs.iter().rev().max_by_key(|run| run.clusters()) else { return Ok(()) };
     let path = study.folder().join("fig4_clusters.png");
     std::fs::write(&path, draw(arguments, &study, shown)?)?;
     println!("wrote {}; the tables beside it are clusters.csv, values.csv and samples.csv", path.display());
-    Ok(())
+    let tables = ["clusters", "values"].map(|name| (name, study.folder().join(name).with_extension("csv")));
+    arguments.common.results.write_tables_as_json(&tables)
 }
 
 fn print(run: &Run) {
@@ -99,6 +103,17 @@ fn print(run: &Run) {
     for (state, cluster) in run.found.iter() {
         let DVec2 { x, y } = cluster.center();
         println!("    {:3.0} %  Psi1 = {x:6.3}  Psi2 = {y:6.3}  {state}", 100.0 * cluster.weight());
+    }
+}
+
+/// Prints the long-time weight of each state: the mean over the runs, which are independent, and its error.
+fn print_weights(runs: &[Run]) {
+    for state in
+        [ConvectiveState::CounterclockwiseRoll, ConvectiveState::TwoRollsUp, ConvectiveState::ClockwiseRoll]
+    {
+        let weights: RunningMean = runs.iter().map(|run| run.found.weight(state)).collect();
+        let (mean, error) = (100.0 * weights.mean(), 100.0 * weights.standard_error());
+        println!("    {state}: {mean:.1} ± {error:.1} % of the time");
     }
 }
 

@@ -10,8 +10,12 @@
 //! and shown beside the printed ones. The energy change of each point comes from the closed form at its
 //! friction and inelasticity. The table has the mean and the standard deviation over the points of a line.
 
+#[path = "../common/mod.rs"]
+mod common;
+
 use std::error::Error;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::ParameterError;
@@ -20,15 +24,20 @@ use granular_edmd::collision::Frictional;
 use granular_edmd::kinetic::{Maxwellian, effective_inelasticity};
 use granular_edmd::statistics::RunningMean;
 
+use common::command_line;
+use common::results::Results;
+
 /// Effective inelasticity of every transition (paper, Table I, by Eq. (9)).
 #[derive(Parser)]
 struct Arguments {
-    /// Folder for the table.
-    #[arg(long, default_value = "out")]
-    out: PathBuf,
     /// Folder of a phase diagram with its `transitions.csv`; may be given once for each gravity.
     #[arg(long)]
     study: Vec<PathBuf>,
+    /// Does the same: the whole table takes no time.
+    #[arg(long)]
+    quick: bool,
+    #[command(flatten)]
+    results: Results,
 }
 
 /// A row as printed: gravity, transition, mean energy change and effective inelasticity, with their errors.
@@ -131,16 +140,17 @@ const COLUMNS: [&str; 14] = [
     "standard_deviation",
 ];
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let arguments = Arguments::parse();
+fn main() -> ExitCode {
+    command_line::main(run)
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    arguments.results.make_folder()?;
     let mut points = Vec::new();
     for folder in &arguments.study {
         points.extend(read(folder)?);
     }
-    std::fs::create_dir_all(&arguments.out)?;
-    let path = arguments.out.join("table1.csv");
-    let mut table = csv::Writer::from_path(&path)?;
-    table.write_record(COLUMNS)?;
+    let mut table = arguments.results.table("table1", &COLUMNS)?;
     println!(
         "g         transition   <dE>              q_eff             printed         verdict   (T_0 = 1)"
     );
@@ -161,9 +171,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             cells(measured.as_ref()),
         ))?;
     }
-    table.flush()?;
-    println!("wrote {}", path.display());
-    Ok(())
+    arguments.results.finish_table("table1", table, None)
 }
 
 fn print(row: &Row) -> Result<(), ParameterError> {

@@ -14,7 +14,6 @@ use crate::common::results::Results;
 /// summary and writes a picture (disks, mean flow, series), the series as a table, and with --json all
 /// numbers. An oscillation lasts 2π/ω, also over a thermal base. Means are over the second half of the run.
 #[derive(Debug, Clone, Parser)]
-#[command(name = "vibrated_box", allow_negative_numbers = true)]
 pub(crate) struct Arguments {
     /// Number of disks.
     #[arg(long, default_value_t = 1000, value_parser = whole::<1_000_000>)]
@@ -58,19 +57,19 @@ pub(crate) struct Arguments {
     /// Base.
     #[arg(long, value_enum, default_value = "bi-parabolic")]
     pub(crate) base: Base,
-    /// Amplitude A of the base.
-    #[arg(long, default_value_t = 0.1, value_parser = positive)]
-    pub(crate) amplitude: f64,
+    /// Amplitude A of a base that moves; 0.1 unless given.
+    #[arg(long, value_parser = positive)]
+    amplitude: Option<f64>,
     /// Angular frequency ω of the base.
     #[arg(long, default_value_t = 10.0, value_parser = positive)]
     pub(crate) omega: f64,
-    /// Temperature of a thermal base.
-    #[arg(long, default_value_t = 1.0, value_parser = positive)]
-    pub(crate) temperature: f64,
+    /// Temperature of a thermal base; 1 unless given.
+    #[arg(long, value_parser = positive)]
+    temperature: Option<f64>,
     /// Contact duration, 0 for none; unless given, 1e-4 of the time in which a disk with the speed of the
     /// base moves by its diameter.
     #[arg(long, value_parser = non_negative)]
-    pub(crate) contact_duration: Option<f64>,
+    contact_duration: Option<f64>,
     /// Length of the run, in oscillations.
     #[arg(long, default_value_t = 3000, value_parser = whole::<1_000_000_000>)]
     oscillations: u64,
@@ -102,16 +101,16 @@ pub(crate) enum Base {
 impl Arguments {
     /// Checks what no flag alone can tell.
     pub(crate) fn check(&self) -> Result<(), Failure> {
-        if self.every > self.oscillations() {
-            let (every, oscillations) = (self.every, self.oscillations());
-            return Err(Failure::usage(format_args!(
-                "--every {every}: no sample is taken in {oscillations} oscillations"
-            )));
-        }
-        if self.gravity == 0.0 && self.open {
-            return Err(Failure::usage("--gravity 0 --open: without gravity the box needs a lid"));
-        }
-        Ok(())
+        let (every, oscillations, thermal) = (self.every, self.oscillations(), self.base == Base::Thermal);
+        let late = format!("--every {every}: no sample is taken in {oscillations} oscillations");
+        let mistakes = [
+            (every > oscillations, &*late),
+            (self.gravity == 0.0 && self.open, "--gravity 0 --open: without gravity the box needs a lid"),
+            (thermal && self.amplitude.is_some(), "--amplitude: a thermal base does not move"),
+            (!thermal && self.temperature.is_some(), "--temperature: only --base thermal has one"),
+        ];
+        let made = mistakes.into_iter().find(|(made, _)| *made);
+        made.map_or(Ok(()), |(_, message)| Err(Failure::usage(message)))
     }
 
     /// Returns the length of the run, in oscillations.
@@ -124,9 +123,17 @@ impl Arguments {
         TAU / self.omega
     }
 
+    pub(crate) fn amplitude(&self) -> f64 {
+        self.amplitude.unwrap_or(0.1)
+    }
+
+    pub(crate) fn temperature(&self) -> f64 {
+        self.temperature.unwrap_or(1.0)
+    }
+
     /// Returns the scale of the speeds that the base gives to disks.
     pub(crate) fn base_speed(&self) -> f64 {
-        if self.base == Base::Thermal { self.temperature.sqrt() } else { self.amplitude * self.omega }
+        if self.base == Base::Thermal { self.temperature().sqrt() } else { self.amplitude() * self.omega }
     }
 
     /// Returns the contact duration; 0 for none.
@@ -148,8 +155,8 @@ impl Arguments {
             "tangential_inelasticity": self.tangential_inelasticity.unwrap_or(self.inelasticity),
             "dynamic_friction": self.dynamic_friction.unwrap_or(self.friction),
             "wall_friction": self.wall_friction, "wall_inelasticity": self.wall_inelasticity,
-            "base": self.base_name(), "amplitude": self.amplitude, "omega": self.omega,
-            "temperature": (self.base == Base::Thermal).then_some(self.temperature),
+            "base": self.base_name(), "amplitude": self.amplitude(), "omega": self.omega,
+            "temperature": (self.base == Base::Thermal).then_some(self.temperature()),
             "contact_duration": self.contact_duration(), "oscillations": self.oscillations(),
             "every": self.every, "seed": self.seed,
         })

@@ -13,12 +13,10 @@ mod experiment;
 mod picture;
 mod report;
 
-use std::error::Error;
 use std::process::ExitCode;
 
 use crate::arguments::Arguments;
 use crate::common::command_line::{self, Failure};
-use crate::experiment::Outcome;
 use crate::report::Means;
 
 fn main() -> ExitCode {
@@ -26,15 +24,11 @@ fn main() -> ExitCode {
         arguments.check()?;
         arguments.results.make_folder()?;
         let outcome = experiment::run(arguments)?;
-        write(arguments, &outcome).map_err(Failure::run)
+        let means = Means::of(&outcome);
+        report::print(arguments, &outcome, &means);
+        let png = picture::draw(arguments, &outcome, &means).map_err(Failure::run)?;
+        let numbers = report::json(arguments, &outcome, &means);
+        let table = |out: &mut dyn std::io::Write| outcome.series.write_csv(out);
+        arguments.results.finish_with("vibrated_box", table, &png, &numbers).map_err(Failure::run)
     })
-}
-
-/// Prints the summary and writes all results.
-fn write(arguments: &Arguments, outcome: &Outcome) -> Result<(), Box<dyn Error>> {
-    let means = Means::of(outcome);
-    print!("{}", report::summary(arguments, outcome, &means));
-    let png = picture::draw(arguments, outcome, &means)?;
-    let table = |out: &mut dyn std::io::Write| outcome.series.write_csv(out);
-    arguments.results.finish_with("vibrated_box", table, &png, &report::json(arguments, outcome, &means))
 }

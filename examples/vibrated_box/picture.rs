@@ -91,8 +91,8 @@ fn write_header(sheet: &mut Sheet, arguments: &Arguments, outcome: &Outcome, mea
     let verdict = means.verdict(arguments);
     let title = format!("{disks} disks after {} oscillations: {verdict}", arguments.oscillations());
     let base = match arguments.base {
-        Base::Thermal => format!("thermal base T₀ = {}", arguments.temperature),
-        _ => format!("{} base A = {}, ω = {}", arguments.base_name(), arguments.amplitude, arguments.omega),
+        Base::Thermal => format!("thermal base T₀ = {}", arguments.temperature()),
+        _ => format!("{} base A = {}, ω = {}", arguments.base_name(), arguments.amplitude(), arguments.omega),
     };
     let top = if arguments.open { "open above".to_owned() } else { format!("{} high", arguments.height) };
     let sides = if arguments.periodic { ", periodic sides" } else { "" };

@@ -9,7 +9,7 @@ use crate::ParameterError;
 use crate::observable::{ConvectionOrder, DenseLayer};
 use crate::quantity::{accept, non_negative, positive};
 
-/// Returns the standard deviation of `$\Psi_1$` and of `$\Psi_2$`, which are velocities, in a gas at rest.
+/// Returns the standard deviation of Ψ₁ and of Ψ₂, which are velocities, in a gas at rest.
 ///
 /// The deviation is
 ///
@@ -39,24 +39,26 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 
 /// The criteria by which a state gets its name.
 ///
-/// The samples of `$(\Psi_1, \Psi_2)$` are divided into [distinct clusters](distinct_clusters). With
-/// `$\sigma$` the [`thermal_noise`]:
+/// The samples of `$(\Psi_1, \Psi_2)$` are divided into [distinct clusters](distinct_clusters). The names
+/// follow from these clusters and the [`thermal_noise`] `$\sigma$`:
 ///
 /// 1. A run as a whole is **collapsed** if two conditions hold. Its height profile has a compact layer, of
 ///    packing fraction above 0.60, on a gas of less than half of that. And its two-roll flow has died,
 ///    `$|\langle\Psi_2\rangle| < 0.03$`.
-/// 2. A cluster is **conductive** if its center is at most `$3\sigma$` from the origin.
-/// 3. A cluster is **two rolls** if `$|\Psi_2| > |\Psi_1|$`: up in the middle for a positive `$\Psi_2$`, else
-///    down.
-/// 4. A cluster is **one roll** otherwise: clockwise for a positive `$\Psi_1$`.
+/// 2. A cluster is **conductive** if its center is at most `$3\sigma$` from the origin. It is collapsed
+///    instead if the height profile has such a layer: near this transition, two rolls come and go over the
+///    layer.
+/// 3. A cluster shows **two rolls** if `$|\Psi_2| > |\Psi_1|$`: up in the middle for a positive `$\Psi_2$`,
+///    else down.
+/// 4. A cluster shows **one roll** otherwise: clockwise for a positive `$\Psi_1$`.
 ///
-/// The bound of `$3\sigma$` compares the center of a cluster with *single* samples of a gas at rest, of which
-/// a share of `$e^{-9/2}$`, one in ninety, lies as far out. Unlike an error of the mean, this bound does not
+/// The bound of `$3\sigma$` compares the center of a cluster with *single* samples of a gas at rest. A share
+/// of `$e^{-9/2}$` of these, one in ninety, lies as far out. Unlike an error of the mean, this bound does not
 /// depend on the correlation of the samples. The rolls of the paper's system are far stronger, so the number
-/// matters at their onset only. One roll is not pure `$\Psi_1$`, but its `$\Psi_2$` is small enough to keep
-/// it off the diagonal.
+/// matters only at their onset. A state of one roll has some `$\Psi_2$`, too, but so little that it stays
+/// away from the diagonal.
 ///
-/// A collapsed run keeps a weak, slow `$\Psi_2$`, whose mean needs thousands of oscillations.
+/// A collapsed run keeps a weak, slow `$\Psi_2$`, whose mean settles only after thousands of oscillations.
 ///
 /// ```
 /// use granular_edmd::analysis::{ConvectiveRegime, StateCriteria};
@@ -98,8 +100,8 @@ impl StateCriteria {
         Ok(Self { noise_multiple: non_negative("multiple of the noise", multiple)?, ..self })
     }
 
-    /// Sets the packing fraction above which a layer is compact, 0.60 unless given, and the
-    /// `$|\langle\Psi_2\rangle|$` below which rolls have died, 0.03 unless given.
+    /// Sets the packing fraction above which a layer is compact, 0.60 unless given, and the |⟨Ψ₂⟩| below
+    /// which rolls have died, 0.03 unless given.
     ///
     /// The bound on `$|\langle\Psi_2\rangle|$` is a velocity; 0.03 is meant for `$A\omega = 1$`, as in the
     /// paper.
@@ -125,7 +127,9 @@ impl StateCriteria {
         Ok(Self { least_weight: accept(valid, "least weight", "in [0, 0.5]", weight)?, ..self })
     }
 
-    /// Sets the seed of the clustering, 0 unless given. Distinct clusters do not depend on it.
+    /// Sets the seed of the clustering, 0 unless given.
+    ///
+    /// Distinct clusters do not depend on it.
     pub const fn with_seed(self, seed: u64) -> Self {
         Self { seed, ..self }
     }
@@ -147,30 +151,37 @@ impl StateCriteria {
         let points: Vec<DVec2> =
             samples.iter().map(|order| DVec2::new(order.one_roll, order.two_rolls)).collect();
         let clusters = distinct_clusters(&points, noise, self.seed)?;
-        let collapsed = layer.is_some_and(|layer| self.is_collapsed(&clusters, layer));
-        let name = |cluster| if collapsed { ConvectiveState::Collapsed } else { self.name(cluster, noise) };
+        let compact = layer.is_some_and(|layer| self.is_compact(layer));
+        let without_flow = if compact { ConvectiveState::Collapsed } else { ConvectiveState::Conductive };
+        let has_died = compact && mean_of_two_rolls(&clusters).abs() < self.collapsed_order;
+        let flow = |cluster| if has_died { None } else { self.flow(cluster, noise) };
+        let name = |cluster| flow(cluster).unwrap_or(without_flow);
         let states = clusters.iter().map(name).collect();
         Ok(Classification { clusters, states, least_weight: self.least_weight })
     }
 
-    fn is_collapsed(&self, clusters: &Clusters, layer: DenseLayer) -> bool {
-        let mean: f64 = clusters.iter().map(|cluster| cluster.weight() * cluster.center().y).sum();
-        let on_gas = layer.least_below < 0.5 * layer.packing_fraction;
-        layer.packing_fraction > self.packing_fraction && on_gas && mean.abs() < self.collapsed_order
+    fn is_compact(&self, layer: DenseLayer) -> bool {
+        layer.packing_fraction > self.packing_fraction && layer.least_below < 0.5 * layer.packing_fraction
     }
 
-    fn name(&self, cluster: &Cluster, noise: f64) -> ConvectiveState {
+    /// Returns the name of the flow of a cluster; `None` if it is within the noise.
+    fn flow(&self, cluster: &Cluster, noise: f64) -> Option<ConvectiveState> {
         let DVec2 { x: one_roll, y: two_rolls } = cluster.center();
         if cluster.center().length() <= self.noise_multiple * noise {
-            ConvectiveState::Conductive
+            None
         } else if two_rolls.abs() > one_roll.abs() {
-            if two_rolls > 0.0 { ConvectiveState::TwoRollsUp } else { ConvectiveState::TwoRollsDown }
+            Some(if two_rolls > 0.0 { ConvectiveState::TwoRollsUp } else { ConvectiveState::TwoRollsDown })
         } else if one_roll > 0.0 {
-            ConvectiveState::ClockwiseRoll
+            Some(ConvectiveState::ClockwiseRoll)
         } else {
-            ConvectiveState::CounterclockwiseRoll
+            Some(ConvectiveState::CounterclockwiseRoll)
         }
     }
+}
+
+/// Returns the mean of Ψ₂ over all samples.
+fn mean_of_two_rolls(clusters: &Clusters) -> f64 {
+    clusters.iter().map(|cluster| cluster.weight() * cluster.center().y).sum()
 }
 
 /// The clusters of a run with their names; made by [`StateCriteria::classify`].
@@ -182,18 +193,21 @@ pub struct Classification {
 }
 
 impl Classification {
-    /// Returns the clusters in the plane of `$\Psi_1$` (x) and `$\Psi_2$` (y).
+    /// Returns the clusters in the plane of Ψ₁ (x) and Ψ₂ (y).
     pub const fn clusters(&self) -> &Clusters {
         &self.clusters
     }
 
-    /// Iterates over the clusters with their names. A name may occur twice.
+    /// Iterates over the clusters with their names.
+    ///
+    /// A name may occur twice.
     pub fn iter(&self) -> impl Iterator<Item = (ConvectiveState, &Cluster)> {
         self.states.iter().copied().zip(self.clusters.iter())
     }
 
-    /// Returns the state with the largest weight. If several states have it, the state of the first cluster
-    /// wins.
+    /// Returns the state with the largest weight.
+    ///
+    /// If several states have it, the state of the first cluster wins.
     pub fn state(&self) -> ConvectiveState {
         let weights = self.states.iter().map(|&state| (state, self.weight(state)));
         let start = (ConvectiveState::Conductive, 0.0);

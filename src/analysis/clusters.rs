@@ -114,7 +114,7 @@ impl Clusters {
 
     /// Returns the least separation of two clusters, infinite for a single one.
     ///
-    /// The separation of clusters `$a$` and `$b$` is the quantity that is minimized in
+    /// The separation of two clusters `$a$` and `$b$` is the fraction in
     ///
     /// ```math
     /// D = \min_{a\ne b}\frac{|c_a - c_b|}{\max(s_{ab}, \sigma)},\qquad

@@ -7,13 +7,13 @@ use super::k_means::KMeans;
 use crate::ParameterError;
 use crate::quantity::non_negative;
 
-/// Largest number of clusters that are looked for: one roll of either sense, two rolls of either sense.
+/// Largest number of clusters to look for: one roll of either sense, and two rolls of either sense.
 const MOST: usize = 4;
 
 /// Separation above which two clusters are distinct.
 const DISTINCT: f64 = 4.0;
 
-/// Finds the clusters of these points that are distinct.
+/// Finds the distinct clusters of these points.
 ///
 /// The result has the largest number of clusters, from 1 to 4, whose pairs are all separated by `$D > 4$`
 /// ([`Clusters::separation`]).

@@ -12,7 +12,7 @@ use crate::random::uniform;
 /// Default number of restarts. With four clusters or fewer, most of them find the same best result.
 const RESTARTS: usize = 16;
 
-/// Largest number of rounds of one descent, far above the usual one.
+/// Largest number of rounds of one descent, far above the usual number.
 const ROUNDS: usize = 1000;
 
 /// Largest coordinate. Its square, summed over all points, stays finite.
@@ -61,7 +61,9 @@ impl KMeans {
         Ok(Self { restarts, ..self })
     }
 
-    /// Finds the clusters of these points. There are fewer than asked for if fewer of the points differ.
+    /// Finds the clusters of these points.
+    ///
+    /// If there are fewer different points than clusters asked for, there are fewer clusters.
     ///
     /// # Errors
     /// If there are fewer points than clusters, or a coordinate is not finite or above 1e100 in size.

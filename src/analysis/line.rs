@@ -15,13 +15,12 @@ pub struct LineAverage {
 }
 
 impl LineAverage {
-    /// Returns `$\langle dE\rangle$` over the points of the line: the mean, and the standard deviation as the
-    /// table's error.
+    /// Returns ⟨dE⟩ over the points of the line: the mean, and the standard deviation as the table's error.
     pub const fn energy_change(&self) -> &RunningMean {
         &self.energy_change
     }
 
-    /// Returns `$q_\text{eff}$` over the points of the line.
+    /// Returns the effective inelasticity over the points of the line.
     pub const fn effective_inelasticity(&self) -> &RunningMean {
         &self.effective_inelasticity
     }

@@ -12,11 +12,11 @@ use crate::quantity::positive;
 pub struct PlaneTransition {
     /// The line that is crossed.
     pub line: TransitionLine,
-    /// Friction `$\kappa$` in the middle between the neighbors, on a logarithmic axis.
+    /// Friction κ in the middle between the neighbors, on a logarithmic axis.
     pub friction: f64,
-    /// Inelasticity `$q$` in the middle.
+    /// Inelasticity q in the middle between the neighbors.
     pub inelasticity: f64,
-    /// The two neighbors, as `$(\kappa, q)$`, between which the transition lies. They share one coordinate.
+    /// The two neighbors, as (κ, q), between which the transition lies. They share one coordinate.
     pub between: [(f64, f64); 2],
     /// True if the regime moves up from the first neighbor to the second.
     pub rising: bool,
@@ -26,8 +26,9 @@ pub struct PlaneTransition {
 ///
 /// The observations are `$(\kappa, q)$` and the regime of all runs on a grid, in any order. Runs of the same
 /// inelasticity are compared along the friction, as on the paper's ramps. Runs of the same friction are
-/// compared along the inelasticity, since only they cross a line that runs flat through the plane. The middle
-/// of two frictions is that of their logarithms. Hysteresis is treated as in [`transitions`].
+/// compared along the inelasticity, since only these comparisons cross a line that runs flat through the
+/// plane. The middle of two frictions is the middle of their logarithms. Hysteresis is treated as in
+/// [`transitions`].
 ///
 /// The points along the friction come first, in the order of inelasticity. The points along the inelasticity
 /// follow, in the order of friction.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// The motion of the disks in one cluster of the plane of `$\Psi_1$` and `$\Psi_2$` (paper, section III).
+/// The motion of the disks in one cluster of the plane of Ψ₁ and Ψ₂ (paper, section III).
 ///
 /// ```
 /// use granular_edmd::analysis::ConvectiveState;
@@ -15,13 +15,13 @@ use std::fmt;
 pub enum ConvectiveState {
     /// A state without flow, in which heat is conducted.
     Conductive,
-    /// A single roll, up on the left: `$\Psi_1 > 0$`.
+    /// A single roll, up on the left: Ψ₁ > 0.
     ClockwiseRoll,
-    /// A single roll, up on the right: `$\Psi_1 < 0$`.
+    /// A single roll, up on the right: Ψ₁ < 0.
     CounterclockwiseRoll,
-    /// Two rolls, up in the middle: `$\Psi_2 > 0$`.
+    /// Two rolls, up in the middle: Ψ₂ > 0.
     TwoRollsUp,
-    /// Two rolls, down in the middle: `$\Psi_2 < 0$`.
+    /// Two rolls, down in the middle: Ψ₂ < 0.
     TwoRollsDown,
     /// A compact layer of disks on a gas.
     Collapsed,
@@ -52,7 +52,7 @@ impl fmt::Display for ConvectiveState {
     }
 }
 
-/// The regions of the paper's Fig. 5, in the order in which they come with growing energy loss.
+/// The regions of the paper's Fig. 5, in the order of growing energy loss.
 ///
 /// ```
 /// use granular_edmd::analysis::ConvectiveRegime;
@@ -72,6 +72,12 @@ pub enum ConvectiveRegime {
     TwoRolls,
     /// Region "Collapse".
     Collapsed,
+}
+
+impl ConvectiveRegime {
+    /// All regimes, in the order of growing energy loss.
+    pub const ALL: [Self; 5] =
+        [Self::Conductive, Self::OneRoll, Self::Coexistence, Self::TwoRolls, Self::Collapsed];
 }
 
 impl fmt::Display for ConvectiveRegime {

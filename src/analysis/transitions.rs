@@ -37,7 +37,7 @@ impl TransitionLine {
         }
     }
 
-    /// Returns true beyond the line and false before it, for a control value at which all these regimes were
+    /// Returns true beyond the line and false before it, for a control value at which these regimes were
     /// seen. The result is `None` if they lie on both sides.
     fn side(self, seen: Seen) -> Option<bool> {
         let (least, most) = (seen.least >= self.beyond(), seen.most >= self.beyond());
@@ -67,7 +67,7 @@ impl std::fmt::Display for TransitionLine {
 pub struct Transition {
     /// The line that is crossed.
     pub line: TransitionLine,
-    /// Middle between the neighboring control values on either side.
+    /// Middle between the neighboring control values on the two sides of the line.
     pub value: f64,
     /// Half the distance of these control values. The transition lies between `value - error` and
     /// `value + error`.

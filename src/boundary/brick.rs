@@ -1,4 +1,4 @@
-//! Bricks: the shapes of which vessels are built, and when a disk first touches one.
+//! Bricks: the shapes of which vessels are built, and the first touch of one by a disk.
 
 mod arc;
 mod constructors;
@@ -18,23 +18,23 @@ use crate::{Fingerprint, ParameterError};
 use arc::Arc;
 use segment::Segment;
 
-/// Length by which bricks reach beyond their ends, relative to their places and sizes. Rounding leaves no
-/// hole between two bricks that meet.
+/// Length by which bricks reach beyond their ends, relative to their coordinates and sizes. Without it,
+/// rounding could leave a hole between two bricks that meet.
 const MARGIN: f64 = 1e-12;
 
 /// A piece of a wall: a segment, a half-line, an arc, a circle or a point.
 ///
-/// A brick has a direction, and the disks are free on its left side. On the other side there is the wall. A
-/// segment leads from its first point to its second one; arcs and circles lead counterclockwise, so that
-/// disks are free inside. [`reversed`](Self::reversed) turns the direction, and so the free side.
+/// A brick has a direction. Disks are free on its left side; on the other side is the wall. A segment leads
+/// from its first point to its second; arcs and circles lead counterclockwise, so disks are free inside them.
+/// [`reversed`](Self::reversed) turns the direction around, and with it the free side.
 /// [`two_sided`](Self::two_sided) makes a thin wall, with disks on both sides.
 ///
-/// | brick | touch of a disk of radius `$R$` | root of a |
+/// | brick | center of a touching disk of radius `$R$` | the time is a root of a |
 /// |---|---|---|
-/// | [`segment`](Self::segment), [`half_line`](Self::half_line) | at `$R$`, beside it | parabola |
+/// | [`segment`](Self::segment), [`half_line`](Self::half_line) | beside it, at `$R$` | parabola |
 /// | [`circle`](Self::circle), [`arc`](Self::arc), from inside | at `$r - R$` from the center | quartic |
 /// | the same, from outside | at `$r + R$` from the center | quartic |
-/// | [`point`](Self::point) | at `$R$` | quartic |
+/// | [`point`](Self::point) | at `$R$` from the point | quartic |
 ///
 /// ```
 /// use granular_edmd::boundary::Brick;
@@ -93,11 +93,11 @@ impl Free {
 struct Sight {
     /// Distance of the nearest point of the brick.
     distance: f64,
-    /// Unit vector from there to the place.
+    /// Unit vector from that point to the place.
     normal: DVec2,
     side: Side,
-    /// Distance from the brick as it would be if it went on straight beyond its ends. Of two bricks that end
-    /// at the nearest point, the one with the larger distance knows the side.
+    /// Distance from the brick when it is extended straight beyond its ends. If two bricks end at the nearest
+    /// point, the one with the larger such distance decides the side.
     weight: f64,
 }
 
@@ -126,7 +126,8 @@ impl Brick {
         matches!(self.shape, Shape::Arc(arc) if arc.is_whole() && arc.center() == place)
     }
 
-    /// Tells whether no disk in front of the brick is behind it in a direction.
+    /// Tells whether a direction leads to the only free side of the brick, or along the brick. Then the brick
+    /// meets no disk when it jumps against that direction.
     pub(super) fn faces(&self, direction: DVec2) -> bool {
         match (self.shape, self.free) {
             (Shape::Segment(segment), Free::Left) => segment.direction().perp_dot(direction) >= 0.0,
@@ -135,8 +136,8 @@ impl Brick {
         }
     }
 
-    /// Returns the start and the end, as far as there are any, with the direction of the brick there. The
-    /// free side is on the left.
+    /// Returns the start and the end, if they exist, each with the direction of the brick there. The free
+    /// side of a one-sided brick is on the left of that direction.
     pub(super) fn ends(&self) -> [Option<(DVec2, DVec2)>; 2] {
         let forward = match self.shape {
             Shape::Segment(segment) => {
@@ -154,7 +155,8 @@ impl Brick {
         }
     }
 
-    /// Returns a line along the brick: its ends, or points on an arc. A half-line is shown for a length.
+    /// Returns a line along the brick: its ends, or points on an arc. A half-line is cut off after this
+    /// length.
     pub(super) fn outline(&self, length: f64) -> Vec<DVec2> {
         /// Angle between two points of an arc.
         const STEP: f64 = std::f64::consts::PI / 60.0;
@@ -167,7 +169,7 @@ impl Brick {
         }
     }
 
-    /// Returns the points that place the brick.
+    /// Returns the points that fix the place of the brick.
     fn landmarks(&self) -> impl Iterator<Item = DVec2> {
         let places = match self.shape {
             Shape::Segment(segment) => [segment.from(), segment.to().unwrap_or(segment.from())],
@@ -184,7 +186,7 @@ impl Brick {
         Nearest { distance, normal, is_free: self.free.has(side), weight }
     }
 
-    /// Tells whether a place of the brick is within `reach` of a region.
+    /// Tells whether a point of the brick may be within `reach` of a region.
     pub(super) fn is_near(&self, region: &Region, reach: f64) -> bool {
         match self.shape {
             Shape::Segment(segment) => segment.is_near(region, reach),
@@ -200,7 +202,7 @@ impl Brick {
         }
     }
 
-    /// Returns bounds of the distances of the brick from a place.
+    /// Returns a lower and an upper bound of the distances of the brick's points from a place.
     pub(super) fn distances(&self, place: DVec2) -> (f64, f64) {
         match self.shape {
             Shape::Segment(segment) => segment.distances(place),
@@ -239,13 +241,13 @@ pub(super) fn direction(angle: f64) -> DVec2 {
 /// Returns the unit vector in a direction of any length.
 pub(super) fn unit(direction: DVec2) -> Result<DVec2, ParameterError> {
     let direction = finite_point(direction)?;
-    // The larger component is taken out first, so that squares neither vanish nor overflow.
+    // Dividing by the larger component first keeps squares from vanishing or overflowing.
     let larger = direction.abs().max_element();
     positive("length of a direction", larger)?;
     Ok((direction / larger).normalize())
 }
 
-/// Returns a direction of a file as it is, if its length is 1 up to rounding.
+/// Checks that a direction from a file has length 1 up to rounding, and returns it unchanged.
 #[cfg(feature = "serde")]
 pub(super) fn unit_vector(direction: DVec2) -> Result<DVec2, ParameterError> {
     let length = finite_point(direction)?.length();
@@ -254,7 +256,7 @@ pub(super) fn unit_vector(direction: DVec2) -> Result<DVec2, ParameterError> {
 }
 
 pub(super) fn finite_point(place: DVec2) -> Result<DVec2, ParameterError> {
-    /// Largest coordinate: squares of distances, and squares of these, stay finite.
+    /// Largest coordinate for which squares of distances, and the squares of those, stay finite.
     const LARGEST: f64 = 1e60;
     let check = |value: f64| accept(value.abs() <= LARGEST, "coordinate", "at most 1e60 in magnitude", value);
     Ok(DVec2::new(check(place.x)?, check(place.y)?))

@@ -43,7 +43,8 @@ impl Conduct {
 
 /// A rule of any type.
 ///
-/// A rule of the crate is known as such, and goes to files and back. A rule of your own cannot.
+/// The rules in `Known` are recognized, so they can be written to files and read back. A rule of your own
+/// cannot.
 #[derive(Clone)]
 pub(super) struct OwnRule {
     rule: Arc<dyn CollisionRule + Send + Sync>,
@@ -168,7 +169,7 @@ mod file {
 
     impl Serialize for OwnRule {
         fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-            let own = "a collision rule that is not of granular-edmd cannot be serialized";
+            let own = "only the rules of granular-edmd can be serialized, alone or in one remedy for rest";
             self.known.ok_or_else(|| S::Error::custom(own))?.serialize(serializer)
         }
     }

@@ -20,7 +20,7 @@ use crate::quantity::positive;
 use crate::wall::{Motion, WallMotion};
 use crate::{Fingerprint, Flight, Kind, ParameterError};
 
-/// A rectangular container with its lower left corner at the origin: the paper's box and its relatives.
+/// A rectangular container with its lower left corner at the origin, such as the paper's box.
 ///
 /// All walls are fixed at first, and follow the rule of the disks. Each wall can be given a motion along its
 /// normal (which points inward), its own rule, a temperature, or a kind.
@@ -33,7 +33,7 @@ use crate::{Fingerprint, Flight, Kind, ParameterError};
 /// // The paper's vibrated box, and the narrow open box with a thermal base of its Fig. 2.
 /// let vibrated = Container::closed(60.0, 150.0)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?;
 /// let heated = Container::open(25.0)?.with_temperature(Wall::Floor, Thermal::new(1.0)?)?;
-/// // Other sides.
+/// // Periodic sides, and smooth sides.
 /// let periodic = Container::closed(60.0, 150.0)?.with_periodic_sides();
 /// let smooth_sides = Container::open(60.0)?
 ///     .with_rule(Wall::Left, Smooth::new(0.0)?)?
@@ -51,7 +51,7 @@ pub struct Container {
     /// Lower left corner.
     corner: DVec2,
     width: f64,
-    /// Height of the lid; infinite without a lid.
+    /// Height of the lid or period of the ends; infinite if the top is open.
     height: f64,
     /// The walls that exist, and a plane for each of them.
     walls: Vec<Wall>,
@@ -84,8 +84,10 @@ impl Container {
         Ok(container)
     }
 
-    /// Creates a container without walls: a disk that leaves on one side enters on the other, and so above
-    /// and below. A simulation needs a width and a height of four diameters of the largest disk.
+    /// Creates a container without walls, which is periodic in both directions.
+    ///
+    /// A disk that leaves on one side enters on the other, and one that leaves above enters below, and vice
+    /// versa. A simulation needs a width and a height of more than four diameters of the largest disk.
     ///
     /// # Errors
     /// If the width or the height is not finite and positive.
@@ -104,7 +106,8 @@ impl Container {
     }
 
     /// Returns the same container with periodic sides: a disk that leaves on one side enters on the other.
-    /// A simulation needs a width of four diameters of the largest disk.
+    ///
+    /// A simulation needs a width of more than four diameters of the largest disk.
     pub fn with_periodic_sides(mut self) -> Self {
         for wall in [Wall::Left, Wall::Right] {
             self.remove(wall);
@@ -112,8 +115,9 @@ impl Container {
         self
     }
 
-    /// Returns the same container with periodic ends: a disk that leaves above enters below, and the other
-    /// way. Gravity then drives the disks on and on, as in a pipe.
+    /// Returns the same container with periodic ends: a disk that leaves above enters below, and vice versa.
+    ///
+    /// Gravity then keeps driving the disks down, as in a pipe.
     ///
     /// # Errors
     /// If the container is open above.
@@ -130,8 +134,8 @@ impl Container {
     /// Returns the same container with a wall that moves along its normal. The normal points inward.
     ///
     /// # Errors
-    /// If the container has no such wall, or the motion answers with numbers that are not finite at one of
-    /// the phases that [`laws::check_finite`](crate::wall::laws::check_finite) looks at.
+    /// If the container has no such wall, or the motion gives numbers that are not finite at one of the
+    /// phases that [`laws::check_finite`](crate::wall::laws::check_finite) looks at.
     pub fn with_motion(
         mut self,
         wall: Wall,
@@ -164,7 +168,7 @@ impl Container {
         Ok(self)
     }
 
-    /// Returns the same container with a wall of this kind, which rules find in the contact.
+    /// Returns the same container with a wall of this kind, as rules find it in the contact.
     ///
     /// # Errors
     /// If the container has no such wall.
@@ -173,7 +177,7 @@ impl Container {
         Ok(self)
     }
 
-    /// Returns the same container elsewhere: its lower left corner is moved by this vector.
+    /// Returns the same container with its lower left corner moved by this vector.
     ///
     /// # Errors
     /// If a coordinate would not be finite.
@@ -195,12 +199,12 @@ impl Container {
         Ok(self)
     }
 
-    /// Returns the width `$L_x$`.
+    /// Returns the width.
     pub const fn width(&self) -> f64 {
         self.width
     }
 
-    /// Returns the height `$L_y$` of the lid; infinite without a lid.
+    /// Returns the height of the lid, or the period between periodic ends; infinite if the top is open.
     pub const fn height(&self) -> f64 {
         self.height
     }
@@ -302,7 +306,7 @@ impl Boundary for Container {
     }
 
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
-        // Most walls are far away, and need not be asked where they are.
+        // Most walls are far away, so their positions need not be computed.
         let near =
             self.planes.iter().enumerate().filter(|(_, plane)| plane.is_within_reach(position, radius));
         let depths = near.map(|(wall, plane)| (wall, plane.depth(position, radius, time)));

@@ -4,8 +4,10 @@ use glam::DVec2;
 
 use crate::Disk;
 
-/// The rectangle that holds the centers of all disks. Its left and right sides may be the same line, and so
-/// may its ends above and below.
+/// The rectangle that holds the centers of all disks.
+///
+/// Its left and right sides may be periodic, and so may its lower and upper ends: a disk that leaves at one
+/// enters at the other.
 ///
 /// ```
 /// use granular_edmd::boundary::Domain;
@@ -29,7 +31,7 @@ pub struct Domain {
     pub top: f64,
     /// True if a disk that leaves on one side enters on the other.
     pub periodic_sides: bool,
-    /// True if a disk that leaves above enters below, and the other way.
+    /// True if a disk that leaves above enters below, and vice versa.
     pub periodic_ends: bool,
 }
 
@@ -46,14 +48,13 @@ impl Domain {
         Self { periodic_sides: true, ..self }
     }
 
-    /// Returns the same rectangle with periodic ends: a disk that leaves above enters below, and the other
-    /// way.
+    /// Returns the same rectangle with periodic ends: a disk that leaves above enters below, and vice versa.
     #[must_use]
     pub const fn with_periodic_ends(self) -> Self {
         Self { periodic_ends: true, ..self }
     }
 
-    /// Returns the width, `$L_x$`.
+    /// Returns the width.
     pub fn width(&self) -> f64 {
         self.right - self.left
     }
@@ -63,15 +64,14 @@ impl Domain {
         self.top - self.bottom
     }
 
-    /// Returns the width and the height after which the rectangle repeats itself; 0 where it does not.
+    /// Returns the horizontal and the vertical period of the rectangle; 0 where it is not periodic.
     #[inline]
     pub fn periods(&self) -> DVec2 {
         let width = if self.periodic_sides { self.width() } else { 0.0 };
         DVec2::new(width, if self.periodic_ends { self.height() } else { 0.0 })
     }
 
-    /// Returns the displacements after which the rectangle repeats itself, in the neighborhood; the first is
-    /// none.
+    /// Returns the displacements of the rectangle's nearest periodic images. The first displacement is zero.
     pub(crate) fn images(&self) -> impl Iterator<Item = DVec2> + use<> {
         let periods = self.periods();
         let shifts = |period: f64| [0.0, -period, period].into_iter().take(if period > 0.0 { 3 } else { 1 });
@@ -90,7 +90,7 @@ impl Domain {
         separation
     }
 
-    /// Returns the same place in the rectangle, where it is periodic.
+    /// Returns a place moved into the rectangle by whole periods, where the rectangle is periodic.
     pub(crate) fn wrapped(&self, place: DVec2) -> DVec2 {
         let mut place = place;
         if self.periodic_sides {
@@ -102,8 +102,10 @@ impl Domain {
         place
     }
 
-    /// Returns the unwrapped position of a disk: where it would be if it had not been taken back at
-    /// periodic sides and ends. Displacements are differences of these.
+    /// Returns the unwrapped position of a disk: the position that it would have if periodic sides and ends
+    /// had never taken it back.
+    ///
+    /// Differences of unwrapped positions are displacements.
     ///
     /// ```
     /// use granular_edmd::Disk;
@@ -120,7 +122,8 @@ impl Domain {
     }
 }
 
-/// The upper end in files. Text formats have no infinite numbers: there, an open top is none.
+/// The upper end in files. Some text formats have no infinite numbers, so text files hold `None` for an open
+/// top.
 #[cfg(feature = "serde")]
 mod open_top {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -147,7 +150,7 @@ mod open_top {
     }
 }
 
-/// A rectangle inside the domain. Its edges may be infinite.
+/// A rectangle inside the domain, whose edges may be infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
@@ -165,7 +168,7 @@ impl Region {
         Self { min, max }
     }
 
-    /// Returns true if a place is in the rectangle; the right and the upper edge belong to its neighbors.
+    /// Tells whether a place is in the rectangle. The right and the upper edge belong to its neighbors.
     pub(crate) fn contains(&self, place: DVec2) -> bool {
         place.cmpge(self.min).all() && place.cmplt(self.max).all()
     }
@@ -175,10 +178,10 @@ impl Region {
         (self.max.x - self.min.x) * (self.max.y - self.min.y)
     }
 
-    /// Returns the least product of a place in the rectangle with a vector.
+    /// Returns the smallest scalar product of a vector with a place in the rectangle.
     pub(crate) fn least_along(&self, vector: DVec2) -> f64 {
         let nearest = DVec2::select(vector.cmpgt(DVec2::ZERO), self.min, self.max);
-        // A zero component must not be multiplied by an infinite edge: the product is not a number.
+        // A zero component must not be multiplied by an infinite edge: the product would not be a number.
         let along = |component: f64, edge: f64| if component == 0.0 { 0.0 } else { component * edge };
         along(vector.x, nearest.x) + along(vector.y, nearest.y)
     }

@@ -1,7 +1,7 @@
 //! Checks of a boundary's contract, for boundaries of your own.
 //!
-//! [`check`] sends disks on random flights between the walls, and examines all that the boundary answers
-//! about them.
+//! [`check`] sends disks on random flights between the walls, and checks every answer of the boundary about
+//! them.
 
 mod flight;
 mod trial;
@@ -27,26 +27,27 @@ const FLIGHTS: usize = 4;
 /// Number of attempts to find a free place for a disk.
 const PLACES: usize = 10_000;
 
-/// Largest absolute time at which a flight begins, in units of the time that a disk takes across the domain.
+/// Largest time origin of a flight, in units of the time that a disk takes to cross the domain.
 const LATEST: f64 = 100.0;
 
 /// Checks that a boundary keeps its contract with disks of this radius, on random flights at about this
 /// speed.
 ///
-/// Each of four hundred disks flies from a free place, with and without gravity, at various times, and is
-/// turned back where it touches a wall, four times in a row. The check requires of each flight:
+/// Each of four hundred disks flies from a free place, with or without gravity, at various times. A wall that
+/// it touches turns it back, for up to four flights in a row. The check requires of each flight:
 /// - At samples along the flight, the disk neither overlaps a wall nor leaves the domain before the touch, or
 ///   before the end of the flight if there is no touch.
 /// - The touch is neither before the flight nor after its limit. Its wall exists, and the gap to that wall is
 ///   closed up to rounding. The disk approaches the wall there, and would touch it again at once if it did
 ///   not turn.
-/// - The normal is a unit vector along which a disk comes out of the wall, and the velocity is finite.
+/// - The normal is a unit vector, a disk that is moved along it comes out of the wall, and the velocity is
+///   finite.
 /// - `may_touch` holds for all kinds of regions around the touch, also for those that extend to infinity at
 ///   the edges of the domain.
 /// - With another time origin, the same flight touches at the same absolute time.
 /// - The domain and the number of walls stay the same, and the interior lies in the domain.
 ///
-/// The speed should be one that disks have, so that they meet moving walls at all places of the motion. The
+/// The speed should be typical of your disks, so that they meet moving walls at all phases of the motion. The
 /// check changes the boundary's time origin.
 ///
 /// # Errors
@@ -67,7 +68,7 @@ pub fn check<B: Boundary + ?Sized>(
 ) -> Result<(), Violation> {
     let domain = boundary.domain();
     check_rectangles(&domain, &boundary.interior())?;
-    // Names are for messages, also about a wall that does not exist. They must not panic.
+    // Messages contain names, even of walls that do not exist. Asking for a name must not panic.
     for wall in [0, boundary.wall_count(), usize::MAX] {
         drop(boundary.wall_name(wall));
     }
@@ -80,7 +81,7 @@ pub fn check<B: Boundary + ?Sized>(
     Ok(())
 }
 
-/// Checks that the domain is a rectangle, at most open above, and contains the interior.
+/// Checks that the domain is a rectangle, open above at most, and that it contains the interior.
 fn check_rectangles(domain: &Domain, interior: &Domain) -> Result<(), Violation> {
     let is_bounded = [domain.left, domain.right, domain.bottom].iter().all(|edge| edge.is_finite());
     if !(is_bounded && domain.left < domain.right && domain.bottom < domain.top) {

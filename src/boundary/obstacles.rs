@@ -10,12 +10,12 @@ use crate::{Disk, Fingerprint, Flight};
 
 /// A boundary with fixed round obstacles inside, such as pegs.
 ///
-/// Each obstacle has place, radius and kind of a disk, and follows the rule of the disks, as a partner of
-/// infinite mass that is at rest. Obstacles may overlap each other and the walls. They are the last walls of
-/// the boundary, in the order in which they are given. Each touch asks all of them, so that hundreds of them
-/// are slow.
+/// Each obstacle has the place, the radius and the kind of a disk. It follows the rule of the disks, as a
+/// partner of infinite mass at rest. Obstacles may overlap each other and the walls. They are the last walls
+/// of the boundary, in the order in which they are given. Each search for a touch tries all of them, so
+/// hundreds of obstacles are slow.
 ///
-/// [Initial states](crate::initial) leave obstacles out. So a disk that is placed by hand is an obstacle
+/// [Initial states](crate::initial) keep clear of obstacles. To place a disk by hand, make it an obstacle
 /// while the others are placed around it.
 ///
 /// ```
@@ -42,12 +42,12 @@ pub struct Obstacles<B> {
 }
 
 impl<B: Boundary> Obstacles<B> {
-    /// Puts obstacles into a boundary, with place, radius and kind of these disks.
+    /// Puts obstacles into a boundary, with the places, radii and kinds of these disks.
     ///
-    /// Where the boundary is periodic, an obstacle outside is taken back into the domain.
+    /// Where the boundary is periodic, an obstacle outside the domain is moved into it by whole periods.
     pub fn new(boundary: B, obstacles: impl IntoIterator<Item = Disk>) -> Self {
         let domain = boundary.domain();
-        // A place that is no place of a disk stays outside.
+        // An obstacle whose new place would be out of range keeps the old one.
         let inside = |disk: Disk| disk.with_position(domain.wrapped(disk.position())).unwrap_or(disk);
         Self { obstacles: obstacles.into_iter().map(inside).collect(), boundary }
     }
@@ -62,7 +62,7 @@ impl<B: Boundary> Obstacles<B> {
         &self.obstacles
     }
 
-    /// Returns the places at which an obstacle is seen: several where the domain is periodic.
+    /// Returns the places of an obstacle and of its periodic images.
     fn images(&self, obstacle: &Disk) -> impl Iterator<Item = DVec2> {
         let place = obstacle.position();
         self.boundary.domain().images().map(move |image| place + image)
@@ -96,7 +96,7 @@ impl<B: Boundary> Boundary for Obstacles<B> {
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
         let is_near = |place: DVec2, contact: f64| {
             let nearest = place.clamp(region.min, region.max);
-            // Regions are those of centers; rounding may not hide a touch at their edges.
+            // A region is one of centers. The margin keeps rounding from hiding a touch at its edge.
             nearest.distance(place) <= 1.001 * contact
         };
         self.boundary.may_touch(region, radius)

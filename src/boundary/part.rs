@@ -23,8 +23,8 @@ use crate::{Fingerprint, Kind};
 /// A part of a [`Vessel`](super::Vessel): bricks that share a rule, a kind, the motion of their surface and
 /// their own motion.
 ///
-/// A part begins at rest, under the rule of the disks and with the kind of walls. Its corners are added by
-/// themselves, wherever bricks end so that a disk can touch the corner.
+/// A new part is at rest, follows the rule of the disks, and has the kind of walls. Corners are added
+/// automatically wherever bricks end and a disk can touch the end.
 ///
 /// | constructor | disks are free |
 /// |---|---|
@@ -37,7 +37,7 @@ use crate::{Fingerprint, Kind};
 /// use granular_edmd::boundary::{Part, Vessel};
 /// use granular_edmd::glam::DVec2;
 ///
-/// // An hourglass, from points counterclockwise or clockwise.
+/// // An hourglass. Its points may go counterclockwise or clockwise.
 /// let right = [(8.0, 0.0), (8.0, 6.0), (5.0, 10.0), (8.0, 14.0), (8.0, 20.0)];
 /// let left = right.iter().rev().map(|&(x, y)| (8.0 - x, y));
 /// let glass = Part::polygon(right.into_iter().chain(left).map(DVec2::from))?;
@@ -56,7 +56,7 @@ pub struct Part {
     conduct: Conduct,
     kind: Kind,
     surface_speed: f64,
-    /// Time from which the motion counts.
+    /// Absolute time at which the motion has phase 0.
     start: f64,
 }
 
@@ -74,17 +74,18 @@ impl Part {
         Self { conduct: Conduct::Thermal(thermal), ..self }
     }
 
-    /// Returns the same part with this kind, which rules find in the contact.
+    /// Returns the same part with this kind, as rules find it in the contact.
     #[must_use]
     pub fn with_kind(self, kind: Kind) -> Self {
         Self { kind, ..self }
     }
 
-    /// Returns the same part with a surface that moves along itself at this speed, as a conveyor belt.
+    /// Returns the same part with a surface that moves along itself at this speed, like a conveyor belt.
     ///
-    /// A positive speed leads in the direction in which the free side is on the left: from left to right on
-    /// the upper side of a floor, counterclockwise inside a polygon or a drum, clockwise around a block. A
-    /// belt around a thin wall runs on its left side along the wall's direction, and on the other side back.
+    /// At a positive speed, the surface moves in the direction that has the free side on its left: from left
+    /// to right on the upper side of a floor, counterclockwise inside a polygon or a drum, clockwise around a
+    /// block. The belt around a thin wall runs along the wall's direction on its left side, and back on the
+    /// other side.
     ///
     /// # Errors
     /// If the speed is not finite.
@@ -92,13 +93,15 @@ impl Part {
         Ok(Self { surface_speed: finite("surface speed", speed)?, ..self })
     }
 
-    /// Returns the same part with a motion along a direction of any length, in place of an earlier motion.
+    /// Returns the same part with a motion along a direction, in place of an earlier motion.
+    ///
+    /// The vector `direction` can have any length except 0.
     ///
     /// # Errors
-    /// If the direction has no length, or the motion answers with numbers that are not finite at one of the
-    /// phases that [`laws::check_finite`](crate::wall::laws::check_finite) looks at. If the motion jumps, as
-    /// a [`Sawtooth`](crate::wall::Sawtooth) does, and disks are free on a side of the part from which it
-    /// would jump into them.
+    /// If the direction has no length, or the motion gives numbers that are not finite at one of the phases
+    /// that [`laws::check_finite`](crate::wall::laws::check_finite) looks at. Also if the motion jumps, as a
+    /// [`Sawtooth`](crate::wall::Sawtooth) does, and disks are free on a side of the part toward which it
+    /// would jump.
     pub fn with_motion(
         self,
         direction: DVec2,
@@ -109,14 +112,15 @@ impl Part {
         self.traveling(Travel::Along { direction, motion })
     }
 
-    /// Returns the same part turning about a point, counterclockwise at this angular velocity, in place of an
-    /// earlier motion.
+    /// Returns the same part, turning about a point in place of an earlier motion, counterclockwise at this
+    /// angular velocity.
     ///
-    /// A circle about that point does not move, but its surface does. Every other part is at its place at
-    /// time 0, and at all times at which it has done whole turns.
+    /// A circle about that point stays where it is; only its surface moves. Any other part is where it was
+    /// built at time 0, and after each whole turn.
     ///
     /// # Errors
-    /// If a number is not finite, or the angular velocity is so small or large that a turn is no time.
+    /// If a number is not finite, or the angular velocity is so small or large that a turn would take more
+    /// than 1e60 or less than 1e-60. An angular velocity of 0 is allowed: the part is then at rest.
     pub fn with_rotation(self, about: DVec2, angular_velocity: f64) -> Result<Self, VesselError> {
         let about = finite_point(about)?;
         if finite("angular velocity", angular_velocity)? == 0.0 {
@@ -130,10 +134,11 @@ impl Part {
         })
     }
 
-    /// Returns the same part with a motion that counts its phase from this absolute time, and not from 0.
+    /// Returns the same part with a motion whose phase counts from this absolute time instead of 0.
     ///
-    /// A part that begins to move late is put in with the present as its start: it is then where it was
-    /// built, if its motion begins there. Before its start, it moves as it does after.
+    /// When you add a moving part to a run, give the present time as its start: the part is then where it was
+    /// built, if its motion has no displacement at phase 0. The start is no delay: before it, the part goes
+    /// through the phases before 0.
     ///
     /// # Errors
     /// If the time is not finite.
@@ -155,7 +160,9 @@ impl Part {
         Ok(Self { start: finite("start of a motion", time)?, ..self })
     }
 
-    /// Returns the same part elsewhere. A point about which it turns moves with it.
+    /// Returns the same part, shifted by a vector.
+    ///
+    /// If the part turns about a point, that point shifts with it.
     ///
     /// # Errors
     /// If a coordinate would not be finite.
@@ -169,11 +176,12 @@ impl Part {
         Ok(self)
     }
 
-    /// Returns the same part after a turn about a point, counterclockwise by this angle in radians. The
-    /// direction of its motion turns with it.
+    /// Returns the same part, rotated about a point, counterclockwise by this angle in radians.
+    ///
+    /// The direction of its motion, or the point about which it turns, rotates with it.
     ///
     /// # Errors
-    /// If a number is not finite, or would not be.
+    /// If an argument is not finite, or a coordinate would not be.
     pub fn rotated(mut self, about: DVec2, angle: f64) -> Result<Self, VesselError> {
         for brick in &mut self.bricks {
             *brick = brick.rotated(about, angle)?;
@@ -182,7 +190,7 @@ impl Part {
         match &mut self.travel {
             Travel::Along { direction, .. } => *direction = unit(turn.rotate(*direction))?,
             Travel::Turning { about: pivot, .. } | Travel::Spinning { about: pivot, .. } => {
-                *pivot = about + turn.rotate(*pivot - about);
+                *pivot = finite_point(about + turn.rotate(*pivot - about))?;
             }
             Travel::Rest => {}
         }
@@ -201,7 +209,7 @@ impl Part {
 }
 
 impl Part {
-    /// Gives the part a motion, if the part can move so.
+    /// Gives the part a motion, if the part can move in this way.
     fn traveling(self, travel: Travel) -> Result<Self, VesselError> {
         match &travel {
             Travel::Along { direction, motion } => {
@@ -235,7 +243,7 @@ impl Part {
 
     /// Returns the phase of the motion at a time origin.
     ///
-    /// Both remainders are exact. Their difference is rounded as a phase is, not as a late time.
+    /// Both remainders are exact. Their difference has the rounding of a phase, not that of a late time.
     pub(super) fn phase(&self, origin: f64) -> f64 {
         self.travel.phase(origin) - self.travel.phase(self.start)
     }
@@ -253,7 +261,7 @@ impl Part {
         nearest.map(|(brick, sighted)| (brick, sighted.signed_distance()))
     }
 
-    /// Returns the surface of the part for a normal and a velocity.
+    /// Returns the surface of the part with this normal, where the part moves at this velocity.
     pub(super) fn surface(&self, normal: DVec2, velocity: DVec2) -> Surface<'_> {
         let along = -normal.perp() * self.surface_speed;
         Surface::new(normal, velocity + along).with_response(self.conduct.response()).with_kind(self.kind)
@@ -282,10 +290,12 @@ impl Sighted {
         Self { nearest, rounding: ROUNDING * (nearest.distance + place.length()) }
     }
 
-    /// Tells whether this brick is nearer than another one, or as near and knows better what is behind it.
+    /// Tells whether this brick is nearer than another one, or is equally near and tells better what is
+    /// behind it.
     ///
-    /// Two bricks that meet at the nearest point are equally far up to rounding. The one that is seen less
-    /// from the side knows whether the place is behind it.
+    /// Two bricks that meet at the nearest point are equally far away up to rounding. Of these, the brick
+    /// whose extension beyond its ends is farther from the place decides: the place sees it less from its
+    /// end.
     pub(super) fn is_better_than(&self, other: &Self) -> bool {
         let nearer = other.nearest.distance - self.nearest.distance;
         let is_tie = nearer.abs() <= other.rounding;

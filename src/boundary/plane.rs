@@ -27,8 +27,8 @@ pub(super) struct Plane {
     slide: Option<Slide>,
 }
 
-/// The motion of a wall along itself: to the right, or up. It turns the disks and carries them along, but
-/// moves no wall into them.
+/// The motion of a wall along itself: to the right, or up. It sets disks spinning and carries them along, but
+/// never moves the wall into them.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case", deny_unknown_fields))]
@@ -103,7 +103,7 @@ impl Plane {
         self.slide = slide;
     }
 
-    /// Returns all that can be set.
+    /// Returns everything that has a setter.
     #[cfg(feature = "serde")]
     pub(super) fn into_parts(self) -> (Motion, Conduct, Kind, Option<Slide>) {
         (self.motion, self.conduct, self.kind, self.slide)
@@ -133,7 +133,7 @@ impl Plane {
             flight.velocity(flight.time()).dot(self.normal),
             flight.acceleration().dot(self.normal),
         );
-        // Most flights end in another cell before they get near this wall. They need no search.
+        // Most flights end at the edge of their cell before they get near this wall. They need no search.
         if approach.stays_above(self.highest, until + self.phase) {
             return None;
         }
@@ -152,7 +152,7 @@ impl Plane {
         Surface::new(self.normal, velocity).with_response(self.conduct.response()).with_kind(self.kind)
     }
 
-    /// Tells whether a disk is so near that it overlaps the wall at some time of the motion.
+    /// Tells whether a disk is so near that it may overlap the wall at some phase of the motion.
     #[inline]
     pub(super) fn is_within_reach(&self, position: DVec2, radius: f64) -> bool {
         position.dot(self.normal) - self.place - radius <= self.highest
@@ -164,8 +164,8 @@ impl Plane {
         wall + radius - position.dot(self.normal)
     }
 
-    /// Returns the fingerprint of motion and response, if both have one. The container adds the place of the
-    /// wall.
+    /// Returns the fingerprint of motion, kind, response and sliding, if all of them have one. The container
+    /// adds the place of the wall.
     pub(super) fn fingerprint(&self) -> Option<Fingerprint> {
         let kind = f64::from(self.kind.number());
         let plane = Fingerprint::of("Plane").part(self.motion.fingerprint()?).number(kind);

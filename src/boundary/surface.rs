@@ -36,8 +36,8 @@ pub struct Surface<'a> {
 }
 
 impl<'a> Surface<'a> {
-    /// Creates a straight surface with this unit normal and this velocity, under the rule of the disks and of
-    /// [`Kind::WALL`].
+    /// Creates a straight surface with this unit normal and this velocity, which follows the rule of the
+    /// disks and has the kind [`Kind::WALL`].
     #[inline]
     pub const fn new(normal: DVec2, velocity: DVec2) -> Self {
         Self { normal, velocity, response: Response::Shared, kind: Kind::WALL, radius: f64::INFINITY }
@@ -95,12 +95,12 @@ impl fmt::Debug for Response<'_> {
     }
 }
 
-/// A stochastic wall: a disk that touches it leaves as if it came from a gas of this temperature that is at
-/// rest behind the wall.
+/// A thermal wall: a disk that touches it leaves as if it came from a gas of the wall's temperature, at rest
+/// behind the wall.
 ///
 /// The normal speed has the flux-weighted density `$(m v/T_0)\,e^{-m v^2/2T_0}$`; the tangential velocity and
-/// the angular velocity are normal with variances `$T_0/m$` and `$T_0/I$`. The slip variant redraws the
-/// normal speed only (the base of Ramírez, Risso, Cordero, PRL 85, 1230 (2000)).
+/// the angular velocity are Gaussian with variances `$T_0/m$` and `$T_0/I$`. The slip variant redraws only
+/// the normal speed, as the base of Ramírez, Risso and Cordero, PRL 85, 1230 (2000), does.
 ///
 /// ```
 /// use granular_edmd::boundary::Thermal;
@@ -126,7 +126,7 @@ impl Quantity for WallTemperature {
 }
 
 impl Thermal {
-    /// Creates a wall of the temperature `$T_0$` for translation and rotation.
+    /// Creates a wall with the same temperature for translation and rotation.
     ///
     /// # Errors
     /// If the temperature is not finite and positive.
@@ -139,7 +139,7 @@ impl Thermal {
         Self { slip: true, ..self }
     }
 
-    /// Returns `$T_0$`, in units of energy.
+    /// Returns the temperature, in units of energy.
     pub const fn temperature(&self) -> f64 {
         self.temperature.get()
     }

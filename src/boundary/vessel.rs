@@ -26,16 +26,17 @@ const MOST_WALLS: usize = 1 << 16;
 
 /// A vessel of any shape: named [parts](Part) in a [`Container`].
 ///
-/// Disks are where they are free of the container and of each part: a hopper of two blocks, a polygon and
-/// pegs in it. Parts may overlap, and may reach beyond the container. They are put in, changed and taken out
-/// by name, also between runs
+/// A disk must be free of the container's walls and of each part. So two blocks make a hopper, and a polygon
+/// can have pegs in it. Parts may overlap, and may reach beyond the container. They are added, replaced and
+/// removed by name, also between runs
 /// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
 ///
-/// Initial states are free of all parts as they are at time 0. To pack disks densely among parts that move,
-/// pack them with the same parts at rest.
+/// Initial states keep clear of all parts, as these are at time 0. To pack disks densely among parts that
+/// move, pack them with the same parts at rest.
 ///
-/// The walls of the container come first. Each brick of each part is a wall, in the order in which the parts
-/// were put in, and so is each corner. [`walls`](Self::walls) returns those of a part.
+/// The walls of the container have the first indices. After them, each brick and each corner of each part is
+/// a wall, in the order in which the parts were added. [`walls`](Self::walls) returns the indices of one
+/// part.
 ///
 /// ```
 /// use granular_edmd::boundary::{Container, Part, Vessel};
@@ -43,7 +44,7 @@ const MOST_WALLS: usize = 1 << 16;
 /// use granular_edmd::glam::DVec2;
 /// use granular_edmd::{Simulation, initial};
 ///
-/// // A silo: two blocks leave an outlet of width 6, which is shut by a gate.
+/// // A silo: two blocks leave an outlet of width 6, which a gate shuts.
 /// let slope = [(0.0, 10.0), (7.0, 10.0), (0.0, 20.0)].map(DVec2::from);
 /// let other = slope.map(|corner| DVec2::new(20.0 - corner.x, corner.y));
 /// let silo = Vessel::new(Container::open(20.0)?)
@@ -72,9 +73,9 @@ pub struct Vessel {
     parts: Vec<Placed>,
     walls: Vec<Wall>,
     index: Index,
-    /// The parts at rest that fill each cell of the index.
+    /// For each cell of the index, the parts at rest that fill it.
     filled: Vec<Vec<u32>>,
-    /// Time origin, from which the parts that are put in get their phases.
+    /// Time origin, from which added parts get their phases.
     origin: f64,
 }
 
@@ -110,11 +111,12 @@ impl Vessel {
         }
     }
 
-    /// Creates a vessel of parts that enclose the disks by themselves. The container is a rectangle around
-    /// them that no disk touches.
+    /// Creates a vessel of parts that enclose the disks by themselves.
+    ///
+    /// The container is a rectangle around the parts, which no disk touches.
     ///
     /// # Errors
-    /// If two parts have the same name, or a part has no end.
+    /// As [`put`](Self::put), or if a part extends to infinity.
     ///
     /// ```
     /// use granular_edmd::boundary::{Boundary, Part, Vessel};
@@ -152,7 +154,7 @@ impl Vessel {
         Ok(vessel)
     }
 
-    /// Returns the same vessel with another part.
+    /// Returns the same vessel with one more part.
     ///
     /// # Errors
     /// As [`put`](Self::put).
@@ -161,11 +163,13 @@ impl Vessel {
         Ok(self)
     }
 
-    /// Puts a part into the vessel. Its walls come after those of all other parts.
+    /// Puts a part into the vessel.
+    ///
+    /// Its walls come after those of all other parts.
     ///
     /// # Errors
-    /// If there is a part or a wall of the container of this name already, or the vessel would have more than
-    /// 2¹⁶ walls. The vessel is then as before.
+    /// If a part or a wall of the container already has this name, or the vessel would have more than 2¹⁶
+    /// walls. The vessel then stays as it was.
     pub fn put(&mut self, name: impl Into<String>, part: Part) -> Result<(), VesselError> {
         let name = name.into();
         let mut walls = (0..self.container.wall_count()).map(|wall| self.container.wall_name(wall));
@@ -181,10 +185,12 @@ impl Vessel {
         Ok(())
     }
 
-    /// Takes a part out of the vessel. The numbers of the walls after it become smaller.
+    /// Removes a part from the vessel.
+    ///
+    /// The indices of the walls after it become smaller.
     ///
     /// # Errors
-    /// If there is no part of this name. The vessel is then as before.
+    /// If there is no part of this name. The vessel then stays as it was.
     pub fn remove(&mut self, name: &str) -> Result<Part, VesselError> {
         let Some(place) = self.parts.iter().position(|placed| placed.name == name) else {
             return Err(VesselError::Unknown { name: name.to_owned() });
@@ -194,11 +200,11 @@ impl Vessel {
         Ok(removed.part)
     }
 
-    /// Puts a part in the place of the one of this name, and returns that one.
+    /// Replaces the part of this name, and returns the old one.
     ///
     /// # Errors
-    /// If there is no part of this name, or the vessel would have more than 2¹⁶ walls. The vessel is then as
-    /// before.
+    /// If there is no part of this name, or the vessel would have more than 2¹⁶ walls. The vessel then stays
+    /// as it was.
     pub fn replace(&mut self, name: &str, part: Part) -> Result<Part, VesselError> {
         let Some(place) = self.parts.iter().position(|placed| placed.name == name) else {
             return Err(VesselError::Unknown { name: name.to_owned() });
@@ -213,7 +219,7 @@ impl Vessel {
         Ok(before)
     }
 
-    /// Returns the part of a name, if there is one.
+    /// Returns the part of this name, if there is one.
     pub fn part(&self, name: &str) -> Option<&Part> {
         self.parts.iter().find(|placed| placed.name == name).map(|placed| &placed.part)
     }
@@ -234,7 +240,7 @@ impl Vessel {
         &self.container
     }
 
-    /// Numbers the walls, and makes the index of them.
+    /// Numbers the walls, and builds the index of them.
     fn number(&mut self) {
         self.walls.clear();
         for (number, placed) in self.parts.iter_mut().enumerate() {
@@ -290,7 +296,7 @@ impl Boundary for Vessel {
     }
 
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
-        // Regions are those of centers; rounding may not hide a touch at their edges.
+        // A region is one of centers. The margin keeps rounding from hiding a touch at its edge.
         let reach = 1.001 * radius;
         let mut near = self.index.near(region.min - reach, region.max + reach);
         self.container.may_touch(region, radius)

@@ -5,23 +5,23 @@ use glam::DVec2;
 use super::{CollisionRule, Contact, Impulse};
 use crate::{Disk, Kind};
 
-/// The constant properties of a body in a collision: its kind, how far its surface is, and how it resists.
+/// The constant properties of a body in a collision: its kind, its size, and its resistance to impulses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Material {
     /// Distance from the center, about which the body turns, to the surface; 0 for a wall.
     arm: f64,
-    /// Radius of the surface, which rules are told; infinite for a straight wall.
+    /// Radius of the surface, which rules find in the contact; infinite for a straight wall.
     pub(crate) radius: f64,
     pub(crate) inverse_mass: f64,
-    /// Velocity of the contact point per tangential impulse, `$(1 + 1/\beta)/m$`.
+    /// Velocity of the contact point per tangential impulse, (1 + 1/β)/m.
     tangential_compliance: f64,
-    /// Angular velocity per tangential impulse, `$1/(\beta m R)$`.
+    /// Angular velocity per tangential impulse, 1/(β m R).
     spin_response: f64,
     pub(crate) kind: Kind,
 }
 
 impl Material {
-    /// Returns that of a wall, which takes any impulse and does not change its motion.
+    /// Returns the properties of a wall, which takes any impulse without a change of its motion.
     pub(crate) const fn of_wall(kind: Kind, radius: f64) -> Self {
         let (inverse_mass, tangential_compliance, spin_response) = (0.0, 0.0, 0.0);
         Self { arm: 0.0, radius, inverse_mass, tangential_compliance, spin_response, kind }
@@ -58,9 +58,9 @@ impl Body {
 fn contact(normal: DVec2, first: (&Body, &Material), second: (&Body, &Material)) -> Contact {
     let approach = second.0.velocity - first.0.velocity;
     let closing = approach.dot(normal);
-    // Bodies that touch may be parting, by rounding or because the caller did not check. A rule must not take
-    // roots of a negative speed. The comparison is also false for NaN, and always gives the same zero;
-    // `f64::max` may give either zero, depending on the processor.
+    // Bodies that touch may be parting, by rounding or because the caller did not check. A rule must not get
+    // a negative speed, since it may take a root of it. The comparison is also false for NaN, and the zero is
+    // always the same one; `f64::max` may give either zero, depending on the processor.
     let closing = if closing > 0.0 { closing } else { 0.0 };
     let surface = second.1.arm * second.0.angular_velocity + first.1.arm * first.0.angular_velocity;
     let (normal_mass, tangential_mass) = (
@@ -72,8 +72,8 @@ fn contact(normal: DVec2, first: (&Body, &Material), second: (&Body, &Material))
         .with_radii([first.1.radius, second.1.radius])
 }
 
-/// Returns `body` after an impulse along the normal and its perpendicular. Both partners of a collision turn
-/// the same way.
+/// Returns `body` after an impulse along the normal and its perpendicular. A tangential impulse changes the
+/// spins of both partners in the same sense.
 #[inline]
 fn kicked(body: &Body, material: &Material, kick: DVec2, tangential: f64) -> Body {
     Body {

@@ -4,8 +4,8 @@ use std::fmt;
 
 use crate::Kind;
 
-/// A contact of two surfaces: how fast they close and slip, the masses that resist, and what the partners
-/// are.
+/// A contact of two surfaces: their closing and slip speeds, the masses that resist, and the kinds and radii
+/// of the partners.
 ///
 /// With `$\hat n$` from partner 2 to partner 1 and `$\vec v = \vec v_{C2} - \vec v_{C1}$` the relative
 /// velocity of the points in contact, the closing speed is `$v_n = \vec v\cdot\hat n$` and the slip speed
@@ -34,8 +34,7 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Creates a contact of partners that have never collided before: disks of radius 1/2 and of the
-    /// default kind.
+    /// Creates a contact of two disks that have never collided before, of radius 1/2 and of the default kind.
     #[inline]
     pub const fn new(closing_speed: f64, slip_speed: f64, normal_mass: f64, tangential_mass: f64) -> Self {
         Self {
@@ -68,25 +67,25 @@ impl Contact {
         Self { radii, ..self }
     }
 
-    /// Returns the speed `$v_n$` at which the surfaces approach, positive in a collision.
+    /// Returns the speed v_n at which the surfaces approach, which is never negative in a collision.
     #[inline]
     pub const fn closing_speed(&self) -> f64 {
         self.closing_speed
     }
 
-    /// Returns the speed `$v_t$` at which the surfaces slide, of either sign.
+    /// Returns the speed v_t at which the surfaces slide, of either sign.
     #[inline]
     pub const fn slip_speed(&self) -> f64 {
         self.slip_speed
     }
 
-    /// Returns the reduced mass `$\mu$` of the normal direction.
+    /// Returns the reduced mass μ of the normal direction.
     #[inline]
     pub const fn normal_mass(&self) -> f64 {
         self.normal_mass
     }
 
-    /// Returns the effective mass `$\mu_t$` of the tangential direction, rotation included.
+    /// Returns the effective mass μ_t of the tangential direction, rotation included.
     #[inline]
     pub const fn tangential_mass(&self) -> f64 {
         self.tangential_mass
@@ -116,10 +115,10 @@ impl Contact {
         self.radii
     }
 
-    /// Returns the effective radius, `$R_\text{eff} = R_1R_2/(R_1 + R_2)$`; at a straight wall, it is the
-    /// radius of the disk, in a hollow one more.
+    /// Returns the effective radius, R₁R₂/(R₁ + R₂).
     ///
-    /// The laws of Hertz for elastic and viscoelastic grains need it.
+    /// At a straight wall, it is the radius of the disk; in a hollow one, it is larger. The laws of Hertz for
+    /// elastic and viscoelastic grains need it.
     ///
     /// ```
     /// use granular_edmd::collision::Contact;
@@ -131,7 +130,8 @@ impl Contact {
     #[inline]
     pub const fn effective_radius(&self) -> f64 {
         let [first, second] = self.radii;
-        // The form is the same for either order of the partners, and has a limit for a wall.
+        // This form gives the same number for either order of the partners, and its limit for a straight
+        // wall.
         if first.abs() < second.abs() {
             first / (1.0 + first / second)
         } else {
@@ -139,11 +139,10 @@ impl Contact {
         }
     }
 
-    /// Returns the normal impulse of a restitution `$r_n$`: `$\Delta_n = (1 + r_n)\,\mu\,v_n$` (paper, Eqs.
-    /// (1), (3)).
+    /// Returns the normal impulse for a restitution coefficient (paper, Eqs. (1), (3)).
     ///
-    /// The restitution is not checked, since rules that compute it from the contact call this function in
-    /// every collision.
+    /// The impulse is `$\Delta_n = (1 + r_n)\,\mu\,v_n$`. The function does not check the restitution,
+    /// because rules that compute it from the contact call it in every collision.
     ///
     /// ```
     /// use granular_edmd::collision::Contact;

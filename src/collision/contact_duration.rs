@@ -1,16 +1,16 @@
-//! The contact-duration model, the remedy against inelastic collapse.
+//! The contact-duration model: a remedy for inelastic collapse.
 
 use super::{CollisionRule, Contact, Impulse, Regime, TangentialResponse};
 use crate::quantity::{Checked, Quantity, Range};
 use crate::{Fingerprint, ParameterError};
 
-/// The contact-duration (TC) model over any rule: a collision of a body that collided less than `$t_c$` ago
-/// loses no energy (Luding and McNamara 1998).
+/// The contact-duration (TC) model over any rule: a collision loses no energy if one of the bodies collided
+/// less than t_c ago (Luding and McNamara 1998).
 ///
 /// Without the model, disks in dense inelastic states collide infinitely often in finite time, and the run
-/// ends with an error. The simulation counts the collisions that the model changes, which shows when the
-/// model matters. With a collision rate `$\omega_c$` per disk, a share of about `$2.25\,\omega_c t_c$` of the
-/// dissipation is lost to it.
+/// ends with an error. The simulation counts the collisions that the model changes; their number shows
+/// whether the model matters. With a collision rate `$\omega_c$` per disk, the model removes a share of about
+/// `$2.25\,\omega_c t_c$` of the dissipation.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, ContactDuration, Frictional, Regime};
@@ -41,11 +41,11 @@ impl Quantity for Duration {
 }
 
 impl<R> ContactDuration<R> {
-    /// Creates the model over `rule`: elastic and frictionless for bodies that collided less than `duration`
-    /// ago.
+    /// Creates the model over `rule`: collisions of bodies that collided less than `duration` ago are elastic
+    /// and frictionless.
     ///
     /// # Errors
-    /// If the duration is not finite and positive. For no contact duration, use the rule alone.
+    /// If the duration is not finite and positive. If you want no contact duration, use the rule alone.
     pub fn new(rule: R, duration: f64) -> Result<Self, ParameterError> {
         let duration = Checked::new(duration)?;
         Ok(Self { rule, duration, tangential_response: TangentialResponse::default() })
@@ -56,18 +56,18 @@ impl<R> ContactDuration<R> {
         Self { tangential_response, ..self }
     }
 
-    /// Returns the same remedy around another rule.
+    /// Returns the same model over another rule.
     #[cfg(feature = "serde")]
     pub(crate) const fn around<Q: Copy>(&self, rule: Q) -> ContactDuration<Q> {
         ContactDuration { rule, duration: self.duration, tangential_response: self.tangential_response }
     }
 
-    /// Returns the rule of all other collisions.
+    /// Returns the rule inside, which decides all other collisions.
     pub const fn rule(&self) -> &R {
         &self.rule
     }
 
-    /// Returns the contact duration `$t_c$`.
+    /// Returns the contact duration t_c.
     pub const fn duration(&self) -> f64 {
         self.duration.get()
     }

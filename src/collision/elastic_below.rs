@@ -1,22 +1,23 @@
-//! Slow collisions without loss, the remedy for matter at rest.
+//! Slow collisions without loss: a remedy for matter at rest.
 
 use super::{CollisionRule, Contact, Impulse, Regime, TangentialResponse};
 use crate::quantity::{Checked, Quantity, Range};
 use crate::{Fingerprint, ParameterError};
 
-/// A rule whose collisions leave surfaces parting at a speed `$v_c$` at least, or as fast as they came: slow
-/// collisions are elastic.
+/// A rule whose slow collisions are elastic: surfaces part at least at a speed v_c, or as fast as they
+/// closed.
 ///
 /// ```math
 /// v_n' = \max\left(r_n v_n,\ \min(v_n, v_c)\right)
 /// ```
 ///
-/// A disk that comes to rest on a floor then bounces at the speed `$v_c$`, once in `$2v_c/g$`. Many disks
-/// share what the last fast collisions left them. Their granular temperature stays, if the tangential
-/// response loses nothing, but it may be far below `$m v_c^2$`, and the events are the more.
-/// [`LeastRebound`](super::LeastRebound) bounds them. In a gas of temperature `$T$`, the share
-/// `$1 - (1 + x)\,e^{-x} \approx x^2/2$` of the normal dissipation is lost to collisions below `$v_c$`, with
-/// `$x = m v_c^2/4T$`. The page `docs/rest.md` of the repository compares the remedies.
+/// A disk that comes to rest on a floor then bounces at the speed `$v_c$`, once in each time `$2v_c/g$`. Many
+/// disks share the energy that the last fast collisions left them. If the tangential response loses nothing,
+/// their granular temperature stays constant. But it may be far below `$m v_c^2$`, and the lower it is, the
+/// more events there are. [`LeastRebound`](super::LeastRebound) bounds their number. In a gas of temperature
+/// `$T$`, the share `$1 - (1 + x)\,e^{-x} \approx x^2/2$` of the normal dissipation belongs to collisions
+/// below `$v_c$`, with `$x = m v_c^2/4T$`, and the remedy removes it. The page `docs/rest.md` of the
+/// repository compares the remedies.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, ElasticBelow, Frictional, Regime};
@@ -47,10 +48,10 @@ impl Quantity for Speed {
 }
 
 impl<R> ElasticBelow<R> {
-    /// Creates the remedy over `rule`: elastic and frictionless below this speed.
+    /// Creates the remedy over `rule`: collisions below this closing speed are elastic and frictionless.
     ///
     /// # Errors
-    /// If the speed is not finite and positive. For no such speed, use the rule alone.
+    /// If the speed is not finite and positive. If you want no such speed, use the rule alone.
     pub fn new(rule: R, speed: f64) -> Result<Self, ParameterError> {
         let speed = Checked::new(speed)?;
         Ok(Self { rule, speed, tangential_response: TangentialResponse::default() })
@@ -67,12 +68,12 @@ impl<R> ElasticBelow<R> {
         ElasticBelow { rule, speed: self.speed, tangential_response: self.tangential_response }
     }
 
-    /// Returns the rule of all other collisions.
+    /// Returns the rule inside, which decides all other collisions.
     pub const fn rule(&self) -> &R {
         &self.rule
     }
 
-    /// Returns the closing speed `$v_c$` below which collisions are elastic.
+    /// Returns the closing speed v_c below which collisions are elastic.
     pub const fn speed(&self) -> f64 {
         self.speed.get()
     }

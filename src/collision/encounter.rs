@@ -6,7 +6,7 @@ use super::body::{Body, Material, collide_bodies};
 use super::{CollisionRule, Contact, Impulse};
 use crate::{Disk, Kind};
 
-/// Two disks after their collision, with the contact and the impulse; made by [`collide`].
+/// Two disks after their collision, with the contact and the impulse; returned by [`collide`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Encounter {
@@ -20,7 +20,8 @@ pub struct Encounter {
     pub impulse: Impulse,
 }
 
-/// A disk after its collision with a wall, with the contact and the impulse; made by [`collide_with_wall`].
+/// A disk after its collision with a wall, with the contact and the impulse; returned by
+/// [`collide_with_wall`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct WallEncounter {
@@ -32,11 +33,12 @@ pub struct WallEncounter {
     pub impulse: Impulse,
 }
 
-/// Lets two disks collide under `rule` (paper, Eq. (2)), as a simulation does. The function is useful in
-/// tests of rules.
+/// Lets two disks collide under `rule` (paper, Eq. (2)), as a simulation does.
 ///
-/// The normal comes from the centers of the disks; the function does not check that the disks touch. The
-/// closing speed of disks that part is zero.
+/// The function is useful in tests of rules.
+///
+/// The normal comes from the centers of the disks; the function does not check that the disks touch. If the
+/// disks part, the closing speed is zero.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;
@@ -71,8 +73,8 @@ pub fn collide<R: CollisionRule + ?Sized>(rule: &R, first: &Disk, second: &Disk)
 
 /// Lets a disk collide under `rule` with a wall that moves at `wall_velocity`, as a simulation does.
 ///
-/// The unit vector `normal` points from the wall to the disk. The closing speed of a disk that leaves is
-/// zero. The wall is straight, and of [`Kind::WALL`].
+/// The unit vector `normal` points from the wall to the disk. If the disk leaves the wall, the closing speed
+/// is zero. The wall is straight and has the kind [`Kind::WALL`].
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;

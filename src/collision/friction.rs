@@ -14,7 +14,8 @@ use crate::{Fingerprint, ParameterError};
 /// \end{cases}
 /// ```
 ///
-/// (paper, Eqs. (4), (5)). A rule of your own decides the normal impulse, and leaves the rest to this type:
+/// The equations are the paper's Eqs. (4), (5). A rule of your own can compute the normal impulse and leave
+/// the rest to this type:
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Friction, Impulse, Regime};
@@ -48,7 +49,7 @@ pub struct Friction {
 }
 
 impl Friction {
-    /// Creates friction with one coefficient, `$\kappa = \kappa_s = \kappa_d$`.
+    /// Creates friction with one coefficient, κ = κ_s = κ_d.
     ///
     /// # Errors
     /// If `tangential_inelasticity` is not in `[0, 1]`, or `coefficient` is negative or not finite.
@@ -56,8 +57,8 @@ impl Friction {
         Self::from_inelasticity(tangential_inelasticity)?.with_coefficients(coefficient, coefficient)
     }
 
-    /// Creates a tangential inelasticity `$q_t \in [0, 1]$` without friction; see
-    /// [`Self::with_coefficients`].
+    /// Creates a tangential inelasticity q_t in `[0, 1]` without friction; [`Self::with_coefficients`] adds
+    /// it.
     ///
     /// # Errors
     /// If the inelasticity is out of its range.
@@ -65,8 +66,8 @@ impl Friction {
         TangentialInelasticity::new(tangential).map(Self::without_coefficients)
     }
 
-    /// Creates a tangential restitution `$r_t \in [-1, 1]$` without friction; see
-    /// [`Self::with_coefficients`].
+    /// Creates a tangential restitution r_t in `[-1, 1]` without friction; [`Self::with_coefficients`] adds
+    /// it.
     ///
     /// # Errors
     /// If the restitution is out of its range.
@@ -78,11 +79,11 @@ impl Friction {
         Self { tangential_inelasticity, static_coefficient: 0.0, dynamic_coefficient: 0.0 }
     }
 
-    /// Returns the same inelasticity with the friction coefficients `$\kappa_s \ge \kappa_d \ge 0$`.
+    /// Returns the same inelasticity with the friction coefficients κ_s ≥ κ_d ≥ 0.
     ///
     /// # Errors
-    /// If one is negative or not finite, or the dynamic coefficient exceeds the static one: sliding could
-    /// then gain energy.
+    /// If a coefficient is negative or not finite, or the dynamic one exceeds the static one, because sliding
+    /// could then gain energy.
     pub fn with_coefficients(
         self,
         static_coefficient: f64,
@@ -101,30 +102,30 @@ impl Friction {
     pub fn impulse(&self, contact: &Contact, normal: f64) -> Impulse {
         let sticking = self.tangential_inelasticity.impulse(contact);
         let sliding = (self.dynamic_coefficient * normal).copysign(sticking);
-        // The code selects and does not branch: whether a contact sticks is a coin toss, which no branch
+        // The code selects and does not branch: contacts stick or slide as if by a coin toss, which no branch
         // predictor learns.
         let sticks = sticking.abs() < self.static_coefficient * normal;
         let tangential = if sticks { sticking } else { sliding };
         Impulse::new(normal, tangential).with_regime(if sticks { Regime::Sticking } else { Regime::Sliding })
     }
 
-    /// Returns the fingerprint, for those of rules with friction.
+    /// Returns the fingerprint, which rules with friction include in theirs.
     pub(super) fn fingerprint(&self) -> Fingerprint {
         let inelastic = Fingerprint::of("Friction").number(self.tangential_inelasticity());
         inelastic.number(self.static_coefficient).number(self.dynamic_coefficient)
     }
 
-    /// Returns the tangential inelasticity `$q_t$`.
+    /// Returns the tangential inelasticity q_t.
     pub const fn tangential_inelasticity(&self) -> f64 {
         self.tangential_inelasticity.get()
     }
 
-    /// Returns the static friction coefficient `$\kappa_s$`.
+    /// Returns the static friction coefficient κ_s.
     pub const fn static_coefficient(&self) -> f64 {
         self.static_coefficient
     }
 
-    /// Returns the dynamic friction coefficient `$\kappa_d$`.
+    /// Returns the dynamic friction coefficient κ_d.
     pub const fn dynamic_coefficient(&self) -> f64 {
         self.dynamic_coefficient
     }

@@ -40,7 +40,7 @@ pub struct Frictional {
 }
 
 impl Frictional {
-    /// Creates a rule with the paper's choice: `$q = q_n = q_t$` and `$\kappa = \kappa_s = \kappa_d$`.
+    /// Creates a rule with the paper's choice: q = q_n = q_t and κ = κ_s = κ_d.
     ///
     /// # Errors
     /// If `inelasticity` is not in `[0, 0.5]`, or `friction` is negative or not finite.
@@ -48,8 +48,8 @@ impl Frictional {
         Self::from_inelasticity(inelasticity, inelasticity)?.with_friction(friction, friction)
     }
 
-    /// Creates a rule without friction from `$q_n \in [0, 1/2]$` and `$q_t \in [0, 1]$`; see
-    /// [`Self::with_friction`].
+    /// Creates a rule without friction from the inelasticities q_n, in `[0, 1/2]`, and q_t, in `[0, 1]`;
+    /// [`Self::with_friction`] adds friction.
     ///
     /// # Errors
     /// If an inelasticity is out of its range.
@@ -60,8 +60,8 @@ impl Frictional {
         })
     }
 
-    /// Creates a rule without friction from the restitution coefficients `$r_n \in [0, 1]$` and
-    /// `$r_t \in [-1, 1]$` (paper, Eq. (1)); see [`Self::with_friction`].
+    /// Creates a rule without friction from the restitution coefficients r_n, in `[0, 1]`, and r_t, in
+    /// `[-1, 1]` (paper, Eq. (1)); [`Self::with_friction`] adds friction.
     ///
     /// # Errors
     /// If a restitution is out of its range.
@@ -72,31 +72,31 @@ impl Frictional {
         })
     }
 
-    /// Returns the same rule with the friction coefficients `$\kappa_s \ge \kappa_d \ge 0$`.
+    /// Returns the same rule with the friction coefficients κ_s ≥ κ_d ≥ 0.
     ///
     /// # Errors
-    /// If one is negative or not finite, or the dynamic coefficient exceeds the static one: sliding could
-    /// then gain energy.
+    /// If a coefficient is negative or not finite, or the dynamic one exceeds the static one, because sliding
+    /// could then gain energy.
     pub fn with_friction(self, static_friction: f64, dynamic_friction: f64) -> Result<Self, ParameterError> {
         Ok(Self { friction: self.friction.with_coefficients(static_friction, dynamic_friction)?, ..self })
     }
 
-    /// Returns the normal inelasticity `$q_n$`.
+    /// Returns the normal inelasticity q_n.
     pub const fn normal_inelasticity(&self) -> f64 {
         self.normal_inelasticity.get()
     }
 
-    /// Returns the tangential inelasticity `$q_t$`.
+    /// Returns the tangential inelasticity q_t.
     pub const fn tangential_inelasticity(&self) -> f64 {
         self.friction.tangential_inelasticity()
     }
 
-    /// Returns the static friction coefficient `$\kappa_s$`.
+    /// Returns the static friction coefficient κ_s.
     pub const fn static_friction(&self) -> f64 {
         self.friction.static_coefficient()
     }
 
-    /// Returns the dynamic friction coefficient `$\kappa_d$`.
+    /// Returns the dynamic friction coefficient κ_d.
     pub const fn dynamic_friction(&self) -> f64 {
         self.friction.dynamic_coefficient()
     }

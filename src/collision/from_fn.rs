@@ -2,7 +2,7 @@
 
 use super::{CollisionRule, Contact, Impulse};
 
-/// A closure as a [`CollisionRule`]; made by [`from_fn`].
+/// A closure as a [`CollisionRule`]; returned by [`from_fn`].
 #[derive(Debug, Clone, Copy)]
 pub struct FromFn<F>(F);
 

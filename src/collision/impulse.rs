@@ -17,11 +17,13 @@ pub enum Regime {
     Sliding,
     /// A contact-duration model replaced the rule.
     ContactDuration,
-    /// The contact was so slow that it was made elastic.
+    /// The contact was so slow that a remedy made it elastic.
     ElasticBelow,
 }
 
-/// The momentum that partner 1 receives along the normal and the tangent. Partner 2 receives the opposite.
+/// The momentum that partner 1 receives along the normal and the tangent.
+///
+/// Partner 2 receives the opposite.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse};
@@ -37,7 +39,7 @@ pub struct Impulse {
 }
 
 impl Impulse {
-    /// Creates an impulse `$\Delta_n\hat n + \Delta_t\hat t$`.
+    /// Creates an impulse from its normal and its tangential part.
     #[inline]
     pub const fn new(normal: f64, tangential: f64) -> Self {
         Self { normal, tangential, regime: Regime::Unspecified }
@@ -49,21 +51,22 @@ impl Impulse {
         Self { regime, ..self }
     }
 
-    /// Returns the same impulse, with a normal part that leaves the surfaces parting at this speed at least.
+    /// Returns the same impulse, with a normal part large enough that the surfaces part at this speed at
+    /// least.
     #[inline]
     pub(super) fn parting_at_least(self, speed: f64, contact: &Contact) -> Self {
         let least = contact.normal_mass() * (contact.closing_speed() + speed);
-        // The comparison is false for an impulse that is not a number, which the engine must see.
+        // The comparison is false for an impulse that is not a number. The engine must see such an impulse.
         if self.normal < least { Self { normal: least, ..self } } else { self }
     }
 
-    /// Returns the normal part `$\Delta_n$`, positive if it pushes the partners apart.
+    /// Returns the normal part Δ_n, positive if it pushes the partners apart.
     #[inline]
     pub const fn normal(&self) -> f64 {
         self.normal
     }
 
-    /// Returns the tangential part `$\Delta_t$`, which has the sign of the slip speed if it slows the slip.
+    /// Returns the tangential part Δ_t, which has the sign of the slip speed if it slows the slip.
     #[inline]
     pub const fn tangential(&self) -> f64 {
         self.tangential
@@ -82,8 +85,9 @@ impl Impulse {
     /// - \Delta_t\left(v_t - \frac{\Delta_t}{2\mu_t}\right)
     /// ```
     ///
-    /// For two disks the change does not depend on the frame. With Eqs. (3)–(5) it is the paper's Eq. (7) for
-    /// sliding. For sticking it is Eq. (6) with the factor 1/3, which is missing in print.
+    /// For two disks the change does not depend on the frame. With Eqs. (3)–(5) for equal homogeneous disks,
+    /// it is the paper's Eq. (7) if they slide, and Eq. (6) if they stick, with the factor 1/3 that is
+    /// missing in print.
     #[inline]
     pub fn energy_change(&self, contact: &Contact) -> f64 {
         let normal = self.normal * (contact.closing_speed() - 0.5 * self.normal / contact.normal_mass());

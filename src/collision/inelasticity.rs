@@ -8,10 +8,10 @@ pub(super) enum Normal {}
 
 pub(super) enum Tangential {}
 
-/// Normal inelasticity `$q_n = (1 - r_n)/2$` (paper, Eq. (1)), in `[0, 1/2]`.
+/// Normal inelasticity q_n = (1 − r_n)/2 (paper, Eq. (1)), in `[0, 1/2]`.
 pub(super) type NormalInelasticity = Checked<Normal>;
 
-/// Tangential inelasticity `$q_t = (1 - r_t)/2$` (paper, Eq. (1)), in `[0, 1]`.
+/// Tangential inelasticity q_t = (1 − r_t)/2 (paper, Eq. (1)), in `[0, 1]`.
 pub(super) type TangentialInelasticity = Checked<Tangential>;
 
 impl Quantity for Normal {

@@ -4,8 +4,8 @@
 //! impulse and its opposite at the contact point. The rule is responsible for separation, energy and
 //! friction.
 //!
-//! [`check_rule`] asks a rule about some ten thousand contacts, always the same ones, and fits into a plain
-//! test:
+//! [`check_rule`] asks a rule about tens of thousands of contacts, always the same ones, and fits into a
+//! plain test:
 //!
 //! ```
 //! use granular_edmd::collision::laws::{self, Promises, Violation};
@@ -18,8 +18,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! For contacts of your own there are [`check`], [`check_friction_opposes_slip`] and [`check_friction_cone`].
-//! Under the feature `proptest`, the module `strategies` makes random contacts.
+//! To check contacts of your own, use [`check`], [`check_friction_opposes_slip`] and [`check_friction_cone`].
+//! With the feature `proptest`, the module `strategies` makes random contacts.
 
 mod hostile;
 mod rule;
@@ -34,8 +34,8 @@ use super::{Contact, Impulse};
 /// Allowed rounding in each law, relative to the speeds and energies of the contact.
 const ROUNDING: f64 = 1e-12;
 
-/// Smallest product with a relative bound on its rounding. Below it, a number has the fewer digits the
-/// smaller it is.
+/// Smallest product whose rounding has a relative bound. Below it, numbers lose digits as they become
+/// smaller.
 const LEAST: f64 = f64::MIN_POSITIVE;
 
 /// Checks that `impulse` is possible in `contact`: it is finite, it separates the surfaces, and it gains no
@@ -62,7 +62,7 @@ pub fn check(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
     Ok(())
 }
 
-/// Checks all laws but that of the energy.
+/// Checks all laws except that of energy.
 fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
     if !(impulse.normal().is_finite() && impulse.tangential().is_finite()) {
         return Err(Violation::NotFinite { contact: *contact, impulse });
@@ -80,7 +80,7 @@ fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation
 /// [`check`] allows this, but friction never does it.
 ///
 /// # Errors
-/// If the slip is faster afterwards.
+/// If the impulse pushes along the slip, or the slip is faster after the collision.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse, laws};
@@ -100,7 +100,7 @@ pub fn check_friction_opposes_slip(contact: &Contact, impulse: Impulse) -> Resul
     }
 }
 
-/// Checks that the impulse lies in the cone of friction, `$|\Delta_t| \le \kappa_s\Delta_n$`.
+/// Checks that the impulse lies in the cone of friction, |Δ_t| ≤ κ_s Δ_n.
 ///
 /// # Errors
 /// If it does not.
@@ -130,19 +130,19 @@ fn rounding_of(speed: f64, mass: f64) -> f64 {
     ROUNDING * speed.abs() + LEAST / mass
 }
 
-/// Returns the closing speed after the collision, `$v_n' = v_n - \Delta_n/\mu$`; negative if the surfaces
-/// separate.
+/// Returns the closing speed after the collision, v_n′ = v_n − Δ_n/μ; negative if the surfaces separate.
 pub fn closing_speed_after(contact: &Contact, impulse: Impulse) -> f64 {
     contact.closing_speed() - impulse.normal() / contact.normal_mass()
 }
 
-/// Returns the slip speed after the collision, `$v_t' = v_t - \Delta_t/\mu_t$`.
+/// Returns the slip speed after the collision, v_t′ = v_t − Δ_t/μ_t.
 pub fn slip_speed_after(contact: &Contact, impulse: Impulse) -> f64 {
     contact.slip_speed() - impulse.tangential() / contact.tangential_mass()
 }
 
-/// Returns the kinetic energy of the relative motion, `$\tfrac12\mu v_n^2 + \tfrac12\mu_t v_t^2$`. A
-/// collision can lose no more than that.
+/// Returns the kinetic energy of the relative motion, ½μ v_n² + ½μ_t v_t².
+///
+/// A collision can lose no more than that.
 pub fn available_energy(contact: &Contact) -> f64 {
     let (closing, slip) = (contact.closing_speed(), contact.slip_speed());
     0.5 * contact.normal_mass() * (closing * closing) + 0.5 * contact.tangential_mass() * (slip * slip)

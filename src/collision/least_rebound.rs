@@ -1,24 +1,24 @@
-//! Surfaces that never part too slowly: the remedy for matter at rest whose friction stays.
+//! Surfaces that never part too slowly: a remedy for matter at rest that keeps friction.
 
 use super::{CollisionRule, Contact, Impulse};
 use crate::quantity::{Checked, Quantity, Range};
 use crate::{Fingerprint, ParameterError};
 
-/// A rule whose collisions leave surfaces parting at a speed `$v_c$` at least:
+/// A rule after whose collisions the surfaces part at least at a speed v_c:
 ///
 /// ```math
 /// v_n' = \max\left(r_n v_n,\ v_c\right)
 /// ```
 ///
-/// A grain at rest then bounces at `$v_c$`, as if the ground trembled. Each collision passes on the momentum
-/// `$\mu v_c$` at least. So a contact that carries the mean force `$F$` has at most `$F/\mu v_c$` collisions
-/// in a unit of time, whatever the rule loses. The cost of matter at rest is known beforehand, and friction
-/// stays as it is.
+/// A grain at rest then bounces at `$v_c$`, as if the ground trembled. Each collision transfers at least the
+/// momentum `$\mu v_c$`. So a contact that carries the mean force `$F$` has at most `$F/\mu v_c$` collisions
+/// in a unit of time, however much the rule loses. The cost of matter at rest is therefore known beforehand,
+/// and friction stays as it is.
 ///
-/// **The rule gains energy** where surfaces close more slowly than they part, `$\tfrac12\mu(v_c^2 - v_n^2)$`
-/// at most; friction and faster collisions take it away. Matter at rest keeps a granular temperature of the
-/// order of `$m v_c^2$` and creeps by it. Without gravity, disks that should cool for ever do not. The page
-/// `docs/rest.md` of the repository compares this remedy with others.
+/// **The rule gains energy** where surfaces close more slowly than they part, at most
+/// `$\tfrac12\mu(v_c^2 - v_n^2)$`. Friction and faster collisions take this energy away. Matter at rest keeps
+/// a granular temperature of the order of `$m v_c^2$` and creeps because of it. Without gravity, disks that
+/// should cool forever do not. The page `docs/rest.md` of the repository compares this remedy with others.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Frictional, LeastRebound, laws};
@@ -47,10 +47,10 @@ impl Quantity for Speed {
 }
 
 impl<R> LeastRebound<R> {
-    /// Creates the remedy over `rule`, with this parting speed at least.
+    /// Creates the remedy over `rule`, with this least parting speed.
     ///
     /// # Errors
-    /// If the speed is not finite and positive. For no such speed, use the rule alone.
+    /// If the speed is not finite and positive. If you want no such speed, use the rule alone.
     pub fn new(rule: R, speed: f64) -> Result<Self, ParameterError> {
         Ok(Self { rule, speed: Checked::new(speed)? })
     }
@@ -61,12 +61,12 @@ impl<R> LeastRebound<R> {
         LeastRebound { rule, speed: self.speed }
     }
 
-    /// Returns the rule of all faster rebounds.
+    /// Returns the rule inside, which decides all faster rebounds.
     pub const fn rule(&self) -> &R {
         &self.rule
     }
 
-    /// Returns the least parting speed `$v_c$`.
+    /// Returns the least parting speed v_c.
     pub const fn speed(&self) -> f64 {
         self.speed.get()
     }

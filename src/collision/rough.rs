@@ -4,8 +4,10 @@ use super::inelasticity::{NormalInelasticity, TangentialInelasticity};
 use super::{CollisionRule, Contact, Impulse, Regime};
 use crate::{Fingerprint, ParameterError};
 
-/// Rough inelastic collisions without a Coulomb limit: every collision sticks, `$\Delta_n = 2(1-q_n)\mu v_n$`
-/// and `$\Delta_t = 2(1-q_t)\mu_t v_t$` (paper, Eqs. (3), (4) with `$\kappa\to\infty$`).
+/// Rough inelastic collisions without a Coulomb limit, in which every collision sticks.
+///
+/// The impulses are `$\Delta_n = 2(1-q_n)\mu v_n$` and `$\Delta_t = 2(1-q_t)\mu_t v_t$` (paper, Eqs. (3), (4)
+/// with `$\kappa\to\infty$`).
 ///
 /// Disks with `$q_t = 0$` are perfectly rough and elastic in the tangential direction, disks with `$q_t = 1$`
 /// perfectly smooth.
@@ -26,7 +28,7 @@ pub struct Rough {
 }
 
 impl Rough {
-    /// Creates a rule with `$q_n \in [0, 1/2]$` and `$q_t \in [0, 1]$`.
+    /// Creates a rule with the inelasticities q_n, in `[0, 1/2]`, and q_t, in `[0, 1]`.
     ///
     /// # Errors
     /// If one is out of range.
@@ -37,7 +39,7 @@ impl Rough {
         })
     }
 
-    /// Creates a rule with the restitution coefficients `$r_n \in [0, 1]$` and `$r_t \in [-1, 1]$`.
+    /// Creates a rule with the restitution coefficients r_n, in `[0, 1]`, and r_t, in `[-1, 1]`.
     ///
     /// # Errors
     /// If one is out of range.
@@ -48,12 +50,12 @@ impl Rough {
         })
     }
 
-    /// Returns the normal inelasticity `$q_n$`.
+    /// Returns the normal inelasticity q_n.
     pub const fn normal_inelasticity(&self) -> f64 {
         self.normal_inelasticity.get()
     }
 
-    /// Returns the tangential inelasticity `$q_t$`.
+    /// Returns the tangential inelasticity q_t.
     pub const fn tangential_inelasticity(&self) -> f64 {
         self.tangential_inelasticity.get()
     }

@@ -3,11 +3,13 @@
 use super::{CollisionRule, Contact, Impulse};
 use crate::{Fingerprint, Kind};
 
-/// A rule for each pair of kinds, and one for all other pairs: what other codes call pair coefficients.
+/// A table of rules for pairs of kinds, with one rule for all other pairs.
 ///
-/// The order of the partners does not matter. Walls are partners, too: [`Kind::WALL`] unless they were
-/// given another kind ([`Container::with_kind`](crate::boundary::Container::with_kind)). A wall with a rule
-/// of its own does not ask the table. Rules of several types go into the table as
+/// Other codes call such tables pair coefficients.
+///
+/// The order of the partners does not matter. Walls are partners, too. Their kind is [`Kind::WALL`], unless
+/// they were given another one ([`Container::with_kind`](crate::boundary::Container::with_kind)). The table
+/// has no part in collisions with a wall that has its own rule. Rules of several types go into the table as
 /// [`BoxedRule`](crate::simulation::BoxedRule), or as an enum of your own, which can also be serialized.
 ///
 /// ```
@@ -64,7 +66,7 @@ impl<R> RulesByKind<R> {
         self.place(ordered([first, second])).map_or(&self.otherwise, |there| &self.pairs[there].rule)
     }
 
-    /// Returns where a pair is, or would be, in the list.
+    /// Returns the index of a pair in the list, or the index at which it would be inserted.
     #[inline]
     fn place(&self, kinds: [Kind; 2]) -> Result<usize, usize> {
         self.pairs.binary_search_by_key(&kinds, |pair| pair.kinds)

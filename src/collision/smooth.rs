@@ -4,7 +4,9 @@ use super::inelasticity::NormalInelasticity;
 use super::{CollisionRule, Contact, Impulse};
 use crate::{Fingerprint, ParameterError};
 
-/// Smooth inelastic collisions: `$\Delta_n = 2(1-q_n)\mu v_n$` (paper, Eq. (3)) and no tangential impulse.
+/// Smooth inelastic collisions: a normal impulse (paper, Eq. (3)) and no tangential one.
+///
+/// The normal impulse is `$\Delta_n = 2(1-q_n)\mu v_n$`.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Smooth};
@@ -22,7 +24,7 @@ pub struct Smooth {
 }
 
 impl Smooth {
-    /// Creates a rule with the normal inelasticity `$q_n \in [0, 1/2]$`.
+    /// Creates a rule with the normal inelasticity q_n, in `[0, 1/2]`.
     ///
     /// # Errors
     /// If it is out of range.
@@ -30,7 +32,7 @@ impl Smooth {
         Ok(Self { normal_inelasticity: NormalInelasticity::new(inelasticity)? })
     }
 
-    /// Creates a rule with the normal restitution `$r_n \in [0, 1]$`.
+    /// Creates a rule with the normal restitution r_n, in `[0, 1]`.
     ///
     /// # Errors
     /// If it is out of range.
@@ -38,7 +40,7 @@ impl Smooth {
         Ok(Self { normal_inelasticity: NormalInelasticity::from_restitution(restitution)? })
     }
 
-    /// Returns the normal inelasticity `$q_n$`.
+    /// Returns the normal inelasticity q_n.
     pub const fn normal_inelasticity(&self) -> f64 {
         self.normal_inelasticity.get()
     }

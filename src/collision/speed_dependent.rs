@@ -12,10 +12,11 @@ use crate::{Fingerprint, ParameterError};
 /// ```
 ///
 /// Bizon et al. take `$v_0 = \sqrt{g\sigma}$`, with the diameter `$\sigma$`. Slow collisions lose next to
-/// nothing, as those of real grains. So disks without gravity do not collapse. A disk on a floor still comes
-/// to rest after infinitely many bounces in a finite time, only later: the speed falls by
-/// `$(1 - r_0)\,v\,(v/v_0)^{3/4}$` in each bounce, and the bounces, which last `$2v/g$`, have a finite sum.
-/// Matter at rest needs [`ElasticBelow`](super::ElasticBelow) around this rule.
+/// nothing, as with real grains, so disks without gravity do not collapse. A disk on a floor still comes to
+/// rest after infinitely many bounces in a finite time, only later: its speed falls by
+/// `$(1 - r_0)\,v\,(v/v_0)^{3/4}$` in each bounce, and the durations `$2v/g$` of the bounces have a finite
+/// sum. Matter at rest needs [`LeastRebound`](super::LeastRebound) or [`ElasticBelow`](super::ElasticBelow)
+/// around this rule.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Friction, SpeedDependent};
@@ -52,7 +53,7 @@ impl Quantity for Speed {
 }
 
 impl SpeedDependent {
-    /// Creates a rule without friction whose restitution falls to `$r_0$`, at the closing speed `$v_0$`.
+    /// Creates a rule without friction whose restitution falls to r_0, at the closing speed v_0.
     ///
     /// # Errors
     /// If the restitution is not in `[0, 1]`, or the speed is not finite and positive.
@@ -66,20 +67,20 @@ impl SpeedDependent {
         Self { friction, ..self }
     }
 
-    /// Returns the restitution `$r_n$` at a closing speed.
+    /// Returns the restitution r_n at a closing speed.
     #[inline]
     pub fn restitution(&self, closing_speed: f64) -> f64 {
-        // Square roots have the same bits on every platform.
+        // Square roots give the power 3/4 with the same bits on every platform.
         let root = (closing_speed / self.speed.get()).min(1.0).sqrt();
         1.0 - (1.0 - self.least_restitution.get()) * (root * root.sqrt())
     }
 
-    /// Returns the restitution `$r_0$` of fast collisions.
+    /// Returns the restitution r_0 of fast collisions.
     pub const fn least_restitution(&self) -> f64 {
         self.least_restitution.get()
     }
 
-    /// Returns the closing speed `$v_0$` from which on the restitution is constant.
+    /// Returns the closing speed v_0 from which on the restitution is constant.
     pub const fn speed(&self) -> f64 {
         self.speed.get()
     }

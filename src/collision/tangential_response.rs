@@ -13,16 +13,16 @@ pub enum TangentialResponse {
     /// No tangential impulse: the contact is elastic and frictionless.
     #[default]
     Frictionless,
-    /// The tangential impulse of the rule. Only the normal direction is made elastic. Friction then goes on
-    /// to cool matter at rest, so that runs still stall.
+    /// The tangential impulse of the rule: only the normal direction becomes elastic. Friction then keeps
+    /// cooling matter at rest, so runs still stall.
     Unchanged,
     /// The slip reverses without loss, as between perfectly rough surfaces. Surfaces at rest then hold each
-    /// other, since the slip is zero on average, however weak the friction of the rule.
+    /// other, because their slip is zero on average, however weak the friction of the rule is.
     Reversing,
 }
 
 impl TangentialResponse {
-    /// Returns the impulse of a contact that `rule` would decide, made elastic.
+    /// Returns the impulse of an elastic contact, in place of that of `rule`.
     pub(super) fn elastic<R: CollisionRule>(self, rule: &R, contact: &Contact, regime: Regime) -> Impulse {
         let tangential = match self {
             Self::Frictionless => 0.0,
@@ -32,7 +32,7 @@ impl TangentialResponse {
         Impulse::new(Elastic.impulse(contact).normal(), tangential).with_regime(regime)
     }
 
-    /// Returns the word for it in fingerprints.
+    /// Returns the word that stands for the response in fingerprints.
     pub(super) const fn name(self) -> &'static str {
         match self {
             Self::Frictionless => "frictionless",

@@ -21,7 +21,7 @@ pub(crate) enum Broken {
     Changed,
 }
 
-/// Bytes of name, version and checksum.
+/// Number of bytes of name, version and checksum.
 const HEADER: usize = 8 + 4 + blake3::OUT_LEN;
 
 impl Seal {

@@ -1,4 +1,4 @@
-//! Writes of files that are done whole or not at all.
+//! Writing of files, whole or not at all.
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
@@ -10,8 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Beginning and ending of the names of files that are being written.
 const TEMPORARY: (&str, &str) = ("granular-edmd-", ".tmp");
 
-/// Number of names that are tried before giving up. The second is needed only if two random numbers are
-/// equal.
+/// Number of names to try before giving up. A second name is needed only if two random numbers are equal.
 const NAMES: usize = 8;
 
 /// Writes a file whole or not at all. A reader never sees half of it, and if the write fails, an older file
@@ -50,7 +49,7 @@ pub(crate) fn is_temporary(name: &OsStr) -> bool {
         if is_decimal(process) && is_decimal(count) && is_hexadecimal(random))
 }
 
-/// Creates a temporary file beside `path`. The file is new: a file that is there already is never touched.
+/// Creates a temporary file beside `path`. The file is new: an existing file is never touched.
 fn create_temporary(path: &Path) -> io::Result<(PathBuf, File)> {
     let mut attempt = create_new(path);
     for _ in 1..NAMES {
@@ -174,7 +173,7 @@ mod tests {
         assert_eq!(fs::read(path).unwrap(), b"whole");
     }
 
-    /// Returns contents in which every part tells of every other, so that a file of two halves is noticed.
+    /// Returns contents whose parts are all alike, so that a file made of parts of two writes is noticed.
     fn contents(writer: u8, count: u32) -> Vec<u8> {
         [vec![writer; 1], count.to_le_bytes().to_vec()].concat().repeat(3000)
     }

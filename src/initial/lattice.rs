@@ -7,8 +7,8 @@ use crate::boundary::{Boundary, Domain};
 use crate::quantity::positive;
 use crate::{Disk, ParameterError};
 
-/// Number of rows without a place after which none is expected further up: walls may cover the floor, but
-/// an open top has no end.
+/// Number of successive rows without a free place after which the search ends. Walls may cover the floor, but
+/// under an open top there is no last row.
 const MOST_EMPTY_ROWS: usize = 1000;
 
 /// Returns `count` equal disks at rest on a square lattice in the lower part of the boundary, row by row from

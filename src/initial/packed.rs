@@ -18,19 +18,21 @@ const PATIENCE: usize = 100;
 /// Share of the missing area that must be gained in these steps.
 const LEAST_GAIN: f64 = 0.05;
 
-/// Factor by which packed disks are larger than the real ones, so that rounding lets none overlap.
+/// Relative amount by which disks are larger while they are packed, so that rounding lets none overlap.
 const APART: f64 = 1e-9;
 
-/// Returns these disks, of any mix of radii, packed at random below the height `below` (the lid, if that is
-/// lower).
+/// Returns these disks, of any mix of radii, packed at random below the height `below` (or the lid, if that
+/// is lower).
 ///
-/// Small disks are placed at random, and move and collide without loss. Again and again each of them
-/// grows into the room that it finds, until it has its radius. Two sizes reach an area fraction of 0.8
-/// and more without order. Equal disks crystallize above 0.7, as they do in any packing: they form grains
-/// with walls between them. The disks have the same order, radii, masses and velocities as before.
+/// The disks start small at random places, and move and collide without loss. Again and again, each of them
+/// grows into the room that it finds, until it has its full radius. Two sizes reach an area fraction of 0.8
+/// and more without order. Equal disks crystallize above 0.7, as they do in any packing: they form crystal
+/// grains with boundaries between them. The disks have the same order, radii, masses and velocities as
+/// before.
 ///
-/// Places are taken in the interior of the boundary, in which walls must not move. Around a disk that has
-/// its place already, the others are packed in [`Obstacles`](crate::boundary::Obstacles).
+/// The disks are packed in the interior of the boundary, in which walls must not move. To pack disks around
+/// one that has its place already, put that one into the boundary as
+/// [`Obstacles`](crate::boundary::Obstacles).
 ///
 /// Source: similar to B. D. Lubachevsky and F. H. Stillinger, J. Stat. Phys. **60**, 561 (1990), where
 /// all disks grow at the same rate all the time.
@@ -79,8 +81,8 @@ pub fn packed_at_random<B: Boundary + ?Sized>(
     Ok(packed.collect::<Result<_, _>>()?)
 }
 
-/// Names the radius of the disk that finds no room, not that with which it would have begun to grow. The
-/// largest disks are placed first.
+/// Returns the error with the full radius of the disk that finds no room, instead of the radius with which it
+/// would have begun to grow. The largest disks are placed first.
 fn with_full_radius(error: PlacementError, disks: &[Disk]) -> PlacementError {
     let PlacementError::NoRoom { count, placed, radius } = error else { return error };
     let mut radii: Vec<f64> = disks.iter().map(Disk::radius).collect();

@@ -8,11 +8,13 @@ use crate::quantity::{accept, positive};
 use crate::random::uniform;
 use crate::{Disk, ParameterError};
 
-/// Largest distance from the median of log-normal radii, in standard deviations. No generator of doubles
-/// comes as far.
+/// Largest distance from the median of log-normal radii, in standard deviations. Normal numbers made from
+/// doubles do not come as far.
 const FARTHEST: f64 = 9.0;
 
-/// A distribution of radii within bounds. The same seed gives the same radii on all platforms.
+/// A distribution of radii within bounds.
+///
+/// The same seed gives the same radii on all platforms.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -42,7 +44,7 @@ enum Law {
 }
 
 impl Radii {
-    /// Takes radii between these bounds, all equally likely.
+    /// Creates a distribution of radii between these bounds, all equally likely.
     ///
     /// # Errors
     /// If a bound is not finite and positive, or the largest is below the smallest.
@@ -50,7 +52,9 @@ impl Radii {
         Self::within(Law::Uniform, smallest, largest)
     }
 
-    /// Takes log-normal radii, cut at these bounds. The logarithm of the radius has this standard deviation.
+    /// Creates a log-normal distribution of radii, cut at these bounds.
+    ///
+    /// The logarithm of the radius has the standard deviation `deviation`.
     ///
     /// The density is `$\propto R^{-1}\,e^{-\ln^2(R/R_0)/2\sigma^2}$` for the median `$R_0$` of the uncut
     /// distribution and the deviation `$\sigma$`.
@@ -69,8 +73,8 @@ impl Radii {
         Self::within(Law::LogNormal { median, deviation }, smallest, largest)
     }
 
-    /// Takes radii of the density `$\propto R^{-\alpha}$` between these bounds, for this exponent
-    /// `$\alpha$`.
+    /// Creates a distribution of radii R between these bounds, with a density in proportion to R to the power
+    /// of minus `exponent`.
     ///
     /// # Errors
     /// If a bound is not finite and positive, the largest is below the smallest, or the exponent is not in
@@ -81,7 +85,9 @@ impl Radii {
         Self::within(Law::Power { exponent }, smallest, largest)
     }
 
-    /// Takes two radii. This share of all disks is large, rounded to a whole number, and no more or less.
+    /// Creates a distribution of two radii, in which exactly this share of all disks is large.
+    ///
+    /// The number of large disks is this share of all disks, rounded to a whole number.
     ///
     /// # Errors
     /// If a radius is not finite and positive, the large one is below the small one, or the share is not in
@@ -98,7 +104,7 @@ impl Radii {
         Ok(Self { law, smallest, largest })
     }
 
-    /// Draws so many radii, in an order at random.
+    /// Draws `count` radii in random order.
     pub fn draw(&self, count: usize, seed: u64) -> Vec<f64> {
         let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
         let mut uniform = || uniform(&mut generator);
@@ -109,7 +115,7 @@ impl Radii {
         draws.map(|radius| radius.clamp(self.smallest, self.largest)).collect()
     }
 
-    /// Draws `large` large radii among `count`.
+    /// Draws `count` radii, of which `large` are large, in random order.
     fn two(&self, count: usize, large: usize, uniform: &mut impl FnMut() -> f64) -> Vec<f64> {
         let mut left = large;
         let mut is_large = |open: usize| {
@@ -136,8 +142,8 @@ impl Radii {
         }
     }
 
-    /// Draws by rejection from a uniform logarithm. Since the median is within the bounds, one draw in eight
-    /// is taken at least, however close or far they are.
+    /// Draws by rejection from a uniform logarithm. Since the median is within the bounds, at least one draw
+    /// in eight is accepted, however near or far the bounds are.
     fn log_normal_radius(&self, median: f64, deviation: f64, uniform: &mut impl FnMut() -> f64) -> f64 {
         let least = (libm::log(self.smallest / median) / deviation).max(-FARTHEST);
         let most = (libm::log(self.largest / median) / deviation).min(FARTHEST);
@@ -152,8 +158,8 @@ impl Radii {
 
 /// Returns homogeneous disks of these radii, all at rest at the origin, for the functions that place disks.
 ///
-/// Masses go with the area, `$m = m_1 (2R)^2$`, where `mass` is the mass `$m_1$` of a disk of diameter 1. For
-/// equal masses, take [`Disk::new`] and [`Disk::with_mass`].
+/// Masses are in proportion to the area, `$m = m_1 (2R)^2$`, where `mass` is the mass `$m_1$` of a disk of
+/// diameter 1. For equal masses, take [`Disk::new`] and [`Disk::with_mass`].
 ///
 /// # Errors
 /// If a radius or a mass is not in `[1e-30, 1e30]`.

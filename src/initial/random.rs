@@ -11,21 +11,23 @@ use crate::quantity::positive;
 use crate::random::uniform;
 use crate::squares::Squares;
 
-/// Trials for each disk.
+/// Number of trials for each disk.
 const TRIALS: usize = 10_000;
 
-/// Returns equal disks at rest at random places that do not overlap, below the height `below` (the lid, if
+/// Returns equal disks at rest at random places that do not overlap, below the height `below` (or the lid, if
 /// that is lower).
 ///
-/// Places are drawn in the interior of the boundary, and taken where a disk overlaps neither another disk nor
-/// a wall ([`Boundary::overlap`] at time 0). In a round drum, all disks lie inside the circle.
+/// Places are drawn in the interior of the boundary, and a place is taken if the disk overlaps neither
+/// another disk nor a wall there ([`Boundary::overlap`] at time 0). In a round drum, all disks lie inside the
+/// circle.
 ///
-/// Disks are placed one by one where there is room. Dense states (area fraction above 0.5, say) cannot be
-/// reached in this way: start from a [`lattice`](super::lattice()) and let it melt.
+/// Disks are placed one by one where there is room. This cannot reach dense states (with an area fraction
+/// above 0.5, say). For these, start from a [`lattice`](super::lattice()) and let it melt, or take
+/// [`packed_at_random`](super::packed_at_random).
 ///
 /// # Errors
 /// If the radius is not finite and positive, the height is not finite and above the bottom of the interior,
-/// or a disk finds no place in ten thousand trials.
+/// there are more than 2²⁸ disks, or a disk finds no place in ten thousand trials.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -50,7 +52,8 @@ pub fn random<B: Boundary + ?Sized>(
 }
 
 /// Returns these disks, of any mix of radii, at random places that do not overlap, below the height `below`.
-/// The rest is as for [`random`].
+///
+/// Everything else is as in [`random`].
 ///
 /// # Errors
 /// If the height is not finite and above the bottom of the interior, there are more than 2²⁸ disks, or one
@@ -89,8 +92,8 @@ pub fn placed_at_random<B: Boundary + ?Sized>(
     Ok(placed)
 }
 
-/// Returns the rectangle for the center of a disk; `None` if the disk is too large, also for its own image at
-/// periodic sides or ends.
+/// Returns the rectangle for the center of a disk; `None` if the disk is too large for the interior, or would
+/// overlap its own image at periodic sides or ends.
 fn room_for(interior: &Domain, radius: f64) -> Option<Domain> {
     let room = room(interior, radius);
     let fits = |period: f64| period == 0.0 || 2.0 * radius <= period;

@@ -6,7 +6,7 @@ use super::{PlacementError, countable, spacings};
 use crate::Disk;
 use crate::boundary::{Boundary, Domain};
 
-/// Places tried for each disk.
+/// Number of places tried for each disk.
 const TRIALS: usize = 100_000;
 
 /// Returns these disks, of any mix of radii, in rows from the floor up and from left to right, in the order
@@ -78,7 +78,7 @@ impl<'a, B: Boundary + ?Sized> Rows<'a, B> {
             }
             let site = self.corner + DVec2::new(0.5 * size, self.column.y + 0.5 * size);
             let is_free = self.boundary.overlap(site, radius, 0.0).is_none();
-            // A place beside an obstacle is found by steps of a radius.
+            // Next to an obstacle, the search goes on in steps of about a radius.
             self.column =
                 DVec2::new(self.column.x.max(size), self.column.y + if is_free { size } else { 0.5 * size });
             if is_free {
@@ -88,8 +88,8 @@ impl<'a, B: Boundary + ?Sized> Rows<'a, B> {
         None
     }
 
-    /// Begins a new column, and a new row, where the present one is full. Tells whether the disk is below the
-    /// lid.
+    /// Begins a new column if the present column is full, and a new row if the present row is full. Tells
+    /// whether the disk fits below the lid.
     fn make_room(&mut self, radius: f64, size: f64) -> bool {
         if self.column.y + size > self.height {
             self.corner.x += self.column.x;
@@ -99,7 +99,8 @@ impl<'a, B: Boundary + ?Sized> Rows<'a, B> {
             self.corner = DVec2::new(self.interior.left, self.corner.y + self.height);
             self.column = DVec2::ZERO;
         }
-        // Under a lid there need be no gap. At periodic ends the first row is the next neighbor.
+        // Under a lid, no gap is needed. At periodic ends, the first row is the next neighbor, so the gap
+        // stays.
         let end = if self.interior.periodic_ends { size } else { 0.5 * size + radius };
         self.corner.y + self.column.y + end <= self.interior.top
     }

@@ -8,10 +8,11 @@ use crate::quantity::non_negative;
 use crate::random::normal;
 use crate::{Disk, ParameterError};
 
-/// Returns the same disks with Maxwellian velocities of this temperature. The center of mass is at rest, and
-/// no disk rotates.
+/// Returns the same disks with Maxwellian velocities of this temperature.
 ///
-/// Each component is normal with variance `$T/m$`. The total momentum is then taken out in proportion to the
+/// The center of mass is at rest, and no disk rotates.
+///
+/// Each component is normal with variance `$T/m$`. The total momentum is then removed, in proportion to the
 /// masses.
 ///
 /// # Errors

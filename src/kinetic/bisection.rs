@@ -1,9 +1,9 @@
-//! The place at which a condition ceases to hold, by bisection.
+//! Bisection for the place at which a condition ceases to hold.
 
 /// Returns the last number from `inside`, where `holds` is true, toward `outside`, where it is false.
 ///
-/// If the condition changes more than once in between, one of the changes is found. The search halves the
-/// interval until no floating-point number is left inside it. About two thousand halvings always suffice for
+/// If the condition changes more than once in between, the search finds one of the changes. It halves the
+/// interval until no floating-point number is left inside. About two thousand halvings always suffice for
 /// that.
 pub(super) fn boundary(inside: f64, outside: f64, holds: impl Fn(f64) -> bool) -> f64 {
     let (mut inside, mut outside) = (inside, outside);

@@ -2,7 +2,7 @@
 
 use crate::statistics::Estimate;
 
-/// The averages over the collisions of a gas under a rule; made by
+/// The averages over the collisions of a gas under a rule; returned by
 /// [`MonteCarlo::average`](super::MonteCarlo::average).
 ///
 /// ```
@@ -25,14 +25,17 @@ impl CollisionAverage {
         Self { energy_change, sticking_fraction }
     }
 
-    /// Returns `$\langle dE\rangle$`, negative when energy is lost. Its error is that of independent
-    /// collisions, from the scatter within each stratum.
+    /// Returns the mean energy change ⟨dE⟩, negative when energy is lost.
+    ///
+    /// Its error is that of independent collisions, from the scatter within each stratum.
     pub const fn energy_change(&self) -> Estimate {
         self.energy_change
     }
 
     /// Returns the fraction of collisions that the rule labels
-    /// [`Regime::Sticking`](crate::collision::Regime::Sticking). Its error is about `2/sqrt(samples)`.
+    /// [`Regime::Sticking`](crate::collision::Regime::Sticking).
+    ///
+    /// Its error is about `2/sqrt(samples)`.
     pub const fn sticking_fraction(&self) -> f64 {
         self.sticking_fraction
     }

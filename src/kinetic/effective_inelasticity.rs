@@ -4,7 +4,8 @@ use crate::ParameterError;
 use crate::collision::Smooth;
 use crate::quantity::{accept, positive};
 
-/// Returns the effective normal inelasticity: that of smooth disks that lose as much energy per collision.
+/// Returns the effective normal inelasticity: the inelasticity of smooth disks that lose the same energy per
+/// collision.
 ///
 /// The effective inelasticity is the paper's Eq. (9),
 ///
@@ -14,8 +15,8 @@ use crate::quantity::{accept, positive};
 ///
 /// in `[0, 1/2]`, for a mean energy change in `$[-T, 0]$`, with `$T$` the translational temperature. No gas
 /// of smooth disks is outside that range: with restitution zero they lose exactly `$T$`, and they never gain
-/// energy. Disks with friction can lose more, and a Monte Carlo mean can be above zero within its error. Such
-/// values are refused rather than clipped.
+/// energy. Disks with friction can lose more, and a Monte Carlo mean can be above zero within its error. The
+/// function refuses such values instead of clipping them.
 ///
 /// # Errors
 /// If the temperature is not positive, or the mean energy change is not in `$[-T, 0]$`.
@@ -30,8 +31,8 @@ use crate::quantity::{accept, positive};
 pub fn effective_inelasticity(mean_energy_change: f64, temperature: f64) -> Result<f64, ParameterError> {
     let change = mean_energy_change / positive("temperature", temperature)?;
     accept((-1.0..=0.0).contains(&change), "mean energy change per temperature", "in [-1, 0]", change)?;
-    // The result is (1 - root)/2, multiplied by (1 + root) above and below. At small losses the root is close
-    // to 1, and the difference would keep few digits.
+    // This is (1 - root)/2, with numerator and denominator multiplied by (1 + root). At small losses the root
+    // is close to 1, and the difference would keep few digits.
     Ok(0.5 * change.abs() / (1.0 + (1.0 + change).sqrt()))
 }
 

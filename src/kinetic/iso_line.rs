@@ -6,11 +6,10 @@ use super::stick_slip::StickSlip;
 use crate::ParameterError;
 use crate::quantity::{accept, non_negative};
 
-/// Consecutive points `$(\kappa, q)$` of a line.
+/// Consecutive points (κ, q) of a line.
 pub type Piece = Vec<(f64, f64)>;
 
-/// The line `$\langle dE\rangle = \text{const}$` in the plane of `$\kappa = \kappa_s = \kappa_d$` and
-/// `$q = q_n = q_t$` (paper, Fig. 1), for the paper's rule.
+/// A line ⟨dE⟩ = const in the plane of κ = κ_s = κ_d and q = q_n = q_t (paper, Fig. 1), for the paper's rule.
 ///
 /// With equal inelasticities the sticking probability does not depend on `$q$`, and `$\langle dE\rangle$` is
 /// a polynomial of second degree in `$q$`. Each friction therefore has at most two values of `$q$`, and none
@@ -34,7 +33,7 @@ pub type Piece = Vec<(f64, f64)>;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IsoLine {
-    /// Relative energy change `$\langle dE\rangle/T$` on the line.
+    /// Relative energy change ⟨dE⟩/T on the line.
     change: f64,
     mass_ratio: f64,
     slip_ratio: f64,
@@ -66,13 +65,13 @@ impl IsoLine {
         Ok(lower.into_iter().chain(upper.filter(|_| upper != lower)).collect())
     }
 
-    /// Traces the line at these ascending frictions, as far as the inelasticity is at most
+    /// Traces the line at these ascending frictions, where the inelasticity is at most
     /// `largest_inelasticity`.
     ///
     /// The result contains the connected pieces of the line. A piece that ends between two of the frictions
-    /// gets its exact end as a last point. There the line leaves the plane, or its lower and its upper
-    /// inelasticity meet; in that case both pieces have this point. A piece that lies entirely between two of
-    /// the frictions is missed.
+    /// gets its exact end as a last point. At such an end, the line leaves the plane, or its lower and its
+    /// upper inelasticity meet. If they meet, both pieces have this point. The trace misses a piece that lies
+    /// entirely between two of the frictions.
     ///
     /// # Errors
     /// If a friction is negative or not finite, the frictions do not ascend, or `largest_inelasticity` is not
@@ -89,8 +88,7 @@ impl IsoLine {
         Ok([pieces(frictions, on(0)), pieces(frictions, on(1))].concat())
     }
 
-    /// Returns both real values of `$q$` at a friction, in ascending order, whether they are in the plane or
-    /// not.
+    /// Returns both real values of q at a friction, in ascending order, also those outside the plane.
     ///
     /// The values solve `$a q^2 - b q + c = 0$` with
     /// `$c = (\langle dE\rangle|_{q=0} - \langle dE\rangle)/T$`.
@@ -105,7 +103,7 @@ impl IsoLine {
     }
 }
 
-/// Returns the real roots of `$a x^2 - b x + c$` with `$a > 0$`, in ascending order.
+/// Returns the real roots of a x² − b x + c with a > 0, in ascending order.
 fn roots(a: f64, b: f64, c: f64) -> [Option<f64>; 2] {
     let discriminant = b * b - 4.0 * a * c;
     if discriminant < 0.0 {

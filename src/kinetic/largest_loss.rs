@@ -4,7 +4,7 @@ use super::Maxwellian;
 use super::bisection::boundary;
 use crate::collision::Frictional;
 
-/// Returns the static friction at which the mean energy loss is largest, with the other coefficients of
+/// Returns the static friction at which the mean energy loss is largest, for the other coefficients of
 /// `rule`.
 ///
 /// The ratio `$\rho = \kappa_d/\kappa_s$` also stays as it is (1 if the rule has no friction). At a
@@ -19,9 +19,9 @@ use crate::collision::Frictional;
 /// the derivation is in `docs/physics-kinetic.md`. Elastic disks lose most at `$\kappa = 0.2627$`, the
 /// paper's `$\kappa\approx0.3$`.
 ///
-/// The result is `None` if no finite friction loses most. Where sticking itself loses much (`$q_t\ge1/3$` for
-/// `$\rho=1$`), the loss grows with friction all the way to rough disks; for `$\rho = 0$` sliding loses
-/// nothing.
+/// The result is `None` if the loss has no maximum at a finite friction. If sticking itself loses much
+/// (`$q_t\ge1/3$` for `$\rho=1$`), the loss grows with friction all the way to rough disks. There is no
+/// maximum for `$\rho = 0$` either, because sliding friction then loses nothing.
 ///
 /// ```
 /// use granular_edmd::collision::Frictional;
@@ -46,12 +46,12 @@ fn friction_ratio(rule: &Frictional) -> f64 {
     if rule.static_friction() == 0.0 { 1.0 } else { rule.dynamic_friction() / rule.static_friction() }
 }
 
-/// A function of the sticking probability `$s$` that has the sign of the slope of `$\langle dE\rangle$` in
+/// A function of the sticking probability s that has the sign of the derivative of ⟨dE⟩ with respect to
 /// friction.
 ///
 /// The function is `$-\rho + 3Gs^2 + 2H\,(1-(1+s)^{-2})$` with `$H = \rho^2(1-q_t)$`, `$G = \rho - q_t - H$`.
 /// It starts negative: the loss grows with friction. For `$G<0$` it stays negative. Otherwise it rises, and
-/// its one root is the only minimum of `$\langle dE\rangle$`.
+/// its one root, if there is one, is the only minimum of `$\langle dE\rangle$`.
 struct Slope {
     ratio: f64,
     quadratic: f64,

@@ -63,8 +63,9 @@ impl Maxwellian {
         })
     }
 
-    /// Returns the same gas with its spins at another temperature. At temperature zero, no disk rotates
-    /// before it collides.
+    /// Returns the same gas with its spins at another temperature.
+    ///
+    /// At temperature zero, no disk rotates before it collides.
     ///
     /// # Errors
     /// If the temperature is not in `[0, 1e30]`.
@@ -85,32 +86,32 @@ impl Maxwellian {
         }
     }
 
-    /// Returns the translational temperature, `$T = m\langle v_x^2\rangle$`.
+    /// Returns the translational temperature, T = m⟨v_x²⟩.
     pub const fn translational_temperature(&self) -> f64 {
         self.translational_temperature
     }
 
-    /// Returns the rotational temperature, `$T_r = I\langle\omega^2\rangle$`.
+    /// Returns the rotational temperature, T_r = I⟨ω²⟩.
     pub const fn rotational_temperature(&self) -> f64 {
         self.rotational_temperature
     }
 
-    /// Returns the normal effective mass `$\mu$`, with `$1/\mu = \sum 1/m_i$`.
+    /// Returns the normal effective mass μ, with 1/μ = Σ 1/mᵢ.
     pub fn normal_mass(&self) -> f64 {
         1.0 / (1.0 / self.masses[0] + 1.0 / self.masses[1])
     }
 
-    /// Returns the tangential effective mass `$\mu_t$`, with `$1/\mu_t = \sum (1 + 1/\beta_i)/m_i$`.
+    /// Returns the tangential effective mass μ_t, with 1/μ_t = Σ (1 + 1/βᵢ)/mᵢ.
     pub fn tangential_mass(&self) -> f64 {
         1.0 / (self.compliance(0) + self.compliance(1))
     }
 
-    /// Returns half the mean square of the closing speed over collisions, `$S$`.
+    /// Returns half the mean square of the closing speed over collisions, S.
     pub fn closing_variance(&self) -> f64 {
         self.translational_temperature / self.normal_mass()
     }
 
-    /// Returns the mean square of the slip speed over collisions, `$V$`.
+    /// Returns the mean square of the slip speed over collisions, V.
     pub fn slip_variance(&self) -> f64 {
         self.closing_variance() * self.slip_ratio_squared()
     }
@@ -119,20 +120,19 @@ impl Maxwellian {
         (1.0 + 1.0 / self.inertia_factors[partner]) / self.masses[partner]
     }
 
-    /// Returns the ratio of the effective masses, `$\lambda = \mu/\mu_t$`. It is 3 for homogeneous disks,
-    /// whatever their masses.
+    /// Returns the ratio of the effective masses, λ = μ/μ_t. It is 3 for homogeneous disks of any masses.
     #[inline]
     pub(super) fn mass_ratio(&self) -> f64 {
         self.normal_mass() / self.tangential_mass()
     }
 
-    /// Returns the ratio of the variances, `$w^2 = V/S = 1 + (\lambda - 1)T_r/T$`.
+    /// Returns the ratio of the variances, w² = V/S = 1 + (λ − 1) T_r/T.
     #[inline]
     pub(super) fn slip_ratio_squared(&self) -> f64 {
         1.0 + (self.mass_ratio() - 1.0) * (self.rotational_temperature / self.translational_temperature)
     }
 
-    /// Returns the contact with these speeds, given in units of `$\sqrt S$` and `$\sqrt V$`.
+    /// Returns the contact with these speeds, given in units of √S and √V.
     #[inline]
     pub(super) fn contact(&self, closing: f64, slip: f64) -> Contact {
         Contact::new(

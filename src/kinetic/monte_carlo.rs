@@ -16,8 +16,8 @@ const STRATA: u32 = 64;
 const SAMPLES: u32 = 64;
 /// Number of collisions in one chunk, the unit of parallel work.
 const CHUNK: u64 = STRATA as u64 * SAMPLES as u64;
-/// Number of chunks before the error is checked for the first time. They suffice for the error to be well
-/// known itself.
+/// Number of chunks before the error is checked for the first time. With this many, the error itself is well
+/// known.
 const FIRST_ROUND: u64 = 16;
 
 /// A Monte Carlo average of the energy change per collision, for any rule.
@@ -84,7 +84,7 @@ impl MonteCarlo {
         Ok(Self { standard_error: Some(positive("standard error", standard_error)?), ..self })
     }
 
-    /// Samples the mean energy change per collision `$\langle dE\rangle$` of `rule` in `gas`.
+    /// Samples the mean energy change per collision ⟨dE⟩ of `rule` in `gas`.
     ///
     /// The partners have never collided before: a rule that asks for the time since their last collision gets
     /// infinity.

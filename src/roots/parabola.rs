@@ -5,10 +5,10 @@
 ///
 /// The time `$t \ge 0$` is counted from the moment at which value and rate are given. The result is infinite
 /// only if it overflows.
-/// - An open gap counts at the first zero at which it falls; there may be none. A gap that closes for an
-///   instant and opens again, as at a double root, may count or not: rounding decides.
+/// - An open gap counts at the first zero through which it falls; there may be none. Rounding decides whether
+///   a gap counts that closes for an instant and opens again, as at a double root.
 /// - A gap that is closed and closes further counts at once, at time 0.
-/// - A gap that is closed and opens counts when it closes next. If it never rises to zero, it counts when it
+/// - A gap that is closed but rises counts when it closes next. If it never rises to zero, it counts when it
 ///   is back at its first value.
 ///
 /// The numbers should be finite. The search uses only `+ - * /` and the square root, so its bits are the same
@@ -34,9 +34,9 @@ pub fn first_descent(value: f64, rate: f64, acceleration: f64) -> Option<f64> {
     }
     let discriminant = rate * rate - 2.0 * acceleration * value;
     // The first of the two zeros is (-rate - root) / acceleration. For a small acceleration, the numerator is
-    // the difference of two nearly equal numbers; without acceleration, the zero is 0 / 0. Multiplied by the
-    // conjugate, the denominator is a sum of two positive numbers. This form is also exact for straight
-    // flights.
+    // the difference of two nearly equal numbers; without acceleration, the zero is 0 / 0. Multiplication by
+    // the conjugate gives a fraction whose denominator is a sum of two positive numbers. This form is also
+    // exact for straight flights.
     (rate < 0.0 && discriminant >= 0.0).then(|| 2.0 * value / (discriminant.sqrt() - rate))
 }
 
@@ -46,7 +46,7 @@ fn descent_under_pull(value: f64, rate: f64, acceleration: f64) -> f64 {
     let discriminant = rate * rate - 2.0 * acceleration * value;
     if discriminant <= 0.0 {
         // The gap is still closed at the top of the parabola. A gap that began exactly at zero would close as
-        // fast as it opened, at twice the time of the top, so that time is returned. At the top itself the
+        // fast as it opened, at twice the time of the top, so this returns that time. At the top itself the
         // rate is zero: a disk that bounces lower than rounding would stop there, although no rule took its
         // speed.
         return (-2.0 * rate / acceleration).max(0.0);

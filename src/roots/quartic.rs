@@ -15,9 +15,9 @@ const SMALLER: f64 = 1.0 / (1u64 << 60) as f64;
 /// and closes further.
 ///
 /// The meaning is that of [`first_descent`], which handles polynomials of degree two and less:
-/// - An open gap counts at its first zero at which it falls.
+/// - An open gap counts at the first zero through which it falls.
 /// - A gap that is closed and closes further counts at once, at time 0.
-/// - A gap that is closed and opens counts when it closes next. If it has not opened by then, it counts when
+/// - A gap that is closed but rises counts when it closes next. If it has not opened by then, it counts when
 ///   it falls back to its first value.
 ///
 /// The result is `None` if a coefficient is not finite. `end` may be infinite. The search uses only `+ - * /`
@@ -52,7 +52,7 @@ pub fn first_descent_of_quartic(coefficients: &[f64; 5], end: f64) -> Option<f64
     search(&gap, end.min(bound_of_zeros(&gap)))
 }
 
-/// Searches the stretches between the turns of the gap for the descent, one after the other.
+/// Searches the intervals between the turns of the gap, one after the other, for the descent.
 fn search(gap: &Coefficients, end: f64) -> Option<f64> {
     let slope = derivative(gap);
     // A gap that begins closed is measured from its first value, so its constant term is exactly zero. A
@@ -86,8 +86,8 @@ fn falls_from_the_start(gap: &Coefficients) -> bool {
 fn bound_of_zeros(polynomial: &Coefficients) -> f64 {
     let leading = polynomial.iter().rposition(|&c| c != 0.0).unwrap_or(0);
     let largest = polynomial[..leading].iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
-    // A tiny leading coefficient can put a zero beyond all numbers, so the bound is cut to a finite one.
-    // Values out there may overflow, but at a finite time an infinite partial sum keeps its sign.
+    // A tiny leading coefficient can put a zero beyond the largest number, so the bound is cut to a finite
+    // one. Values out there may overflow, but at a finite time an infinite partial sum keeps its sign.
     (1.0 + largest / polynomial[leading].abs()).min(f64::MAX)
 }
 
@@ -101,12 +101,12 @@ fn derivative(&[_, c1, c2, c3, c4]: &Coefficients) -> Coefficients {
 }
 
 fn middle(low: f64, high: f64) -> f64 {
-    // Half of the sum is avoided, since the sum may overflow.
+    // Half of the sum would not do, because the sum may overflow.
     low + 0.5 * (high - low)
 }
 
-/// Times in order, at most five. All but the first and the last are times at which a polynomial changes its
-/// sign.
+/// At most five times, in ascending order. At each of them but the first and the last, a polynomial changes
+/// its sign.
 #[derive(Clone, Copy)]
 struct Marks {
     times: [f64; 5],
@@ -119,12 +119,13 @@ impl Marks {
         self.count += 1;
     }
 
-    /// Returns the stretches of time between neighboring marks.
+    /// Returns the intervals of time between neighboring marks.
     fn stretches(&self) -> impl Iterator<Item = (f64, f64)> {
         self.times[..self.count].windows(2).map(|pair| (pair[0], pair[1]))
     }
 
-    /// Returns the changes of sign of a polynomial whose derivative changes its own at these marks.
+    /// Returns the times at which a polynomial changes its sign, if its derivative changes its sign at these
+    /// marks.
     ///
     /// Between two marks the polynomial is monotonic, so it changes its sign at most once. No change can be
     /// missed, however close two of them are.
@@ -153,9 +154,9 @@ fn turns(polynomial: &Coefficients, end: f64) -> Marks {
 
 /// Returns the first number beyond a change of sign between `low` and `high`.
 ///
-/// The search halves the stretch, and each step decides one bit. Newton's method would need fewer steps, but
-/// at a double zero its slope is pure rounding, and it would leave the stretch. The far side of the change is
-/// returned, so that a search that ends at this time finds the change again.
+/// The search halves the interval, and each step decides one bit. Newton's method would need fewer steps, but
+/// at a double zero its slope is pure rounding, and it would leave the interval. The function returns the far
+/// side of the change, so that a search that ends at this time finds the change again.
 fn change_of_sign(polynomial: &Coefficients, mut low: f64, mut high: f64) -> f64 {
     let positive = value(polynomial, low) > 0.0;
     loop {

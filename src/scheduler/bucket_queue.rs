@@ -1,4 +1,4 @@
-//! A calendar that is turned page by page, for many disks.
+//! The scheduler for many disks: a calendar that is turned page by page.
 
 mod piles;
 
@@ -14,24 +14,25 @@ use piles::Piles;
 /// buckets, and the ends of all of them stay in the caches.
 const EVENTS_PER_BUCKET: usize = 512;
 
-/// Number of events of a page for each disk, which share the cost of dealing out that disk anew.
+/// Number of events per disk in a page. They share the cost of dealing out the disk to the next page.
 const EVENTS_PER_DISK: usize = 2;
 
-/// Number of events for each disk after which a page is turned at the latest. The page was meant to last half
-/// as long, so its buckets are too wide.
+/// Number of events per disk after which a page is turned at the latest. A page was meant to last half as
+/// long, so its buckets are too wide then.
 const LONGEST_PAGE: usize = 2 * EVENTS_PER_DISK;
 
 /// Number of disks in the sample from which the density of events is first estimated.
 const SAMPLE: usize = 256;
 
-/// Inverse of the part of the sample that is due soon and counts in the estimate.
+/// Inverse of the share of the sample that counts in the estimate: the disks that are due soonest.
 const SOON: usize = 8;
 
 /// Number of events that are known in order ahead of the present one, and are named as upcoming.
 const SIGHT: usize = 48;
 
-/// A calendar: a page of equally wide buckets of time. Each bucket holds, in no order, the disks that are due
-/// in it.
+/// A calendar: a page of equally wide buckets of time.
+///
+/// Each bucket holds, in no order, the disks that are due in it.
 ///
 /// - A disk that gets a new time is written to the end of the bucket of that time. Its old entry stays where
 ///   it is.
@@ -165,8 +166,8 @@ impl BucketQueue {
         let Self { due, open, page, .. } = self;
         let (from, bucket) = (open.len(), self.opened);
         self.buckets.take(bucket, |disks| {
-            // The times of these disks lie anywhere in memory. Requested all at once, they come at the cost
-            // of few.
+            // The times of these disks lie anywhere in memory. Requested all at once, they take hardly longer
+            // than a few of them would.
             for &disk in disks {
                 prefetch(due, disk as usize);
             }

@@ -4,10 +4,10 @@ use super::{BucketQueue, EventScheduler, TournamentTree};
 
 /// Number of disks from which on the processor's caches no longer hold a system.
 ///
-/// Above it, an event waits for the memory, and work that spares memory pays: an order that is written page
-/// by page ([`BucketQueue`]), and early requests for what the next events will need. Below it, the same work
-/// is a loss. The number is measured by `cargo bench --bench scaling`. The optimum is flat, so one number
-/// serves both kinds of work.
+/// Above it, an event waits for the memory, and work that saves accesses to memory pays: an order that is
+/// written page by page ([`BucketQueue`]), and early requests for what the next events will need. Below it,
+/// the same work is a loss. The number comes from `cargo bench --bench scaling`. The optimum is flat, so one
+/// number serves both kinds of work.
 pub(crate) const LARGE_SYSTEM: usize = 30_000;
 
 /// A [`TournamentTree`] for fewer than 30 000 disks, and a [`BucketQueue`] from there on.

@@ -2,8 +2,9 @@
 
 use super::{EventScheduler, NOTHING_DUE};
 
-/// The obvious scheduler, which looks through all times for the earliest at each call. It is slow and plainly
-/// right, and serves as the oracle for all other schedulers.
+/// The obvious scheduler, which looks through all times for the earliest at each call.
+///
+/// It is slow and plainly right, and serves as the oracle for all other schedulers.
 #[derive(Debug, Clone, Default)]
 pub struct LinearScan {
     due: Vec<f64>,

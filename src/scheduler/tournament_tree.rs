@@ -1,4 +1,4 @@
-//! A tournament of times.
+//! The scheduler for few disks: a tournament of their times.
 
 use std::hint::select_unpredictable;
 

@@ -35,8 +35,9 @@ pub struct SimulationBuilder<R, B, S = BySize> {
 }
 
 impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
-    /// Starts to build a simulation from the rule of collisions between disks and the walls around them. The
-    /// rule also serves walls without their own rule.
+    /// Starts to build a simulation from the rule of collisions between disks and the walls around them.
+    ///
+    /// The rule also serves walls without their own rule.
     ///
     /// ```
     /// use granular_edmd::glam::DVec2;
@@ -73,13 +74,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         self
     }
 
-    /// Sets gravity, which points down; 0 unless given, and negative to point up.
+    /// Sets gravity, which points down, or up if it is negative; 0 unless given.
     pub const fn gravity(mut self, gravity: f64) -> Self {
         self.gravity = gravity;
         self
     }
 
-    /// Sets the seed of the stochastic walls; 0 unless given. Without stochastic walls, it has no effect.
+    /// Sets the seed of the stochastic walls; 0 unless given.
+    ///
+    /// Without stochastic walls, it has no effect.
     pub const fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
@@ -91,7 +94,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         self
     }
 
-    /// Sets another scheduler. The trajectory is the same, bit for bit.
+    /// Sets another scheduler.
+    ///
+    /// The trajectory is the same, bit for bit.
     pub fn scheduler<T: EventScheduler>(self, scheduler: T) -> SimulationBuilder<R, B, T> {
         let Self { rule, boundary, scheduler: _, disks, gravity, seed, start_time } = self;
         SimulationBuilder { rule, boundary, scheduler, disks, gravity, seed, start_time }
@@ -100,9 +105,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
     /// Builds the simulation.
     ///
     /// # Errors
-    /// If gravity or the start time is not finite, or gravity is above 1e60 in magnitude. If the domain is
-    /// too small for the disks, or a disk is outside, overlaps a wall or overlaps another disk; the error
-    /// names it.
+    /// If gravity or the start time is not finite, or gravity is above 1e60 in magnitude. If there are too
+    /// many disks or walls, or times at the start are too coarse for such fast disks. If the domain is not
+    /// finite (only its top may be infinite) or is too small for the disks, or a disk is outside, overlaps a
+    /// wall or overlaps another disk; the error names the disk.
     pub fn build(self) -> Result<Simulation<R, B, S>, BuildError> {
         bounded("gravity", self.gravity)?;
         finite("start time", self.start_time)?;
@@ -148,7 +154,7 @@ pub(super) fn fit<B: Boundary + ?Sized>(
     Ok((wall_count, cells))
 }
 
-/// Checks that so many disks can be numbered.
+/// Checks that the engine can number this many disks.
 pub(super) fn bounded_count(count: usize) -> Result<(), BuildError> {
     if count > MOST_DISKS { Err(BuildError::TooManyDisks { count, most: MOST_DISKS }) } else { Ok(()) }
 }
@@ -176,7 +182,7 @@ pub(super) fn count_walls<B: Boundary + ?Sized>(boundary: &B) -> Result<usize, B
 pub(super) fn cells_around<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells, BuildError> {
     let diameter = 2.0 * disks.iter().map(Disk::radius).fold(0.0, f64::max);
     let domain = boundary.domain();
-    // Any cells will do without disks.
+    // Without disks, any cells will do.
     let diameter = if diameter > 0.0 { diameter } else { 0.125 * domain.width() };
     let is_bounded = domain.width().is_finite() && domain.bottom.is_finite();
     if !is_bounded || (domain.periodic_ends && !domain.height().is_finite()) {
@@ -198,7 +204,7 @@ fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk], offset: f64)
     let domain = boundary.domain();
     for (disk, state) in disks.iter().enumerate() {
         let (position, radius) = (state.position(), state.radius());
-        // A disk that is about to enter at the opposite periodic side may be beyond its own side by rounding.
+        // A disk that is about to pass a periodic side may be beyond that side by rounding.
         let slack = TOUCHING * radius;
         let inside = (domain.left - slack..=domain.right + slack).contains(&position.x)
             && (domain.bottom - slack..=domain.top + slack).contains(&position.y);
@@ -225,7 +231,8 @@ fn check_overlaps<B: Boundary + ?Sized>(
     let mut found = vec![0; cells.room()];
     for first in 0..disks.len() {
         let count = cells.around(first, &mut found);
-        // A large disk does not look into itself: a small one inside must find it.
+        // The search of a large disk leaves out its own inside, so a small disk there must find the large
+        // one.
         let is_asked = |second: usize| second < first || (second > first && cells.is_large(second));
         for &second in found[..count].iter().filter(|&&second| is_asked(second as usize)) {
             let (a, b) = (&disks[second as usize], &disks[first]);

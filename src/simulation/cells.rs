@@ -1,4 +1,5 @@
-//! Neighbor cells: a disk can only collide with disks in its own cell and the eight cells around it.
+//! Neighbor cells: until it leaves its cell, a disk can collide only with disks in that cell and the eight
+//! cells around it.
 
 mod block;
 mod cell_size;
@@ -30,9 +31,9 @@ use size_class::classes;
 
 /// The disks in the cells of a grid.
 ///
-/// Ghosts are empty beyond walls; at periodic sides and ends they mirror the cells of the opposite side.
-/// Where disks differ in size, the grid is that of the smallest class, and each larger class has a layer
-/// above it.
+/// A ring of ghost cells surrounds the grid. Beyond walls, ghosts are empty; at periodic sides and ends, they
+/// mirror the cells of the opposite side. Where disks differ in size, the grid is that of the smallest class,
+/// and each larger class has a layer above it.
 #[derive(Debug, Clone)]
 pub(super) struct Cells {
     grid: Grid,
@@ -54,7 +55,7 @@ impl Cells {
         let diameters = disks.clone().map(|(_, radius)| 2.0 * radius);
         let highest = disks.clone().map(|(position, _)| position.y).fold(domain.bottom, f64::max);
         let classes = classes(diameters.clone());
-        // Any cells do without disks.
+        // Without disks, any cells will do.
         let largest = classes.last().map_or(0.125 * domain.width(), |class| class.largest);
         let most = CELLS_PER_DISK * disks.len() as f64 + SPARE_CELLS;
         let single = Layout::new(&domain, largest, cell_size, most, highest)?;
@@ -148,7 +149,7 @@ impl Cells {
         &self.grid
     }
 
-    /// Writes a disk into its cell, of whatever class it is.
+    /// Writes a disk of any class into its cell.
     fn enter(&mut self, disk: usize) {
         match self.layers.as_mut().filter(|layers| layers.of(disk).is_some()) {
             None => self.enter_cell(disk),
@@ -156,7 +157,7 @@ impl Cells {
         }
     }
 
-    /// Writes a disk into its cell, and into the ghost of that cell.
+    /// Writes a disk into its cell, and into the ghosts that mirror the cell.
     #[inline]
     fn enter_cell(&mut self, disk: usize) {
         let place = self.places[disk];
@@ -168,7 +169,7 @@ impl Cells {
         }
     }
 
-    /// Takes a disk out of its cell, and out of the ghost of that cell.
+    /// Takes a disk out of its cell, and out of the ghosts that mirror the cell.
     #[inline]
     fn leave(&mut self, disk: usize) {
         let place = self.places[disk];
@@ -190,7 +191,8 @@ impl Cells {
         passed
     }
 
-    /// Does the same for a disk of a larger class.
+    /// Moves a disk of a larger class to the cell that it enters by this exit. Returns the number of periods
+    /// passed.
     pub(super) fn cross_large(&mut self, disk: usize, exit: Exit) -> [i32; 2] {
         let from = self.places[disk];
         let (to, passed) = self.grid_of(disk).neighbor(from, exit.direction());
@@ -204,11 +206,12 @@ impl Cells {
     /// Returns the room that [`Self::around`] and [`Self::ahead`] need.
     #[inline]
     pub(super) fn room(&self) -> usize {
-        // A disk is in one cell and one ghost at most; the first of several layers may see all disks.
+        // A search finds each disk at most once. With layers, the search of a large disk may find all of
+        // them; the room of nine cells is then for the free slots that are copied behind the last disk.
         if self.layers.is_some() { self.places.len() + self.contents.room(9) } else { self.contents.room(9) }
     }
 
-    /// Writes the disks that `disk` may touch before it leaves its cell (itself included) to `found`. Returns
+    /// Writes to `found` the disks that `disk` may touch before it leaves its cell, itself included. Returns
     /// their number.
     #[inline]
     pub(super) fn around(&self, disk: usize, found: &mut [u32]) -> usize {
@@ -239,8 +242,8 @@ impl Cells {
         layers.gather_visitors(self.grid.index(place), found, count)
     }
 
-    /// Writes the disks that come within reach of a disk of a larger class, after it came to its cell by
-    /// `exit`, to `found`, with some that were before. Returns their number.
+    /// Writes to `found` the disks that come within reach of a disk of a larger class when it enters its cell
+    /// by `exit`, and some that were within reach before. Returns their number.
     pub(super) fn ahead_of_large(&self, disk: usize, exit: Exit, found: &mut [u32]) -> usize {
         let Some(layers) = &self.layers else { return 0 };
         let (place, (right, up)) = (self.places[disk], exit.direction());
@@ -248,14 +251,14 @@ impl Cells {
         layers.gather(&self.contents, disk, place, (!layers.is_narrow()).then_some(before), found)
     }
 
-    /// Writes the disks that come within reach of a disk of the smallest class, after it came to its cell by
-    /// `exit`, to `found`. Returns their number.
+    /// Writes to `found` the disks that come within reach of a disk of the smallest class when it enters its
+    /// cell by `exit`. Returns their number.
     #[inline]
     pub(super) fn ahead(&self, disk: usize, exit: Exit, found: &mut [u32]) -> usize {
         self.ahead_of(self.places[disk], exit, found)
     }
 
-    /// Does the same for a disk that will have left its cell by `exit`.
+    /// Does the same for a disk that has yet to leave its cell by `exit`.
     #[inline]
     pub(super) fn ahead_of_next(&self, disk: usize, exit: Exit, found: &mut [u32]) -> usize {
         self.ahead_of(self.next_place(disk, exit), exit, found)
@@ -267,12 +270,13 @@ impl Cells {
         let count = self.contents.gather(first, step, found, 0);
         match &self.layers {
             None => count,
-            // The larger disks are few. It does not pay to leave out those that were within reach before.
+            // The larger disks are few, so it does not pay to leave out those that were within reach before.
             Some(layers) => layers.gather_visitors(self.grid.index(place), found, count),
         }
     }
 
-    /// Returns the first of these three cells, and their distance in memory.
+    /// Returns the first of the three cells ahead of a place that a disk enters by `exit`, and their distance
+    /// in memory.
     #[inline]
     fn three_ahead(&self, place: Place, exit: Exit) -> (usize, usize) {
         let (right, up) = exit.direction();

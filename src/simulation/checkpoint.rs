@@ -1,7 +1,7 @@
-//! Checkpoints: a run as data, from which it goes on later, bit for bit.
+//! Checkpoints: runs saved as data, from which they go on later, bit for bit.
 //!
-//! This file contains the format. The file `validation.rs` decides which contents are a state, and
-//! `resumption.rs` makes a run of them.
+//! This file contains the format. The file `validation.rs` decides which contents are a possible state, and
+//! `resumption.rs` turns them into a run.
 
 mod resumption;
 mod validation;
@@ -29,12 +29,12 @@ use crate::{Disk, Fingerprint};
 /// The mark of a checkpoint, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 4 };
 
-/// Everything on which the future of a run depends, except its rule and its walls.
+/// Everything on which the future of a run depends, except its rule and its boundary.
 ///
 /// A resumed run continues bit for bit, also under another scheduler. A checkpoint is kept as bytes with a
 /// version and a checksum, in its own files and inside any format of serde. Bytes that were cut, changed or
-/// made by another version are refused and never read as data. A checkpoint knows the fingerprints of its
-/// rule and its boundary, and refuses others unless told to take them.
+/// made by another version are refused and never read as data. A checkpoint keeps the fingerprints of its
+/// rule and its boundary, and refuses others unless the caller allows them.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -68,7 +68,8 @@ struct Saved {
     rule: Option<Fingerprint>,
     boundary: Option<Fingerprint>,
     domain: Domain,
-    /// Radius, mass, inertia and kind of each disk, or of all if they are alike: disks at rest at the origin.
+    /// Radius, mass, inertia and kind of each disk, as disks at rest at the origin; a single disk if all are
+    /// alike.
     models: Vec<Disk>,
     gravity: f64,
     trajectories: Vec<Trajectory>,
@@ -184,8 +185,9 @@ impl Checkpoint {
         Ok(Self(saved))
     }
 
-    /// Writes the checkpoint to a file, whole or not at all. A reader never sees half of it, even if others
-    /// write the same file.
+    /// Writes the checkpoint to a file, whole or not at all.
+    ///
+    /// A reader never sees half of it, even if others write the same file.
     ///
     /// # Errors
     /// If the file cannot be written. An older file of that name is then as it was.
@@ -211,8 +213,8 @@ fn contents(source: postcard::Error) -> CheckpointError {
     CheckpointError::Contents { source: Box::new(source) }
 }
 
-/// Writes the bytes of [`Checkpoint::to_bytes`]. Text formats lose infinities, and in any format fields could
-/// be read without the check of the version.
+/// Writes the bytes of [`Checkpoint::to_bytes`]. If the fields were written one by one, text formats would
+/// lose infinities, and any format could be read without the check of the version.
 impl Serialize for Checkpoint {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_bytes(&self.to_bytes().map_err(serde::ser::Error::custom)?)
@@ -225,8 +227,8 @@ impl<'de> Deserialize<'de> for Checkpoint {
     }
 }
 
-/// A visitor that takes the bytes of a checkpoint from formats with bytes, and from those that write them as
-/// a list of numbers.
+/// A visitor that takes the bytes of a checkpoint from formats that have bytes, and from formats that write
+/// bytes as a list of numbers.
 struct Sealed;
 
 impl<'de> de::Visitor<'de> for Sealed {

@@ -24,14 +24,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         due.clear();
         due.extend(self.bodies.particles.iter().map(|particle| particle.forecast.due()));
         self.scheduler.reset(&due);
-        // The memory is kept, so that nothing is allocated again. In large systems, the memory itself counts
-        // for more.
+        // The memory is kept, so that nothing is allocated again. In large systems it is given back, since
+        // there the memory itself counts for more.
         if due.len() < LARGE_SYSTEM {
             self.scratch.due = due;
         }
     }
 
-    /// Moves the epoch to a little before the offset `due`, and the present to `due`.
+    /// Moves the epoch on by whole epochs to just before the offset `due`, and the present to `due`.
     #[cold]
     #[inline(never)]
     pub(super) fn move_epoch(&mut self, due: f64) -> Outcome<()> {
@@ -51,7 +51,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.reset_scheduler();
     }
 
-    /// Changes to larger or smaller cells, if those suit the events since the last epoch.
+    /// Changes to larger or smaller cells, if those suit the events since the epoch last moved.
     ///
     /// The choice depends on the state alone, so it is the same on every run. After a change, all events are
     /// predicted anew from the present.

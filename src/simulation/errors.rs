@@ -17,7 +17,7 @@ pub enum BuildError {
     /// A parameter is out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// Times at the start are too coarse for disks so fast: time would stand still.
+    /// Times at the start are too coarse for such fast disks: time would stand still.
     #[error(
         "the run cannot start at time {start}: times there are {spacing:e} apart, too coarse for disks that go some tens of \
          diameters in {epoch:e}; start nearer to 0"
@@ -91,7 +91,7 @@ pub enum BuildError {
     /// The domain has no area, or its periodic sides are so close that a disk could meet its own image.
     #[error(
         "a domain of width {width} and height {height} is too small for disks of diameter {diameter}: \
-         where it is periodic, it must be four diameters long"
+         where it is periodic, it must be longer than four diameters"
     )]
     DomainTooSmall {
         /// Width of the domain.
@@ -107,7 +107,9 @@ pub enum BuildError {
 /// registers.
 pub(super) type Outcome<T> = Result<T, Box<RunError>>;
 
-/// An error: a run cannot go on. The simulation keeps the state that it had when it noticed.
+/// An error: a run cannot go on.
+///
+/// The simulation keeps the state in which it noticed the error.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RunError {
@@ -122,7 +124,7 @@ pub enum RunError {
     /// The run hardly progresses: disks come to rest, by an inelastic collapse or under gravity, and collide
     /// ever more often.
     #[error(
-        "the run stalled at time {time}: {events} events took it only {elapsed:e} further, the last of disk {disk}{}: \
+        "the run stalled at time {time}: {events} events took it only {elapsed:e} further; disk {disk}{} is next to collide: \
          {remedy}; docs/rest.md compares the remedies, and Limits::with_least_progress allows less progress",
         Named(*.partner, .wall.as_deref())
     )]
@@ -148,7 +150,7 @@ pub enum RunError {
     /// The boundary gave an impossible answer.
     #[error("the boundary gave an impossible answer for disk {disk} at time {time}: {fault}")]
     Boundary {
-        /// The disk about which it was asked.
+        /// The disk about which the engine asked the boundary.
         disk: usize,
         /// The present.
         time: f64,
@@ -216,9 +218,9 @@ pub struct FailedCollision {
     pub wall: Option<String>,
     /// The present.
     pub time: f64,
-    /// The contact that the rule was asked about.
+    /// The contact about which the engine asked the rule.
     pub contact: Contact,
-    /// The impulse that the rule answered.
+    /// The impulse with which the rule answered.
     pub impulse: Impulse,
     /// The reason that the rule gives, if it gives one; see
     /// [`CollisionRule::explain`](crate::collision::CollisionRule::explain).
@@ -263,7 +265,8 @@ pub enum BoundaryFault {
         /// Time from the touch to the start of the flight; negative for a touch after the start.
         early_by: f64,
     },
-    /// A surface whose normal is not a unit vector, or whose velocity is not finite.
+    /// A surface whose normal is not a unit vector, whose velocity is not finite or is above 1e60, or whose
+    /// radius is zero or NaN.
     #[error("the surface of wall {wall} has the normal {normal} and the velocity {velocity}")]
     Surface {
         /// The wall.

@@ -1,10 +1,11 @@
-//! The event loop: which disk is next, what happens to it, and what follows.
+//! The event loop, which finds the next event, carries it out, and predicts what follows.
 //!
-//! One collision reads from top to bottom. [`Simulation::next_due`] asks the scheduler, and
+//! This file shows one collision from top to bottom. [`Simulation::next_due`] asks the scheduler, and
 //! [`Simulation::advance`] goes to the event. [`Simulation::collide`] lets the rule decide (`resolution.rs`)
 //! and kicks both disks. It then finds what each disk does next, and tells the scheduler (`forecasting.rs`).
-//! The arithmetic of meetings is in `prediction.rs`, and epochs are in `epoch.rs`. Disks that a collision
-//! left within rounding of each other part in `parting.rs`. None of these files calls back.
+//! The arithmetic of predictions is in `prediction.rs`, and epochs are in `epoch.rs`. If rounding leaves
+//! partners approaching after a collision, `parting.rs` makes them part. None of these files calls back into
+//! the event loop.
 
 use super::Simulation;
 use super::errors::{BoundaryFault, Outcome, RunError};
@@ -23,12 +24,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline(always)]
     pub(super) fn next_due(&self, end: f64) -> Option<(usize, f64)> {
         let (disk, due) = self.scheduler.earliest();
-        // The comparison is not `due <= end`: a time that is not a number must be noticed, and not end the
-        // run.
+        // The comparison is not `due <= end`, since a time that is not a number must be noticed, and must not
+        // end the run.
         if due > end { None } else { Some((disk, due)) }
     }
 
-    /// Does the next event of `disk`, and returns it if it is a collision.
+    /// Carries out the next event of `disk`, and returns it if it is a collision.
     #[inline(always)]
     pub(super) fn advance<O: Observer + ?Sized>(
         &mut self,
@@ -74,7 +75,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(None)
     }
 
-    /// Does a collision of two disks.
+    /// Carries out a collision of two disks.
     #[inline(always)]
     fn collide<O: Observer + ?Sized>(
         &mut self,
@@ -107,7 +108,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(Event::Collision { disk, partner })
     }
 
-    /// Does a collision of a disk with a wall.
+    /// Carries out a collision of a disk with a wall.
     fn collide_with_wall<O: Observer + ?Sized>(
         &mut self,
         disk: usize,
@@ -155,7 +156,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.counters.contact_duration_collisions += u64::from(by_contact_duration);
     }
 
-    /// Tells whether a disk can be kicked in this epoch. Nearly all can.
+    /// Tells whether a disk is slow enough for this epoch after a kick. Nearly all disks are.
     #[inline]
     fn is_tame(&self, kick: &Kick) -> bool {
         // The answer is no for a velocity that is not a number. Rotation cannot go wrong alone, since its
@@ -163,9 +164,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.bodies.keeps_pace(kick.after.velocity, self.clock.epoch_length)
     }
 
-    /// Begins a shorter epoch for the collision of two disks, or refuses it if its outcome is no motion.
+    /// Begins a shorter epoch for the collision of two disks, or returns an error if its outcome is not a
+    /// possible motion.
     ///
-    /// The collision is computed once more, so that the usual collision need not be kept in memory for this
+    /// The collision is computed once more, so that usual collisions need not be kept in memory for this
     /// case.
     #[cold]
     #[inline(never)]
@@ -180,23 +182,22 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Begins a shorter epoch for disks that are about to become very fast.
     ///
-    /// The place of a fast disk at the epoch would be so far away that it lacked digits. For this reason, the
-    /// epoch moves before the kick and not after it.
+    /// The place of a fast disk at the epoch would be so far away that it would lack digits. For this reason,
+    /// the epoch moves before the kick and not after it.
     #[cold]
     #[inline(never)]
     fn begin_epoch_for(&mut self, kicks: &[Kick]) -> Outcome<()> {
         let lengths = kicks.iter().map(|kick| self.bodies.epoch_length_for(kick.after.velocity));
         let epoch_length = lengths.fold(self.clock.epoch_length, f64::min);
-        // Late times are so coarse that no epoch begins near the present. The kick would lose the place of
-        // the disk.
+        // Very late times are so coarse that no epoch can begin near the present. The kick would then lose
+        // the digits of the disk's place.
         Clock { epoch_length, ..self.clock }.check_coarseness(self.clock.now)?;
         self.shift_epoch(self.clock.exact_offset());
         self.clock.epoch_length = epoch_length;
         Ok(())
     }
 
-    /// Changes the motion of a disk, as all collisions do. Predictions that involve the disk are then out of
-    /// date.
+    /// Changes the motion of a disk in a collision. Predictions that involve the disk are then out of date.
     #[inline]
     fn kick(&mut self, disk: usize, kick: &Kick) {
         self.bodies.kick(disk, kick.velocity, kick.angular_velocity, self.clock.now);
@@ -218,11 +219,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.go_on(disk, count);
     }
 
-    /// Predicts the next event of a disk that has come to a cell, with so many disks ahead of it there.
+    /// Predicts the next event of a disk that has entered a cell, with `count` disks found ahead of it.
     #[inline(always)]
     fn go_on(&mut self, disk: usize, count: usize) {
-        // The end of the flight comes before the search for a partner. The processor then resolves its
-        // branches, predicted right or wrong, while the search is still under way.
+        // The end of the flight is computed before the search for a partner. The processor then resolves the
+        // branches of the former, predicted right or wrong, while the search is still under way.
         self.end_flight(disk);
         let forecast = self.forecast(disk);
         let known = Earliest { due: forecast.collision_due, partner: forecast.partner };

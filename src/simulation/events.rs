@@ -20,7 +20,9 @@ pub enum Event {
     },
 }
 
-/// The reason why a run ended without an error. The run can go on from there, with the same bits.
+/// The reason why a run ended without an error.
+///
+/// The run can go on from there, with the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RunEnd {
@@ -34,14 +36,15 @@ pub enum RunEnd {
     /// The run took all the time that it may take; see
     /// [`Limits::with_wall_clock`](super::Limits::with_wall_clock).
     WallClock,
-    /// The flag for it was set; see [`Limits::with_interrupt`](super::Limits::with_interrupt).
+    /// The flag that interrupts the run was set; see
+    /// [`Limits::with_interrupt`](super::Limits::with_interrupt).
     Interrupted,
 }
 
 /// The numbers of events since the simulation was built.
 ///
-/// The engine does five kinds of events. The two kinds of collisions are physics, and observers are told of
-/// them. Cell crossings, outdated predictions and horizons are bookkeeping, which only these counts show.
+/// The engine handles five kinds of events. The two kinds of collisions are physics, and observers see them.
+/// Cell crossings, outdated predictions and horizons are bookkeeping, and only these counts show them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
@@ -54,8 +57,8 @@ pub struct Counters {
     pub contact_duration_collisions: u64,
     /// Passages of a disk from one neighbor cell to another.
     pub cell_crossings: u64,
-    /// Predicted collisions whose partner had collided with another disk before they came up. They were
-    /// predicted anew.
+    /// Predicted collisions that were out of date when they came up, since the partner had had another
+    /// collision. They were predicted anew.
     pub repredictions: u64,
     /// Searches for a wall that found none up to their horizon, and were taken up again.
     pub horizons: u64,
@@ -68,7 +71,9 @@ pub struct Counters {
 }
 
 impl Counters {
-    /// Returns the counts since `earlier`. The largest overlaps are those of the whole run.
+    /// Returns the counts since `earlier`.
+    ///
+    /// The largest overlaps are those of the whole run.
     #[must_use]
     pub const fn since(&self, earlier: &Self) -> Self {
         Self {

@@ -1,5 +1,5 @@
-//! Forecasts of the next event of each disk: the search for its partner, the end of its flight, the message
-//! to the scheduler.
+//! Forecasts of the next event of each disk: the search for its partner, the end of its flight, and the
+//! message to the scheduler.
 
 use std::hint::select_unpredictable;
 
@@ -13,7 +13,7 @@ use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::scheduler::EventScheduler;
 
-/// Number of epochs ahead in which a wall is searched for, so that no search is endless.
+/// Number of epochs ahead to which the search for a wall extends. The limit makes every search end.
 pub(super) const HORIZON: f64 = 2.0;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
@@ -32,8 +32,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.end_flight(disk);
     }
 
-    /// Finds another partner for a disk whose partner has collided with another one. The end of the disk's
-    /// own flight in its cell stays.
+    /// Finds another partner for a disk whose partner has collided meanwhile. The end of the disk's own
+    /// flight in its cell stays.
     #[inline(never)]
     pub(super) fn predict_partner(&mut self, disk: usize) {
         self.find_partner(disk);
@@ -85,8 +85,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.scheduler.set(disk, self.forecast(disk).due());
     }
 
-    /// Enlarges the room for neighbors with the cells, which grow when one of them gets crowded. This is
-    /// called wherever disks enter cells.
+    /// Enlarges the buffer for neighbors to the size that the cells need.
+    ///
+    /// The need grows when a cell gets crowded. So this method is called wherever disks enter cells.
     #[inline]
     pub(super) fn make_room(&mut self) {
         let room = self.cells.room() + LANES;
@@ -95,7 +96,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Finds when and how the flight of a disk in its cell ends.
+    /// Finds the time and the way in which a disk's flight in its cell ends.
     #[inline]
     pub(super) fn end_flight(&mut self, disk: usize) {
         self.instructions.run(

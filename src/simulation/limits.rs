@@ -1,4 +1,4 @@
-//! The limits of a run: its end, and what ends it before.
+//! The limits of a run: its end time, and what may end it earlier.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,12 +9,12 @@ use super::state::least_progress;
 use crate::ParameterError;
 use crate::quantity::non_negative;
 
-/// Number of events between two looks at the time of day and at the flag of another thread. They take some
-/// tenths of a millisecond.
+/// Number of events between two looks at the wall clock and at the flag of another thread. They are few
+/// enough that a limit is noticed at once, and so many that the looks cost next to nothing.
 const EVENTS_BETWEEN_LOOKS: u64 = 1024;
 
-/// The end of a run, and the limits that may end it before: a number of collisions, a wall-clock time, a flag
-/// that another thread sets.
+/// The end of a run, and the limits that may end it earlier: a number of collisions, a wall-clock time, a
+/// flag that another thread sets.
 ///
 /// [`Simulation::run`](crate::Simulation::run) tells which of them ended the run. In each case, the next run
 /// goes on from there with the bits that the run would have had without the limit. Observers end runs by
@@ -43,12 +43,12 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Creates the limits of a run that ends at the absolute time `end`, and not before.
+    /// Creates the limits of a run that ends at the absolute time `end`, with no other limit.
     pub const fn until(end: f64) -> Self {
         Self { end, most_collisions: u64::MAX, wall_clock: None, interrupt: None, least_progress: None }
     }
 
-    /// Returns the same limits, with at most this many collisions in the run, of disks and with walls.
+    /// Returns the same limits, with at most this many collisions in the run, with disks or walls.
     pub fn with_most_collisions(self, most_collisions: u64) -> Self {
         Self { most_collisions, ..self }
     }
@@ -83,9 +83,10 @@ impl Limits {
     /// Returns the same limits, with this simulated time per event as the least progress of the run; 0 for a
     /// run that may stand still.
     ///
-    /// Progress is judged over windows of 200 000 events, and 20 more for each disk. A run with less is
-    /// [stalled](crate::simulation::RunError::Stalled). Without this limit, `$N$` disks may have some 1.3e8
-    /// and `$N$` times 4e6 events in the time in which a typical disk goes or falls some tens of diameters.
+    /// Progress is judged over windows of 200 000 events, and 20 more for each disk. A run with less progress
+    /// is [stalled](crate::simulation::RunError::Stalled). Without this limit, `$N$` disks may have some
+    /// `$1.3\times10^8 + 4\times10^6 N$` events in the time in which a typical disk goes or falls some tens
+    /// of diameters.
     ///
     /// # Errors
     /// If the time is negative or not finite.
@@ -103,18 +104,18 @@ impl Limits {
 #[derive(Debug)]
 pub(super) struct Watch<'a> {
     limits: &'a Limits,
-    /// The number of all collisions at which the run ends.
+    /// The count of all collisions at which the run ends.
     last_collision: u64,
     deadline: Option<Instant>,
 }
 
 impl<'a> Watch<'a> {
-    /// Begins to watch a run after these counts.
+    /// Begins to watch a run that starts with these counts.
     pub(super) fn new(limits: &'a Limits, counters: &Counters) -> Self {
         Self {
             limits,
             last_collision: collisions(counters).saturating_add(limits.most_collisions),
-            // A time that no clock will show is no limit.
+            // A time so late that no clock can show it is no limit.
             deadline: limits.wall_clock.and_then(|time| Instant::now().checked_add(time)),
         }
     }
@@ -125,7 +126,7 @@ impl<'a> Watch<'a> {
         self.limits.end
     }
 
-    /// Returns the limit that the run has reached, if it has.
+    /// Returns the limit that the run has reached, if any.
     pub(super) fn reached(&self, counters: &Counters) -> Option<RunEnd> {
         if collisions(counters) >= self.last_collision {
             return Some(RunEnd::Collisions);
@@ -138,7 +139,7 @@ impl<'a> Watch<'a> {
 
     /// Returns the number of events after which the limits must be looked at again.
     ///
-    /// So many events have at most as many collisions as are left, so the last one is met exactly.
+    /// This many events have at most as many collisions as are left, so the run ends exactly at the last one.
     pub(super) fn events_to_look(&self, counters: &Counters) -> u64 {
         let is_timed = self.deadline.is_some() || self.limits.interrupt.is_some();
         let most = if is_timed { EVENTS_BETWEEN_LOOKS } else { u64::MAX };

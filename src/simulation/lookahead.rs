@@ -5,12 +5,12 @@ use super::state::Bodies;
 use crate::prefetch::prefetch;
 use crate::scheduler::EventScheduler;
 
-/// Number of disks that are named after a disk before the cells that its event needs are requested. After as
-/// many more, its neighbors there are requested.
+/// Number of disks that come into sight between the steps of a request. After this many disks, the cells that
+/// a disk's event needs are requested. After as many more, the disk's neighbors in those cells are requested.
 const LATER: usize = 12;
 
-/// The disks that last came into sight. Each is requested from memory first, then the cells that its event
-/// needs, and then its neighbors there.
+/// The disks that last came into sight. For each, the disk itself is requested from memory first, then the
+/// cells that its event needs, and then its neighbors there.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lookahead {
     /// Place at which the next disk is written.
@@ -69,7 +69,7 @@ fn prefetch_disk(bodies: &Bodies, cells: &Cells, disk: usize) {
 fn prefetch_cells(bodies: &Bodies, cells: &Cells, disk: usize) {
     let forecast = bodies.particles[disk].forecast;
     if !forecast.is_collision() {
-        // The cells ahead of a large disk are not worth finding out: it passes few.
+        // To find the cells ahead of a large disk does not pay, since such a disk passes few cells.
         if !cells.is_large(disk) {
             cells.prefetch_ahead(disk, forecast.exit);
         }

@@ -1,4 +1,4 @@
-//! Surfaces that a collision left within rounding of each other: they are made to part, or left alone.
+//! The parting of partners that rounding leaves approaching after a collision.
 
 use glam::DVec2;
 
@@ -10,21 +10,22 @@ use crate::collision::CollisionRule;
 use crate::observable::Collision;
 use crate::scheduler::EventScheduler;
 
-/// Number of doublings of a push, after which two surfaces that a collision left within rounding of each
-/// other are left alone.
+/// Largest number of pushes, each twice as strong as the last, that make two partners part. After these, they
+/// are left as they are.
 const MOST_NUDGES: u32 = 24;
 
-/// Closing speed after a collision, relative to the speeds of the disks, that is more than rounding: the rule
-/// wants the disks to close on.
+/// Closing speed after a collision, relative to the speeds of the disks, above which it is not rounding: the
+/// rule leaves the disks approaching on purpose.
 const WANTED: f64 = 1e-9;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Makes two disks part that a collision has left with a closing speed of rounding, or none.
+    /// Makes two disks part whose relative speed after a collision is zero, or is rounding that lets them
+    /// approach.
     ///
-    /// The digits of velocities are relative to the velocities themselves, not to their difference. A rule
-    /// that takes all of the closing speed leaves some 1e-17 of it, of either sign, and disks that touch and
-    /// close collide at once, again and again. Therefore, the speed at which the disks part is raised on the
-    /// scale of its rounding, by just as much as the prediction needs to see them part.
+    /// Velocities are rounded relative to themselves, not to their difference. A rule that takes all of the
+    /// closing speed leaves some 1e-17 of it, of either sign. Disks that touch and still approach collide at
+    /// once, again and again. Therefore, the speed at which the disks part is raised in steps of its
+    /// rounding, until the prediction sees them part.
     #[cold]
     #[inline(never)]
     pub(super) fn part(&mut self, disk: usize, partner: usize, normal: DVec2, left: f64) {
@@ -46,9 +47,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Makes a disk leave a wall about which engine and boundary disagree. In the engine's arithmetic the
-    /// disk parts from the wall, and in the boundary's it approaches, by a rounding of its speed. A disk that
-    /// rests on a wall does not part from it, and is left alone.
+    /// Makes a disk leave a wall if engine and boundary disagree about its motion.
+    ///
+    /// By a rounding of its speed, the disk parts from the wall in the engine's arithmetic, but approaches it
+    /// in the boundary's. A disk that rests on a wall does not part from it, and is left as it is.
     #[cold]
     #[inline(never)]
     pub(super) fn leave_wall(&mut self, disk: usize, wall: usize, collision: &Collision) {
@@ -57,7 +59,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             if exit != Exit::Wall || exit_due > self.clock.now || usize::from(next) != wall {
                 return;
             }
-            // The speed relative to the wall is a difference of speeds, and has their rounding.
+            // The speed relative to the wall is a difference of speeds, so its rounding is that of these
+            // speeds.
             let fallen = self.bodies.fall(self.clock.now).1.length();
             let scale = f64::EPSILON * (self.bodies.speed(disk) + fallen);
             self.bodies.push(disk, collision.normal * (f64::from(1_u32 << doubling) * scale), self.clock.now);

@@ -1,4 +1,4 @@
-//! Disks that come and go between runs.
+//! Insertion and removal of disks between runs.
 
 use std::ops::Range;
 
@@ -13,17 +13,18 @@ use crate::collision::CollisionRule;
 use crate::scheduler::EventScheduler;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Puts disks into the simulation, as they are now, and returns their indices. They come after all
-    /// others, in the order given.
+    /// Puts disks into the simulation at the present time, and returns their indices.
     ///
-    /// All events are predicted anew. The run goes on with the same bits under every scheduler, and through a
-    /// checkpoint before or after. Counters go on. The new disks have collided with nothing yet, and may be
-    /// of any size and kind.
+    /// The new disks come after all others, in the order given.
+    ///
+    /// All events are predicted anew. The run then goes on with the same bits under every scheduler, and also
+    /// if it is resumed from a checkpoint taken before or after. The counters go on. The new disks have
+    /// collided with nothing yet, and may be of any size and kind.
     ///
     /// # Errors
-    /// If a disk is outside, overlaps a wall or overlaps another disk; the error names its index. If the
-    /// domain is too small for it, or it is so fast that times as late as the present are too coarse. The
-    /// simulation is then as before.
+    /// If a disk is outside, overlaps a wall or overlaps another disk; the error names its index. If there
+    /// would be too many disks, the domain is too small for a disk, or a disk is so fast that times as late
+    /// as the present are too coarse. The simulation then stays as it was.
     ///
     /// ```
     /// use granular_edmd::boundary::Container;
@@ -59,15 +60,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(indices)
     }
 
-    /// Takes out the disks that are chosen by their index and state, and returns them in their order.
+    /// Removes the disks that `chosen` selects by their index and state, and returns them in their order.
     ///
     /// The other disks stay in their order: the index of each becomes smaller by the number of disks removed
-    /// before it. An observer that counts by index must be begun anew. For the bits, see
+    /// before it. An observer that identifies disks by their index must begin anew. For the bits, see
     /// [`insert`](Self::insert).
     ///
     /// # Errors
-    /// If the boundary's domain cannot hold the other disks any more, since the boundary breaks its contract.
-    /// The simulation is then as before.
+    /// If the boundary's domain cannot hold the other disks any more, which happens only if the boundary
+    /// breaks its contract. The simulation then stays as it was.
     pub fn remove(&mut self, mut chosen: impl FnMut(usize, &Disk) -> bool) -> Result<Vec<Disk>, BuildError> {
         let all = self.disks();
         let leaves: Vec<bool> = all.iter().enumerate().map(|(index, disk)| chosen(index, disk)).collect();
@@ -86,7 +87,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(removed)
     }
 
-    /// Predicts everything anew for other disks than before.
+    /// Predicts all events anew after disks have come or gone.
     fn begin_anew(&mut self) {
         self.lookahead = Lookahead::default();
         self.clock.epoch_length = self.bodies.epoch_length();

@@ -28,9 +28,9 @@ impl Pairs {
     /// With the separation r, the relative velocity v and the contact distance σ, the pair touches at the
     /// smaller root of v² t² + 2 (r·v) t + (r² - σ²) = 0. The textbook root (-r·v - √d)/v² subtracts two
     /// numbers that are nearly equal when the disks nearly touch, and divides by zero when they move alike.
-    /// Expanded by its conjugate, the root is (r² - σ²)/(√d - r·v). Both terms of the denominator are
-    /// positive while the pair approaches, so nothing cancels, and the gap in the numerator is as exact as
-    /// the positions are.
+    /// Multiplied above and below by √d - r·v, the root is (r² - σ²)/(√d - r·v). Both terms of the
+    /// denominator are positive while the pair approaches, so nothing cancels, and the gap in the numerator
+    /// is as exact as the positions are.
     ///
     /// The method is stable event detection (Bannerman et al. 2014). A pair that touches or overlaps by
     /// rounding collides at once while it approaches, and never while it recedes. If an overlap of 1e-16 were
@@ -83,8 +83,8 @@ impl Best {
     /// Returns the earliest collision of all lanes.
     #[inline]
     fn earliest(&self) -> Earliest {
-        // Time and partner form one number in the order of both. Times are not negative, so their bits are in
-        // order.
+        // Time and partner form one number, which orders by time first and then by partner. Times are not
+        // negative, so their bits have the same order.
         let rank =
             |lane: usize| (u128::from(self.due[lane].to_bits()) << 32) | u128::from(self.partner[lane]);
         let first = (1..LANES).fold(rank(0), |first, lane| first.min(rank(lane)));
@@ -92,7 +92,8 @@ impl Best {
     }
 }
 
-/// Returns the shortest way where places repeat themselves after a `period`; 0 if they do not.
+/// Returns the shortest distance that is equivalent to `x` where places repeat themselves after a `period`.
+/// The period is 0 where they do not.
 #[inline]
 pub(super) fn nearest_image(x: f64, period: f64) -> f64 {
     let half = 0.5 * period;
@@ -116,8 +117,8 @@ compiled_for_each! {
     /// Returns the earliest collision of `disk` with one of the first `count` of `candidates`, or `known`
     /// if that is earlier.
     ///
-    /// The candidates may include the disk itself, which never meets itself. The room behind the candidates
-    /// is filled with the disk.
+    /// The candidates may include the disk itself, which never meets itself. So the room behind the
+    /// candidates is filled with the disk.
     #[inline(never)]
     earliest_collision(
         bodies: &Bodies, periods: DVec2, disk: usize, candidates: &mut [u32], count: usize, now: f64, known: Earliest
@@ -213,7 +214,7 @@ pub(super) fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64)
 /// that pulls down.
 ///
 /// There are three ways: up to the edge above, up and down again through the edge below, or straight down.
-/// They are told apart by selections of numbers and not by branches. The way is a coin toss, and a
+/// Selections of numbers tell them apart, and not branches. Which way a disk takes is a coin toss, and a
 /// misprediction would cost more than all three roots. Each root has the form in which nothing cancels: a
 /// distance over a sum of speeds if the disk goes straight to the edge, and a sum of speeds over gravity if
 /// it turns back.

@@ -1,4 +1,5 @@
-//! Outcomes of collisions: contact, impulse, and the change of each disk's motion. Nothing is changed here.
+//! Outcomes of collisions: contact, impulse, and the change of each disk's motion. The disks themselves are
+//! not changed here.
 
 use glam::DVec2;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -16,7 +17,8 @@ use crate::random::{normal, rayleigh};
 const UNIT: f64 = 1e-9;
 
 /// Speed along the normal, relative to the whole relative speed, below which rounding may decide its sign.
-/// The rounding of the normal exceeds that of 1 by as much as the vessel exceeds the disks.
+/// The normal comes from a difference of positions, so its rounding is that of 1 times the ratio of the
+/// vessel's size to the disks'.
 const GRAZING: f64 = 1e-6;
 
 /// The change of a disk's motion in a collision.
@@ -146,8 +148,8 @@ pub(super) fn is_parting(normal: DVec2, kicks: &[Kick; 2]) -> bool {
     (kicks[0].after.velocity - kicks[1].after.velocity).dot(normal) > GRAZING * (velocity.x + velocity.y)
 }
 
-/// Tells whether a surface's normal is a unit vector, its velocity one that a disk may have, and its radius
-/// one that rules may be told.
+/// Tells whether a surface's normal is a unit vector, its velocity is one that a disk may have, and its
+/// radius is neither zero nor NaN.
 pub(super) fn is_possible(surface: &Surface<'_>) -> bool {
     let velocity = surface.velocity.abs();
     let is_curved = surface.radius.abs() > 0.0;

@@ -14,14 +14,15 @@ use crate::scheduler::EventScheduler;
 /// The point to which a run has come.
 enum Reached {
     Collision(Event),
-    /// The time until which it should go.
+    /// The run has come to the time until which it should go.
     Time,
     Limit(RunEnd),
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
-    /// Runs until the absolute time `end` while `observer` watches (`&mut ()` for no observer). Returns what
-    /// ended the run: its end time, or the observer.
+    /// Runs until the absolute time `end` while `observer` watches (`&mut ()` for no observer).
+    ///
+    /// Returns what ended the run: its end time, or the observer.
     ///
     /// This is [`Self::run`] without any other limit.
     ///
@@ -35,17 +36,19 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.run(&Limits::until(end), observer)
     }
 
-    /// Runs up to the first of the `limits` while `observer` watches (`&mut ()` for no observer). Returns
-    /// what ended the run.
+    /// Runs up to the first of the `limits` while `observer` watches (`&mut ()` for no observer).
     ///
-    /// The observer is told of the start, of each collision, and of the end, also if that is an error. It is
-    /// shown the samples that it asks for. If it stops the run, the present is the time of the collision or
-    /// sample at which it did so. Whatever ends the run, the next one goes on from there with the same bits.
+    /// Returns what ended the run.
+    ///
+    /// The run calls the observer at its start, at each collision, at the samples that the observer asks for,
+    /// and at its end, even if it ends with an error. If the observer stops the run, the present is the time
+    /// of the collision or sample at which the observer did so. Whatever ends the run, the next one goes on
+    /// from there with the same bits.
     ///
     /// # Errors
-    /// If the end is not finite or before the present, the run cannot progress, a rule, boundary, scheduler
-    /// or observer breaks its contract, or an observer fails. The simulation then keeps the state of that
-    /// moment.
+    /// If the end is not finite or is before the present, the run hardly progresses, a rule, boundary,
+    /// scheduler or observer gives an impossible answer, times become too coarse, or an observer fails. The
+    /// simulation then keeps the state of that moment.
     pub fn run<O: Observer + ?Sized>(
         &mut self,
         limits: &Limits,
@@ -73,12 +76,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         ended.and_then(|end| last.map(|_| end))
     }
 
-    /// Goes to the next collision, if it is not after the absolute time `end`, and returns it. If there is
-    /// none, goes to `end` and returns `None`.
+    /// Goes to the next collision, if it is not after the absolute time `end`, and returns it.
     ///
-    /// The observer is told of the collision only: `on_start`, `on_sample` and `on_end` are not called, so
-    /// its clock stands still. If the observer fails, the step returns an error. A verdict to stop has no
-    /// effect, since the caller takes each step.
+    /// If there is none, goes to `end` and returns `None`.
+    ///
+    /// The observer sees only the collision: `on_start`, `on_sample` and `on_end` are not called, so the
+    /// observer's clock stands still. If the observer fails, the step returns an error. A verdict to stop has
+    /// no effect, since the caller takes each step.
     ///
     /// ```
     /// # use granular_edmd::glam::DVec2;
@@ -148,7 +152,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Does all events until the next collision, the absolute time `stop`, or a limit, and goes there.
+    /// Carries out all events up to the next collision, the absolute time `stop`, or a limit, whichever comes
+    /// first.
     #[inline(always)]
     fn collide_until<O: Observer + ?Sized>(
         &mut self,

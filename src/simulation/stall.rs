@@ -1,4 +1,4 @@
-//! The diagnosis of a run that hardly progresses: which disk, which partner, and what would help.
+//! The diagnosis of a run that hardly progresses: the disk, its partner, and a remedy.
 
 use std::fmt;
 
@@ -12,19 +12,20 @@ use crate::collision::{CollisionRule, Contact, Regime};
 use crate::observable::Partner;
 use crate::scheduler::EventScheduler;
 
-/// Least speed, relative to that of a typical disk, at which the rule is asked what it does.
+/// Least closing speed, relative to the speed of a typical disk, at which the diagnosis tries the rule.
 const SLOW: f64 = 1e-9;
 
 /// Share of the energy, or of the closing speed, that is rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The remedy for a run that stalled, by what the rule does in collisions as slow as the last ones.
+/// The remedy for a run that stalled, which depends on what the rule does in collisions as slow as the last
+/// ones.
 ///
 /// The page `docs/rest.md` of the repository compares the remedies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Remedy {
-    /// Slow collisions lose energy, so disks that come to rest collide ever more often: make slow or soon
+    /// Slow collisions lose energy, so disks that come to rest collide ever more often. Make slow or soon
     /// repeated collisions elastic, or let no surfaces part too slowly.
     ElasticWhenSlow,
     /// The contact-duration model is at work, with a duration so short that disks at rest collide too often.
@@ -86,7 +87,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         RunError::Stalled { time: self.time(), disk, partner, wall, events, elapsed, remedy }
     }
 
-    /// Returns the disk of the next collision and its time offset, or these if there is no collision.
+    /// Returns the disk of the next collision and its time offset, or the arguments if there is no collision.
     fn next_collider(&self, disk: usize, due: f64) -> (usize, f64) {
         if self.partner_of(disk).is_some() {
             return (disk, due);
@@ -129,11 +130,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    /// Returns the remedy by what the rule answers to a contact like this.
+    /// Returns the remedy that fits the rule's answer to a slower contact like this.
     fn remedy_for(&self, contact: &Contact, rule: &dyn CollisionRule) -> Remedy {
         let typical = self.bodies.typical_diameter / self.clock.epoch_length;
-        // Disks may bounce at the very speed of a remedy, so that rounding decides whether it applies. The
-        // speed of a disk at rest is rounding altogether.
+        // The speed is halved, because disks may bounce exactly at the limiting speed of a remedy, where
+        // rounding decides whether it applies. It has a lower bound, because the speed of a disk at rest is
+        // nothing but rounding.
         let closing = (0.5 * contact.closing_speed()).max(SLOW * typical);
         let slow = Contact::new(closing, 0.0, contact.normal_mass(), contact.tangential_mass())
             .with_time_since_last_collision(contact.time_since_last_collision())

@@ -4,13 +4,15 @@ use super::{BlockedMean, Estimate, block_average};
 use crate::ParameterError;
 use crate::quantity::accept;
 
-/// Returns the autocorrelation of a time series for lags of 0 to `lags` samples,
+/// Returns the autocorrelation of a time series, with errors, for lags of 0 to `lags` samples.
+///
+/// The autocorrelation at a lag of `$k$` samples is
 ///
 /// ```math
 /// \rho_k = \frac{\langle(x_i-\bar x)(x_{i+k}-\bar x)\rangle}{\langle(x_i-\bar x)^2\rangle},
 /// ```
 ///
-/// with errors from blocks of the products. If all samples are equal, the result is NaN.
+/// and its error comes from blocks of the products. If all samples are equal, the result is NaN.
 ///
 /// # Errors
 /// If the series has no more than `lags + 1` samples, or one is not finite or above 1e100 in size.
@@ -26,7 +28,7 @@ use crate::quantity::accept;
 pub fn autocorrelation(samples: &[f64], lags: usize) -> Result<Vec<Estimate>, ParameterError> {
     let count = samples.len();
     let fits = count >= 2 && lags < count - 1;
-    accept(fits, "number of lags", "less than that of the samples by two at least", lags as f64)?;
+    accept(fits, "number of lags", "at least two below the number of samples", lags as f64)?;
     let mean = block_average(samples)?.mean();
     let covariance = |lag: usize| -> BlockedMean {
         let pairs = samples.iter().zip(&samples[lag..]);

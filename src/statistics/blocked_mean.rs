@@ -21,7 +21,7 @@ use super::{Estimate, RunningMean};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(into = "Vec<Level>", try_from = "Vec<Level>"))]
 pub struct BlockedMean {
-    /// Blocks of one number, of two, of four, …, as far as there is at least one block of the size.
+    /// Blocks of one number, of two, of four, …, for all sizes of which there is at least one block.
     levels: Vec<Level>,
 }
 
@@ -30,7 +30,7 @@ pub struct BlockedMean {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 struct Level {
     blocks: RunningMean,
-    /// The last block, while it waits for the one with which it makes a larger block.
+    /// The last block, while it waits for the next one, with which it makes a larger block.
     waiting: Option<f64>,
 }
 
@@ -61,7 +61,7 @@ impl BlockedMean {
         self.levels.push(Level { blocks: RunningMean::from_iter([block]), waiting: Some(block) });
     }
 
-    /// Returns how many numbers there were.
+    /// Returns the count of the numbers.
     pub fn count(&self) -> u64 {
         self.ungrouped().count()
     }

@@ -23,15 +23,16 @@ const FEWEST_BLOCKS: u64 = 8;
 /// which
 /// 1. `$B^3 > 2n(\epsilon_B/\epsilon_1)^4$`: shorter blocks leave a bias that is larger than the scatter of
 ///    `$\epsilon_B$` itself, and longer ones scatter more (Lee et al. 2011, Phys. Rev. E 83, 066706);
-/// 2. `$\epsilon_B$` is larger than for blocks of half the size by at most its own uncertainty, and than for
-///    blocks of a quarter of the size by at most one and a half times that;
-/// 3. no larger blocks have an error that is larger by more than twice its uncertainty.
+/// 2. `$\epsilon_B$` exceeds the error from blocks of half the size by at most its own uncertainty, and the
+///    error from blocks of a quarter of the size by at most one and a half times its uncertainty;
+/// 3. for no larger blocks does the error exceed `$\epsilon_B$` by more than twice the uncertainty of that
+///    error.
 ///
 /// The first condition suffices for a series with one correlation time. The others detect a second, longer
 /// one, whose share of the variance is small, such as heat that comes and goes in a gas whose collisions are
-/// otherwise independent. Sizes with fewer than eight blocks are not considered, so a series of less than
-/// some hundred [`Estimate::correlated_samples`] has no such blocks. The estimate is then not converged, and
-/// its error is the largest that was found.
+/// otherwise independent. Sizes with fewer than eight blocks are not considered. So if a series is shorter
+/// than some hundred times [`Estimate::correlated_samples`], no blocks meet all conditions. The estimate is
+/// then not converged, and its error is the largest that was found.
 ///
 /// # Errors
 /// If there are fewer than two samples, or one is not finite or above 1e100 in size.
@@ -98,7 +99,7 @@ pub(super) fn plateau(levels: &[BlockError], samples: u64) -> Option<f64> {
     (1..known).find(is_plateau).map(|at| levels[at].error)
 }
 
-/// Decides whether blocks of this size are long enough for a series with one correlation time. The error of
+/// Tells whether blocks of this size are long enough for a series with one correlation time. The error of
 /// these blocks is `growth` times that of independent samples.
 fn is_long_enough(size: f64, samples: u64, growth: f64) -> bool {
     let squared = growth * growth;

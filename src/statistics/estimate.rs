@@ -1,8 +1,8 @@
-//! Estimates: a mean with its error, and the basis of the error.
+//! Estimates: means with their errors, and the basis of each error.
 
 use std::fmt;
 
-/// A mean of samples with its standard error, and how far that error can be trusted.
+/// A mean of samples with its standard error, and whether that error can be trusted.
 ///
 /// The error of correlated samples is taken from blocks ([`BlockedMean`](super::BlockedMean),
 /// [`block_average`](super::block_average)). A series that is too short for that gives an estimate that is
@@ -10,7 +10,7 @@ use std::fmt;
 /// an estimate that says so.
 ///
 /// Printed with a precision, the mean and the error have that many decimals. Without a precision, the error
-/// has two significant digits. The limits of the error follow in words.
+/// has two significant digits. A note on the basis of the error follows in words.
 ///
 /// ```
 /// use granular_edmd::statistics::{RunningMean, block_average};
@@ -95,31 +95,34 @@ impl Estimate {
         self.standard_error
     }
 
-    /// Returns how many samples there were.
+    /// Returns the number of samples.
     pub const fn samples(&self) -> u64 {
         self.samples
     }
 
-    /// Returns how many consecutive samples are worth one independent sample, `$1 + 2\sum_k\rho_k$` for
-    /// autocorrelations `$\rho_k$`. The number is 1 if the samples are taken as independent, or if all are
-    /// equal.
+    /// Returns the number of consecutive samples that are worth one independent sample.
+    ///
+    /// The number is `$1 + 2\sum_k\rho_k$` for autocorrelations `$\rho_k$`. It is 1 if the samples are taken
+    /// as independent, or if all are equal.
     pub const fn correlated_samples(&self) -> f64 {
         self.correlated_samples
     }
 
-    /// Returns how many independent samples would tell as much: the samples over
+    /// Returns the number of independent samples that would tell as much: the number of samples over
     /// [`correlated_samples`](Self::correlated_samples).
     pub fn independent_samples(&self) -> f64 {
         self.samples as f64 / self.correlated_samples.max(1.0)
     }
 
-    /// Returns true if the error can be trusted. Returns false if it is only a lower bound: the series is too
-    /// short for its correlations, or there are fewer than two samples.
+    /// Tells whether the error can be trusted.
+    ///
+    /// If it cannot, it is only a lower bound: the series is too short for its correlations, or there are
+    /// fewer than two samples.
     pub const fn is_converged(&self) -> bool {
         self.samples >= 2 && !matches!(self.basis, Basis::ShortBlocks)
     }
 
-    /// Returns true if the error takes the samples as independent.
+    /// Tells whether the error takes the samples as independent.
     pub const fn assumes_independence(&self) -> bool {
         matches!(self.basis, Basis::Independent)
     }
@@ -193,17 +196,27 @@ mod serial {
             accept(
                 mean.is_some() == (samples > 0),
                 "samples of an estimate",
-                "as many as it tells of",
+                "consistent with its mean and its error",
                 count,
             )?;
             let has_error = standard_error.is_some();
-            accept(has_error == (samples > 1), "samples of an estimate", "as many as it tells of", count)?;
+            accept(
+                has_error == (samples > 1),
+                "samples of an estimate",
+                "consistent with its mean and its error",
+                count,
+            )?;
             finite("mean", mean.unwrap_or(0.0))?;
             non_negative("standard error", standard_error.unwrap_or(0.0))?;
             non_negative("number of correlated samples", correlated_samples)?;
             let independent = basis == Basis::Independent;
             let alone = !independent || correlated_samples == 1.0;
-            accept(alone, "number of correlated samples, if independent,", "1", correlated_samples)?;
+            accept(
+                alone,
+                "number of correlated samples of an independent estimate",
+                "1",
+                correlated_samples,
+            )?;
             let (mean, standard_error) = (mean.unwrap_or(f64::NAN), standard_error.unwrap_or(f64::NAN));
             Ok(Self { mean, standard_error, samples, correlated_samples, basis })
         }

@@ -36,8 +36,8 @@ pub struct HistogramBin {
     pub count: u64,
     /// Share of all numbers in the bin, over its width; NaN without numbers.
     pub density: f64,
-    /// Standard error of the density for independent numbers, `$\sqrt{p(1-p)/n}/w$` of the share `$p$` and
-    /// the width `$w$`; NaN without numbers. It is too small for correlated numbers.
+    /// Standard error of the density for n independent numbers: √(p(1 − p)/n)/w for the share p and the width
+    /// w; NaN without numbers. It is too small for correlated numbers.
     pub standard_error: f64,
 }
 
@@ -51,7 +51,9 @@ impl Histogram {
         Ok(Self { bins, counts: vec![0; bins.count()], below: 0, above: 0 })
     }
 
-    /// Takes one more number. NaN is left out.
+    /// Takes one more number.
+    ///
+    /// NaN is left out.
     #[inline]
     pub fn push(&mut self, value: f64) {
         match self.bins.find(value) {
@@ -61,17 +63,17 @@ impl Histogram {
         }
     }
 
-    /// Returns how many numbers there were, in all bins and outside.
+    /// Returns the count of all numbers, inside and outside the bins.
     pub fn count(&self) -> u64 {
         self.counts.iter().sum::<u64>() + self.below + self.above
     }
 
-    /// Returns how many numbers were below the first bin.
+    /// Returns the count of the numbers below the first bin.
     pub const fn below(&self) -> u64 {
         self.below
     }
 
-    /// Returns how many numbers were above the last bin.
+    /// Returns the count of the numbers above the last bin.
     pub const fn above(&self) -> u64 {
         self.above
     }

@@ -1,25 +1,25 @@
-//! Estimates of several runs as one.
+//! Estimates of several runs combined into one.
 
 use super::Estimate;
 
-/// Fewest repeats whose scatter tells an error for itself, as with blocks.
+/// Fewest repeats whose scatter alone gives a meaningful error, as with blocks.
 const ENOUGH: usize = 8;
 
 impl Estimate {
-    /// Returns the estimate of several independent runs together, from that of each: as if their samples were
-    /// of one run.
+    /// Combines the estimates of several independent runs into one, as if all samples were of one run.
     ///
-    /// Each run counts by the number of its samples. The error is the larger of two: that which follows from
-    /// the errors of the runs, and that of the scatter of their means,
+    /// Each run counts by the number of its samples. The error is the larger of two: the one that follows
+    /// from the errors of the runs, and the one from the scatter of their means,
     ///
     /// ```math
     /// \epsilon^2 = \max\left(\sum_i w_i^2\epsilon_i^2,\; \frac{1}{k-1}\sum_i w_i(\bar x_i-\bar x)^2\right),
     /// \quad w_i = n_i/n .
     /// ```
     ///
-    /// The scatter sees what a run is too short to see, another sense of a roll for example; of two or three
-    /// runs it may be small by chance, and the errors of the runs are then the better ones. The estimate has
-    /// converged if those of all runs have, or if there are eight runs. Runs without samples are left out.
+    /// The scatter shows what a single run is too short to show, such as a roll in the other sense. The
+    /// scatter of two or three runs may be small by chance, and the errors of the runs are then better. The
+    /// estimate has converged if the estimates of all runs have, or if there are at least eight runs. Runs
+    /// without samples are left out.
     ///
     /// ```
     /// use granular_edmd::statistics::{Estimate, block_average};
@@ -52,9 +52,10 @@ impl Estimate {
         let within = weighted(&|run| {
             run.samples() as f64 / samples as f64 * run.standard_error() * run.standard_error()
         });
-        // NaN, of a run of one sample, is no error.
+        // The error of a run of one sample is NaN, which `max` ignores.
         let error = between.max(within).sqrt();
-        // The variance of all samples about their mean: that within the runs, and that between them.
+        // The variance of all samples about their mean is the variance within the runs plus that between
+        // them.
         let variance = weighted(&Self::variance) + scatter;
         let naive = (variance / samples as f64).sqrt();
         let growth = if naive > 0.0 { error / naive } else { 1.0 };

@@ -26,7 +26,7 @@ impl RunningMean {
         self.0.push(value, 1.0);
     }
 
-    /// Returns how many numbers there were.
+    /// Returns the count of the numbers.
     pub const fn count(&self) -> u64 {
         self.0.weight as u64
     }
@@ -46,13 +46,12 @@ impl RunningMean {
         if self.0.weight < 2.0 { 0.0 } else { self.0.squares / (self.0.weight - 1.0) }
     }
 
-    /// Returns the standard deviation of the numbers, `$\sqrt{\mathrm{variance}}$`.
+    /// Returns the standard deviation of the numbers, the square root of the variance.
     pub fn standard_deviation(&self) -> f64 {
         self.variance().sqrt()
     }
 
-    /// Returns the standard error of the mean of independent numbers, `$\sqrt{\mathrm{variance}/n}$`; 0 for
-    /// fewer than two.
+    /// Returns the standard error of the mean of n independent numbers, √(variance/n); 0 for fewer than two.
     pub fn standard_error(&self) -> f64 {
         if self.0.weight < 2.0 { 0.0 } else { (self.variance() / self.0.weight).sqrt() }
     }

@@ -68,6 +68,12 @@ pub struct VibratedBox {
     pub friction: f64,
     /// Dynamic friction `$\kappa_d$`, if not `$\kappa$`.
     pub dynamic_friction: Option<f64>,
+    /// Inelasticity of the walls, normal and tangential, if not that of the disks.
+    pub wall_inelasticity: Option<f64>,
+    /// Inelasticity of the base alone, if not that of the walls.
+    pub base_inelasticity: Option<f64>,
+    /// Friction of the walls, static and dynamic, if not that of the disks.
+    pub wall_friction: Option<f64>,
     /// Contact duration `$t_c$`; none without the model [`ContactDuration`].
     pub contact_duration: Option<f64>,
     /// Temperature of the velocities at the start.
@@ -96,6 +102,9 @@ impl VibratedBox {
             tangential_inelasticity: None,
             friction: 0.0,
             dynamic_friction: None,
+            wall_inelasticity: None,
+            base_inelasticity: None,
+            wall_friction: None,
             contact_duration: None,
             initial_temperature: 1.0,
             sides: Sides::Hard,
@@ -133,6 +142,21 @@ impl VibratedBox {
         Self { dynamic_friction: Some(dynamic), ..self }
     }
 
+    /// Returns the same box with walls of an inelasticity of their own, normal and tangential.
+    pub const fn with_wall_inelasticity(self, inelasticity: f64) -> Self {
+        Self { wall_inelasticity: Some(inelasticity), ..self }
+    }
+
+    /// Returns the same box with a base of an inelasticity of its own, normal and tangential.
+    pub const fn with_base_inelasticity(self, inelasticity: f64) -> Self {
+        Self { base_inelasticity: Some(inelasticity), ..self }
+    }
+
+    /// Returns the same box with walls of a friction of their own, static and dynamic.
+    pub const fn with_wall_friction(self, friction: f64) -> Self {
+        Self { wall_friction: Some(friction), ..self }
+    }
+
     /// Returns the same box under the contact-duration model, [`ContactDuration`].
     pub const fn with_contact_duration(self, duration: f64) -> Self {
         Self { contact_duration: Some(duration), ..self }
@@ -149,16 +173,39 @@ impl VibratedBox {
     }
 
     fn container(&self) -> Result<Container, ExperimentError> {
-        let container = match self.height {
+        let mut container = match self.height {
             Some(height) => Container::closed(self.width, height)?,
             None => Container::open(self.width)?,
         };
+        if let Some(rule) = self.wall_rule(self.wall_inelasticity)? {
+            for wall in [Wall::Left, Wall::Right].into_iter().chain(self.height.map(|_| Wall::Lid)) {
+                container = container.with_rule(wall, rule)?;
+            }
+        }
+        if let Some(rule) = self.wall_rule(self.base_inelasticity.or(self.wall_inelasticity))? {
+            container = container.with_rule(Wall::Floor, rule)?;
+        }
         let container = match self.sides {
             Sides::Hard => container,
             Sides::Elastic => container.with_rule(Wall::Left, Elastic)?.with_rule(Wall::Right, Elastic)?,
             Sides::Periodic => container.with_periodic_sides(),
         };
         self.base.under(container)
+    }
+
+    /// Returns the rule of walls of this inelasticity, if it is not that of the disks.
+    fn wall_rule(&self, inelasticity: Option<f64>) -> Result<Option<BoxRule>, ExperimentError> {
+        if inelasticity.or(self.wall_friction).is_none() {
+            return Ok(None);
+        }
+        let mut walls = self.clone();
+        if let Some(inelasticity) = inelasticity {
+            walls = walls.with_inelasticity(inelasticity);
+        }
+        if let Some(friction) = self.wall_friction {
+            walls = walls.with_friction(friction);
+        }
+        walls.rule().map(Some)
     }
 }
 

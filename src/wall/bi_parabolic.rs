@@ -4,8 +4,7 @@ use super::oscillation::{Oscillation, is_even, piece};
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::{Fingerprint, ParameterError};
 
-/// Piecewise constant acceleration that mimics `$A\sin\omega t$` (paper, Sec. III): two parabolic arcs per
-/// period.
+/// Piecewise constant acceleration that mimics a sine, with two parabolic arcs per period (paper, Sec. III).
 ///
 /// With the half period `$H=\pi/\omega$` and `$s = t/H$`,
 ///
@@ -13,7 +12,7 @@ use crate::{Fingerprint, ParameterError};
 /// z(t) = 4A\,s(1-s)\quad (0\le s<1),\qquad z(t+H) = -z(t),
 /// ```
 ///
-/// so amplitude and period are those of the sine. The peak speed is `$4A/H = 4A\omega/\pi$` and the
+/// so amplitude and period are those of `$A\sin\omega t$`. The peak speed is `$4A/H = 4A\omega/\pi$` and the
 /// acceleration is `$\mp 8A/H^2$`. Every contact is the root of a parabola, which is exact and needs no
 /// iteration.
 ///
@@ -33,20 +32,21 @@ pub struct BiParabolic {
 }
 
 impl BiParabolic {
-    /// Creates a motion of this amplitude `$A$` and angular frequency `$\omega$`.
+    /// Creates a motion of this amplitude A and angular frequency ω.
     ///
     /// # Errors
-    /// If one is not finite and positive. For no motion, use [`Fixed`](super::Fixed).
+    /// If a number is not finite and positive, or the period or the peak acceleration would not be. For a
+    /// wall at rest, use [`Fixed`](super::Fixed).
     pub fn new(amplitude: f64, angular_frequency: f64) -> Result<Self, ParameterError> {
         Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
     }
 
-    /// Returns the amplitude `$A$`.
+    /// Returns the amplitude.
     pub const fn amplitude(&self) -> f64 {
         self.oscillation.amplitude()
     }
 
-    /// Returns the angular frequency `$\omega$`.
+    /// Returns the angular frequency.
     pub const fn angular_frequency(&self) -> f64 {
         self.oscillation.angular_frequency()
     }

@@ -1,13 +1,13 @@
-//! A motion that begins at a later time.
+//! A motion whose phase counts from a given time.
 
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::quantity::finite;
 use crate::{Fingerprint, ParameterError};
 
-/// A motion that counts its phase from a start of its own, and not from time 0.
+/// A motion whose phase counts from a given start instead of time 0.
 ///
-/// Where one base takes over from another one between runs, it begins at its own phase 0 then, and does not
-/// jump. Before its start, it moves as it does after.
+/// A base that replaces another between runs can in this way begin at its own phase 0, without a jump. The
+/// start is no delay: before it, the wall goes through the phases before 0.
 ///
 /// ```
 /// use granular_edmd::wall::{BiParabolic, Delayed, WallMotion};
@@ -26,14 +26,15 @@ pub struct Delayed<M> {
 }
 
 impl<M: WallMotion> Delayed<M> {
-    /// Lets a motion begin at this absolute time.
+    /// Creates the motion that has phase 0 at this absolute time.
     ///
     /// # Errors
     /// If the time is not finite.
     pub fn new(motion: M, start: f64) -> Result<Self, ParameterError> {
         let start = finite("start of a motion", start)?;
         let lead = match motion.period() {
-            // The remainder is exact, however late the start is. If it is 0, phases are the motion's own.
+            // The remainder is exact, however late the start is. If it is 0, the phases are those of the
+            // motion itself.
             Some(period) if start % period != 0.0 => period - start.rem_euclid(period),
             Some(_) => 0.0,
             None => -start,
@@ -46,7 +47,7 @@ impl<M: WallMotion> Delayed<M> {
         &self.motion
     }
 
-    /// Returns the time at which it begins.
+    /// Returns the absolute time at which the motion has phase 0.
     pub const fn start(&self) -> f64 {
         self.start
     }
@@ -63,7 +64,7 @@ impl<M: WallMotion> WallMotion for Delayed<M> {
         if until > phase {
             return AccelerationBounds::new(until, bounds.min, bounds.max);
         }
-        // The sum was rounded to just before the end of a piece, so the next piece is meant.
+        // The sum was rounded to just before the end of a piece, but the phase belongs to the next piece.
         let next = self.motion.acceleration(bounds.until);
         AccelerationBounds::new(next.until - self.lead, next.min, next.max)
     }

@@ -3,23 +3,23 @@
 use super::WallMotion;
 use crate::roots::first_descent;
 
-/// Rounding of a gap, relative to the lengths of which it is the difference.
+/// Rounding of a gap, relative to the lengths whose difference it is.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Least room for a step, in units of the rounding, so that a search ends.
+/// Least room for a step, in units of the rounding. It makes sure that a search ends.
 const LEAST_ROOM: f64 = 1e-3;
 
-/// Largest number of steps of a search. A wall that sweeps over its reach in each period is met within a few
-/// periods, each of which takes a few tens of steps. More steps are needed only under a wall that stays away
-/// from a large part of its stated reach.
+/// Largest number of steps of a search. If a wall sweeps over its reach in each period, a search meets it
+/// within a few periods, each of which takes a few tens of steps. It needs more steps only under a wall that
+/// stays away from a large part of its stated reach.
 const MOST_STEPS: u32 = 1 << 20;
 
-/// Largest number of steps so short that times can hardly be told apart. A search that converges takes some
-/// of them at its end. More of them come from a motion whose pieces are too short, or whose bounds are too
-/// large, for its times.
+/// Largest number of steps that are so short that floating-point times can hardly tell their ends apart. A
+/// search that converges takes some such steps at its end. It takes more of them under a motion whose pieces
+/// are too short, or whose bounds are too large, for its times.
 const MOST_SHORT_STEPS: u32 = 1 << 10;
 
-/// A surface that approaches a wall: its height above the wall's place at rest, along the wall's normal.
+/// The approach of a surface to a wall: its height above the wall's place at rest, along the wall's normal.
 ///
 /// Its times are phases of the wall's motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +31,8 @@ pub struct Approach {
 }
 
 impl Approach {
-    /// Creates a surface that has this height and velocity at `time`, and always this acceleration.
+    /// Creates the approach of a surface that has this height and velocity at `time`, and this constant
+    /// acceleration.
     #[inline]
     pub const fn new(time: f64, height: f64, velocity: f64, acceleration: f64) -> Self {
         Self { time, height, velocity, acceleration }
@@ -43,7 +44,8 @@ impl Approach {
         self.height + (self.velocity + 0.5 * self.acceleration * elapsed) * elapsed
     }
 
-    /// Tells whether the surface begins and ends above this height, and is no lower in between.
+    /// Tells whether the surface stays above this height until this time. Under an upward pull, the answer is
+    /// always no, and the caller must search.
     #[inline]
     pub(crate) fn stays_above(&self, height: f64, until: f64) -> bool {
         // Under a downward pull the surface is higher in between than at its ends, so the ends are enough.
@@ -63,23 +65,24 @@ impl Approach {
 /// that acceleration. The search steps to the root of the parabola, where the gap is still open, and repeats
 /// until the gap is closed. One step is exact if the acceleration is constant. Otherwise, the steps shrink
 /// quadratically, down to the rounding of the gap. The search never steps over a contact. A gap that is
-/// closed at the start counts only while it closes.
+/// already closed at the start counts only if it closes further.
 ///
-/// Flights beyond the reach of the wall are skipped, at the start and after a bounce. Within the reach, the
-/// wall sweeps over every height in each period. The search therefore takes no more steps than some periods
-/// need, however fast the wall and long the flight. A surface may also stay below the reach and outrun the
-/// wall, or hover in a part of the reach that the wall never gets to. It is then followed from piece to
-/// piece: give such a search an end.
+/// The search skips the parts of a flight that are beyond the reach of the wall, at the start and after a
+/// bounce. Within the reach, the wall sweeps over every height in each period. The search therefore takes no
+/// more steps than a few periods need, however fast the wall and however long the flight. There are two
+/// exceptions: a surface may stay below the reach and outrun the wall, or hover in a part of the reach that
+/// the wall never enters. The search then follows it from piece to piece, so give it a finite `until`.
 ///
 /// # Walls whose place is unknown
-/// The search ends whatever the motion answers, and never lets the surface through unnoticed. In the
-/// following cases, the wall counts as everywhere within its reach and at every speed. The touch is then the
-/// first time at which the surface is within the reach:
+/// The search always ends, whatever the motion answers, and never lets the surface through unnoticed. In the
+/// following cases, the wall counts as being everywhere within its reach, at every speed. The touch is then
+/// the first time at which the surface is within the reach:
 /// - Floating-point times are too coarse to tell the pieces of the motion apart, or a piece ends before it
 ///   begins.
-/// - The state or the bounds are not finite. A reach that is not finite counts as one without ends.
+/// - The state or the bounds are not finite. A reach that is not finite counts as unlimited.
 /// - The search has taken more than a million steps, or more than a thousand steps that were hardly longer
-///   than the spacing of times. The pieces are too short, or the bounds too large, for the times.
+///   than the spacing of floating-point times. The pieces are too short, or the bounds too large, for the
+///   times.
 ///
 /// The gap need not be closed at such a touch. An engine that resolves it finds the number that is not
 /// finite, or a run without progress, and reports that. A gap that is itself not a number counts as touched
@@ -109,7 +112,7 @@ pub fn first_touch<M: WallMotion + ?Sized>(motion: &M, approach: &Approach, unti
     None
 }
 
-/// A counter of steps, since a search must end under any motion.
+/// A counter of steps. It makes a search end under any motion.
 #[derive(Default)]
 struct Patience {
     steps: u32,
@@ -143,7 +146,8 @@ struct Look {
     /// True if the bound is the acceleration itself.
     exact: bool,
     tolerance: f64,
-    /// End of the piece. It is not later than this time if floating-point times cannot tell the pieces apart.
+    /// End of the piece. It is not later than the time of the look if floating-point times cannot tell the
+    /// pieces apart.
     until: f64,
     /// True if state, bounds and reach of the wall are finite.
     finite: bool,
@@ -236,7 +240,7 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         (is_low(pull) && end < first.until).then_some(end)
     }
 
-    /// Returns the acceleration of the gap during a fall through the rounding, which cannot leave the piece.
+    /// Returns the acceleration of the gap during a fall through the rounding, within the piece.
     ///
     /// The acceleration comes from the change of the rate, since the motion itself only gives bounds for it.
     fn pull_after(&self, start: f64, first: &Look) -> f64 {
@@ -247,15 +251,15 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
 
     /// Returns a time, later than this one, until which the gap cannot have closed by more than `room`.
     ///
-    /// The room is the sum of the gap and its rounding, so that each step advances, and the last one ends in
-    /// a gap that is closed by rounding. A gap that is closed by more has almost no room, so that nothing
-    /// goes much deeper into a wall than it already is.
+    /// The room is the sum of the gap and its rounding, so that each step advances, and the last one ends
+    /// where the gap is closed by rounding. A gap that is closed by more than that gets almost no room, so
+    /// that no surface goes much deeper into a wall than it already is.
     fn still_open(time: f64, room: f64, rate: f64, pull: f64) -> f64 {
         first_descent(room, rate, pull).map_or(f64::INFINITY, |wait| (time + wait).max(time.next_up()))
     }
 
-    /// Returns the gap below which the gap counts as closed: the rounding of the lengths, and of the time at
-    /// this speed.
+    /// Returns the value below which a gap counts as closed: the rounding of its lengths, and that of the
+    /// time at this speed.
     fn tolerance(&self, time: f64, rate: f64) -> f64 {
         let (low, high) = self.reach;
         let lengths = low.abs().max(high.abs()) + self.approach.height.abs();

@@ -3,7 +3,7 @@
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::Fingerprint;
 
-/// A wall motion that stays at its place.
+/// The motion of a wall that stays at its place.
 ///
 /// ```
 /// use granular_edmd::wall::{Fixed, WallMotion};

@@ -1,7 +1,7 @@
 //! Checks of a wall motion's contract, for motions of your own.
 //!
-//! [`check`] tests the whole contract on a stretch of phases. [`check_finite`] only tests that all answers
-//! are finite; the container does this with every motion that it is given.
+//! [`check`] tests the whole contract between two phases. [`check_finite`] tests only that all answers are
+//! finite and that pieces advance; a container does this with every motion that it is given.
 
 mod violation;
 
@@ -12,19 +12,19 @@ use super::{AccelerationBounds, WallMotion, WallState};
 /// Number of samples in a piece.
 const SAMPLES: u32 = 512;
 
-/// Largest number of pieces that are followed.
+/// Largest number of pieces that the check follows.
 const MOST_PIECES: u32 = 10_000;
 
-/// Allowed rounding, relative to the lengths and speeds of which a number is made.
+/// Allowed rounding, relative to the lengths and speeds from which a number is computed.
 const ROUNDING: f64 = 256.0 * f64::EPSILON;
 
 /// Part of a piece between its last sample and its end, where the state may jump.
 const LAST: f64 = 1.0 / (1u64 << 20) as f64;
 
-/// Length of a piece that is pure rounding, relative to its phase.
+/// Length below which a piece counts as pure rounding, relative to its phase and the period.
 const SHORT: f64 = 1e-9;
 
-/// Number of pieces in a row that must advance by more than rounding.
+/// Number of pieces in a row that together must advance by more than rounding.
 const PIECES_IN_A_ROW: u32 = 8;
 
 /// Phases at which a motion without a period is tested.
@@ -35,9 +35,9 @@ const PROBES: [f64; 9] = [0.0, 1e-3, 0.1, 1.0, 10.0, 1e2, 1e3, 1e4, 1e6];
 /// The check samples each piece that begins between the phases. The state must be finite and within the
 /// reach, and the bounds must hold for the change of the velocity between samples. The displacement must be
 /// the integral of the velocity. Pieces must advance, and jumps may only be at their ends and away from the
-/// disks. The motion must repeat after its period. A fault narrower than a five-hundredth of a piece can be
-/// missed, so check a motion with one long piece on several short stretches. A stretch of more than ten
-/// thousand pieces is refused.
+/// disks. The motion must repeat after its period. The check can miss a fault that is narrower than a
+/// five-hundredth of a piece, so check a motion with one long piece on several short stretches. It refuses a
+/// stretch of more than ten thousand pieces.
 ///
 /// # Errors
 /// The first violation that the check finds.
@@ -82,9 +82,11 @@ pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(
     Err(Violation::ShortPieces { phase: from, until: phase, pieces: MOST_PIECES })
 }
 
-/// Checks that a motion gives finite numbers, and pieces that advance. No run can do without these.
+/// Checks that a motion gives finite numbers, and pieces that advance.
 ///
-/// The phases are in the first period, or between 0 and a million for a motion without a period.
+/// No run can do without these.
+///
+/// The check looks at phases in the first period, or between 0 and a million for a motion without a period.
 ///
 /// # Errors
 /// The first violation that the check finds.
@@ -229,8 +231,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         let rise = to.state.displacement - from.state.displacement;
         let expected = 0.5 * (from.state.velocity + to.state.velocity) * wait;
         // Given the velocities at both ends, the displacement is extreme if the acceleration takes first the
-        // one bound and then the other. It then differs from that of the mean velocity by the area of a
-        // triangle, which is at most this.
+        // one bound and then the other. It then differs from the displacement at the mean velocity by the
+        // area of a triangle, which is at most `spread`.
         let spread = 0.125 * (bounds.max - bounds.min) * wait * wait;
         if (rise - expected).abs() > spread + self.length_rounding(from, bounds) + slack * wait {
             return Err(Violation::Displacement { from: from.phase, to: to.phase, rise, expected });
@@ -267,8 +269,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
             let changed = (then_bounds.min - bounds.min).abs().max((then_bounds.max - bounds.max).abs());
             let differs = moved > self.length_rounding(then, &bounds)
                 || gained > self.speed_rounding(then, &bounds)
-                // The ends of pieces are rounded. The bounds at them change with the third derivative, which
-                // the motion does not tell.
+                // The ends of pieces are rounded. The bounds there change with the third derivative, which
+                // the motion does not provide.
                 || changed > 1e-6 * strength;
             if differs {
                 return Err(Violation::Period { phase, period, later });
@@ -277,7 +279,7 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         Ok(())
     }
 
-    /// Returns the size of the motion.
+    /// Returns the largest magnitude of a displacement within the reach.
     fn length(&self) -> f64 {
         self.low.abs().max(self.high.abs())
     }
@@ -295,8 +297,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         ROUNDING * (speed + acceleration * sample.phase.abs())
     }
 
-    /// Returns the speed that the acceleration gives over the length of the motion. The terms of a velocity
-    /// that passes zero are no smaller.
+    /// Returns the speed that the acceleration builds up over the reach of the motion. The terms of a
+    /// velocity are no smaller than this, even where the velocity passes through zero.
     fn speed_scale(&self, bounds: &AccelerationBounds) -> f64 {
         (bounds.min.abs().max(bounds.max.abs()) * (self.high - self.low)).sqrt()
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::Fingerprint;
 
-/// A motion in the opposite direction: that of the wall on the other side of a box that moves as a whole.
+/// A motion in the opposite direction, for the wall on the other side of a box that moves as a whole.
 pub(super) struct Mirrored(pub(super) Arc<dyn WallMotion + Send + Sync>);
 
 impl WallMotion for Mirrored {

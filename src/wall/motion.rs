@@ -1,4 +1,4 @@
-//! A motion in owned form, which walls share.
+//! A motion in owned form, which several walls can share.
 
 use std::fmt;
 use std::ops::Deref;
@@ -10,7 +10,8 @@ use super::{Fixed, WallMotion};
 
 /// A motion of any type.
 ///
-/// A motion of the crate is known as such, and goes to files and back. A motion of your own cannot.
+/// A motion of the crate is recognized, so it can be written to files and read back. A motion of your own
+/// cannot.
 #[derive(Clone)]
 pub(crate) struct Motion {
     motion: Arc<dyn WallMotion + Send + Sync>,
@@ -19,7 +20,7 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
-    /// Takes a motion, if it answers with finite numbers.
+    /// Takes a motion, if it passes `check_finite`.
     pub(crate) fn new<M: WallMotion + Send + Sync + 'static>(motion: M) -> Result<Self, Violation> {
         check_finite(&motion)?;
         #[cfg(feature = "serde")]
@@ -49,8 +50,8 @@ impl Motion {
         }
     }
 
-    /// Tells whether the motion jumps at the end of a piece, in the first period or in the first thousand
-    /// pieces.
+    /// Tells whether the motion jumps at the end of a piece. Looks at the first period, or at the first
+    /// thousand pieces if these end earlier.
     pub(crate) fn jumps(&self) -> bool {
         const PIECES: usize = 1000;
         let (low, high) = self.reach();
@@ -77,7 +78,7 @@ impl Motion {
     pub(crate) fn phase(&self, origin: f64) -> f64 {
         let (low, high) = self.reach();
         match self.period() {
-            // A wall that never leaves its place is the same at all times. Phase 0 costs the times none of
+            // A wall that never leaves its place is the same at all times. With phase 0, times lose none of
             // their digits.
             _ if low == high => 0.0,
             // The remainder of two floats is exact, so the phase keeps all its digits however late the time
@@ -155,7 +156,7 @@ mod file {
         }
     }
 
-    /// Recognizes a motion of type `M` that begins at a time of its own.
+    /// Recognizes a delayed motion of type `M`, and returns it with its start.
     fn delayed<M: WallMotion + Copy + 'static>(
         motion: &dyn Any,
         known: fn(M) -> Known,
@@ -164,7 +165,7 @@ mod file {
         Some((known(*delayed.motion()), delayed.start()))
     }
 
-    /// Makes a motion of what stands in a file, or says why it is none.
+    /// Builds a motion from the data of a file, or returns the reason why it cannot.
     fn owned<M: WallMotion + Send + Sync + 'static>(motion: M, start: f64) -> Result<Motion, String> {
         let told = |violation: Violation| violation.to_string();
         if start == 0.0 {
@@ -187,7 +188,7 @@ mod file {
 
     impl Serialize for Motion {
         fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-            let own = "a wall motion that is not of granular-edmd cannot be serialized";
+            let own = "only the wall motions of granular-edmd can be serialized";
             self.known.ok_or_else(|| S::Error::custom(own))?.serialize(serializer)
         }
     }

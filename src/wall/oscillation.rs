@@ -47,8 +47,8 @@ impl Oscillation {
 #[inline]
 pub(super) fn piece(phase: f64, length: f64) -> (f64, f64) {
     let mut number = (phase / length).floor();
-    // The end of a piece belongs to the next one. The quotient may be rounded down to the piece before, which
-    // would end at the phase asked for, and a search would make no step.
+    // The end of a piece belongs to the next one. The quotient may be rounded down to the piece before. That
+    // piece would end at the requested phase, and a search would make no step.
     if phase >= (number + 1.0) * length {
         number += 1.0;
     }

@@ -1,11 +1,11 @@
-//! The wall that rises at constant speed and returns at once.
+//! The wall that rises at constant speed and jumps back.
 
 use super::oscillation::Oscillation;
 use super::stroke::{steady, stroke};
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::{Fingerprint, ParameterError};
 
-/// Sawtooth motion: from `$-A$` to `$A$` in one period at constant speed, then instantly back to `$-A$`.
+/// Sawtooth motion: from −A to A in one period at constant speed, then instantly back to −A.
 ///
 /// The speed is `$A\omega/\pi$`. A disk always meets the rising wall, as in the theory of gases on fast
 /// vibrating walls.
@@ -26,20 +26,20 @@ pub struct Sawtooth {
 }
 
 impl Sawtooth {
-    /// Creates a motion of this amplitude `$A$` and angular frequency `$\omega$`.
+    /// Creates a motion of this amplitude A and angular frequency ω.
     ///
     /// # Errors
-    /// If one is not finite and positive.
+    /// If a number is not finite and positive, or the period or the peak acceleration would not be.
     pub fn new(amplitude: f64, angular_frequency: f64) -> Result<Self, ParameterError> {
         Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
     }
 
-    /// Returns the amplitude `$A$`.
+    /// Returns the amplitude.
     pub const fn amplitude(&self) -> f64 {
         self.oscillation.amplitude()
     }
 
-    /// Returns the angular frequency `$\omega$`.
+    /// Returns the angular frequency.
     pub const fn angular_frequency(&self) -> f64 {
         self.oscillation.angular_frequency()
     }

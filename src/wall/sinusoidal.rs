@@ -8,7 +8,7 @@ use crate::{Fingerprint, ParameterError};
 /// acceleration is monotonic on each piece and the values at its ends are the bounds.
 const PIECES: f64 = 16.0;
 
-/// Harmonic motion `$z(t) = A\sin\omega t$`.
+/// Harmonic motion, z(t) = A sin ωt.
 ///
 /// ```
 /// use granular_edmd::wall::{Sinusoidal, WallMotion};
@@ -25,20 +25,20 @@ pub struct Sinusoidal {
 }
 
 impl Sinusoidal {
-    /// Creates a motion of this amplitude `$A$` and angular frequency `$\omega$`.
+    /// Creates a motion of this amplitude A and angular frequency ω.
     ///
     /// # Errors
-    /// If one is not finite and positive.
+    /// If a number is not finite and positive, or the period or the peak acceleration would not be.
     pub fn new(amplitude: f64, angular_frequency: f64) -> Result<Self, ParameterError> {
         Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
     }
 
-    /// Returns the amplitude `$A$`.
+    /// Returns the amplitude.
     pub const fn amplitude(&self) -> f64 {
         self.oscillation.amplitude()
     }
 
-    /// Returns the angular frequency `$\omega$`.
+    /// Returns the angular frequency.
     pub const fn angular_frequency(&self) -> f64 {
         self.oscillation.angular_frequency()
     }

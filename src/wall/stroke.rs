@@ -11,7 +11,7 @@ pub(super) fn stroke(phase: f64, length: f64, amplitude: f64) -> WallState {
     WallState::new(amplitude * (2.0 * share - 1.0), 2.0 * amplitude / length)
 }
 
-/// Returns bounds which say that nothing accelerates before the stroke ends.
+/// Returns bounds of zero acceleration, which hold until the stroke ends.
 pub(super) fn steady(phase: f64, length: f64) -> AccelerationBounds {
     AccelerationBounds::new(piece(phase, length).1, 0.0, 0.0)
 }

@@ -5,7 +5,7 @@ use super::stroke::{steady, stroke};
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::{Fingerprint, ParameterError};
 
-/// Triangular motion: from `$-A$` to `$A$` in half a period at constant speed, and back at the same speed.
+/// Triangular motion: from −A to A in half a period at constant speed, and back at the same speed.
 ///
 /// The speed is `$2A\omega/\pi$`; at time 0 the wall is at its lowest and starts to rise.
 ///
@@ -25,20 +25,20 @@ pub struct Triangular {
 }
 
 impl Triangular {
-    /// Creates a motion of this amplitude `$A$` and angular frequency `$\omega$`.
+    /// Creates a motion of this amplitude A and angular frequency ω.
     ///
     /// # Errors
-    /// If one is not finite and positive.
+    /// If a number is not finite and positive, or the period or the peak acceleration would not be.
     pub fn new(amplitude: f64, angular_frequency: f64) -> Result<Self, ParameterError> {
         Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
     }
 
-    /// Returns the amplitude `$A$`.
+    /// Returns the amplitude.
     pub const fn amplitude(&self) -> f64 {
         self.oscillation.amplitude()
     }
 
-    /// Returns the angular frequency `$\omega$`.
+    /// Returns the angular frequency.
     pub const fn angular_frequency(&self) -> f64 {
         self.oscillation.angular_frequency()
     }

@@ -107,6 +107,10 @@ fn collapse_needs_a_compact_layer_on_a_gas_without_rolls() -> Outcome {
     assert_eq!(regime(0.0, Some(layer(0.8, 0.4)))?, Conductive, "on no less than half of its density");
     assert_eq!(regime(0.0, Some(layer(0.60, 0.13)))?, Conductive, "no more than compact");
     assert_eq!(regime(0.03, Some(layer(0.67, 0.13)))?, TwoRolls, "rolls no less than dead");
+    // Near the transition: in most samples there is no flow, in some there are two rolls.
+    let turns = [0.0, 0.0, 0.0, 0.14].map(|two_rolls| ConvectionOrder::new(0.0, two_rolls));
+    let found = StateCriteria::default().classify(&turns, 0.0067, Some(layer(0.71, 0.09)))?;
+    assert_eq!((found.regime(), found.weight_of_rolls(0), found.weight_of_rolls(2)), (Collapsed, 0.0, 0.25));
     let criteria = StateCriteria::default().with_collapse(0.4, 0.01)?;
     let sample = [ConvectionOrder::default()];
     assert_eq!(criteria.classify(&sample, 0.01, Some(layer(0.45, 0.13)))?.regime(), Collapsed);

@@ -208,5 +208,8 @@ fn a_boundary_that_ignores_the_time_origin_is_caught() {
 #[test]
 fn violations_name_their_numbers() {
     let text = verdict(Fault::WallTooLarge).to_string();
-    assert!(text.starts_with("a touch is of wall ") && text.contains("but there are 4, on Flight"), "{text}");
+    assert!(
+        text.starts_with("a touch names wall ") && text.contains("but there are 4 walls, on Flight"),
+        "{text}"
+    );
 }

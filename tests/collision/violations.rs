@@ -117,7 +117,7 @@ fn messages_carry_the_numbers() {
     let violation = check_friction_opposes_slip(&slipping, Impulse::new(0.5, -0.25)).unwrap_err();
     assert_eq!(
         violation.to_string(),
-        format!("the impulse (0.5, -0.25) speeds the slip up, to 4.0 {}", of_contact("2.0"))
+        format!("the impulse (0.5, -0.25) makes the slip faster: 4.0 {}", of_contact("2.0"))
     );
     assert_eq!((*violation.contact(), violation.impulse()), (slipping, Impulse::new(0.5, -0.25)));
 }

@@ -1,7 +1,7 @@
 //! Values: what they record, how long they last, and how they end.
 
 use granular_edmd::study::vibrated_box::{Base, Convection, VibratedBox};
-use granular_edmd::study::{Course, Leg, Outcome, Plan, Protocol, Ramp};
+use granular_edmd::study::{Course, Experiment, Leg, Outcome, Plan, Protocol, Ramp};
 
 use crate::support::{AnyError, BASE, done, small_box, small_plan};
 
@@ -103,5 +103,26 @@ fn a_stalled_value_does_not_stop_the_study() -> Result<(), AnyError> {
     };
     assert_eq!(time(&before), time(&stalled), "the next value starts where this one did");
     assert!(time(&after) > time(&stalled));
+    Ok(())
+}
+
+/// Walls have the rule of the disks unless the box says otherwise; the base can differ from the other walls.
+#[test]
+fn walls_have_the_rule_of_the_disks_or_one_of_their_own() -> Result<(), AnyError> {
+    let box_ = small_box().with_friction(0.1);
+    let end = |experiment: VibratedBox| -> Result<_, AnyError> {
+        let mut run = experiment.build(3).map_err(|error| error.to_string())?;
+        run.run_until(100.0, &mut ())?;
+        Ok(run.disks())
+    };
+    let stated = end(box_.clone())?;
+    assert_eq!(end(box_.clone().with_wall_inelasticity(0.05).with_wall_friction(0.1))?, stated);
+    let elastic = end(box_.clone().with_wall_inelasticity(0.0))?;
+    let elastic_base = end(box_.clone().with_base_inelasticity(0.0))?;
+    assert!(elastic != stated && elastic_base != stated && elastic_base != elastic);
+    assert_eq!(end(box_.clone().with_base_inelasticity(0.05))?, stated);
+    assert_ne!(end(box_.clone().with_wall_friction(0.0))?, stated);
+    let refused = box_.with_wall_inelasticity(0.7).boundary().unwrap_err().to_string();
+    assert!(refused.contains("0.7"), "{refused}");
     Ok(())
 }

@@ -6,8 +6,8 @@
 //! neighbors of different states.
 //!
 //! ```text
-//! cargo run --release --features serde,rayon --example fig5_phase_diagram -- --size quick
-//! cargo run --release --features serde,rayon --example fig5_phase_diagram -- --size coarse
+//! cargo run --release --features serde,rayon --example fig5_phase_diagram -- --quick
+//! cargo run --release --features serde,rayon --example fig5_phase_diagram -- --size full
 //! ```
 //!
 //! The example writes `fig5_phase_diagram.png`, `points.csv` and `transitions.csv`, which the example
@@ -30,42 +30,50 @@ use clap::Parser;
 use granular_edmd::study::Study;
 use granular_edmd::study::vibrated_box::VibratedBox;
 
+use common::results::Results;
 use plan::{Gravity, Part, Size};
 
 /// Convective states in the plane of friction and inelasticity (paper, Fig. 5).
 #[derive(Parser)]
 struct Arguments {
-    /// Folder for all results; each gravity and size has one of its own in it.
-    #[arg(long, default_value = "out")]
-    out: PathBuf,
     /// Gravity, one of the paper's two.
     #[arg(long, value_enum, default_value = "0.015625")]
     gravity: Gravity,
     /// The size of the diagram.
-    #[arg(long, value_enum, default_value = "full")]
+    #[arg(long, value_enum, default_value = "coarse")]
     size: Size,
+    /// The same as `--size quick`.
+    #[arg(long, conflicts_with = "size")]
+    quick: bool,
     /// Draw what is there, and do no more: also while another process does.
     #[arg(long)]
     draw: bool,
     /// Seed of all random numbers.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    #[command(flatten)]
+    results: Results,
 }
 
 impl Arguments {
+    fn size(&self) -> Size {
+        if self.quick { Size::Quick } else { self.size }
+    }
+
+    /// Returns the folder of this gravity and size.
     fn folder(&self) -> PathBuf {
-        let name = format!("fig5_phase_diagram-{}-{}", self.gravity.value(), self.size.name());
-        self.out.join(name)
+        self.results.path(&format!("fig5_phase_diagram-{}-{}", self.gravity.value(), self.size().name()))
     }
 }
 
 fn main() -> ExitCode {
-    studies::end(run(&Arguments::parse()))
+    common::command_line::main(run)
 }
 
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    arguments.results.make_folder()?;
     let folder = arguments.folder();
-    let parts = plan::parts(arguments.size, arguments.gravity, arguments.seed)?;
+    let parts = plan::parts(arguments.size(), arguments.gravity, arguments.seed)?;
     if !arguments.draw {
         for part in &parts {
             if studies::complete(&folder.join(part.folder), &part.plan, None)?.is_none() {
@@ -76,6 +84,9 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let started = parts.iter().filter(|part| folder.join(part.folder).is_dir());
     let studies: Vec<Study<VibratedBox>> =
         started.map(|part| Study::open(folder.join(part.folder))).collect::<Result<_, _>>()?;
+    if studies.is_empty() {
+        return Err(format!("--draw: there is no study in {}", folder.display()).into());
+    }
     let points = states::points(&studies)?;
     let lines = states::lines(&points)?;
     let gravity = arguments.gravity.value();
@@ -86,7 +97,8 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     std::fs::write(folder.join("fig5_phase_diagram.png"), picture)?;
     println!("{caption}");
     println!("wrote fig5_phase_diagram.png, points.csv and transitions.csv to {}", folder.display());
-    Ok(())
+    let tables = ["points", "transitions"].map(|name| (name, folder.join(name).with_extension("csv")));
+    arguments.results.write_tables_as_json(&tables)
 }
 
 fn caption(arguments: &Arguments, parts: &[Part], finished: usize) -> String {
@@ -98,6 +110,6 @@ fn caption(arguments: &Arguments, parts: &[Part], finished: usize) -> String {
         "N = 1000, box 60 × 150, bi-parabolic base A = 0.1, ω = 10, contact duration 1e-4\n{cycles} oscillations for \
          each point, the first half discarded; seed {}, {}{unfinished}",
         arguments.seed,
-        arguments.size.name()
+        arguments.size().name()
     )
 }

@@ -8,7 +8,8 @@ use super::path::{Beside, Path};
 use super::{MARGIN, Side, Sight, direction};
 use crate::boundary::Region;
 
-/// A circle or a part of it, counterclockwise: its left side is inside. A point is a circle without a radius.
+/// A circle or a part of it. It leads counterclockwise, so its left side is inside. A point is a circle of
+/// radius 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Arc {
     center: DVec2,
@@ -31,7 +32,7 @@ impl Sector {
         Self { start, end, is_wide }
     }
 
-    /// Returns both ends and the width.
+    /// Returns the directions of both ends, and whether the arc is longer than half of the circle.
     #[cfg(feature = "serde")]
     pub(super) const fn parts(&self) -> (DVec2, DVec2, bool) {
         (self.start, self.end, self.is_wide)
@@ -71,7 +72,7 @@ impl Arc {
         self.sector.map(|sector| [end(sector.start), end(sector.end)])
     }
 
-    /// Returns points along the arc, with angles of at most this size between them.
+    /// Returns points along the arc, at most this angle apart.
     pub(super) fn points(&self, step: f64) -> Vec<DVec2> {
         let (start, angle) = match self.sector {
             None => (DVec2::X, TAU),
@@ -97,7 +98,8 @@ impl Arc {
         if place.distance(self.center) < self.radius { Side::Left } else { Side::Right }
     }
 
-    /// Returns the gap on one side as a polynomial of the time: the difference of two squared distances.
+    /// Returns the gap on one side as a polynomial of the time. It is a difference of two squared distances,
+    /// which has the sign of the gap.
     pub(super) fn gap(&self, path: &Path, side: Side) -> [f64; 5] {
         let (r, v, a) = (path.place - self.center, path.velocity, path.acceleration);
         let (k, s) = (path.widening, path.spread);
@@ -109,7 +111,7 @@ impl Arc {
                 let [c1, c2, c3, c4] = std::array::from_fn(|n| square[n] - grown[n]);
                 [(r.length() - contact) * (r.length() + contact), c1, c2, c3, c4]
             }
-            // A disk that is larger than the circle never touches it from inside: it does not get there.
+            // A disk that is larger than the circle never touches it from inside, because it does not fit in.
             Side::Left if path.radius >= self.radius => [1.0, 0.0, 0.0, 0.0, 0.0],
             Side::Left => {
                 let room = self.radius - path.radius;
@@ -128,7 +130,7 @@ impl Arc {
         Some(Beside { quantities: [after, before], one_is_enough: sector.is_wide })
     }
 
-    /// Tells whether the way stays too far from the brick to touch it. Most do.
+    /// Tells whether the path stays too far from the brick for a touch. Most paths do.
     pub(super) fn is_out_of_reach(&self, path: &Path, wait: f64) -> bool {
         const LESS: f64 = 1.0 - 1e-9;
         let (from, to) = (path.place - self.center, path.at(wait) - self.center);
@@ -141,7 +143,8 @@ impl Arc {
         farthest + sagitta < LESS * (self.radius - path.radius)
     }
 
-    /// Returns the largest growth of a disk of this radius that leaves it room inside.
+    /// Returns the largest growth that the search allows a disk of this radius: half of the room that it has
+    /// inside.
     pub(super) fn most_growth(&self, radius: f64) -> f64 {
         if self.radius > radius { 0.5 * (self.radius - radius) } else { f64::INFINITY }
     }
@@ -163,11 +166,11 @@ impl Arc {
         let outward = r.try_normalize().unwrap_or(DVec2::Y);
         let normal = if side == Side::Left { -outward } else { outward };
         let distance = (r.length() - self.radius).abs();
-        // A point has no sides. Bricks that end there have.
+        // A point has no sides, so the bricks that end there decide.
         Sight { distance, normal, side, weight: if self.radius == 0.0 { 0.0 } else { distance } }
     }
 
-    /// Tells whether a place of the brick is within `reach` of a region.
+    /// Tells whether a point of the brick may be within `reach` of a region.
     pub(super) fn is_near(&self, region: &Region, reach: f64) -> bool {
         let nearest = self.center.clamp(region.min, region.max).distance(self.center);
         let farthest = (region.min - self.center).abs().max((region.max - self.center).abs()).length();
@@ -179,7 +182,7 @@ impl Arc {
         (self.center - self.radius, self.center + self.radius)
     }
 
-    /// Returns bounds of the distances of the arc from a place.
+    /// Returns a lower and an upper bound of the distances of the arc's points from a place.
     pub(super) fn distances(&self, place: DVec2) -> (f64, f64) {
         let distance = place.distance(self.center);
         ((distance - self.radius).abs(), distance + self.radius)

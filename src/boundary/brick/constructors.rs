@@ -1,4 +1,4 @@
-//! The ways to make a brick, and to place it elsewhere.
+//! Constructors of bricks, and bricks shifted and rotated.
 
 use glam::DVec2;
 
@@ -9,8 +9,9 @@ use crate::boundary::vessel::VesselError;
 use crate::quantity::{accept, finite, positive};
 
 impl Brick {
-    /// Creates a segment between two points. Disks are free on the left of the way from the first point to
-    /// the second one.
+    /// Creates a segment between two points.
+    ///
+    /// Disks are free on its left, as seen on the way from the first point to the second.
     ///
     /// # Errors
     /// If a coordinate is not finite, or the points are equal.
@@ -20,7 +21,9 @@ impl Brick {
         Ok(Self::left_of(Shape::Segment(Segment::between(from, to))))
     }
 
-    /// Creates a half-line from a point on, in a direction of any length. Disks are free on its left.
+    /// Creates a half-line that begins at a point and has a direction.
+    ///
+    /// The vector `direction` can have any length except 0. Disks are free on the left of the half-line.
     ///
     /// # Errors
     /// If a coordinate is not finite, or the direction has no length.
@@ -28,7 +31,7 @@ impl Brick {
         Ok(Self::left_of(Shape::Segment(Segment::endless(finite_point(from)?, unit(direction)?))))
     }
 
-    /// Creates a circle. Disks are free inside.
+    /// Creates a circle with the disks inside.
     ///
     /// # Errors
     /// If a coordinate is not finite, or the radius is not finite and positive.
@@ -37,12 +40,13 @@ impl Brick {
         Ok(Self::left_of(Shape::Arc(Arc::new(center, radius, None))))
     }
 
-    /// Creates an arc, counterclockwise from the angle `from` to the angle `to`. Disks are free inside.
-    /// Angles are in radians from the `$x$` axis.
+    /// Creates an arc, counterclockwise from the angle `from` to the angle `to`.
+    ///
+    /// Disks are free inside. Angles are in radians from the `$x$` axis.
     ///
     /// # Errors
-    /// If a number is not finite, the radius is not positive, or `to` is not above `from` by less than a
-    /// whole turn.
+    /// If a number is not finite, the radius is not positive, or `to - from` is not above 0 and below a whole
+    /// turn.
     ///
     /// ```
     /// use std::f64::consts::PI;
@@ -61,8 +65,9 @@ impl Brick {
         Ok(Self::left_of(Shape::Arc(Arc::new(center, radius, Some(sector)))))
     }
 
-    /// Creates a point, with disks around it. [`Part`](crate::boundary::Part) adds the corners of its bricks
-    /// by itself.
+    /// Creates a point, with disks around it.
+    ///
+    /// A [`Part`](crate::boundary::Part) adds the corners of its bricks automatically.
     ///
     /// # Errors
     /// If a coordinate is not finite.
@@ -83,7 +88,9 @@ impl Brick {
         Self { shape, free: Free::Left }
     }
 
-    /// Returns the same brick with the disks on its other side. A point stays as it is.
+    /// Returns the same brick with the disks on its other side.
+    ///
+    /// A point does not change.
     #[must_use]
     pub fn reversed(self) -> Self {
         let free = match self.free {
@@ -101,7 +108,7 @@ impl Brick {
         Self { free, ..self }
     }
 
-    /// Returns the same brick elsewhere.
+    /// Returns the same brick, shifted by a vector.
     ///
     /// # Errors
     /// If a coordinate would not be finite.
@@ -109,10 +116,10 @@ impl Brick {
         self.moved(DVec2::X, finite_point(by)?)
     }
 
-    /// Returns the same brick after a turn about a point, counterclockwise by this angle in radians.
+    /// Returns the same brick, rotated about a point, counterclockwise by this angle in radians.
     ///
     /// # Errors
-    /// If a number is not finite, or would not be.
+    /// If an argument is not finite, or a coordinate would not be.
     pub fn rotated(self, about: DVec2, angle: f64) -> Result<Self, VesselError> {
         let turn = direction(finite("angle", angle)?);
         self.moved(turn, finite_point(about)? - turn.rotate(about))
@@ -127,7 +134,7 @@ impl Brick {
             finite_point(place)?;
         }
         if let Shape::Segment(segment) = shape {
-            // Far away, both ends may be the same number.
+            // Far from the origin, rounding may make both ends equal.
             let length = segment.to().map_or(1.0, |to| to.distance(segment.from()));
             positive("length of a segment", length)?;
         }

@@ -1,12 +1,12 @@
-//! The way of a disk relative to a brick, and the times at which it is beside the brick.
+//! The path of a disk relative to a brick, and the times at which the disk is beside the brick.
 
 use glam::DVec2;
 
 use crate::Flight;
 
-/// The way of a disk's center relative to a brick, from a moment on.
+/// The path of a disk's center relative to a brick, from a moment on.
 ///
-/// The center is known up to an error that grows with time. Instead of that, the disk grows: its radius is
+/// The center is known up to an error that grows with time. To allow for it, the disk grows: its radius is
 /// `radius + widening·t + ½·spread·t²`. A grown disk touches no later than the true one.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::boundary) struct Path {
@@ -19,7 +19,7 @@ pub(in crate::boundary) struct Path {
 }
 
 impl Path {
-    /// Creates a way that is known exactly.
+    /// Creates a path that is known exactly.
     pub(in crate::boundary) const fn exact(
         place: DVec2,
         velocity: DVec2,
@@ -29,7 +29,7 @@ impl Path {
         Self { place, velocity, acceleration, radius, widening: 0.0, spread: 0.0 }
     }
 
-    /// Returns the way of a flight, from its start on.
+    /// Returns the path of a flight, from its start on.
     pub(in crate::boundary) fn of(flight: &Flight) -> Self {
         let start = flight.time();
         let (place, velocity) = (flight.position(start), flight.velocity(start));
@@ -41,7 +41,7 @@ impl Path {
         self.place + (self.velocity + 0.5 * time * self.acceleration) * time
     }
 
-    /// Returns the same way, seen from a later moment on.
+    /// Returns the same path, from a later moment on.
     pub(super) fn later(&self, time: f64) -> Self {
         Self {
             place: self.at(time),
@@ -52,23 +52,23 @@ impl Path {
         }
     }
 
-    /// Returns the same way of a disk that has shrunk from this radius, and goes on to shrink, as this one
-    /// has grown.
+    /// Returns the same path for a disk that has shrunk from `radius` by as much as this one has grown from
+    /// it, and that shrinks on as this one grows.
     pub(super) fn shrinking(&self, radius: f64) -> Self {
         Self { radius: 2.0 * radius - self.radius, widening: -self.widening, spread: -self.spread, ..*self }
     }
 
-    /// Returns by how much the disk grows in this time.
+    /// Returns the growth of the disk in this time.
     pub(super) fn growth(&self, time: f64) -> f64 {
         (self.widening + 0.5 * self.spread * time) * time
     }
 
-    /// Returns how far the way is at most from its chord in this time, with the growth of the disk.
+    /// Returns the largest distance of the path from its chord in this time, plus the growth of the disk.
     pub(super) fn sagitta(&self, time: f64) -> f64 {
         0.125 * self.acceleration.length() * time * time + self.growth(time)
     }
 
-    /// Returns the distance from a place along a direction, as it changes on the way.
+    /// Returns the distance from a place along a direction, as a function of the time.
     pub(super) fn along(&self, place: DVec2, direction: DVec2) -> Parabola {
         Parabola {
             value: (self.place - place).dot(direction),
@@ -91,7 +91,7 @@ impl Parabola {
         self.value + (self.rate + 0.5 * self.acceleration * time) * time
     }
 
-    /// Returns the same quantity, larger by a constant and by the growth of the disk on its way.
+    /// Returns the same quantity, larger by a constant and by the growth of the disk on its path.
     pub(super) fn widened(&self, by: f64, path: &Path) -> Self {
         Self {
             value: self.value + by,
@@ -104,17 +104,17 @@ impl Parabola {
         Self { value: -self.value, rate: -self.rate, acceleration: -self.acceleration }
     }
 
-    /// Returns the zeros in the order in which they are computed; they need not be numbers.
+    /// Returns the zeros, in no particular order. A zero that does not exist is infinite or not a number.
     fn zeros(&self) -> [f64; 2] {
         let discriminant = self.rate * self.rate - 2.0 * self.acceleration * self.value;
-        // Numbers of equal sign are added, so that nothing cancels.
+        // The sum adds numbers of equal sign, so nothing cancels.
         let sum = -(self.rate + discriminant.sqrt().copysign(self.rate));
         [sum / self.acceleration, 2.0 * self.value / sum]
     }
 }
 
-/// The condition that a disk is beside a brick, not beyond its ends: both quantities are positive, or at
-/// least one of them is.
+/// The condition that a disk is beside a brick, not beyond its ends. It holds if both quantities are at least
+/// 0; for some bricks, one of them is enough.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Beside {
     pub(super) quantities: [Parabola; 2],
@@ -122,17 +122,17 @@ pub(super) struct Beside {
 }
 
 impl Beside {
-    /// Tells whether the condition holds after this time.
+    /// Tells whether the condition holds at this time.
     pub(super) fn holds(&self, time: f64) -> bool {
         let [first, second] = self.quantities.map(|quantity| quantity.at(time) >= 0.0);
         if self.one_is_enough { first || second } else { first && second }
     }
 
-    /// Returns the stretches of time, from 0 to `wait`, in which the condition holds.
+    /// Returns the intervals of time, from 0 to `wait`, in which the condition holds.
     pub(super) fn stretches(&self, wait: f64) -> impl Iterator<Item = (f64, f64)> {
         let [first, second] = self.quantities.map(|quantity| quantity.zeros());
-        // Between neighboring times of these, no quantity changes its sign. A time that is not a number or
-        // beyond the stretch does no harm at its end.
+        // Between neighboring marks, no quantity changes its sign. A zero that is not a number or is outside
+        // the interval is moved to its end, where it does no harm.
         let inside = |time: f64| if time > 0.0 && time < wait { time } else { wait };
         let mut marks = [0.0, inside(first[0]), inside(first[1]), inside(second[0]), inside(second[1]), wait];
         marks.sort_by(f64::total_cmp);

@@ -6,7 +6,7 @@ use super::path::{Beside, Path};
 use super::{MARGIN, Side, Sight};
 use crate::boundary::Region;
 
-/// A straight brick, with its left side to the left of its direction.
+/// A straight brick. Its left side is on the left of its direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Segment {
     from: DVec2,
@@ -72,7 +72,7 @@ impl Segment {
         Beside { quantities: [along.widened(margin, path), before_end], one_is_enough: false }
     }
 
-    /// Tells whether the way stays too far from the brick to touch it. Most do.
+    /// Tells whether the path stays too far from the brick for a touch. Most paths do.
     pub(super) fn is_out_of_reach(&self, path: &Path, wait: f64) -> bool {
         let (place, growth) = (path.place - self.from, path.growth(wait));
         let way = |direction: DVec2| {
@@ -103,7 +103,7 @@ impl Segment {
         Sight { distance, normal, side: self.side(place), weight: height.abs() }
     }
 
-    /// Tells whether a place of the brick is within `reach` of a region.
+    /// Tells whether a point of the brick may be within `reach` of a region.
     pub(super) fn is_near(&self, region: &Region, reach: f64) -> bool {
         let (low, high) = self.bounds();
         let (min, max) = (region.min - reach, region.max + reach);

@@ -10,10 +10,11 @@ use crate::roots::first_descent_of_quartic;
 
 impl Brick {
     /// Returns the first time, from the start of a flight to `until`, at which the disk touches the brick and
-    /// closes further; `None` if it does not.
+    /// closes further; `None` if there is no such time.
     ///
-    /// This is the first touch for a [`Boundary`](crate::boundary::Boundary) of your own, exact for constant
-    /// acceleration. The brick counts beside it only: close open ends by a [`point`](Self::point).
+    /// A [`Boundary`](crate::boundary::Boundary) of your own can find its first touch with this method, which
+    /// is exact for constant acceleration. Only touches beside the brick count, not those at its ends: close
+    /// open ends with a [`point`](Self::point).
     ///
     /// ```
     /// use granular_edmd::Flight;
@@ -33,19 +34,21 @@ impl Brick {
         Some((flight.time() + wait).min(until))
     }
 
-    /// Tells whether a disk of this radius can touch the brick with its center in a region, for
-    /// [`Boundary::may_touch`](crate::boundary::Boundary::may_touch).
+    /// Tells whether a disk of this radius may touch the brick while its center is in a region.
+    ///
+    /// A boundary of your own can answer [`Boundary::may_touch`](crate::boundary::Boundary::may_touch) with
+    /// it.
     pub fn may_touch(&self, region: &Region, radius: f64) -> bool {
-        // Rounding may not hide a touch at the edge of the region.
+        // The margin keeps rounding from hiding a touch at the edge of the region.
         self.is_near(region, 1.001 * radius)
     }
 
     /// Returns the first time, not later than `wait`, at which a disk touches the brick and closes further.
-    /// If the disk grows, no touch is earlier, but that time need not be one.
+    /// If the disk grows, there is no earlier touch, but there need not be one at that time either.
     ///
-    /// The side on which the center is decides which side of the brick counts. A disk whose center is behind
-    /// the brick goes on until it has come out in front. The brick counts beside it only. What it would leave
-    /// open at its ends is closed by the next brick, or by a point.
+    /// The disk can touch only the side of the brick on which its center is. A disk whose center is behind
+    /// the brick goes on until it has come out in front. Only touches beside the brick count. The next brick,
+    /// or a point, closes the gap that this leaves at the ends.
     pub(in crate::boundary) fn wait_for_touch(&self, path: &Path, wait: f64) -> Option<f64> {
         let beside = match self.shape {
             Shape::Segment(segment) if segment.is_out_of_reach(path, wait) => return None,
@@ -58,8 +61,9 @@ impl Brick {
         };
         let side = self.side(path.place);
         if self.free.has(side) {
-            // Mostly, the disk is beside the brick when it comes to the line or the circle. A disk that is
-            // beyond the end may be across the line already, so that it does not come to it.
+            // In most cases, the disk is beside the brick when it reaches the line or the circle, and this
+            // one root is enough. A disk beyond the end may already be across the line, so that it does not
+            // come to it.
             let gap = self.gap(path, side);
             if (gap[0] > 0.0 || beside.holds(0.0))
                 && let Some(touch) = first_descent_of_quartic(&gap, wait)
@@ -76,14 +80,14 @@ impl Brick {
         let (here, wait) = (path.later(from), to - from);
         let side = self.side(here.place);
         let growth = here.radius - path.radius;
-        // The true center may be on the other side.
+        // Within the growth, the true center may be on the other side of the line.
         if growth > 0.0 && self.distance_from_line(here.place) <= growth {
             return Some(from);
         }
         if self.free.has(side) {
             let gap = self.gap(&here, side);
-            // A gap that rounding has closed counts only while it closes. One that growth has closed may be
-            // open, and must be looked at.
+            // A gap that rounding has closed counts only while it closes further. A gap that growth has
+            // closed may in truth be open, so the search must look again from here.
             if growth > 0.0 && gap[0] <= 0.0 {
                 return Some(from);
             }
@@ -91,7 +95,8 @@ impl Brick {
         }
         let front = if side == Side::Left { Side::Right } else { Side::Left };
         if path.spread > 0.0 {
-            // The true disk comes out no earlier than one that shrinks. From then on, it is looked at again.
+            // The true disk comes out in front no earlier than one that shrinks. The search looks again from
+            // that time.
             let shrinking = here.shrinking(path.radius);
             let opens = first_descent_of_quartic(&self.gap(&shrinking, front).map(|c| -c), wait)?;
             return Some(from + opens);
@@ -102,7 +107,7 @@ impl Brick {
         Some(from + opens + touch)
     }
 
-    /// Returns the largest growth of a disk for which its first touch is found.
+    /// Returns the largest growth with which the search still finds the first touch of a disk.
     pub(in crate::boundary) fn most_growth(&self, radius: f64) -> f64 {
         match self.shape {
             Shape::Segment(_) => f64::INFINITY,
@@ -118,8 +123,8 @@ impl Brick {
         }
     }
 
-    /// Returns the radius of the brick as a disk at this place sees it: infinite for a segment, and for a
-    /// corner, which has none; negative from inside an arc.
+    /// Returns the radius of the brick toward a disk at this place. It is negative from inside an arc, and
+    /// infinite for a segment or a corner, which has no radius.
     pub(in crate::boundary) fn radius_at(&self, place: DVec2) -> f64 {
         match self.shape {
             Shape::Arc(arc) if arc.radius() > 0.0 => match arc.side(place) {

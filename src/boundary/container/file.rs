@@ -16,7 +16,7 @@ use crate::wall::Motion;
 pub(super) struct Record {
     corner: DVec2,
     width: f64,
-    /// Height of the lid, if there is one or the ends are periodic.
+    /// Height of the lid or period of the ends; none if the top is open.
     height: Option<f64>,
     walls: Vec<WallRecord>,
 }

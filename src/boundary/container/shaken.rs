@@ -6,8 +6,10 @@ use crate::quantity::finite;
 use crate::wall::{Motion, WallMotion};
 
 impl Container {
-    /// Returns the same container with a wall whose surface moves along itself at this speed, as a conveyor
-    /// belt: floor and lid to the right, the sides up.
+    /// Returns the same container with a wall whose surface moves along itself at this speed, like a conveyor
+    /// belt.
+    ///
+    /// A positive speed moves floor and lid to the right, and the sides up.
     ///
     /// # Errors
     /// If the container has no such wall, or the speed is not finite.
@@ -27,8 +29,10 @@ impl Container {
         Ok(self)
     }
 
-    /// Returns the same container with a wall that moves along itself: floor and lid to the right, the sides
-    /// up. The wall may also move along its normal.
+    /// Returns the same container with a wall that moves along itself.
+    ///
+    /// The displacement of the motion is to the right for floor and lid, and up for the sides. The wall may
+    /// also move along its normal.
     ///
     /// # Errors
     /// As [`with_motion`](Self::with_motion).
@@ -42,14 +46,15 @@ impl Container {
         Ok(self)
     }
 
-    /// Returns the same container shaken to the right and to the left as a whole. Where it has sides, they
-    /// move along their normals; floor and lid slide.
+    /// Returns the same container, shaken sideways as a whole.
     ///
-    /// Motions along other directions stay, so that floor or box can move vertically, too.
+    /// Side walls move along their normals; floor and lid slide.
+    ///
+    /// Motions along the vertical stay, so the floor or the box can move vertically, too.
     ///
     /// # Errors
-    /// If the motion answers with numbers that are not finite, as for [`with_motion`](Self::with_motion), or
-    /// jumps, as a [`Sawtooth`](crate::wall::Sawtooth) does.
+    /// If the motion gives numbers that are not finite, as for [`with_motion`](Self::with_motion), or jumps,
+    /// as a [`Sawtooth`](crate::wall::Sawtooth) does.
     ///
     /// ```
     /// use granular_edmd::boundary::{Boundary, Container, Wall};
@@ -64,10 +69,11 @@ impl Container {
         self.shaken([Wall::Left, Wall::Right], [Wall::Floor, Wall::Lid], motion)
     }
 
-    /// Returns the same container shaken up and down as a whole. Floor and lid move along their normals; the
-    /// sides slide.
+    /// Returns the same container, shaken up and down as a whole.
     ///
-    /// Motions along other directions stay.
+    /// Floor and lid move along their normals; the sides slide.
+    ///
+    /// Motions along the horizontal stay.
     ///
     /// # Errors
     /// As [`shaken_sideways`](Self::shaken_sideways).
@@ -78,7 +84,8 @@ impl Container {
         self.shaken([Wall::Floor, Wall::Lid], [Wall::Left, Wall::Right], motion)
     }
 
-    /// Moves a pair of walls along their normals, the second one the opposite way, and lets the others slide.
+    /// Moves a pair of walls along their normals, which are opposite, with mirrored motions, and lets the
+    /// other walls slide.
     fn shaken(
         mut self,
         pair: [Wall; 2],

@@ -51,13 +51,13 @@ impl fmt::Display for Wall {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum WallError {
-    /// The container has no such wall: it is open above, or its sides are periodic.
+    /// The container has no such wall, because it is open above or periodic there.
     #[error("the container has no wall \"{wall}\"")]
     Missing {
         /// The wall asked for.
         wall: Wall,
     },
-    /// The motion answers with numbers that would break every run.
+    /// The motion gives numbers that would break every run.
     #[error("the motion of the wall \"{wall}\" cannot be used: {violation}")]
     Motion {
         /// The wall.

@@ -10,7 +10,7 @@ use crate::boundary::{Boundary, Surface, Touch};
 /// Number of samples along a flight.
 const SAMPLES: u32 = 200;
 
-/// Longest flight, in units of the time that a disk takes across the domain.
+/// Longest flight, in units of the time that a disk takes to cross the domain.
 const LONGEST: f64 = 3.0;
 
 /// Fraction of the speeds below which a touch is grazing. Rounding decides when such a touch comes, or
@@ -20,8 +20,8 @@ const GRAZING: f64 = 1e-2;
 /// Fraction of the radius by which a disk is moved to see where a wall is.
 const STEP: f64 = 1e-3;
 
-/// Largest errors of a normal: of its squared length, and of its direction, as the depths of moved disks show
-/// it.
+/// Largest errors of a normal: of its squared length, and of its direction. The direction is judged by the
+/// depths of disks moved along it.
 const UNIT: f64 = 1e-9;
 const SLOPE: f64 = 0.2;
 
@@ -68,8 +68,8 @@ fn longest<B: Boundary + ?Sized>(trial: &Trial<'_, B>, flight: &Flight) -> f64 {
         longest = longest.min((side / velocity.x.abs()).max(0.0));
     }
     if domain.periodic_ends {
-        // No flight of this length leaves the domain, whichever way it turns: |v| t + |a| t² / 2 is at most
-        // the way.
+        // A flight of this duration cannot leave the domain, in whichever direction it turns: |v| t + |a| t²
+        // / 2 is at most the distance to the nearer end.
         let way = (domain.top - place.y).min(place.y - domain.bottom).max(0.0);
         let (speed, pull) = (velocity.y.abs(), flight.acceleration().y.abs());
         longest = longest.min(2.0 * way / (speed + (speed * speed + 2.0 * pull * way).sqrt()));
@@ -169,8 +169,8 @@ fn check_surface<B: Boundary + ?Sized>(
     }
 }
 
-/// Checks that there is no touch if the flight ends before it, and that there is one at once if the flight
-/// goes on from it.
+/// Checks that a flight which ends before the touch finds none, and that a flight which begins at the touch
+/// finds it at once.
 fn check_limits<B: Boundary + ?Sized>(
     trial: &Trial<'_, B>,
     flight: &Flight,
@@ -197,7 +197,8 @@ fn check_limits<B: Boundary + ?Sized>(
 
 /// Checks that the same flight, given relative to another time origin, touches at the same absolute time.
 ///
-/// Rounding decides whether a grazing touch, or one at the very end of the flight, is found.
+/// A grazing touch, or one at the very end of the flight, may be found with one origin only, because rounding
+/// decides.
 fn check_origin<B: Boundary + ?Sized>(
     trial: &mut Trial<'_, B>,
     flight: &Flight,
@@ -231,7 +232,7 @@ fn check_origin<B: Boundary + ?Sized>(
     if agree { Ok(()) } else { Err(Violation::TimeOrigin { origin, shift, before, after, flight: *flight }) }
 }
 
-/// Returns how far apart the times of the same touch may be: the time that the gap takes to close by its
+/// Returns how far apart the times of the same touch may be: the time in which the gap closes by its
 /// rounding.
 fn slack<B: Boundary + ?Sized>(trial: &Trial<'_, B>, meeting: &Meeting) -> f64 {
     4.0 * trial.rounding() / meeting.rate.abs()

@@ -10,7 +10,7 @@ use crate::boundary::{Boundary, Domain, Region};
 /// Allowed rounding, relative to the size of the domain.
 const ROUNDING: f64 = 1e-9;
 
-/// Sizes of the regions around a touch, relative to the radius. The smallest region only contains the
+/// Sizes of the regions around a touch, relative to the radius. The smallest region contains no more than the
 /// rounding of the place.
 const REGIONS: [f64; 3] = [0.0, 0.5, 5.0];
 
@@ -120,7 +120,8 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
         Ok(())
     }
 
-    /// Returns a region like those of the engine, which has no end where it comes near an edge of the domain.
+    /// Returns the region as the engine would extend it: it reaches to infinity where it comes near an edge
+    /// of the domain.
     fn open_at_edges(&self, region: Region) -> Region {
         let Domain { left, right, bottom, top, periodic_sides, periodic_ends } = self.domain;
         let near = 2.0 * self.radius;

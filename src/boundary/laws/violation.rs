@@ -6,7 +6,9 @@ use thiserror::Error;
 use crate::Flight;
 use crate::boundary::{Domain, Region};
 
-/// A way in which a boundary breaks its contract. Times are offsets from the time origin.
+/// A way in which a boundary breaks its contract.
+///
+/// Times are offsets from the time origin.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Violation {
@@ -33,7 +35,7 @@ pub enum Violation {
         now: Domain,
     },
     /// The number of walls changes.
-    #[error("there were {before} walls and are now {now}")]
+    #[error("the boundary had {before} walls and now has {now}")]
     WallsChanged {
         /// The number at first.
         before: usize,
@@ -87,7 +89,7 @@ pub enum Violation {
         flight: Flight,
     },
     /// A touch is with a wall that does not exist.
-    #[error("a touch is of wall {wall}, but there are {count}, on {flight:?}")]
+    #[error("a touch names wall {wall}, but there are {count} walls, on {flight:?}")]
     TouchWall {
         /// Index of the wall.
         wall: usize,

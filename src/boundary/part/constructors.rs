@@ -1,4 +1,4 @@
-//! The ways to make a part.
+//! Constructors of parts.
 
 use std::path::Path;
 
@@ -11,10 +11,10 @@ use crate::boundary::conduct::Conduct;
 use crate::boundary::vessel::VesselError;
 
 impl Part {
-    /// Creates a part of these bricks, and of points at their ends.
+    /// Creates a part of these bricks, with points at those ends that disks can touch.
     ///
-    /// Behind a one-sided brick there is the wall. Bricks that have a free end should therefore be
-    /// [two-sided](Brick::two_sided): disks come round the end.
+    /// The wall is behind a one-sided brick. A brick with a free end should therefore be
+    /// [two-sided](Brick::two_sided), because disks come around the end.
     ///
     /// # Errors
     /// If there are no bricks.
@@ -29,8 +29,10 @@ impl Part {
         Ok(Self { bricks, given, travel: Travel::Rest, conduct, kind, surface_speed: 0.0, start: 0.0 })
     }
 
-    /// Creates a closed polygon with the disks inside. The points may go round either way, and the last one
-    /// may be the first one again. Brick 0 is between the first two points.
+    /// Creates a closed polygon with the disks inside.
+    ///
+    /// The points may go around in either direction, and the last one may repeat the first. Brick 0 is
+    /// between the first two points.
     ///
     /// # Errors
     /// If there are fewer than three points, a coordinate is not finite, neighboring points are equal, the
@@ -39,7 +41,9 @@ impl Part {
         Self::new(polygon::sides(points.into_iter().collect(), true)?)
     }
 
-    /// Creates a closed polygon with the disks outside: a solid block. The points may go round either way.
+    /// Creates a closed polygon with the disks outside: a solid block.
+    ///
+    /// The points may go around in either direction.
     ///
     /// # Errors
     /// As [`polygon`](Self::polygon).
@@ -85,8 +89,9 @@ impl Part {
         Self::new([Brick::circle(center, radius)?.reversed()])
     }
 
-    /// Reads points from text: two numbers in each line, with white space or a comma between them. Empty
-    /// lines and lines that begin with `#` are left out.
+    /// Reads points from text: two numbers in each line, with whitespace or a comma between them.
+    ///
+    /// Empty lines and lines that begin with `#` are skipped.
     ///
     /// # Errors
     /// If a line is not two numbers. The error names the line.
@@ -107,7 +112,7 @@ impl Part {
     /// [`points_from_text`](Self::points_from_text) reads them.
     ///
     /// # Errors
-    /// If the file cannot be read, a line is not two numbers, or the points make no
+    /// If the file cannot be read, a line is not two numbers, or the points do not form a
     /// [`polygon`](Self::polygon).
     pub fn polygon_from_file(path: impl AsRef<Path>) -> Result<Self, VesselError> {
         let path = path.as_ref();

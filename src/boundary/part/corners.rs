@@ -6,11 +6,11 @@ use glam::DVec2;
 
 use crate::boundary::brick::Brick;
 
-/// Sine of the angle by which a corner must turn toward the disks to need no point. In such a corner, a disk
-/// touches both bricks and never the corner itself.
+/// Sine of the angle by which bricks must turn toward the disks so that their corner needs no point. In such
+/// a corner, a disk touches both bricks and never the corner itself.
 const CLEARLY: f64 = 1e-6;
 
-/// The bricks that end at a place: the directions in which they come and go.
+/// The bricks that end at a place, by the directions in which they arrive and leave.
 #[derive(Debug, Default)]
 struct Joint {
     coming: Vec<DVec2>,
@@ -28,7 +28,7 @@ impl Joint {
     }
 }
 
-/// Returns points for all ends of bricks at which a disk can touch a corner, each once, in the order of the
+/// Returns a point for each place where bricks end and a disk can touch the corner, in the order of the
 /// bricks.
 pub(super) fn corners(bricks: &[Brick]) -> Vec<Brick> {
     let mut joints: HashMap<[u64; 2], Joint> = HashMap::new();

@@ -21,14 +21,14 @@ pub(super) fn sides(mut points: Vec<DVec2>, inside: bool) -> Result<Vec<Brick>, 
         return Err(VesselError::EqualPoints { first, second: (first + 1) % points.len() });
     }
     let area = doubled_area(&points);
-    // The sides of a polygon without area may still not cross: it is a line that goes to and fro.
+    // A polygon without area may have sides that do not cross: a line that goes back and forth.
     if area == 0.0 {
         return Err(VesselError::NoArea);
     }
     if let Some((first, second)) = crossing(&points) {
         return Err(VesselError::Crossing { first, second });
     }
-    // Each side keeps its number, so that names of walls count as the list of points does.
+    // Each side keeps its number, so that the names of walls follow the list of points.
     let is_turned = (area > 0.0) != inside;
     let side = |(from, to)| if is_turned { Brick::segment(to, from) } else { Brick::segment(from, to) };
     pairs(&points).map(side).collect()
@@ -39,15 +39,16 @@ fn pairs(points: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> {
     points.iter().zip(points.iter().cycle().skip(1)).map(|(from, to)| (*from, *to))
 }
 
-/// Returns twice the area, positive if the points go round counterclockwise.
+/// Returns twice the area, positive if the points go around counterclockwise.
 fn doubled_area(points: &[DVec2]) -> f64 {
     let first = points[0];
     pairs(points).map(|(from, to)| (from - first).perp_dot(to - first)).sum()
 }
 
-/// Returns the numbers of two sides that cross or touch and are not neighbors, if there are any.
+/// Returns the numbers of two sides that cross or touch, if there are any. Neighbors may share only their
+/// common end.
 ///
-/// Sides are sorted by their left ends, so that each is compared with those only that begin before it ends.
+/// Sides are sorted by their left ends, so that each is compared only with those that begin before it ends.
 fn crossing(points: &[DVec2]) -> Option<(usize, usize)> {
     let sides: Vec<(DVec2, DVec2)> = pairs(points).collect();
     let mut order: Vec<usize> = (0..sides.len()).collect();

@@ -1,4 +1,4 @@
-//! Motions of the parts of a vessel, and flights as those see them who move with a part.
+//! Motions of the parts of a vessel, and flights in the frame of a moving part.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use crate::boundary::brick::{Brick, Path, direction};
 use crate::wall::Motion;
 use crate::{Fingerprint, Flight};
 
-/// Number of pieces of a turn on which a flight, as seen by those who turn, counts as a parabola with an
+/// Number of pieces of a turn. On each piece, a flight in the turning frame counts as a parabola with an
 /// error.
 const PIECES: f64 = 16.0;
 
@@ -24,17 +24,19 @@ pub(in crate::boundary) enum Travel {
     Along { direction: DVec2, motion: Motion },
     /// The part turns about a point.
     Turning { about: DVec2, angular_velocity: f64 },
-    /// All of the part is circles about the point about which it turns: only its surface moves.
+    /// The part turns about a point, and all its bricks are circles about that point, so only its surface
+    /// moves.
     Spinning { about: DVec2, angular_velocity: f64 },
 }
 
-/// A flight as seen by those who move with a part, from a moment on until a later one.
+/// A flight in the frame of a part, from one moment to a later one.
 pub(in crate::boundary) struct Look {
     pub(in crate::boundary) path: Path,
     pub(in crate::boundary) until: f64,
 }
 
-/// The place of a part at a time: it is turned about the origin by the angle of a unit vector, then shifted.
+/// The place of a part at a time: the part is turned about the origin by the angle of a unit vector, then
+/// shifted.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::boundary) struct Pose {
     turn: DVec2,
@@ -42,17 +44,17 @@ pub(in crate::boundary) struct Pose {
 }
 
 impl Pose {
-    /// Returns where a place is to those who move with the part.
+    /// Transforms a place from the frame at rest to the frame of the part.
     pub(in crate::boundary) fn inward(&self, place: DVec2) -> DVec2 {
         unturned(self.turn, place - self.shift)
     }
 
-    /// Returns where a place of the part is, as seen from outside.
+    /// Transforms a place from the frame of the part to the frame at rest.
     pub(in crate::boundary) fn outward(&self, place: DVec2) -> DVec2 {
         self.turn.rotate(place) + self.shift
     }
 
-    /// Returns a direction as it is seen from outside.
+    /// Transforms a direction from the frame of the part to the frame at rest.
     pub(in crate::boundary) fn direction_outward(&self, direction: DVec2) -> DVec2 {
         self.turn.rotate(direction)
     }
@@ -76,7 +78,7 @@ impl Travel {
         }
     }
 
-    /// Returns where the part is at a phase.
+    /// Returns the place of the part at a phase.
     pub(in crate::boundary) fn pose(&self, phase: f64) -> Pose {
         match self {
             Self::Rest | Self::Spinning { .. } => Pose { turn: DVec2::X, shift: DVec2::ZERO },
@@ -101,7 +103,8 @@ impl Travel {
         }
     }
 
-    /// Looks at a flight from a time on, for at most `longest`. The phase is that of the time 0.
+    /// Describes a flight in the frame of the part, from a time on and for at most `longest`. The phase is
+    /// that of time 0.
     pub(in crate::boundary) fn look(&self, flight: &Flight, phase: f64, time: f64, longest: f64) -> Look {
         let (place, velocity, pull) = (flight.position(time), flight.velocity(time), flight.acceleration());
         match self {
@@ -187,11 +190,11 @@ impl Travel {
     }
 }
 
-/// Returns a way in the frame that turns about the origin, but before the axes are turned, with the error
-/// that it can have in this time.
+/// Returns a path in the frame that turns about the origin, with the error that it can have in this time. Its
+/// components refer to axes that do not turn.
 ///
-/// The third derivative of the way there is `$-3\omega a_\perp - 3\omega^2 v + \omega^3 r_\perp$`. Its bound,
-/// times a third of the time, bounds the error like an acceleration.
+/// The third derivative of the path there is `$-3\omega a_\perp - 3\omega^2 v + \omega^3 r_\perp$`. A bound
+/// of it, times a third of the time, is an acceleration that bounds the error.
 fn turning_path(place: DVec2, velocity: DVec2, pull: DVec2, angular_velocity: f64, wait: f64) -> Path {
     let turning = angular_velocity;
     let acceleration = pull - 2.0 * turning * velocity.perp() - turning * turning * place;

@@ -48,13 +48,13 @@ pub enum VesselError {
         /// Number of another side.
         second: usize,
     },
-    /// The motion answers with numbers that would break every run.
+    /// The motion gives numbers that would break every run.
     #[error("the motion of the part cannot be used: {violation}")]
     Motion {
         /// The answer of the motion.
         violation: Violation,
     },
-    /// The motion jumps back, and disks are behind the part.
+    /// The motion jumps back, and disks can be behind the part.
     #[error("the motion jumps back at times, and would jump into disks behind the part")]
     Jump,
     /// A line of a text is not a point.
@@ -85,14 +85,14 @@ pub enum VesselError {
         /// The name.
         name: String,
     },
-    /// The parts have no common rectangle, since one of them has no end.
+    /// No rectangle holds all parts, because one of them extends to infinity.
     #[error("the part \"{name}\" has no end: give the vessel a container")]
     Endless {
         /// The name.
         name: String,
     },
     /// The vessel has more walls than the engine can number.
-    #[error("the vessel would have {count} walls; the most are {most}")]
+    #[error("the vessel would have {count} walls, but it can have {most} at most")]
     TooManyWalls {
         /// Number of walls.
         count: usize,

@@ -1,4 +1,4 @@
-//! The index of a vessel: which bricks are near a rectangle.
+//! The index of a vessel: it finds the bricks near a rectangle.
 
 use glam::DVec2;
 
@@ -11,7 +11,8 @@ const CELLS_PER_BRICK: usize = 4;
 /// Largest number of cells.
 const MOST_CELLS: usize = 1 << 16;
 
-/// A grid of cells, each with the bricks that come into it at any time. Cells at the edges have no end.
+/// A grid of cells, each with the bricks that may come into it at some time. Cells at the edges extend to
+/// infinity.
 #[derive(Debug, Clone)]
 pub(super) struct Index {
     corner: DVec2,
@@ -19,17 +20,17 @@ pub(super) struct Index {
     density: DVec2,
     pub(super) columns: usize,
     rows: usize,
-    /// Starts of the bricks of each cell, and the end of those of the last one.
+    /// Index of the first entry of each cell, and after them the number of all entries.
     starts: Vec<u32>,
     entries: Vec<Entry>,
 }
 
-/// A brick at one of its places. Where the domain is periodic, a brick has several places.
+/// A brick, or one of its periodic images.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Entry {
     /// Index of the wall.
     pub(super) wall: u32,
-    /// Displacement of the place.
+    /// Displacement of the image; zero for the brick itself.
     pub(super) image: DVec2,
 }
 
@@ -44,7 +45,8 @@ impl Index {
         entries: Vec::new(),
     };
 
-    /// Enters walls into the cells of a grid. A wall is near a region of a cell if `is_near` says so.
+    /// Enters walls into the cells of a grid. The rectangle that `bounds` returns holds a wall at all times,
+    /// and `is_near` decides whether the wall may come into a cell's region.
     pub(super) fn new(
         domain: &Domain,
         walls: &[Wall],
@@ -89,7 +91,7 @@ impl Index {
         self.starts.len().saturating_sub(1)
     }
 
-    /// Returns the cell in which a place is.
+    /// Returns the cell that holds a place.
     pub(super) fn cell(&self, place: DVec2) -> usize {
         self.cells(place, place).next().unwrap_or(0)
     }
@@ -119,7 +121,7 @@ impl Index {
         rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
     }
 
-    /// Returns the rectangle of a cell, a little larger, so that rounding leaves nothing between two cells.
+    /// Returns the rectangle of a cell, slightly enlarged, so that rounding leaves no gap between two cells.
     fn region(&self, cell: usize) -> Region {
         const ROUNDING: f64 = 1e-6;
         let (column, row) = (cell % self.columns, cell / self.columns);
@@ -134,13 +136,13 @@ impl Index {
     }
 }
 
-/// Returns the part of the domain in which there are bricks.
+/// Returns the part of the domain that holds the bricks.
 fn rectangle(domain: &Domain, bounds: impl Iterator<Item = (DVec2, DVec2)>) -> (DVec2, DVec2) {
     let outer = (DVec2::splat(f64::INFINITY), DVec2::splat(f64::NEG_INFINITY));
     let (low, high) = bounds.fold(outer, |all, one| (all.0.min(one.0), all.1.max(one.1)));
     let low = low.max(DVec2::new(domain.left, domain.bottom)).min(DVec2::new(domain.right, domain.top));
     let high = high.min(DVec2::new(domain.right, domain.top)).max(low);
-    // A brick without an end in a domain without a lid reaches beyond all numbers.
+    // In a domain without a lid, a brick that extends to infinity would make the height infinite.
     let height = if high.y.is_finite() { high.y - low.y } else { domain.width() };
     (low, DVec2::new(high.x, low.y + height))
 }

@@ -7,8 +7,10 @@ use crate::boundary::brick::Brick;
 use crate::boundary::{Boundary, Domain};
 
 impl Vessel {
-    /// Returns the bricks of all parts at an absolute time, for a picture: the name of the part, and a line
-    /// of points along the brick. Arcs have a point every three degrees.
+    /// Returns the bricks of all parts at an absolute time, as lines for a picture.
+    ///
+    /// Each item is the name of the part and a line of points along the brick. The points of an arc are at
+    /// most three degrees apart.
     ///
     /// Walls of the container and single points are left out. Half-lines end after ten times the size of the
     /// container.
@@ -18,7 +20,7 @@ impl Vessel {
     /// use granular_edmd::glam::DVec2;
     ///
     /// let paddle = Part::polyline([DVec2::new(1.0, 4.0), DVec2::new(7.0, 4.0)])?;
-    /// // A quarter of a turn takes the time 1.
+    /// // A quarter turn takes 1 unit of time.
     /// let paddle = paddle.with_rotation(DVec2::splat(4.0), 0.5 * std::f64::consts::PI)?;
     /// let vessel = Vessel::around([("paddle", paddle)])?;
     /// let lines: Vec<(&str, Vec<DVec2>)> = vessel.outline(1.0).collect();

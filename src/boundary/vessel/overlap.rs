@@ -1,8 +1,8 @@
 //! Overlaps with the parts of a vessel.
 //!
-//! The nearest brick of a part decides whether a place is behind it. For a disk at a part, that is one of the
-//! bricks near the disk. Far from all bricks of a part at rest, a table says which side it is: the parts that
-//! fill each cell of the index.
+//! The nearest brick of a part decides whether a place is behind the part. If the disk reaches a brick of the
+//! part, the nearest one is among the bricks near the disk. If all bricks of a part at rest are far away, a
+//! table decides: it lists, for each cell of the index, the parts that fill the cell.
 
 use glam::DVec2;
 
@@ -43,7 +43,7 @@ impl Vessel {
         with_part.filter(|(part, _)| self.parts[*part].part.travel().is_at_rest())
     }
 
-    /// Returns the nearest of some bricks at rest, by the number of its wall.
+    /// Returns the nearest of some bricks at rest, with the index of its wall.
     fn nearest_of(&self, entries: impl Iterator<Item = Entry>, position: DVec2) -> Option<(usize, Sighted)> {
         let sights = entries.map(|entry| {
             let wall = entry.wall as usize;
@@ -53,7 +53,7 @@ impl Vessel {
         sights.reduce(|a, b| if b.1.is_better_than(&a.1) { b } else { a })
     }
 
-    /// Returns the wall of a part that is nearest, and how deep a disk reaches into it.
+    /// Returns the nearest wall of a part, and the depth to which a disk reaches into it.
     fn depth(&self, placed: &Placed, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
         let pose = placed.part.travel().pose(time + placed.phase);
         let depths = self.domain().images().filter_map(|image| {
@@ -63,7 +63,8 @@ impl Vessel {
         depths.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Lists the parts at rest that fill each cell in which they have no brick, wholly.
+    /// Lists, for each cell, the parts at rest that fill it: they have no brick in the cell, and all of it is
+    /// behind them.
     pub(super) fn filled_cells(&self) -> Vec<Vec<u32>> {
         let mut filled = vec![Vec::new(); self.index.len()];
         for (number, placed) in self.parts.iter().enumerate() {
@@ -78,10 +79,10 @@ impl Vessel {
         filled
     }
 
-    /// Returns the cells without bricks of a part that are behind it.
+    /// Returns the cells that hold no brick of a part and are behind it.
     ///
-    /// Of two neighbors without a brick of the part, both are behind it or none. So a cell is looked at only
-    /// if its neighbors to the left and below do not tell.
+    /// If two neighboring cells hold no brick of the part, either both are behind it or neither is. So the
+    /// place of a cell is examined only if its left and lower neighbors do not give the answer.
     fn cells_filled_by(&self, number: usize, placed: &Placed) -> Vec<usize> {
         let Index { columns, .. } = self.index;
         let has_brick =
@@ -89,7 +90,7 @@ impl Vessel {
         let is_behind = |cell: usize| {
             self.depth(placed, self.index.middle(cell), 0.0, 0.0).is_some_and(|(_, depth)| depth > 0.0)
         };
-        // For each cell looked at: empty of bricks of the part, and behind it or not.
+        // The answers so far, for cells without a brick of the part: true if the cell is behind the part.
         let mut known: Vec<Option<bool>> = vec![None; self.index.len()];
         for cell in self.cells_to_look_at(placed) {
             if has_brick(cell) {
@@ -102,7 +103,8 @@ impl Vessel {
         (0..known.len()).filter(|&cell| known[cell] == Some(true)).collect()
     }
 
-    /// Returns the cells that may be behind a part: those of its rectangle, unless it is free inside only.
+    /// Returns the cells that may be behind a part: those of its rectangle if disks are free outside it, else
+    /// all cells.
     fn cells_to_look_at(&self, placed: &Placed) -> Vec<usize> {
         let (low, high) = placed.part.bounds();
         let is_bounded = low.is_finite() && high.is_finite() && self.domain().periods() == DVec2::ZERO;

@@ -9,11 +9,11 @@ use crate::boundary::brick::Path;
 use crate::boundary::part::Travel;
 use crate::boundary::{Boundary, Surface, Touch};
 
-/// Largest number of steps of a search. A part that moves in pieces of time takes a few steps in each of
-/// those in which the flight is near.
+/// Largest number of steps of a search. If the motion of a part consists of pieces, the search takes a few
+/// steps in each piece during which the disk is near the brick.
 const MOST_STEPS: u32 = 1 << 16;
 
-/// Way within which surfaces touch, relative to the lengths of which it is the difference.
+/// Gap below which surfaces count as touching, relative to the lengths whose difference the gap is.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 impl Vessel {
@@ -23,8 +23,8 @@ impl Vessel {
         (wall, self.parts[wall.part].part.travel())
     }
 
-    /// Returns the first touch of a part, or `other`, whichever is earlier. Of equal times, the smaller wall
-    /// counts.
+    /// Returns the first touch of a part, or `other`, whichever is earlier. At equal times, the wall with the
+    /// smaller index counts.
     pub(super) fn first_touch_with_parts(
         &self,
         flight: &Flight,
@@ -81,10 +81,11 @@ impl Vessel {
 
 /// A search for the first touch of a brick that moves.
 ///
-/// It looks at the flight from the part, where the brick rests. On a piece of time in which the part
-/// accelerates evenly, that is a flight like any other, and its first touch is exact. Otherwise, the flight
-/// is known up to an error, and a disk that grows by it touches no later. The search goes to that time, and
-/// looks again from there, until the step is within rounding. It never steps over a touch.
+/// The search follows the flight in the frame of the part, in which the brick is at rest. On a piece of time
+/// in which the part has constant acceleration, the path in that frame is a parabola like any other, and its
+/// first touch is exact. Otherwise, the path is known up to an error. A disk that grows by this error touches
+/// no later than the true disk. The search advances to the touch of the growing disk, and starts again from
+/// there, until the gap is within rounding. It never steps over a touch.
 struct Search<'a> {
     wall: &'a Wall,
     placed: &'a Placed,
@@ -114,12 +115,13 @@ impl Search<'_> {
                 Step::Open(next) => time = next.max(time.next_up()),
             }
         }
-        // A search that does not get on may be at a touch. The engine reports a run without progress.
+        // A search that makes no progress may be at a touch, so this returns one. If the run then makes no
+        // progress either, the engine reports it.
         Some(time.min(self.until))
     }
 
-    /// Tells whether a brick that turns is so far away at this time that the disk does not come to it. Most
-    /// bricks of a part that turns are, though the circles on which they turn are near.
+    /// Tells whether a turning brick is so far away at this time that the disk does not reach it. Most bricks
+    /// of a turning part are that far away, even where the circles on which they turn are near.
     fn is_out_of_reach(&self, time: f64) -> bool {
         let travel = self.placed.part.travel();
         let Travel::Turning { about, angular_velocity } = travel else { return false };
@@ -139,7 +141,7 @@ impl Search<'_> {
         let (path, brick) = (look.path, &self.wall.brick);
         let mut wait = (self.until.min(look.until) - time).max(0.0);
         if path.spread > 0.0 {
-            // The disk may not grow so much that it leaves no room in a circle.
+            // The disk must not grow so much that it no longer fits into a circle.
             wait = wait.min((2.0 * brick.most_growth(path.radius) / path.spread).sqrt());
         }
         let is_exact = path.spread == 0.0;
@@ -152,15 +154,16 @@ impl Search<'_> {
         if brick.wait_for_touch(&at_once, 0.0).is_some() {
             return Step::Touch(time);
         }
-        // The gap may close by its rounding, so that each step advances. A disk that parts from the brick as
-        // slowly as rounding lets it would else be followed in steps that show nothing new.
+        // In each step the gap may close by its rounding, so that the search advances. Otherwise, a disk that
+        // leaves the brick with a speed near rounding would be followed in steps too small to show anything
+        // new.
         let smaller = Path { radius: path.radius - rounding, ..path };
         let open = brick.wait_for_touch(&smaller, wait).unwrap_or(wait);
         Step::Open(time + open.max(time_for(&path, rounding)))
     }
 
     /// Returns the first time, from this one on, at which the disk is within the rectangle that the brick
-    /// never leaves. The time may be early.
+    /// never leaves. The result may be too early, but never too late.
     fn enters_reach(&self, time: f64) -> Option<f64> {
         let (low, high) = self.placed.part.travel().bounds(&self.wall.brick);
         let (place, velocity) = (self.flight.position(time), self.flight.velocity(time));
@@ -179,7 +182,7 @@ impl Search<'_> {
     }
 }
 
-/// Returns a time in which a disk goes no farther than this way on its path.
+/// Returns a time in which a disk goes no farther than the distance `way` on its path.
 fn time_for(path: &Path, way: f64) -> f64 {
     let (speed, pull) = (path.velocity.length(), path.acceleration.length() + path.spread);
     // The larger root of ½ pull t² + speed t = way, in a form in which nothing cancels.
@@ -190,7 +193,7 @@ fn time_for(path: &Path, way: f64) -> f64 {
 fn rectangle(flight: &Flight, until: f64) -> (DVec2, DVec2) {
     let wait = until - flight.time();
     let (from, to) = (flight.position(flight.time()), flight.position(until));
-    // No place of the flight is farther from its chord.
+    // No point of the flight is farther from its chord than this.
     let sagitta = 0.125 * flight.acceleration().length() * wait * wait;
     let reach = 1.001 * (flight.radius() + sagitta);
     (from.min(to) - reach, from.max(to) + reach)

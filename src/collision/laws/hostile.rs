@@ -7,7 +7,8 @@ use crate::collision::Contact;
 const CLOSING_SPEEDS: [f64; 14] =
     [0.0, 1e-300, 1e-60, 1e-30, 1e-12, 1e-6, 1e-3, 0.1, 1.0, 3.0, 1e3, 1e6, 1e12, 1e60];
 
-/// Slip speeds relative to the closing speed: none, central, near the end of sticking, grazing.
+/// Slip speeds relative to the closing speed: none, small (central contacts), near the end of sticking, and
+/// large (grazing contacts).
 const SLIP_RATIOS: [f64; 12] = [0.0, 1e-15, 1e-9, 1e-3, 0.1, 0.3, 1.0, 3.0, 10.0, 1e3, 1e9, 1e15];
 
 /// Slip speeds that do not depend on the closing speed.
@@ -38,8 +39,8 @@ const PARTNERS: [([Kind; 2], [f64; 2]); 7] = [
 ///
 /// The contacts cover closing and slip speeds, masses and mass ratios over all decades that the engine
 /// accepts. Among them are slips of both signs and none, central and grazing contacts, contacts without
-/// closing speed, and partners that have just collided. The partners are disks of the kinds 0 and 1 and
-/// walls, of all radii that there can be, in turn.
+/// closing speed, and partners that have just collided. The partners are, in turn, disks of kinds 0 and 1 and
+/// straight walls, with radii up to the extremes that the engine accepts.
 ///
 /// ```
 /// use granular_edmd::collision::laws::hostile_contacts;
@@ -54,7 +55,8 @@ pub fn hostile_contacts() -> impl Iterator<Item = Contact> {
             TIMES.into_iter().map(move |time| contact.with_time_since_last_collision(time))
         })
     });
-    // Their number has no factor in common with those of masses and times, so each meets all of these.
+    // The number of partners has no factor in common with the numbers of masses and times, so each pair of
+    // partners meets all of these.
     contacts
         .zip(PARTNERS.into_iter().cycle())
         .map(|(contact, (kinds, radii))| contact.with_kinds(kinds).with_radii(radii))

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::collision::{CollisionRule, Contact, Impulse};
 
-/// The promises of a rule, beyond finite impulses that separate and repeat.
+/// The promises of a rule, beyond finite impulses that separate the surfaces and repeat to the bit.
 ///
 /// ```
 /// use granular_edmd::collision::laws::{Promises, check_rule};
@@ -24,18 +24,18 @@ pub struct Promises {
 }
 
 impl Promises {
-    /// Promises that energy is not gained, and nothing about the tangential direction.
+    /// Creates the promise that energy is not gained, which says nothing about the tangential direction.
     pub const fn new() -> Self {
         Self { energy_gain: false, opposed_slip: false, static_friction: None }
     }
 
     /// Returns the same promises, with Coulomb friction: the impulse stays in the cone of this coefficient
-    /// `$\kappa_s$`, and opposes the slip.
+    /// κ_s, and opposes the slip.
     pub const fn with_friction(self, static_friction: f64) -> Self {
         Self { opposed_slip: true, static_friction: Some(static_friction), ..self }
     }
 
-    /// Returns the same promises, with a tangential impulse that opposes the slip, in a cone or not.
+    /// Returns the same promises, with a tangential impulse that opposes the slip, within a cone or not.
     pub const fn with_opposed_slip(self) -> Self {
         Self { opposed_slip: true, ..self }
     }
@@ -64,8 +64,8 @@ impl Default for Promises {
     }
 }
 
-/// Checks that `rule` keeps its promises for all [`hostile_contacts`], and gives the same answers when it is
-/// asked again in another order.
+/// Checks that `rule` keeps its promises for all [`hostile_contacts`], and gives the same answers when asked
+/// again in another order.
 ///
 /// # Errors
 /// The first promise that is broken, with the contact and the impulse that break it.
@@ -76,7 +76,7 @@ pub fn check_rule<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> R
         promises.check(&contact, impulse)?;
         answers.push((contact, impulse));
     }
-    // The second pass runs backward: a rule that remembers then has other contacts in its memory.
+    // The second pass runs backward, so that a rule with a memory has other contacts in it.
     for (contact, impulse) in answers.into_iter().rev() {
         let later = rule.impulse(&contact);
         if !same(impulse, later) {

@@ -37,7 +37,7 @@ pub enum Violation {
         impulse: Impulse,
     },
     /// The tangential impulse pushes along the slip, or reverses it to a faster one.
-    #[error("the impulse {impulse} speeds the slip up, to {slip_speed:?} ({contact})")]
+    #[error("the impulse {impulse} makes the slip faster: {slip_speed:?} ({contact})")]
     SlipSpedUp {
         /// Slip speed after the collision.
         slip_speed: f64,

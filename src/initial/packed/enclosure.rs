@@ -18,7 +18,7 @@ pub(super) struct Enclosure<'a, B: ?Sized> {
     room: Domain,
 }
 
-// Written out, because a derived one would require it of the boundary.
+// `Clone` is written out, because a derived one would require it of the boundary.
 impl<B: ?Sized> Clone for Enclosure<'_, B> {
     fn clone(&self) -> Self {
         Self { boundary: self.boundary, room: self.room }
@@ -31,7 +31,8 @@ impl<'a, B: Boundary + ?Sized> Enclosure<'a, B> {
         Ok(Self { boundary, room: cut(boundary.interior(), below)? })
     }
 
-    /// Returns normal and place of each side of the rectangle that there is.
+    /// Returns the normal and the place of each side of the rectangle. Where the rectangle is periodic, it
+    /// has no sides.
     fn sides(&self) -> impl Iterator<Item = (DVec2, f64)> {
         let Domain { left, right, bottom, top, periodic_sides, periodic_ends } = self.room;
         let ends = [(DVec2::Y, bottom), (DVec2::NEG_Y, -top)];

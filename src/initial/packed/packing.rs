@@ -10,19 +10,22 @@ use crate::observable::{Collision, stop_when};
 use crate::squares::Squares;
 use crate::{Disk, ParameterError, Simulation};
 
-/// Area fraction at which the disks begin to grow. Random places are found soon, at any mix of radii.
+/// Area fraction at which the disks begin to grow. Random places for them are found soon, for any mix of
+/// radii.
 const START: f64 = 0.35;
 
-/// Factor by which disks begin smaller at the next attempt, where obstacles leave less room than it seems.
+/// Factor by which the disks begin smaller in the next attempt, if obstacles leave less room than the area
+/// suggests.
 const SMALLER: f64 = 0.7;
 
 /// Number of attempts to find random places.
 const ATTEMPTS: i32 = 8;
 
-/// Collisions for each disk between two steps of growth. Fewer of them end sooner, but not as dense.
+/// Number of collisions per disk between two steps of growth. With fewer, the packing ends sooner but less
+/// dense.
 const COLLISIONS: usize = 4;
 
-/// Longest time between two steps, in which a largest disk goes its radius.
+/// Longest time between two steps. In this time, a disk of the largest size goes about its radius.
 const LONGEST: f64 = 1.0;
 
 /// Least mass, in units of that of the largest disk.
@@ -33,14 +36,14 @@ const SHARE: f64 = 0.99;
 
 /// Disks on their way to their radii.
 pub(super) struct Packing<'a> {
-    /// The disks with the radii that they shall have.
+    /// The disks with their full radii.
     full: &'a [Disk],
     /// The disks as they are by now.
     grown: Vec<Disk>,
 }
 
 impl<'a> Packing<'a> {
-    /// Places the disks at random, so much smaller that they find room.
+    /// Places the disks at random, shrunk so much that they find room.
     pub(super) fn begin<B: Boundary + ?Sized>(
         room: &Enclosure<B>,
         full: &'a [Disk],
@@ -57,7 +60,7 @@ impl<'a> Packing<'a> {
         Ok(Self { full, grown: placed(room, full, scale, seed)? })
     }
 
-    /// Tells whether all disks have their radii.
+    /// Tells whether all disks have their full radii.
     pub(super) fn is_done(&self) -> bool {
         self.grown.iter().zip(self.full).all(|(disk, full)| disk.radius() >= full.radius())
     }
@@ -94,7 +97,8 @@ impl<'a> Packing<'a> {
         let domain = room.domain();
         let mut squares = Squares::new(&domain, self.full.iter().map(Disk::radius));
         for (index, (disk, full)) in self.grown.iter().zip(self.full).enumerate() {
-            // Whoever is further away than both shall reach is in nobody's way.
+            // Disks are entered with their full radii. Two disks that do not overlap even then are never in
+            // each other's way.
             squares.add(disk.position(), full.radius(), index);
         }
         for index in 0..self.grown.len() {
@@ -109,7 +113,8 @@ impl<'a> Packing<'a> {
         Ok(())
     }
 
-    /// Returns the radius at which a disk leaves its neighbors room to grow, too, and at most its own.
+    /// Returns the radius to which a disk may grow such that it leaves its neighbors room to grow, too; at
+    /// most its full radius.
     fn free_radius(&self, index: usize, domain: &Domain, squares: &Squares) -> f64 {
         let (disk, full) = (&self.grown[index], self.full[index].radius());
         let most = |other: usize| {
@@ -126,7 +131,8 @@ impl<'a> Packing<'a> {
     }
 }
 
-/// Returns the disks in motion at random places, with this scale of their radii. The largest come first.
+/// Returns the disks in motion at random places, with this scale of their radii. The largest disks are placed
+/// first.
 fn placed<B: Boundary + ?Sized>(
     room: &Enclosure<B>,
     full: &[Disk],
@@ -143,7 +149,7 @@ fn placed<B: Boundary + ?Sized>(
     };
     let disks = order.iter().map(small).collect::<Result<Vec<_>, _>>()?;
     let disks = placed_at_random(room, disks, room.domain().top, seed)?;
-    // At this temperature a largest disk goes its radius in a unit of time.
+    // At this temperature, a disk of the largest size goes about its radius in a unit of time.
     let moving = with_maxwellian_velocities(disks, largest * largest, seed)?;
     let mut placed = moving.clone();
     for (index, disk) in order.into_iter().zip(moving) {
@@ -152,7 +158,7 @@ fn placed<B: Boundary + ?Sized>(
     Ok(placed)
 }
 
-/// Returns the largest radius, up to this one, with which a disk at this place overlaps no wall.
+/// Returns a radius, up to this one, with which a disk at this place overlaps no wall; 0 if it finds none.
 fn radius_inside<B: Boundary + ?Sized>(room: &Enclosure<B>, place: DVec2, radius: f64) -> f64 {
     let Some((_, depth)) = room.overlap(place, radius, 0.0) else { return radius };
     let free = radius - depth / SHARE;

@@ -25,13 +25,14 @@ fn product(scale: f64, zeros: &[f64], pairs: &[(f64, f64)]) -> [f64; 5] {
     coefficients
 }
 
-/// Returns the summed size of all terms at this time. The rounding of the value is a fraction of it.
+/// Returns the sum of the magnitudes of all terms at this time. The rounding of the value is a fraction of
+/// it.
 fn size(coefficients: &[f64; 5], time: f64) -> f64 {
     value(&coefficients.map(f64::abs), time)
 }
 
-/// Steps along the gap and asserts what must not happen: no answer where the gap falls through zero, or an
-/// answer where the gap is open.
+/// Steps along the gap and asserts that the answer misses no fall through zero, and that the gap is closed
+/// there.
 fn compare(coefficients: &[f64; 5], end: f64) -> Option<f64> {
     let found = first_descent_of_quartic(coefficients, end);
     let rounding = |time: f64| 1e-12 * size(coefficients, time);
@@ -115,7 +116,7 @@ fn generator_index(generator: &mut Xoshiro256PlusPlus, count: u32) -> u32 {
     (uniform(generator) * f64::from(count)) as u32
 }
 
-/// Disks fly inside a circle and are pulled down. The gap that is left at the touch is rounding.
+/// Disks fly inside a circle and are pulled down. The gap that remains at the touch is no more than rounding.
 #[test]
 fn flights_in_a_circle_end_at_its_wall() {
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(3);

@@ -1,4 +1,4 @@
-//! Piles of disks, which are written at their ends only and read as a whole.
+//! Piles of disks, which are written only at their ends and read as a whole.
 
 /// Number of disks in a block. With the link to another block they fill four cache lines.
 const ROOM: usize = 63;
@@ -23,7 +23,8 @@ struct Pile {
 }
 
 impl Pile {
-    /// An empty pile. It counts as one whose last block is full, so the first disk asks for a block.
+    /// An empty pile. It has the form of a pile whose last block is full, so that the first disk asks for a
+    /// block.
     const EMPTY: Self = Self { last: NOWHERE, count: ROOM as u32 };
 }
 

@@ -32,11 +32,11 @@ pub(super) struct Script {
     pub(super) steps: usize,
     /// Makes the first operation, for a number of disks.
     pub(super) start: fn(&mut Stage, usize) -> Operation,
-    /// Makes the next operation from the earliest disk and its time. There are disks.
+    /// Makes the next operation from the earliest disk and its time. It is called only while there are disks.
     next: fn(&mut Stage, usize, f64) -> Operation,
 }
 
-/// Zero, few, and powers of two and of four with their neighbors.
+/// Zero, a few, and powers of two and of four with their neighbors.
 const FEW: &[usize] = &[0, 1, 2, 3, 4, 5, 15, 16, 17, 63, 64, 65, 130];
 
 /// Enough disks that a scheduler which works in batches goes through several batches within the steps of a
@@ -96,7 +96,7 @@ impl Stage {
         self.below(self.due.len())
     }
 
-    /// Returns a time from now on: mostly soon, else at once, after a moment, or never.
+    /// Returns a waiting time: mostly a short one, otherwise zero, a moment, or forever.
     fn wait(&mut self) -> f64 {
         match self.below(40) {
             0 => f64::INFINITY,

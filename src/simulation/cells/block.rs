@@ -5,21 +5,21 @@ use crate::disk::MOST_DISKS;
 /// Number of disks for which a block has room.
 pub(super) const SLOTS: usize = 4;
 
-/// Bits of the number of a disk. In the first slot, the bits above hold the number of slots taken, or
-/// [`CROWDED`] if the last slot links to more disks. The highest bit tells whether the disks can touch a
-/// wall.
+/// Bits of the number of a disk. In the first slot, the bits above these hold the number of slots taken, or
+/// [`CROWDED`] if the last slot links to more disks. The highest bit tells whether the disks of the cell can
+/// touch a wall.
 const DISK: u32 = (1 << 28) - 1;
 const ONE: u32 = DISK + 1;
 const AT_WALL: u32 = 1 << 31;
 
-/// Value in place of the number of slots taken, if the last slot links to more disks.
+/// Value that stands for the number of slots taken if the last slot links to more disks.
 pub(super) const CROWDED: usize = SLOTS + 1;
 
 const _: () = assert!(MOST_DISKS <= DISK as usize + 1);
 
-/// Up to four disks, filled from the first slot on, in a single load or store.
+/// Up to four disks, which are read or written at once. The slots are filled from the first one on.
 ///
-/// All data of a cell come from one cache line. Large systems would be slower with the counts elsewhere.
+/// All data of a cell come from one cache line. Large systems would be slower if the counts were elsewhere.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(16))]
 pub(super) struct Block([u32; SLOTS]);
@@ -48,13 +48,13 @@ impl Block {
         (self.count() == CROWDED).then_some(self.0[SLOTS - 1])
     }
 
-    /// Puts this crowd in the place of the last disk, or of another crowd.
+    /// Links to this crowd in place of the last disk, or of another crowd.
     pub(super) fn set_crowd(&mut self, crowd: u32) {
         self.0[SLOTS - 1] = crowd;
         self.set_count(CROWDED);
     }
 
-    /// Leaves the disks before the crowd.
+    /// Ends the link to a crowd. The disks in the other slots stay.
     pub(super) fn end_crowd(&mut self) {
         self.set_count(SLOTS - 1);
     }
@@ -91,7 +91,7 @@ impl Block {
         self.0 = slots;
     }
 
-    /// Puts another disk in the place of one, if that one is before the crowd. Tells whether it was.
+    /// Replaces a disk by another, if it is in the block and not in the crowd. Tells whether it was.
     pub(super) fn replace(&mut self, disk: u32, by: u32) -> bool {
         let is_here = self.slots()[..SLOTS - 1].contains(&disk);
         if is_here {

@@ -2,7 +2,7 @@
 
 /// The size of the cells. Small cells hold fewer neighbors, and large cells are left less often.
 ///
-/// The smallest cells are the best where disks crowd, and the largest in a dilute gas.
+/// The smallest cells are the best where disks crowd, and the largest cells in a dilute gas.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) enum CellSize {
@@ -21,10 +21,11 @@ impl CellSize {
         }
     }
 
-    /// Returns the size that suits disks which crossed so many cells while they collided so often.
+    /// Returns the size that suits disks with these numbers of cell crossings and collisions in the same
+    /// time.
     ///
-    /// The bounds are where runs with either size take equally long. They are far enough apart that no size
-    /// is changed to and fro.
+    /// At each bound, runs with either size take equally long. The bounds are far enough apart that no run
+    /// goes back and forth between two sizes.
     pub(in crate::simulation) fn suitable(self, cell_crossings: u64, collisions: u64) -> Self {
         let passed = cell_crossings as f64 / collisions as f64;
         match self {

@@ -6,8 +6,9 @@ use crate::prefetch::prefetch;
 
 /// The disks of each cell, by the index of the cell.
 ///
-/// Every cell has a block. Where more disks are in a cell than fit, the last slot is a link to a crowd that
-/// holds the others. So the memory grows with the cells and the disks, however unevenly the disks lie.
+/// Every cell has a block. If a cell has more disks than fit into its block, the last slot is a link to a
+/// crowd that holds the others. So the memory grows with the numbers of cells and disks, however unevenly the
+/// disks lie.
 #[derive(Debug, Clone)]
 pub(super) struct Contents {
     blocks: Vec<Block>,
@@ -88,7 +89,7 @@ impl Contents {
         }
     }
 
-    /// Returns the largest number of disks in so many cells, which is the room that they need.
+    /// Returns the largest number of disks in this many cells, which is the room that they need.
     #[inline]
     pub(super) fn room(&self, cells: usize) -> usize {
         cells * SLOTS + self.crowds.room()
@@ -97,7 +98,7 @@ impl Contents {
     /// Appends the disks of three cells, `step` apart, to the first `count` disks in `found`.
     #[inline(always)]
     pub(super) fn gather(&self, first: usize, step: usize, found: &mut [u32], mut count: usize) -> usize {
-        // One check of the bounds for all three.
+        // One bounds check serves all three cells.
         let blocks = &self.blocks[first..=first + 2 * step];
         for cell in [0, step, 2 * step] {
             count = self.gather_block(&blocks[cell], found, count);
@@ -126,9 +127,9 @@ impl Contents {
         self.gather_block(&self.blocks[cell], found, count)
     }
 
-    /// Appends the disks of a cell. All slots are copied, and the next block is written behind the last slot
-    /// that is taken. The code branches on whether the cell is crowded, which is rare, but not on how many
-    /// slots are taken.
+    /// Appends the disks of a cell. All slots are copied, and the next block overwrites those behind the last
+    /// slot that is taken. The code branches on whether the cell is crowded, which is rare, but not on how
+    /// many slots are taken.
     #[inline(always)]
     fn gather_block(&self, block: &Block, found: &mut [u32], count: usize) -> usize {
         found[count..count + SLOTS].copy_from_slice(&block.slots());

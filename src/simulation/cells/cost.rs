@@ -1,25 +1,26 @@
-//! The cost of the events of a mixture, for each way to put its disks into classes.
+//! The cost of the events of a mixture, for a given division of its disks into classes.
 
 use super::cell_size::CellSize;
 use super::size_class::SizeClass;
 
-/// Area fraction that is assumed, so that classes depend on the disks alone.
+/// Assumed area fraction. Since it is fixed, the classes depend on the disks alone.
 const AREA_FRACTION: f64 = 0.4;
 
-/// Number of cells that is assumed for each disk at most.
+/// Assumed largest number of cells per disk.
 const CELLS_PER_DISK: f64 = 2.0;
 
-/// Costs in terms of the prediction of one pair: of a look into a cell, of a change of one, of a loop over
-/// the cells of another class, of an event by itself.
+/// The costs in units of the prediction of one pair: `LOOK` is the cost of a look into a cell, `CHANGE` that
+/// of a change of a cell, `LOOP` that of a loop over the cells of another class, and `EVENT` that of an event
+/// by itself.
 ///
-/// A loop costs that much since its length is hard to foresee.
+/// A loop is so expensive because the processor can hardly foresee its length.
 const LOOK: f64 = 1.0;
 const CHANGE: f64 = 4.0;
 const LOOP: f64 = 30.0;
 const EVENT: f64 = 20.0;
 
-/// Some disks, how often they collide and how fast they are, if each has the same energy and a mass that
-/// goes as its area.
+/// A group of disks, with its rate of collisions and its speed. All disks are taken to have the same energy,
+/// and masses in proportion to their areas.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Group {
     pub(super) class: SizeClass,
@@ -45,7 +46,7 @@ impl Group {
         classes.iter().map(group).collect()
     }
 
-    /// Returns both groups together, the smaller one first.
+    /// Returns this group together with one of larger disks.
     pub(super) fn with(&self, larger: &Self) -> Self {
         let class = self.class.with(&larger.class);
         let (collisions, speed) = (self.collisions + larger.collisions, self.speed + larger.speed);
@@ -53,7 +54,7 @@ impl Group {
     }
 }
 
-/// Returns the area of a system of these disks.
+/// Returns the area of a system of these disks at the assumed area fraction.
 pub(super) fn area(classes: &[SizeClass]) -> f64 {
     let square = |class: &SizeClass| class.count as f64 * class.largest * class.largest;
     0.25 * std::f64::consts::PI / AREA_FRACTION * classes.iter().map(square).sum::<f64>()
@@ -83,8 +84,8 @@ impl Gridded {
         Self { group, density: count as f64 / area, home, cell }
     }
 
-    /// Returns the widths of the square of homes of a smaller group that are looked into, and of the hole in
-    /// it.
+    /// Returns the width of the square of a smaller group's homes into which a disk of this group looks, and
+    /// the width of the hole in that square.
     fn reach(&self, smaller: &Self) -> (f64, f64) {
         let width = self.group.class.largest + smaller.group.class.largest + self.cell + smaller.home;
         let touching = self.group.class.smallest + smaller.group.class.smallest;
@@ -92,13 +93,13 @@ impl Gridded {
         (width, hole.max(0.0))
     }
 
-    /// Returns the number of disks of this group that come to each home of a smaller one.
+    /// Returns the number of disks of this group that visit each home of a smaller group.
     fn visitors(&self, smaller: &Self) -> f64 {
         let (width, hole) = self.reach(smaller);
         (width * width - hole * hole) * self.density
     }
 
-    /// Returns the cost of a search among its own group.
+    /// Returns the cost of a search in the disk's own group.
     fn among_equals(&self) -> f64 {
         let width = 2.0 * self.group.class.largest + self.cell + self.home;
         let homes = (width / self.home) * (width / self.home);
@@ -113,7 +114,7 @@ impl Gridded {
         (LOOP + all * (LOOK * homes + disks), LOOP + fresh * ((LOOK + 2.0 * CHANGE) * homes + disks))
     }
 
-    /// Returns the cost of all its events in a unit of time.
+    /// Returns the cost of all events of this group in a unit of time.
     fn cost(&self, smaller: &[Self], larger: &[Self]) -> f64 {
         let visitors: f64 = larger.iter().map(|other| other.visitors(self)).sum();
         let common = EVENT + self.among_equals() + LOOK + visitors;
@@ -125,7 +126,7 @@ impl Gridded {
     }
 }
 
-/// Returns the cost of all events in a unit of time, with disks in these groups in a system of this area.
+/// Returns the cost of all events in a unit of time, for disks in these groups and a system of this area.
 pub(super) fn cost(groups: &[Group], area: f64) -> f64 {
     let all: Vec<Gridded> = (0..groups.len()).map(|index| Gridded::new(groups, index, area)).collect();
     all.iter().enumerate().map(|(index, group)| group.cost(&all[..index], &all[index + 1..])).sum()

@@ -2,13 +2,13 @@
 
 use crate::disk::MOST_DISKS;
 
-/// Number of disks in a part of a crowd, which is then as large as two blocks.
+/// Number of disks in a part of a crowd. With six, a part is as large as two blocks.
 const SEATS: usize = 6;
 
 /// Number of parts for which there is room from the start.
 const FEW: usize = 16;
 
-/// Number of cells in a group that has room for one more part.
+/// Number of cells for which there is room for one more part.
 const CELLS: usize = 1024;
 
 /// No part: the end of a chain.
@@ -26,27 +26,27 @@ struct Part {
 
 /// The crowds of all cells, each a chain of parts from a common pool.
 ///
-/// A crowd goes by the number of its first part, the only one that may have free seats. The memory grows with
-/// the number of disks in crowds, and is kept.
+/// A crowd is identified by the number of its first part, which is the only one that may have free seats. The
+/// memory grows with the number of disks in crowds, and never shrinks.
 #[derive(Debug, Clone)]
 pub(super) struct Crowds {
     parts: Vec<Part>,
-    /// The first of the parts that belong to nobody.
+    /// The first of the free parts, which belong to no crowd.
     free: u32,
 }
 
 impl Crowds {
-    /// Creates room for the few crowds that are usual in so many cells.
+    /// Creates room for the few crowds that are usual in this many cells.
     pub(super) fn with_room(cells: usize) -> Self {
         Self { parts: Vec::with_capacity(FEW + cells / CELLS), free: NONE }
     }
 
-    /// Begins a crowd with this disk. Returns its number.
+    /// Begins a crowd with this disk. Returns the number of the crowd.
     pub(super) fn begin(&mut self, disk: u32) -> u32 {
         self.put_before(NONE, disk)
     }
 
-    /// Adds a disk to a crowd. Returns the number that the crowd has then.
+    /// Adds a disk to a crowd. Returns the new number of the crowd.
     pub(super) fn push(&mut self, crowd: u32, disk: u32) -> u32 {
         let first = &mut self.parts[crowd as usize];
         if first.count as usize == SEATS {
@@ -57,7 +57,8 @@ impl Crowds {
         crowd
     }
 
-    /// Takes any disk out of a crowd. Returns it, and the number of the crowd if somebody is left.
+    /// Takes any disk out of a crowd. Returns the disk, and the new number of the crowd if disks are left in
+    /// it.
     pub(super) fn pop(&mut self, crowd: u32) -> (u32, Option<u32>) {
         let first = &mut self.parts[crowd as usize];
         first.count -= 1;
@@ -70,7 +71,7 @@ impl Crowds {
         (disk, (next != NONE).then_some(next))
     }
 
-    /// Puts another disk in the place of one, if that one is in this crowd.
+    /// Replaces a disk by another, if it is in this crowd.
     pub(super) fn replace(&mut self, mut crowd: u32, disk: u32, by: u32) {
         while let Some(part) = self.parts.get_mut(crowd as usize) {
             if let Some(seat) = part.seats[..part.count as usize].iter_mut().find(|seat| **seat == disk) {
@@ -81,7 +82,8 @@ impl Crowds {
         }
     }
 
-    /// Appends a crowd to the first `count` disks in `found`; free seats are written, too.
+    /// Appends a crowd to the first `count` disks in `found`, and returns the new count. Free seats are
+    /// copied, too.
     pub(super) fn gather(&self, mut crowd: u32, found: &mut [u32], mut count: usize) -> usize {
         while let Some(part) = self.parts.get(crowd as usize) {
             found[count..count + SEATS].copy_from_slice(&part.seats);
@@ -91,13 +93,13 @@ impl Crowds {
         count
     }
 
-    /// Returns the largest number of disks in all crowds together until more memory is taken.
+    /// Returns the largest number of disks that all crowds together can hold without more memory.
     #[inline]
     pub(super) fn room(&self) -> usize {
         SEATS * self.parts.capacity()
     }
 
-    /// Returns the number of parts that there are, of crowds or free.
+    /// Returns the number of all parts, of crowds or free.
     #[cfg(test)]
     pub(super) fn parts(&self) -> usize {
         self.parts.len()

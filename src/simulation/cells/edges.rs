@@ -11,7 +11,7 @@ pub(super) fn widen(edges: &mut [f64], margin: f64) {
     }
 }
 
-/// Returns so many edges at equal distances; the first and the last are infinite at walls.
+/// Returns the edges of `count` intervals of equal width. At walls, the first and the last edge are infinite.
 pub(super) fn edges(start: f64, pitch: f64, count: u32, walls: bool) -> Vec<f64> {
     let mut edges: Vec<f64> = (0..=count).map(|k| start + f64::from(k) * pitch).collect();
     if walls {
@@ -22,7 +22,7 @@ pub(super) fn edges(start: f64, pitch: f64, count: u32, walls: bool) -> Vec<f64>
 }
 
 /// Returns the edges of the rows. In an open container, the upper half of the rows grows in proportion to the
-/// height. A disk that flies high then does not share its cell with all others that are high.
+/// height. So a disk that flies high does not share its cell with all others that are high.
 pub(super) fn row_edges(domain: &Domain, layout: &Layout) -> Vec<f64> {
     const GROWTH: f64 = 1.1;
     let mut edges = edges(domain.bottom, layout.pitch.y, layout.rows, !domain.periodic_ends);

@@ -23,8 +23,8 @@ pub(in crate::simulation) const FEWEST: f64 = 4.0;
 
 /// The columns and rows of cells. A ring of ghosts surrounds them, so that every cell has eight neighbors.
 ///
-/// Cells of one column are next to each other in memory. The usual large system is a wide, low box, in which
-/// near places are then near in memory, too.
+/// Cells of one column are next to each other in memory. The usual large system is a wide, low box, and in
+/// this order places that are near in the box are also near in memory.
 #[derive(Debug, Clone)]
 pub(in crate::simulation) struct Grid {
     pub(in crate::simulation) layout: Layout,
@@ -39,7 +39,7 @@ pub(in crate::simulation) struct Grid {
     margin: DVec2,
     /// Width and height after which the domain repeats itself; 0 where it does not.
     periods: DVec2,
-    /// Tells whether one of the periods is not 0, in a form that costs little to ask.
+    /// True if one of the periods is not 0: a flag that is cheap to test.
     is_periodic: bool,
 }
 
@@ -63,8 +63,8 @@ pub(in crate::simulation) struct Layout {
 }
 
 impl Layout {
-    /// Returns the layout of at most so many cells for disks of at most this diameter, or `None` if the
-    /// domain is too small.
+    /// Returns the layout of at most `most` cells for disks up to this diameter, or `None` if the domain is
+    /// too small.
     pub(in crate::simulation) fn new(
         domain: &Domain,
         diameter: f64,
@@ -139,7 +139,7 @@ impl Grid {
         [columns, rows]
     }
 
-    /// Returns between which numbers the disks of each column, and of each row, are.
+    /// Returns the range of coordinates of the disks in each column, and in each row.
     pub(super) fn ranges(&self) -> [Vec<(f64, f64)>; 2] {
         let range = |edges: &[f64], margin: f64| {
             edges.windows(2).map(|pair| (pair[0] - margin, pair[1] + margin)).collect()
@@ -167,7 +167,8 @@ impl Grid {
         self.layout.cell_size
     }
 
-    /// Returns the number of cells in a column, ring included. Neighbors in a row are so far apart in memory.
+    /// Returns the number of cells in a column, ring included. Neighbors in a row are this far apart in
+    /// memory.
     #[inline]
     pub(in crate::simulation) fn stride(&self) -> usize {
         self.stride as usize
@@ -214,8 +215,8 @@ impl Grid {
         self.is_periodic
     }
 
-    /// Returns the ghosts that mirror a cell at periodic sides and ends: beside it, above or below, and
-    /// across the corner.
+    /// Returns the ghosts that mirror a cell at periodic sides and ends: at the opposite side, at the
+    /// opposite end, and at the opposite corner.
     #[inline]
     pub(in crate::simulation) fn mirrors(&self, place: Place) -> impl Iterator<Item = Place> + use<> {
         let Layout { columns, rows, .. } = self.layout;
@@ -227,8 +228,8 @@ impl Grid {
         [beside, above, across].into_iter().flatten()
     }
 
-    /// Returns the neighbor so many columns to the right and rows up, and the number of periods passed on
-    /// the way.
+    /// Returns the neighbor at these numbers of columns to the right and rows up, and the numbers of periods
+    /// passed on the way.
     #[inline]
     pub(in crate::simulation) fn neighbor(&self, place: Place, (right, up): (i32, i32)) -> (Place, [i32; 2]) {
         let mut to =
@@ -246,7 +247,7 @@ impl Grid {
     }
 }
 
-/// Returns the place in the ring that mirrors the first or the last of so many columns or rows.
+/// Returns the column or row of the ring that mirrors `line`, if that is the first or the last of `count`.
 #[inline]
 fn opposite(line: u32, count: u32) -> Option<u32> {
     match line {
@@ -256,7 +257,7 @@ fn opposite(line: u32, count: u32) -> Option<u32> {
     }
 }
 
-/// Brings a column or row of the ring back among those that it mirrors. Returns it, and the number of
+/// Replaces a column or row of the ring by the one that it mirrors. Returns the result, and the number of
 /// periods passed.
 #[inline]
 fn brought_back(line: u32, count: u32) -> (u32, i32) {
@@ -267,13 +268,13 @@ fn brought_back(line: u32, count: u32) -> (u32, i32) {
     }
 }
 
-/// Returns the distance beyond its edges up to which a cell can keep its disks, if they shall collide only
-/// with those in the cells around it.
+/// Returns the largest distance beyond its edges up to which a cell can keep its disks, such that they still
+/// collide only with disks in the cells around it.
 ///
 /// A disk that turns back soon, or moves to and fro at an edge, then stays in its cell.
 fn margin(domain: &Domain, layout: &Layout, diameter: f64) -> DVec2 {
     let mut margin = (0.5 * (layout.pitch - LEAST_PITCH * diameter)).max(DVec2::ZERO);
-    // Neighbors could be more than half a period apart.
+    // With so few columns or rows and a margin, neighbors could be more than half a period apart.
     if domain.periodic_sides && layout.columns < 6 {
         margin.x = 0.0;
     }

@@ -1,8 +1,8 @@
-//! The cells of a class of disks that are larger than others.
+//! The cells of a class of larger disks.
 //!
-//! A large disk has two: a *home*, as large as the disk, in which others look for it, and a *cell*, much
-//! smaller, until whose end it keeps its partners. Were the home all it had, it would have to know all
-//! small disks within the whole of it.
+//! A large disk has two places. Its *home* is as large as the disk, and other disks look for it there. Its
+//! *cell* is much smaller, and the disk keeps its partners until it leaves the cell. With a home alone, the
+//! disk would have to know all small disks that it can touch from anywhere in its home.
 
 use std::f64::consts::SQRT_2;
 
@@ -15,28 +15,28 @@ use super::reach::{Homes, Reach};
 use super::size_class::SizeClass;
 use crate::boundary::{Boundary, Domain, Region};
 
-/// Homes per disk at most: empty ones are looked into, too.
+/// Largest number of homes per disk. More would cost time, since searches look into empty homes, too.
 const HOMES_PER_DISK: f64 = 4.0;
 
-/// Homes that are always allowed.
+/// Number of homes that is always allowed.
 const SPARE_HOMES: f64 = 16.0;
 
-/// Size of a cell in free paths, for cells as large as a disk of the smallest class.
+/// Width of a cell in free paths, per unit of [`CellSize::pitch`].
 pub(super) const FREE_PATHS: f64 = 3.0;
 
-/// Doublings by which cells are finer than homes, at most.
+/// Largest number of doublings by which cells are finer than homes.
 const FINEST: u32 = 10;
 
-/// Columns or rows from which on cells get no finer.
+/// Number of columns or rows from which on cells get no finer.
 const MOST_LINES: u32 = 1 << 20;
 
-/// The place of the cells of a class: how many there are, and how many make a home.
+/// The layout of the cells of a class, and the number of cells that make up a home.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct LayerLayout {
     /// The cells.
     pub(in crate::simulation) cells: Layout,
-    /// Cells along the side of a home, as a power of two.
+    /// Number of cells along the side of a home, as an exponent of two.
     pub(in crate::simulation) doublings: u32,
 }
 
@@ -54,21 +54,24 @@ impl LayerLayout {
         let homes = Layout::new(domain, largest, cell_size, most, highest)?;
         let height = domain.height().min(highest - domain.bottom + largest);
         let density = |class: &SizeClass| class.count as f64 / (domain.width() * height);
-        // The way from one collision to the next, but for a factor of order 1.
+        // The mean way from one collision to the next, up to a factor of order 1.
         let free_path =
             1.0 / classes.iter().map(|other| density(other) * (largest + other.largest)).sum::<f64>();
-        // Small cells have few partners, and are passed often; no smaller than those that they reach into.
+        // In a small cell, a disk has few partners, but it leaves the cell often. A cell is no smaller than
+        // those of the smallest class, into which its disks look.
         let suitable =
             (FREE_PATHS * cell_size.pitch() * free_path).max(cell_size.pitch() * classes[0].largest);
         let mut layout = Self { cells: homes, doublings: 0 };
-        // The nearest of the sizes that there are, by their ratio.
+        // A cell can only be halved. Of the possible sizes, the one whose ratio to the suitable size is
+        // nearest to 1 is taken.
         while layout.cells.pitch.max_element() > SQRT_2 * suitable && layout.can_be_finer() {
             layout = layout.finer(1);
         }
         Some(layout)
     }
 
-    /// Tells whether there may be twice as many columns and rows: there are tables of these.
+    /// Tells whether there may be twice as many columns and rows. Their number is limited, since each has
+    /// entries in tables.
     fn can_be_finer(&self) -> bool {
         self.doublings < FINEST && self.cells.columns.max(self.cells.rows) < MOST_LINES
     }
@@ -78,7 +81,7 @@ impl LayerLayout {
         self.cells.pitch * f64::from(1_u32 << self.doublings)
     }
 
-    /// Returns the same homes with cells that are finer by so many doublings.
+    /// Returns the same homes with cells that are finer by this many doublings.
     fn finer(self, doublings: u32) -> Self {
         let Layout { columns, rows, pitch, .. } = self.cells;
         let cells = Layout {
@@ -90,7 +93,7 @@ impl LayerLayout {
         Self { cells, doublings: self.doublings + doublings }
     }
 
-    /// Returns the layout of the homes, if these cells make whole ones.
+    /// Returns the layout of the homes, if these cells make up whole homes.
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn homes(&self) -> Option<Layout> {
         let Self { cells: Layout { columns, rows, pitch, cell_size }, doublings } = *self;
@@ -100,7 +103,8 @@ impl LayerLayout {
         whole.then_some(Layout { columns: columns / side, rows: rows / side, pitch, cell_size })
     }
 
-    /// Tells whether disks in these cells meet each other and those in the smallest ones at one image only.
+    /// Tells whether the cells are so narrow that their disks meet each other, and disks of the smallest
+    /// class, at only one image.
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn is_narrow_enough(
         &self,
@@ -114,7 +118,7 @@ impl LayerLayout {
         self.cells.pitch.cmple(widest).all()
     }
 
-    /// Returns the same homes with cells at most this wide and high, if they can be.
+    /// Returns the same homes with cells at most this wide and high, if cells can be so fine.
     pub(super) fn narrower(self, widest: DVec2) -> Option<Self> {
         let mut layout = self;
         while layout.cells.pitch.cmpgt(widest).any() {
@@ -127,19 +131,19 @@ impl LayerLayout {
     }
 }
 
-/// The disks of a class in their homes, and what matters to them.
+/// The disks of a class in their homes, and the homes in which they look for partners.
 #[derive(Debug, Clone)]
 pub(super) struct Layer {
     pub(super) layout: LayerLayout,
     pub(super) grid: Grid,
     pub(super) contents: Contents,
-    /// Homes of each smaller class that a disk of this one may touch, the smallest class first, and last
-    /// those of its own.
+    /// The homes whose disks a disk of this class may touch: those of each smaller class, from the smallest
+    /// class on, and last those of its own class.
     reaches: Vec<Reach>,
 }
 
 impl Layer {
-    /// A layer without disks, which knows no others yet.
+    /// Creates a layer without disks. It knows no other homes until [`Self::set_reaches`].
     pub(super) fn empty(domain: &Domain, layout: LayerLayout) -> Self {
         let grid = Grid::without_margin(domain, layout.cells);
         let homes = (layout.cells.columns as usize * layout.cells.rows as usize) >> (2 * layout.doublings);
@@ -155,7 +159,7 @@ impl Layer {
         (self.layout.cells.columns as usize * self.layout.cells.rows as usize) >> (2 * self.layout.doublings)
     }
 
-    /// Homes in a column.
+    /// Returns the number of homes in a column.
     fn stride(&self) -> usize {
         self.layout.cells.rows as usize >> self.layout.doublings
     }
@@ -201,7 +205,7 @@ impl Layer {
         }
     }
 
-    /// Returns the reaches to all smaller classes, and that to its own.
+    /// Returns the reaches to all smaller classes, and the reach to its own class.
     pub(super) fn reaches(&self) -> (&[Reach], Option<&Reach>) {
         match self.reaches.split_last() {
             Some((own, smaller)) => (smaller, Some(own)),

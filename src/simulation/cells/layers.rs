@@ -1,5 +1,5 @@
-//! Disks of several sizes: the smallest class has the cells of the engine, each larger one a layer of its
-//! own above them.
+//! Layers of cells for disks of several sizes. The smallest class has the cells of the engine, and each
+//! larger class has a layer of its own above them.
 
 use glam::DVec2;
 
@@ -11,10 +11,10 @@ use super::reach::{Distances, Homes, Reach};
 use super::size_class::{SizeClass, class_of, classes, together};
 use crate::boundary::{Boundary, Domain};
 
-/// Returns how many cells there may be for each disk of the smallest class.
+/// Returns the largest number of cells for each disk of the smallest class.
 ///
-/// Few are best in a dilute gas, but too few where disks crowd in a part of the domain. The sizes of cells
-/// differ by less than would make a run go to and fro between two of them.
+/// Few cells are best in a dilute gas, but they are too few where disks crowd in a part of the domain. The
+/// two numbers are so close that a run does not go back and forth between the sizes of cells.
 const fn cells_per_small_disk(cell_size: CellSize) -> f64 {
     match cell_size {
         CellSize::Small | CellSize::Medium => 6.0,
@@ -22,7 +22,7 @@ const fn cells_per_small_disk(cell_size: CellSize) -> f64 {
     }
 }
 
-/// Cells of the smallest class that are always allowed.
+/// Number of cells of the smallest class that is always allowed.
 pub(super) const SPARE_SMALL_CELLS: f64 = 64.0;
 
 /// The layers of all classes but the smallest.
@@ -34,7 +34,7 @@ pub(super) struct Layers {
     /// For each home of each class, the smallest class first: the larger disks that reach it from their
     /// cells.
     visitors: Vec<Contents>,
-    /// True if disks that go from cell to cell must look at all partners again.
+    /// True if a disk that enters another cell must look at all partners again.
     is_narrow: bool,
 }
 
@@ -46,7 +46,8 @@ pub(super) fn layouts(
     highest: f64,
 ) -> Option<Layouts> {
     let SizeClass { largest: diameter, count, .. } = classes[0];
-    // Large disks look into many of these cells: fewer than where all disks have the same.
+    // Large disks look into many of these cells. So there are fewer of them than if all disks had the same
+    // cells.
     let most = cells_per_small_disk(cell_size) * count as f64 + SPARE_SMALL_CELLS;
     let smallest = Layout::new(domain, diameter, cell_size, most, highest)?;
     let grid = Grid::new(domain, smallest, diameter);
@@ -58,11 +59,11 @@ pub(super) fn layouts(
     Some(Layouts { smallest, larger: larger? })
 }
 
-/// Returns how wide and high a cell of a class may be; infinite where nothing is periodic.
+/// Returns the largest width and height of a cell of a class; infinite in a direction that is not periodic.
 ///
-/// Two disks meet at the image that is nearest now, if both can move in their cells and no other image
-/// comes nearer: their distance now is at most that at which they touch and the widths of both cells, and
-/// that must be less than half a period.
+/// Two disks must meet at the image that is nearest now, wherever they move in their cells. Their distance is
+/// at most the sum of their distance at a touch and the widths of both cells. While this sum is less than
+/// half a period, no other image comes nearer.
 pub(super) fn widest(domain: &Domain, grid: &Grid, smallest: f64, diameter: f64) -> DVec2 {
     let half = 0.5 * domain.periods();
     let small_cell = grid.layout.pitch + 2.0 * grid.margin();
@@ -72,7 +73,7 @@ pub(super) fn widest(domain: &Domain, grid: &Grid, smallest: f64, diameter: f64)
 }
 
 impl Layers {
-    /// The layers of these layouts, without disks.
+    /// Creates the layers of these layouts, without disks.
     pub(super) fn empty(
         domain: &Domain,
         grid: &Grid,
@@ -83,8 +84,9 @@ impl Layers {
         let mut larger: Vec<Layer> = layouts.iter().map(|&layout| Layer::empty(domain, layout)).collect();
         let distances = |a: usize, b: usize| Distances {
             most: 0.5 * LEAST_PITCH * (classes[a].largest + classes[b].largest),
-            // Less, by more than the depth to which rounding can press disks into each other.
-            // Disks of the same class have no homes that small.
+            // The distance is less than that of a touch, by more than the depth to which rounding can press
+            // disks into each other. Within a class there is no hole, since no home is so small that it fits
+            // into a disk.
             least: if a == b { 0.0 } else { 0.5 / LEAST_PITCH * (classes[a].smallest + classes[b].smallest) },
         };
         let homes = |class: usize| match class {
@@ -121,7 +123,7 @@ impl Layers {
         self.larger.get(usize::from(self.classes[disk]).wrapping_sub(1))
     }
 
-    /// Tells whether disks that go from cell to cell must look at all partners again.
+    /// Tells whether a disk that enters another cell must look at all partners again.
     pub(super) fn is_narrow(&self) -> bool {
         self.is_narrow
     }
@@ -149,7 +151,7 @@ impl Layers {
         }
     }
 
-    /// Appends the larger disks that one of the smallest class in this cell may touch to those found.
+    /// Appends to `found` the larger disks that a disk of the smallest class in this cell may touch.
     #[inline(always)]
     pub(super) fn gather_visitors(&self, cell: usize, found: &mut [u32], count: usize) -> usize {
         self.visitors[0].gather_cell(cell, found, count)
@@ -160,8 +162,8 @@ impl Layers {
         self.visitors[0].prefetch(cell);
     }
 
-    /// Writes the disks that one of a larger class may touch to `found`; returns how many. Those of smaller
-    /// classes that it could touch `before`, too, are left out.
+    /// Writes to `found` the disks that a disk of a larger class may touch, and returns their number. Disks
+    /// of smaller classes that it could already touch from the place `before` are left out.
     pub(super) fn gather(
         &self,
         smallest: &Contents,
@@ -191,8 +193,8 @@ impl Layers {
     }
 }
 
-/// Tells whether disks of one class in their homes and of a larger one in their cells are less than half a
-/// period apart as long as they are in each other's reach. Then they go on meeting at the same image.
+/// Tells whether a disk in its home and a disk of a larger class in its cell are less than half a period
+/// apart as long as they are within each other's reach. Then they keep meeting at the same image.
 fn are_homes_narrow(domain: &Domain, larger: &[Layer], classes: &[SizeClass]) -> bool {
     let touching = |a: usize, b: usize| 0.5 * LEAST_PITCH * (classes[a + 1].largest + classes[b + 1].largest);
     let half = 0.5 * domain.periods();
@@ -203,23 +205,24 @@ fn are_homes_narrow(domain: &Domain, larger: &[Layer], classes: &[SizeClass]) ->
     (1..larger.len()).all(|b| (0..b).all(|a| is_narrow(a, b)))
 }
 
-/// The cells of the smallest class, each the home of its disks.
+/// Returns the cells of the smallest class as homes: each cell is the home of its disks.
 fn homes_of(grid: &Grid) -> Homes<'_> {
     Homes { grid, cells: 1, stride: grid.stride(), first: grid.stride() + 1 }
 }
 
-/// The layouts of all cells: what a run must keep to go on with the same bits.
+/// The layouts of all cells, which a run must keep to go on with the same bits.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Layouts {
     /// The cells of the smallest class.
     pub(in crate::simulation) smallest: Layout,
-    /// The layers of the larger ones; none if all disks share the same cells.
+    /// The layers of the larger classes; none if all disks share the same cells.
     pub(in crate::simulation) larger: Vec<LayerLayout>,
 }
 
 impl Layouts {
-    /// Returns the classes of disks that have cells of their own; `None` if there are not as many layers.
+    /// Returns the classes of disks that have cells of their own; `None` if their number does not match that
+    /// of the layers.
     pub(in crate::simulation) fn classes(
         &self,
         domain: &Domain,
@@ -227,7 +230,7 @@ impl Layouts {
     ) -> Option<Vec<SizeClass>> {
         let classes = classes(diameters);
         if self.larger.is_empty() {
-            // Any cells do without disks.
+            // Without disks, any cells will do.
             let any = 0.125 * domain.width();
             let nobody = SizeClass { largest: any, smallest: any, count: 0 };
             return Some(vec![together(&classes).unwrap_or(nobody)]);

@@ -10,7 +10,8 @@ impl Cells {
         prefetch(&self.places, disk);
     }
 
-    /// Requests the nine cells around a disk from memory.
+    /// Requests the nine cells around a disk of the smallest class from memory, and does nothing for larger
+    /// disks.
     #[inline]
     pub(in crate::simulation) fn prefetch_around(&self, disk: usize) {
         if self.is_large(disk) {

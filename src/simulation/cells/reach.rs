@@ -1,4 +1,4 @@
-//! The cells of another class of disks that matter to a disk, wherever it is in its own cell.
+//! The homes of another class of disks that a disk may touch from anywhere in its own cell.
 
 use super::grid::{Grid, Place};
 
@@ -24,7 +24,7 @@ impl Span {
 /// The homes of a class of disks: rectangles of one or more cells of a grid.
 pub(super) struct Homes<'a> {
     pub(super) grid: &'a Grid,
-    /// Cells of the grid in a home, along each side.
+    /// Number of cells of the grid along each side of a home.
     pub(super) cells: usize,
     /// Distance in memory between homes next to each other in a row.
     pub(super) stride: usize,
@@ -32,7 +32,7 @@ pub(super) struct Homes<'a> {
     pub(super) first: usize,
 }
 
-/// Distances of the centers of disks of two classes that touch.
+/// The range of distances between the centers of two disks that touch, one of each of two classes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Distances {
     /// The distance of the centers of the largest disks when they touch.
@@ -41,29 +41,30 @@ pub(super) struct Distances {
     pub(super) least: f64,
 }
 
-/// For each column and row of one grid, the homes of a class whose disks may be touched from there.
+/// The homes of a class whose disks may be touched, for each column and row of a grid.
 ///
-/// They make a rectangle with a hole: homes that lie in the disk itself hold nobody.
+/// The homes form a rectangle with a hole, since homes that lie inside the disk itself hold no disks.
 #[derive(Debug, Clone)]
 pub(super) struct Reach {
     columns: Vec<[Span; 2]>,
     rows: Vec<[Span; 2]>,
     /// Number of columns of homes, after which periodic sides begin anew.
     period_columns: u32,
-    /// The same for rows. At periodic ends, rows are counted on beyond it.
+    /// Number of rows of homes, after which periodic ends begin anew. The rows of a span are counted on
+    /// beyond this number.
     period_rows: u32,
     stride: usize,
     first: usize,
 }
 
 impl Reach {
-    /// Finds the homes of disks that touch those in the cells of `from`.
+    /// Finds the homes whose disks may touch disks in the cells of `from`.
     pub(super) fn new(from: &Grid, homes: &Homes<'_>, distances: Distances) -> Self {
         let [columns, rows] = homes.grid.edges().map(|edges| every(homes.cells, &edges));
         let margin = homes.grid.margin();
         let [from_columns, from_rows] = from.ranges();
         let periods = homes.grid.periods();
-        // A square in the circle that the nearest centers lie on.
+        // Half the width of the square in the circle on which the nearest possible centers lie.
         let hole = distances.least * std::f64::consts::FRAC_1_SQRT_2;
         let spans = |edges: &[f64], range: &(f64, f64), margin: f64, is_periodic: bool| {
             let distance = distances.most + margin;
@@ -88,8 +89,8 @@ impl Reach {
         }
     }
 
-    /// Does something with the homes within reach of a place, given the index of the first of some that
-    /// follow each other in memory, and their number.
+    /// Calls `act` for the homes within reach of a place. Each call gets a run of homes that follow each
+    /// other in memory: the index of the first home, and the number of homes.
     #[inline]
     pub(super) fn for_each_run(&self, place: Place, mut act: impl FnMut(usize, usize)) {
         for column in self.columns_of(place) {
@@ -99,7 +100,7 @@ impl Reach {
         }
     }
 
-    /// Does the same with the homes within reach of one place, but not of another.
+    /// Calls `act` in the same way for the homes within reach of `place`, but not of `other`.
     pub(super) fn for_each_run_beyond(&self, place: Place, other: Place, mut act: impl FnMut(usize, usize)) {
         for column in self.columns_of(place) {
             let beyond = self.rows_of(other, column).map(|rows| self.aligned(rows, place, other));
@@ -115,13 +116,13 @@ impl Reach {
         }
     }
 
-    /// Counts the rows of another place from where those of this place are counted from, if periodic ends
-    /// lie between.
+    /// Shifts the rows of another place by a period if periodic ends lie between the places, so that the rows
+    /// of both places are counted from the same end.
     fn aligned(&self, rows: Span, place: Place, other: Place) -> Span {
         let first = |place: Place| i64::from(self.rows[place.row as usize - 1][0].first);
         let (ahead, period) = (first(place) - first(other), i64::from(self.period_rows));
         let turns = if 2 * ahead > period { 1 } else { -i64::from(2 * ahead < -period) };
-        // A span that would begin before the first row reaches no row of this place there.
+        // The part of a span before the first row reaches no row of this place.
         let start = i64::from(rows.first) + turns * period;
         Span::between(start.max(0) as u32, (start + i64::from(rows.count)).max(0) as u32)
     }
@@ -136,7 +137,7 @@ impl Reach {
         }
     }
 
-    /// Returns the part of a span before the last row, and the part that goes on at the other end.
+    /// Splits a span into the part up to the last row, and the part that goes on at the other end.
     #[inline]
     fn pieces(&self, rows: Span) -> [Span; 2] {
         let last = self.period_rows;
@@ -168,12 +169,13 @@ impl Reach {
     }
 }
 
-/// Returns the edges of homes that are so many cells wide.
+/// Returns the edges of homes that are this many cells wide.
 fn every(cells: usize, edges: &[f64]) -> Vec<f64> {
     edges.iter().copied().step_by(cells).collect()
 }
 
-/// The spaces between edges that hold numbers from `low` to `high`; the first and the last have no end.
+/// Returns the spaces between edges that hold the numbers from `low` to `high`. The first and the last space
+/// extend to infinity.
 fn between(edges: &[f64], low: f64, high: f64) -> Span {
     let inner = &edges[1..edges.len() - 1];
     let first = inner.partition_point(|&edge| edge < low);
@@ -181,7 +183,7 @@ fn between(edges: &[f64], low: f64, high: f64) -> Span {
     Span { first: first as u32, count: (last - first) as u32 + 1 }
 }
 
-/// The spaces that lie wholly between two numbers; none of those without an end.
+/// Returns the spaces that lie wholly between two numbers, which the first and the last space never do.
 fn within(edges: &[f64], low: f64, high: f64) -> Span {
     let inner = &edges[1..edges.len() - 1];
     let first = inner.partition_point(|&edge| edge < low);
@@ -190,16 +192,16 @@ fn within(edges: &[f64], low: f64, high: f64) -> Span {
     Span { first: first as u32 + 1, count: count as u32 }
 }
 
-/// Counts the rows of a hole from where those around it are counted from. A hole that is not among them is
-/// none.
+/// Counts the rows of a hole from the same row as those around it. The result is empty if the hole does not
+/// lie within them.
 fn hole_within(outer: Span, hole: Span, period: u32) -> Span {
     let first = if hole.first < outer.first { hole.first + period } else { hole.first };
     let hole = Span { first, count: hole.count };
     if hole.behind() <= outer.behind() { hole } else { Span::EMPTY }
 }
 
-/// The spaces that hold numbers from `low` to `high`, between edges of the same distance, after the last of
-/// which the first follows.
+/// Returns the spaces between equally distant edges that hold the numbers from `low` to `high`. After the
+/// last space, the first one follows.
 fn around(edges: &[f64], low: f64, high: f64) -> Span {
     let (start, end, count) = (edges[0], edges[edges.len() - 1], (edges.len() - 1) as f64);
     let space = |x: f64| ((x - start) / (end - start) * count).floor();

@@ -1,9 +1,9 @@
-//! Classes of disks by their size: each has cells that suit it.
+//! Classes of disks of similar size, each with cells that suit it.
 
 use super::cost::{Group, area, cost};
 
-/// Smallest diameter in a class that is not made of others, in terms of its largest; less if there would be
-/// very many.
+/// Ratio of the smallest to the largest diameter in a narrow class. It is less if there would be very many
+/// classes otherwise.
 const WIDTH: f64 = 0.7;
 
 /// Disks of similar size.
@@ -24,22 +24,23 @@ impl SizeClass {
     }
 }
 
-/// Returns the classes, the smallest disks first; none without disks.
+/// Returns the classes, from the smallest disks up; none without disks.
 ///
-/// They are narrow where that saves many looks at disks that are too far away, and few where looks into many
-/// layers would cost more.
+/// Narrow classes save looks at disks that are too far away, and few classes save looks into layers. The
+/// classes returned are the cheapest that the search finds.
 pub(super) fn classes(diameters: impl Iterator<Item = f64>) -> Vec<SizeClass> {
     let narrow = narrow_classes(diameters);
     let (area, groups) = (area(&narrow), Group::of_each(&narrow));
     let cost = |bounds: &[bool]| cost(&joined(&groups, bounds), area);
-    // The best of all is among too many to try.
+    // There are too many divisions to try them all. So two searches start from the finest and from the
+    // coarsest division, and the better result is taken.
     let many = cheapest_near(vec![true; groups.len().saturating_sub(1)], cost);
     let few = cheapest_near(vec![false; groups.len().saturating_sub(1)], cost);
     let (_, bounds) = if few.0 < many.0 { few } else { many };
     joined(&groups, &bounds).iter().map(|group| group.class).collect()
 }
 
-/// Returns the groups, with those together that have no bound between them.
+/// Joins neighboring groups that have no bound between them.
 fn joined(groups: &[Group], bounds: &[bool]) -> Vec<Group> {
     let mut joined: Vec<Group> = groups.first().copied().into_iter().collect();
     for (group, &is_bound) in groups.iter().skip(1).zip(bounds) {
@@ -51,8 +52,8 @@ fn joined(groups: &[Group], bounds: &[bool]) -> Vec<Group> {
     joined
 }
 
-/// Adds, removes or shifts one bound after another as long as that lowers the cost. Returns it, and the
-/// bounds.
+/// Adds, removes or shifts one bound after another as long as this lowers the cost. Returns the least cost,
+/// and the bounds.
 fn cheapest_near(mut bounds: Vec<bool>, cost: impl Fn(&[bool]) -> f64) -> (f64, Vec<bool>) {
     let mut least = cost(&bounds);
     loop {
@@ -65,13 +66,14 @@ fn cheapest_near(mut bounds: Vec<bool>, cost: impl Fn(&[bool]) -> f64) -> (f64, 
     }
 }
 
-/// Returns the bounds with so many of them the other way round.
+/// Returns the bounds with `count` of them inverted, from `first` on.
 fn changed(bounds: &[bool], first: usize, count: usize) -> Vec<bool> {
     let is_changed = |k: usize| (first..first + count).contains(&k);
     bounds.iter().enumerate().map(|(k, &is_bound)| is_bound != is_changed(k)).collect()
 }
 
-/// Returns classes that each reach from the largest disk that is not yet in one down to a part of it.
+/// Returns narrow classes. Each begins with the largest disk that is not in a class yet, and reaches down to
+/// a fixed ratio of its diameter.
 fn narrow_classes(diameters: impl Iterator<Item = f64>) -> Vec<SizeClass> {
     let mut diameters: Vec<f64> = diameters.collect();
     diameters.sort_unstable_by(|a, b| b.total_cmp(a));
@@ -90,7 +92,7 @@ fn narrow_classes(diameters: impl Iterator<Item = f64>) -> Vec<SizeClass> {
     classes
 }
 
-/// Returns a width with which there are some sixteen classes at most.
+/// Returns a ratio with which there are some sixteen classes at most.
 fn width(largest: f64, smallest: f64) -> f64 {
     let sixteenth_root = (smallest / largest).sqrt().sqrt().sqrt().sqrt();
     WIDTH.min(sixteenth_root)

@@ -28,9 +28,9 @@ impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
     /// Starts to build a run that goes on where the checkpoint was taken, with its gravity, random numbers
     /// and counters.
     ///
-    /// Rule and boundary are code, so they are given again, and the same ones give the same future. Others
-    /// are refused unless they are given on purpose. Only two parts that both have no fingerprint (closures,
-    /// for example) cannot be told apart. [`Checkpoint`] has an example.
+    /// The rule and the boundary are code, so the caller gives them again. The same ones give the same
+    /// future, and others are refused unless they are given on purpose. Only two parts that both have no
+    /// fingerprint (closures, for example) cannot be told apart. [`Checkpoint`] has an example.
     pub const fn resume(checkpoint: &Checkpoint, rule: R, boundary: B) -> Resumption<'_, R, B> {
         let scheduler = BySize::new();
         Resumption { checkpoint, rule, boundary, scheduler, another_rule: false, another_boundary: false }
@@ -38,7 +38,9 @@ impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
 }
 
 impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, S> {
-    /// Takes another scheduler. The future is the same, bit for bit.
+    /// Sets another scheduler.
+    ///
+    /// The future is the same, bit for bit.
     pub fn scheduler<T: EventScheduler>(self, scheduler: T) -> Resumption<'a, R, B, T> {
         let Self { checkpoint, rule, boundary, another_rule, another_boundary, scheduler: _ } = self;
         Resumption { checkpoint, rule, boundary, scheduler, another_rule, another_boundary }
@@ -62,9 +64,9 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
     /// Builds the run.
     ///
     /// # Errors
-    /// If the contents of the checkpoint are not a possible state, or if the checkpoint is of another rule or
-    /// boundary and this one was not given on purpose. If its disks do not fit into a boundary that was given
-    /// on purpose.
+    /// If the contents of the checkpoint are not a possible state. If the checkpoint is of another rule or
+    /// boundary, and the new one was not given on purpose. If its disks do not fit into a boundary that was
+    /// given on purpose.
     pub fn build(self) -> Result<Simulation<R, B, S>, CheckpointError> {
         let saved = &self.checkpoint.0;
         // A part with a fingerprint never equals one without. Only two parts without fingerprints cannot be

@@ -14,7 +14,7 @@ use crate::simulation::events::Counters;
 use crate::simulation::state::{Bodies, Exit, Forecast, Guard, Spin, Trajectory};
 use glam::DVec2;
 
-/// A number of events above that of any run.
+/// A larger number of events than any run has.
 const MOST_COUNTED: u64 = 1 << 60;
 
 /// Room for rounding, in sizes of a cell, of the grid or of a disk. It is much more than rounding needs.
@@ -28,7 +28,7 @@ pub(super) fn check(valid: bool, what: &'static str) -> Result<(), CheckpointErr
     if valid { Ok(()) } else { Err(CheckpointError::Inconsistent(what)) }
 }
 
-/// Checks everything for which the cells need not be known.
+/// Checks everything that does not depend on the cells.
 pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), CheckpointError> {
     let count = saved.trajectories.len();
     let lengths = [saved.spins.len(), saved.forecasts.len(), saved.places.len()];
@@ -48,7 +48,7 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     check(forward, "its counters run backwards")
 }
 
-/// Checks that all disks are where they belong, and their events where they can be.
+/// Checks that all disks are where they belong, and that their events are where they can be.
 pub(super) fn check_places(saved: &Saved, grids: &Grids, bodies: &Bodies) -> Result<(), CheckpointError> {
     let disks = || saved.forecasts.iter().zip(&saved.places).enumerate();
     let inside = |(disk, (_, &place))| holds(grids.of(disk), place, bodies.position(disk, saved.now));
@@ -64,8 +64,8 @@ pub(super) fn check_places(saved: &Saved, grids: &Grids, bodies: &Bodies) -> Res
     check(disks().all(meets), "a disk collides with one that it does not touch")
 }
 
-/// Returns the grids of all classes of disks, if they suit the domain and the disks, and every disk is in
-/// its own.
+/// Returns the grids of all classes of disks, if they suit the domain and the disks, and the place of every
+/// disk is a cell of its grid.
 pub(super) fn grids(saved: &Saved, bodies: &Bodies) -> Option<Grids> {
     let layouts = &saved.layouts;
     let diameters = (0..bodies.len()).map(|disk| 2.0 * bodies.radius(disk));
@@ -182,14 +182,14 @@ fn has_room(saved: &Saved, grids: &Grids, bodies: &Bodies) -> bool {
         let region = grid.region(place);
         let low = region.min.max(DVec2::new(domain.left, domain.bottom)) - *largest;
         let size = region.max.min(DVec2::new(domain.right, domain.top)) + *largest - low;
-        // The densest packing has an area fraction of 0.91. The difference from 1 is more than the slack of
-        // the cells.
+        // The densest packing of equal disks has an area fraction of 0.91. Its difference from 1 leaves more
+        // room than the slack of the cells needs.
         *area <= size.x * size.y
     })
 }
 
-/// Tells whether the flight of a disk in its cell ends at the edge that it names, or at a wall or horizon
-/// that is not too far.
+/// Tells whether the flight of a disk in its cell ends at the edge that its forecast names, or at a wall or
+/// horizon that is not too far in the future.
 fn ends_where_it_can(
     saved: &Saved,
     grid: &Grid,

@@ -97,7 +97,7 @@ impl Bodies {
         Self { particles, spins, gravity, properties, images, typical_diameter }
     }
 
-    /// Creates bodies that go on where they were saved. Disks that are all alike have a single model.
+    /// Creates bodies that go on from where they were saved. Disks that are all alike have a single model.
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn restored(
         models: &[Disk],
@@ -208,12 +208,12 @@ impl Bodies {
         let trajectory = &mut self.particles[disk].trajectory;
         let before = trajectory.velocity;
         trajectory.velocity += velocity;
-        // The position changes by the velocity change that is left after rounding. Otherwise, the disk would
-        // jump.
+        // The correction of the position uses the change of velocity that is left after rounding. With the
+        // unrounded change, the disk would jump.
         trajectory.position -= (trajectory.velocity - before) * offset;
     }
 
-    /// Brings a disk that has passed so many periods back into the domain.
+    /// Brings a disk that has passed these numbers of periods back into the domain.
     #[inline]
     pub(in crate::simulation) fn bring_back(&mut self, disk: usize, passed: [i32; 2], periods: DVec2) {
         if passed != [0; 2] {

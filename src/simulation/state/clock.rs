@@ -3,8 +3,8 @@
 use super::guard::Guard;
 use crate::simulation::errors::{Outcome, RunError};
 
-/// Number of floating-point times that an epoch must contain at least. A typical disk then goes at most about
-/// a diameter from one to the next.
+/// Least number of floating-point times in an epoch. A typical disk then goes at most about a diameter from
+/// one to the next.
 ///
 /// So few times suffice, because epochs are powers of two, and so are the distances between these times.
 /// Adding an epoch to the origin is therefore exact, and moving walls do not jump.
@@ -28,8 +28,8 @@ pub(in crate::simulation) struct Clock {
     /// The offset after which the epoch moves.
     pub(in crate::simulation) epoch_length: f64,
     pub(in crate::simulation) guard: Guard,
-    /// Number of events until limits and guard are looked at again: 1 if that is due at the next event. No
-    /// outcome depends on it.
+    /// Number of events until the run looks at its limits and its guard again: 1 if a look is due at the next
+    /// event. No outcome depends on it.
     pub(in crate::simulation) events_to_look: u64,
     pub(in crate::simulation) tally: Tally,
 }
@@ -52,7 +52,7 @@ impl Clock {
         self.origin + self.now
     }
 
-    /// Returns the largest difference by which the present may miss a time to which the run was sent.
+    /// Returns the largest difference between the present and the time up to which a run was to go.
     pub(in crate::simulation) fn rounding(&self) -> f64 {
         4.0 * f64::EPSILON * (self.origin.abs() + self.now.abs())
     }
@@ -77,7 +77,7 @@ impl Clock {
         }
     }
 
-    /// Returns the time of the whole epochs before an offset.
+    /// Returns the total length of the whole epochs before an offset.
     pub(in crate::simulation) fn whole_epochs(&self, offset: f64) -> f64 {
         (offset / self.epoch_length).floor() * self.epoch_length
     }
@@ -85,9 +85,9 @@ impl Clock {
     /// Returns the largest offset, not after the present, by which the epoch can move without any rounding.
     ///
     /// Late origins have fewer digits than offsets. If the epoch moved to the present itself, its origin
-    /// would be rounded. A moving wall would then jump by its way in that time, at times into a disk. The
-    /// difference of two close numbers is exact, so this offset moves the origin to a number that a float can
-    /// hold, and leaves the rest to the offset of the present.
+    /// would be rounded. A moving wall would then jump by its way in the rounded time, sometimes into a disk.
+    /// The difference of two close numbers is exact, so this offset moves the origin exactly to a
+    /// floating-point number, and the rest stays in the offset of the present.
     pub(in crate::simulation) fn exact_offset(&self) -> f64 {
         let nearest = self.time();
         // At times beyond twice the origin, the difference below need not be exact. Times are then no coarser

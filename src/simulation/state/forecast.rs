@@ -19,7 +19,7 @@ pub(in crate::simulation) enum Exit {
     Right,
     Down,
     Up,
-    /// The flight does not end yet: the search for a wall went no further.
+    /// The flight does not end yet: the search for a wall found none up to its horizon.
     Horizon,
     Wall,
     /// The boundary answered with an impossible touch. The run ends when the turn of this event comes.
@@ -90,7 +90,7 @@ impl Forecast {
         if self.is_collision() { self.collision_due } else { self.exit_due }
     }
 
-    /// Takes this as the next collision. Its partner has collided so often.
+    /// Sets the next collision, together with the partner's present count of collisions.
     #[inline]
     pub(in crate::simulation) fn set_collision(&mut self, earliest: Earliest, partner_collisions: u32) {
         self.collision_due = earliest.due;

@@ -1,25 +1,26 @@
 //! The guard against runs that hardly progress.
 
-/// Number of events of a window, after which progress is judged.
+/// Number of events in a window. Progress is judged at its end.
 const WINDOW: u64 = 200_000;
 
-/// Number of events of a window for each disk in addition. On a lattice, all disks may have an event at the
-/// same time.
+/// Number of additional events in a window for each disk. They are needed since, on a lattice, all disks may
+/// have an event at the same time.
 const WINDOW_PER_DISK: u64 = 20;
 
-/// Largest number of events in an epoch that counts as progress: so many, and for each disk so many more.
+/// Largest number of events in an epoch that counts as progress: this number, and [`MOST_EVENTS_PER_DISK`]
+/// more for each disk.
 ///
 /// A typical disk goes, or falls, some tens of diameters in an epoch. The bounds are far above the rates of
-/// dense flows, and of packings up to some 1e4 collisions for each diameter that a disk goes. They are far
-/// below those of matter that comes to rest without a remedy. Under them, a disk needs less than a minute for
-/// an epoch, and a thousand some fifteen minutes.
+/// dense flows, and of packings with up to some 1e4 collisions for each diameter that a disk goes. They are
+/// far below the rates of matter that comes to rest without a remedy. At the bounds, an epoch of a thousand
+/// disks still takes minutes and not days.
 const MOST_EVENTS: f64 = (1_u64 << 27) as f64;
 const MOST_EVENTS_PER_DISK: f64 = (1_u64 << 22) as f64;
 
 /// The start of the present window of events.
 ///
 /// Windows follow each other without a gap, by numbers of events alone. So a run stalls at the same event,
-/// however it is cut into pieces.
+/// however the caller cuts it into pieces.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Guard {
@@ -36,7 +37,7 @@ pub(in crate::simulation) struct Standstill {
     pub(in crate::simulation) elapsed: f64,
 }
 
-/// Returns the time per event that a run of so many disks needs at least, unless its caller says otherwise.
+/// Returns the least simulated time per event of a run of this many disks, unless its caller sets another.
 pub(in crate::simulation) fn least_progress(epoch_length: f64, disks: usize) -> f64 {
     epoch_length / (MOST_EVENTS + MOST_EVENTS_PER_DISK * disks as f64)
 }
@@ -48,9 +49,9 @@ impl Guard {
         window.saturating_sub(events.saturating_sub(self.before))
     }
 
-    /// Ends the window before the event at this time offset, after so many events in all. Returns what it
-    /// was if time has advanced by less than `least_progress` for each event. In either case a new window
-    /// begins, so that a caller who removes the cause can go on.
+    /// Ends the window before the event at this time offset, after `events` events in all. Returns the window
+    /// as a standstill if time has advanced in it by less than `least_progress` for each event. In either
+    /// case a new window begins, so that a caller who removes the cause can go on.
     pub(in crate::simulation) fn end_window(
         &mut self,
         offset: f64,

@@ -27,9 +27,10 @@ impl Bodies {
         length
     }
 
-    /// Tells whether a disk of this velocity goes no further in an epoch of this length than any disk should.
-    /// A collision can make a disk faster than all were. Its place at the epoch would be so far away that it
-    /// lacked digits.
+    /// Tells whether a disk of this velocity goes no further in an epoch of this length than a disk may go.
+    ///
+    /// A collision can make a disk faster than all disks were when the epoch began. Its place at the epoch
+    /// would be so far away that it would lack digits.
     #[inline]
     pub(in crate::simulation) fn keeps_pace(&self, velocity: DVec2, epoch_length: f64) -> bool {
         let most = FASTER * DIAMETERS * self.typical_diameter;
@@ -52,8 +53,8 @@ impl Bodies {
     }
 }
 
-/// Returns the largest power of two that is not above a positive number. It is neither so small nor so large
-/// that its square would leave the range of floats.
+/// Returns the largest power of two that is not above a positive number. It is kept between 2⁻⁹⁰⁰ and 2⁹⁰⁰,
+/// so that multiples of it stay in the range of floats.
 fn power_of_two_below(number: f64) -> f64 {
     const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
     let number = number.clamp(f64::from_bits((1023 - 900) << 52), f64::from_bits((1023 + 900) << 52));

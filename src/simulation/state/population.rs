@@ -1,4 +1,4 @@
-//! Disks that come and go.
+//! Insertion and removal of disks.
 
 use super::Bodies;
 use super::bodies::{Particle, Spin, Trajectory};
@@ -25,7 +25,7 @@ impl Bodies {
         }
     }
 
-    /// Removes the disks that leave. The others stay in their order.
+    /// Removes the disks for which `leaves` is true. The others stay in their order.
     pub(in crate::simulation) fn remove(&mut self, leaves: &[bool]) {
         let models = (0..self.len()).map(|disk| self.properties.model(disk)).collect::<Vec<_>>();
         self.properties = Properties::of(&staying(&models, leaves));

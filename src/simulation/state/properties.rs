@@ -6,7 +6,7 @@ use crate::{Disk, Kind};
 /// Ratio of the largest to the median diameter beyond which the largest decides how long epochs are.
 const LARGEST_RATIO: f64 = 1024.0;
 
-/// The properties of all disks: one for all if they are equal, so that they stay in the cache.
+/// The properties of all disks: a single set if all disks are equal, so that it stays in the cache.
 #[derive(Debug, Clone)]
 pub(super) enum Properties {
     Same {
@@ -15,7 +15,7 @@ pub(super) enum Properties {
         material: Material,
     },
     Each {
-        /// The radii, apart from the rest since every prediction needs them.
+        /// The radii, stored apart from the rest since every prediction needs them.
         radii: Vec<f64>,
         /// The diameter, if all disks have the same one.
         common_diameter: Option<f64>,
@@ -25,8 +25,8 @@ pub(super) enum Properties {
 
 /// The properties of a disk besides its radius.
 ///
-/// A [`Material`] takes twice the memory. The divisions that make one of these cost less than loading it
-/// would.
+/// A [`Material`] would take twice the memory. The divisions that compute a `Material` from these numbers
+/// cost less than loading one would.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Others {
     mass: f64,
@@ -63,8 +63,9 @@ impl Properties {
 
     /// Returns the median diameter, which does not depend on the order of the disks; 0 without disks.
     ///
-    /// It is more if there is a disk more than a thousand times as large: where that one has room, places
-    /// have so few digits that fine dust gains nothing from short epochs.
+    /// If there is a disk more than [`LARGEST_RATIO`] times as large, the result is the diameter of the
+    /// largest disk over that ratio. In a domain with room for such a disk, positions have so few digits that
+    /// fine dust gains nothing from shorter epochs.
     pub(super) fn typical_diameter(&self) -> f64 {
         match self {
             Self::Same { model, .. } => 2.0 * model.radius(),

@@ -4,7 +4,7 @@ use super::{Sample, VibratedBox};
 use crate::analysis::thermal_noise;
 use crate::observable::{ConvectionOrder, DenseLayer};
 use crate::statistics::Estimate;
-use crate::study::{Column, Record, Table};
+use crate::study::{Column, Experiment, Record, Table};
 
 /// Convection, layers and energy loss in a record of the box.
 ///
@@ -71,6 +71,7 @@ impl Convection for Record<VibratedBox> {
 /// Returns the columns of the tables of values and samples.
 pub(super) fn columns() -> Vec<Column<VibratedBox>> {
     vec![
+        Column::of_record("state", "", |record| VibratedBox::state(record).unwrap_or_default()),
         Column::sampled("one_roll", "1", |s: &Sample| s.one_roll),
         Column::sampled("one_roll_magnitude", "1", |s: &Sample| s.one_roll.abs()).in_values_only(),
         Column::sampled("two_rolls", "1", |s: &Sample| s.two_rolls),

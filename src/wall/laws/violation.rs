@@ -48,7 +48,7 @@ pub enum Violation {
         /// The end of the piece.
         until: f64,
     },
-    /// The pieces in a row advance so little that no search can follow them.
+    /// Pieces in a row advance so little that no search can follow them.
     #[error("{pieces} pieces of its motion lead only from phase {phase} to {until}: they are too short")]
     ShortPieces {
         /// The phase at which the first begins.
@@ -108,7 +108,7 @@ pub enum Violation {
         jump: f64,
     },
     /// The motion does not repeat after its period.
-    #[error("with the period {period}, it is not at phase {later} what it is at {phase}")]
+    #[error("with the period {period}, the wall is not in the same state at phase {later} as at {phase}")]
     Period {
         /// The phase.
         phase: f64,

@@ -1,0 +1,45 @@
+//! The collisions of a run at a crossing, each beside the temperature of its layer.
+
+use std::error::Error;
+
+use granular_edmd::observable::{EnergyChangeProfile, SampleTimes};
+use granular_edmd::study::Experiment;
+use granular_edmd::study::vibrated_box::{Base, VibratedBox};
+
+use crate::ramps::Crossing;
+
+/// Oscillations before measuring, and while measuring.
+const OSCILLATIONS: f64 = 3000.0;
+
+/// Means over the collisions of a run.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Local {
+    /// Energy change over the temperature of the layer.
+    pub(crate) energy_change: f64,
+    /// Rotational over translational temperature of the layer.
+    pub(crate) temperature_ratio: f64,
+}
+
+/// Runs the paper's box at a crossing, and measures it by layers two diameters high.
+pub(crate) fn measure(gravity: f64, at: &Crossing) -> Result<Local, Box<dyn Error>> {
+    let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
+    let experiment = VibratedBox::new(1000, 60.0, base)
+        .with_height(150.0)
+        .with_gravity(gravity)
+        .with_friction(at.friction)
+        .with_inelasticity(at.inelasticity)
+        .with_contact_duration(1e-4);
+    let settled = OSCILLATIONS * experiment.cycle();
+    // Samples 10 oscillations apart but for a hundredth: all phases of the base are seen.
+    let times = SampleTimes::every(9.99 * experiment.cycle())?.starting_at(settled)?;
+    let mut profile = EnergyChangeProfile::new(0.0, 150.0, 75, times)?;
+    let mut simulation = experiment.build(1).map_err(|error| error as Box<dyn Error>)?;
+    simulation.run_until(settled, &mut ())?;
+    simulation.run_until(2.0 * settled, &mut profile)?;
+    let (Some(energy_change), Some(temperature_ratio)) =
+        (profile.relative_energy_change(), profile.rotational_ratio())
+    else {
+        return Err("no collisions at a crossing".into());
+    };
+    Ok(Local { energy_change, temperature_ratio })
+}

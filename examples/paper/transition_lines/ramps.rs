@@ -1,0 +1,177 @@
+//! Ramps of studies of the vibrated box, read from their tables.
+
+use std::error::Error;
+use std::fs;
+use std::path::Path;
+
+use granular_edmd::analysis::{ConvectiveRegime, Transition, TransitionLine, transitions};
+use granular_edmd::statistics::RunningMean;
+use granular_edmd::study::Plan;
+use granular_edmd::study::vibrated_box::VibratedBox;
+
+use crate::local::Local;
+
+/// Friction between the two branches of the lines: the loss is largest near it.
+const LARGEST_LOSS: f64 = 0.35;
+
+/// A row of a table of values; columns that are not named here are left out.
+#[derive(serde::Deserialize)]
+struct Row {
+    ramp: usize,
+    leg: String,
+    friction: Option<f64>,
+    inelasticity: Option<f64>,
+    state: String,
+    translational_energy: f64,
+    rotational_energy: f64,
+}
+
+/// The state at one value of a ramp.
+#[derive(Debug, Clone)]
+pub(crate) struct Observation {
+    pub(crate) friction: f64,
+    pub(crate) inelasticity: f64,
+    pub(crate) leg: String,
+    pub(crate) regime: ConvectiveRegime,
+    /// Rotational over translational temperature of all disks.
+    pub(crate) temperature_ratio: f64,
+}
+
+/// The observations of one ramp, in friction or in inelasticity, with its bisected values.
+#[derive(Debug, Clone)]
+pub(crate) struct Ramp {
+    /// The name of the study's folder.
+    pub(crate) study: String,
+    pub(crate) gravity: f64,
+    /// Oscillations of each value.
+    pub(crate) oscillations: u64,
+    /// True if friction grows, false if inelasticity does.
+    pub(crate) along_friction: bool,
+    pub(crate) observations: Vec<Observation>,
+}
+
+/// A transition on a ramp, seen from below and from above, with the means over the values next to it.
+#[derive(Debug, Clone)]
+pub(crate) struct Crossing {
+    pub(crate) line: TransitionLine,
+    /// True if the loss grows along the ramp: everywhere but on ramps in friction beyond the largest loss.
+    pub(crate) rising: bool,
+    pub(crate) friction: f64,
+    pub(crate) inelasticity: f64,
+    /// Half the distance of the values between which the transition lies; of the logarithm of a friction.
+    pub(crate) half_width: f64,
+    pub(crate) temperature_ratio: f64,
+    pub(crate) local: Option<Local>,
+}
+
+/// Reads the ramps of all studies in a folder, in the order of their names.
+pub(crate) fn read(folder: &Path) -> Result<Vec<Ramp>, Box<dyn Error>> {
+    let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let mut studies: Vec<_> = entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<_>>()?;
+    studies.retain(|study| study.join("values.csv").is_file());
+    studies.sort();
+    let ramps: Vec<Vec<Ramp>> = studies
+        .iter()
+        .map(|study| study_of(study).map_err(|error| format!("{}: {error}", study.display()).into()))
+        .collect::<Result<_, Box<dyn Error>>>()?;
+    Ok(ramps.into_iter().flatten().collect())
+}
+
+fn study_of(folder: &Path) -> Result<Vec<Ramp>, Box<dyn Error>> {
+    let plan = Plan::<VibratedBox>::from_toml(&fs::read_to_string(folder.join("plan.toml"))?)?;
+    let fixed = plan.experiment(0, 0)?;
+    let rows: Vec<Row> =
+        csv::Reader::from_path(folder.join("values.csv"))?.deserialize().collect::<Result<_, _>>()?;
+    let along_friction = plan.ramp().is_some_and(|ramp| ramp.parameter() == "friction");
+    let mut ramps: Vec<(usize, Ramp)> = Vec::new();
+    for row in rows {
+        let observation = Observation {
+            friction: row.friction.unwrap_or(fixed.friction),
+            inelasticity: row.inelasticity.unwrap_or(fixed.inelasticity),
+            leg: row.leg,
+            regime: regime(&row.state)?,
+            temperature_ratio: 2.0 * row.rotational_energy / row.translational_energy,
+        };
+        match ramps.last_mut().filter(|(index, _)| *index == row.ramp) {
+            Some((_, ramp)) => ramp.observations.push(observation),
+            None => ramps.push((
+                row.ramp,
+                Ramp {
+                    study: folder.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+                    gravity: fixed.gravity,
+                    oscillations: plan.protocol().cycles(),
+                    along_friction,
+                    observations: vec![observation],
+                },
+            )),
+        }
+    }
+    Ok(ramps.into_iter().map(|(_, ramp)| ramp).collect())
+}
+
+fn regime(name: &str) -> Result<ConvectiveRegime, String> {
+    let found = ConvectiveRegime::ALL.into_iter().find(|regime| regime.to_string() == name);
+    found.ok_or_else(|| format!("`{name}` is no state"))
+}
+
+impl Ramp {
+    /// Returns the transitions on this ramp.
+    ///
+    /// Each leg is looked at alone, since bisected values are visited on one leg only. Coexistence begins where
+    /// the first of the legs shows it, and ends where the last of them does; the other transitions lie in the
+    /// middle of what the legs show. Middles of frictions are those of their logarithms.
+    pub(crate) fn crossings(&self) -> Result<Vec<Crossing>, Box<dyn Error>> {
+        let mut seen = Vec::new();
+        for leg in ["up", "down"] {
+            let of_leg = self.observations.iter().filter(|seen| seen.leg == leg);
+            seen.extend(transitions(of_leg.map(|seen| (self.value(seen), seen.regime)))?);
+        }
+        let sides = TransitionLine::ALL.into_iter().flat_map(|line| [(line, true), (line, false)]);
+        Ok(sides.filter_map(|(line, rising)| self.crossing(line, rising, &seen)).collect())
+    }
+
+    fn value(&self, seen: &Observation) -> f64 {
+        if self.along_friction { seen.friction.ln() } else { seen.inelasticity }
+    }
+
+    /// Returns whether the loss falls along the ramp here: in friction beyond its largest loss.
+    fn is_beyond(&self, value: f64) -> bool {
+        self.along_friction && value > LARGEST_LOSS.ln()
+    }
+
+    fn crossing(&self, line: TransitionLine, rising: bool, seen: &[Transition]) -> Option<Crossing> {
+        let is_it =
+            |at: &&Transition| at.line == line && at.rising == rising && self.is_beyond(at.value) != rising;
+        let ends = seen.iter().filter(is_it).map(|at| [at.value - at.error, at.value + at.error]);
+        let ends: Vec<[f64; 2]> = ends.collect();
+        let lowest = ends.iter().copied().min_by(|a, b| a[0].total_cmp(&b[0]))?;
+        let highest = ends.iter().copied().max_by(|a, b| a[1].total_cmp(&b[1]))?;
+        let [from, to] = match (line, rising) {
+            (TransitionLine::OneTwoBeginning, true) | (TransitionLine::OneTwoEnd, false) => lowest,
+            (TransitionLine::OneTwoEnd, true) | (TransitionLine::OneTwoBeginning, false) => highest,
+            _ => [lowest[0], highest[1]],
+        };
+        Some(self.between(line, rising, from, to))
+    }
+
+    fn between(&self, line: TransitionLine, rising: bool, from: f64, to: f64) -> Crossing {
+        let (middle, half_width) = (0.5 * (from + to), 0.5 * (to - from));
+        let first = &self.observations[0];
+        let (friction, inelasticity) =
+            if self.along_friction { (middle.exp(), first.inelasticity) } else { (first.friction, middle) };
+        // The values on both sides have this distance but for rounding.
+        let is_near = |seen: &&Observation| (self.value(seen) - middle).abs() <= half_width * (1.0 + 1e-9);
+        let near: Vec<&Observation> = self.observations.iter().filter(is_near).collect();
+        let mean =
+            |of: fn(&Observation) -> f64| near.iter().map(|seen| of(seen)).collect::<RunningMean>().mean();
+        Crossing {
+            line,
+            rising,
+            friction,
+            inelasticity,
+            half_width,
+            temperature_ratio: mean(|seen| seen.temperature_ratio),
+            local: None,
+        }
+    }
+}
