@@ -1,4 +1,4 @@
-//! The speed of the mean energy loss: of the closed form per point, and of the Monte Carlo average per
+//! The speed of the mean energy loss, by the closed form per point and by the Monte Carlo average per
 //! collision.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};

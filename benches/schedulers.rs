@@ -1,4 +1,4 @@
-//! The cost of an event for each scheduler: the earliest disk is found and gets a later time.
+//! The cost of an event for each scheduler, which finds the earliest disk and gives it a later time.
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use granular_edmd::scheduler::{BucketQueue, EventScheduler, LinearScan, TournamentTree};

@@ -6,9 +6,9 @@
 //!
 //! A study of 24 runs is done on one thread and on more, in turn, `ROUNDS` times. The same is done with a
 //! loop of plain arithmetic that touches no memory. The gain of the loop is all that the machine can give at
-//! the time, and the quotient of the two gains is what the study makes of it. On a machine with other work,
-//! even this quotient says little. Then look at the time on processors: it is the same on more threads as on
-//! one, as long as the runs do not disturb each other.
+//! the time, and the quotient of the two gains is the share of it that the study reaches. On a machine with
+//! other work, even this quotient says little. Then look at the time on processors, which is the same on more
+//! threads as on one, as long as the runs do not disturb each other.
 
 mod common;
 
@@ -31,7 +31,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 /// Number of runs of a study, so large that no thread waits long for the last run.
 const RUNS: u32 = 24;
 
-/// Seconds of the study and of the arithmetic on so many threads, by the wall clock and on all processors
+/// Seconds of the study and of the arithmetic on this many threads, by the wall clock and on all processors
 /// together.
 struct Times {
     threads: usize,

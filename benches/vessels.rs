@@ -1,11 +1,12 @@
-//! The time of a collision in vessels of few and many bricks, over that in a plain box.
+//! The time of a collision in vessels of few and many bricks, divided by that in a plain box.
 //!
 //! ```sh
 //! cargo bench --bench vessels
 //! ```
 //!
-//! Each is an elastic gas of 400 disks without gravity, at an area fraction of 0.4. All run in turn, `ROUNDS`
-//! stretches of `COLLISIONS` each, and the least time of each counts. Collisions with walls count, too.
+//! Each vessel holds an elastic gas of 400 disks without gravity, at an area fraction of 0.4. All vessels run
+//! in turn, `ROUNDS` stretches of `COLLISIONS` each, and the least time of each vessel counts. Collisions
+//! with walls count, too.
 
 #[path = "common/mod.rs"]
 mod common;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use super::Outcome;
 
-/// Tells whether everything shall run once, for a moment: `cargo bench -- --test`.
+/// Returns whether everything is to run once, for a moment, as by `cargo bench -- --test`.
 pub(crate) fn is_test() -> bool {
     env::args().any(|argument| argument == "--test")
 }
@@ -18,7 +18,7 @@ pub(crate) fn number(variable: &str, default: u32) -> Outcome<u32> {
     number.ok_or_else(|| format!("{variable} must be a whole number from 1 on, not “{text}”").into())
 }
 
-/// Tells whether this variable is set to anything other than an empty text or 0.
+/// Returns whether this variable is set to anything other than an empty text or 0.
 pub(crate) fn flag(variable: &str) -> bool {
     env::var(variable).is_ok_and(|text| !matches!(text.as_str(), "" | "0"))
 }

@@ -55,7 +55,7 @@ impl State {
         Ok(run.scheduler(scheduler).build()?)
     }
 
-    /// Returns a thousand disks in the paper's box, which have forgotten their lattice after so many
+    /// Returns a thousand disks in the paper's box, which have forgotten their lattice after this many
     /// oscillations.
     pub(crate) fn settled(&self, seed: u64, oscillations: u32) -> Outcome<Run> {
         let disks = initial::lattice(&container(1)?, DISKS, 0.5)?;
@@ -71,7 +71,7 @@ fn container(boxes: usize) -> Outcome<Container> {
     Ok(Container::closed(WIDTH * boxes as f64, HEIGHT)?.with_motion(Wall::Floor, base)?)
 }
 
-/// Goes on for so many oscillations of the base.
+/// Goes on for this many oscillations of the base.
 pub(crate) fn oscillate<S: EventScheduler>(run: &mut Run<S>, oscillations: u32) -> Outcome<()> {
     run.run_until(run.time() + f64::from(oscillations) * OSCILLATION, &mut ())?;
     Ok(())

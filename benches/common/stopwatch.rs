@@ -31,8 +31,8 @@ impl Stopwatch {
         Self { wall: Instant::now(), clock, start: clock() }
     }
 
-    /// Returns the seconds on processors, which are good to some milliseconds. Where Linux does not tell
-    /// them, the seconds are those of the wall clock.
+    /// Returns the seconds on processors, which are good to some milliseconds. Without such a clock of Linux,
+    /// the seconds are those of the wall clock.
     pub(crate) fn seconds(&self) -> f64 {
         let passed = (self.clock)().zip(self.start).map(|(now, start)| now - start);
         passed.unwrap_or_else(|| self.wall.elapsed().as_secs_f64())

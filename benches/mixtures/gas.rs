@@ -15,7 +15,7 @@ const AREA_FRACTION: f64 = 0.4;
 pub(crate) struct Gas(Simulation<Elastic>);
 
 impl Gas {
-    /// Places disks of these radii at random in a box of this side, and lets each collide so often.
+    /// Places disks of these radii at random in a box of this side, and lets each collide this many times.
     pub(crate) fn of(radii: Vec<f64>, side: f64, settle: f64) -> Outcome<Self> {
         let settle = (0.5 * settle * radii.len() as f64) as u64;
         let disks = initial::with_maxwellian_velocities(placed(radii, side)?, 1.0, 1)?;
@@ -25,7 +25,7 @@ impl Gas {
         Ok(gas)
     }
 
-    /// Returns the seconds of so many collisions.
+    /// Returns the seconds for this many collisions.
     pub(crate) fn seconds_for(&mut self, collisions: u32) -> Outcome<f64> {
         let start = Instant::now();
         self.collide(u64::from(collisions))?;

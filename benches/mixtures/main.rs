@@ -1,4 +1,4 @@
-//! The time of a collision in mixtures of sizes, over that in a gas of as many equal disks.
+//! The time of a collision in mixtures of sizes, divided by that in a gas of as many equal disks.
 //!
 //! ```sh
 //! cargo bench --bench mixtures                  # 1000 and 10 000 disks
@@ -6,9 +6,9 @@
 //! ```
 //!
 //! Each mixture is an elastic gas without gravity at an area fraction of 0.4 in a square box. It is compared
-//! with two others: as many disks of the smallest size alone, at the same area fraction; and, for two sizes,
-//! its own small disks alone, in the same box. All run in turn, `ROUNDS` stretches of `COLLISIONS` each, and
-//! the least time of each counts. `DETAILS` asks for what the events were.
+//! with two other gases: as many disks of the smallest size alone, at the same area fraction; and, for two
+//! sizes, its own small disks alone, in the same box. All gases run in turn, `ROUNDS` stretches of
+//! `COLLISIONS` each, and the least time of each gas counts. `DETAILS` asks for the kinds of the events.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -91,11 +91,11 @@ fn row(cells: impl Iterator<Item = String>) -> String {
     cells.collect::<Vec<_>>().join(" | ")
 }
 
-/// The time of a collision in a mixture over that in two others.
+/// The time of a collision in a mixture, divided by that in two other gases.
 struct Ratios {
-    /// Over that among as many equal disks at the same area fraction.
+    /// Divided by that among as many equal disks at the same area fraction.
     equal: f64,
-    /// Over that among the small disks of a mixture of two sizes alone in the same box.
+    /// Divided by that among the small disks of a mixture of two sizes, alone in the same box.
     small: Option<f64>,
 }
 

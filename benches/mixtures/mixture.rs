@@ -15,7 +15,7 @@ pub(crate) enum Sizes {
     Intruder,
     /// One large disk among a hundred.
     Few,
-    /// Large disks take half of the area of all.
+    /// Large disks take half of the area of all disks.
     HalfOfTheArea,
     /// Many sizes.
     Many(Distribution),
@@ -51,11 +51,11 @@ impl Distribution {
     }
 }
 
-/// A mixture of so many disks.
+/// A mixture of this many disks.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Mixture {
     pub(crate) sizes: Sizes,
-    /// The largest radius over the smallest.
+    /// The largest radius divided by the smallest.
     pub(crate) ratio: f64,
     pub(crate) disks: usize,
 }

@@ -1,4 +1,4 @@
-//! LAMMPS: a program of its own, given a start and an input, and read when it is done.
+//! LAMMPS as another program, which gets a start and an input, and whose output is read when it is done.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -17,15 +17,15 @@ pub(crate) struct Contacts {
     pub(crate) name: &'static str,
     /// Time of a contact of two disks.
     pub(crate) time: f64,
-    /// Time steps in it.
+    /// Number of time steps in a contact.
     pub(crate) steps: u32,
 }
 
-/// Time of contacts and steps as a careful user takes them, and as soft as is usual.
+/// Contacts and steps as a careful user takes them, and contacts as soft as is usual.
 pub(crate) const CONTACTS: [Contacts; 2] =
     [Contacts { name: "careful", time: 0.01, steps: 40 }, Contacts { name: "soft", time: 0.04, steps: 25 }];
 
-/// Restitution that counts as 1. LAMMPS cannot do without any damping.
+/// Restitution that counts as 1, since LAMMPS cannot do without any damping.
 const ELASTIC: f64 = 0.999_999_9;
 
 /// LAMMPS at this path, with a folder for its files.
@@ -35,7 +35,7 @@ pub(crate) struct Lammps {
 }
 
 impl Lammps {
-    /// Runs from these disks until soft contacts have settled, and then measures for so many oscillations.
+    /// Runs from these disks until soft contacts have settled, and then measures for this many oscillations.
     pub(crate) fn measure(
         &self,
         state: &State,

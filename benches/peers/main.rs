@@ -1,13 +1,13 @@
-//! The paper's box by soft spheres in LAMMPS and by this crate: the same physics, at what price.
+//! The cost of the same physics, the paper's box, by soft spheres in LAMMPS and by this crate.
 //!
 //! ```sh
 //! LAMMPS=path/to/lmp cargo bench --bench peers     # some three minutes
 //! ```
 //!
-//! Both programs start from the same settled state of this crate, in a box over a sinusoidal base, and run
-//! on one thread. LAMMPS first relaxes, since its contacts last. Height and energies have errors from
-//! blocks, and times by the wall clock, for as many oscillations of the base. `OSCILLATIONS` changes how long
-//! LAMMPS is measured; this crate runs longer, so that its own errors are smaller.
+//! Both programs start from the same settled state of this crate, in a box over a sinusoidal base, and run on
+//! one thread. LAMMPS first relaxes, since its contacts last. Height and energies have errors from blocks.
+//! Times are by the wall clock, per oscillation of the base. `OSCILLATIONS` changes how long LAMMPS is
+//! measured; this crate runs longer, so that its own errors are smaller.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -96,7 +96,7 @@ fn run() -> Outcome<()> {
     Ok(())
 }
 
-/// Returns the box after so many oscillations, when the base is at its lowest: LAMMPS moves it from there.
+/// Returns the box after this many oscillations, when the base is at its lowest, from where LAMMPS moves it.
 fn settled(state: &State, oscillations: u32) -> Outcome<Run> {
     let base = Sinusoidal::new(AMPLITUDE, ANGULAR_FREQUENCY)?;
     let container = Container::closed(WIDTH, HEIGHT)?.with_motion(Wall::Floor, base)?;
@@ -108,7 +108,7 @@ fn settled(state: &State, oscillations: u32) -> Outcome<Run> {
     Ok(run)
 }
 
-/// Measures for so many oscillations.
+/// Measures for this many oscillations.
 fn measure(run: &mut Run, oscillations: u32) -> Outcome<Means> {
     let times = SampleTimes::every(INTERVAL * OSCILLATION)?;
     let mut series = Series::new((CenterOfMass, Energies), times);

@@ -16,7 +16,7 @@ pub(crate) struct Itself {
 }
 
 impl Itself {
-    /// Builds it with these flags of the compiler, in a folder of this name.
+    /// Builds the bench with these flags of the compiler, in a folder of this name.
     pub(crate) fn build(flags: &str, folder: &str) -> Outcome<Self> {
         let target = Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name(folder);
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
@@ -34,7 +34,7 @@ impl Itself {
         Ok(Self { program: Path::new(env!("CARGO_MANIFEST_DIR")).join(program) })
     }
 
-    /// Measures as [`ours`] does, in a process of its own.
+    /// Measures as [`ours`] does, but in another process.
     pub(crate) fn measure(&self, state: &State, seed: u64, oscillations: u32) -> Outcome<Speed> {
         let State { gravity, friction, inelasticity } = state;
         let asked = format!("{gravity} {friction} {inelasticity} {seed} {oscillations}");
@@ -48,7 +48,7 @@ impl Itself {
     }
 }
 
-/// The one measurement that this process is asked for, done; `None` if it is not asked.
+/// Does the one measurement that this process is asked for; returns `None` if it is not asked for one.
 pub(crate) fn asked_for() -> Option<Outcome<()>> {
     std::env::var(ONE).ok().map(|asked| answer(&asked))
 }

@@ -1,4 +1,4 @@
-//! The speed of this crate as a multiple of that of a plain event-driven simulation of the same system.
+//! The speed of this crate as a multiple of the speed of a plain event-driven simulation of the same system.
 //!
 //! ```sh
 //! REFERENCE=path/to/its/folder cargo bench --bench ratio          # a dilute and a dense state
@@ -8,11 +8,11 @@
 //! This crate is measured as users get it without flags of the compiler, and built for the processor at hand.
 //! The bench builds itself for both, whatever its own flags are.
 //!
-//! Machines are noisy and no two are alike. Therefore, the programs run in turn, and the median of the
-//! ratios of collisions of two disks per second counts. Each program starts from its own lattice, settles for
-//! so many oscillations of the base, and is measured for as many oscillations by the wall clock. `ROUNDS` and
-//! `OSCILLATIONS` change how often and how long it is measured. At a smaller gravity the measurement is
-//! longer, as flights are.
+//! Machines are noisy and no two are alike. Therefore, the programs run in turn, and the median of the ratios
+//! of collisions of two disks per second counts. Each program starts from its own lattice, settles for a
+//! number of oscillations of the base, and is measured for as many oscillations by the wall clock. `ROUNDS`
+//! and `OSCILLATIONS` change the number and the length of the measurements. At a smaller gravity, the
+//! measurement is longer, since flights are longer.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -39,14 +39,14 @@ pub(crate) struct Speed {
     per_oscillation: f64,
 }
 
-/// The plan of the measurement: how often, how long, and in which states.
+/// The plan of the measurement: its number of rounds, its length, and its states.
 struct Plan {
     rounds: u32,
     oscillations: u32,
     states: Vec<State>,
 }
 
-/// Measures the speed in a state, from a seed, over so many oscillations.
+/// Measures the speed in a state, from a seed, over this many oscillations.
 type Measure = Box<dyn Fn(&State, u64, u32) -> Outcome<Speed>>;
 
 /// A program that is measured.
@@ -108,7 +108,7 @@ impl Plan {
         Ok(Self { rounds, oscillations, states })
     }
 
-    /// Returns the number of oscillations with as many flights at any gravity.
+    /// Returns the number of oscillations that has the same number of flights at any gravity.
     fn oscillations_at(&self, gravity: f64) -> u32 {
         (f64::from(self.oscillations) * DILUTE.gravity / gravity).round() as u32
     }
@@ -137,7 +137,7 @@ fn measure(plan: &Plan, state: &State, programs: &[Program], round: u32) -> Outc
     Ok(speeds)
 }
 
-/// Runs this crate for so many oscillations to settle from the lattice, and for as many to measure.
+/// Runs this crate for this many oscillations to settle from the lattice, and for as many to measure.
 fn ours(state: &State, seed: u64, oscillations: u32) -> Outcome<Speed> {
     let mut run = state.settled(seed, oscillations)?;
     let (start, before) = (Instant::now(), run.counters().collisions);

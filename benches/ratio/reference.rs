@@ -8,8 +8,9 @@ use super::Speed;
 use crate::common::Outcome;
 use crate::common::state::{self, State};
 
-/// Difference in friction between the two parts of its run. The program measures each value of friction
-/// separately, from the last state of the previous value, so the first one settles the state for the second.
+/// Difference in friction between the two parts of a run of the program. The program measures each value of
+/// friction separately, from the last state of the previous value, so the first one settles the state for the
+/// second.
 const STEP: f64 = 1e-9;
 
 /// The other program, built.
@@ -32,7 +33,7 @@ impl Reference {
         Err(format!("the reference cannot be built: {}", String::from_utf8_lossy(&built.stderr)).into())
     }
 
-    /// Runs the program for so many oscillations to settle from its lattice, and for as many to measure.
+    /// Runs the program for this many oscillations to settle from its lattice, and for as many to measure.
     pub(crate) fn measure(&self, state: &State, seed: u64, oscillations: u32) -> Outcome<Speed> {
         let oscillations_text = oscillations.to_string();
         let mut run = Command::new(&self.program);

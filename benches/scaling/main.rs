@@ -53,7 +53,7 @@ pub(crate) struct Row {
     rounds: Vec<Measurement>,
 }
 
-/// The plan of the measurement: how large, how often, and how long.
+/// The plan of the measurement: its sizes, its number of rounds, and its length.
 struct Plan {
     largest: usize,
     rounds: u32,

@@ -30,8 +30,8 @@ pub(crate) fn asked_for() -> Option<usize> {
 }
 
 impl Measurement {
-    /// Measures a system, given by its number, in a process of its own. In this process, freed memory would
-    /// be used again and not seen.
+    /// Measures a system, given by its number, in a new process. In this process, freed memory would be used
+    /// again and not be seen.
     pub(crate) fn in_new_process(number: usize) -> Outcome<Self> {
         let mut process = Command::new(std::env::current_exe()?);
         process.args(std::env::args().skip(1)).args([ASK, &number.to_string()]);
@@ -58,7 +58,7 @@ impl fmt::Display for Measurement {
 /// their size.
 const WARM_UP: u32 = 30;
 
-/// Builds the system and runs it for so many oscillations, after [`WARM_UP`].
+/// Builds the system and runs it for this many oscillations, after [`WARM_UP`].
 pub(crate) fn measure<S: EventScheduler + Default>(
     state: &State,
     disks: impl FnOnce() -> Outcome<Vec<Disk>>,
@@ -88,7 +88,7 @@ fn events(counters: &Counters) -> u64 {
     collisions + wall_collisions + cell_crossings + repredictions
 }
 
-/// Returns the memory of this process that is in use; NaN where Linux does not tell it.
+/// Returns the memory of this process that is in use; NaN if Linux does not report it.
 fn resident_bytes() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));

@@ -27,7 +27,7 @@ pub(crate) fn draw(subtitle: &str, rows: &[Row]) -> Result<Vec<u8>, String> {
 
 type Points = Vec<(f64, f64)>;
 
-/// Returns a line for each scheduler and numbering: how its time grows.
+/// Returns a line for each scheduler and numbering, which shows the growth of its time.
 fn lines(rows: &[Row]) -> Vec<(String, Points)> {
     let mut lines: Vec<(String, Points)> = Vec::new();
     for row in rows {

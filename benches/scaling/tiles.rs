@@ -41,14 +41,14 @@ pub(crate) struct Tiles {
 }
 
 impl Tiles {
-    /// Settles one box, and takes so many snapshots of this state.
+    /// Settles one box, and takes this many snapshots of this state.
     pub(crate) fn settled(state: &State, settle: u32, count: usize) -> Outcome<Self> {
         let mut run = state.settled(1, settle)?;
         let snapshots = (0..count).map(|_| next(&mut run)).collect::<Outcome<_>>()?;
         Ok(Self { snapshots })
     }
 
-    /// Returns the disks of the first so many boxes side by side.
+    /// Returns the disks of this many boxes side by side.
     pub(crate) fn disks(&self, boxes: usize, numbering: Numbering) -> Outcome<Vec<Disk>> {
         let mut disks = Vec::new();
         for (place, snapshot) in self.snapshots.iter().take(boxes).enumerate() {

@@ -1,5 +1,5 @@
-//! The runs that `.ci/portable` compares between platforms: two small runs and a packing, through everything
-//! that could differ, and the bits of their last states.
+//! The runs that `.ci/portable` compares between platforms: two small runs and a packing, which use
+//! everything that could differ, and the bits of their last states.
 //!
 //! The program prints for each run its name, its collisions, and a hash of the state and of the checkpoint.
 
@@ -135,7 +135,7 @@ fn of_state<B: Boundary, S: EventScheduler>(run: &Simulation<Rule, B, S>) -> u64
     of_bytes(&bytes)
 }
 
-/// Returns the FNV-1a hash, which takes a few lines and is the same everywhere.
+/// Returns the FNV-1a hash, which needs only a few lines and is the same everywhere.
 fn of_bytes(bytes: &[u8]) -> u64 {
     bytes
         .iter()
