@@ -9,7 +9,7 @@ use granular_edmd::collision::{
 
 const CONTACTS: usize = 1024;
 
-/// Returns slow and fast, grazing and central contacts, among which sticking and sliding alternate irregularly.
+/// Returns slow and fast, grazing and central contacts, among which sticking and sliding alternate at random.
 fn contacts() -> Vec<Contact> {
     let speeds = (0..CONTACTS).map(|k| (1.0 + (k * 37 % 101) as f64, (k * 53 % 211) as f64 - 105.0));
     speeds.map(|(closing, slip)| Contact::new(0.02 * closing, 0.02 * slip, 0.5, 0.5 / 3.0)).collect()

@@ -1,4 +1,4 @@
-//! Errors tell each thing once: a message never repeats that of its source, which a report shows after it.
+//! Errors say each thing once: a message never repeats that of its source, which a report shows after it.
 #![cfg(feature = "serde")]
 
 #[path = "support/report.rs"]

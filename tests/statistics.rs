@@ -1,4 +1,4 @@
-//! Errors of means, against the true scatter over seeds, for series whose correlation is known.
+//! Errors of means, against the true scatter over seeds, for series of known correlation.
 
 use granular_edmd::statistics::{BlockedMean, Estimate, RunningMean, block_average};
 use rand::{Rng, SeedableRng};
@@ -83,8 +83,8 @@ fn a_slow_part_of_small_variance_is_seen() {
     assert!(share_converged(&shorter) > 0.9);
     assert!((0.75..1.3).contains(&share(&shorter, printed)));
     assert!(share(&shorter, |mean| mean.ungrouped().standard_error()) < 0.5);
-    // There are so few of the long correlation times that the error cannot be known. Most of the estimates
-    // say so.
+    // The series has only a few of the long correlation times, so the error cannot be known. Most of the
+    // estimates say so.
     let longer = means(|seed| slow(seed, 0.9999));
     assert!(share_converged(&longer) < 0.4, "{}", share_converged(&longer));
     let covered = share(&longer, printed);
@@ -189,7 +189,7 @@ fn the_error_of_repeats_together_is_that_of_one_long_run() {
         let means: RunningMean = together.iter().map(Estimate::mean).collect();
         let errors: RunningMean = together.iter().map(Estimate::standard_error).collect();
         let ratio = errors.mean() / means.standard_deviation();
-        // The larger of two errors is too large by some per cent.
+        // The larger of two errors is too large by a few percent.
         assert!((0.8..1.45).contains(&ratio), "{repeats}: {ratio}");
         // An autoregressive series of correlation 0.8: nine samples are worth one.
         let worth: RunningMean = together.iter().map(Estimate::independent_samples).collect();

@@ -124,7 +124,7 @@ fn one_descent_ends_at_rest_and_more_end_no_worse() -> Outcome {
     Ok(())
 }
 
-/// The first centers are far from each other: of four distant groups none is left without.
+/// The first centers are far from each other, so that each of four distant groups gets one.
 #[test]
 fn one_descent_finds_groups_that_are_far_apart() -> Outcome {
     let corners = [(0.0, 0.0), (1e6, 0.0), (0.0, 1e6), (1e6, 1e6)];

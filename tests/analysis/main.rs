@@ -1,4 +1,4 @@
-//! Clusters, states, transitions and block averages, on data whose answer is known.
+//! Clusters, states, transitions and block averages, on data with known answers.
 
 mod clusters;
 mod convective_states;

@@ -1,4 +1,4 @@
-//! The container's promises about its walls, one by one, in numbers that are exact.
+//! The container's promises about its walls, one by one, in exact numbers.
 
 use std::f64::consts::TAU;
 

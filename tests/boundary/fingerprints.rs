@@ -1,4 +1,4 @@
-//! A container is told by its geometry, its motions, its rules and its temperatures.
+//! The fingerprint of a container depends on its geometry, its motions, its rules and its temperatures.
 
 use granular_edmd::boundary::{Boundary, Container, Thermal, Wall};
 use granular_edmd::collision::Impulse;

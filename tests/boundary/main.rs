@@ -1,4 +1,4 @@
-//! Boundaries: the container in exact numbers, the contract, which each planted fault breaks, names and
+//! Boundaries: the container in exact numbers; the contract, which each planted fault breaks; names and
 //! fingerprints.
 
 mod container;

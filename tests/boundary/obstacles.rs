@@ -49,7 +49,7 @@ fn a_gas_flows_around_obstacles() {
     assert!(run.counters().wall_collisions > 100, "{:?}", run.counters());
 }
 
-/// A rule is told the radius of a peg, and an infinite one at a straight wall.
+/// A rule gets the radius of a peg, and an infinite one at a straight wall.
 #[test]
 fn a_rule_knows_the_radius_of_a_peg() {
     let seen = std::sync::Mutex::new(std::collections::BTreeSet::new());

@@ -120,7 +120,7 @@ fn specimens() -> Vec<Specimen> {
     bricks.into_iter().flat_map(|(name, brick)| Specimen::all_of(name, brick)).collect()
 }
 
-/// Checks so many flights of each brick, and prints the largest errors.
+/// Checks this many flights of each brick, and prints the largest errors.
 fn check_all(flights: usize) {
     for specimen in specimens() {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(7);

@@ -164,7 +164,7 @@ fn outlines_lie_on_the_parts() {
     }
 }
 
-/// Bricks are numbered as the points are, whichever way these go round, and corners too.
+/// Bricks and corners are numbered as the points are, whichever way these go round.
 #[test]
 fn bricks_count_as_points_do() {
     let points = [(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (-1.0, 5.0)].map(DVec2::from);
@@ -383,7 +383,7 @@ fn gates_open_and_shut_between_runs() {
     assert_eq!(run.disks(), other.disks());
 }
 
-/// Rules are told the radius of an arc: from inside, negative; straight walls and corners have an infinite
+/// Rules get the radius of an arc, which is negative from inside. Straight walls and corners have an infinite
 /// one.
 #[test]
 fn curved_walls_tell_their_radius() {

@@ -1,6 +1,6 @@
 //! The laws of a collision, for every rule of the library: conservation, energy, friction, separation and
-//! symmetry over hostile inputs; worked collisions; the checks for rules of one's own, against planted
-//! faults; the contact-duration model; refused parameters and files.
+//! symmetry over hostile inputs; worked collisions; the checks for rules of users, against planted faults;
+//! the contact-duration model; refused parameters and files.
 
 #[path = "../support/cases.rs"]
 mod cases;

@@ -1,4 +1,4 @@
-//! The check for rules of one's own: it names each broken law, and passes everything that breaks none.
+//! The check for rules of users, which names each broken law, and passes everything that breaks none.
 
 use granular_edmd::collision::laws::{
     Violation, available_energy, check, check_friction_cone, check_friction_opposes_slip,

@@ -13,7 +13,7 @@ use granular_edmd::statistics::Histogram;
 use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
 use granular_edmd::{Disk, Simulation, initial};
 
-/// Numbers that a file or a slip of the pen may bring.
+/// Numbers that a file or a typing error may bring.
 const NUMBERS: [f64; 18] = [
     f64::NAN,
     f64::INFINITY,
@@ -35,7 +35,7 @@ const NUMBERS: [f64; 18] = [
     f64::MAX,
 ];
 
-/// A constructor of one number, by the name that its error must have, and which numbers it takes.
+/// A constructor of one number, by the name that its error must have, and the numbers that it takes.
 type Case = (&'static str, fn(f64) -> Result<(), String>, fn(f64) -> bool);
 
 fn told<T>(result: Result<T, impl ToString>) -> Result<(), String> {

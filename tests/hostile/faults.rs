@@ -20,7 +20,7 @@ use crate::specimens::{Scratch, checkpoint};
 
 const FOLDER: &str = "GRANULAR_EDMD_HOSTILE_FOLDER";
 
-/// The tests that a process of its own does: a study of the box, and one of an experiment of one's own.
+/// The tests that run in a separate process: a study of the box, and one of a user's experiment.
 const CHILD: &str = "faults::child_runs_a_study";
 const OWN_CHILD: &str = "faults::child_runs_a_study_of_its_own";
 
@@ -32,7 +32,7 @@ fn plan() -> Plan<VibratedBox> {
     Plan::new(experiment, Protocol::new(10, 20, 2), 5).unwrap().with_axis(axis).unwrap()
 }
 
-/// The same of an experiment of one's own.
+/// The same for a user's experiment.
 fn own_plan() -> Plan<Mixture> {
     let axis = Axis::new("loss", [0.0, 0.1, 0.2]);
     Plan::new(mixture(), Protocol::new(10, 80, 2), 5).unwrap().with_axis(axis).unwrap()

@@ -113,7 +113,7 @@ fn none_panics(cases: impl Iterator<Item = (usize, Vec<u8>)>, mut check: impl Fn
     assert!(panics.is_empty(), "panics, with the first place of each: {panics:#?}");
 }
 
-/// Variable with the stride: one of so many forged files is tried.
+/// Variable with the stride: one of this many forged files is tried.
 const STRIDE: &str = "GRANULAR_EDMD_HOSTILE_STRIDE";
 
 /// Variable with the number of events for which each run goes on.
@@ -196,7 +196,7 @@ fn short_while(disks: &[Disk], gravity: f64) -> f64 {
     (way / (speed + (gravity.abs() * way).sqrt())).min(1.0)
 }
 
-/// Does so many events of a forged state, if it is one, and takes it to other walls and another gravity.
+/// Does this many events of a forged state, if it is one, and takes it to other walls and another gravity.
 fn run_on(mut run: Run, events: usize) -> bool {
     for _ in 0..events {
         let end = run.time() + short_while(&run.disks(), run.gravity());

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use granular_edmd::observable::{Collision, Observer, Snapshot, Verdict};
 
-/// Number of collisions of one step that are kept, and some more.
+/// Number of collisions that are kept, which is more than one step has.
 pub(crate) const KEPT: usize = 4;
 
 /// Counts the collisions, up to a budget, keeps the first ones, and takes one sample.

@@ -31,7 +31,8 @@ const SINKING: f64 = 16.0 * f64::EPSILON;
 #[derive(Debug, Clone)]
 pub(crate) enum Operation {
     Steps(usize),
-    /// A run of at most this time, with so many samples: after a half, after the half of that, and so on.
+    /// A run of at most this time, with this many samples: after half of the time, after half of that, and so
+    /// on.
     Run(f64, u32),
     Rule(Law),
     Gravity(f64),
@@ -236,8 +237,8 @@ impl Actor {
         }
     }
 
-    /// Tells whether some steps go on to another time. A late clock is too coarse to be told when to stop
-    /// instead.
+    /// Returns whether some steps go on to another time. A late clock is too coarse for a time at which to
+    /// stop.
     fn clock_ticks(&mut self) -> Result<bool, TestCaseError> {
         let start = self.run.time();
         if start.abs() > 1e9 {

@@ -61,13 +61,13 @@ pub(crate) fn plan() -> Plan<VibratedBox> {
     Plan::new(experiment, Protocol::new(2, 3, 1), 5).unwrap().with_ramp(ramp).unwrap()
 }
 
-/// The same of an experiment of one's own.
+/// The same for a user's experiment.
 pub(crate) fn own_plan() -> Plan<Mixture> {
     let ramp = Ramp::new("weight", [0.1, 0.2], Course::Up);
     Plan::new(mixture(), Protocol::new(2, 3, 1), 5).unwrap().with_ramp(ramp).unwrap()
 }
 
-/// A folder of a test's own, removed with it.
+/// A folder for one test, removed with it.
 pub(crate) struct Scratch(pub(crate) PathBuf);
 
 impl Scratch {
@@ -86,7 +86,7 @@ impl Drop for Scratch {
     }
 }
 
-/// A study, stopped after so many steps.
+/// A study, stopped after this many steps.
 pub(crate) fn stopped_study<E: Experiment>(name: &str, plan: &Plan<E>, steps: u64) -> (Scratch, Study<E>) {
     let scratch = Scratch::new(name);
     let study = Study::create(&scratch.0, plan).unwrap();
@@ -94,7 +94,7 @@ pub(crate) fn stopped_study<E: Experiment>(name: &str, plan: &Plan<E>, steps: u6
     (scratch, study)
 }
 
-/// Runs a study until it has done so many steps in all.
+/// Runs a study until it has done this many steps in all.
 pub(crate) fn run_steps<E: Experiment>(study: &Study<E>, steps: u64) -> Result<Summary, StudyError> {
     let stop = AtomicBool::new(false);
     let progress = |progress: &Progress| stop.store(progress.done >= steps, Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! How the disks of an elastic gas meet, against kinetic theory.
+//! Offsets and speeds at which the disks of an elastic gas meet, against kinetic theory.
 
 use granular_edmd::collision::Elastic;
 use granular_edmd::observable::{CollisionHistograms, Temperatures};
@@ -8,7 +8,7 @@ use crate::Outcome;
 use crate::gas::{periodic_gas, run_for};
 
 /// Returns chi squared of a histogram against a cumulative distribution, over bins with 10 expected numbers
-/// or more, and how many bins these are.
+/// or more, and the number of these bins.
 fn chi_squared(histogram: &Histogram, cumulative: impl Fn(f64) -> f64) -> (f64, usize) {
     let all = histogram.count() as f64;
     let expected =
@@ -30,7 +30,7 @@ fn disks_meet_at_any_offset_and_with_the_speeds_of_the_flux() -> Outcome {
     let tests = [
         ("obliqueness", chi_squared(histograms.obliqueness(), |b| 0.5 * (1.0 + b))),
         ("closing speed", chi_squared(histograms.closing_speed(), speeds)),
-        // Elastic disks of mass 1 exchange what they close with.
+        // Elastic disks of mass 1 exchange their closing velocity.
         ("impulse", chi_squared(histograms.impulse(), speeds)),
     ];
     assert_eq!(histograms.obliqueness().count(), 100_000);

@@ -17,8 +17,8 @@ use crate::{Outcome, agrees};
 /// to 1e-3 (Clisby & McCoy 2006; Kolafa & Rottner 2006).
 const STATE: [(f64, f64); 3] = [(0.1, 1.236_14), (0.3, 2.063_26), (0.5, 4.106_3)];
 
-/// The pressure of a gas, from the impulses on its walls and from the momentum that flies and collides across
-/// the box.
+/// The pressure of a gas, from the impulses on its walls and from the kinetic and collisional flux of
+/// momentum across the box.
 struct Pressures {
     walls: f64,
     virial: f64,

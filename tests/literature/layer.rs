@@ -1,4 +1,4 @@
-//! A layer of grains on a shaken plate: when its flights begin to alternate.
+//! A layer of grains on a shaken plate, whose flights alternate above a certain acceleration.
 
 use std::f64::consts::{PI, TAU};
 
@@ -10,8 +10,8 @@ use granular_edmd::{Disk, Simulation, initial};
 
 use crate::{Outcome, agrees};
 
-/// Returns how far long and short flights differ: the mean alternation of the height of the center of mass
-/// from period to period, in amplitudes of the plate.
+/// Returns the difference of long and short flights, as the mean alternation of the height of the center of
+/// mass from period to period, in amplitudes of the plate.
 fn alternation(acceleration: f64) -> Result<f64, Box<dyn std::error::Error>> {
     // Gravity and frequency are 1, so that the amplitude is the acceleration.
     let floor = Sinusoidal::new(acceleration, 1.0)?;

@@ -27,7 +27,7 @@ mod velocities;
 /// The result of a test.
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
-/// Tells whether `measured` is `expected` up to this relative deviation. Prints both, for the table.
+/// Returns whether `measured` is `expected` up to this relative deviation, and prints both, for the table.
 fn agrees(what: &str, measured: f64, expected: f64, tolerance: f64) -> bool {
     let deviation = measured / expected - 1.0;
     println!(

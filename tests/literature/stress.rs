@@ -11,7 +11,7 @@ use granular_edmd::statistics::Estimate;
 use crate::gas::{Gas, collision_rate, contact_value, periodic_gas, run_for};
 use crate::{Outcome, agrees};
 
-/// Tells whether two estimates agree within four standard errors of their difference.
+/// Returns whether two estimates agree within four standard errors of their difference.
 fn agree(what: &str, one: Estimate, other: Estimate) -> bool {
     let error = one.standard_error().hypot(other.standard_error());
     println!("{what}: {one}, {other}");

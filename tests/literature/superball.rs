@@ -8,8 +8,8 @@ use granular_edmd::{Disk, Simulation};
 
 use crate::Outcome;
 
-/// Returns the lowest and highest height, relative to the start, at which a ball touches the sides in so many
-/// touches.
+/// Returns the lowest and highest height, relative to the start, at which a ball touches the sides in this
+/// many touches.
 fn range(rule: impl CollisionRule, touches: u64) -> Result<(f64, f64), Box<dyn std::error::Error>> {
     let height = 10_000.0;
     let disk = Disk::new(DVec2::new(30.0, height), 0.5)?.with_velocity(DVec2::new(1.4, 0.0))?;

@@ -18,7 +18,7 @@ fn times() -> Result<SampleTimes, ParameterError> {
     SampleTimes::every(1.0)
 }
 
-/// Tells whether all values are 1, by chi squared and by four errors each.
+/// Returns whether all values are 1, by chi squared and within four errors each.
 fn is_one(values: impl Iterator<Item = (f64, Estimate)>) -> bool {
     let deviations: Vec<f64> =
         values.map(|(_, value)| (value.mean() - 1.0) / value.standard_error()).collect();
@@ -135,7 +135,7 @@ fn a_gap_and_another_number_of_disks_begin_with_new_origins() -> Outcome {
     Ok(())
 }
 
-/// An autoregressive series, in which each number is 0.8 of the last one and noise.
+/// An autoregressive series, in which each number is 0.8 times the last one plus noise.
 #[test]
 fn an_observable_of_known_memory_has_its_correlation() -> Outcome {
     let mut chance = Chance::new(2);

@@ -74,7 +74,7 @@ fn samples_come_at_multiples_of_their_interval() -> Outcome {
     Ok(())
 }
 
-/// A gas with all regimes, and what all these observers saw of it until `END`.
+/// A gas with all regimes, and the records of these observers until `END`.
 fn watched(mut observers: impl Observer) -> Result<Vec<Collision>, Box<dyn std::error::Error>> {
     let container = Container::closed(8.0, 8.0)?.with_rule(Wall::Left, Elastic)?;
     let rule = ContactDuration::new(Frictional::new(0.05, 0.2)?, 0.05)?;
@@ -141,7 +141,7 @@ fn layers_hold_the_collisions_and_disks_at_their_height() -> Outcome {
     Ok(())
 }
 
-/// Counts what it is told, and wants one sample.
+/// Counts its messages, and wants one sample.
 #[derive(Default, Debug, PartialEq, Clone, Copy)]
 struct Tally {
     wanted: Option<f64>,

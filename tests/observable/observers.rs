@@ -1,5 +1,5 @@
 //! The contract of observers: the clock, the messages that composed observers pass on, stops, and the check
-//! of all that.
+//! of the contract.
 
 use std::ops::ControlFlow;
 
@@ -127,7 +127,7 @@ fn clocks_far_out_do_not_hang() -> Outcome {
     Ok(())
 }
 
-/// Counts what it is told, and has a verdict.
+/// Counts its messages, and has a verdict.
 #[derive(Debug, Default)]
 struct Tally {
     wanted: Option<f64>,
@@ -164,7 +164,7 @@ fn tallies(verdicts: [Option<&'static str>; 6]) -> [Tally; 6] {
     verdicts.map(|verdict| Tally { wanted: Some(1.0), verdict, ..Tally::default() })
 }
 
-/// Returns the verdict of all of them composed, in all ways to compose them.
+/// Returns the verdict of all observers together, for each way to compose them.
 fn verdict_of(tallies: &mut [Tally; 6]) -> String {
     let [boxed, listed, other, optional, bare, late] = tallies;
     late.wanted = Some(2.0);

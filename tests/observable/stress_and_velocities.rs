@@ -45,7 +45,7 @@ fn a_region_gets_its_share_of_a_collision() -> Outcome {
     Ok(())
 }
 
-/// A ball between walls, in a run of one piece and in pieces that cut the intervals.
+/// A ball between walls, in one run and in a run in pieces that cut the intervals.
 #[test]
 fn a_run_in_pieces_has_the_stress_of_a_run_in_one() -> Outcome {
     let container = Container::closed(5.0, 3.0)?;
@@ -65,7 +65,7 @@ fn a_run_in_pieces_has_the_stress_of_a_run_in_one() -> Outcome {
     let pieces = measured(&[1.7, 3.0, 3.1, 10.0])?;
     assert_eq!(whole.0.pressure(floor), pieces.0.pressure(floor));
     assert_eq!(whole.1.tensor(), pieces.1.tensor());
-    // The interval in which the run began is a part of one, which does not count.
+    // The run began within an interval, whose rest does not count.
     assert_eq!(whole.1.samples(), 9);
     assert_eq!(whole.0.pressure(floor + 1), None);
     Ok(())

@@ -82,7 +82,7 @@ fn names_that_make_no_table_are_refused() {
     );
 }
 
-/// An observable that breaks its promise is told, and no row is written in the wrong columns.
+/// An observable that breaks its promise is an error, and no row is written in the wrong columns.
 #[test]
 fn rows_have_a_number_for_each_heading() {
     struct Short;

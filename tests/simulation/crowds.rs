@@ -5,7 +5,7 @@ use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::{Disk, Simulation, initial};
 
-/// Places so many disks of this radius on a square lattice in the lower left corner.
+/// Places this many disks of this radius on a square lattice in the lower left corner.
 fn corner(count: usize, radius: f64) -> Vec<Disk> {
     let side = (count as f64).sqrt().ceil() as usize;
     let position =

@@ -1,4 +1,4 @@
-//! Kinds in a run: what a rule and an observer see of them, and that they are kept.
+//! Kinds in a run: rules and observers see them, and files keep them.
 
 use granular_edmd::boundary::{Boundary, Container, Wall};
 use granular_edmd::collision::{Contact, Elastic, Frictional, RulesByKind};

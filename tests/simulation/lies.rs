@@ -51,7 +51,7 @@ enum Lie {
     Velocity(DVec2),
 }
 
-/// A container that tells the truth so many times.
+/// A container that tells the truth this many times.
 #[derive(Clone)]
 struct Liar {
     honest: Container,
@@ -419,7 +419,7 @@ fn an_end_before_the_present_tells_no_observer() {
     assert_eq!((failing.starts, failing.ends), (0, 0));
 }
 
-/// A rule that fails with this impulse after so many contacts.
+/// A rule that fails with this impulse after this many contacts.
 struct Failed {
     truths: Cell<u32>,
     impulse: fn(&Contact) -> Impulse,
@@ -570,7 +570,7 @@ impl Boundary for Drum {
     }
 }
 
-/// Does so many collisions, or as many as there are: disks at rest on a wall collide without end.
+/// Does this many collisions, or fewer if there are not so many: disks at rest on a wall collide without end.
 fn take_steps<R: CollisionRule, B: Boundary>(run: &mut Simulation<R, B>, steps: usize) {
     for _ in 0..steps {
         if !matches!(run.step_until(200.0, &mut ()), Ok(Some(_))) {

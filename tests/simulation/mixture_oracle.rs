@@ -124,7 +124,7 @@ fn size(law: u32, ratio: f64, k: usize, random: &mut impl Rng) -> f64 {
     }
 }
 
-/// Runs a random mixture for so many events, and looks at all pairs at each.
+/// Runs a random mixture for this many events, and looks at all pairs at each event.
 fn check(seed: u64, events: u32) {
     let mixture = Mixture::random(seed);
     let mut run = mixture.build();

@@ -65,7 +65,7 @@ fn two_lone_disks_without_restitution_never_stall() {
     assert!(collided > 600, "{collided}");
 }
 
-/// A light disk between a heavy one and a wall does collapse; nothing else does.
+/// A light disk between a heavy one and a wall does collapse, but nothing else does.
 fn is_squeezed(disks: &[Disk], width: f64) -> bool {
     let wall = |disk: &Disk| {
         let DVec2 { x, y } = disk.position();

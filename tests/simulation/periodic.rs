@@ -1,4 +1,4 @@
-//! Boxes that repeat themselves: on both sides, above and below, and both ways; positions unwrapped.
+//! Periodic boxes, with periodic sides, ends or both, and unwrapped positions.
 
 use granular_edmd::boundary::{Boundary, Container, Domain, Region, Surface, Touch, Wall, WallError, laws};
 use granular_edmd::collision::{Elastic, Frictional};

@@ -1,4 +1,5 @@
-//! Matter at rest: without a remedy an error that names it, within some 1e5 events, and with one a run.
+//! Matter at rest: without a remedy, the run ends within some 1e5 events with an error that names one; with a
+//! remedy, it goes on.
 
 use granular_edmd::boundary::{Boundary, Container, Obstacles, Part, Vessel, Wall};
 use granular_edmd::collision::{

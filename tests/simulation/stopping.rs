@@ -17,7 +17,7 @@ fn run(scheduler: Scheduler, start: f64) -> Run {
     shaken_and_heated().start_time(start).scheduler(scheduler).build().unwrap()
 }
 
-/// An observer that stops after each so many collisions and samples.
+/// An observer that stops after every `each[0]` collisions and every `each[1]` samples.
 #[derive(Default)]
 struct Stopper {
     collisions: Vec<f64>,

@@ -34,7 +34,7 @@ fn mean(values: &[f64], power: i32) -> RunningMean {
     values.iter().map(|value| value.powi(power)).collect()
 }
 
-/// Tells whether a mean is as expected, within five standard errors.
+/// Returns whether a mean is as expected, within five standard errors.
 fn is(mean: RunningMean, expected: f64) -> bool {
     (mean.mean() - expected).abs() < 5.0 * mean.standard_error()
 }

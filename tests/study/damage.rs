@@ -1,4 +1,4 @@
-//! Damaged and foreign files are named, and done again or left alone.
+//! Damaged files are named and done again, and foreign files are named and left alone.
 
 use std::fs;
 use std::path::Path;
@@ -50,7 +50,7 @@ fn a_damaged_half_done_value_is_started_again() -> Result<(), AnyError> {
     let study = Study::create(&scratch.0, &small_plan())?;
     let summary = study.run(&Control::default().with_interrupt(&stop).with_progress(&progress))?;
     assert!(!summary.is_complete());
-    // The ramp that told first was begun.
+    // The ramp that reported its progress first has begun.
     let partials = [0, 1].map(|ramp| scratch.0.join(format!("ramps/{ramp:04}/0000.partial")));
     let partial = partials.into_iter().find(|path| path.exists()).ok_or("nothing was begun")?;
     let bytes = fs::read(&partial)?;

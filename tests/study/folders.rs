@@ -1,4 +1,4 @@
-//! Folders: a study writes where nothing else is, and removes nothing but its own.
+//! Folders: a study writes only where nothing else is, and removes only its own files.
 
 use std::fs;
 

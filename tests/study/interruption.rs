@@ -30,7 +30,7 @@ fn an_interrupted_study_goes_on() {
     assert_same(&scratch.0, &expected.0);
 }
 
-/// The work of a process that is killed; on its own it does nothing.
+/// The work of a process that is killed; it does nothing unless another test starts it.
 #[test]
 #[ignore = "started by the tests of killed processes"]
 fn child() {
@@ -39,7 +39,7 @@ fn child() {
     study.run(&Control::default().with_save_interval(Duration::ZERO)).unwrap();
 }
 
-/// Killed at moments that drift through the run, until it is complete.
+/// The process is killed at moments that drift through the run, until the study is complete.
 #[test]
 fn a_killed_study_ends_with_the_same_bytes() {
     let (expected, _) = done(&small_plan(), "killed-not");

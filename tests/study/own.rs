@@ -1,4 +1,4 @@
-//! Experiments of one's own: swept, ramped, recorded, resumed, and refused where they cannot be.
+//! Experiments of users, which are swept, ramped, recorded, resumed, or refused with an error.
 
 use std::fs;
 
@@ -43,7 +43,7 @@ fn an_own_experiment_is_swept_ramped_and_recorded() -> Result<(), AnyError> {
     );
     assert_eq!(records[3].experiment().disks.large, 4);
     assert_eq!(records[3].state().len(), 16);
-    // The cycle changes along the ramp: the next value starts at the end of the one before.
+    // The cycle changes along the ramp, and the next value starts at the end of the previous one.
     let cycles = [1.0 / 1.1, 1.0 / 1.2];
     let expected = 14.0 * cycles[0] + (4.0 + 1.5) * cycles[1];
     assert!((records[1].times()[0] - expected).abs() < 1e-9, "{} {expected}", records[1].times()[0]);
@@ -132,7 +132,7 @@ struct Gap {
     always: f64,
 }
 
-/// Ends the value after so many collisions.
+/// Ends the value after this many collisions.
 #[derive(Debug, Default, Serialize, Deserialize)]
 struct Patience(u64);
 

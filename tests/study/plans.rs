@@ -49,7 +49,7 @@ fn a_plan_is_read_as_it_is_written() -> Result<(), AnyError> {
     Ok(())
 }
 
-/// A line of a plan, what takes its place, and what the error says.
+/// A line of a plan, the line in its place, and the text of the error.
 const REFUSED: [(&str, &str, &str); 19] = [
     ("seed = 1", "seed = 1\nsede = 2", "unknown field `sede`"),
     ("disks = 30", "disks = 30\nmass = 2", "unknown field `mass`"),

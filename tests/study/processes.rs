@@ -1,4 +1,4 @@
-//! Many processes on one folder: nothing done twice, nothing mixed, the bytes of one.
+//! Many processes on one folder: nothing is done twice or mixed, and the bytes are those of one process.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -55,7 +55,7 @@ fn numbers(seed: u64) -> impl FnMut(u64) -> u64 {
     }
 }
 
-/// Returns how often each value was finished, from the log.
+/// Returns the number of times that each value was finished, from the log.
 fn finished(folder: &Path) -> BTreeMap<(u64, u64), usize> {
     let log = fs::read_to_string(folder.join("log.jsonl")).unwrap();
     let mut counts = BTreeMap::new();
@@ -111,8 +111,7 @@ fn two_plans(trials: std::ops::Range<u64>) {
     }
 }
 
-/// Four processes at once on a fresh folder, some of which are killed; then one to finish what all of them
-/// left.
+/// Four processes run at once on a fresh folder, and some of them are killed. Then one finishes the rest.
 fn killed(round: u64) -> BTreeMap<PathBuf, Vec<u8>> {
     let scratch = Scratch::new(&format!("many-killed-{round}"));
     let mut below = numbers(round);
@@ -174,7 +173,7 @@ fn ramps_one_by_one_make_the_study_and_the_last_one_writes_the_tables() -> Resul
     Ok(())
 }
 
-/// Folders that are made beforehand, for engines that go by folders, are of a study like any other.
+/// A study whose folders are made beforehand, for engines that go by folders, is like any other.
 #[test]
 fn a_prepared_study_waits_and_its_folders_say_what_they_are() -> Result<(), AnyError> {
     let (expected, _) = done(&plan(1), "prepared-not");
@@ -192,8 +191,8 @@ fn a_prepared_study_waits_and_its_folders_say_what_they_are() -> Result<(), AnyE
     Ok(())
 }
 
-/// One of many tasks leaves the tables alone when nothing was done; a run of the whole study brings them
-/// back.
+/// One of many tasks leaves the tables alone if it has done nothing; a run of the whole study writes them
+/// again.
 #[test]
 fn tables_that_tell_of_all_are_written_again_by_whole_runs_and_after_new_values() -> Result<(), AnyError> {
     let (scratch, study) = done(&plan(1), "tables-again");

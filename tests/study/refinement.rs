@@ -28,7 +28,7 @@ fn done(name: &str) -> (Scratch, Study<Mixture>) {
     let study = Study::create(&scratch.0, &plan()).unwrap();
     let summary = study.run(&Control::default()).unwrap();
     assert!(summary.is_complete());
-    // Seven values of each ramp, and five halves of each of two brackets of 0.05.
+    // Each ramp has seven values, and five halves for each of its two brackets of width 0.05.
     assert_eq!(summary.total, 2 * (7 + 2 * 5));
     (scratch, study)
 }
@@ -63,7 +63,7 @@ fn an_interrupted_refinement_goes_on_with_the_same_bytes() {
     let (expected, _) = done("refined-not-interrupted");
     let scratch = Scratch::new("refined-interrupted");
     let watch = |progress: &Progress| assert!(progress.done <= progress.total);
-    // Values that are known count as one step: each run gets further than the one before.
+    // A known value counts as one step, so each run gets further than the previous one.
     assert!(run_with_interruptions(&scratch.0, &plan(), |run| 25 + 4 * run, watch) > 2);
     assert_same(&scratch.0, &expected.0);
 }
@@ -79,7 +79,7 @@ fn a_damaged_value_of_a_refinement_is_done_again() -> Result<(), AnyError> {
         assert_eq!(study.run(&Control::default())?.redone, [path]);
         assert!(contents(&scratch.0) == before);
     }
-    // The record of another half is told apart by its place.
+    // The place in the record of another half shows that it is another one.
     let [first, second] = ["0007", "0008"].map(|value| scratch.0.join(format!("ramps/0000/{value}.record")));
     fs::copy(&first, &second)?;
     assert_eq!(study.run(&Control::default())?.redone, [second]);

@@ -1,4 +1,4 @@
-//! A small study, and what is in its folder.
+//! A small study, and the files in its folder.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -31,7 +31,7 @@ pub(crate) fn small_plan() -> Plan<VibratedBox> {
         .unwrap()
 }
 
-/// A folder of this test's own, removed with it.
+/// A folder for one test, removed with it.
 pub(crate) struct Scratch(pub(crate) PathBuf);
 
 impl Scratch {
@@ -82,7 +82,7 @@ pub(crate) fn assert_same(found: &Path, expected: &Path) {
 }
 
 /// Runs a study again and again, each time interrupted after a number of steps that depends on the run, until
-/// it is complete; returns how often it was interrupted.
+/// it is complete; returns the number of interruptions.
 pub(crate) fn run_with_interruptions<E: Experiment>(
     folder: &Path,
     plan: &Plan<E>,

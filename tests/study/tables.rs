@@ -1,4 +1,4 @@
-//! Tables: header and rows agree, and say what the library says.
+//! Tables: header and rows agree with each other and with the library.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -31,7 +31,7 @@ fn tables_have_a_row_for_each_thing() {
         ["ramp", "value", "leg", "inelasticity", "friction"]
     );
     assert_eq!(values[7].iter().take(5).collect::<Vec<_>>(), ["1", "2", "up", "0.02", "0.3"]);
-    // Six samples tell no error: the last column names all that are lower bounds.
+    // Six samples are too few for an error, so the last column names all errors that are lower bounds.
     assert_eq!(header.iter().next_back(), Some("not_converged"));
     let all = "one_roll one_roll_magnitude two_rolls height translational_energy rotational_energy \
                vertical_temperature energy_change";
@@ -68,7 +68,7 @@ fn repeats_have_seeds_of_their_own_and_are_told_together() -> Result<(), AnyErro
     Ok(())
 }
 
-/// Tables of what there is: the repeats of one point are never mixed with those of another.
+/// Tables of an unfinished study never mix the repeats of one point with those of another.
 #[test]
 fn tables_of_a_study_half_done_keep_points_apart() -> Result<(), AnyError> {
     let scratch = Scratch::new("half-done-points");

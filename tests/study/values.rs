@@ -1,4 +1,4 @@
-//! Values: what they record, how long they last, and how they end.
+//! Values: their records, their length, and their ends.
 
 use granular_edmd::study::vibrated_box::{Base, Convection, VibratedBox};
 use granular_edmd::study::{Course, Experiment, Leg, Outcome, Plan, Protocol, Ramp};
@@ -33,7 +33,7 @@ fn a_study_records_what_it_was_asked_for() {
     assert_ne!(records[0].samples(), records[5].samples(), "ramps have seeds of their own");
 }
 
-/// A value is as long and as sampled as one made by hand with the engine.
+/// A value has the same length and samples as one made by hand with the engine.
 #[test]
 fn a_value_is_the_engine_s_run() -> Result<(), AnyError> {
     use granular_edmd::observable::{OrderParameters, SampleTimes, Series};
@@ -46,7 +46,7 @@ fn a_value_is_the_engine_s_run() -> Result<(), AnyError> {
     let thinned: Vec<_> = every.samples().iter().skip(34).step_by(10).map(|sample| sample.one_roll).collect();
     assert_eq!(record.samples().iter().map(|sample| sample.one_roll).collect::<Vec<_>>(), thinned);
     assert_eq!(record.state().to_bytes()?, every.state().to_bytes()?);
-    // And from its last state it goes on like any other run.
+    // From its last state, it goes on like any other run.
     let container = granular_edmd::boundary::Container::closed(10.0, 30.0)?.with_motion(
         granular_edmd::boundary::Wall::Floor,
         granular_edmd::wall::BiParabolic::new(0.1, 10.0)?,
@@ -87,7 +87,8 @@ fn other_parameters_ramp_and_other_bases_run() -> Result<(), AnyError> {
     Ok(())
 }
 
-/// Without the contact-duration model a vibrated floor stops lossy disks for good: an outcome, not an end.
+/// Without the contact-duration model, lossy disks stall on a vibrated floor. That is an outcome of the
+/// value, and the study goes on.
 #[test]
 fn a_stalled_value_does_not_stop_the_study() -> Result<(), AnyError> {
     let system = VibratedBox::new(30, 10.0, BASE).with_height(30.0).with_gravity(0.5);

@@ -1,4 +1,5 @@
-//! An experiment of one's own: a mixture of disks under a rule of its own, with samples of variable length.
+//! An experiment as a user writes it: a mixture of disks under a rule of its own, with samples of variable
+//! length.
 
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::{CollisionRule, Contact, Impulse};
@@ -8,7 +9,7 @@ use granular_edmd::study::{Column, Experiment, ExperimentError, Record, Table};
 use granular_edmd::{Disk, initial, quantity};
 use serde::{Deserialize, Serialize};
 
-/// Loses the more the faster: no fingerprint, as a closure has none.
+/// A rule that loses more at higher speeds. It has no fingerprint, like a closure.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sticky {
     pub(crate) loss: f64,
@@ -96,7 +97,7 @@ impl Experiment for Mixture {
         ]
     }
 
-    /// Heavy or light: known beforehand, so that a test can say where the transition is.
+    /// The state is heavy or light, which is known beforehand, so that a test knows the transition.
     fn state(record: &Record<Self>) -> Option<String> {
         Some(if record.experiment().weight > 0.137 { "heavy" } else { "light" }.to_owned())
     }

@@ -1,5 +1,5 @@
-//! Files of disks: what is written reads back to the same bits, nothing is lost when a disk is full or a
-//! process is killed, and every fault of a file is told with its line.
+//! Files of disks: they read back to the same bits, lose nothing when a drive is full or a process is killed,
+//! and every fault of a file is reported with its line.
 
 #[path = "../support/report.rs"]
 mod report;

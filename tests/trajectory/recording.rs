@@ -1,4 +1,4 @@
-//! Recorders: what a file holds after a run, a kill, a full disk, and a run that goes on.
+//! Recorders: the contents of a file after a run, a kill, a full drive, and a run that goes on.
 
 use std::fs;
 use std::io::{self, BufRead, Write};
@@ -49,7 +49,8 @@ fn append(path: &Path) -> Result<Recorder, RecordError> {
     }
 }
 
-/// Returns the bytes of a file that a run of six frames has recorded, and the lengths of it after each frame.
+/// Returns the bytes of a file that a run of six frames has recorded, and the length of the file after each
+/// frame.
 fn recorded(path: &Path) -> (Vec<u8>, Vec<usize>) {
     let (mut run, mut recorder) = (mixture(), create(path));
     let lengths = (1..=6).map(|frame| {
@@ -88,7 +89,7 @@ fn nothing_is_overwritten() {
             "notes.xyz is there already and is not overwritten; Recorder::append goes on in a file"
         )
     );
-    // Not even by going on in it.
+    // A recorder that goes on in the file does not overwrite it, either.
     for text in ["my notes", "my notes\n", "12", "", "3\nmy notes\n"] {
         fs::write(&path, text).unwrap();
         assert!(Recorder::append(&path, ExtendedXyz, times()).is_err(), "{text:?}");
@@ -98,7 +99,7 @@ fn nothing_is_overwritten() {
     assert!(matches!(append(&scratch.path("none.xyz")), Err(RecordError::Io { action: "open", .. })));
 }
 
-/// Notes behind the frames are no frame: the recorder leaves them.
+/// Notes after the frames are not a frame, and the recorder leaves them.
 #[test]
 fn what_others_have_appended_is_left() {
     let scratch = Scratch::new("foreign");
@@ -125,7 +126,7 @@ fn one_recorder_at_a_time_writes_to_a_file() {
 }
 
 /// A process may be killed with any part of the last frame written, and the run goes on from a checkpoint
-/// that is older. The file ends as that of a run which was left alone.
+/// that is older. The file ends like that of a run that was left alone.
 #[test]
 fn a_killed_run_goes_on_in_the_same_file() {
     let scratch = Scratch::new("kill");
@@ -181,7 +182,7 @@ fn disks_of_one_kind_are_recorded() {
     assert!(state.disks().iter().all(|disk| disk.kind() == Kind::new(7)));
 }
 
-/// A format that fails from a time on, until it is mended.
+/// A format that fails from some time on, until it is repaired.
 struct Failing(f64);
 
 impl Format for Failing {
@@ -223,7 +224,7 @@ fn a_missed_frame_is_taken_once_there_is_room() {
     let mut recorder = Recorder::create_vtk(&path, times()).unwrap();
     let mut run = mixture();
     run.run_until(1.0, &mut recorder).unwrap();
-    // A folder in the place of the next file.
+    // A folder takes the place of the next file.
     let place = scratch.path("run/disks_000002.vtp");
     fs::create_dir(&place).unwrap();
     run.run_until(3.0, &mut recorder).unwrap_err();
@@ -289,7 +290,7 @@ fn a_compressed_file_is_one_member_of_the_same_text() {
     assert_eq!(state.time(), Some(3.0));
 }
 
-/// Faults that a format of one's own may have.
+/// Faults that a user's format may have.
 struct Faulty {
     time: f64,
     kept: usize,

@@ -1,4 +1,4 @@
-//! What is written reads back to the same bits, and starts the same run.
+//! Files read back to the same bits, and start the same run.
 
 use granular_edmd::boundary::{Container, Domain, Wall};
 use granular_edmd::collision::Frictional;
@@ -73,7 +73,8 @@ fn a_run_starts_from_any_frame_as_if_it_had_not_stopped() {
     assert_eq!(states.len(), 8);
     assert_same_bits(states[7].disks(), &run.disks());
     assert!(states[7].disks().iter().any(|disk| disk.image()[0] != 0), "no disk has passed the sides");
-    // The run from a frame predicts anew, in another epoch: the same to some digits, as long as chaos allows.
+    // The run from a frame predicts anew, in another epoch, so it is the same to some digits, as long as
+    // chaos allows.
     let base = BiParabolic::new(0.1, 10.0).unwrap();
     let container =
         Container::open(15.0).unwrap().with_periodic_sides().with_motion(Wall::Floor, base).unwrap();
@@ -101,7 +102,7 @@ fn files_of_others_are_read() {
     assert_eq!(state.domain(), Some(domain));
     assert_eq!(state.disks()[0].kind().number(), 1);
     assert_eq!(state.disks()[1], Disk::new(DVec2::new(4.0, 1.0), 0.25).unwrap());
-    // As `write_data` of LAMMPS has it: atoms in any order, and sections on other matters.
+    // A file as `write_data` of LAMMPS writes it, with atoms in any order, and other sections.
     let lammps = "LAMMPS data file via write_data, version 22 Jul 2025, timestep = 100, units = lj\n\n2 atoms\n2 atom types\n\n\
                   -1 61 xlo xhi\n-1 151 ylo yhi\n-0.5 0.5 zlo zhi\n\nPair Coeffs # gran/hooke/history\n\n1\n2\n\n\
                   Atoms # sphere\n\n2 2 1 1.9 9 10 0 0 0 0\n1 1 1 1.9 5 10 0 0 0 0\n\nVelocities\n\n\

@@ -1,4 +1,4 @@
-//! Systems whose files the tests look at.
+//! The systems whose files are tested.
 
 use granular_edmd::boundary::{Boundary, Container, Domain, Wall};
 use granular_edmd::collision::Frictional;
@@ -28,7 +28,7 @@ pub(crate) fn mixture() -> Simulation<Frictional> {
     Simulation::builder(rule, container).disks(disks).gravity(0.3).build().unwrap()
 }
 
-/// A box of any sort: its number decides which ends are periodic or open.
+/// A box of any sort, whose number decides which ends are periodic or open.
 pub(crate) fn domain(sort: usize) -> Domain {
     match sort % 4 {
         0 => Container::closed(30.0, 40.0).unwrap().domain(),
@@ -70,7 +70,7 @@ pub(crate) fn for_each_snapshot(mut test: impl FnMut(&Snapshot<'_>)) {
     }
 }
 
-/// Checks that two lists of disks are the same, to the bit, which `==` cannot tell of zeros.
+/// Checks that two lists of disks are the same, to the bit, since `==` does not distinguish the two zeros.
 #[track_caller]
 pub(crate) fn assert_same_bits(read: &[Disk], written: &[Disk]) {
     let bits = |disk: &Disk| {

@@ -48,7 +48,7 @@ fn a_killed_series_goes_on() {
         let mut recorder = Recorder::append_vtk(&path, times()).unwrap();
         assert!(recorder.times().len() >= 2, "{cut}");
         if recorder.times().len() == 6 {
-            // Not the work of a kill: files come before their line.
+            // A kill cannot have done this, since files come before their line.
             fs::write(&last, bytes).unwrap();
             break;
         }

@@ -1,5 +1,5 @@
-//! Parts that a user of the library writes: a rule, a wall motion, a scheduler, an observable, observers and
-//! a boundary, against the public API alone.
+//! Parts that a user of the library writes with the public API alone: a rule, a wall motion, a scheduler, an
+//! observable, observers and a boundary.
 
 pub mod angular_momentum;
 pub mod drum;

@@ -3,7 +3,7 @@
 use granular_edmd::Fingerprint;
 use granular_edmd::wall::{AccelerationBounds, WallMotion, WallState};
 
-/// The sum of two sines whose frequencies need not fit together. It has no period, and it only knows a bound
+/// The sum of two sines whose frequencies need not fit together. It has no period, and knows only one bound
 /// of its acceleration for all times.
 #[derive(Debug, Clone, Copy)]
 pub struct TwoSines {

@@ -1,4 +1,4 @@
-//! Physics in a drum: a boundary of one's own, with a rule, an observable and a scheduler of one's own.
+//! Physics in a drum: a user's boundary, with a rule, an observable and a scheduler of the same user.
 
 use downstream::angular_momentum::AngularMomentum;
 use downstream::drum::Drum;

@@ -1,4 +1,4 @@
-//! A floor with a motion of one's own: no touch is missed, none comes early.
+//! A floor with a user's motion: no touch is missed, and none comes early.
 
 use downstream::lazy_heap::LazyHeap;
 use downstream::two_sines::TwoSines;

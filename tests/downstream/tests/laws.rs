@@ -1,4 +1,4 @@
-//! Walls and boundaries of one's own keep their contracts.
+//! Walls and boundaries of a user keep their contracts.
 
 use downstream::drum::Drum;
 use downstream::two_sines::TwoSines;

@@ -1,4 +1,4 @@
-//! A rule of one's own, by the checks of the library.
+//! A user's rule under the checks of the library.
 
 use downstream::viscoelastic::Viscoelastic;
 use granular_edmd::collision::{collide, laws};

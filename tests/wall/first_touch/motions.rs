@@ -1,4 +1,4 @@
-//! Answers of wall motions about themselves.
+//! The answers that wall motions give about themselves.
 
 use std::f64::consts::TAU;
 
