@@ -9,7 +9,7 @@ use crate::boundary::Region;
 
 /// The fields in one cell of a grid, averaged over all samples; made by [`Fields`].
 ///
-/// Where no disk was seen, everything but the center is 0.
+/// In a cell where no disk was seen, everything but the center is 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]

@@ -45,7 +45,7 @@ pub enum PlanError {
     Ambiguous {
         /// The name.
         parameter: String,
-        /// The parameters that it may be.
+        /// The parameters that the name may stand for.
         known: Vec<String>,
     },
     /// The parameter of a ramp cannot change with the disks in place.

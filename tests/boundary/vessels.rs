@@ -319,7 +319,7 @@ fn numbers_of_every_kind_are_refused_or_taken() {
     assert!(taken > 500, "{taken}");
 }
 
-/// Where the box is shaken as a whole, the sides move together, and floor and lid slide with them.
+/// If the box is shaken as a whole, the sides move together, and floor and lid slide with them.
 #[test]
 fn a_box_that_is_shaken_moves_as_one() {
     let motion = Sinusoidal::new(0.5, 3.0).unwrap();

@@ -570,7 +570,7 @@ impl Boundary for Drum {
     }
 }
 
-/// Does this many collisions, or fewer if there are not so many: disks at rest on a wall collide without end.
+/// Does this many collisions, or all if there are fewer, since disks at rest on a wall collide without end.
 fn take_steps<R: CollisionRule, B: Boundary>(run: &mut Simulation<R, B>, steps: usize) {
     for _ in 0..steps {
         if !matches!(run.step_until(200.0, &mut ()), Ok(Some(_))) {

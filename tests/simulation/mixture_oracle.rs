@@ -63,9 +63,9 @@ impl Mixture {
             width: 4.05 * 5.0_f64.powf(random.random()),
             filling: random.random_range(0.02..0.5),
             gravity: match sides {
-                // What flies out of an open container must fall back.
+                // Disks that fly out of an open container must fall back.
                 Sides::Open => 0.05,
-                // What falls forever, without friction, loses the digits of its place.
+                // Disks that fall forever, without friction, lose the digits of their places.
                 Sides::Periodic(_, true) => 0.0,
                 _ => gravity,
             },

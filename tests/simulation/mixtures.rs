@@ -81,7 +81,7 @@ proptest! {
         gravity in prop_oneof![Just(0.0), Just(0.05)],
         seed in any::<u64>(),
     ) {
-        // What flies out of an open container must fall back.
+        // Disks that fly out of an open container must fall back.
         let gravity = if sides == 1 { 0.05 } else { gravity };
         let radii = radii(160, ratio, two_sizes, seed);
         let (container, disks) = mixture(&radii, sides, filling, seed);

@@ -150,7 +150,7 @@ fn checkpoint_images(checkpoint: &granular_edmd::simulation::Checkpoint) -> Outc
     Ok(run.disks().iter().map(Disk::image).collect())
 }
 
-/// A boundary of one's own whose ends are periodic although it has no upper end.
+/// A user's boundary, whose ends are periodic although it has no upper end.
 struct Endless;
 
 impl Boundary for Endless {

@@ -76,7 +76,7 @@ impl Series {
         };
         let mut file = file.map_err(RecordError::io("create", &path))?;
         file.write_all(bytes).map_err(|error| {
-            // What was written would do no harm, but takes room on a full drive.
+            // The part that was written would do no harm, but takes room on a full drive.
             let _ = fs::remove_file(&path);
             RecordError::io("write to", &path)(error)
         })
