@@ -61,7 +61,7 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Checks that an observer keeps its contract in a few runs of a made-up system.
 ///
-/// The runs have three disks and four walls, collisions with each partner and in several regimes, and up to
+/// The runs have three disks and four walls, collisions with each partner and in all regimes, and up to
 /// fifty samples each, at the times that the observer asks for. The first run starts at time 0, the second
 /// goes on where the first ended, the third starts later and off the beat, and the last is another run from a
 /// time before 0. A run ends early if the observer stops it or fails. The observer keeps what it has
@@ -182,8 +182,13 @@ fn disk(index: usize, round: usize) -> Result<Disk, ParameterError> {
 
 /// Returns a collision, with each partner in turn.
 fn collision(time: f64, number: usize) -> Collision {
-    const REGIMES: [Regime; 4] =
-        [Regime::Sticking, Regime::Sliding, Regime::ContactDuration, Regime::Unspecified];
+    const REGIMES: [Regime; 5] = [
+        Regime::Sticking,
+        Regime::Sliding,
+        Regime::ContactDuration,
+        Regime::ElasticBelow,
+        Regime::Unspecified,
+    ];
     let disk = number % DISKS;
     let partner = match number % (WALLS + 2) {
         wall if wall < WALLS => Partner::Wall(wall),

@@ -31,8 +31,9 @@ impl Heading {
 /// An observable whose values are rows of numbers, each with a name and a unit.
 ///
 /// [`OrderParameters`](super::OrderParameters), [`CenterOfMass`](super::CenterOfMass),
-/// [`Energies`](super::Energies) and [`Temperatures`](super::Temperatures) are tabular, and so are tuples of
-/// them, and an [`OfKind`](super::OfKind) around them. [`named`](super::FromFn::named) makes a closure
+/// [`Energies`](super::Energies), [`Temperatures`](super::Temperatures) and
+/// [`TemperaturesAboutFlow`](super::TemperaturesAboutFlow) are tabular, and so are tuples of them, and an
+/// [`OfKind`](super::OfKind) around them. [`named`](super::FromFn::named) makes a closure
 /// tabular.
 ///
 /// # Contract

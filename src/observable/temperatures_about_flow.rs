@@ -1,6 +1,6 @@
 //! Granular temperatures about the mean flow.
 
-use super::{Grid, Observable, Snapshot, Temperature};
+use super::{Grid, Heading, Observable, Snapshot, Tabular, Temperature};
 
 /// The temperatures about the mean flow, from the velocities minus the mean velocity in each cell of a grid.
 ///
@@ -57,5 +57,17 @@ impl Observable for TemperaturesAboutFlow {
             freedom += (cell.count - 1) as f64;
         }
         Temperature::new(horizontal / freedom, vertical / freedom, rotational / freedom)
+    }
+}
+
+impl Tabular for TemperaturesAboutFlow {
+    fn headings(&self) -> Vec<Heading> {
+        ["horizontal", "vertical", "rotational"]
+            .map(|name| Heading::new(format!("{name}_temperature_about_flow"), "energy"))
+            .into()
+    }
+
+    fn add_numbers(&self, value: &Temperature, row: &mut Vec<f64>) {
+        row.extend([value.horizontal, value.vertical, value.rotational]);
     }
 }
