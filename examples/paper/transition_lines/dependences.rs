@@ -6,17 +6,20 @@ use std::error::Error;
 use granular_edmd::analysis::TransitionLine;
 use granular_edmd::statistics::RunningMean;
 
+use crate::common::results::Results;
 use crate::ramps::Ramp;
+
+const NAME: &str = "transition_lines-dependences";
+
+/// The transitions that are followed.
+const LINES: [TransitionLine; 2] = [TransitionLine::OneTwoEnd, TransitionLine::TwoCollapse];
 
 /// Prints for each study the frictions at which rising ramps end in two rolls and in the collapse: mean and
 /// standard error over its seeds, and the shift against the study `as-stated`.
-pub(crate) fn print(ramps: &[Ramp]) -> Result<(), Box<dyn Error>> {
+pub(crate) fn print(ramps: &[Ramp], results: &Results) -> Result<(), Box<dyn Error>> {
     let mut found: BTreeMap<&str, [RunningMean; 2]> = BTreeMap::new();
     for ramp in ramps {
-        for (line, mean) in [TransitionLine::OneTwoEnd, TransitionLine::TwoCollapse]
-            .iter()
-            .zip(found.entry(&ramp.study).or_default())
-        {
+        for (line, mean) in LINES.iter().zip(found.entry(&ramp.study).or_default()) {
             let first = ramp.crossings()?.into_iter().find(|at| at.line == *line && at.rising);
             if let Some(at) = first {
                 mean.push(at.friction);
@@ -25,11 +28,15 @@ pub(crate) fn print(ramps: &[Ramp]) -> Result<(), Box<dyn Error>> {
     }
     let stated = found.get("as-stated").copied().unwrap_or_default();
     println!("{:34}{:34}collapse from κ", "study", "two rolls from κ");
+    let mut table = results.table(NAME, &["study", "line", "ramps", "friction", "standard_error"])?;
     for (study, means) in &found {
+        for (line, mean) in LINES.iter().zip(means) {
+            table.serialize((study, line.to_string(), mean.count(), mean.mean(), mean.standard_error()))?;
+        }
         let told: Vec<String> = means.iter().zip(&stated).map(|(mean, stated)| shift(mean, stated)).collect();
         println!("{study:34}{:34}{}", told[0], told[1]);
     }
-    Ok(())
+    results.finish_table(NAME, table, None)
 }
 
 fn shift(mean: &RunningMean, stated: &RunningMean) -> String {

@@ -3,7 +3,8 @@
 //! The example reads the tables of ramps that `docs/reproduction/*/run` has made, and averages along each
 //! transition line: the paper's ⟨dE⟩ of a gas of equal temperatures, the same with the ratio of temperatures
 //! that the run has, and the energy change of the collisions in the run. The smaller the scatter along a
-//! line, the better the number governs the transition.
+//! line, the better the number governs the transition. It writes `transition_lines.csv`, and for the other two
+//! questions `transition_lines-walls.csv` and `transition_lines-dependences.csv`.
 //!
 //! ```text
 //! cargo run --release --features serde --example transition_lines -- lines
@@ -20,13 +21,17 @@ mod ramps;
 
 use std::collections::BTreeMap;
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
+use granular_edmd::ParameterError;
 use granular_edmd::kinetic::effective_inelasticity;
+use granular_edmd::statistics::RunningMean;
 
-use common::command_line::{Failure, main as run_example, make_folder};
+use common::command_line::{self, Failure};
+use common::progress::Progress;
+use common::results::Results;
 use numbers::{Number, TABLE, average, formatted};
 use ramps::{Crossing, Ramp};
 
@@ -37,11 +42,13 @@ struct Arguments {
     #[arg(value_enum, default_value = "lines")]
     question: Question,
     /// Folder of the ramps; that of the question in docs/reproduction unless given.
-    #[arg(long)]
+    #[arg(long, value_name = "FOLDER")]
     ramps: Option<PathBuf>,
-    /// Folder for the tables.
-    #[arg(long, default_value = "out")]
-    out: PathBuf,
+    /// Measures every tenth crossing only; the other two questions measure none.
+    #[arg(long)]
+    quick: bool,
+    #[command(flatten)]
+    results: Results,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -65,18 +72,17 @@ impl Question {
 }
 
 fn main() -> ExitCode {
-    run_example(|arguments: &Arguments| {
+    command_line::main(|arguments: &Arguments| {
         let folder = arguments.ramps.clone().unwrap_or_else(|| arguments.question.folder().into());
         let ramps = ramps::read(&folder).map_err(Failure::usage)?;
         if ramps.is_empty() {
             return Err(Failure::usage(format_args!("{} has no tables of ramps", folder.display())));
         }
-        make_folder(&arguments.out)?;
-        let out = &arguments.out;
+        arguments.results.make_folder()?;
         let done = match arguments.question {
-            Question::Lines => lines(&ramps, out),
-            Question::Walls => walls(&ramps),
-            Question::Dependences => dependences::print(&ramps),
+            Question::Lines => lines(&ramps, arguments),
+            Question::Walls => walls(&ramps, &arguments.results),
+            Question::Dependences => dependences::print(&ramps, &arguments.results),
         };
         done.map_err(Failure::run)
     })
@@ -107,15 +113,15 @@ const CHOICES: [Choice; 4] = [
 ];
 
 /// Prints each line under each rule, and writes all crossings.
-fn lines(ramps: &[Ramp], out: &Path) -> Result<(), Box<dyn Error>> {
-    let mut crossings = crossings(ramps)?;
-    for (done, (ramp, at)) in crossings.iter_mut().enumerate() {
+fn lines(ramps: &[Ramp], arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let step = if arguments.quick { 10 } else { 1 };
+    let mut crossings: Vec<_> = crossings(ramps)?.into_iter().step_by(step).collect();
+    let (progress, all) = (Progress::of("crossings"), crossings.len() as u64);
+    for (done, (ramp, at)) in (1..).zip(&mut crossings) {
         at.local = Some(local::measure(ramp.gravity, at)?);
-        if (done + 1) % 10 == 0 {
-            eprintln!("{} crossings measured", done + 1);
-        }
+        progress.show(done, all);
     }
-    write_crossings(&crossings, out)?;
+    drop(progress);
     for (gravity, line, mean, deviation) in TABLE {
         println!("\ng = {gravity}, {line}: paper {mean:.3} ± {deviation:.3}");
         for choice in &CHOICES {
@@ -133,8 +139,7 @@ fn lines(ramps: &[Ramp], out: &Path) -> Result<(), Box<dyn Error>> {
             }
         }
     }
-    println!("\nwrote {}", out.join("transition_lines.csv").display());
-    Ok(())
+    write_crossings(&crossings, &arguments.results)
 }
 
 fn crossings(ramps: &[Ramp]) -> Result<Vec<(&Ramp, Crossing)>, Box<dyn Error>> {
@@ -145,9 +150,8 @@ fn crossings(ramps: &[Ramp]) -> Result<Vec<(&Ramp, Crossing)>, Box<dyn Error>> {
     Ok(all)
 }
 
-fn write_crossings(crossings: &[(&Ramp, Crossing)], out: &Path) -> Result<(), Box<dyn Error>> {
-    let mut table = csv::Writer::from_path(out.join("transition_lines.csv"))?;
-    table.write_record([
+fn write_crossings(crossings: &[(&Ramp, Crossing)], results: &Results) -> Result<(), Box<dyn Error>> {
+    let columns = [
         "study",
         "gravity",
         "oscillations",
@@ -162,7 +166,8 @@ fn write_crossings(crossings: &[(&Ramp, Crossing)], out: &Path) -> Result<(), Bo
         "measured_ratio",
         "local_ratio",
         "in_the_run",
-    ])?;
+    ];
+    let mut table = results.table("transition_lines", &columns)?;
     for (ramp, at) in crossings {
         let along = if ramp.along_friction { "friction" } else { "inelasticity" };
         // The half width of a friction is that of its logarithm times the friction.
@@ -174,11 +179,15 @@ fn write_crossings(crossings: &[(&Ramp, Crossing)], out: &Path) -> Result<(), Bo
         let line = at.line.to_string();
         table.serialize((&ramp.study, ramp.gravity, ramp.oscillations, line, at.rising, along, rounded))?;
     }
-    Ok(table.flush()?)
+    results.finish_table("transition_lines", table, None)
 }
 
 /// Prints Table I under each assumption about the walls, and its distance from the paper's.
-fn walls(ramps: &[Ramp]) -> Result<(), Box<dyn Error>> {
+fn walls(ramps: &[Ramp], results: &Results) -> Result<(), Box<dyn Error>> {
+    const NAME: &str = "transition_lines-walls";
+    let columns =
+        ["study", "number", "gravity", "line", "points", "mean_energy_change", "standard_deviation"];
+    let mut table = results.table(NAME, &columns)?;
     let mut accounts: BTreeMap<String, Vec<(&Ramp, Crossing)>> = BTreeMap::new();
     for (ramp, at) in crossings(ramps)? {
         let name = ramp.study.split("-gravity-").next().unwrap_or_default();
@@ -187,14 +196,20 @@ fn walls(ramps: &[Ramp]) -> Result<(), Box<dyn Error>> {
     for (name, crossings) in &accounts {
         for number in [Number::EqualTemperatures, Number::AsPrinted] {
             println!("\n{name}, {}", number.name());
-            print_account(crossings, number)?;
+            for (gravity, line, found) in print_account(crossings, number)? {
+                let (points, mean, deviation) = (found.count(), found.mean(), found.standard_deviation());
+                table.serialize((name, number.name(), gravity, line, points, mean, deviation))?;
+            }
         }
     }
-    Ok(())
+    results.finish_table(NAME, table, None)
 }
 
-fn print_account(crossings: &[(&Ramp, Crossing)], number: Number) -> Result<(), Box<dyn Error>> {
-    let mut squares = 0.0;
+/// A row of Table I as it was found: gravity, line, and the average along it.
+type Row = (f64, String, RunningMean);
+
+fn print_account(crossings: &[(&Ramp, Crossing)], number: Number) -> Result<Vec<Row>, ParameterError> {
+    let (mut squares, mut rows) = (0.0, Vec::new());
     for (gravity, line, mean, deviation) in TABLE {
         let is_of = |ramp: &Ramp, at: &Crossing| ramp.gravity == gravity && at.line == line;
         let of_line: Vec<&Crossing> =
@@ -207,7 +222,8 @@ fn print_account(crossings: &[(&Ramp, Crossing)], number: Number) -> Result<(), 
             line.to_string(),
             formatted(&found)
         );
+        rows.push((gravity, line.to_string(), found));
     }
     println!("  rms deviation {:.2} of the paper's standard deviations", squares.sqrt());
-    Ok(())
+    Ok(rows)
 }
