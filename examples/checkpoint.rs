@@ -4,7 +4,7 @@
 //! cargo run --release --features serde --example checkpoint
 //! ```
 //!
-//! A second. You learn what a checkpoint holds (all of the state) and what it does not (rule and walls, which
+//! A moment. You learn what a checkpoint holds (all of the state) and what it does not (rule and walls, which
 //! the program makes again), and how to keep a measurement beside it.
 
 use granular_edmd::prelude::*;

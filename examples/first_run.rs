@@ -4,7 +4,7 @@
 //! cargo run --release --example first_run
 //! ```
 //!
-//! A second. You learn how a run is put together: walls, disks, a rule for their collisions, something to
+//! A moment. You learn how a run is put together: walls, disks, a rule for their collisions, something to
 //! watch.
 
 use granular_edmd::prelude::*;

@@ -4,7 +4,7 @@
 //! cargo run --release --example own_boundary
 //! ```
 //!
-//! A second. You learn what a boundary answers (where it is, when a disk touches it, what its surface is
+//! A moment. You learn what a boundary answers (where it is, when a disk touches it, what its surface is
 //! like), and that its geometry is made of the same bricks as the vessels of the library.
 
 use granular_edmd::boundary::laws;

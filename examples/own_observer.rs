@@ -4,7 +4,7 @@
 //! cargo run --release --example own_observer > force.csv
 //! ```
 //!
-//! A second. You learn how an observer hears of collisions, has a clock, and never changes a run.
+//! A moment. You learn how an observer hears of collisions, has a clock, and never changes a run.
 
 use granular_edmd::prelude::*;
 

@@ -4,7 +4,7 @@
 //! cargo run --release --example own_rule
 //! ```
 //!
-//! A second. You learn what a rule is (a contact goes in, an impulse comes out), and how a rule is checked.
+//! A moment. You learn what a rule is (a contact goes in, an impulse comes out), and how a rule is checked.
 //! A gas of such grains cools more slowly than one of constant restitution.
 
 use granular_edmd::collision::laws::{self, Promises};

@@ -9,11 +9,11 @@ use crate::studies;
 /// The size of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Size {
-    /// A few values of each parameter, for a minute or two: the picture in rough outlines.
+    /// A few values of each parameter, for half a minute: the picture in rough outlines.
     Quick,
-    /// All frictions and inelasticities, 6000 oscillations each: half an hour on two cores.
+    /// All frictions and inelasticities, 6000 oscillations each: six minutes on one core.
     Coarse,
-    /// The paper's: 100 000 oscillations each, all ramps up and down: about ten hours.
+    /// The paper's: 100 000 oscillations each, all ramps up and down: hours, about three on one core.
     Full,
 }
 
