@@ -28,9 +28,11 @@ use granular_edmd::prelude::*;
 use kuva::prelude::{Layout, LinePlot, Plot, ScatterPlot};
 
 use common::command_line::{self, Failure, non_negative, positive};
+use common::look::{BLUE, GREEN, INK, Look, ORANGE, QUIET};
+use common::panel::{self, Place};
 use common::progress::Progress;
 use common::results::Results;
-use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
+use common::sheet::Sheet;
 
 /// A large disk among small ones, in a shaken box: how high it is over time.
 #[derive(Parser)]
@@ -188,7 +190,7 @@ const SHOWN: f64 = 32.0;
 const COLORS: [&str; 4] = [BLUE, ORANGE, GREEN, INK];
 
 /// Draws an intruder at first and at its highest, and all heights over time.
-fn draw(nuts: &[Nut]) -> Result<Vec<u8>, Box<dyn Error>> {
+fn draw(nuts: &[Nut]) -> Result<Sheet, Box<dyn Error>> {
     let unit = (HEIGHT - MARGINS[2] - MARGINS[3]) / SHOWN;
     let frame = WIDTH * unit + MARGINS[0] + MARGINS[1];
     let mut sheet = Sheet::new(2.0 * frame + 560.0, HEADER + HEIGHT + 8.0);
@@ -205,7 +207,7 @@ fn draw(nuts: &[Nut]) -> Result<Vec<u8>, Box<dyn Error>> {
     let later = format!("highest, after {time:.0} oscillations");
     for (k, (disks, when)) in [(&shown.start, "at first"), (highest, &later)].into_iter().enumerate() {
         let place = Place { x: k as f64 * frame, y: HEADER, width: frame, height: HEIGHT };
-        let layout = sheet::axes((0.0, WIDTH), (0.0, SHOWN)).with_show_grid(false).with_box_axes();
+        let layout = panel::axes((0.0, WIDTH), (0.0, SHOWN));
         sheet.panel(place, MARGINS, faces(disks, unit), layout.with_x_label("x").with_y_label("height"));
         sheet.text(
             place.x + MARGINS[0],
@@ -220,7 +222,7 @@ fn draw(nuts: &[Nut]) -> Result<Vec<u8>, Box<dyn Error>> {
     let names: Vec<_> = COLORS.into_iter().cycle().zip(names.iter().map(String::as_str)).collect();
     sheet.key(place.x + MARGINS[0], HEADER + 16.0, &names);
     sheet.panel(place, MARGINS, lines(nuts), heights(nuts));
-    Ok(sheet.png(1.6)?)
+    Ok(sheet)
 }
 
 impl Nut {
@@ -257,6 +259,6 @@ fn lines(nuts: &[Nut]) -> Vec<Plot> {
 fn heights(nuts: &[Nut]) -> Layout {
     let last =
         nuts.iter().filter_map(|nut| nut.heights.last()).map(|[time, ..]| time + 1.0).fold(1.0, f64::max);
-    let layout = sheet::axes((0.0, last), (0.0, SHOWN)).with_show_grid(true);
+    let layout = panel::axes((0.0, last), (0.0, SHOWN));
     layout.with_x_label("oscillations").with_y_label("height of the intruder (dashed: mean of the grains)")
 }

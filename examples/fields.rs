@@ -27,9 +27,11 @@ use kuva::plot::quiver::QuiverPivot;
 use kuva::prelude::{Heatmap, Layout, Plot, QuiverPlot, TickFormat};
 
 use common::command_line::{self, Failure, non_negative};
+use common::look::{INK, Look, QUIET};
+use common::panel::{self, Place};
 use common::progress::Progress;
 use common::results::Results;
-use common::sheet::{self, INK, Place, QUIET, Sheet};
+use common::sheet::Sheet;
 
 /// Density, flow and temperatures of the paper's vibrated box on a grid, averaged over time.
 #[derive(Parser)]
@@ -163,7 +165,7 @@ fn maps() -> [Map; 4] {
         Map {
             name: "velocity; color: upward",
             value: |cell| cell.velocity.y,
-            color: |share| sheet::diverging(2.0 * share - 1.0),
+            color: |share| common::look::diverging(2.0 * share - 1.0),
             lowest: Lowest::Opposite,
         },
         Map {
@@ -181,7 +183,7 @@ fn maps() -> [Map; 4] {
     ]
 }
 
-fn draw(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Result<Vec<u8>, String> {
+fn draw(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Result<Sheet, String> {
     let top = top(fine);
     let size = (UNIT * BOX.x + MARGINS[0] + MARGINS[1], UNIT * top + MARGINS[2] + MARGINS[3]);
     let mut sheet = Sheet::new(4.0 * size.0 + 10.0, HEADER + BAR + size.1);
@@ -196,10 +198,10 @@ fn draw(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Result<Vec<u8>
             plots.push(arrows(coarse));
         }
         let place = Place { x, y: HEADER + BAR, width: size.0, height: size.1 };
-        let axes = sheet::axes((0.0, BOX.x), (0.0, top)).with_show_grid(false).with_box_axes();
+        let axes = panel::axes((0.0, BOX.x), (0.0, top));
         sheet.panel(place, MARGINS, plots, axes.with_x_label("x").with_y_label("height"));
     }
-    sheet.png(1.3)
+    Ok(sheet)
 }
 
 fn write_header(sheet: &mut Sheet, arguments: &Arguments, fine: &Fields, coarse: &Fields) {
@@ -263,7 +265,7 @@ fn draw_bar(sheet: &mut Sheet, place: Place, map: &Map, range: (f64, f64)) {
         .with_x_range(range.0, range.1)
         .with_y_range(0.0, 1.0)
         .with_cell_size(1.0);
-    let axes: Layout = sheet::axes(range, (0.0, 1.0)).with_show_grid(false).with_box_axes();
+    let axes: Layout = panel::axes(range, (0.0, 1.0));
     let axes = axes.with_ticks(4).with_y_tick_step(2.0);
     let axes = axes.with_y_tick_format(TickFormat::Custom(Arc::new(|_| String::new())));
     sheet.panel(place, BAR_MARGINS, vec![bar.into()], axes);

@@ -25,9 +25,11 @@ use granular_edmd::simulation::Counters;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 
 use common::command_line::{self, Failure, positive};
+use common::look::{BLUE, GREEN, INK, Look, ORANGE, QUIET};
+use common::panel::{self, Place};
 use common::progress::Progress;
 use common::results::Results;
-use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
+use common::sheet::Sheet;
 
 /// Grains that come to rest, under each remedy: events, height, heat and creep.
 #[derive(Parser)]
@@ -241,7 +243,7 @@ const FAMILIES: [(&str, &str); 4] = [
 ];
 
 /// Draws some heaps, and cost and heat over the parameters of the remedies.
-fn draw(heaps: &[Heap]) -> Result<Vec<u8>, Box<dyn Error>> {
+fn draw(heaps: &[Heap]) -> Result<Sheet, Box<dyn Error>> {
     let frame = [WIDTH * UNIT + MARGINS[0] + MARGINS[1], SHOWN * UNIT + MARGINS[2] + MARGINS[3]];
     let mut sheet = Sheet::new(2.0 * frame[0], HEADER + 2.0 * frame[1] + 340.0);
     sheet.text(MARGINS[0], 28.0, 19, INK, "Fifty grains that came to rest");
@@ -257,7 +259,7 @@ fn draw(heaps: &[Heap]) -> Result<Vec<u8>, Box<dyn Error>> {
             continue;
         };
         let (x, y) = ((k % 2) as f64 * frame[0], HEADER + (k / 2) as f64 * frame[1]);
-        let layout = sheet::axes((0.0, WIDTH), (0.0, SHOWN)).with_show_grid(false).with_box_axes();
+        let layout = panel::axes((0.0, WIDTH), (0.0, SHOWN));
         let place = Place { x, y, width: frame[0], height: frame[1] };
         sheet.panel(
             place,
@@ -273,12 +275,12 @@ fn draw(heaps: &[Heap]) -> Result<Vec<u8>, Box<dyn Error>> {
         [("events per grain and time", |heap| heap.events), ("heat per grain", |heap| heap.heat)];
     for (k, (label, value)) in panels.into_iter().enumerate() {
         let place = Place { x: k as f64 * frame[0], y: below + 20.0, width: frame[0], height: 310.0 };
-        let layout = sheet::axes((1e-2, 1.0), range(heaps, value)).with_log_scale().with_show_grid(true);
+        let layout = panel::axes((1e-2, 1.0), range(heaps, value)).with_log_scale();
         let layout = layout.with_x_label("duration, or speed, of the remedy").with_y_label(label);
         sheet.panel(place, MARGINS, curves(heaps, value), layout);
     }
     sheet.key(MARGINS[0], below + 16.0, &FAMILIES);
-    Ok(sheet.png(1.4)?)
+    Ok(sheet)
 }
 
 /// A number of a heap.

@@ -25,9 +25,11 @@ use granular_edmd::prelude::*;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 
 use common::command_line::{self, Failure, positive};
+use common::look::{BLUE, GREEN, INK, Look, ORANGE, QUIET};
+use common::panel::{self, Place};
 use common::progress::Progress;
 use common::results::Results;
-use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
+use common::sheet::Sheet;
 
 /// Flow out of a silo over the width of its outlet.
 #[derive(Parser)]
@@ -227,7 +229,7 @@ const HEIGHT: f64 = 520.0;
 const SHOWN: f64 = 38.0;
 
 /// Draws the silo with the widest outlet some time after the gate was opened, and the flows with the law.
-fn draw(flows: &[Flow], law: Option<Law>) -> Result<Vec<u8>, Box<dyn Error>> {
+fn draw(flows: &[Flow], law: Option<Law>) -> Result<Sheet, Box<dyn Error>> {
     let unit = (HEIGHT - MARGINS[2] - MARGINS[3]) / SHOWN;
     let frame = WIDTH * unit + MARGINS[0] + MARGINS[1];
     let mut sheet = Sheet::new(frame + 560.0, HEADER + HEIGHT + 8.0);
@@ -236,7 +238,7 @@ fn draw(flows: &[Flow], law: Option<Law>) -> Result<Vec<u8>, Box<dyn Error>> {
     sheet.text(MARGINS[0], 47.0, 12, QUIET, about);
     let Some(shown) = flows.last() else { return Err("no outlet to draw".into()) };
     let place = Place { x: 0.0, y: HEADER, width: frame, height: HEIGHT };
-    let layout = sheet::axes((0.0, WIDTH), (0.0, SHOWN)).with_show_grid(false).with_box_axes();
+    let layout = panel::axes((0.0, WIDTH), (0.0, SHOWN));
     let mut plots = faces(&shown.shot, unit);
     plots.extend(floor(shown.outlet));
     sheet.panel(place, MARGINS, plots, layout.with_x_label("x").with_y_label("height"));
@@ -249,11 +251,11 @@ fn draw(flows: &[Flow], law: Option<Law>) -> Result<Vec<u8>, Box<dyn Error>> {
     }
     let widest = flows.iter().map(|flow| flow.outlet).fold(0.0, f64::max) + 1.0;
     let fastest = 1.15 * flows.iter().map(|flow| flow.rate).fold(1.0, f64::max);
-    let layout = sheet::axes((0.0, widest), (0.0, fastest)).with_show_grid(true);
+    let layout = panel::axes((0.0, widest), (0.0, fastest));
     let layout =
         layout.with_x_label("width D of the outlet").with_y_label("flow W, grains for each unit of time");
     sheet.panel(place, MARGINS, curves(flows, law, widest), layout);
-    Ok(sheet.png(1.6)?)
+    Ok(sheet)
 }
 
 fn faces(disks: &[Disk], unit: f64) -> Vec<Plot> {

@@ -1,9 +1,12 @@
-//! Parts that the examples share: the command line, progress, the results, the mean flow, and panels on a
-//! sheet.
+//! Parts that the examples share: the command line, progress, the results, the mean flow, and pictures: looks
+//! of series, panels on a sheet, and the sheet as a file.
 #![allow(dead_code, reason = "each example takes what it needs")]
 
 pub(crate) mod command_line;
 pub(crate) mod flow;
+pub(crate) mod look;
+pub(crate) mod panel;
 pub(crate) mod progress;
+pub(crate) mod raster;
 pub(crate) mod results;
 pub(crate) mod sheet;

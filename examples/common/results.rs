@@ -9,6 +9,7 @@ use clap::Args;
 use serde_json::{Map, Value};
 
 use super::command_line::{Failure, make_folder};
+use super::sheet::Sheet;
 
 /// The places of the results.
 #[derive(Debug, Clone, Args)]
@@ -44,16 +45,16 @@ impl Results {
         Ok(table)
     }
 
-    /// Ends the table of this name, and writes the picture and the numbers.
+    /// Ends the table of this name, and writes the picture, as SVG and PNG, and the numbers.
     pub(crate) fn finish(
         &self,
         name: &str,
         mut table: csv::Writer<File>,
-        png: &[u8],
+        picture: &Sheet,
         numbers: &Value,
     ) -> Result<(), Box<dyn Error>> {
         table.flush()?;
-        self.finish_picture(name, png, numbers)
+        self.finish_picture(name, picture, numbers)
     }
 
     /// Writes a table of this name by a function, the picture and the numbers.
@@ -61,17 +62,17 @@ impl Results {
         &self,
         name: &str,
         table: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-        png: &[u8],
+        picture: &Sheet,
         numbers: &Value,
     ) -> Result<(), Box<dyn Error>> {
         table(&mut File::create(self.out.join(name).with_extension("csv"))?)?;
-        self.finish_picture(name, png, numbers)
+        self.finish_picture(name, picture, numbers)
     }
 
-    fn finish_picture(&self, name: &str, png: &[u8], numbers: &Value) -> Result<(), Box<dyn Error>> {
+    fn finish_picture(&self, name: &str, picture: &Sheet, numbers: &Value) -> Result<(), Box<dyn Error>> {
         let path = self.out.join(name);
-        fs::write(path.with_extension("png"), png)?;
-        println!("wrote {0}.png and {0}.csv", path.display());
+        picture.write(&path)?;
+        println!("wrote {0}.svg, {0}.png and {0}.csv", path.display());
         self.write_json(numbers)
     }
 
@@ -89,13 +90,13 @@ impl Results {
         &self,
         name: &str,
         mut table: csv::Writer<File>,
-        png: Option<&[u8]>,
+        picture: Option<&Sheet>,
     ) -> Result<(), Box<dyn Error>> {
         table.flush()?;
         let table = self.path(name).with_extension("csv");
-        if let Some(png) = png {
-            fs::write(table.with_extension("png"), png)?;
-            println!("wrote {}", table.with_extension("png").display());
+        if let Some(picture) = picture {
+            picture.write(&table)?;
+            println!("wrote {0}.svg and {0}.png", self.path(name).display());
         }
         println!("wrote {}", table.display());
         self.write_tables_as_json(&[(name, table)])

@@ -1,25 +1,29 @@
-//! Panels on a sheet, and the sheet as a picture.
+//! A sheet with panels, marks, legends and text: a picture, as SVG and as PNG.
 
-use kuva::backend::png::PngBackend;
+use std::fs;
+use std::path::Path;
+
+use kuva::backend::svg::SvgBackend;
 use kuva::prelude::{Layout, Plot};
 use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
-use kuva::render::theme::Theme;
 
-/// Colors of all pictures.
-pub(crate) const INK: &str = "#22272e";
-pub(crate) const QUIET: &str = "#6b7480";
-pub(crate) const BLUE: &str = "#2c6fbb";
-pub(crate) const ORANGE: &str = "#d9722e";
-pub(crate) const GREEN: &str = "#3a8f6a";
+use super::look::{INK, Look, QUIET};
+use super::panel::{self, LARGE, Margins, Panel, Place, SMALL};
+use super::raster;
 
-/// A rectangle on the sheet, in its units; `y` points down.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
-    pub(crate) x: f64,
-    pub(crate) y: f64,
-    pub(crate) width: f64,
-    pub(crate) height: f64,
-}
+/// Pixels of the PNG file to a unit of the sheet.
+const PIXELS: f32 = 2.0;
+
+/// Fonts of the letters. The PNG file has the first; a viewer of the SVG file takes the first that it finds.
+const FONTS: &str = "DejaVu Sans, Verdana, sans-serif";
+
+/// Distance of the lines of a legend, and length of its samples.
+const LINE: f64 = 22.0;
+const SAMPLE: f64 = 34.0;
+
+/// Lengths of the ticks of logarithmic axes.
+const LONG: f64 = 6.0;
+const SHORT: f64 = 3.5;
 
 /// A picture made of panels.
 pub(crate) struct Sheet {
@@ -29,52 +33,142 @@ pub(crate) struct Sheet {
 impl Sheet {
     /// Creates an empty sheet.
     pub(crate) fn new(width: f64, height: f64) -> Self {
-        Self { scene: Scene::new(width, height) }
+        let mut scene = Scene::new(width, height);
+        scene.font_family = Some(FONTS.into());
+        scene.text_color = Some(INK.into());
+        Self { scene }
     }
 
-    /// Adds a panel with the space that `margins` gives between its edge and its axes: left, right, top,
-    /// bottom.
-    pub(crate) fn panel(&mut self, place: Place, margins: [f64; 4], plots: Vec<Plot>, layout: Layout) {
-        let [left, right, top, bottom] = margins;
-        let grid = layout.show_grid;
-        let layout = layout
-            .with_width(place.width)
-            .with_height(place.height)
-            .with_force_margins(left, right)
-            .with_force_margins_y(top, bottom)
-            .with_theme(theme())
-            .with_show_grid(grid)
-            .with_label_size(13)
-            .with_tick_size(11);
-        let panel = render_multiple(plots, layout);
-        self.scene.defs.extend(panel.defs);
+    /// Adds a panel. The margins are the space between its edge and its axes: left, right, top, bottom.
+    pub(crate) fn panel(
+        &mut self,
+        place: Place,
+        margins: Margins,
+        plots: Vec<Plot>,
+        layout: Layout,
+    ) -> Panel {
+        let panel = Panel::new(place, margins, &layout);
+        let drawn = render_multiple(plots, panel::styled(layout, place, margins));
+        self.scene.defs.extend(drawn.defs);
         let transform = Some(format!("translate({},{})", place.x, place.y));
         self.scene.add(Primitive::GroupStart { transform, title: None, extra_attrs: None });
-        panel.elements.into_iter().for_each(|element| self.scene.add(element));
+        drawn.elements.into_iter().for_each(|element| self.scene.add(element));
         self.scene.add(Primitive::GroupEnd);
+        self.add_logarithmic_ticks(&panel);
+        panel
+    }
+
+    fn add_logarithmic_ticks(&mut self, panel: &Panel) {
+        let Place { x, y, width, height } = panel.place;
+        let length = |long| if long { LONG } else { SHORT };
+        if panel.x.logarithmic {
+            for (value, long) in panel.x.ticks() {
+                let (at, length) = (panel.along(value), length(long));
+                self.line(vec![(at, y), (at, y + length)], INK, 1.0);
+                self.line(vec![(at, y + height), (at, y + height - length)], INK, 1.0);
+                if long {
+                    self.add_text((at, y + height + 18.0), SMALL, TextAnchor::Middle, INK, &number(value));
+                }
+            }
+        }
+        if panel.y.logarithmic {
+            for (value, long) in panel.y.ticks() {
+                let (at, length) = (panel.up(value), length(long));
+                self.line(vec![(x, at), (x + length, at)], INK, 1.0);
+                self.line(vec![(x + width, at), (x + width - length, at)], INK, 1.0);
+                if long {
+                    self.add_text((x - 6.0, at + 5.0), SMALL, TextAnchor::End, INK, &number(value));
+                }
+            }
+        }
+    }
+
+    /// Adds the marks of a series to a panel.
+    pub(crate) fn marks(&mut self, panel: &Panel, look: Look, points: impl IntoIterator<Item = (f64, f64)>) {
+        let held = points.into_iter().filter(|&point| panel.holds(point));
+        held.for_each(|point| self.mark(panel.at(point), look));
+    }
+
+    /// Adds a mark about this place of the sheet.
+    pub(crate) fn mark(&mut self, place: (f64, f64), look: Look) {
+        look.mark(place).into_iter().for_each(|mark| self.scene.add(mark));
+    }
+
+    /// Adds bars for errors to a panel, along or up, from one end to the other.
+    pub(crate) fn bars(
+        &mut self,
+        panel: &Panel,
+        look: Look,
+        bars: impl IntoIterator<Item = [(f64, f64); 2]>,
+    ) {
+        for ends in bars {
+            let [from, to] = ends.map(|end| panel.at(panel.nearest(end)));
+            self.line(vec![from, to], look.color, 1.2);
+            // Caps across the ends: up for a bar that lies.
+            let cap = if from.1 == to.1 { (0.0, 3.0) } else { (3.0, 0.0) };
+            for (x, y) in [from, to] {
+                self.line(vec![(x - cap.0, y - cap.1), (x + cap.0, y + cap.1)], look.color, 1.2);
+            }
+        }
+    }
+
+    /// Adds the names of series, one below the other from here, with samples of their lines and marks.
+    pub(crate) fn legend(&mut self, (x, y): (f64, f64), entries: &[(Look, &str)]) {
+        for (row, (look, name)) in entries.iter().enumerate() {
+            self.add_entry((x, y + LINE * row as f64), *look, name);
+        }
+    }
+
+    /// Adds the names of series, side by side from here, with samples of their lines and marks.
+    pub(crate) fn legend_in_row(&mut self, (x, y): (f64, f64), entries: &[(Look, &str)]) {
+        let mut x = x;
+        for (look, name) in entries {
+            self.add_entry((x, y), *look, name);
+            x += sample(*look) + width(name, SMALL) + 26.0;
+        }
+    }
+
+    fn add_entry(&mut self, (x, y): (f64, f64), look: Look, name: &str) {
+        let (length, middle) = (sample(look), y - 5.0);
+        if look.dash.is_some() {
+            self.scene.add(Primitive::Line {
+                x1: x,
+                y1: middle,
+                x2: x + length,
+                y2: middle,
+                stroke: look.color.into(),
+                stroke_width: look.width,
+                stroke_dasharray: look.dash(),
+            });
+        }
+        self.mark((x + 0.5 * length, middle), look);
+        self.text(x + length + 8.0, y, SMALL, INK, name);
     }
 
     /// Adds a line of text that starts here.
     pub(crate) fn text(&mut self, x: f64, y: f64, size: u32, color: &str, content: &str) {
-        self.scene.add(Primitive::Text {
-            x,
-            y,
-            content: content.to_owned(),
-            size,
-            anchor: TextAnchor::Start,
-            rotate: None,
-            bold: false,
-            color: Some(color.into()),
-        });
+        self.add_text((x, y), size, TextAnchor::Start, color, content);
     }
 
-    /// Adds names in their colors, side by side from here.
-    pub(crate) fn key(&mut self, x: f64, y: f64, names: &[(&str, &str)]) {
-        let mut x = x;
-        for (color, name) in names {
-            self.text(x, y, 12, color, name);
-            x += 7.5 * name.chars().count() as f64 + 16.0;
+    /// Adds a line of text about here.
+    pub(crate) fn centered(&mut self, place: (f64, f64), size: u32, color: &str, content: &str) {
+        self.add_text(place, size, TextAnchor::Middle, color, content);
+    }
+
+    fn add_text(&mut self, (x, y): (f64, f64), size: u32, anchor: TextAnchor, color: &str, content: &str) {
+        let (content, color) = (content.to_owned(), Some(color.into()));
+        self.scene.add(Primitive::Text { x, y, content, size, anchor, rotate: None, bold: false, color });
+    }
+
+    /// Adds a title, and below it lines of small text. Returns the height of the last.
+    pub(crate) fn header(&mut self, x: f64, title: &str, lines: &[&str]) -> f64 {
+        self.text(x, 30.0, LARGE, INK, title);
+        let mut y = 34.0;
+        for line in lines {
+            y += 19.0;
+            self.text(x, y, SMALL, QUIET, line);
         }
+        y
     }
 
     /// Adds a disk about this place.
@@ -92,41 +186,46 @@ impl Sheet {
 
     /// Adds a line through these points.
     pub(crate) fn line(&mut self, points: Vec<(f64, f64)>, color: &str, width: f64) {
-        self.scene.add(Primitive::PolyLine {
-            points,
-            stroke: color.into(),
-            stroke_width: width,
-            stroke_dasharray: None,
-        });
+        let (stroke, stroke_dasharray) = (color.into(), None);
+        self.scene.add(Primitive::PolyLine { points, stroke, stroke_width: width, stroke_dasharray });
     }
 
-    /// Returns the picture as a PNG file, with this many pixels to a unit.
-    pub(crate) fn png(&self, scale: f32) -> Result<Vec<u8>, String> {
-        PngBackend::new().with_scale(scale).render_scene(&self.scene)
+    /// Adds an arrow to the right of this length, and text behind it: the scale of the arrows of a panel.
+    pub(crate) fn arrow(&mut self, (x, y): (f64, f64), length: f64, content: &str) {
+        let (end, middle, head) = (x + length, y - 5.0, 6.0_f64.min(0.5 * length));
+        self.line(vec![(x, middle), (end, middle)], INK, 1.6);
+        self.line(
+            vec![(end - head, middle - 0.6 * head), (end, middle), (end - head, middle + 0.6 * head)],
+            INK,
+            1.6,
+        );
+        self.text(end + 8.0, y, SMALL, INK, content);
+    }
+
+    /// Returns the picture as an SVG file.
+    pub(crate) fn svg(&self) -> String {
+        SvgBackend::new().with_pretty(true).render_scene(&self.scene)
+    }
+
+    /// Writes the picture as NAME.svg and NAME.png.
+    pub(crate) fn write(&self, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
+        let svg = self.svg();
+        fs::write(path.with_extension("svg"), &svg)?;
+        Ok(fs::write(path.with_extension("png"), raster::png(&svg, PIXELS)?)?)
     }
 }
 
-/// Returns a layout whose axes have exactly these ranges.
-pub(crate) fn axes(x: (f64, f64), y: (f64, f64)) -> Layout {
-    let exact = Layout::new(x, y).with_x_axis_min(x.0).with_x_axis_max(x.1);
-    exact.with_y_axis_min(y.0).with_y_axis_max(y.1)
+/// Returns the length of a sample in a legend.
+const fn sample(look: Look) -> f64 {
+    if look.dash.is_some() { SAMPLE } else { 10.0 }
 }
 
-fn theme() -> Theme {
-    Theme {
-        axis_color: QUIET.into(),
-        tick_color: QUIET.into(),
-        text_color: INK.into(),
-        grid_color: "#e7eaee".into(),
-        ..Theme::light()
-    }
+/// Returns about the width of a text.
+fn width(text: &str, size: u32) -> f64 {
+    0.58 * f64::from(size) * text.chars().count() as f64
 }
 
-/// Returns a color from blue (-1) over light gray (0) to red (1).
-pub(crate) fn diverging(value: f64) -> String {
-    let (middle, blue, red) = ([214.0, 217.0, 221.0], [33.0, 102.0, 172.0], [178.0, 34.0, 48.0]);
-    let end = if value < 0.0 { blue } else { red };
-    let share = value.abs().min(1.0);
-    let mix = |k: usize| (middle[k] + share * (end[k] - middle[k])) as u8;
-    format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2))
+/// Formats the number of a tick as people write it, with a power only if it is very large or very small.
+fn number(value: f64) -> String {
+    if (1e-4..1e5).contains(&value) { value.to_string() } else { format!("{value:e}") }
 }

@@ -7,7 +7,9 @@ use granular_edmd::glam::DVec2;
 use kuva::prelude::{LinePlot, Plot, QuiverPivot, QuiverPlot, ScatterPlot};
 
 use crate::common::flow;
-use crate::common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
+use crate::common::look::{BLUE, GREEN, INK, Look, ORANGE, QUIET};
+use crate::common::panel::{self, Place};
+use crate::common::sheet::Sheet;
 use crate::{Arguments, PIN, Turned};
 
 /// Space between a panel's edge and its axes: left, right, top, bottom.
@@ -18,7 +20,7 @@ const BELOW: f64 = 290.0;
 const COLORS: [&str; 4] = [BLUE, ORANGE, GREEN, INK];
 
 /// Draws the drums in a row, and angles and flow below.
-pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Result<Vec<u8>, Box<dyn Error>> {
+pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Result<Sheet, Box<dyn Error>> {
     let (frame, tall) = (SIDE + MARGINS[0] + MARGINS[1], SIDE + MARGINS[2] + MARGINS[3]);
     let width = frame * drums.len().max(2) as f64;
     let mut sheet = Sheet::new(width, HEADER + tall + 40.0 + BELOW);
@@ -31,7 +33,7 @@ pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Result<Vec<u8>, B
     for (k, drum) in drums.iter().enumerate() {
         let place = Place { x: k as f64 * frame, y: HEADER + 18.0, width: frame, height: tall };
         let edge = 1.02 * arguments.radius;
-        let layout = sheet::axes((-edge, edge), (-edge, edge)).with_show_grid(false).with_box_axes();
+        let layout = panel::axes((-edge, edge), (-edge, edge));
         let layout = layout.with_x_label("x, in diameters").with_y_label("y");
         sheet.panel(place, MARGINS, inside(arguments, drum, 0.5 * SIDE / edge), layout);
         let (angle, error) = (drum.angle.mean(), drum.angle.standard_error());
@@ -40,17 +42,17 @@ pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Result<Vec<u8>, B
     }
     let place = Place { x: 0.0, y: HEADER + tall + 40.0, width: 0.5 * width, height: BELOW };
     let turns = drums.iter().filter_map(|drum| drum.surfaces.last()).map(|(turns, _)| *turns);
-    let layout = sheet::axes((0.5, turns.fold(0.6, f64::max)), (0.0, 60.0)).with_show_grid(true);
+    let layout = panel::axes((0.5, turns.fold(0.6, f64::max)), (0.0, 60.0));
     let layout = layout.with_x_label("turns").with_y_label("angle of the surface, in degrees");
     sheet.panel(place, MARGINS, angles(drums), layout);
     let place = Place { x: 0.5 * width, ..place };
     let fastest = drums.iter().flat_map(|drum| relative(arguments, drum)).map(|(speed, _)| -speed);
-    let layout = sheet::axes((-1.05 * fastest.fold(1.0, f64::max), 1.2), (-1.0, 0.5)).with_show_grid(true);
+    let layout = panel::axes((-1.05 * fastest.fold(1.0, f64::max), 1.2), (-1.0, 0.5));
     let layout =
         layout.with_x_label("velocity up the surface, in ΩR").with_y_label("height above the axis, in R");
     sheet.panel(place, MARGINS, flows(arguments, drums), layout);
     sheet.text(place.x + 76.0, place.y + 216.0, 12, QUIET, "dashed: turning as a body");
-    Ok(sheet.png(1.35)?)
+    Ok(sheet)
 }
 
 fn color(k: usize) -> &'static str {

@@ -5,7 +5,9 @@ use std::error::Error;
 use granular_edmd::prelude::*;
 use kuva::prelude::LinePlot;
 
-use crate::common::sheet::{self, BLUE, INK, ORANGE, Place, QUIET, Sheet};
+use crate::common::look::{BLUE, INK, Look, ORANGE, QUIET};
+use crate::common::panel::{self, Place};
+use crate::common::sheet::Sheet;
 use crate::{Arguments, Frame, Glass, Way, grains};
 
 /// Space between a panel's edge and its axes: left, right, top, bottom.
@@ -15,7 +17,7 @@ const FILM: f64 = 340.0;
 const GAP: f64 = 16.0;
 
 /// Draws the film above the numbers over time.
-pub(crate) fn draw(arguments: &Arguments, glass: &Glass, ways: &[Way; 2]) -> Result<Vec<u8>, Box<dyn Error>> {
+pub(crate) fn draw(arguments: &Arguments, glass: &Glass, ways: &[Way; 2]) -> Result<Sheet, Box<dyn Error>> {
     let unit = FILM / (2.0 * glass.top);
     let step = 2.0 * glass.width * unit + GAP;
     let [first, second] = ways;
@@ -38,13 +40,13 @@ pub(crate) fn draw(arguments: &Arguments, glass: &Glass, ways: &[Way; 2]) -> Res
     }
     let place = Place { x: 0.0, y: HEADER + FILM + 20.0, width: width - 4.0, height: 275.0 };
     let last = ways.iter().map(Way::end).fold(1.0, f64::max);
-    let layout = sheet::axes((0.0, last), (0.0, grains(arguments) as f64)).with_show_grid(true);
+    let layout = panel::axes((0.0, last), (0.0, grains(arguments) as f64));
     let layout = layout.with_x_label("time t, in √(d/g)").with_y_label("grains above the neck");
     let curve = |way: &Way| way.frames.iter().map(|f| (f.time, f.above as f64)).collect::<Vec<_>>();
     let line = |way, color| LinePlot::new().with_data(curve(way)).with_color(color).with_stroke_width(2.0);
     sheet.panel(place, MARGINS, vec![line(first, BLUE).into(), line(second, ORANGE).into()], layout);
     sheet.key(width - 200.0, place.y + 36.0, &[(BLUE, "first"), (ORANGE, "turned over")]);
-    Ok(sheet.png(1.35)?)
+    Ok(sheet)
 }
 
 fn add_glass(sheet: &mut Sheet, glass: &Glass, frame: &Frame, unit: f64, place: impl Fn(DVec2) -> DVec2) {

@@ -31,7 +31,9 @@ use kuva::plot::scatter::MarkerShape;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 
 use common::command_line::{non_negative, whole};
-use common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
+use common::look::{BLUE, GREEN, INK, Look, ORANGE, QUIET};
+use common::panel::{self, Place};
+use common::sheet::Sheet;
 
 /// Clusters of the order parameters where one roll and two coexist (paper, Fig. 4).
 #[derive(Parser)]
@@ -147,7 +149,7 @@ const SIZE: (f64, f64) = (860.0, 526.0);
 /// Ranges of both axes.
 const RANGES: [(f64, f64); 2] = [(-0.25, 0.25), (-0.08, 0.22)];
 
-fn draw(arguments: &Arguments, study: &Study<VibratedBox>, run: &Run) -> Result<Vec<u8>, String> {
+fn draw(arguments: &Arguments, study: &Study<VibratedBox>, run: &Run) -> Result<Sheet, String> {
     let mut sheet = Sheet::new(SIZE.0, HEADER + SIZE.1);
     let plural = if run.clusters() == 1 { "" } else { "s" };
     let title = format!("{} cluster{plural} at κ = {}", run.clusters(), arguments.friction);
@@ -165,11 +167,7 @@ fn draw(arguments: &Arguments, study: &Study<VibratedBox>, run: &Run) -> Result<
     sheet.text(MARGINS[0], 28.0, 20, INK, &title);
     sheet.text(MARGINS[0], 48.0, 12, QUIET, system);
     sheet.text(MARGINS[0], 66.0, 12, QUIET, &protocol);
-    let layout = sheet::axes(RANGES[0], RANGES[1])
-        .with_x_label("Ψ₁, one roll")
-        .with_y_label("Ψ₂, two rolls")
-        .with_show_grid(false)
-        .with_box_axes();
+    let layout = panel::axes(RANGES[0], RANGES[1]).with_x_label("Ψ₁, one roll").with_y_label("Ψ₂, two rolls");
     let place = Place { x: 0.0, y: HEADER, width: SIZE.0, height: SIZE.1 };
     sheet.panel(place, MARGINS, plots(run), layout);
     for (state, cluster) in run.found.iter() {
@@ -180,7 +178,7 @@ fn draw(arguments: &Arguments, study: &Study<VibratedBox>, run: &Run) -> Result<
         let (x, y) = on_sheet(cluster.center() + DVec2::Y * away);
         sheet.text(x - 3.2 * text.chars().count() as f64, y, 13, color(state), &text);
     }
-    sheet.png(1.6)
+    Ok(sheet)
 }
 
 /// Returns the place of a point of the plane on the sheet.

@@ -8,11 +8,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::Args;
 use granular_edmd::study::vibrated_box::{Base, VibratedBox};
 use granular_edmd::study::{Control, Experiment, Plan, RampStatus, Study, StudyError, Summary};
-use kuva::backend::png::PngBackend;
-use kuva::render::figure::Figure;
 
 use crate::common::progress::Progress;
 use crate::common::results::Results;
+use crate::common::sheet::Sheet;
 
 /// Set by Ctrl-C.
 static STOP: AtomicBool = AtomicBool::new(false);
@@ -45,16 +44,16 @@ impl Common {
         complete(&folder, plan, self.ramp)
     }
 
-    /// Writes a figure into the folder of a study, and the values of the study as JSON.
+    /// Writes a picture of this name into the folder of a study, and the values of the study as JSON.
     pub(crate) fn finish<E: Experiment>(
         &self,
-        figure: Figure,
+        picture: &Sheet,
         study: &Study<E>,
         name: &str,
     ) -> Result<(), Box<dyn Error>> {
         let path = study.folder().join(name);
-        std::fs::write(&path, PngBackend::new().render_scene(&figure.render())?)?;
-        println!("wrote {}; the tables are beside it", path.display());
+        picture.write(&path)?;
+        println!("wrote {0}.svg and {0}.png; the tables are beside them", path.display());
         self.results.write_tables_as_json(&[("values", study.folder().join("values.csv"))])
     }
 }

@@ -6,7 +6,9 @@ use kuva::prelude::{Layout, LinePlot, Plot, QuiverPlot, ScatterPlot};
 
 use crate::arguments::{Arguments, Base};
 use crate::common::flow;
-use crate::common::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
+use crate::common::look::{BLUE, GREEN, INK, Look, ORANGE, QUIET};
+use crate::common::panel::{self, Place};
+use crate::common::sheet::Sheet;
 use crate::experiment::Outcome;
 use crate::report::Means;
 
@@ -22,14 +24,14 @@ const MARGINS: [f64; 4] = [58.0, 12.0, 20.0, 44.0];
 const ENOUGH: f64 = 0.1;
 
 /// Draws the picture, and returns it as a PNG file.
-pub(crate) fn draw(arguments: &Arguments, outcome: &Outcome, means: &Means) -> Result<Vec<u8>, String> {
+pub(crate) fn draw(arguments: &Arguments, outcome: &Outcome, means: &Means) -> Result<Sheet, String> {
     let view = View::of(arguments, &outcome.disks);
     let width = view.place.width + SERIES_WIDTH;
     let mut sheet = Sheet::new(width + 10.0, HEADER + HEIGHT + FOOTER);
     write_header(&mut sheet, arguments, outcome, means);
     sheet.panel(view.place, MARGINS, disks_and_flow(&view, outcome), view.layout());
     draw_series(&mut sheet, view.place.width, arguments, outcome, means);
-    sheet.png(1.6)
+    Ok(sheet)
 }
 
 /// The part of the box that is shown, and its scale.
@@ -54,7 +56,7 @@ impl View {
     }
 
     fn layout(&self) -> Layout {
-        let axes = sheet::axes((0.0, self.width), (0.0, self.height)).with_show_grid(false).with_box_axes();
+        let axes = panel::axes((0.0, self.width), (0.0, self.height));
         axes.with_x_label("x").with_y_label("height")
     }
 }
@@ -75,7 +77,7 @@ fn disks_and_flow(view: &View, outcome: &Outcome) -> Vec<Plot> {
 fn colors(disks: &[Disk]) -> Vec<String> {
     let square = disks.iter().map(|disk| disk.angular_velocity().powi(2)).sum::<f64>() / disks.len() as f64;
     let full = 2.0 * square.sqrt().max(f64::MIN_POSITIVE);
-    disks.iter().map(|disk| sheet::diverging(disk.angular_velocity() / full)).collect()
+    disks.iter().map(|disk| crate::common::look::diverging(disk.angular_velocity() / full)).collect()
 }
 
 /// Returns the mean flow as arrows. The longest arrow is a little longer than a cell.
@@ -175,7 +177,7 @@ fn noise_band(arguments: &Arguments, noise: f64) -> Plot {
 }
 
 fn series_layout(plots: &[Plot], arguments: &Arguments, label: &str) -> Layout {
-    let axes = sheet::axes((0.0, arguments.oscillations() as f64), range(plots));
+    let axes = panel::axes((0.0, arguments.oscillations() as f64), range(plots));
     axes.with_y_label(label)
 }
 

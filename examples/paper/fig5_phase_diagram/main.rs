@@ -10,8 +10,8 @@
 //! cargo run --release --features serde,rayon --example fig5_phase_diagram -- --size full
 //! ```
 //!
-//! The example writes `fig5_phase_diagram.png`, `points.csv` and `transitions.csv`, which the example
-//! `table1` reads, beside the studies `up` and `down`. Ctrl-C stops the example, which saves all that was
+//! The example writes `fig5_phase_diagram.svg` and `.png`, `points.csv` and `transitions.csv`, which the
+//! example `table1` reads, beside the studies `up` and `down`. Ctrl-C stops the example, which saves all that was
 //! done and draws it. The same command then goes on.
 
 #[path = "../../common/mod.rs"]
@@ -31,6 +31,7 @@ use granular_edmd::study::Study;
 use granular_edmd::study::vibrated_box::VibratedBox;
 
 use common::results::Results;
+use picture::Diagram;
 use plan::{Gravity, Part, Size};
 
 /// Convective states in the plane of friction and inelasticity (paper, Fig. 5).
@@ -93,10 +94,15 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     states::write_points(&points, gravity, &folder)?;
     states::write_lines(&lines, gravity, &folder)?;
     let caption = caption(arguments, &parts, points.len());
-    let picture = picture::draw(arguments.gravity, &caption, &points, &lines)?;
-    std::fs::write(folder.join("fig5_phase_diagram.png"), picture)?;
+    let (drawn, crossings) = (states::drawn(&points), states::crossings(&lines));
+    let title = format!("Convective states at g = {gravity}");
+    let diagram = Diagram { gravity, title: &title, notes: &caption, states: &drawn, crossings: &crossings };
+    picture::draw(&diagram)?.write(&folder.join("fig5_phase_diagram"))?;
     println!("{caption}");
-    println!("wrote fig5_phase_diagram.png, points.csv and transitions.csv to {}", folder.display());
+    println!(
+        "wrote fig5_phase_diagram.svg, fig5_phase_diagram.png, points.csv and transitions.csv to {}",
+        folder.display()
+    );
     let tables = ["points", "transitions"].map(|name| (name, folder.join(name).with_extension("csv")));
     arguments.results.write_tables_as_json(&tables)
 }
@@ -107,9 +113,8 @@ fn caption(arguments: &Arguments, parts: &[Part], finished: usize) -> String {
     let unfinished =
         if finished < total { format!("; {finished} of {total} points so far") } else { String::new() };
     format!(
-        "N = 1000, box 60 × 150, bi-parabolic base A = 0.1, ω = 10, contact duration 1e-4\n{cycles} oscillations for \
-         each point, the first half discarded; seed {}, {}{unfinished}",
-        arguments.seed,
-        arguments.size().name()
+        "N = 1000, box 60 × 150, bi-parabolic base A = 0.1, ω = 10, contact duration 1e-4;\n\
+         {cycles} oscillations for each point, the first half discarded; seed {}{unfinished}",
+        arguments.seed
     )
 }

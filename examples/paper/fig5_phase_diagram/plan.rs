@@ -45,14 +45,6 @@ impl Gravity {
             Self::Large => 0.015_625,
         }
     }
-
-    /// Returns the largest inelasticity of the picture. At the smaller gravity, everything needs more loss.
-    pub(crate) const fn largest_inelasticity(self) -> f64 {
-        match self {
-            Self::Small => 0.24,
-            Self::Large => 0.08,
-        }
-    }
 }
 
 /// Frictions from 0.005 to 3, with about equal steps of the logarithm, and smaller ones where one roll gives

@@ -8,6 +8,8 @@ use granular_edmd::analysis::{ConvectiveRegime, PlaneTransition, StateCriteria, 
 use granular_edmd::study::vibrated_box::{Convection, VibratedBox};
 use granular_edmd::study::{Leg, Record, Study};
 
+use crate::picture::{Crossing, State};
+
 /// The state seen at a point of the plane, on the way up or down.
 pub(crate) struct Point {
     pub(crate) friction: f64,
@@ -61,6 +63,30 @@ pub(crate) fn points(studies: &[Study<VibratedBox>]) -> Result<Vec<Point>, Box<d
 /// Returns the points of the transition lines.
 pub(crate) fn lines(points: &[Point]) -> Result<Vec<PlaneTransition>, ParameterError> {
     plane_transitions(points.iter().map(|point| (point.friction, point.inelasticity, point.regime)))
+}
+
+/// Returns the points as the picture takes them.
+pub(crate) fn drawn(points: &[Point]) -> Vec<State> {
+    let state = |point: &Point| State {
+        friction: point.friction,
+        inelasticity: point.inelasticity,
+        regime: point.regime,
+        down: point.leg == Some(Leg::Down),
+    };
+    points.iter().map(state).collect()
+}
+
+/// Returns the points of the lines as the picture takes them.
+pub(crate) fn crossings(lines: &[PlaneTransition]) -> Vec<Crossing> {
+    let crossing =
+        |&PlaneTransition { line, friction, inelasticity, between, rising, .. }: &PlaneTransition| Crossing {
+            line,
+            friction,
+            inelasticity,
+            rising,
+            between,
+        };
+    lines.iter().map(crossing).collect()
 }
 
 /// Writes `points.csv`.

@@ -1,0 +1,134 @@
+//! Panels: their places on a sheet, and their axes.
+
+use kuva::prelude::{Layout, TickAlign, TickPos};
+use kuva::render::theme::Theme;
+
+use super::look::INK;
+
+/// Sizes of letters: notes and numbers at ticks, names of axes and series, and the title.
+pub(crate) const SMALL: u32 = 14;
+pub(crate) const MEDIUM: u32 = 16;
+pub(crate) const LARGE: u32 = 20;
+
+/// A rectangle on the sheet, in its units; `y` points down.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
+}
+
+/// Space between a panel's edge and its axes: left, right, top, bottom.
+pub(crate) type Margins = [f64; 4];
+
+/// An axis of a panel: its range, and the kind of its scale.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Axis {
+    range: (f64, f64),
+    pub(crate) logarithmic: bool,
+}
+
+impl Axis {
+    /// Returns the place of a value between the ends, from 0 to 1.
+    fn share(&self, value: f64) -> f64 {
+        let (low, high) = self.range;
+        if self.logarithmic { (value / low).ln() / (high / low).ln() } else { (value - low) / (high - low) }
+    }
+
+    /// Returns the ticks of a logarithmic axis, and for each whether it is long and has a number.
+    pub(crate) fn ticks(&self) -> Vec<(f64, bool)> {
+        let (low, high) = self.range;
+        // An axis shorter than a decade and a half has numbers at 2 and 5, too.
+        let short = high / low < 30.0;
+        let long = |k| k == 1 || (short && (k == 2 || k == 5));
+        let decades = low.log10().floor() as i32..=high.log10().ceil() as i32;
+        // Division keeps 0.001 what it is; a product with 1e-3 would not.
+        let at = |k, decade: i32| f64::from(k) * 10f64.powi(decade.max(0)) / 10f64.powi((-decade).max(0));
+        let ticks = decades.flat_map(|decade| (1..10).map(move |k| (at(k, decade), long(k))));
+        ticks.filter(|(tick, _)| (low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(tick)).collect()
+    }
+}
+
+/// A panel on a sheet: the place inside of its axes, and their ranges.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Panel {
+    pub(crate) place: Place,
+    pub(crate) x: Axis,
+    pub(crate) y: Axis,
+}
+
+impl Panel {
+    pub(crate) const fn new(place: Place, margins: Margins, layout: &Layout) -> Self {
+        let [left, right, top, bottom] = margins;
+        let place = Place {
+            x: place.x + left,
+            y: place.y + top,
+            width: place.width - left - right,
+            height: place.height - top - bottom,
+        };
+        Self {
+            place,
+            x: Axis { range: layout.x_range, logarithmic: layout.log_x },
+            y: Axis { range: layout.y_range, logarithmic: layout.log_y },
+        }
+    }
+
+    /// Returns the place of a point on the sheet.
+    pub(crate) fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        let Place { x: left, y: top, width, height } = self.place;
+        (left + width * self.x.share(x), top + height * (1.0 - self.y.share(y)))
+    }
+
+    /// Returns the place of a value of the axis that lies.
+    pub(crate) fn along(&self, value: f64) -> f64 {
+        self.at((value, self.y.range.0)).0
+    }
+
+    /// Returns the place of a value of the axis that stands.
+    pub(crate) fn up(&self, value: f64) -> f64 {
+        self.at((self.x.range.0, value)).1
+    }
+
+    /// Returns the point within the axes that is nearest.
+    pub(crate) fn nearest(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        (x.clamp(self.x.range.0, self.x.range.1), y.clamp(self.y.range.0, self.y.range.1))
+    }
+
+    /// Tells whether a point is within the axes.
+    pub(crate) fn holds(&self, (x, y): (f64, f64)) -> bool {
+        let within = |share: f64| (-1e-9..=1.0 + 1e-9).contains(&share);
+        within(self.x.share(x)) && within(self.y.share(y))
+    }
+}
+
+/// Returns a layout whose axes have exactly these ranges.
+pub(crate) fn axes(x: (f64, f64), y: (f64, f64)) -> Layout {
+    let exact = Layout::new(x, y).with_x_axis_min(x.0).with_x_axis_max(x.1);
+    exact.with_y_axis_min(y.0).with_y_axis_max(y.1)
+}
+
+/// Gives a layout the size of its panel, and the style of all panels.
+pub(crate) fn styled(layout: Layout, place: Place, margins: Margins) -> Layout {
+    let [left, right, top, bottom] = margins;
+    let mut layout = layout
+        .with_width(place.width)
+        .with_height(place.height)
+        .with_force_margins(left, right)
+        .with_force_margins_y(top, bottom)
+        .with_theme(theme())
+        .with_show_grid(false)
+        .with_box_axes()
+        .with_tick_align(TickAlign::Inside)
+        .with_tick_pos(TickPos::Both)
+        .with_label_size(MEDIUM)
+        .with_tick_size(SMALL);
+    // The ticks of logarithmic axes are our own: a number at each power of ten, and short ticks between them.
+    layout.suppress_x_ticks |= layout.log_x;
+    layout.suppress_y_ticks |= layout.log_y;
+    layout
+}
+
+fn theme() -> Theme {
+    Theme { axis_color: INK.into(), tick_color: INK.into(), text_color: INK.into(), ..Theme::light() }
+}
