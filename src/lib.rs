@@ -10,19 +10,25 @@
 //! ```
 //! use granular_edmd::prelude::*;
 //!
-//! // A box smaller than the paper's: width 20, height 50, a base of amplitude 0.1 and angular frequency 10.
+//! // A box smaller than the paper's: width 20, height 50,
+//! // over a base of amplitude 0.1 and angular frequency 10.
 //! let base = BiParabolic::new(0.1, 10.0)?;
 //! let oscillation = std::f64::consts::TAU / base.angular_frequency();
 //! let container = Container::closed(20.0, 50.0)?.with_motion(Wall::Floor, base)?;
 //!
-//! // 100 disks of diameter 1 that start on a lattice, with inelasticity 0.01 and friction 0.1.
+//! // 100 disks of diameter 1 that start on a lattice,
+//! // with inelasticity 0.01 and friction 0.1.
 //! let disks = initial::lattice(&container, 100, 0.5)?;
 //! let disks = initial::with_maxwellian_velocities(disks, 0.5, 42)?;
 //! let rule = ContactDuration::new(Frictional::new(0.01, 0.1)?, 1e-4)?;
-//! let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
+//! let mut simulation = Simulation::builder(rule, container)
+//!     .disks(disks)
+//!     .gravity(0.015_625)
+//!     .build()?;
 //!
 //! // Watch the convection rolls, the height and the energy loss for 100 oscillations.
-//! let mut series = Series::new((OrderParameters, CenterOfMass), SampleTimes::every(10.0 * oscillation)?);
+//! let times = SampleTimes::every(10.0 * oscillation)?;
+//! let mut series = Series::new((OrderParameters, CenterOfMass), times);
 //! let mut energy = EnergyChange::default();
 //! simulation.run_until(100.0 * oscillation, &mut (&mut series, &mut energy))?;
 //!
