@@ -207,11 +207,11 @@ impl Sheet {
         SvgBackend::new().with_pretty(true).render_scene(&self.scene)
     }
 
-    /// Writes the picture as NAME.svg and NAME.png.
+    /// Writes the picture as NAME.svg and NAME.png; a name may have dots in it.
     pub(crate) fn write(&self, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
         let svg = self.svg();
-        fs::write(path.with_extension("svg"), &svg)?;
-        Ok(fs::write(path.with_extension("png"), raster::png(&svg, PIXELS)?)?)
+        fs::write(format!("{}.svg", path.display()), &svg)?;
+        Ok(fs::write(format!("{}.png", path.display()), raster::png(&svg, PIXELS)?)?)
     }
 }
 
