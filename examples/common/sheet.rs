@@ -1,5 +1,6 @@
 //! A sheet with panels, marks, legends and text: a picture, as SVG and as PNG.
 
+use std::error::Error;
 use std::fs;
 use std::path::Path;
 
@@ -103,11 +104,11 @@ impl Sheet {
     ) {
         for ends in bars {
             let [from, to] = ends.map(|end| panel.at(panel.nearest(end)));
-            self.line(vec![from, to], look.color, 1.2);
+            self.line(vec![from, to], look.color, 1.0);
             // Caps across the ends: up for a bar that lies.
             let cap = if from.1 == to.1 { (0.0, 3.0) } else { (3.0, 0.0) };
             for (x, y) in [from, to] {
-                self.line(vec![(x - cap.0, y - cap.1), (x + cap.0, y + cap.1)], look.color, 1.2);
+                self.line(vec![(x - cap.0, y - cap.1), (x + cap.0, y + cap.1)], look.color, 1.0);
             }
         }
     }
@@ -208,10 +209,10 @@ impl Sheet {
     }
 
     /// Writes the picture as NAME.svg and NAME.png; a name may have dots in it.
-    pub(crate) fn write(&self, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
+    pub(crate) fn write(&self, name: &Path) -> Result<(), Box<dyn Error>> {
         let svg = self.svg();
-        fs::write(format!("{}.svg", path.display()), &svg)?;
-        Ok(fs::write(format!("{}.png", path.display()), raster::png(&svg, PIXELS)?)?)
+        fs::write(format!("{}.svg", name.display()), &svg)?;
+        Ok(fs::write(format!("{}.png", name.display()), raster::png(&svg, PIXELS)?)?)
     }
 }
 

@@ -4,9 +4,11 @@ use std::error::Error;
 
 use granular_edmd::ParameterError;
 use granular_edmd::analysis::TransitionLine;
+use granular_edmd::statistics::RunningMean;
+use kuva::prelude::Plot;
 
 use crate::common::look::{BLUE, GREEN, INK, Look, Mark, VERMILION};
-use crate::common::panel::{self, Margins, Place};
+use crate::common::panel::{self, MEDIUM, Margins, Place};
 use crate::common::sheet::Sheet;
 use crate::numbers::Number;
 use crate::phase_diagram::{self, Diagram, State};
@@ -34,17 +36,22 @@ pub(crate) fn draw(crossings: &[(&Ramp, Crossing)]) -> Result<Sheet, ParameterEr
     let mut sheet = Sheet::new(WIDTH * PANELS.len() as f64, HEADER + HEIGHT);
     sheet.header(MARGINS[0], "One number for the transitions?", &[
         "Energy loss per collision at the transitions, by the closed form in a Maxwellian gas: open with T_rot = T, as in the paper,",
-        "full with the ratio T_rot/T of the runs. N = 1000, box 60 × 150; bars: the width to which a transition is known",
+        "full with the ratio T_rot/T of the runs, thin lines at their means. Bars: the width to which a transition is known",
     ]);
     sheet.legend_in_row((MARGINS[0], HEADER - 26.0), &LINES.map(|(_, look, name)| (look, name)));
     for (number, (gravity, most)) in PANELS.into_iter().enumerate() {
         let place = Place { x: WIDTH * number as f64, y: HEADER, width: WIDTH, height: HEIGHT };
         let layout = panel::axes(FRICTIONS, (0.0, most))
             .with_log_x()
-            .with_title(format!("g = {gravity}"))
             .with_x_label("friction κ")
             .with_y_label("energy loss −⟨dE⟩/T");
-        let panel = sheet.panel(place, MARGINS, Vec::new(), layout);
+        let panel = sheet.panel(place, MARGINS, means(gravity, crossings)?, layout);
+        sheet.centered(
+            (place.x + 0.5 * (WIDTH + MARGINS[0]), HEADER + 22.0),
+            MEDIUM,
+            INK,
+            &format!("g = {gravity}"),
+        );
         for (line, look, _) in LINES {
             for (_, at) in crossings.iter().filter(|(ramp, at)| ramp.gravity == gravity && at.line == line) {
                 let loss = |number: Number, at: &Crossing| Ok((at.friction, -number.at(at)?));
@@ -57,6 +64,20 @@ pub(crate) fn draw(crossings: &[(&Ramp, Crossing)]) -> Result<Sheet, ParameterEr
         }
     }
     Ok(sheet)
+}
+
+/// Returns a thin line for each transition, at the mean of its full marks.
+fn means(gravity: f64, crossings: &[(&Ramp, Crossing)]) -> Result<Vec<Plot>, ParameterError> {
+    let mut lines = Vec::new();
+    for (line, look, _) in LINES {
+        let of = crossings.iter().filter(|(ramp, at)| ramp.gravity == gravity && at.line == line);
+        let losses: Vec<f64> = of.map(|(_, at)| Number::MeasuredRatio.at(at)).collect::<Result<_, _>>()?;
+        let mean = -losses.iter().copied().collect::<RunningMean>().mean();
+        lines.push(
+            Look::line(look.color, "").with_width(0.8).curve([(FRICTIONS.0, mean), (FRICTIONS.1, mean)]),
+        );
+    }
+    Ok(lines)
 }
 
 /// Draws the phase diagram of the ramps at this gravity.
