@@ -56,7 +56,16 @@ impl Sheet {
         drawn.elements.into_iter().for_each(|element| self.scene.add(element));
         self.scene.add(Primitive::GroupEnd);
         self.add_logarithmic_ticks(&panel);
+        self.add_frame(&panel);
         panel
+    }
+
+    /// Adds the edges of a panel once more, over what was drawn in it.
+    fn add_frame(&mut self, panel: &Panel) {
+        let Place { x, y, width, height } = panel.place;
+        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
+        let edges = corners.map(|(right, down)| (x + right * width, y + down * height));
+        self.line(edges.to_vec(), INK, 1.0);
     }
 
     fn add_logarithmic_ticks(&mut self, panel: &Panel) {
@@ -115,8 +124,9 @@ impl Sheet {
 
     /// Adds the names of series, one below the other from here, with samples of their lines and marks.
     pub(crate) fn legend(&mut self, (x, y): (f64, f64), entries: &[(Look, &str)]) {
+        let length = entries.iter().map(|(look, _)| sample(*look)).fold(0.0, f64::max);
         for (row, (look, name)) in entries.iter().enumerate() {
-            self.add_entry((x, y + LINE * row as f64), *look, name);
+            self.add_entry((x, y + LINE * row as f64), length, *look, name);
         }
     }
 
@@ -124,13 +134,13 @@ impl Sheet {
     pub(crate) fn legend_in_row(&mut self, (x, y): (f64, f64), entries: &[(Look, &str)]) {
         let mut x = x;
         for (look, name) in entries {
-            self.add_entry((x, y), *look, name);
+            self.add_entry((x, y), sample(*look), *look, name);
             x += sample(*look) + width(name, SMALL) + 26.0;
         }
     }
 
-    fn add_entry(&mut self, (x, y): (f64, f64), look: Look, name: &str) {
-        let (length, middle) = (sample(look), y - 5.0);
+    fn add_entry(&mut self, (x, y): (f64, f64), length: f64, look: Look, name: &str) {
+        let middle = y - 5.0;
         if look.dash.is_some() {
             self.scene.add(Primitive::Line {
                 x1: x,
@@ -154,6 +164,22 @@ impl Sheet {
     /// Adds a line of text about here.
     pub(crate) fn centered(&mut self, place: (f64, f64), size: u32, color: &str, content: &str) {
         self.add_text(place, size, TextAnchor::Middle, color, content);
+    }
+
+    /// Adds a line of text about here, on white that hides the lines behind it.
+    pub(crate) fn on_white(&mut self, (x, y): (f64, f64), size: u32, content: &str) {
+        let (width, height) = (width(content, size) + 6.0, f64::from(size));
+        self.scene.add(Primitive::Rect {
+            x: x - 0.5 * width,
+            y: y - 0.85 * height,
+            width,
+            height,
+            fill: "white".into(),
+            stroke: None,
+            stroke_width: None,
+            opacity: None,
+        });
+        self.centered((x, y), size, INK, content);
     }
 
     fn add_text(&mut self, (x, y): (f64, f64), size: u32, anchor: TextAnchor, color: &str, content: &str) {

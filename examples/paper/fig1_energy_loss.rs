@@ -104,7 +104,7 @@ impl Panel {
     /// heights.
     fn label_place(&self, index: usize, piece: &Piece) -> (f64, f64) {
         let lowest = piece.iter().map(|&point| self.fraction(point).1).fold(1.0, f64::min);
-        let height = (0.45 + 0.1 * f64::from(u8::from(index.is_multiple_of(2)))).max(lowest + 0.15);
+        let height = (0.38 + 0.11 * (index % 3) as f64).max(lowest + 0.15);
         let distance = |&point: &(f64, f64)| {
             let (across, up) = self.fraction(point);
             let edge = (0.05 - across).max(across - 0.95).max(0.03 - up).max(up - 0.97).max(0.0);
@@ -115,12 +115,6 @@ impl Panel {
         let short = !self.logarithmic && piece.iter().all(|&(friction, _)| friction < 0.7);
         let middle = piece[piece.len() / 2];
         if short { middle } else { nearest.copied().unwrap_or(middle) }
-    }
-
-    /// Tells whether a point of a line would run through the label at `place`.
-    fn hides(&self, place: (f64, f64), point: (f64, f64)) -> bool {
-        let ((x, y), (at_x, at_y)) = (self.fraction(point), self.fraction(place));
-        (x - at_x).abs() < 0.036 && (y - at_y).abs() < 0.028
     }
 
     /// Returns points of the curve on which friction loses most.
@@ -209,7 +203,7 @@ const LARGEST: Look = Look::line(INK, "8 4").with_width(1.6);
 fn draw(panels: &[Panel], gas: &Maxwellian) -> Result<Sheet, ParameterError> {
     let mut sheet = Sheet::new(WIDTH, HEADER + HEIGHT * panels.len() as f64);
     let temperature = gas.rotational_temperature();
-    let note = format!("Maxwellian gas of temperature T, rotational temperature {temperature} T");
+    let note = format!("Maxwellian gas of temperature T, with a rotational temperature of {temperature} T");
     sheet.header(MARGINS[0], "Mean energy change per collision, ⟨dE⟩/T", &[&note]);
     sheet.legend((MARGINS[0], 75.0), &[(LARGEST, "largest loss at each q; numbers: ⟨dE⟩/T")]);
     for (number, panel) in panels.iter().enumerate() {
@@ -230,16 +224,18 @@ fn draw_panel(
         let look = look(level);
         for piece in pieces.iter().filter(|piece| piece.len() > 1) {
             let place = panel.label_place(index, piece);
-            labels.push((place, format!("{level}").replace('-', "−"), look.color));
-            let parts = piece.split(|&point| panel.hides(place, point));
-            plots.extend(parts.map(|part| look.curve(part.to_vec())));
+            // A short piece in a corner has no room for a label.
+            if panel.fraction(place).0 > 0.06 {
+                labels.push((place, format!("{level}").replace('-', "−")));
+            }
+            plots.push(look.curve(piece.iter().copied()));
         }
     }
     plots.push(LARGEST.curve(panel.maxima(gas)?));
     let drawn = sheet.panel(place, MARGINS, plots, panel.layout());
-    for (point, text, color) in labels {
+    for (point, text) in labels {
         let (x, y) = drawn.at(point);
-        sheet.centered((x, y + 5.0), SMALL - 2, color, &text);
+        sheet.on_white((x, y + 5.0), SMALL - 1, &text);
     }
     Ok(())
 }

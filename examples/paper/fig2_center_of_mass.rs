@@ -108,13 +108,16 @@ fn draw(points: &[Point], slip: bool) -> Sheet {
     let mut sheet = Sheet::new(WIDTH, HEADER + HEIGHT);
     let base = if slip { "thermal base with slip" } else { "thermal base" };
     let note = format!("N = 500, width 25, g = 0.002, q = 0.025, {base}");
-    sheet.header(MARGINS[0], "The column is lowest where friction costs most", &[&note]);
+    sheet.header(MARGINS[0], "A column over a thermal base", &[&note]);
     // The axis is logarithmic, so the value without friction is drawn as a line.
     let drawn = || points.iter().filter(|point| point.friction > 0.0);
     let place = |point: &Point| (point.friction, point.height.mean());
     let (rough, smooth) = (LOOKS[0], Look::line(QUIET, "8 4"));
     let mut plots = vec![rough.with_width(1.0).curve(drawn().map(place))];
-    let mut names = vec![(rough.without_line(), "κ > 0, with standard error")];
+    let mut names = vec![
+        (rough.without_line(), "κ > 0, with standard error"),
+        (rough.without_line().open(), "the same, the error a lower bound"),
+    ];
     if let Some(at) = points.iter().find(|point| point.friction == 0.0) {
         plots.push(smooth.curve([EDGES.0, EDGES.1].map(|friction| (friction, at.height.mean()))));
         names.push((smooth, "κ = 0"));
@@ -128,8 +131,11 @@ fn draw(points: &[Point], slip: bool) -> Sheet {
         [mean - error, mean + error].map(|height| (point.friction, height))
     };
     sheet.bars(&panel, rough, drawn().map(bar));
-    sheet.marks(&panel, rough, drawn().map(place));
-    sheet.legend((MARGINS[0] + 16.0, HEADER + HEIGHT - 96.0), &names);
+    for point in drawn() {
+        let look = if point.height.is_converged() { rough } else { rough.open() };
+        sheet.marks(&panel, look, [place(point)]);
+    }
+    sheet.legend((MARGINS[0] + 16.0, HEADER + HEIGHT - 118.0), &names);
     sheet
 }
 
