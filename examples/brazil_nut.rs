@@ -10,7 +10,7 @@
 //! cargo run --release --example brazil_nut -- --sizes 3,8 --heavy 6 --out nuts
 //! ```
 //!
-//! The example writes `brazil_nut.png` and `brazil_nut.csv`. Literature: A. Rosato et al., Phys. Rev. Lett.
+//! The example writes `brazil_nut.svg`, `brazil_nut.png` and `brazil_nut.csv`. Literature: A. Rosato et al., Phys. Rev. Lett.
 //! 58, 1038 (1987); J. B. Knight et al., Phys. Rev. Lett. 70, 3728 (1993) for the flow; D. C. Hong et al.,
 //! Phys. Rev. Lett. 86, 3423 (2001) for disks that sink.
 
@@ -25,11 +25,11 @@ use granular_edmd::Kind;
 use granular_edmd::boundary::Obstacles;
 use granular_edmd::glam::DVec2;
 use granular_edmd::prelude::*;
-use kuva::prelude::{Layout, LinePlot, Plot, ScatterPlot};
+use kuva::prelude::{Layout, Plot, ScatterPlot};
 
 use common::command_line::{self, Failure, non_negative, positive};
-use common::look::{BLUE, GREEN, INK, Look, ORANGE, QUIET};
-use common::panel::{self, Place};
+use common::look::{INK, Look, QUIET, VERMILION};
+use common::panel::{self, Margins, Place, SMALL};
 use common::progress::Progress;
 use common::results::Results;
 use common::sheet::Sheet;
@@ -179,50 +179,55 @@ fn write(arguments: &Arguments, nuts: &[Nut]) -> Result<(), Box<dyn Error>> {
     arguments.results.finish("brazil_nut", table, &draw(nuts)?, &numbers)
 }
 
-/// Space between a panel's edge and its axes: left, right, top, bottom.
-const MARGINS: [f64; 4] = [52.0, 14.0, 24.0, 44.0];
+const MARGINS: Margins = [58.0, 14.0, 28.0, 52.0];
 const HEADER: f64 = 56.0;
-const HEIGHT: f64 = 420.0;
+const HEIGHT: f64 = 440.0;
 
 /// Height of the part of the box that is shown.
 const SHOWN: f64 = 32.0;
 
-const COLORS: [&str; 4] = [BLUE, ORANGE, GREEN, INK];
+/// The mean height of the grains.
+const GRAIN: Look = Look::line(QUIET, "4 3").with_width(1.4);
 
 /// Draws an intruder at first and at its highest, and all heights over time.
 fn draw(nuts: &[Nut]) -> Result<Sheet, Box<dyn Error>> {
     let unit = (HEIGHT - MARGINS[2] - MARGINS[3]) / SHOWN;
     let frame = WIDTH * unit + MARGINS[0] + MARGINS[1];
-    let mut sheet = Sheet::new(2.0 * frame + 560.0, HEADER + HEIGHT + 8.0);
-    sheet.text(MARGINS[0], 28.0, 19, INK, "A large disk among small ones, in a shaken box");
-    sheet.text(
-        MARGINS[0],
-        47.0,
-        12,
-        QUIET,
-        "600 grains, A = 1, ω = 2, g = 1, q = 0.05, κ = 0.3, rough walls",
-    );
+    let mut sheet = Sheet::new(2.0 * frame + 560.0, HEADER + HEIGHT);
+    let about = "600 grains of diameter 1, A = 1, ω = 2, g = 1, q = 0.05, κ = 0.3, rough walls";
+    sheet.header(MARGINS[0], "A large disk among small ones, in a shaken box", &[about]);
     let Some(shown) = nuts.get(nuts.len() / 3) else { return Err("no intruder to draw".into()) };
     let (time, highest) = &shown.highest;
     let later = format!("highest, after {time:.0} oscillations");
     for (k, (disks, when)) in [(&shown.start, "at first"), (highest, &later)].into_iter().enumerate() {
         let place = Place { x: k as f64 * frame, y: HEADER, width: frame, height: HEIGHT };
-        let layout = panel::axes((0.0, WIDTH), (0.0, SHOWN));
-        sheet.panel(place, MARGINS, faces(disks, unit), layout.with_x_label("x").with_y_label("height"));
-        sheet.text(
-            place.x + MARGINS[0],
-            HEADER + 16.0,
-            12,
-            INK,
-            &format!("diameter {}, {when}", shown.diameter),
-        );
+        let layout = panel::axes((0.0, WIDTH), (0.0, SHOWN)).with_x_label("x, in diameters");
+        let layout = if k == 0 { layout.with_y_label("height, in diameters") } else { layout };
+        sheet.panel(place, MARGINS, faces(disks, unit), layout.with_x_tick_step(10.0));
+        let words = format!("diameter {}, {when}", shown.diameter);
+        sheet.text(place.x + MARGINS[0], HEADER + 20.0, SMALL, INK, &words);
     }
     let place = Place { x: 2.0 * frame, y: HEADER, width: 560.0, height: HEIGHT };
-    let names: Vec<String> = nuts.iter().map(Nut::name).collect();
-    let names: Vec<_> = COLORS.into_iter().cycle().zip(names.iter().map(String::as_str)).collect();
-    sheet.key(place.x + MARGINS[0], HEADER + 16.0, &names);
     sheet.panel(place, MARGINS, lines(nuts), heights(nuts));
+    add_legend(&mut sheet, (place.x + MARGINS[0] + 12.0, HEADER + HEIGHT - MARGINS[3]), nuts);
     Ok(sheet)
+}
+
+/// Adds the names of the intruders and of the grains above a place, two in a row.
+fn add_legend(sheet: &mut Sheet, (x, y): (f64, f64), nuts: &[Nut]) {
+    let names: Vec<String> = nuts.iter().map(Nut::name).collect();
+    let names = names.iter().map(String::as_str).enumerate().map(|(k, name)| (look(k), name));
+    let names: Vec<_> = names.chain([(GRAIN, "mean of the grains")]).collect();
+    let rows = names.len().div_ceil(2);
+    let top = y + 10.0 - 22.0 * rows as f64;
+    for (column, names) in names.chunks(rows).enumerate() {
+        sheet.legend((x + 230.0 * column as f64, top), names);
+    }
+}
+
+/// Returns the look of the curve of an intruder.
+const fn look(number: usize) -> Look {
+    Look::number(number).without_marks()
 }
 
 impl Nut {
@@ -237,28 +242,25 @@ impl Nut {
 }
 
 fn faces(disks: &[Disk], unit: f64) -> Vec<Plot> {
-    let color = |disk: &Disk| if disk.kind() == INTRUDER { ORANGE.to_owned() } else { "#8d96a0".to_owned() };
+    let color =
+        |disk: &Disk| if disk.kind() == INTRUDER { VERMILION.to_owned() } else { "#a4abb3".to_owned() };
     let centers = disks.iter().map(|disk| (disk.position().x, disk.position().y));
     let faces = ScatterPlot::new().with_data(centers).with_colors(disks.iter().map(color));
     vec![faces.with_sizes(disks.iter().map(|disk| (disk.radius() * unit - 0.4).max(0.5))).into()]
 }
 
 fn lines(nuts: &[Nut]) -> Vec<Plot> {
-    let line = |(nut, color): (&Nut, &str)| {
-        let points = nut.heights.iter().map(|[time, height, _]| (*time, *height));
-        LinePlot::new().with_data(points.collect::<Vec<_>>()).with_color(color).with_stroke_width(1.8).into()
+    let line = |(number, nut): (usize, &Nut)| {
+        look(number).curve(nut.heights.iter().map(|[time, height, _]| (*time, *height)))
     };
-    let grains =
-        nuts.first().map(|nut| nut.heights.iter().map(|[time, _, grains]| (*time, *grains)).collect());
-    let middle = grains.map(|points: Vec<_>| {
-        LinePlot::new().with_data(points).with_color(QUIET).with_stroke_width(1.0).with_dashed().into()
-    });
-    nuts.iter().zip(COLORS.into_iter().cycle()).map(line).chain(middle).collect()
+    let grains = nuts.first().map(|nut| nut.heights.iter().map(|[time, _, grains]| (*time, *grains)));
+    nuts.iter().enumerate().map(line).chain(grains.map(|points| GRAIN.curve(points))).collect()
 }
 
 fn heights(nuts: &[Nut]) -> Layout {
     let last =
         nuts.iter().filter_map(|nut| nut.heights.last()).map(|[time, ..]| time + 1.0).fold(1.0, f64::max);
-    let layout = panel::axes((0.0, last), (0.0, SHOWN));
-    layout.with_x_label("oscillations").with_y_label("height of the intruder (dashed: mean of the grains)")
+    // Below the floor is room for the names.
+    let layout = panel::axes((0.0, last), (-8.0, SHOWN));
+    layout.with_x_label("oscillations").with_y_label("height of the intruder, in diameters")
 }

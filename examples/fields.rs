@@ -7,7 +7,7 @@
 //! cargo run --release --example fields -- --friction 0.04 --out one_roll
 //! ```
 //!
-//! The example writes `fields.png` and `fields.csv`.
+//! The example writes `fields.svg`, `fields.png` and `fields.csv`.
 
 mod common;
 
@@ -24,11 +24,12 @@ use granular_edmd::observable::{FieldCell, Fields};
 use granular_edmd::prelude::*;
 use kuva::plot::heatmap::ColorMap;
 use kuva::plot::quiver::QuiverPivot;
-use kuva::prelude::{Heatmap, Layout, Plot, QuiverPlot, TickFormat};
+use kuva::prelude::{Heatmap, Layout, Plot, QuiverPlot, TickAlign, TickFormat};
 
 use common::command_line::{self, Failure, non_negative};
-use common::look::{INK, Look, QUIET};
-use common::panel::{self, Place};
+use common::flow;
+use common::look::{self, INK};
+use common::panel::{self, MEDIUM, Margins, Place};
 use common::progress::Progress;
 use common::results::Results;
 use common::sheet::Sheet;
@@ -122,11 +123,11 @@ fn write(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Result<(), Bo
     arguments.results.finish_table("fields", table, Some(&draw(arguments, fine, coarse)?))
 }
 
-/// Space between a panel's edge and its axes: left, right, top, bottom.
-const MARGINS: [f64; 4] = [52.0, 14.0, 6.0, 44.0];
-const BAR_MARGINS: [f64; 4] = [52.0, 14.0, 26.0, 24.0];
-const HEADER: f64 = 80.0;
-const BAR: f64 = 64.0;
+const MARGINS: Margins = [56.0, 14.0, 6.0, 52.0];
+const BAR_MARGINS: Margins = [56.0, 14.0, 34.0, 24.0];
+const HEADER: f64 = 84.0;
+const BAR: f64 = 74.0;
+
 /// Length of a diameter on the sheet.
 const UNIT: f64 = 4.4;
 
@@ -163,19 +164,19 @@ fn maps() -> [Map; 4] {
             lowest: Lowest::Zero,
         },
         Map {
-            name: "velocity; color: upward",
+            name: "velocity upward, in Aω",
             value: |cell| cell.velocity.y,
-            color: |share| common::look::diverging(2.0 * share - 1.0),
+            color: |share| look::diverging(2.0 * share - 1.0),
             lowest: Lowest::Opposite,
         },
         Map {
-            name: "log₁₀ translational temperature",
+            name: "log₁₀ T, translational",
             value: |cell| cell.translational_temperature.log10(),
             color: inferno,
             lowest: Lowest::Smallest,
         },
         Map {
-            name: "log₁₀ rotational temperature",
+            name: "log₁₀ T, rotational",
             value: |cell| cell.rotational_temperature.log10(),
             color: inferno,
             lowest: Lowest::Smallest,
@@ -199,26 +200,28 @@ fn draw(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Result<Sheet, 
         }
         let place = Place { x, y: HEADER + BAR, width: size.0, height: size.1 };
         let axes = panel::axes((0.0, BOX.x), (0.0, top));
-        sheet.panel(place, MARGINS, plots, axes.with_x_label("x").with_y_label("height"));
+        let axes = axes.with_x_tick_step(20.0).with_x_label("x / σ").with_tick_align(TickAlign::Outside);
+        let axes = if column == 0 { axes.with_y_label("height / σ") } else { axes };
+        sheet.panel(place, MARGINS, plots, axes);
     }
     Ok(sheet)
 }
 
 fn write_header(sheet: &mut Sheet, arguments: &Arguments, fine: &Fields, coarse: &Fields) {
     let title = format!("Density, flow and temperatures at κ = {}", arguments.friction);
-    let system = "N = 1000, box 60 × 150, g = 0.015625, q = 0, bi-parabolic base A = 0.1, ω = 10, contact duration 1e-4";
+    let system = "N = 1000, box 60 × 150, g = 0.015625, q = 0, base A = 0.1, ω = 10; temperatures in m(Aω)²";
     let protocol = format!(
-        "{} samples in the second half of {} oscillations, seed {}; the longest arrow is {:.2}; white: fewer than {} disks \
-         seen",
+        "{} samples in the second half of {} oscillations, seed {}; white: fewer than {} disks seen",
         fine.samples(),
         arguments.oscillations(),
         arguments.seed,
-        fastest(coarse),
         enough(fine)
     );
-    sheet.text(MARGINS[0], 28.0, 20, INK, &title);
-    sheet.text(MARGINS[0], 48.0, 12, QUIET, system);
-    sheet.text(MARGINS[0], 66.0, 12, QUIET, &protocol);
+    sheet.header(MARGINS[0], &title, &[system, &protocol]);
+    let speed = fastest(coarse);
+    let length = UNIT * LONGEST * BOX.x / COARSE.0 as f64;
+    let shown = flow::round(speed);
+    sheet.arrow((700.0, 30.0), length * shown / speed, &format!("velocity {shown} Aω"));
 }
 
 /// Returns the height that is shown: that of the highest cell with enough disks, and a little more.
@@ -269,7 +272,7 @@ fn draw_bar(sheet: &mut Sheet, place: Place, map: &Map, range: (f64, f64)) {
     let axes = axes.with_ticks(4).with_y_tick_step(2.0);
     let axes = axes.with_y_tick_format(TickFormat::Custom(Arc::new(|_| String::new())));
     sheet.panel(place, BAR_MARGINS, vec![bar.into()], axes);
-    sheet.text(place.x + MARGINS[0], place.y + 18.0, 13, INK, map.name);
+    sheet.text(place.x + MARGINS[0], place.y + 26.0, MEDIUM, INK, map.name);
 }
 
 fn heat_map(map: &Map, fields: &Fields, range: (f64, f64)) -> Plot {
@@ -297,9 +300,12 @@ fn fastest(coarse: &Fields) -> f64 {
     seen(coarse).map(|cell| cell.velocity.length()).fold(0.0, f64::max)
 }
 
-/// Returns the mean flow as arrows. The longest arrow is as long as 1.6 cells.
+/// Length of the longest arrow, in cells.
+const LONGEST: f64 = 1.6;
+
+/// Returns the mean flow as arrows.
 fn arrows(coarse: &Fields) -> Plot {
-    let scale = 1.6 * BOX.x / COARSE.0 as f64 / fastest(coarse).max(f64::MIN_POSITIVE);
+    let scale = LONGEST * BOX.x / COARSE.0 as f64 / fastest(coarse).max(f64::MIN_POSITIVE);
     let arrows = seen(coarse)
         .map(|cell| (cell.center.x, cell.center.y, scale * cell.velocity.x, scale * cell.velocity.y));
     let plot = QuiverPlot::new().with_arrows(arrows).with_scale(1.0).with_pivot(QuiverPivot::Middle);

@@ -72,8 +72,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         simulation.run_until(50.0, &mut ())?;
         let mut series = Series::new(CenterOfMass, SampleTimes::every(0.37)?);
         simulation.run_until(150.0, &mut series)?;
-        let mean = series.values().iter().map(|center| center.y).sum::<f64>() / series.values().len() as f64;
-        println!("{period:6} {mean:29.2}");
+        println!("{period:6}  {}", series.mean(|center| center.y)?);
     }
     Ok(())
 }

@@ -10,7 +10,7 @@
 //! cargo run --release --example silo -- --outlets 4,6,8 --time 400 --out silo
 //! ```
 //!
-//! The example writes `silo.png` and `silo.csv`. Literature: W. A. Beverloo, H. A. Leniger and J. van de
+//! The example writes `silo.svg`, `silo.png` and `silo.csv`. Literature: W. A. Beverloo, H. A. Leniger and J. van de
 //! Velde, Chem. Eng. Sci. 15, 260 (1961); in two dimensions, C. Mankoc et al., Granular Matter 9, 407 (2007).
 
 mod common;
@@ -25,8 +25,8 @@ use granular_edmd::prelude::*;
 use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 
 use common::command_line::{self, Failure, positive};
-use common::look::{BLUE, GREEN, INK, Look, ORANGE, QUIET};
-use common::panel::{self, Place};
+use common::look::{BLUE, INK, Look, Mark, ORANGE, SKY, VERMILION};
+use common::panel::{self, Margins, Place, SMALL};
 use common::progress::Progress;
 use common::results::Results;
 use common::sheet::Sheet;
@@ -220,46 +220,63 @@ fn write(arguments: &Arguments, flows: &[Flow], law: Option<Law>) -> Result<(), 
     arguments.results.finish("silo", table, &png, &serde_json::json!({ "flows": flows, "law": law }))
 }
 
-/// Space between a panel's edge and its axes: left, right, top, bottom.
-const MARGINS: [f64; 4] = [52.0, 14.0, 24.0, 44.0];
+const MARGINS: Margins = [58.0, 14.0, 28.0, 52.0];
 const HEADER: f64 = 56.0;
 const HEIGHT: f64 = 520.0;
 
 /// Height of the part of the silo that is shown.
 const SHOWN: f64 = 38.0;
 
+/// The flows, and the law.
+const MEASURED: Look = Look::marks(BLUE, Mark::Disk).with_size(5.0);
+const LAW: Look = Look::line(VERMILION, "8 3");
+
 /// Draws the silo with the widest outlet some time after the gate was opened, and the flows with the law.
 fn draw(flows: &[Flow], law: Option<Law>) -> Result<Sheet, Box<dyn Error>> {
     let unit = (HEIGHT - MARGINS[2] - MARGINS[3]) / SHOWN;
     let frame = WIDTH * unit + MARGINS[0] + MARGINS[1];
-    let mut sheet = Sheet::new(frame + 560.0, HEADER + HEIGHT + 8.0);
-    sheet.text(MARGINS[0], 28.0, 19, INK, "Flow out of a silo");
+    let mut sheet = Sheet::new(frame + 560.0, HEADER + HEIGHT);
     let about = "600 grains of diameter 1, g = 1, q = 0.1, κ = 0.4; those that leave come in again on top";
-    sheet.text(MARGINS[0], 47.0, 12, QUIET, about);
+    sheet.header(MARGINS[0], "Flow out of a silo", &[about]);
     let Some(shown) = flows.last() else { return Err("no outlet to draw".into()) };
     let place = Place { x: 0.0, y: HEADER, width: frame, height: HEIGHT };
     let layout = panel::axes((0.0, WIDTH), (0.0, SHOWN));
     let mut plots = faces(&shown.shot, unit);
     plots.extend(floor(shown.outlet));
-    sheet.panel(place, MARGINS, plots, layout.with_x_label("x").with_y_label("height"));
+    sheet.panel(
+        place,
+        MARGINS,
+        plots,
+        layout.with_x_label("x, in diameters").with_y_label("height, in diameters"),
+    );
     let when = format!("outlet {}, {SHOT} after the gate opened", shown.outlet);
-    sheet.text(MARGINS[0], HEADER + 16.0, 12, INK, &when);
-    let place = Place { x: frame, y: HEADER, width: 560.0, height: HEIGHT };
-    if let Some(Law { prefactor, lost, scatter }) = law {
-        let text = format!("W = {prefactor:.2} (D − {lost:.2})^3/2, scatter {:.1} %", 100.0 * scatter);
-        sheet.text(place.x + MARGINS[0], HEADER + 16.0, 12, ORANGE, &text);
-    }
-    let widest = flows.iter().map(|flow| flow.outlet).fold(0.0, f64::max) + 1.0;
-    let fastest = 1.15 * flows.iter().map(|flow| flow.rate).fold(1.0, f64::max);
-    let layout = panel::axes((0.0, widest), (0.0, fastest));
-    let layout =
-        layout.with_x_label("width D of the outlet").with_y_label("flow W, grains for each unit of time");
-    sheet.panel(place, MARGINS, curves(flows, law, widest), layout);
+    sheet.text(MARGINS[0], HEADER + 20.0, SMALL, INK, &when);
+    draw_flows(&mut sheet, Place { x: frame, width: 560.0, ..place }, flows, law);
     Ok(sheet)
 }
 
+fn draw_flows(sheet: &mut Sheet, place: Place, flows: &[Flow], law: Option<Law>) {
+    let widest = flows.iter().map(|flow| flow.outlet).fold(0.0, f64::max) + 1.0;
+    let fastest = 1.15 * flows.iter().map(|flow| flow.rate).fold(1.0, f64::max);
+    let layout = panel::axes((0.0, widest), (0.0, fastest));
+    let layout = layout.with_x_label("width D of the outlet, in diameters d");
+    let layout = layout.with_y_label("flow W, in grains per √(d/g)");
+    let curve = law.map(|law| {
+        let at = |k: u32| law.lost + (widest - law.lost) * f64::from(k) / 200.0;
+        LAW.curve((0..=200).map(at).map(|outlet| (outlet, law.rate(outlet))))
+    });
+    let panel = sheet.panel(place, MARGINS, curve.into_iter().collect(), layout);
+    sheet.marks(&panel, MEASURED, flows.iter().map(|flow| (flow.outlet, flow.rate)));
+    let text = law.map(|Law { prefactor, lost, scatter }| {
+        format!("W = {prefactor:.2} (D − {lost:.2})^3/2, scatter {:.1} %", 100.0 * scatter)
+    });
+    let names: Vec<_> =
+        text.iter().map(|text| (LAW, text.as_str())).chain([(MEASURED, "measured")]).collect();
+    sheet.legend((panel.place.x + 16.0, panel.place.y + 28.0), &names);
+}
+
 fn faces(disks: &[Disk], unit: f64) -> Vec<Plot> {
-    const LAYERS: [&str; 3] = [BLUE, GREEN, "#c9ced6"];
+    const LAYERS: [&str; 3] = [BLUE, SKY, "#c9ced6"];
     let color = |disk: &Disk| {
         let layer = usize::from(disk.kind().number());
         if disk.kind() == AGAIN { ORANGE.to_owned() } else { LAYERS[layer % LAYERS.len()].to_owned() }
@@ -277,18 +294,4 @@ fn floor(outlet: f64) -> impl Iterator<Item = Plot> {
         let line = LinePlot::new().with_data(vec![(from, FLOOR), (to, FLOOR)]);
         line.with_color(INK).with_stroke_width(2.0).into()
     })
-}
-
-fn curves(flows: &[Flow], law: Option<Law>, widest: f64) -> Vec<Plot> {
-    let points = flows.iter().map(|flow| (flow.outlet, flow.rate));
-    let points = ScatterPlot::new().with_data(points).with_color(BLUE).with_size(5.0).into();
-    let curve = law.map(|law| {
-        let at = |k: u32| {
-            let outlet = law.lost + (widest - law.lost) * f64::from(k) / 200.0;
-            (outlet, law.rate(outlet))
-        };
-        let curve = LinePlot::new().with_data((0..=200).map(at).collect::<Vec<_>>());
-        curve.with_color(ORANGE).with_stroke_width(1.6).into()
-    });
-    curve.into_iter().chain([points]).collect()
 }

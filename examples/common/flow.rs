@@ -30,6 +30,14 @@ pub(crate) fn fastest(fields: &Fields, share: f64) -> f64 {
     seen(fields, share).iter().map(|cell| cell.velocity.length()).fold(0.0, f64::max)
 }
 
+/// Returns the largest number with one digit that is not above a speed, for a scale of arrows.
+pub(crate) fn round(speed: f64) -> f64 {
+    let decade = speed.log10().floor();
+    let digit = (speed / 10f64.powf(decade)).floor();
+    // A division keeps 0.3 what it is; a product with 0.1 would not.
+    if decade < 0.0 { digit / 10f64.powf(-decade) } else { digit * 10f64.powf(decade) }
+}
+
 /// Returns an arrow for each of these cells: its middle and its components. The longest is this many cells
 /// long.
 pub(crate) fn arrows(fields: &Fields, share: f64, longest: f64) -> Vec<(f64, f64, f64, f64)> {

@@ -152,7 +152,7 @@ impl Look {
     }
 
     const fn edge_width(&self) -> f64 {
-        if self.open { 1.4 } else { 0.6 }
+        if self.open { 1.4 } else { 0.15 * self.size }
     }
 }
 

@@ -105,7 +105,7 @@ impl Panel {
 /// Returns a layout whose axes have exactly these ranges.
 pub(crate) fn axes(x: (f64, f64), y: (f64, f64)) -> Layout {
     let exact = Layout::new(x, y).with_x_axis_min(x.0).with_x_axis_max(x.1);
-    exact.with_y_axis_min(y.0).with_y_axis_max(y.1)
+    exact.with_y_axis_min(y.0).with_y_axis_max(y.1).with_tick_align(TickAlign::Inside)
 }
 
 /// Gives a layout the size of its panel, and the style of all panels.
@@ -119,7 +119,6 @@ pub(crate) fn styled(layout: Layout, place: Place, margins: Margins) -> Layout {
         .with_theme(theme())
         .with_show_grid(false)
         .with_box_axes()
-        .with_tick_align(TickAlign::Inside)
         .with_tick_pos(TickPos::Both)
         .with_label_size(MEDIUM)
         .with_tick_size(SMALL);

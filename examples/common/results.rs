@@ -95,7 +95,7 @@ impl Results {
         table.flush()?;
         let table = self.path(name).with_extension("csv");
         if let Some(picture) = picture {
-            picture.write(&table)?;
+            picture.write(&self.path(name))?;
             println!("wrote {0}.svg and {0}.png", self.path(name).display());
         }
         println!("wrote {}", table.display());

@@ -1,5 +1,6 @@
 //! A sheet with panels, marks, legends and text: a picture, as SVG and as PNG.
 
+use std::error::Error;
 use std::fs;
 use std::path::Path;
 
@@ -55,7 +56,16 @@ impl Sheet {
         drawn.elements.into_iter().for_each(|element| self.scene.add(element));
         self.scene.add(Primitive::GroupEnd);
         self.add_logarithmic_ticks(&panel);
+        self.add_frame(&panel);
         panel
+    }
+
+    /// Adds the edges of a panel once more, over what was drawn in it.
+    fn add_frame(&mut self, panel: &Panel) {
+        let Place { x, y, width, height } = panel.place;
+        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
+        let edges = corners.map(|(right, down)| (x + right * width, y + down * height));
+        self.line(edges.to_vec(), INK, 1.0);
     }
 
     fn add_logarithmic_ticks(&mut self, panel: &Panel) {
@@ -103,19 +113,20 @@ impl Sheet {
     ) {
         for ends in bars {
             let [from, to] = ends.map(|end| panel.at(panel.nearest(end)));
-            self.line(vec![from, to], look.color, 1.2);
+            self.line(vec![from, to], look.color, 1.0);
             // Caps across the ends: up for a bar that lies.
             let cap = if from.1 == to.1 { (0.0, 3.0) } else { (3.0, 0.0) };
             for (x, y) in [from, to] {
-                self.line(vec![(x - cap.0, y - cap.1), (x + cap.0, y + cap.1)], look.color, 1.2);
+                self.line(vec![(x - cap.0, y - cap.1), (x + cap.0, y + cap.1)], look.color, 1.0);
             }
         }
     }
 
     /// Adds the names of series, one below the other from here, with samples of their lines and marks.
     pub(crate) fn legend(&mut self, (x, y): (f64, f64), entries: &[(Look, &str)]) {
+        let length = entries.iter().map(|(look, _)| sample(*look)).fold(0.0, f64::max);
         for (row, (look, name)) in entries.iter().enumerate() {
-            self.add_entry((x, y + LINE * row as f64), *look, name);
+            self.add_entry((x, y + LINE * row as f64), length, *look, name);
         }
     }
 
@@ -123,13 +134,13 @@ impl Sheet {
     pub(crate) fn legend_in_row(&mut self, (x, y): (f64, f64), entries: &[(Look, &str)]) {
         let mut x = x;
         for (look, name) in entries {
-            self.add_entry((x, y), *look, name);
+            self.add_entry((x, y), sample(*look), *look, name);
             x += sample(*look) + width(name, SMALL) + 26.0;
         }
     }
 
-    fn add_entry(&mut self, (x, y): (f64, f64), look: Look, name: &str) {
-        let (length, middle) = (sample(look), y - 5.0);
+    fn add_entry(&mut self, (x, y): (f64, f64), length: f64, look: Look, name: &str) {
+        let middle = y - 5.0;
         if look.dash.is_some() {
             self.scene.add(Primitive::Line {
                 x1: x,
@@ -153,6 +164,22 @@ impl Sheet {
     /// Adds a line of text about here.
     pub(crate) fn centered(&mut self, place: (f64, f64), size: u32, color: &str, content: &str) {
         self.add_text(place, size, TextAnchor::Middle, color, content);
+    }
+
+    /// Adds a line of text about here, on white that hides the lines behind it.
+    pub(crate) fn on_white(&mut self, (x, y): (f64, f64), size: u32, content: &str) {
+        let (width, height) = (width(content, size) + 6.0, f64::from(size));
+        self.scene.add(Primitive::Rect {
+            x: x - 0.5 * width,
+            y: y - 0.85 * height,
+            width,
+            height,
+            fill: "white".into(),
+            stroke: None,
+            stroke_width: None,
+            opacity: None,
+        });
+        self.centered((x, y), size, INK, content);
     }
 
     fn add_text(&mut self, (x, y): (f64, f64), size: u32, anchor: TextAnchor, color: &str, content: &str) {
@@ -207,11 +234,11 @@ impl Sheet {
         SvgBackend::new().with_pretty(true).render_scene(&self.scene)
     }
 
-    /// Writes the picture as NAME.svg and NAME.png.
-    pub(crate) fn write(&self, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
+    /// Writes the picture as NAME.svg and NAME.png; a name may have dots in it.
+    pub(crate) fn write(&self, name: &Path) -> Result<(), Box<dyn Error>> {
         let svg = self.svg();
-        fs::write(path.with_extension("svg"), &svg)?;
-        Ok(fs::write(path.with_extension("png"), raster::png(&svg, PIXELS)?)?)
+        fs::write(format!("{}.svg", name.display()), &svg)?;
+        Ok(fs::write(format!("{}.png", name.display()), raster::png(&svg, PIXELS)?)?)
     }
 }
 

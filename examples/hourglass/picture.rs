@@ -3,15 +3,13 @@
 use std::error::Error;
 
 use granular_edmd::prelude::*;
-use kuva::prelude::LinePlot;
 
-use crate::common::look::{BLUE, INK, Look, ORANGE, QUIET};
-use crate::common::panel::{self, Place};
+use crate::common::look::{INK, LOOKS, Look};
+use crate::common::panel::{self, Margins, Place, SMALL};
 use crate::common::sheet::Sheet;
 use crate::{Arguments, Frame, Glass, Way, grains};
 
-/// Space between a panel's edge and its axes: left, right, top, bottom.
-const MARGINS: [f64; 4] = [58.0, 14.0, 12.0, 44.0];
+const MARGINS: Margins = [64.0, 14.0, 12.0, 52.0];
 const HEADER: f64 = 84.0;
 const FILM: f64 = 340.0;
 const GAP: f64 = 16.0;
@@ -24,14 +22,13 @@ pub(crate) fn draw(arguments: &Arguments, glass: &Glass, ways: &[Way; 2]) -> Res
     let film = [(first, 0.0), (first, 0.25), (first, 0.5), (first, 0.75), (first, 1.0), (second, 0.5)];
     let width = MARGINS[0] + film.len() as f64 * step;
     let mut sheet = Sheet::new(width, HEADER + FILM + 300.0);
-    sheet.text(MARGINS[0], 28.0, 19, INK, "An hourglass runs empty, and is turned over");
     let words = format!("{} grains, neck {}, g = 1, q = 0.1, κ = 0.3", grains(arguments), arguments.neck);
-    sheet.text(MARGINS[0], 47.0, 12, QUIET, &words);
+    sheet.header(MARGINS[0], "An hourglass runs empty, and is turned over", &[&words]);
     for (k, (way, share)) in film.into_iter().enumerate() {
         let Some(frame) = way.frames.get((share * (way.frames.len() - 1) as f64) as usize) else { continue };
         let (is_first, x) = (std::ptr::eq(way, first), MARGINS[0] + k as f64 * step);
         let name = format!("{}t = {:.0}", if is_first { "" } else { "turned, " }, frame.time);
-        sheet.text(x, HEADER - 10.0, 12, if is_first { BLUE } else { ORANGE }, &name);
+        sheet.text(x, HEADER - 8.0, SMALL, INK, &name);
         // Gravity points down in all pictures.
         let turned = if is_first { unit } else { -unit };
         let middle = DVec2::new(x + glass.width * unit, HEADER + 0.5 * FILM);
@@ -42,10 +39,13 @@ pub(crate) fn draw(arguments: &Arguments, glass: &Glass, ways: &[Way; 2]) -> Res
     let last = ways.iter().map(Way::end).fold(1.0, f64::max);
     let layout = panel::axes((0.0, last), (0.0, grains(arguments) as f64));
     let layout = layout.with_x_label("time t, in √(d/g)").with_y_label("grains above the neck");
-    let curve = |way: &Way| way.frames.iter().map(|f| (f.time, f.above as f64)).collect::<Vec<_>>();
-    let line = |way, color| LinePlot::new().with_data(curve(way)).with_color(color).with_stroke_width(2.0);
-    sheet.panel(place, MARGINS, vec![line(first, BLUE).into(), line(second, ORANGE).into()], layout);
-    sheet.key(width - 200.0, place.y + 36.0, &[(BLUE, "first"), (ORANGE, "turned over")]);
+    let looks = [LOOKS[0], LOOKS[1]].map(Look::without_marks);
+    let points =
+        |way: &Way| way.frames.iter().map(|frame| (frame.time, frame.above as f64)).collect::<Vec<_>>();
+    let curves = looks.iter().zip(ways).map(|(look, way)| look.curve(points(way)));
+    let panel = sheet.panel(place, MARGINS, curves.collect(), layout);
+    let right = panel.place.x + panel.place.width;
+    sheet.legend((right - 170.0, panel.place.y + 26.0), &[(looks[0], "first"), (looks[1], "turned over")]);
     Ok(sheet)
 }
 

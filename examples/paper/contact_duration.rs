@@ -8,7 +8,8 @@
 //! cargo run --release --features serde,rayon --example contact_duration
 //! ```
 //!
-//! The example writes the studies, and prints a table. After an interruption, the same command goes on.
+//! The example writes the studies and `contact_duration.svg` and `.png`, and prints a table. After an
+//! interruption, the same command goes on.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -24,6 +25,11 @@ use granular_edmd::analysis::{ConvectiveRegime, StateCriteria, Transition, Trans
 use granular_edmd::statistics::RunningMean;
 use granular_edmd::study::vibrated_box::{Convection, VibratedBox};
 use granular_edmd::study::{Axis, Course, Outcome, Plan, PlanError, Protocol, Ramp};
+use kuva::prelude::Plot;
+
+use common::look::Look;
+use common::panel::{self, Margins, Place};
+use common::sheet::Sheet;
 
 /// Transitions at five contact durations.
 #[derive(Parser)]
@@ -33,6 +39,9 @@ struct Arguments {
 }
 
 type Record = granular_edmd::study::Record<VibratedBox>;
+
+/// The transitions of each ramp.
+type Ramps = Vec<Vec<Transition>>;
 
 const DURATIONS: [f64; 5] = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3];
 
@@ -58,7 +67,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         ("contact_duration-friction", "friction", FRICTIONS.to_vec(), 0.0),
         ("contact_duration-inelasticity", "inelasticity", INELASTICITIES.to_vec(), FRICTION),
     ];
-    let mut tables = Vec::new();
+    let (mut tables, mut panels) = (Vec::new(), Vec::new());
     for (name, parameter, values, friction) in ramps {
         let plan = plan(&arguments.common, parameter, values, friction)?;
         let Some(study) = arguments.common.complete(name, &plan)? else {
@@ -66,8 +75,12 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         };
         let records: Vec<Record> = study.records().collect::<Result<_, _>>()?;
         print(parameter, &records)?;
+        panels.push((parameter, by_duration(parameter, &records)?));
         tables.push((parameter, study.folder().join("values.csv")));
     }
+    let path = arguments.common.results.path("contact_duration");
+    draw(&panels).write(&path)?;
+    println!("wrote {0}.svg and {0}.png", path.display());
     arguments.common.results.write_tables_as_json(&tables)
 }
 
@@ -99,9 +112,8 @@ fn print(parameter: &str, records: &[Record]) -> Result<(), Box<dyn Error>> {
     let values = records.len() / (DURATIONS.len() * RUNS);
     for (duration, group) in DURATIONS.iter().zip(records.chunks(values * RUNS)) {
         let ramps: Vec<&[Record]> = group.chunks(values).collect();
-        let found: Vec<Vec<Transition>> =
-            ramps.iter().map(|ramp| rising(parameter, ramp)).collect::<Result<_, _>>()?;
-        let places = TransitionLine::ALL.map(|line| place(line, &found)).join(" | ");
+        let found = ramps.iter().map(|ramp| rising(parameter, ramp)).collect::<Result<Ramps, _>>()?;
+        let places = TransitionLine::ALL.map(|line| told(crossing(line, &found).as_ref())).join(" | ");
         let changed = [0, values - 1].map(|value| share_changed(ramps.iter().map(|ramp| &ramp[value])));
         let stalled = group.iter().filter(|record| matches!(record.outcome(), Outcome::Stalled { .. }));
         println!(
@@ -127,23 +139,29 @@ fn rising(parameter: &str, ramp: &[Record]) -> Result<Vec<Transition>, Parameter
     Ok(transitions(regimes)?.into_iter().filter(|transition| transition.rising).collect())
 }
 
-/// Returns the first crossing of a line in each ramp: the mean, and its error from the scatter of the ramps
-/// and from the width of a step.
-fn place(line: TransitionLine, ramps: &[Vec<Transition>]) -> String {
+/// The first crossing of a line in each ramp: the mean, its error from the scatter of the ramps and from the
+/// width of a step, and the number of ramps that have it.
+struct Crossing {
+    value: f64,
+    error: f64,
+    count: u64,
+}
+
+fn crossing(line: TransitionLine, ramps: &Ramps) -> Option<Crossing> {
     let first: Vec<&Transition> =
         ramps.iter().filter_map(|found| found.iter().find(|transition| transition.line == line)).collect();
     let values: RunningMean = first.iter().map(|transition| transition.value).collect();
     let half_steps: RunningMean = first.iter().map(|transition| transition.error).collect();
-    match values.count() {
-        0 => "–".to_owned(),
-        count => {
-            // The transition lies anywhere in a step with equal probability. Its standard deviation is the
-            // half step over the root of three.
-            let error = values.standard_error().hypot(half_steps.mean() / 3.0_f64.sqrt());
-            let of = if count < RUNS as u64 { format!(" ({count} of {RUNS})") } else { String::new() };
-            format!("{:.4} ± {error:.4}{of}", values.mean())
-        }
-    }
+    // The transition lies anywhere in a step with equal probability. Its standard deviation is the half step
+    // over the root of three.
+    let error = values.standard_error().hypot(half_steps.mean() / 3.0_f64.sqrt());
+    (values.count() > 0).then(|| Crossing { value: values.mean(), error, count: values.count() })
+}
+
+fn told(crossing: Option<&Crossing>) -> String {
+    let Some(Crossing { value, error, count }) = crossing else { return "–".to_owned() };
+    let of = if *count < RUNS as u64 { format!(" ({count} of {RUNS})") } else { String::new() };
+    format!("{value:.4} ± {error:.4}{of}")
 }
 
 /// Returns the share of all collisions, with disks and walls, that the model made elastic.
@@ -153,4 +171,66 @@ fn share_changed<'a>(records: impl Iterator<Item = &'a Record>) -> f64 {
         (changed + counters.contact_duration_collisions, all + collisions)
     });
     changed as f64 / all as f64
+}
+
+/// Returns the transitions of the ramps of each contact duration.
+fn by_duration(parameter: &str, records: &[Record]) -> Result<Vec<Ramps>, ParameterError> {
+    let values = records.len() / (DURATIONS.len() * RUNS);
+    let ramps =
+        |group: &[Record]| group.chunks(values).map(|ramp| rising(parameter, ramp)).collect::<Result<_, _>>();
+    records.chunks(values * RUNS).map(ramps).collect()
+}
+
+const MARGINS: Margins = [74.0, 14.0, 10.0, 52.0];
+const WIDTH: f64 = 560.0;
+const HEIGHT: f64 = 330.0;
+const HEADER: f64 = 110.0;
+
+/// Draws the places of the transitions over the contact duration, for both parameters.
+fn draw(panels: &[(&str, Vec<Ramps>)]) -> Sheet {
+    let mut sheet = Sheet::new(WIDTH, HEADER + HEIGHT * panels.len() as f64);
+    let note =
+        format!("g = 0.015625; above: q = 0, below: κ = {FRICTION}; {RUNS} ramps each, bars: standard error");
+    sheet.header(MARGINS[0], "Transitions and the contact duration", &[&note]);
+    let names = TransitionLine::ALL.map(|line| line.to_string());
+    let looks = (0..).map(Look::number);
+    let entries: Vec<_> = looks.zip(names.iter().map(String::as_str)).collect();
+    sheet.legend_in_row((MARGINS[0], 82.0), &entries);
+    for (number, (parameter, found)) in panels.iter().enumerate() {
+        let place = Place { x: 0.0, y: HEADER + HEIGHT * number as f64, width: WIDTH, height: HEIGHT };
+        add_panel(&mut sheet, place, parameter, found);
+    }
+    sheet
+}
+
+fn add_panel(sheet: &mut Sheet, place: Place, parameter: &str, found: &[Ramps]) {
+    let (range, name) = if parameter == "friction" {
+        ((0.003, 0.5), "friction κ")
+    } else {
+        ((0.005, 0.2), "inelasticity q")
+    };
+    let layout = panel::axes((4e-8, 2.5e-3), range).with_log_scale();
+    let layout = layout.with_x_label("contact duration, in σ/Aω").with_y_label(name);
+    let lines: Vec<(Look, Vec<(f64, Crossing)>)> = TransitionLine::ALL
+        .iter()
+        .enumerate()
+        .map(|(number, line)| {
+            let at = |(duration, ramps)| Some((duration, crossing(*line, ramps)?));
+            // The lines stand a little apart, so that their bars can be seen.
+            let shift = 1.0 + 0.12 * (number as f64 - 1.5);
+            let durations = DURATIONS.iter().map(|duration| duration * shift);
+            (Look::number(number), durations.zip(found).filter_map(at).collect())
+        })
+        .collect();
+    let curve = |(look, points): &(Look, Vec<(f64, Crossing)>)| -> Plot {
+        look.with_width(1.2).curve(points.iter().map(|(duration, at)| (*duration, at.value)))
+    };
+    let panel = sheet.panel(place, MARGINS, lines.iter().map(curve).collect(), layout);
+    for (look, points) in &lines {
+        let bar = |(duration, at): &(f64, Crossing)| {
+            [at.value - at.error, at.value + at.error].map(|value| (*duration, value))
+        };
+        sheet.bars(&panel, *look, points.iter().map(bar));
+        sheet.marks(&panel, *look, points.iter().map(|(duration, at)| (*duration, at.value)));
+    }
 }

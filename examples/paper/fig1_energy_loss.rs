@@ -1,7 +1,7 @@
 //! The paper's Fig. 1: lines of equal mean energy loss per collision in the plane of friction and
 //! inelasticity.
 //!
-//! The example writes `fig1_energy_loss.png` (both panels), `fig1_energy_loss.csv` (the lines) and
+//! The example writes `fig1_energy_loss.svg` and `.png` (both panels), `fig1_energy_loss.csv` (the lines) and
 //! `fig1_largest_loss.csv` (the friction of the largest loss for each inelasticity). It also compares closed
 //! form and Monte Carlo on a few points.
 //!
@@ -13,7 +13,6 @@
 mod common;
 
 use std::error::Error;
-use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -22,15 +21,13 @@ use granular_edmd::collision::Frictional;
 use granular_edmd::kinetic::{
     IsoLine, Maxwellian, MonteCarlo, Piece, friction_of_largest_loss, mean_energy_change,
 };
-use kuva::backend::png::PngBackend;
-use kuva::plot::LinePlot;
-use kuva::render::annotations::TextAnnotation;
-use kuva::render::figure::Figure;
-use kuva::render::layout::{Layout, TickFormat};
-use kuva::render::plots::Plot;
+use kuva::prelude::{Layout, TickFormat};
 
 use common::command_line::{self, positive};
+use common::look::{BLUE, INK, Look, SKY, VERMILION};
+use common::panel::{self, Margins, Place, SMALL};
 use common::results::Results;
+use common::sheet::Sheet;
 
 /// Lines of equal mean energy loss per collision (paper, Fig. 1).
 #[derive(Parser)]
@@ -88,23 +85,13 @@ impl Panel {
     }
 
     fn layout(&self) -> Layout {
-        let layout = Layout::new((self.frictions[0], 1.0), (0.0, self.largest_inelasticity))
+        let frictions = if self.logarithmic { (1e-3, 10.0) } else { (0.0, 1.0) };
+        let layout = panel::axes(frictions, (0.0, self.largest_inelasticity))
             .with_x_label("friction κ, static = dynamic")
             .with_y_label("inelasticity q, normal = tangential")
-            .with_y_axis_min(0.0)
-            .with_y_axis_max(self.largest_inelasticity)
             .with_y_tick_step(self.largest_inelasticity / 5.0)
-            .with_y_tick_format(TickFormat::Fixed(2))
-            .with_show_grid(false)
-            .with_box_axes();
-        if self.logarithmic {
-            layout.with_log_x().with_x_axis_min(1e-3).with_x_axis_max(10.0)
-        } else {
-            layout
-                .with_title("Mean energy change per collision, ⟨dE⟩/T")
-                .with_x_axis_min(0.0)
-                .with_x_axis_max(1.0)
-        }
+            .with_y_tick_format(TickFormat::Fixed(2));
+        if self.logarithmic { layout.with_log_x() } else { layout.with_x_tick_step(0.2) }
     }
 
     /// Returns the place of a point in the panel, from 0 to 1 in both directions.
@@ -117,7 +104,7 @@ impl Panel {
     /// heights.
     fn label_place(&self, index: usize, piece: &Piece) -> (f64, f64) {
         let lowest = piece.iter().map(|&point| self.fraction(point).1).fold(1.0, f64::min);
-        let height = (0.45 + 0.1 * f64::from(u8::from(index.is_multiple_of(2)))).max(lowest + 0.15);
+        let height = (0.38 + 0.11 * (index % 3) as f64).max(lowest + 0.15);
         let distance = |&point: &(f64, f64)| {
             let (across, up) = self.fraction(point);
             let edge = (0.05 - across).max(across - 0.95).max(0.03 - up).max(up - 0.97).max(0.0);
@@ -128,18 +115,6 @@ impl Panel {
         let short = !self.logarithmic && piece.iter().all(|&(friction, _)| friction < 0.7);
         let middle = piece[piece.len() / 2];
         if short { middle } else { nearest.copied().unwrap_or(middle) }
-    }
-
-    /// Tells whether a point of a line would run through the label at `place`.
-    fn hides(&self, place: (f64, f64), point: (f64, f64)) -> bool {
-        let ((x, y), (at_x, at_y)) = (self.fraction(point), self.fraction(place));
-        (x - at_x).abs() < 0.024 && (y - at_y).abs() < 0.022
-    }
-
-    /// Returns a label centered on `place`.
-    fn label(&self, (friction, inelasticity): (f64, f64), text: &str, color: &str) -> TextAnnotation {
-        let baseline = inelasticity - 0.024 * self.largest_inelasticity;
-        TextAnnotation::new(text, friction, baseline).with_font_size(11).with_color(color)
     }
 
     /// Returns points of the curve on which friction loses most.
@@ -169,9 +144,9 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let collisions = if arguments.quick { 1 << 14 } else { 1 << 20 };
     compare(&gas, &MonteCarlo::new(arguments.seed).with_samples(collisions))?;
     let panels = [Panel::whole(), Panel::detail()];
-    let picture = arguments.results.path("fig1_energy_loss.png");
-    draw(&panels, &gas, &picture)?;
-    println!("wrote {}", picture.display());
+    let picture = arguments.results.path("fig1_energy_loss");
+    draw(&panels, &gas)?.write(&picture)?;
+    println!("wrote {0}.svg and {0}.png", picture.display());
     tabulate(&panels, &gas, &arguments.results)
 }
 
@@ -216,42 +191,61 @@ fn tabulate(panels: &[Panel], gas: &Maxwellian, results: &Results) -> Result<(),
     results.write_tables_as_json(&tables)
 }
 
-fn draw(panels: &[Panel], gas: &Maxwellian, path: &Path) -> Result<(), Box<dyn Error>> {
-    let drawn: Result<Vec<_>, ParameterError> = panels.iter().map(|panel| draw_panel(panel, gas)).collect();
-    let (plots, layouts): (Vec<_>, Vec<_>) = drawn?.into_iter().unzip();
-    let figure = Figure::new(2, 1)
-        .with_plots(plots)
-        .with_layouts(layouts)
-        .with_cell_size(820.0, 520.0)
-        .with_labels_lowercase();
-    Ok(std::fs::write(path, PngBackend::new().render_scene(&figure.render())?)?)
+const MARGINS: Margins = [72.0, 16.0, 10.0, 52.0];
+const WIDTH: f64 = 620.0;
+const HEIGHT: f64 = 420.0;
+const HEADER: f64 = 84.0;
+
+/// The curve of the largest loss.
+const LARGEST: Look = Look::line(INK, "8 4").with_width(1.6);
+
+/// Draws both panels, one above the other.
+fn draw(panels: &[Panel], gas: &Maxwellian) -> Result<Sheet, ParameterError> {
+    let mut sheet = Sheet::new(WIDTH, HEADER + HEIGHT * panels.len() as f64);
+    let temperature = gas.rotational_temperature();
+    let note = format!("Maxwellian gas of temperature T, with a rotational temperature of {temperature} T");
+    sheet.header(MARGINS[0], "Mean energy change per collision, ⟨dE⟩/T", &[&note]);
+    sheet.legend((MARGINS[0], 75.0), &[(LARGEST, "largest loss at each q; numbers: ⟨dE⟩/T")]);
+    for (number, panel) in panels.iter().enumerate() {
+        let place = Place { x: 0.0, y: HEADER + HEIGHT * number as f64, width: WIDTH, height: HEIGHT };
+        draw_panel(&mut sheet, place, panel, gas)?;
+    }
+    Ok(sheet)
 }
 
-fn draw_panel(panel: &Panel, gas: &Maxwellian) -> Result<(Vec<Plot>, Layout), ParameterError> {
+fn draw_panel(
+    sheet: &mut Sheet,
+    place: Place,
+    panel: &Panel,
+    gas: &Maxwellian,
+) -> Result<(), ParameterError> {
     let (mut plots, mut labels) = (Vec::new(), Vec::new());
-    let line = |points, color, width| {
-        Plot::Line(
-            LinePlot::new().with_data::<f64, f64, Piece>(points).with_color(color).with_stroke_width(width),
-        )
-    };
     for (index, (level, pieces)) in panel.trace(gas)?.into_iter().enumerate() {
+        let look = look(level);
         for piece in pieces.iter().filter(|piece| piece.len() > 1) {
             let place = panel.label_place(index, piece);
-            labels.push(panel.label(place, &format!("{level}").replace('-', "−"), &color(level)));
-            let parts = piece.split(|&point| panel.hides(place, point));
-            plots.extend(parts.map(|part| line(part.to_vec(), color(level), 1.8)));
+            // A short piece in a corner has no room for a label.
+            if panel.fraction(place).0 > 0.06 {
+                labels.push((place, format!("{level}").replace('-', "−")));
+            }
+            plots.push(look.curve(piece.iter().copied()));
         }
     }
-    let maxima = panel.maxima(gas)?;
-    if let Some(&(friction, q)) = maxima.get(90).filter(|_| !panel.logarithmic) {
-        labels.push(panel.label((friction - 0.06, q), "largest loss", "black"));
+    plots.push(LARGEST.curve(panel.maxima(gas)?));
+    let drawn = sheet.panel(place, MARGINS, plots, panel.layout());
+    for (point, text) in labels {
+        let (x, y) = drawn.at(point);
+        sheet.on_white((x, y + 5.0), SMALL - 1, &text);
     }
-    plots.push(line(maxima, "black".into(), 1.2));
-    Ok((plots, labels.into_iter().fold(panel.layout(), Layout::with_annotation)))
+    Ok(())
 }
 
-/// Returns a color from blue for little loss to red for much.
-fn color(level: f64) -> String {
-    let share = -level;
-    format!("rgb({:.0},{:.0},{:.0})", 30.0 + 190.0 * share, 90.0 - 50.0 * share, 200.0 - 150.0 * share)
+/// Returns the look of a line: in three colors for little loss, more, and much. The numbers tell which it is.
+fn look(level: f64) -> Look {
+    let color = match -level {
+        ..0.25 => SKY,
+        ..0.55 => BLUE,
+        _ => VERMILION,
+    };
+    Look::line(color, "").with_width(1.6)
 }

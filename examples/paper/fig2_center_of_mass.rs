@@ -8,7 +8,7 @@
 //! cargo run --release --features serde,rayon --example fig2_center_of_mass -- --quick
 //! ```
 //!
-//! The example writes `fig2_center_of_mass.png` and the tables of the study. After an interruption, the same
+//! The example writes `fig2_center_of_mass.svg` and `.png`, and the tables of the study. After an interruption, the same
 //! command goes on.
 
 #[path = "../common/mod.rs"]
@@ -18,17 +18,15 @@ mod studies;
 
 use std::error::Error;
 use std::process::ExitCode;
-use std::sync::Arc;
 
 use clap::Parser;
 use granular_edmd::statistics::Estimate;
 use granular_edmd::study::vibrated_box::{Base, VibratedBox};
 use granular_edmd::study::{Axis, Plan, PlanError, Protocol, Record, Study};
-use kuva::plot::legend::LegendPosition;
-use kuva::plot::{LinePlot, ScatterPlot};
-use kuva::render::figure::Figure;
-use kuva::render::layout::{Layout, TickFormat};
-use kuva::render::plots::Plot;
+
+use common::look::{LOOKS, Look, QUIET};
+use common::panel::{self, Margins, Place};
+use common::sheet::Sheet;
 
 /// Height of the center of mass against friction (paper, Fig. 2).
 #[derive(Parser)]
@@ -77,7 +75,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let Some(study) = arguments.common.complete(name, &arguments.plan()?)? else { return Ok(()) };
     let points = points(&study)?;
     print(&points);
-    arguments.common.finish(figure(&points, arguments.slip), &study, "fig2_center_of_mass.png")
+    arguments.common.finish(&draw(&points, arguments.slip), &study, "fig2_center_of_mass")
 }
 
 fn points(study: &Study<VibratedBox>) -> Result<Vec<Point>, Box<dyn Error>> {
@@ -98,41 +96,53 @@ fn print(points: &[Point]) {
     }
 }
 
-fn figure(points: &[Point], slip: bool) -> Figure {
+const MARGINS: Margins = [64.0, 14.0, 10.0, 52.0];
+const WIDTH: f64 = 560.0;
+const HEIGHT: f64 = 400.0;
+const HEADER: f64 = 64.0;
+
+/// Frictions at the edges of the picture.
+const EDGES: (f64, f64) = (0.007, 14.0);
+
+fn draw(points: &[Point], slip: bool) -> Sheet {
+    let mut sheet = Sheet::new(WIDTH, HEADER + HEIGHT);
+    let base = if slip { "thermal base with slip" } else { "thermal base" };
+    let note = format!("N = 500, width 25, g = 0.002, q = 0.025, {base}");
+    sheet.header(MARGINS[0], "A column over a thermal base", &[&note]);
     // The axis is logarithmic, so the value without friction is drawn as a line.
-    let drawn: Vec<&Point> = points.iter().filter(|point| point.friction > 0.0).collect();
-    let places: Vec<(f64, f64)> = drawn.iter().map(|point| (point.friction, point.height.mean())).collect();
-    let line =
-        LinePlot::new().with_data(places.clone()).with_color("rgb(150,170,210)").with_stroke_width(1.2);
-    let dots = ScatterPlot::new()
-        .with_data(places)
-        .with_y_err(drawn.iter().map(|point| point.height.standard_error()))
-        .with_color("rgb(30,80,180)")
-        .with_size(4.5)
-        .with_legend("κ > 0");
-    let mut plots = vec![Plot::Line(line), Plot::Scatter(dots)];
-    if let Some(smooth) = points.iter().find(|point| point.friction == 0.0) {
-        let level = [0.007, 14.0].map(|friction| (friction, smooth.height.mean()));
-        let level = LinePlot::new()
-            .with_data(level)
-            .with_color("gray")
-            .with_stroke_width(1.2)
-            .with_dashed()
-            .with_legend("κ = 0");
-        plots.push(Plot::Line(level));
+    let drawn = || points.iter().filter(|point| point.friction > 0.0);
+    let place = |point: &Point| (point.friction, point.height.mean());
+    let (rough, smooth) = (LOOKS[0], Look::line(QUIET, "8 4"));
+    let mut plots = vec![rough.with_width(1.0).curve(drawn().map(place))];
+    let mut names = vec![
+        (rough.without_line(), "κ > 0, with standard error"),
+        (rough.without_line().open(), "the same, the error a lower bound"),
+    ];
+    if let Some(at) = points.iter().find(|point| point.friction == 0.0) {
+        plots.push(smooth.curve([EDGES.0, EDGES.1].map(|friction| (friction, at.height.mean()))));
+        names.push((smooth, "κ = 0"));
     }
-    let base = if slip { "base with slip" } else { "thermal base" };
-    let layout = Layout::auto_from_plots(&plots)
-        .with_title(format!("N = 500, Lx = 25, g = 0.002, q = 0.025, {base}"))
-        .with_x_label("friction κ")
-        .with_y_label("height of the center of mass, in diameters")
-        .with_log_x()
-        .with_x_tick_format(TickFormat::Custom(Arc::new(|value| value.to_string())))
-        .with_x_axis_min(0.007)
-        .with_x_axis_max(14.0)
-        .with_legend_position(LegendPosition::InsideBottomLeft)
-        .with_y_axis_min(0.0)
-        .with_show_grid(false)
-        .with_box_axes();
-    Figure::new(1, 1).with_plots(vec![plots]).with_layouts(vec![layout]).with_cell_size(820.0, 540.0)
+    let layout = panel::axes(EDGES, heights(points)).with_log_x();
+    let layout = layout.with_x_label("friction κ").with_y_label("center of mass, in diameters σ");
+    let frame = Place { x: 0.0, y: HEADER, width: WIDTH, height: HEIGHT };
+    let panel = sheet.panel(frame, MARGINS, plots, layout);
+    let bar = |point: &Point| {
+        let (mean, error) = (point.height.mean(), point.height.standard_error());
+        [mean - error, mean + error].map(|height| (point.friction, height))
+    };
+    sheet.bars(&panel, rough, drawn().map(bar));
+    for point in drawn() {
+        let look = if point.height.is_converged() { rough } else { rough.open() };
+        sheet.marks(&panel, look, [place(point)]);
+    }
+    sheet.legend((MARGINS[0] + 16.0, HEADER + HEIGHT - 118.0), &names);
+    sheet
+}
+
+/// Returns the range of the heights with their errors, in whole tens.
+fn heights(points: &[Point]) -> (f64, f64) {
+    let low = points.iter().map(|point| point.height.mean() - point.height.standard_error());
+    let high = points.iter().map(|point| point.height.mean() + point.height.standard_error());
+    let (low, high) = (low.fold(f64::INFINITY, f64::min), high.fold(0.0, f64::max));
+    (10.0 * (0.1 * low - 0.2).floor(), 10.0 * (0.1 * high + 0.2).ceil())
 }

@@ -9,8 +9,8 @@
 //! cargo run --release --features serde --example fig3_order_parameters -- --quick
 //! ```
 //!
-//! The example writes `fig3_order_parameters.png` and the tables of the study. After an interruption, the
-//! same command goes on.
+//! The example writes `fig3_order_parameters.svg` and `.png`, and the tables of the study. With `--down` the
+//! picture shows both ways of friction. After an interruption, the same command goes on.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -22,11 +22,12 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::study::vibrated_box::{Convection, Sample, VibratedBox};
-use granular_edmd::study::{Course, Plan, PlanError, Protocol, Ramp, Study};
-use kuva::plot::{LinePlot, ScatterPlot};
-use kuva::render::figure::Figure;
-use kuva::render::layout::Layout;
-use kuva::render::plots::Plot;
+use granular_edmd::study::{Course, Leg, Plan, PlanError, Protocol, Ramp, Study};
+use kuva::prelude::{Layout, LinePlot, Plot, TickFormat};
+
+use common::look::{BLUE, Look, Mark, VERMILION};
+use common::panel::{self, Place};
+use common::sheet::Sheet;
 
 /// Order parameters while friction grows step by step (paper, Fig. 3).
 #[derive(Parser)]
@@ -66,7 +67,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let Some(study) = arguments.common.complete(name, &arguments.plan()?)? else { return Ok(()) };
     let records: Vec<Record> = study.records().collect::<Result<_, _>>()?;
     print(&records);
-    arguments.common.finish(figure(&records, &study), &study, "fig3_order_parameters.png")
+    arguments.common.finish(&draw(arguments, &records, &study), &study, "fig3_order_parameters")
 }
 
 /// Prints means over the second half of each value, as in the paper.
@@ -92,42 +93,84 @@ const fn friction(record: &Record) -> f64 {
     record.experiment().friction
 }
 
-/// Draws both order parameters, one above the other, in bins of equal friction. Bin `k` is centered at
-/// `k + 1`.
-fn figure(records: &[Record], study: &Study<VibratedBox>) -> Figure {
+const LEFT: f64 = 70.0;
+const WIDTH: f64 = 640.0;
+const HEADER: f64 = 110.0;
+const HEIGHT: f64 = 230.0;
+const BELOW: f64 = 52.0;
+
+/// Largest order parameter of the picture.
+const MOST: f64 = 0.25;
+
+/// Looks of the samples: while friction grows, and while it falls.
+const WAYS: [Look; 2] =
+    [Look::marks(BLUE, Mark::Disk).with_size(1.2), Look::marks(VERMILION, Mark::Disk).with_size(1.2)];
+
+/// Color of the band of thermal noise, and its paler face.
+const BAND: &str = "#9aa0a6";
+const FACE: &str = "#e1e3e5";
+
+/// An order parameter of a sample.
+type Quantity = fn(&Sample) -> f64;
+
+/// Draws both order parameters, one above the other, over friction.
+fn draw(arguments: &Arguments, records: &[Record], study: &Study<VibratedBox>) -> Sheet {
+    let mut sheet = Sheet::new(WIDTH, HEADER + 2.0 * HEIGHT + BELOW);
     let cycles = study.plan().protocol().cycles();
-    let title = format!("g = 0.015625, q = 0, N = 1000; {cycles} oscillations for each value of κ");
-    let (first, one) = panel(records, |sample| sample.one_roll, "Ψ₁");
-    let (second, two) = panel(records, |sample| sample.two_rolls, "Ψ₂");
-    Figure::new(2, 1)
-        .with_plots(vec![first, second])
-        .with_layouts(vec![one.with_title(title), two])
-        .with_cell_size(1000.0, 360.0)
+    let note = format!("N = 1000, g = 0.015625, q = 0; {cycles} oscillations at each κ, all samples shown");
+    sheet.header(LEFT, "Order parameters while friction changes", &[&note]);
+    let names: &[_] = if arguments.down {
+        &["κ grows (left half of each value)", "κ falls (right half)"]
+    } else {
+        &["samples, κ grows"]
+    };
+    let names: Vec<_> = WAYS.map(|look| look.with_size(3.5)).into_iter().zip(names.iter().copied()).collect();
+    sheet.legend_in_row((LEFT, 77.0), &names);
+    let noise = (Look::line(FACE, "").with_width(10.0), "two standard deviations of thermal noise");
+    sheet.legend((LEFT, 98.0), &[noise]);
+    let quantities: [(Quantity, &str); 2] =
+        [(|sample| sample.one_roll, "Ψ₁, one roll"), (|sample| sample.two_rolls, "Ψ₂, two rolls")];
+    for (number, (quantity, name)) in quantities.into_iter().enumerate() {
+        let place = Place { x: 0.0, y: HEADER + HEIGHT * number as f64, width: WIDTH, height: HEIGHT };
+        add_panel(&mut sheet, place, records, quantity, layout(number == 1).with_y_label(name));
+    }
+    sheet
 }
 
-fn panel(records: &[Record], quantity: fn(&Sample) -> f64, name: &str) -> (Vec<Plot>, Layout) {
-    let samples = |(bin, record): (usize, &Record)| -> Vec<(f64, f64)> {
+/// Returns the axes of a panel. Only the lowest has numbers and a name of its friction.
+fn layout(lowest: bool) -> Layout {
+    let layout = panel::axes((0.5 * STEP, 15.5 * STEP), (-MOST, MOST)).with_x_tick_step(0.01);
+    let layout = layout.with_y_tick_step(0.1).with_y_tick_format(TickFormat::Fixed(1));
+    if lowest {
+        layout.with_x_tick_format(TickFormat::Fixed(2)).with_x_label("friction κ, static = dynamic")
+    } else {
+        layout.with_x_tick_format(TickFormat::Custom(std::sync::Arc::new(|_| String::new())))
+    }
+}
+
+fn add_panel(sheet: &mut Sheet, place: Place, records: &[Record], quantity: Quantity, layout: Layout) {
+    let place = Place { height: place.height + BELOW, ..place };
+    let panel = sheet.panel(place, [LEFT, 14.0, 8.0, BELOW], vec![noise(records)], layout);
+    let both = records.iter().any(|record| record.leg() == Some(Leg::Down));
+    for record in records {
+        let down = record.leg() == Some(Leg::Down);
+        let (from, to) = if both { if down { (0.02, 0.46) } else { (-0.46, -0.02) } } else { (-0.46, 0.46) };
         let count = record.samples().len() as f64;
-        let place = |index: usize| bin as f64 + 0.5 + (index as f64 + 0.5) / count;
-        record.samples().iter().enumerate().map(|(index, sample)| (place(index), quantity(sample))).collect()
+        let at = |index: usize| friction(record) + STEP * (from + (to - from) * (index as f64 + 0.5) / count);
+        let samples = record.samples().iter().enumerate();
+        let samples = samples.map(|(index, sample)| (at(index), quantity(sample)));
+        sheet.marks(&panel, WAYS[usize::from(down)], samples);
+    }
+}
+
+/// Returns the band in which nearly all samples of a gas without rolls would be.
+fn noise(records: &[Record]) -> Plot {
+    let up = records.iter().filter(|record| record.leg() != Some(Leg::Down));
+    let ends = |record: &Record| {
+        [-0.5, 0.5].map(|end| (friction(record) + end * STEP, 2.0 * record.thermal_noise()))
     };
-    let points: Vec<(f64, f64)> = records.iter().enumerate().flat_map(samples).collect();
-    let dots = ScatterPlot::new().with_data(points).with_color("rgb(30,80,180)").with_size(1.1);
-    let edges = (1..records.len()).map(|edge| edge as f64 + 0.5).map(|edge| [(edge, -0.25), (edge, 0.25)]);
-    let edge = |ends: [(f64, f64); 2]| {
-        Plot::Line(LinePlot::new().with_data(ends).with_color("rgb(215,215,215)").with_stroke_width(0.8))
-    };
-    let mut plots: Vec<Plot> = edges.map(edge).collect();
-    plots.push(Plot::Scatter(dots));
-    let layout = Layout::new((0.5, records.len() as f64 + 0.5), (-0.25, 0.25))
-        .with_y_axis_min(-0.25)
-        .with_y_axis_max(0.25)
-        .with_x_axis_min(0.5)
-        .with_x_axis_max(records.len() as f64 + 0.5)
-        .with_x_categories(records.iter().map(|record| format!("{:.3}", friction(record))).collect())
-        .with_x_label("friction κ")
-        .with_y_label(name)
-        .with_show_grid(false)
-        .with_box_axes();
-    (plots, layout)
+    let edge: Vec<(f64, f64)> = up.flat_map(ends).collect();
+    let line = LinePlot::new().with_data(edge.iter().map(|(friction, _)| (*friction, 0.0)));
+    let line = line.with_color(BAND).with_stroke_width(0.8);
+    line.with_band(edge.iter().map(|(_, noise)| -noise), edge.iter().map(|(_, noise)| *noise)).into()
 }

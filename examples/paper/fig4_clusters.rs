@@ -9,8 +9,8 @@
 //! cargo run --release --features serde,rayon --example fig4_clusters -- --quick
 //! ```
 //!
-//! The example writes `fig4_clusters.png`, `clusters.csv` and the tables of the study. After an interruption,
-//! the same command goes on.
+//! The example writes `fig4_clusters.svg` and `.png`, `clusters.csv` and the tables of the study. After an
+//! interruption, the same command goes on.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -27,12 +27,11 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::statistics::RunningMean;
 use granular_edmd::study::vibrated_box::{Convection, VibratedBox};
 use granular_edmd::study::{Plan, PlanError, Protocol, Record, Study};
-use kuva::plot::scatter::MarkerShape;
-use kuva::prelude::{LinePlot, Plot, ScatterPlot};
+use kuva::prelude::Plot;
 
 use common::command_line::{non_negative, whole};
-use common::look::{BLUE, GREEN, INK, Look, ORANGE, QUIET};
-use common::panel::{self, Place};
+use common::look::{BLUE, GREEN, INK, Look, Mark, QUIET, VERMILION};
+use common::panel::{self, Margins, Panel, Place};
 use common::sheet::Sheet;
 
 /// Clusters of the order parameters where one roll and two coexist (paper, Fig. 4).
@@ -93,9 +92,12 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     write_clusters(&runs, study.folder())?;
     // The first of the runs with most clusters is shown.
     let Some(shown) = runs.iter().rev().max_by_key(|run| run.clusters()) else { return Ok(()) };
-    let path = study.folder().join("fig4_clusters.png");
-    std::fs::write(&path, draw(arguments, &study, shown)?)?;
-    println!("wrote {}; the tables beside it are clusters.csv, values.csv and samples.csv", path.display());
+    let path = study.folder().join("fig4_clusters");
+    draw(arguments, &study, shown).write(&path)?;
+    println!(
+        "wrote {0}.svg and {0}.png; the tables beside them are clusters.csv, values.csv and samples.csv",
+        path.display()
+    );
     let tables = ["clusters", "values"].map(|name| (name, study.folder().join(name).with_extension("csv")));
     arguments.common.results.write_tables_as_json(&tables)
 }
@@ -141,84 +143,74 @@ fn write_clusters(runs: &[Run], folder: &Path) -> Result<(), Box<dyn Error>> {
     Ok(table.flush()?)
 }
 
-const MARGINS: [f64; 4] = [70.0, 20.0, 12.0, 52.0];
-const HEADER: f64 = 76.0;
+const MARGINS: Margins = [70.0, 14.0, 10.0, 52.0];
+const HEADER: f64 = 152.0;
+
 /// Size of the panel, in which a unit is equally long in both directions.
-const SIZE: (f64, f64) = (860.0, 526.0);
+const SIZE: (f64, f64) = (640.0, 396.0);
 
 /// Ranges of both axes.
 const RANGES: [(f64, f64); 2] = [(-0.25, 0.25), (-0.08, 0.22)];
 
-fn draw(arguments: &Arguments, study: &Study<VibratedBox>, run: &Run) -> Result<Sheet, String> {
+/// The border of the noise of a gas at rest, and the center of a cluster.
+const NOISE: Look = Look::line(QUIET, "2 3");
+const CENTER: Look = Look::marks(INK, Mark::Cross).with_size(7.0);
+
+fn draw(arguments: &Arguments, study: &Study<VibratedBox>, run: &Run) -> Sheet {
     let mut sheet = Sheet::new(SIZE.0, HEADER + SIZE.1);
     let plural = if run.clusters() == 1 { "" } else { "s" };
     let title = format!("{} cluster{plural} at κ = {}", run.clusters(), arguments.friction);
     let protocol = study.plan().protocol();
-    let samples = protocol.samples();
-    let system = "N = 1000, box 60 × 150, g = 0.015625, q = 0, bi-parabolic base A = 0.1, ω = 10, contact duration 1e-4";
-    let protocol = format!(
-        "{samples} samples in the second half of {} oscillations; run {} of {}, seed {}; dotted: three times the noise at \
-         rest",
+    let note = format!(
+        "{} samples in the second half of {} oscillations; run {} of {}, seed {}",
+        protocol.samples(),
         protocol.cycles(),
         run.record.ramp() + 1,
         arguments.runs,
         arguments.common.seed
     );
-    sheet.text(MARGINS[0], 28.0, 20, INK, &title);
-    sheet.text(MARGINS[0], 48.0, 12, QUIET, system);
-    sheet.text(MARGINS[0], 66.0, 12, QUIET, &protocol);
+    let system = "N = 1000, g = 0.015625, q = 0, A = 0.1, ω = 10";
+    sheet.header(MARGINS[0], &title, &[system, &note]);
+    add_legend(&mut sheet, run);
     let layout = panel::axes(RANGES[0], RANGES[1]).with_x_label("Ψ₁, one roll").with_y_label("Ψ₂, two rolls");
     let place = Place { x: 0.0, y: HEADER, width: SIZE.0, height: SIZE.1 };
-    sheet.panel(place, MARGINS, plots(run), layout);
-    for (state, cluster) in run.found.iter() {
-        // The name of two rolls is above them, and that of one roll is below.
-        let away = 3.0 * cluster.spread(DVec2::Y) + 0.01;
-        let away = if state.rolls() == Some(2) { away } else { -away - 0.012 };
-        let text = format!("{state}, {:.0} %", 100.0 * cluster.weight());
-        let (x, y) = on_sheet(cluster.center() + DVec2::Y * away);
-        sheet.text(x - 3.2 * text.chars().count() as f64, y, 13, color(state), &text);
-    }
-    Ok(sheet)
+    let panel = sheet.panel(place, MARGINS, vec![noise(run)], layout.with_y_tick_step(0.05));
+    add_clusters(&mut sheet, &panel, run);
+    sheet
 }
 
-/// Returns the place of a point of the plane on the sheet.
-fn on_sheet(point: DVec2) -> (f64, f64) {
-    let [left, right, top, bottom] = MARGINS;
-    let share = |value: f64, (low, high): (f64, f64)| (value - low) / (high - low);
-    let across = share(point.x, RANGES[0]) * (SIZE.0 - left - right);
-    let up = share(point.y, RANGES[1]) * (SIZE.1 - top - bottom);
-    (left + across, HEADER + SIZE.1 - bottom - up)
+fn add_legend(sheet: &mut Sheet, run: &Run) {
+    let name = |state: ConvectiveState, weight| format!("{state}, {:.0} %", 100.0 * weight);
+    let names: Vec<_> =
+        run.found.iter().map(|(state, cluster)| (look(state), name(state, cluster.weight()))).collect();
+    let names: Vec<_> = names.iter().map(|(look, name)| (look.with_size(4.0), name.as_str())).collect();
+    sheet.legend((MARGINS[0], 97.0), &names);
+    sheet.legend((370.0, 97.0), &[(CENTER, "center"), (NOISE, "three times the noise at rest")]);
 }
 
-fn plots(run: &Run) -> Vec<Plot> {
+/// Draws a circle about the origin, within which a gas at rest would be.
+fn noise(run: &Run) -> Plot {
     let radius = 3.0 * run.record.thermal_noise();
     let circle =
         (0..=90).map(|step| DVec2::from_angle(f64::from(step) * std::f64::consts::TAU / 90.0) * radius);
-    let circle = LinePlot::new().with_data(circle.map(|at| (at.x, at.y))).with_color(QUIET).with_dotted();
-    let mut plots = vec![circle.into()];
+    NOISE.curve(circle.map(|at| (at.x, at.y)))
+}
+
+fn add_clusters(sheet: &mut Sheet, panel: &Panel, run: &Run) {
     let (order, labels) = (run.record.order(), run.found.clusters().labels());
     for (number, (state, cluster)) in run.found.iter().enumerate() {
         let of = order.iter().zip(labels).filter(|&(_, &label)| label == number);
-        let dots = ScatterPlot::new()
-            .with_data(of.map(|(order, _)| (order.one_roll, order.two_rolls)))
-            .with_color(color(state))
-            .with_marker_opacity(0.55)
-            .with_size(2.6);
-        let center = [(cluster.center().x, cluster.center().y)];
-        let center = |color: &str, size| {
-            let dot = ScatterPlot::new().with_data(center).with_color(color).with_size(size);
-            dot.with_marker(MarkerShape::Diamond).into()
-        };
-        plots.extend([dots.into(), center("white", 9.0), center(INK, 6.5)]);
+        sheet.marks(panel, look(state), of.map(|(order, _)| (order.one_roll, order.two_rolls)));
+        sheet.marks(panel, CENTER, [(cluster.center().x, cluster.center().y)]);
     }
-    plots
 }
 
-const fn color(state: ConvectiveState) -> &'static str {
-    match state {
-        ConvectiveState::ClockwiseRoll => BLUE,
-        ConvectiveState::CounterclockwiseRoll => GREEN,
-        ConvectiveState::TwoRollsUp | ConvectiveState::TwoRollsDown => ORANGE,
-        _ => QUIET,
-    }
+const fn look(state: ConvectiveState) -> Look {
+    let look = match state {
+        ConvectiveState::ClockwiseRoll => Look::marks(BLUE, Mark::Disk),
+        ConvectiveState::CounterclockwiseRoll => Look::marks(GREEN, Mark::Triangle),
+        ConvectiveState::TwoRollsUp | ConvectiveState::TwoRollsDown => Look::marks(VERMILION, Mark::Square),
+        _ => Look::marks(QUIET, Mark::Diamond),
+    };
+    look.with_size(2.8)
 }

@@ -1,6 +1,8 @@
 //! Series of the values of an observable at set times.
 
 use super::{Moment, Observable, Observer, SampleTimes, Snapshot};
+use crate::ParameterError;
+use crate::statistics::{Estimate, block_average};
 
 /// An observer that keeps the values of an observable at set times.
 ///
@@ -56,6 +58,30 @@ impl<Q: Observable> Series<Q> {
     /// Iterates over times and values together.
     pub fn iter(&self) -> impl Iterator<Item = (f64, &Q::Value)> {
         self.times.iter().copied().zip(&self.values)
+    }
+
+    /// Returns the mean of a number of each value, with its error from blocks ([`block_average`]).
+    ///
+    /// # Errors
+    /// If there are fewer than two samples, or one is not finite or above 1e100 in size.
+    ///
+    /// ```
+    /// use granular_edmd::boundary::Container;
+    /// use granular_edmd::collision::Smooth;
+    /// use granular_edmd::observable::{CenterOfMass, SampleTimes, Series};
+    /// use granular_edmd::{Simulation, initial};
+    ///
+    /// let container = Container::closed(10.0, 10.0)?;
+    /// let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 20, 0.5)?, 1.0, 1)?;
+    /// let mut gas = Simulation::builder(Smooth::new(0.0)?, container).disks(disks).build()?;
+    /// let mut series = Series::new(CenterOfMass, SampleTimes::every(1.0)?);
+    /// gas.run_until(400.0, &mut series)?;
+    /// let height = series.mean(|center| center.y)?;
+    /// assert!((height.mean() - 5.0).abs() < 5.0 * height.standard_error());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn mean(&self, number: impl Fn(&Q::Value) -> f64) -> Result<Estimate, ParameterError> {
+        block_average(&self.values.iter().map(number).collect::<Vec<_>>())
     }
 
     /// Forgets all samples so far.

@@ -111,10 +111,11 @@ fn caption(arguments: &Arguments, parts: &[Part], finished: usize) -> String {
     let total: usize = parts.iter().map(|part| part.plan.ramps() * part.plan.values()).sum();
     let cycles = parts[0].plan.protocol().cycles();
     let unfinished =
-        if finished < total { format!("; {finished} of {total} points so far") } else { String::new() };
+        if finished < total { format!(", {finished} of {total} points so far") } else { String::new() };
     format!(
-        "N = 1000, box 60 × 150, bi-parabolic base A = 0.1, ω = 10, contact duration 1e-4;\n\
-         {cycles} oscillations for each point, the first half discarded; seed {}{unfinished}",
+        "N = 1000, box 60 × 150, bi-parabolic base A = 0.1, ω = 10,\n\
+         contact duration 1e-4, seed {}{unfinished};\n\
+         {cycles} oscillations for each point, the first half discarded",
         arguments.seed
     )
 }

@@ -47,13 +47,13 @@ const REGIMES: [(ConvectiveRegime, Look, &str); 5] = [
     (ConvectiveRegime::OneRoll, Look::marks(BLUE, Mark::Disk), "one roll"),
     (ConvectiveRegime::Coexistence, Look::marks(PURPLE, Mark::Diamond), "one and two in turn"),
     (ConvectiveRegime::TwoRolls, Look::marks(VERMILION, Mark::Triangle), "two rolls"),
-    (ConvectiveRegime::Collapsed, Look::marks("#9aa0a6", Mark::Square), "collapse"),
+    (ConvectiveRegime::Collapsed, Look::marks("#868c93", Mark::Square), "collapse"),
 ];
 
 /// Looks of the lines, and the mean energy changes that the paper has for them at both gravities (Table I).
 const LINES: [(TransitionLine, Look, [f64; 2]); 4] = [
     (TransitionLine::ZeroOne, Look::line(BLUE, ""), [-0.090, -0.047]),
-    (TransitionLine::OneTwoBeginning, Look::line(PURPLE, "2 3"), [-0.351, -0.137]),
+    (TransitionLine::OneTwoBeginning, Look::line(PURPLE, "2 3").with_width(3.0), [-0.351, -0.137]),
     (TransitionLine::OneTwoEnd, Look::line(VERMILION, "8 3"), [-0.377, -0.147]),
     (TransitionLine::TwoCollapse, Look::line(INK, "10 3 2 3"), [-0.614, -0.290]),
 ];
@@ -62,13 +62,13 @@ const LINES: [(TransitionLine, Look, [f64; 2]); 4] = [
 const FRICTIONS: (f64, f64) = (0.0043, 3.5);
 
 /// Half the width of a mark: neighbors among the frictions from 0.05 to 0.07 do not touch.
-const SIZE: f64 = 2.5;
+const SIZE: f64 = 2.8;
 
 /// Distance of the marks of both ways.
 const APART: f64 = 7.0;
 
 const MARGINS: Margins = [74.0, 14.0, 10.0, 52.0];
-const WIDTH: f64 = 620.0;
+const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 480.0;
 const LEGEND: f64 = 152.0;
 
@@ -96,7 +96,7 @@ fn write_legend(sheet: &mut Sheet, top: f64) {
     sheet.legend((right, top), &names.each_ref().map(|(look, name)| (*look, name.as_str())));
     let thin = Look::line(QUIET, "").with_width(0.8);
     sheet.legend((right, top + 88.0), &[(thin, "⟨dE⟩ of the paper's Table I")]);
-    let ways = "marks: full while friction grows; open, below, while it falls";
+    let ways = "marks: full on the way up; open, below, on the way down; bars: between neighbors";
     sheet.text(left, top + 112.0, SMALL, QUIET, ways);
 }
 

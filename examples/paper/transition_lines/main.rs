@@ -3,8 +3,8 @@
 //! The example reads the tables of ramps that `docs/reproduction/*/run` has made, and averages along each
 //! transition line: the paper's ⟨dE⟩ of a gas of equal temperatures, the same with the ratio of temperatures
 //! that the run has, and the energy change of the collisions in the run. The smaller the scatter along a
-//! line, the better the number governs the transition. It writes `transition_lines.csv`, and for the other two
-//! questions `transition_lines-walls.csv` and `transition_lines-dependences.csv`.
+//! line, the better the number governs the transition. It writes `transition_lines` as a table and a picture,
+//! and the phase diagrams `fig5_full_length-…`; for the other two questions `transition_lines-walls.csv` and `transition_lines-dependences.csv`.
 //!
 //! ```text
 //! cargo run --release --features serde --example transition_lines -- lines
@@ -17,6 +17,9 @@ mod common;
 mod dependences;
 mod local;
 mod numbers;
+#[path = "../fig5_phase_diagram/picture.rs"]
+mod phase_diagram;
+mod picture;
 mod ramps;
 
 use std::collections::BTreeMap;
@@ -139,6 +142,11 @@ fn lines(ramps: &[Ramp], arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             }
         }
     }
+    for (gravity, name) in
+        [(0.015_625, "fig5_full_length-0.015625"), (0.002_025, "fig5_full_length-0.002025")]
+    {
+        picture::draw_diagram(gravity, ramps, &crossings)?.write(&arguments.results.path(name))?;
+    }
     write_crossings(&crossings, &arguments.results)
 }
 
@@ -179,7 +187,7 @@ fn write_crossings(crossings: &[(&Ramp, Crossing)], results: &Results) -> Result
         let line = at.line.to_string();
         table.serialize((&ramp.study, ramp.gravity, ramp.oscillations, line, at.rising, along, rounded))?;
     }
-    results.finish_table("transition_lines", table, None)
+    results.finish_table("transition_lines", table, Some(&picture::draw(crossings)?))
 }
 
 /// Prints Table I under each assumption about the walls, and its distance from the paper's.

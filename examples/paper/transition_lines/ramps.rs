@@ -10,6 +10,7 @@ use granular_edmd::study::Plan;
 use granular_edmd::study::vibrated_box::VibratedBox;
 
 use crate::local::Local;
+use crate::phase_diagram;
 
 /// Friction between the two branches of the lines: the loss is largest near it.
 const LARGEST_LOSS: f64 = 0.35;
@@ -58,10 +59,38 @@ pub(crate) struct Crossing {
     pub(crate) rising: bool,
     pub(crate) friction: f64,
     pub(crate) inelasticity: f64,
+    /// True if the transition was met on a ramp in friction.
+    pub(crate) along_friction: bool,
     /// Half the distance of the values between which the transition lies; of the logarithm of a friction.
     pub(crate) half_width: f64,
     pub(crate) temperature_ratio: f64,
     pub(crate) local: Option<Local>,
+}
+
+impl Crossing {
+    /// Returns the same crossing at both ends of the width to which it is known.
+    pub(crate) fn ends(&self) -> [Self; 2] {
+        [-self.half_width, self.half_width].map(|by| {
+            let mut end = self.clone();
+            if self.along_friction {
+                end.friction *= by.exp();
+            } else {
+                end.inelasticity += by;
+            }
+            end
+        })
+    }
+
+    /// Returns the crossing as a point of the phase diagram.
+    pub(crate) fn in_the_plane(&self) -> phase_diagram::Crossing {
+        phase_diagram::Crossing {
+            line: self.line,
+            friction: self.friction,
+            inelasticity: self.inelasticity,
+            rising: self.rising,
+            between: self.ends().map(|end| (end.friction, end.inelasticity)),
+        }
+    }
 }
 
 /// Reads the ramps of all studies in a folder, in the order of their names.
@@ -169,6 +198,7 @@ impl Ramp {
             rising,
             friction,
             inelasticity,
+            along_friction: self.along_friction,
             half_width,
             temperature_ratio: mean(|seen| seen.temperature_ratio),
             local: None,
