@@ -8,7 +8,7 @@
 //! cargo run --release --features serde,rayon --example own_study -- --out out --ramp 3
 //! ```
 //!
-//! Writes `own_study.png` and the tables of the study.
+//! Writes `own_study.svg` and `.png`, and the tables of the study.
 
 mod common;
 mod studies;
@@ -19,9 +19,11 @@ use clap::Parser;
 use granular_edmd::prelude::*;
 use granular_edmd::quantity::{finite, non_negative};
 use granular_edmd::study::{Axis, Column, Experiment, ExperimentError, Plan, PlanError, Protocol};
-use kuva::plot::ScatterPlot;
-use kuva::render::{figure::Figure, layout::Layout, plots::Plot};
 use serde::{Deserialize, Serialize};
+
+use common::look::Look;
+use common::panel::{self, Place};
+use common::sheet::Sheet;
 
 /// The parameters: a plan varies them by the names of these fields.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -146,16 +148,26 @@ fn run(Arguments { common }: &Arguments) -> Result<(), Box<dyn std::error::Error
         println!("loss {loss}, spin {spin}: angular momentum {momentum}");
         points.push((*loss, *spin, momentum));
     }
-    let series = points.chunk_by(|a, b| a.0 == b.0).zip(["steelblue", "orange", "firebrick"]);
-    let dots = series.map(|(points, color)| {
-        let dots =
-            ScatterPlot::new().with_data(points.iter().map(|(_, spin, momentum)| (*spin, momentum.mean())));
-        let dots = dots.with_y_err(points.iter().map(|(.., momentum)| momentum.standard_error()));
-        Plot::Scatter(dots.with_color(color).with_legend(format!("loss {}", points[0].0)))
-    });
-    let plots: Vec<Plot> = dots.collect();
-    let layout = Layout::auto_from_plots(&plots).with_x_label("spin of the drum");
+    common.finish(&draw(&points), &study, "own_study")
+}
+
+/// Draws the angular momentum over the spin of the drum, with errors, for each loss.
+fn draw(points: &[(f64, f64, Estimate)]) -> Sheet {
+    let mut sheet = Sheet::new(520.0, 400.0);
+    let most = points.iter().map(|(.., momentum)| momentum.mean()).fold(0.0, f64::max);
+    let layout = panel::axes((0.0, 0.25), (0.0, 1.3 * most)).with_x_label("spin of the drum");
     let layout = layout.with_y_label("angular momentum of a disk");
-    let figure = Figure::new(1, 1).with_plots(vec![plots]).with_layouts(vec![layout]);
-    common.finish(figure, &study, "own_study.png")
+    let place = Place { x: 0.0, y: 0.0, width: 520.0, height: 400.0 };
+    let panel = sheet.panel(place, [74.0, 14.0, 14.0, 52.0], Vec::new(), layout);
+    for (k, series) in points.chunk_by(|a, b| a.0 == b.0).enumerate() {
+        let look = Look::number(k).without_line();
+        let bar = |(_, spin, momentum): &(f64, f64, Estimate)| {
+            [-1.0, 1.0].map(|side| (*spin, momentum.mean() + side * momentum.standard_error()))
+        };
+        sheet.bars(&panel, look, series.iter().map(bar));
+        sheet.marks(&panel, look, series.iter().map(|(_, spin, momentum)| (*spin, momentum.mean())));
+        let name = format!("loss {}", series[0].0);
+        sheet.legend((panel.place.x + 16.0, panel.place.y + 26.0 + 22.0 * k as f64), &[(look, &name)]);
+    }
+    sheet
 }

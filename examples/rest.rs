@@ -9,7 +9,7 @@
 //! cargo run --release --example rest -- --flat --end 1000 --out heaps
 //! ```
 //!
-//! The example writes `rest.png` and `rest.csv`. `docs/rest.md` explains the remedies.
+//! The example writes `rest.svg`, `rest.png` and `rest.csv`. `docs/rest.md` explains the remedies.
 
 mod common;
 
@@ -22,11 +22,11 @@ use granular_edmd::boundary::Obstacles;
 use granular_edmd::collision::TangentialResponse::{Reversing, Unchanged};
 use granular_edmd::prelude::*;
 use granular_edmd::simulation::Counters;
-use kuva::prelude::{LinePlot, Plot, ScatterPlot};
+use kuva::prelude::{Layout, Plot, ScatterPlot};
 
 use common::command_line::{self, Failure, positive};
-use common::look::{BLUE, GREEN, INK, Look, ORANGE, QUIET};
-use common::panel::{self, Place};
+use common::look::{INK, Look, QUIET, SKY};
+use common::panel::{self, Margins, Place, SMALL};
 use common::progress::Progress;
 use common::results::Results;
 use common::sheet::Sheet;
@@ -106,7 +106,7 @@ fn remedies() -> Result<Vec<Remedy>, ParameterError> {
         ];
         remedies.extend(rules.map(|(name, rule)| Remedy { name, parameter, rule }));
     }
-    remedies.sort_by_key(|remedy| FAMILIES.iter().position(|(_, name)| *name == remedy.name));
+    remedies.sort_by_key(|remedy| FAMILIES.iter().position(|name| *name == remedy.name));
     Ok(remedies)
 }
 
@@ -219,12 +219,11 @@ fn write(arguments: &Arguments, heaps: &[Heap]) -> Result<(), Box<dyn Error>> {
         })
     };
     let numbers = heaps.iter().map(heap).collect();
-    arguments.results.finish("rest", table, &draw(heaps)?, &numbers)
+    arguments.results.finish("rest", table, &draw(heaps), &numbers)
 }
 
-/// Space between a panel's edge and its axes: left, right, top, bottom.
-const MARGINS: [f64; 4] = [52.0, 14.0, 30.0, 44.0];
-const HEADER: f64 = 56.0;
+const MARGINS: Margins = [66.0, 14.0, 34.0, 52.0];
+const HEADER: f64 = 60.0;
 const UNIT: f64 = 17.0;
 
 /// Height of the part of the heaps that is shown.
@@ -234,53 +233,39 @@ const SHOWN: f64 = 8.0;
 const DRAWN: [(&str, f64); 4] =
     [("ContactDuration", 0.1), ("ElasticBelow", 0.1), ("LeastRebound", 0.1), ("LeastRebound", 0.4)];
 
-/// The remedies whose numbers are drawn over their parameters, with their colors.
-const FAMILIES: [(&str, &str); 4] = [
-    (INK, "ContactDuration"),
-    (BLUE, "ElasticBelow"),
-    (GREEN, "ElasticBelow, reversing"),
-    (ORANGE, "LeastRebound"),
-];
+/// The remedies whose numbers are drawn over their parameters.
+const FAMILIES: [&str; 4] = ["ContactDuration", "ElasticBelow", "ElasticBelow, reversing", "LeastRebound"];
 
 /// Draws some heaps, and cost and heat over the parameters of the remedies.
-fn draw(heaps: &[Heap]) -> Result<Sheet, Box<dyn Error>> {
+fn draw(heaps: &[Heap]) -> Sheet {
     let frame = [WIDTH * UNIT + MARGINS[0] + MARGINS[1], SHOWN * UNIT + MARGINS[2] + MARGINS[3]];
-    let mut sheet = Sheet::new(2.0 * frame[0], HEADER + 2.0 * frame[1] + 340.0);
-    sheet.text(MARGINS[0], 28.0, 19, INK, "Fifty grains that came to rest");
-    sheet.text(
-        MARGINS[0],
-        47.0,
-        12,
-        QUIET,
-        "a column fell onto a floor with grains glued to it; g = 1, q = 0.1, κ = 0.5",
-    );
+    let mut sheet = Sheet::new(2.0 * frame[0], HEADER + 2.0 * frame[1] + 350.0);
+    let about = "a column fell onto a floor with grains glued to it; g = 1, q = 0.1, κ = 0.5";
+    sheet.header(MARGINS[0], "Fifty grains that came to rest", &[about]);
     for (k, (name, parameter)) in DRAWN.into_iter().enumerate() {
         let Some(heap) = heaps.iter().find(|heap| heap.name == name && heap.parameter == parameter) else {
             continue;
         };
         let (x, y) = ((k % 2) as f64 * frame[0], HEADER + (k / 2) as f64 * frame[1]);
-        let layout = panel::axes((0.0, WIDTH), (0.0, SHOWN));
+        let layout = panel::axes((0.0, WIDTH), (0.0, SHOWN)).with_y_tick_step(2.0);
+        let layout = layout.with_x_label("x, in diameters").with_y_label("height");
         let place = Place { x, y, width: frame[0], height: frame[1] };
-        sheet.panel(
-            place,
-            MARGINS,
-            faces(&heap.disks, &heap.glued),
-            layout.with_x_label("x").with_y_label("height"),
-        );
+        sheet.panel(place, MARGINS, faces(&heap.disks, &heap.glued), layout);
         let title = format!("{name}, {parameter}: at time {:.0}", heap.time);
-        sheet.text(x + MARGINS[0], y + 20.0, 12, INK, &title);
+        sheet.text(x + MARGINS[0], y + 26.0, SMALL, INK, &title);
     }
     let below = HEADER + 2.0 * frame[1];
     let panels: [(&str, Quantity); 2] =
         [("events per grain and time", |heap| heap.events), ("heat per grain", |heap| heap.heat)];
     for (k, (label, value)) in panels.into_iter().enumerate() {
-        let place = Place { x: k as f64 * frame[0], y: below + 20.0, width: frame[0], height: 310.0 };
+        let place = Place { x: k as f64 * frame[0], y: below + 20.0, width: frame[0], height: 330.0 };
         let layout = panel::axes((1e-2, 1.0), range(heaps, value)).with_log_scale();
         let layout = layout.with_x_label("duration, or speed, of the remedy").with_y_label(label);
-        sheet.panel(place, MARGINS, curves(heaps, value), layout);
+        draw_curves(&mut sheet, place, layout, heaps, value);
     }
-    sheet.key(MARGINS[0], below + 16.0, &FAMILIES);
-    Ok(sheet)
+    let names = FAMILIES.into_iter().enumerate().map(|(k, name)| (Look::number(k), name));
+    sheet.legend_in_row((MARGINS[0], below + 28.0), &names.collect::<Vec<_>>());
+    sheet
 }
 
 /// A number of a heap.
@@ -299,16 +284,16 @@ fn faces(disks: &[Disk], glued: &[Disk]) -> Vec<Plot> {
         let sizes = disks.iter().map(|disk| disk.radius() * UNIT - 0.4);
         ScatterPlot::new().with_data(centers).with_color(color).with_sizes(sizes).into()
     };
-    vec![faces(glued, QUIET), faces(disks, GREEN)]
+    vec![faces(glued, QUIET), faces(disks, SKY)]
 }
 
-fn curves(heaps: &[Heap], value: Quantity) -> Vec<Plot> {
-    let curve = |(color, name): (&str, &str)| {
+fn draw_curves(sheet: &mut Sheet, place: Place, layout: Layout, heaps: &[Heap], value: Quantity) {
+    let points = |name: &str| -> Vec<(f64, f64)> {
         let family = heaps.iter().filter(|heap| heap.name == name);
-        let points = family.map(|heap| (heap.parameter, value(heap))).filter(|(_, value)| *value > 0.0);
-        let points: Vec<(f64, f64)> = points.collect();
-        let marks = ScatterPlot::new().with_data(points.clone()).with_color(color).with_size(3.5);
-        [LinePlot::new().with_data(points).with_color(color).with_stroke_width(1.6).into(), marks.into()]
+        family.map(|heap| (heap.parameter, value(heap))).filter(|(_, value)| *value > 0.0).collect()
     };
-    FAMILIES.into_iter().flat_map(curve).collect()
+    let families = || FAMILIES.into_iter().enumerate().map(|(k, name)| (Look::number(k), points(name)));
+    let curves = families().map(|(look, points)| look.curve(points)).collect();
+    let panel = sheet.panel(place, MARGINS, curves, layout);
+    families().for_each(|(look, points)| sheet.marks(&panel, look, points));
 }

@@ -7,14 +7,22 @@
 //! The bench runs the same physical state in boxes of the same height and growing width, with at most
 //! `LARGEST` (10⁶) disks. It measures `ROUNDS` times, and the medians of the time on a processor count. The
 //! disks are numbered once by their place, which is the best for the caches, and once at random. The picture
-//! goes to `PICTURE`, or to `out/scaling.png` if that is not set.
+//! goes to `PICTURE`, or to `out/scaling.png` if that is not set, and as SVG beside it.
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../../examples/common/look.rs"]
+#[allow(dead_code, reason = "not all looks are needed here")]
+mod look;
 mod measurement;
+#[path = "../../examples/common/panel.rs"]
+#[allow(dead_code, reason = "not all sizes are needed here")]
+mod panel;
 mod picture;
+#[path = "../../examples/common/raster.rs"]
+mod raster;
 #[path = "../../examples/common/sheet.rs"]
-#[allow(dead_code, reason = "not all colours are needed here")]
+#[allow(dead_code, reason = "not all parts are needed here")]
 mod sheet;
 mod tiles;
 
@@ -155,7 +163,8 @@ fn draw(rows: &[Row]) -> Outcome<()> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder)?;
     }
-    std::fs::write(&path, picture::draw(&DILUTE.to_string(), rows)?)?;
-    println!("\nPicture: {}", path.display());
+    let path = path.with_extension("");
+    picture::draw(&DILUTE.to_string(), rows).write(&path)?;
+    println!("\nPicture: {0}.svg and {0}.png", path.display());
     Ok(())
 }

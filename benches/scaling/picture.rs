@@ -1,28 +1,30 @@
 //! The picture: time per collision over the number of disks.
 
-use kuva::prelude::{Layout, LinePlot, Plot, ScatterPlot};
+use kuva::prelude::{Layout, Plot};
 
 use crate::Row;
-use crate::sheet::{self, BLUE, GREEN, INK, ORANGE, Place, QUIET, Sheet};
+use crate::look::Look;
+use crate::panel::{self, Margins, Place};
+use crate::sheet::Sheet;
 
 const WIDTH: f64 = 620.0;
-const HEIGHT: f64 = 420.0;
-const HEADER: f64 = 52.0;
-const COLORS: [&str; 6] = [BLUE, ORANGE, GREEN, "#8a4fbf", INK, "#b23a48"];
+const HEIGHT: f64 = 430.0;
+const HEADER: f64 = 56.0;
+const MARGINS: Margins = [66.0, 16.0, 10.0, 52.0];
 
-/// Draws the picture, and returns it as a PNG file.
-pub(crate) fn draw(subtitle: &str, rows: &[Row]) -> Result<Vec<u8>, String> {
+/// Draws the picture.
+pub(crate) fn draw(subtitle: &str, rows: &[Row]) -> Sheet {
     let mut sheet = Sheet::new(WIDTH, HEADER + HEIGHT);
-    sheet.text(58.0, 24.0, 17, INK, "Time per collision of two disks");
-    sheet.text(58.0, 42.0, 12, QUIET, subtitle);
+    sheet.header(MARGINS[0], "Time per collision of two disks", &[subtitle]);
     let lines = lines(rows);
-    let plots = lines.iter().zip(COLORS).flat_map(|((_, points), color)| line(points, color)).collect();
+    let looks = || lines.iter().enumerate().map(|(k, (name, points))| (Look::number(k), name, points));
+    let curves: Vec<Plot> = looks().map(|(look, _, points)| look.curve(points.iter().copied())).collect();
     let place = Place { x: 0.0, y: HEADER, width: WIDTH, height: HEIGHT };
-    sheet.panel(place, [58.0, 16.0, 10.0, 44.0], plots, layout(rows));
-    for (index, ((name, _), color)) in lines.iter().zip(COLORS).enumerate() {
-        sheet.text(74.0, HEADER + 28.0 + 17.0 * index as f64, 12, color, name);
-    }
-    sheet.png(1.6)
+    let panel = sheet.panel(place, MARGINS, curves, layout(rows));
+    looks().for_each(|(look, _, points)| sheet.marks(&panel, look, points.iter().copied()));
+    let names: Vec<_> = looks().map(|(look, name, _)| (look, name.as_str())).collect();
+    sheet.legend((panel.place.x + 14.0, panel.place.y + 26.0), &names);
+    sheet
 }
 
 type Points = Vec<(f64, f64)>;
@@ -41,16 +43,10 @@ fn lines(rows: &[Row]) -> Vec<(String, Points)> {
     lines
 }
 
-fn line(points: &[(f64, f64)], color: &str) -> [Plot; 2] {
-    let line = LinePlot::new().with_data(points.iter().copied()).with_color(color).with_stroke_width(1.8);
-    let dots = ScatterPlot::new().with_data(points.iter().copied()).with_color(color).with_size(4.0);
-    [line.into(), dots.into()]
-}
-
 fn layout(rows: &[Row]) -> Layout {
     let most = rows.iter().map(|row| row.nanoseconds().median).fold(0.0, f64::max);
     let few = rows.iter().map(|row| row.disks).min().unwrap_or(1) as f64;
     let many = rows.iter().map(|row| row.disks).max().unwrap_or(10) as f64;
-    let layout = sheet::axes((few / 1.6, 1.6 * many), (0.0, 1.1 * most)).with_log_x();
-    layout.with_x_label("disks").with_y_label("nanoseconds")
+    let layout = panel::axes((few / 1.6, 1.6 * many), (0.0, 1.1 * most)).with_log_x();
+    layout.with_x_label("number of disks").with_y_label("time per collision, in ns")
 }

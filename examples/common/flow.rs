@@ -30,6 +30,12 @@ pub(crate) fn fastest(fields: &Fields, share: f64) -> f64 {
     seen(fields, share).iter().map(|cell| cell.velocity.length()).fold(0.0, f64::max)
 }
 
+/// Returns the side of a cell.
+pub(crate) fn side(fields: &Fields) -> f64 {
+    let middle = |column| fields.cell(column, 0).map_or(0.0, |cell| cell.center.x);
+    middle(1) - middle(0)
+}
+
 /// Returns the largest number with one digit that is not above a speed, for a scale of arrows.
 pub(crate) fn round(speed: f64) -> f64 {
     let decade = speed.log10().floor();
@@ -41,8 +47,7 @@ pub(crate) fn round(speed: f64) -> f64 {
 /// Returns an arrow for each of these cells: its middle and its components. The longest is this many cells
 /// long.
 pub(crate) fn arrows(fields: &Fields, share: f64, longest: f64) -> Vec<(f64, f64, f64, f64)> {
-    let middle = |column| fields.cell(column, 0).map_or(0.0, |cell| cell.center.x);
-    let scale = longest * (middle(1) - middle(0)) / fastest(fields, share).max(f64::MIN_POSITIVE);
+    let scale = longest * side(fields) / fastest(fields, share).max(f64::MIN_POSITIVE);
     let arrow =
         |FieldCell { center, velocity, .. }| (center.x, center.y, scale * velocity.x, scale * velocity.y);
     seen(fields, share).into_iter().map(arrow).collect()

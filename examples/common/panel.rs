@@ -48,6 +48,19 @@ impl Axis {
         let ticks = decades.flat_map(|decade| (1..10).map(move |k| (at(k, decade), long(k))));
         ticks.filter(|(tick, _)| (low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(tick)).collect()
     }
+
+    /// Formats a number at a tick: as people write it, or as a power of ten if the axis has very small or very
+    /// large numbers.
+    pub(crate) fn number(&self, value: f64) -> String {
+        let (low, high) = self.range;
+        if low >= 1e-4 && high <= 1e5 {
+            return value.to_string();
+        }
+        let digits: Vec<char> = "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().collect();
+        let power = format!("{:.0}", value.log10());
+        let raised = power.chars().map(|c| c.to_digit(10).map_or('⁻', |digit| digits[digit as usize]));
+        format!("10{}", raised.collect::<String>())
+    }
 }
 
 /// A panel on a sheet: the place inside of its axes, and their ranges.
@@ -90,6 +103,11 @@ impl Panel {
         self.at((self.x.range.0, value)).1
     }
 
+    /// Returns the height of the middle.
+    pub(crate) const fn middle(&self) -> f64 {
+        self.place.y + 0.5 * self.place.height
+    }
+
     /// Returns the point within the axes that is nearest.
     pub(crate) fn nearest(&self, (x, y): (f64, f64)) -> (f64, f64) {
         (x.clamp(self.x.range.0, self.x.range.1), y.clamp(self.y.range.0, self.y.range.1))
@@ -111,7 +129,9 @@ pub(crate) fn axes(x: (f64, f64), y: (f64, f64)) -> Layout {
 /// Gives a layout the size of its panel, and the style of all panels.
 pub(crate) fn styled(layout: Layout, place: Place, margins: Margins) -> Layout {
     let [left, right, top, bottom] = margins;
+    let both = matches!(layout.tick_align, TickAlign::Inside);
     let mut layout = layout
+        .with_tick_pos(if both { TickPos::Both } else { TickPos::Primary })
         .with_width(place.width)
         .with_height(place.height)
         .with_force_margins(left, right)
@@ -119,7 +139,6 @@ pub(crate) fn styled(layout: Layout, place: Place, margins: Margins) -> Layout {
         .with_theme(theme())
         .with_show_grid(false)
         .with_box_axes()
-        .with_tick_pos(TickPos::Both)
         .with_label_size(MEDIUM)
         .with_tick_size(SMALL);
     // The ticks of logarithmic axes are our own: a number at each power of ten, and short ticks between them.

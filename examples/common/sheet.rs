@@ -9,7 +9,7 @@ use kuva::prelude::{Layout, Plot};
 use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
 
 use super::look::{INK, Look, QUIET};
-use super::panel::{self, LARGE, Margins, Panel, Place, SMALL};
+use super::panel::{self, LARGE, MEDIUM, Margins, Panel, Place, SMALL};
 use super::raster;
 
 /// Pixels of the PNG file to a unit of the sheet.
@@ -49,6 +49,7 @@ impl Sheet {
         layout: Layout,
     ) -> Panel {
         let panel = Panel::new(place, margins, &layout);
+        let name = layout.y_label.clone().filter(|_| layout.log_y);
         let drawn = render_multiple(plots, panel::styled(layout, place, margins));
         self.scene.defs.extend(drawn.defs);
         let transform = Some(format!("translate({},{})", place.x, place.y));
@@ -57,7 +58,22 @@ impl Sheet {
         self.scene.add(Primitive::GroupEnd);
         self.add_logarithmic_ticks(&panel);
         self.add_frame(&panel);
+        // kuva leaves out the name of an axis without its own ticks.
+        name.into_iter().for_each(|name| self.add_upright((place.x + 18.0, panel.middle()), &name));
         panel
+    }
+
+    fn add_upright(&mut self, (x, y): (f64, f64), content: &str) {
+        self.scene.add(Primitive::Text {
+            x,
+            y,
+            content: content.to_owned(),
+            size: MEDIUM,
+            anchor: TextAnchor::Middle,
+            rotate: Some(-90.0),
+            bold: false,
+            color: None,
+        });
     }
 
     /// Adds the edges of a panel once more, over what was drawn in it.
@@ -71,23 +87,31 @@ impl Sheet {
     fn add_logarithmic_ticks(&mut self, panel: &Panel) {
         let Place { x, y, width, height } = panel.place;
         let length = |long| if long { LONG } else { SHORT };
-        if panel.x.logarithmic {
-            for (value, long) in panel.x.ticks() {
+        let axis = panel.x;
+        if axis.logarithmic {
+            for (value, long) in axis.ticks() {
                 let (at, length) = (panel.along(value), length(long));
                 self.line(vec![(at, y), (at, y + length)], INK, 1.0);
                 self.line(vec![(at, y + height), (at, y + height - length)], INK, 1.0);
                 if long {
-                    self.add_text((at, y + height + 18.0), SMALL, TextAnchor::Middle, INK, &number(value));
+                    self.add_text(
+                        (at, y + height + 18.0),
+                        SMALL,
+                        TextAnchor::Middle,
+                        INK,
+                        &axis.number(value),
+                    );
                 }
             }
         }
-        if panel.y.logarithmic {
-            for (value, long) in panel.y.ticks() {
+        let axis = panel.y;
+        if axis.logarithmic {
+            for (value, long) in axis.ticks() {
                 let (at, length) = (panel.up(value), length(long));
                 self.line(vec![(x, at), (x + length, at)], INK, 1.0);
                 self.line(vec![(x + width, at), (x + width - length, at)], INK, 1.0);
                 if long {
-                    self.add_text((x - 6.0, at + 5.0), SMALL, TextAnchor::End, INK, &number(value));
+                    self.add_text((x - 6.0, at + 5.0), SMALL, TextAnchor::End, INK, &axis.number(value));
                 }
             }
         }
@@ -250,9 +274,4 @@ const fn sample(look: Look) -> f64 {
 /// Returns about the width of a text.
 fn width(text: &str, size: u32) -> f64 {
     0.58 * f64::from(size) * text.chars().count() as f64
-}
-
-/// Formats the number of a tick as people write it, with a power only if it is very large or very small.
-fn number(value: f64) -> String {
-    if (1e-4..1e5).contains(&value) { value.to_string() } else { format!("{value:e}") }
 }

@@ -17,7 +17,7 @@
 //! cargo run --release --example drum -- --rates 0.06 --pins 0 --turns 3 --out smooth
 //! ```
 //!
-//! The example writes `drum.png` and `drum.csv`.
+//! The example writes `drum.svg`, `drum.png` and `drum.csv`.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -220,5 +220,5 @@ fn write(arguments: &Arguments, drums: &[Turned]) -> Result<(), Box<dyn Error>> 
         })
     };
     let numbers = drums.iter().map(drum).collect();
-    arguments.results.finish("drum", table, &picture::draw(arguments, drums)?, &numbers)
+    arguments.results.finish("drum", table, &picture::draw(arguments, drums), &numbers)
 }

@@ -1,62 +1,93 @@
 //! The picture: the drums with their flow, the angles over time, and the flow by depth.
 
-use std::error::Error;
 use std::f64::consts::TAU;
 
 use granular_edmd::glam::DVec2;
 use kuva::prelude::{LinePlot, Plot, QuiverPivot, QuiverPlot, ScatterPlot};
 
 use crate::common::flow;
-use crate::common::look::{BLUE, GREEN, INK, Look, ORANGE, QUIET};
-use crate::common::panel::{self, Place};
+use crate::common::look::{INK, Look, ORANGE, QUIET};
+use crate::common::panel::{self, Margins, Place, SMALL};
 use crate::common::sheet::Sheet;
 use crate::{Arguments, PIN, Turned};
 
-/// Space between a panel's edge and its axes: left, right, top, bottom.
-const MARGINS: [f64; 4] = [66.0, 14.0, 12.0, 44.0];
+const MARGINS: Margins = [66.0, 14.0, 12.0, 52.0];
 const HEADER: f64 = 62.0;
 const SIDE: f64 = 300.0;
-const BELOW: f64 = 290.0;
-const COLORS: [&str; 4] = [BLUE, ORANGE, GREEN, INK];
+const BELOW: f64 = 320.0;
+
+/// Grains that turn as one body with the drum.
+const BODY: Look = Look::line(QUIET, "4 3").with_width(1.2);
+
+/// Length of the longest arrow, in cells.
+const LONGEST: f64 = 2.0;
+
+/// Share of what the fullest cell holds, below which a cell shows no arrow.
+const ENOUGH: f64 = 0.15;
 
 /// Draws the drums in a row, and angles and flow below.
-pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Result<Sheet, Box<dyn Error>> {
+pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Sheet {
     let (frame, tall) = (SIDE + MARGINS[0] + MARGINS[1], SIDE + MARGINS[2] + MARGINS[3]);
     let width = frame * drums.len().max(2) as f64;
     let mut sheet = Sheet::new(width, HEADER + tall + 40.0 + BELOW);
-    sheet.text(MARGINS[0], 28.0, 19, INK, "A drum, half full, that turns counterclockwise");
     let Arguments { pins, friction, speed, .. } = arguments;
     let grains = drums.first().map_or(0, |drum| drum.disks.len());
-    let words =
-        format!("{grains} grains, {pins} pins, g = 1, q = 0.1, κ = {friction}, elastic below {speed}");
-    sheet.text(MARGINS[0], 47.0, 12, QUIET, &words);
+    let words = format!(
+        "{grains} grains, {pins} pins, g = 1, q = 0.1, κ = {friction}, elastic below {speed}; arrows: mean flow"
+    );
+    sheet.header(MARGINS[0], "A drum, half full, that turns counterclockwise", &[&words]);
     for (k, drum) in drums.iter().enumerate() {
-        let place = Place { x: k as f64 * frame, y: HEADER + 18.0, width: frame, height: tall };
-        let edge = 1.02 * arguments.radius;
-        let layout = panel::axes((-edge, edge), (-edge, edge));
-        let layout = layout.with_x_label("x, in diameters").with_y_label("y");
-        sheet.panel(place, MARGINS, inside(arguments, drum, 0.5 * SIDE / edge), layout);
-        let (angle, error) = (drum.angle.mean(), drum.angle.standard_error());
-        let words = format!("Ω = {}, Ω²R/g = {:.3}: {angle:.1}° ± {error:.1}°", drum.rate, drum.froude);
-        sheet.text(place.x + MARGINS[0], HEADER + 14.0, 12, color(k), &words);
+        let place = Place { x: k as f64 * frame, y: HEADER + 24.0, width: frame, height: tall };
+        draw_drum(&mut sheet, place, arguments, drum);
     }
     let place = Place { x: 0.0, y: HEADER + tall + 40.0, width: 0.5 * width, height: BELOW };
+    draw_angles(&mut sheet, place, drums);
+    draw_flows(&mut sheet, Place { x: 0.5 * width, ..place }, arguments, drums);
+    sheet
+}
+
+fn draw_drum(sheet: &mut Sheet, place: Place, arguments: &Arguments, drum: &Turned) {
+    let edge = 1.02 * arguments.radius;
+    let layout = panel::axes((-edge, edge), (-edge, edge)).with_x_label("x, in diameters").with_y_label("y");
+    sheet.panel(place, MARGINS, inside(arguments, drum, 0.5 * SIDE / edge), layout);
+    let (angle, error) = (drum.angle.mean(), drum.angle.standard_error());
+    let words = format!("{}: {angle:.1}° ± {error:.1}°, Ω²R/g = {:.3}", name(drum), drum.froude);
+    sheet.text(place.x + MARGINS[0], place.y + 4.0, SMALL, INK, &words);
+    // An arrow of this length in the corner is this fast.
+    let (unit, speed) = (0.5 * SIDE / edge, flow::fastest(&drum.flow, ENOUGH));
+    let shown = flow::round(speed);
+    let length = LONGEST * unit * flow::side(&drum.flow) * shown / speed;
+    let corner = (place.x + MARGINS[0] + 8.0, place.y + MARGINS[2] + SIDE - 8.0);
+    sheet.arrow(corner, length, &shown.to_string());
+}
+
+fn draw_angles(sheet: &mut Sheet, place: Place, drums: &[Turned]) {
     let turns = drums.iter().filter_map(|drum| drum.surfaces.last()).map(|(turns, _)| *turns);
     let layout = panel::axes((0.5, turns.fold(0.6, f64::max)), (0.0, 60.0));
     let layout = layout.with_x_label("turns").with_y_label("angle of the surface, in degrees");
-    sheet.panel(place, MARGINS, angles(drums), layout);
-    let place = Place { x: 0.5 * width, ..place };
+    let panel = sheet.panel(place, MARGINS, angles(drums), layout);
+    let names: Vec<String> = drums.iter().map(name).collect();
+    let names = names.iter().enumerate().map(|(k, name)| (look(k), name.as_str()));
+    sheet.legend_in_row((panel.place.x + 14.0, panel.place.y + 26.0), &names.collect::<Vec<_>>());
+}
+
+fn draw_flows(sheet: &mut Sheet, place: Place, arguments: &Arguments, drums: &[Turned]) {
     let fastest = drums.iter().flat_map(|drum| relative(arguments, drum)).map(|(speed, _)| -speed);
     let layout = panel::axes((-1.05 * fastest.fold(1.0, f64::max), 1.2), (-1.0, 0.5));
     let layout =
         layout.with_x_label("velocity up the surface, in ΩR").with_y_label("height above the axis, in R");
-    sheet.panel(place, MARGINS, flows(arguments, drums), layout);
-    sheet.text(place.x + 76.0, place.y + 216.0, 12, QUIET, "dashed: turning as a body");
-    Ok(sheet)
+    let panel = sheet.panel(place, MARGINS, flows(arguments, drums), layout);
+    let low = panel.place.y + panel.place.height - 14.0;
+    sheet.legend((panel.place.x + 14.0, low), &[(BODY, "turning as a body")]);
 }
 
-fn color(k: usize) -> &'static str {
-    COLORS[k % COLORS.len()]
+/// Returns the look of the curves of a drum.
+const fn look(k: usize) -> Look {
+    Look::number(k).without_marks().with_width(1.6)
+}
+
+fn name(drum: &Turned) -> String {
+    format!("Ω = {}", drum.rate)
 }
 
 /// Returns rim, pins, grains, mean flow and mean surface.
@@ -80,24 +111,19 @@ fn inside(arguments: &Arguments, drum: &Turned, unit: f64) -> Vec<Plot> {
     vec![rim.into(), grains.into(), pins.into(), arrows(drum).into(), line.into()]
 }
 
-/// Returns the mean flow as arrows. The longest arrow is two cells long.
+/// Returns the mean flow as arrows.
 fn arrows(drum: &Turned) -> QuiverPlot {
-    let arrows = flow::arrows(&drum.flow, 0.15, 2.0);
+    let arrows = flow::arrows(&drum.flow, ENOUGH, LONGEST);
     let plot = QuiverPlot::new().with_arrows(arrows).with_scale(1.0).with_pivot(QuiverPivot::Middle);
-    let plot = plot.with_color(INK).with_shaft_width(1.3).with_clip_to_plot_area();
+    let plot = plot.with_color(INK).with_shaft_width(1.3);
     plot.with_head_ratio(0.36).with_head_min_px(2.0).with_head_max_px(8.0)
 }
 
 fn angles(drums: &[Turned]) -> Vec<Plot> {
-    let line = |(k, drum): (usize, &Turned)| {
-        let points = drum.surfaces.iter().map(|(turns, surface)| (*turns, surface.angle.to_degrees()));
-        LinePlot::new()
-            .with_data(points.collect::<Vec<_>>())
-            .with_color(color(k))
-            .with_stroke_width(1.2)
-            .into()
+    let points = |drum: &Turned| {
+        drum.surfaces.iter().map(|(turns, surface)| (*turns, surface.angle.to_degrees())).collect()
     };
-    drums.iter().enumerate().map(line).collect()
+    drums.iter().map(points).enumerate().map(|(k, points): (_, Vec<_>)| look(k).curve(points)).collect()
 }
 
 /// Returns velocities and heights, in units of the drum.
@@ -108,11 +134,6 @@ fn relative(arguments: &Arguments, drum: &Turned) -> Vec<(f64, f64)> {
 }
 
 fn flows(arguments: &Arguments, drums: &[Turned]) -> Vec<Plot> {
-    let line = |(k, drum): (usize, &Turned)| {
-        let points = relative(arguments, drum);
-        LinePlot::new().with_data(points).with_color(color(k)).with_stroke_width(1.8).into()
-    };
-    let body = LinePlot::new().with_data(vec![(1.0, -1.0), (-0.5, 0.5)]).with_color(QUIET);
-    let body = body.with_stroke_width(1.0).with_dashed().into();
-    drums.iter().enumerate().map(line).chain([body]).collect()
+    let curve = |(k, drum): (usize, &Turned)| look(k).curve(relative(arguments, drum));
+    drums.iter().enumerate().map(curve).chain([BODY.curve([(1.0, -1.0), (-0.5, 0.5)])]).collect()
 }

@@ -184,7 +184,7 @@ fn by_duration(parameter: &str, records: &[Record]) -> Result<Vec<Ramps>, Parame
 const MARGINS: Margins = [74.0, 14.0, 10.0, 52.0];
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 330.0;
-const HEADER: f64 = 110.0;
+const HEADER: f64 = 118.0;
 
 /// Draws the places of the transitions over the contact duration, for both parameters.
 fn draw(panels: &[(&str, Vec<Ramps>)]) -> Sheet {
@@ -195,7 +195,7 @@ fn draw(panels: &[(&str, Vec<Ramps>)]) -> Sheet {
     let names = TransitionLine::ALL.map(|line| line.to_string());
     let looks = (0..).map(Look::number);
     let entries: Vec<_> = looks.zip(names.iter().map(String::as_str)).collect();
-    sheet.legend_in_row((MARGINS[0], 82.0), &entries);
+    sheet.legend_in_row((MARGINS[0], 102.0), &entries);
     for (number, (parameter, found)) in panels.iter().enumerate() {
         let place = Place { x: 0.0, y: HEADER + HEIGHT * number as f64, width: WIDTH, height: HEIGHT };
         add_panel(&mut sheet, place, parameter, found);
@@ -205,9 +205,9 @@ fn draw(panels: &[(&str, Vec<Ramps>)]) -> Sheet {
 
 fn add_panel(sheet: &mut Sheet, place: Place, parameter: &str, found: &[Ramps]) {
     let (range, name) = if parameter == "friction" {
-        ((0.003, 0.5), "friction κ")
+        ((0.009, 0.5), "friction κ")
     } else {
-        ((0.005, 0.2), "inelasticity q")
+        ((0.008, 0.13), "inelasticity q")
     };
     let layout = panel::axes((4e-8, 2.5e-3), range).with_log_scale();
     let layout = layout.with_x_label("contact duration, in σ/Aω").with_y_label(name);

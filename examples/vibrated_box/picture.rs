@@ -6,19 +6,18 @@ use kuva::prelude::{Layout, LinePlot, Plot, QuiverPlot, ScatterPlot};
 
 use crate::arguments::{Arguments, Base};
 use crate::common::flow;
-use crate::common::look::{BLUE, GREEN, INK, Look, ORANGE, QUIET};
-use crate::common::panel::{self, Place};
+use crate::common::look::{self, INK, LOOKS, Look};
+use crate::common::panel::{self, Margins, Place};
 use crate::common::sheet::Sheet;
 use crate::experiment::Outcome;
 use crate::report::Means;
 
-const HEADER: f64 = 76.0;
+const HEADER: f64 = 108.0;
 const FOOTER: f64 = 8.0;
 const HEIGHT: f64 = 720.0;
 const SERIES_WIDTH: f64 = 540.0;
 
-/// Space between a panel's edge and its axes: left, right, top, bottom.
-const MARGINS: [f64; 4] = [58.0, 12.0, 20.0, 44.0];
+const MARGINS: Margins = [64.0, 14.0, 30.0, 52.0];
 
 /// Share of what the fullest cell holds, below which a cell shows no arrow.
 const ENOUGH: f64 = 0.1;
@@ -28,7 +27,7 @@ pub(crate) fn draw(arguments: &Arguments, outcome: &Outcome, means: &Means) -> R
     let view = View::of(arguments, &outcome.disks);
     let width = view.place.width + SERIES_WIDTH;
     let mut sheet = Sheet::new(width + 10.0, HEADER + HEIGHT + FOOTER);
-    write_header(&mut sheet, arguments, outcome, means);
+    write_header(&mut sheet, &view, arguments, outcome, means);
     sheet.panel(view.place, MARGINS, disks_and_flow(&view, outcome), view.layout());
     draw_series(&mut sheet, view.place.width, arguments, outcome, means);
     Ok(sheet)
@@ -57,7 +56,7 @@ impl View {
 
     fn layout(&self) -> Layout {
         let axes = panel::axes((0.0, self.width), (0.0, self.height));
-        axes.with_x_label("x").with_y_label("height")
+        axes.with_x_label("x, in diameters").with_y_label("height, in diameters")
     }
 }
 
@@ -77,18 +76,21 @@ fn disks_and_flow(view: &View, outcome: &Outcome) -> Vec<Plot> {
 fn colors(disks: &[Disk]) -> Vec<String> {
     let square = disks.iter().map(|disk| disk.angular_velocity().powi(2)).sum::<f64>() / disks.len() as f64;
     let full = 2.0 * square.sqrt().max(f64::MIN_POSITIVE);
-    disks.iter().map(|disk| crate::common::look::diverging(disk.angular_velocity() / full)).collect()
+    disks.iter().map(|disk| look::diverging(disk.angular_velocity() / full)).collect()
 }
 
-/// Returns the mean flow as arrows. The longest arrow is a little longer than a cell.
+/// Length of the longest arrow, in cells.
+const LONGEST: f64 = 1.1;
+
+/// Returns the mean flow as arrows.
 fn arrows(outcome: &Outcome) -> QuiverPlot {
-    let plot = QuiverPlot::new().with_arrows(flow::arrows(&outcome.fields, ENOUGH, 1.1));
+    let plot = QuiverPlot::new().with_arrows(flow::arrows(&outcome.fields, ENOUGH, LONGEST));
     let plot = plot.with_scale(1.0).with_pivot(QuiverPivot::Middle);
     let plot = plot.with_color(INK).with_shaft_width(2.2).with_clip_to_plot_area();
     plot.with_head_ratio(0.36).with_head_min_px(3.0).with_head_max_px(13.0)
 }
 
-fn write_header(sheet: &mut Sheet, arguments: &Arguments, outcome: &Outcome, means: &Means) {
+fn write_header(sheet: &mut Sheet, view: &View, arguments: &Arguments, outcome: &Outcome, means: &Means) {
     let Arguments { disks, width, gravity, inelasticity, friction, .. } = arguments;
     let verdict = means.verdict(arguments);
     let title = format!("{disks} disks after {} oscillations: {verdict}", arguments.oscillations());
@@ -98,18 +100,16 @@ fn write_header(sheet: &mut Sheet, arguments: &Arguments, outcome: &Outcome, mea
     };
     let top = if arguments.open { "open above".to_owned() } else { format!("{} high", arguments.height) };
     let sides = if arguments.periodic { ", periodic sides" } else { "" };
-    let box_and_base = format!(
-        "box {width} wide, {top}{sides}    {base}    gravity g = {gravity}    inelasticity q = {inelasticity}    \
-         friction κ = {friction}"
-    );
-    let legend = format!(
-        "disks: colored by their spin, blue clockwise, red counterclockwise    \
-         arrows: mean velocity in the second half, the longest {:.2}",
-        flow::fastest(&outcome.fields, ENOUGH)
-    );
-    sheet.text(MARGINS[0], 28.0, 20, INK, &title);
-    sheet.text(MARGINS[0], 48.0, 12, QUIET, &box_and_base);
-    sheet.text(MARGINS[0], 66.0, 12, QUIET, &legend);
+    let box_and_base =
+        format!("box {width} wide, {top}{sides}; {base}; g = {gravity}, q = {inelasticity}, κ = {friction}");
+    let disks = "disks: blue if they spin clockwise, red if counterclockwise";
+    sheet.header(MARGINS[0], &title, &[&box_and_base, disks]);
+    let speed = flow::fastest(&outcome.fields, ENOUGH);
+    if speed > 0.0 {
+        let shown = flow::round(speed);
+        let length = LONGEST * view.unit * flow::side(&outcome.fields) * shown / speed;
+        sheet.arrow((MARGINS[0], 94.0), length, &format!("mean velocity {shown}, in the second half"));
+    }
 }
 
 /// A panel of series: what it shows, under which names, and how high it is.
@@ -119,24 +119,29 @@ struct Panel {
     lines: Vec<Line>,
 }
 
-/// A line of a panel: its color, its name, its values.
-struct Line(&'static str, &'static str, Vec<f64>);
+/// A line of a panel: its look, its name, its values.
+struct Line(Look, &'static str, Vec<f64>);
 
 fn panels(outcome: &Outcome) -> [Panel; 3] {
     let values = || outcome.series.values().iter();
+    let [first, second] = [LOOKS[0], LOOKS[1]].map(|look| look.without_marks().with_width(1.6));
     let order = vec![
-        Line(BLUE, "Ψ₁ one roll", values().map(|(order, ..)| order.one_roll).collect()),
-        Line(ORANGE, "Ψ₂ two rolls", values().map(|(order, ..)| order.two_rolls).collect()),
+        Line(first, "Ψ₁, one roll", values().map(|(order, ..)| order.one_roll).collect()),
+        Line(second, "Ψ₂, two rolls", values().map(|(order, ..)| order.two_rolls).collect()),
     ];
-    let height = vec![Line(INK, "center of mass", values().map(|(_, center, _)| center.y).collect())];
+    let height = Line(
+        Look::line(INK, "").with_width(1.6),
+        "center of mass",
+        values().map(|(_, center, _)| center.y).collect(),
+    );
     let energies = vec![
-        Line(BLUE, "translation", values().map(|(.., energy)| energy.translational).collect()),
-        Line(GREEN, "rotation", values().map(|(.., energy)| energy.rotational).collect()),
+        Line(first, "translation", values().map(|(.., energy)| energy.translational).collect()),
+        Line(second, "rotation", values().map(|(.., energy)| energy.rotational).collect()),
     ];
     [
-        Panel { label: "order parameters", share: 0.46, lines: order },
-        Panel { label: "height", share: 0.26, lines: height },
-        Panel { label: "energy per disk", share: 0.28, lines: energies },
+        Panel { label: "order parameters", share: 0.42, lines: order },
+        Panel { label: "height", share: 0.27, lines: vec![height] },
+        Panel { label: "energy per disk", share: 0.31, lines: energies },
     ]
 }
 
@@ -153,20 +158,19 @@ fn draw_series(sheet: &mut Sheet, left: f64, arguments: &Arguments, outcome: &Ou
         }
         let (mut layout, mut margins) = (series_layout(&plots, arguments, panel.label), MARGINS);
         if index < 2 {
-            margins[3] = 28.0;
+            margins[3] = 26.0;
         } else {
             layout = layout.with_x_label("oscillations");
         }
         sheet.panel(place, margins, plots, layout);
         let names: Vec<_> = panel.lines.iter().map(|line| (line.0, line.1)).collect();
-        sheet.key(left + MARGINS[0] + 4.0, top + 14.0, &names);
+        sheet.legend_in_row((left + MARGINS[0], top + 22.0), &names);
         top += place.height;
     }
 }
 
-fn plot(oscillations: impl Iterator<Item = f64>, Line(color, _, values): &Line) -> Plot {
-    let points = oscillations.zip(values.iter().copied());
-    LinePlot::new().with_data(points).with_color(*color).with_stroke_width(1.6).into()
+fn plot(oscillations: impl Iterator<Item = f64>, Line(look, _, values): &Line) -> Plot {
+    look.curve(oscillations.zip(values.iter().copied()))
 }
 
 /// Returns the band in which the order parameters of a gas without flow would be.
