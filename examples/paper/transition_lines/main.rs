@@ -222,8 +222,11 @@ fn print_account(crossings: &[(&Ramp, Crossing)], number: Number) -> Result<Vec<
         let is_of = |ramp: &Ramp, at: &Crossing| ramp.gravity == gravity && at.line == line;
         let of_line: Vec<&Crossing> =
             crossings.iter().filter(|(ramp, at)| is_of(ramp, at)).map(|(_, at)| at).collect();
+        if of_line.is_empty() {
+            continue;
+        }
         let found = average(number, &of_line)?;
-        squares += ((found.mean() - mean) / deviation).powi(2) / TABLE.len() as f64;
+        squares += ((found.mean() - mean) / deviation).powi(2);
         let effective = effective_inelasticity(found.mean(), 1.0)?;
         println!(
             "  {gravity:<9} {:12} paper {mean:.3} ± {deviation:.3}  here {}  q_eff {effective:.4}",
@@ -232,6 +235,6 @@ fn print_account(crossings: &[(&Ramp, Crossing)], number: Number) -> Result<Vec<
         );
         rows.push((gravity, line.to_string(), found));
     }
-    println!("  rms deviation {:.2} of the paper's standard deviations", squares.sqrt());
+    println!("  rms deviation {:.2} of the paper's standard deviations", (squares / rows.len() as f64).sqrt());
     Ok(rows)
 }
