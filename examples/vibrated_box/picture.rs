@@ -163,7 +163,9 @@ fn draw_series(sheet: &mut Sheet, left: f64, arguments: &Arguments, outcome: &Ou
             layout = layout.with_x_label("oscillations");
         }
         sheet.panel(place, margins, plots, layout);
-        let names: Vec<_> = panel.lines.iter().map(|line| (line.0, line.1)).collect();
+        let band =
+            (index == 0).then_some((Look::line(BAND_FACE, "").with_width(10.0), "±2 deviations of noise"));
+        let names: Vec<_> = panel.lines.iter().map(|line| (line.0, line.1)).chain(band).collect();
         sheet.legend_in_row((left + MARGINS[0], top + 22.0), &names);
         top += place.height;
     }
@@ -173,10 +175,14 @@ fn plot(oscillations: impl Iterator<Item = f64>, Line(look, _, values): &Line) -
     look.curve(oscillations.zip(values.iter().copied()))
 }
 
+/// Color of the middle of the band of noise, and its paler face.
+const BAND: &str = "#9aa0a6";
+const BAND_FACE: &str = "#e1e3e5";
+
 /// Returns the band in which the order parameters of a gas without flow would be.
 fn noise_band(arguments: &Arguments, noise: f64) -> Plot {
     let ends = [0.0, arguments.oscillations() as f64];
-    let line = LinePlot::new().with_data(ends.map(|x| (x, 0.0))).with_color("#b9c0c8").with_stroke_width(1.0);
+    let line = LinePlot::new().with_data(ends.map(|x| (x, 0.0))).with_color(BAND).with_stroke_width(1.0);
     line.with_band([-noise, -noise], [noise, noise]).into()
 }
 
