@@ -214,10 +214,10 @@ fn write(arguments: &Arguments, flows: &[Flow], law: Option<Law>) -> Result<(), 
     for flow in flows {
         table.serialize((flow.outlet, flow.rate))?;
     }
-    let png = draw(flows, law)?;
+    let picture = draw(flows, law)?;
     let flows: Vec<_> = flows.iter().map(|flow| [flow.outlet, flow.rate]).collect();
     let law = law.map(|law| serde_json::json!({ "C": law.prefactor, "k": law.lost, "scatter": law.scatter }));
-    arguments.results.finish("silo", table, &png, &serde_json::json!({ "flows": flows, "law": law }))
+    arguments.results.finish("silo", table, &picture, &serde_json::json!({ "flows": flows, "law": law }))
 }
 
 const MARGINS: Margins = [58.0, 14.0, 28.0, 52.0];

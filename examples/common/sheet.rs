@@ -61,7 +61,9 @@ impl Sheet {
         self.add_logarithmic_ticks(&panel);
         self.add_frame(&panel);
         // kuva leaves out the name of an axis without its own ticks.
-        name.into_iter().for_each(|name| self.add_upright((place.x + 18.0, panel.middle()), &name));
+        if let Some(name) = name {
+            self.add_upright((place.x + 18.0, panel.middle()), &name);
+        }
         panel
     }
 

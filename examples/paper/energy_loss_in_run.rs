@@ -72,6 +72,9 @@ struct Point {
     error: f64,
 }
 
+/// One of the energy changes of a point.
+type Quantity = fn(&Point) -> f64;
+
 const COLUMNS: [&str; 9] = [
     "friction",
     "equal_temperatures",
@@ -153,13 +156,13 @@ fn draw(points: &[Point]) -> Sheet {
     let mut sheet = Sheet::new(560.0, HEADER + 380.0);
     let system = "N = 1000, box 60 × 150, g = 0.015625, A = 0.1, ω = 10, q = 0";
     sheet.header(MARGINS[0], "Mean energy change per collision", &[system]);
-    let series: [(&str, fn(&Point) -> f64); 3] = [
+    let series: [(&str, Quantity); 3] = [
         ("Maxwellian gas, all temperatures equal", |point| point.equal),
         ("Maxwellian gas, rotational temperature of the run", |point| point.of_run),
         ("run, with standard errors", |point| point.run),
     ];
     let looks = || series.iter().enumerate().map(|(k, (name, value))| (Look::number(k), *name, value));
-    let place = |value: &fn(&Point) -> f64| -> Vec<(f64, f64)> {
+    let place = |value: &Quantity| -> Vec<(f64, f64)> {
         points.iter().map(|point| (point.friction, value(point))).collect()
     };
     let curves = looks().map(|(look, _, value)| look.with_width(1.2).curve(place(value))).collect();
