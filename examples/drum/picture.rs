@@ -33,7 +33,7 @@ pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Sheet {
     let Arguments { pins, friction, speed, .. } = arguments;
     let grains = drums.first().map_or(0, |drum| drum.disks.len());
     let words = format!(
-        "{grains} grains, {pins} pins, g = 1, q = 0.1, κ = {friction}, elastic below {speed}; arrows: mean flow"
+        "{grains} grains, {pins} pins, g = 1, q = 0.1, κ = {friction}, elastic below {speed}; arrows: mean flow, dashed: mean surface"
     );
     sheet.header(MARGINS[0], "A drum, half full, that turns counterclockwise", &[&words]);
     for (k, drum) in drums.iter().enumerate() {
