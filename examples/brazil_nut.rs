@@ -193,7 +193,7 @@ const GRAIN: Look = Look::line(QUIET, "4 3").with_width(1.4);
 fn draw(nuts: &[Nut]) -> Result<Sheet, Box<dyn Error>> {
     let unit = (HEIGHT - MARGINS[2] - MARGINS[3]) / SHOWN;
     let frame = WIDTH * unit + MARGINS[0] + MARGINS[1];
-    let mut sheet = Sheet::new(2.0 * frame + 560.0, HEADER + HEIGHT);
+    let mut sheet = Sheet::new(2.0 * frame + 568.0, HEADER + HEIGHT);
     let about = "600 grains of diameter 1, A = 1, ω = 2, g = 1, q = 0.05, κ = 0.3, rough walls";
     sheet.header(MARGINS[0], "A large disk among small ones, in a shaken box", &[about]);
     let Some(shown) = nuts.get(nuts.len() / 3) else { return Err("no intruder to draw".into()) };

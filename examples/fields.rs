@@ -120,7 +120,7 @@ fn write(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Result<(), Bo
         let place = [cell.center.x, cell.center.y];
         table.serialize((place, cell.count, cell.packing_fraction, flow, temperatures))?;
     }
-    arguments.results.finish_table("fields", table, Some(&draw(arguments, fine, coarse)?))
+    arguments.results.finish_table("fields", table, Some(&draw(arguments, fine, coarse)))
 }
 
 const MARGINS: Margins = [56.0, 14.0, 6.0, 52.0];
@@ -184,7 +184,7 @@ fn maps() -> [Map; 4] {
     ]
 }
 
-fn draw(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Result<Sheet, String> {
+fn draw(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Sheet {
     let top = top(fine);
     let size = (UNIT * BOX.x + MARGINS[0] + MARGINS[1], UNIT * top + MARGINS[2] + MARGINS[3]);
     let mut sheet = Sheet::new(4.0 * size.0 + 10.0, HEADER + BAR + size.1);
@@ -204,7 +204,7 @@ fn draw(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Result<Sheet, 
         let axes = if column == 0 { axes.with_y_label("height / σ") } else { axes };
         sheet.panel(place, MARGINS, plots, axes);
     }
-    Ok(sheet)
+    sheet
 }
 
 fn write_header(sheet: &mut Sheet, arguments: &Arguments, fine: &Fields, coarse: &Fields) {

@@ -158,7 +158,7 @@ fn draw(points: &[(f64, f64, Estimate)]) -> Sheet {
     let layout = panel::axes((0.0, 0.25), (0.0, 1.3 * most)).with_x_label("spin of the drum");
     let layout = layout.with_y_label("angular momentum of a disk");
     let place = Place { x: 0.0, y: 0.0, width: 520.0, height: 400.0 };
-    let panel = sheet.panel(place, [74.0, 14.0, 14.0, 52.0], Vec::new(), layout);
+    let panel = sheet.panel(place, [74.0, 24.0, 14.0, 52.0], Vec::new(), layout);
     for (k, series) in points.chunk_by(|a, b| a.0 == b.0).enumerate() {
         let look = Look::number(k).without_line();
         let bar = |(_, spin, momentum): &(f64, f64, Estimate)| {

@@ -240,8 +240,10 @@ const FAMILIES: [&str; 4] = ["ContactDuration", "ElasticBelow", "ElasticBelow, r
 fn draw(heaps: &[Heap]) -> Sheet {
     let frame = [WIDTH * UNIT + MARGINS[0] + MARGINS[1], SHOWN * UNIT + MARGINS[2] + MARGINS[3]];
     let mut sheet = Sheet::new(2.0 * frame[0], HEADER + 2.0 * frame[1] + 350.0);
-    let about = "a column fell onto a floor with grains glued to it; g = 1, q = 0.1, κ = 0.5";
-    sheet.header(MARGINS[0], "Fifty grains that came to rest", &[about]);
+    let flat = heaps.iter().all(|heap| heap.glued.is_empty());
+    let floor = if flat { "a flat floor" } else { "a floor with grains glued to it" };
+    let about = format!("a column fell onto {floor}; g = 1, q = 0.1, κ = 0.5");
+    sheet.header(MARGINS[0], "Fifty grains that came to rest", &[&about]);
     for (k, (name, parameter)) in DRAWN.into_iter().enumerate() {
         let Some(heap) = heaps.iter().find(|heap| heap.name == name && heap.parameter == parameter) else {
             continue;

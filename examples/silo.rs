@@ -214,10 +214,10 @@ fn write(arguments: &Arguments, flows: &[Flow], law: Option<Law>) -> Result<(), 
     for flow in flows {
         table.serialize((flow.outlet, flow.rate))?;
     }
-    let png = draw(flows, law)?;
+    let picture = draw(flows, law)?;
     let flows: Vec<_> = flows.iter().map(|flow| [flow.outlet, flow.rate]).collect();
     let law = law.map(|law| serde_json::json!({ "C": law.prefactor, "k": law.lost, "scatter": law.scatter }));
-    arguments.results.finish("silo", table, &png, &serde_json::json!({ "flows": flows, "law": law }))
+    arguments.results.finish("silo", table, &picture, &serde_json::json!({ "flows": flows, "law": law }))
 }
 
 const MARGINS: Margins = [58.0, 14.0, 28.0, 52.0];
@@ -236,7 +236,8 @@ fn draw(flows: &[Flow], law: Option<Law>) -> Result<Sheet, Box<dyn Error>> {
     let unit = (HEIGHT - MARGINS[2] - MARGINS[3]) / SHOWN;
     let frame = WIDTH * unit + MARGINS[0] + MARGINS[1];
     let mut sheet = Sheet::new(frame + 560.0, HEADER + HEIGHT);
-    let about = "600 grains of diameter 1, g = 1, q = 0.1, κ = 0.4; those that leave come in again on top";
+    let about =
+        "600 grains of diameter 1, g = 1, q = 0.1, κ = 0.4; those that leave come in again on top (orange)";
     sheet.header(MARGINS[0], "Flow out of a silo", &[about]);
     let Some(shown) = flows.last() else { return Err("no outlet to draw".into()) };
     let place = Place { x: 0.0, y: HEADER, width: frame, height: HEIGHT };

@@ -1,11 +1,10 @@
 //! A sheet with panels, marks, legends and text: a picture, as SVG and as PNG.
 
-use std::error::Error;
-use std::fs;
 use std::path::Path;
+use std::{fs, io};
 
 use kuva::backend::svg::SvgBackend;
-use kuva::prelude::{Layout, Plot};
+use kuva::prelude::{Layout, LinePlot, Plot};
 use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
 
 use super::look::{INK, Look, QUIET};
@@ -50,6 +49,9 @@ impl Sheet {
     ) -> Panel {
         let panel = Panel::new(place, margins, &layout);
         let name = layout.y_label.clone().filter(|_| layout.log_y);
+        // Without any plot, kuva would draw no axes.
+        let nothing = plots.is_empty().then(|| LinePlot::new().into());
+        let plots = plots.into_iter().chain(nothing).collect();
         let drawn = render_multiple(plots, panel::styled(layout, place, margins));
         self.scene.defs.extend(drawn.defs);
         let transform = Some(format!("translate({},{})", place.x, place.y));
@@ -59,7 +61,9 @@ impl Sheet {
         self.add_logarithmic_ticks(&panel);
         self.add_frame(&panel);
         // kuva leaves out the name of an axis without its own ticks.
-        name.into_iter().for_each(|name| self.add_upright((place.x + 18.0, panel.middle()), &name));
+        if let Some(name) = name {
+            self.add_upright((place.x + 18.0, panel.middle()), &name);
+        }
         panel
     }
 
@@ -259,10 +263,11 @@ impl Sheet {
     }
 
     /// Writes the picture as NAME.svg and NAME.png; a name may have dots in it.
-    pub(crate) fn write(&self, name: &Path) -> Result<(), Box<dyn Error>> {
+    pub(crate) fn write(&self, name: &Path) -> io::Result<()> {
         let svg = self.svg();
         fs::write(format!("{}.svg", name.display()), &svg)?;
-        Ok(fs::write(format!("{}.png", name.display()), raster::png(&svg, PIXELS)?)?)
+        let png = raster::png(&svg, PIXELS).map_err(io::Error::other)?;
+        fs::write(format!("{}.png", name.display()), png)
     }
 }
 

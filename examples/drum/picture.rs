@@ -33,7 +33,7 @@ pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Sheet {
     let Arguments { pins, friction, speed, .. } = arguments;
     let grains = drums.first().map_or(0, |drum| drum.disks.len());
     let words = format!(
-        "{grains} grains, {pins} pins, g = 1, q = 0.1, κ = {friction}, elastic below {speed}; arrows: mean flow"
+        "{grains} grains, {pins} pins, g = 1, q = 0.1, κ = {friction}, elastic below {speed}; arrows: mean flow, dashed: mean surface"
     );
     sheet.header(MARGINS[0], "A drum, half full, that turns counterclockwise", &[&words]);
     for (k, drum) in drums.iter().enumerate() {
@@ -48,7 +48,9 @@ pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Sheet {
 
 fn draw_drum(sheet: &mut Sheet, place: Place, arguments: &Arguments, drum: &Turned) {
     let edge = 1.02 * arguments.radius;
-    let layout = panel::axes((-edge, edge), (-edge, edge)).with_x_label("x, in diameters").with_y_label("y");
+    let layout = panel::axes((-edge, edge), (-edge, edge))
+        .with_x_label("x, in diameters")
+        .with_y_label("y, in diameters");
     sheet.panel(place, MARGINS, inside(arguments, drum, 0.5 * SIDE / edge), layout);
     let (angle, error) = (drum.angle.mean(), drum.angle.standard_error());
     let words = format!("{}: {angle:.1}° ± {error:.1}°, Ω²R/g = {:.3}", name(drum), drum.froude);

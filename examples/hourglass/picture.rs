@@ -1,7 +1,5 @@
 //! The picture: a film of the glass, above the numbers over time.
 
-use std::error::Error;
-
 use granular_edmd::prelude::*;
 
 use crate::common::look::{INK, LOOKS, Look};
@@ -15,7 +13,7 @@ const FILM: f64 = 340.0;
 const GAP: f64 = 16.0;
 
 /// Draws the film above the numbers over time.
-pub(crate) fn draw(arguments: &Arguments, glass: &Glass, ways: &[Way; 2]) -> Result<Sheet, Box<dyn Error>> {
+pub(crate) fn draw(arguments: &Arguments, glass: &Glass, ways: &[Way; 2]) -> Sheet {
     let unit = FILM / (2.0 * glass.top);
     let step = 2.0 * glass.width * unit + GAP;
     let [first, second] = ways;
@@ -46,7 +44,7 @@ pub(crate) fn draw(arguments: &Arguments, glass: &Glass, ways: &[Way; 2]) -> Res
     let panel = sheet.panel(place, MARGINS, curves.collect(), layout);
     let right = panel.place.x + panel.place.width;
     sheet.legend((right - 170.0, panel.place.y + 26.0), &[(looks[0], "first"), (looks[1], "turned over")]);
-    Ok(sheet)
+    sheet
 }
 
 fn add_glass(sheet: &mut Sheet, glass: &Glass, frame: &Frame, unit: f64, place: impl Fn(DVec2) -> DVec2) {

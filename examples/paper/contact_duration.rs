@@ -189,9 +189,9 @@ const HEADER: f64 = 118.0;
 /// Draws the places of the transitions over the contact duration, for both parameters.
 fn draw(panels: &[(&str, Vec<Ramps>)]) -> Sheet {
     let mut sheet = Sheet::new(WIDTH, HEADER + HEIGHT * panels.len() as f64);
-    let note =
-        format!("g = 0.015625; above: q = 0, below: κ = {FRICTION}; {RUNS} ramps each, bars: standard error");
-    sheet.header(MARGINS[0], "Transitions and the contact duration", &[&note]);
+    let system = format!("N = 1000, g = 0.015625; above: q = 0, below: κ = {FRICTION}");
+    let note = format!("means of {RUNS} ramps with standard errors, a little apart sideways");
+    sheet.header(MARGINS[0], "Transitions and the contact duration", &[&system, &note]);
     let names = TransitionLine::ALL.map(|line| line.to_string());
     let looks = (0..).map(Look::number);
     let entries: Vec<_> = looks.zip(names.iter().map(String::as_str)).collect();

@@ -5,7 +5,7 @@
 //! cargo run --release --example energy_loss_in_run
 //! ```
 //!
-//! The example writes `energy_loss_in_run.csv`.
+//! The example writes `energy_loss_in_run.svg`, `energy_loss_in_run.png` and `energy_loss_in_run.csv`.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -21,8 +21,11 @@ use granular_edmd::prelude::*;
 use granular_edmd::statistics::BlockedMean;
 
 use common::command_line;
+use common::look::Look;
+use common::panel::{self, Margins, Place};
 use common::progress::Progress;
 use common::results::Results;
+use common::sheet::Sheet;
 
 /// Mean energy loss of the Maxwellian gas and of the simulated one, for seven frictions.
 #[derive(Parser)]
@@ -60,6 +63,18 @@ fn with_error(whole: Option<f64>, error: &Estimate) -> String {
     format!("{:.4} ± {:.4}{mark}", whole.unwrap_or(f64::NAN), error.standard_error())
 }
 
+/// A point of the picture: ⟨dE⟩/T of the gases and of the run.
+struct Point {
+    friction: f64,
+    equal: f64,
+    of_run: f64,
+    run: f64,
+    error: f64,
+}
+
+/// One of the energy changes of a point.
+type Quantity = fn(&Point) -> f64;
+
 const COLUMNS: [&str; 9] = [
     "friction",
     "equal_temperatures",
@@ -86,6 +101,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     println!("temperature of the run, and the run itself, each collision over the temperature of its layer;");
     println!("± is the standard error from blocks of the run, * a lower bound of it");
     println!("{:>8} {:>10} {:>10} {:>18} {:>18}", "kappa", "equal T", "T_rot", "run", "T_rot/T");
+    let mut points = Vec::new();
     for friction in [0.01, 0.03, 0.05, 0.07, 0.1, 0.3, 1.0] {
         let rule = Frictional::new(0.0, friction)?;
         let Measured { profile, parts } = measured(arguments, rule)?;
@@ -98,8 +114,10 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         println!("{friction:8} {equal:10.4} {of_run:10.4} {:>18} {:>18}", shown[0], shown[1]);
         let errors = [of_change, of_ratio].map(|error| (error.standard_error(), error.is_converged()));
         table.serialize((friction, equal, of_run, change, errors[0], ratio, errors[1]))?;
+        let run = change.unwrap_or(f64::NAN);
+        points.push(Point { friction, equal, of_run, run, error: of_change.standard_error() });
     }
-    arguments.results.finish_table("energy_loss_in_run", table, None)
+    arguments.results.finish_table("energy_loss_in_run", table, Some(&draw(&points)))
 }
 
 /// Measures the paper's box, once it has settled: the whole time, and its parts.
@@ -128,4 +146,34 @@ fn measured(arguments: &Arguments, rule: Frictional) -> Result<Measured, Box<dyn
         measured.parts[1].extend(profile.rotational_ratio());
     }
     Ok(measured)
+}
+
+const MARGINS: Margins = [74.0, 14.0, 10.0, 52.0];
+const HEADER: f64 = 124.0;
+
+/// Draws the three energy changes over friction, with the errors of the run.
+fn draw(points: &[Point]) -> Sheet {
+    let mut sheet = Sheet::new(560.0, HEADER + 380.0);
+    let system = "N = 1000, box 60 × 150, g = 0.015625, A = 0.1, ω = 10, q = 0";
+    sheet.header(MARGINS[0], "Mean energy change per collision", &[system]);
+    let series: [(&str, Quantity); 3] = [
+        ("Maxwellian gas, all temperatures equal", |point| point.equal),
+        ("Maxwellian gas, rotational temperature of the run", |point| point.of_run),
+        ("run, with standard errors", |point| point.run),
+    ];
+    let looks = || series.iter().enumerate().map(|(k, (name, value))| (Look::number(k), *name, value));
+    let place = |value: &Quantity| -> Vec<(f64, f64)> {
+        points.iter().map(|point| (point.friction, value(point))).collect()
+    };
+    let curves = looks().map(|(look, _, value)| look.with_width(1.2).curve(place(value))).collect();
+    let lowest = points.iter().flat_map(|point| [point.equal, point.of_run, point.run - point.error]);
+    let layout = panel::axes((0.007, 1.5), (1.1 * lowest.fold(0.0, f64::min), 0.0)).with_log_x();
+    let layout = layout.with_x_label("friction κ").with_y_label("⟨dE⟩ / T");
+    let frame = Place { x: 0.0, y: HEADER, width: 560.0, height: 380.0 };
+    let panel = sheet.panel(frame, MARGINS, curves, layout);
+    let bar = |point: &Point| [-1.0, 1.0].map(|side| (point.friction, point.run + side * point.error));
+    sheet.bars(&panel, Look::number(2), points.iter().map(bar));
+    looks().for_each(|(look, _, value)| sheet.marks(&panel, look, place(value)));
+    sheet.legend((MARGINS[0], 78.0), &looks().map(|(look, name, _)| (look, name)).collect::<Vec<_>>());
+    sheet
 }

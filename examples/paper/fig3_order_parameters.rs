@@ -117,7 +117,7 @@ type Quantity = fn(&Sample) -> f64;
 fn draw(arguments: &Arguments, records: &[Record], study: &Study<VibratedBox>) -> Sheet {
     let mut sheet = Sheet::new(WIDTH, HEADER + 2.0 * HEIGHT + BELOW);
     let cycles = study.plan().protocol().cycles();
-    let note = format!("N = 1000, g = 0.015625, q = 0; {cycles} oscillations at each κ, all samples shown");
+    let note = format!("N = 1000, g = 0.015625, q = 0; {cycles} oscillations at each κ");
     sheet.header(LEFT, "Order parameters while friction changes", &[&note]);
     let names: &[_] = if arguments.down {
         &["κ grows (left half of each value)", "κ falls (right half)"]

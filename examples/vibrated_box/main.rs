@@ -26,9 +26,9 @@ fn main() -> ExitCode {
         let outcome = experiment::run(arguments)?;
         let means = Means::of(&outcome);
         report::print(arguments, &outcome, &means);
-        let png = picture::draw(arguments, &outcome, &means).map_err(Failure::run)?;
+        let picture = picture::draw(arguments, &outcome, &means);
         let numbers = report::json(arguments, &outcome, &means);
         let table = |out: &mut dyn std::io::Write| outcome.series.write_csv(out);
-        arguments.results.finish_with("vibrated_box", table, &png, &numbers).map_err(Failure::run)
+        arguments.results.finish_with("vibrated_box", table, &picture, &numbers).map_err(Failure::run)
     })
 }

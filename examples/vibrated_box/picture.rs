@@ -22,15 +22,15 @@ const MARGINS: Margins = [64.0, 14.0, 30.0, 52.0];
 /// Share of what the fullest cell holds, below which a cell shows no arrow.
 const ENOUGH: f64 = 0.1;
 
-/// Draws the picture, and returns it as a PNG file.
-pub(crate) fn draw(arguments: &Arguments, outcome: &Outcome, means: &Means) -> Result<Sheet, String> {
+/// Draws the picture.
+pub(crate) fn draw(arguments: &Arguments, outcome: &Outcome, means: &Means) -> Sheet {
     let view = View::of(arguments, &outcome.disks);
     let width = view.place.width + SERIES_WIDTH;
     let mut sheet = Sheet::new(width + 10.0, HEADER + HEIGHT + FOOTER);
     write_header(&mut sheet, &view, arguments, outcome, means);
     sheet.panel(view.place, MARGINS, disks_and_flow(&view, outcome), view.layout());
     draw_series(&mut sheet, view.place.width, arguments, outcome, means);
-    Ok(sheet)
+    sheet
 }
 
 /// The part of the box that is shown, and its scale.
@@ -163,7 +163,8 @@ fn draw_series(sheet: &mut Sheet, left: f64, arguments: &Arguments, outcome: &Ou
             layout = layout.with_x_label("oscillations");
         }
         sheet.panel(place, margins, plots, layout);
-        let names: Vec<_> = panel.lines.iter().map(|line| (line.0, line.1)).collect();
+        let band = (index == 0).then_some((Look::line(BAND_FACE, "").with_width(10.0), "2 × noise"));
+        let names: Vec<_> = panel.lines.iter().map(|line| (line.0, line.1)).chain(band).collect();
         sheet.legend_in_row((left + MARGINS[0], top + 22.0), &names);
         top += place.height;
     }
@@ -173,10 +174,14 @@ fn plot(oscillations: impl Iterator<Item = f64>, Line(look, _, values): &Line) -
     look.curve(oscillations.zip(values.iter().copied()))
 }
 
+/// Color of the middle of the band of noise, and its paler face.
+const BAND: &str = "#9aa0a6";
+const BAND_FACE: &str = "#e1e3e5";
+
 /// Returns the band in which the order parameters of a gas without flow would be.
 fn noise_band(arguments: &Arguments, noise: f64) -> Plot {
     let ends = [0.0, arguments.oscillations() as f64];
-    let line = LinePlot::new().with_data(ends.map(|x| (x, 0.0))).with_color("#b9c0c8").with_stroke_width(1.0);
+    let line = LinePlot::new().with_data(ends.map(|x| (x, 0.0))).with_color(BAND).with_stroke_width(1.0);
     line.with_band([-noise, -noise], [noise, noise]).into()
 }
 

@@ -78,7 +78,7 @@ pub(crate) fn draw(diagram: &Diagram) -> Result<Sheet, ParameterError> {
     let top = 34.0 + 19.0 * notes.len() as f64;
     let mut sheet = Sheet::new(WIDTH, top + LEGEND + HEIGHT);
     sheet.header(MARGINS[0], diagram.title, &notes);
-    write_legend(&mut sheet, top + 30.0);
+    write_legend(&mut sheet, top + 30.0, diagram.states.iter().any(|state| state.down));
     let mut plots = iso_lines(diagram.gravity)?;
     plots.extend(lines(diagram.crossings));
     let place = Place { x: 0.0, y: top + LEGEND, width: WIDTH, height: HEIGHT };
@@ -88,7 +88,7 @@ pub(crate) fn draw(diagram: &Diagram) -> Result<Sheet, ParameterError> {
     Ok(sheet)
 }
 
-fn write_legend(sheet: &mut Sheet, top: f64) {
+fn write_legend(sheet: &mut Sheet, top: f64, down: bool) {
     let (left, right) = (MARGINS[0], MARGINS[0] + 270.0);
     let states = REGIMES.map(|(_, look, name)| (look.with_size(4.0), name));
     sheet.legend((left, top), &states);
@@ -96,8 +96,8 @@ fn write_legend(sheet: &mut Sheet, top: f64) {
     sheet.legend((right, top), &names.each_ref().map(|(look, name)| (*look, name.as_str())));
     let thin = Look::line(QUIET, "").with_width(0.8);
     sheet.legend((right, top + 88.0), &[(thin, "⟨dE⟩ of the paper's Table I")]);
-    let ways = "marks: full on the way up; open, below, on the way down; bars: between neighbors";
-    sheet.text(left, top + 112.0, SMALL, QUIET, ways);
+    let ways = if down { "marks: full on the way up; open, below, on the way down; " } else { "" };
+    sheet.text(left, top + 112.0, SMALL, QUIET, &format!("{ways}bars: between neighbors"));
 }
 
 /// Returns the largest inelasticity of the picture. At the smaller gravity, everything needs more loss.

@@ -235,6 +235,9 @@ fn print_account(crossings: &[(&Ramp, Crossing)], number: Number) -> Result<Vec<
         );
         rows.push((gravity, line.to_string(), found));
     }
-    println!("  rms deviation {:.2} of the paper's standard deviations", (squares / rows.len() as f64).sqrt());
+    println!(
+        "  rms deviation {:.2} of the paper's standard deviations",
+        (squares / rows.len() as f64).sqrt()
+    );
     Ok(rows)
 }
