@@ -61,6 +61,9 @@ const LINES: [(TransitionLine, Look, [f64; 2]); 4] = [
 /// Frictions at the edges of the picture.
 const FRICTIONS: (f64, f64) = (0.0043, 3.5);
 
+/// Factor between neighboring frictions of a line that has left the plane between them.
+const GAP: f64 = 20.0;
+
 /// Half the width of a mark: neighbors among the frictions from 0.05 to 0.07 do not touch.
 const SIZE: f64 = 2.8;
 
@@ -96,7 +99,7 @@ fn write_legend(sheet: &mut Sheet, top: f64, down: bool) {
     sheet.legend((right, top), &names.each_ref().map(|(look, name)| (*look, name.as_str())));
     let thin = Look::line(QUIET, "").with_width(0.8);
     sheet.legend((right, top + 88.0), &[(thin, "⟨dE⟩ of the paper's Table I")]);
-    let ways = if down { "marks: full on the way up; open, below, on the way down; " } else { "" };
+    let ways = if down { "full: way up; open, below: way down; " } else { "" };
     sheet.text(left, top + 112.0, SMALL, QUIET, &format!("{ways}bars: between neighbors"));
 }
 
@@ -152,16 +155,17 @@ fn lines(crossings: &[Crossing]) -> Vec<Plot> {
     curves.collect()
 }
 
-/// Returns the points of a line by friction, in two branches if the line meets `q = 0` on both sides of the
-/// largest loss.
+/// Returns the points of a line by friction, in two branches if the line leaves the plane between them: it
+/// meets `q = 0` on both sides of the largest loss, or has no point over a factor of `GAP` in friction.
 fn branches(of: &[&Crossing]) -> Vec<Piece> {
     let on_axis = |rising| of.iter().filter(move |at| at.inelasticity == 0.0 && at.rising == rising);
     let last = on_axis(true).map(|at| at.friction).reduce(f64::max);
     let first = on_axis(false).map(|at| at.friction).reduce(f64::min);
-    let cut = last.zip(first).map_or(f64::INFINITY, |(last, first)| (last * first).sqrt());
-    let (low, high): (Piece, Piece) =
-        of.iter().map(|at| (at.friction, at.inelasticity)).partition(|at| at.0 < cut);
-    [low, high].into_iter().map(means).filter(|piece| !piece.is_empty()).collect()
+    let points = means(of.iter().map(|at| (at.friction, at.inelasticity)).collect());
+    let gap = points.windows(2).find(|pair| pair[1].0 > GAP * pair[0].0).map(|pair| pair[1].0);
+    let cut = last.zip(first).map(|(last, first)| (last * first).sqrt()).or(gap).unwrap_or(f64::INFINITY);
+    let (low, high): (Piece, Piece) = points.into_iter().partition(|at| at.0 < cut);
+    [low, high].into_iter().filter(|piece| !piece.is_empty()).collect()
 }
 
 /// Returns the points in the order of their frictions. Points of equal friction are replaced by their mean.
