@@ -31,8 +31,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     whole.checkpoint().write(folder.join("run.checkpoint"))?;
     std::fs::write(folder.join("series.json"), serde_json::to_string(&series)?)?;
 
-    // Another program, on another day, makes rule and walls again, and goes on. A checkpoint refuses a rule
-    // or a wall that it does not know.
+    // Another program, on another day, makes rule and walls again, and goes on. A checkpoint refuses another
+    // rule or another wall; a part of one's own needs a `fingerprint` for that.
     let checkpoint = Checkpoint::read(folder.join("run.checkpoint"))?;
     let mut second = Simulation::resume(&checkpoint, rule()?, self::container()?).build()?;
     let text = std::fs::read_to_string(folder.join("series.json"))?;

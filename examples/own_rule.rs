@@ -22,6 +22,11 @@ impl CollisionRule for Viscous {
         let restitution = 1.0 / (1.0 + self.loss * contact.closing_speed());
         Impulse::new(contact.normal_impulse(restitution), 0.0)
     }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        // By this, a checkpoint knows that it goes on with the same rule.
+        Some(Fingerprint::of("viscous").number(self.loss))
+    }
 }
 
 /// Returns the energy of a gas under this rule at times 0, 20, 40 and so on.

@@ -80,7 +80,7 @@ pub enum VesselError {
         name: String,
     },
     /// The vessel has a part or a wall of this name already.
-    #[error("the vessel has a part or wall \"{name}\" already")]
+    #[error("the vessel has a part or a wall of its container \"{name}\" already")]
     Duplicate {
         /// The name.
         name: String,
