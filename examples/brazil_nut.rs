@@ -10,9 +10,9 @@
 //! cargo run --release --example brazil_nut -- --sizes 3,8 --heavy 6 --out nuts
 //! ```
 //!
-//! The example writes `brazil_nut.svg`, `brazil_nut.png` and `brazil_nut.csv`. Literature: A. Rosato et al., Phys. Rev. Lett.
-//! 58, 1038 (1987); J. B. Knight et al., Phys. Rev. Lett. 70, 3728 (1993) for the flow; D. C. Hong et al.,
-//! Phys. Rev. Lett. 86, 3423 (2001) for disks that sink.
+//! The example writes `brazil_nut.svg`, `brazil_nut.png` and `brazil_nut.csv`. Literature: A. Rosato et al.,
+//! Phys. Rev. Lett. 58, 1038 (1987); J. B. Knight et al., Phys. Rev. Lett. 70, 3728 (1993) for the flow; D.
+//! C. Hong et al., Phys. Rev. Lett. 86, 3423 (2001) for disks that sink.
 
 mod common;
 

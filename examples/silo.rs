@@ -10,8 +10,9 @@
 //! cargo run --release --example silo -- --outlets 4,6,8 --time 400 --out silo
 //! ```
 //!
-//! The example writes `silo.svg`, `silo.png` and `silo.csv`. Literature: W. A. Beverloo, H. A. Leniger and J. van de
-//! Velde, Chem. Eng. Sci. 15, 260 (1961); in two dimensions, C. Mankoc et al., Granular Matter 9, 407 (2007).
+//! The example writes `silo.svg`, `silo.png` and `silo.csv`. Literature: W. A. Beverloo, H. A. Leniger and J.
+//! van de Velde, Chem. Eng. Sci. 15, 260 (1961); in two dimensions, C. Mankoc et al., Granular Matter 9, 407
+//! (2007).
 
 mod common;
 

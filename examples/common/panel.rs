@@ -49,8 +49,8 @@ impl Axis {
         ticks.filter(|(tick, _)| (low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(tick)).collect()
     }
 
-    /// Formats a number at a tick: as people write it, or as a power of ten if the axis has very small or very
-    /// large numbers.
+    /// Formats a number at a tick: as people write it, or as a power of ten if the axis has very small or
+    /// very large numbers.
     pub(crate) fn number(&self, value: f64) -> String {
         let (low, high) = self.range;
         if low >= 1e-4 && high <= 1e5 {

@@ -15,8 +15,8 @@
 //! cargo run --release --example hourglass -- --grains 60 --neck 3.5 --compare
 //! ```
 //!
-//! The example writes `hourglass.svg`, `hourglass.png` and `hourglass.csv`. Literature: W. A. Beverloo et al., Chem. Eng.
-//! Sci. 15, 260 (1961) for the flow; `docs/rest.md` for the remedies.
+//! The example writes `hourglass.svg`, `hourglass.png` and `hourglass.csv`. Literature: W. A. Beverloo et
+//! al., Chem. Eng. Sci. 15, 260 (1961) for the flow; `docs/rest.md` for the remedies.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -8,8 +8,8 @@
 //! cargo run --release --features serde,rayon --example fig2_center_of_mass -- --quick
 //! ```
 //!
-//! The example writes `fig2_center_of_mass.svg` and `.png`, and the tables of the study. After an interruption, the same
-//! command goes on.
+//! The example writes `fig2_center_of_mass.svg` and `.png`, and the tables of the study. After an
+//! interruption, the same command goes on.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -11,8 +11,8 @@
 //! ```
 //!
 //! The example writes `fig5_phase_diagram.svg` and `.png`, `points.csv` and `transitions.csv`, which the
-//! example `table1` reads, beside the studies `up` and `down`. Ctrl-C stops the example, which saves all that was
-//! done and draws it. The same command then goes on.
+//! example `table1` reads, beside the studies `up` and `down`. Ctrl-C stops the example, which saves all that
+//! was done and draws it. The same command then goes on.
 
 #[path = "../../common/mod.rs"]
 mod common;

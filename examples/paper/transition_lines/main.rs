@@ -4,7 +4,8 @@
 //! transition line: the paper's ⟨dE⟩ of a gas of equal temperatures, the same with the ratio of temperatures
 //! that the run has, and the energy change of the collisions in the run. The smaller the scatter along a
 //! line, the better the number governs the transition. It writes `transition_lines` as a table and a picture,
-//! and the phase diagrams `fig5_full_length-…`; for the other two questions `transition_lines-walls.csv` and `transition_lines-dependences.csv`.
+//! and the phase diagrams `fig5_full_length-…`; for the other two questions `transition_lines-walls.csv` and
+//! `transition_lines-dependences.csv`.
 //!
 //! ```text
 //! cargo run --release --features serde --example transition_lines -- lines
