@@ -70,7 +70,10 @@ fn a_new_plan_is_a_plan_and_overwrites_nothing() {
     let scratch = Scratch::new("new");
     assert_eq!(code(&scratch.runs(&["new", "mine.toml"])), Some(0));
     let text = fs::read_to_string(scratch.0.join("mine.toml")).unwrap();
-    assert!(text.contains("# Seed of all random numbers") && text.contains("# Measured: state, one_roll"), "{text}");
+    assert!(
+        text.contains("# Seed of all random numbers") && text.contains("# Measured: state, one_roll"),
+        "{text}"
+    );
     let check = scratch.runs(&["check", "mine.toml"]);
     assert_eq!(said(&check), "2 ramps of 4 values of 1500 cycles, 1 repeats among them\n");
     let again = scratch.runs(&["new", "mine.toml"]);

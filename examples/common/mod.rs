@@ -6,6 +6,7 @@ pub(crate) mod command_line;
 pub(crate) mod flow;
 pub(crate) mod look;
 pub(crate) mod panel;
+pub(crate) mod paper;
 pub(crate) mod progress;
 pub(crate) mod raster;
 pub(crate) mod results;

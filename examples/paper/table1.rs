@@ -25,6 +25,7 @@ use granular_edmd::kinetic::{Maxwellian, effective_inelasticity};
 use granular_edmd::statistics::RunningMean;
 
 use common::command_line;
+use common::paper::{Row, TABLE_1};
 use common::results::Results;
 
 /// Effective inelasticity of every transition (paper, Table I, by Eq. (9)).
@@ -40,55 +41,32 @@ struct Arguments {
     results: Results,
 }
 
-/// A row as printed: gravity, transition, mean energy change and effective inelasticity, with their errors.
-struct Row {
-    gravity: f64,
-    transition: &'static str,
-    change: (f64, f64),
-    printed: (f64, f64),
-}
-
-const fn row(gravity: f64, transition: &'static str, change: (f64, f64), printed: (f64, f64)) -> Row {
-    Row { gravity, transition, change, printed }
-}
-
-const TABLE: [Row; 8] = [
-    row(0.002_025, "0-1", (-0.090, 0.017), (0.023, 0.004)),
-    row(0.002_025, "1-2(a)", (-0.351, 0.042), (0.097, 0.013)),
-    row(0.002_025, "1-2(b)", (-0.377, 0.046), (0.105, 0.014)),
-    row(0.002_025, "2-collapse", (-0.614, 0.036), (0.190, 0.014)),
-    row(0.015_625, "0-1", (-0.047, 0.009), (0.012, 0.002)),
-    row(0.015_625, "1-2(a)", (-0.137, 0.022), (0.035, 0.006)),
-    row(0.015_625, "1-2(b)", (-0.147, 0.025), (0.038, 0.007)),
-    row(0.015_625, "2-collapse", (-0.290, 0.037), (0.079, 0.011)),
-];
-
 /// Half of the last printed digit, and a little more for numbers that lie exactly there.
 const HALF_DIGIT: f64 = 0.5e-3 + 1e-12;
 
-impl Row {
-    fn effective(&self) -> Result<f64, ParameterError> {
-        effective_inelasticity(self.change.0, 1.0)
-    }
+/// Returns the effective inelasticity that follows from the mean energy change.
+fn effective(row: &Row) -> Result<f64, ParameterError> {
+    effective_inelasticity(row.change.0, 1.0)
+}
 
-    /// Returns the error that follows from that of the mean energy change, by the slope of Eq. (9),
-    /// `$1/(4(1-2q))$`.
-    fn error(&self) -> Result<f64, ParameterError> {
-        Ok(self.change.1 / (4.0 * (1.0 - 2.0 * self.effective()?)))
-    }
+/// Returns the error that follows from that of the mean energy change, by the slope of Eq. (9),
+/// `$1/(4(1-2q))$`.
+fn error(row: &Row) -> Result<f64, ParameterError> {
+    Ok(row.change.1 / (4.0 * (1.0 - 2.0 * effective(row)?)))
+}
 
-    /// Tells whether the one column follows from the other. Both are printed to three decimals.
-    fn verdict(&self) -> Result<&'static str, ParameterError> {
-        let least = effective_inelasticity(self.change.0 + HALF_DIGIT, 1.0)?;
-        let most = effective_inelasticity(self.change.0 - HALF_DIGIT, 1.0)?;
-        let direct = (self.effective()? - self.printed.0).abs() <= HALF_DIGIT;
-        let rounding = least <= self.printed.0 + HALF_DIGIT && self.printed.0 - HALF_DIGIT <= most;
-        Ok(match (direct, rounding) {
-            (true, _) => "same digits",
-            (false, true) => "same within the rounding of <dE>",
-            (false, false) => "differs",
-        })
-    }
+/// Tells whether the one column follows from the other. Both are printed to three decimals.
+fn verdict(row: &Row) -> Result<&'static str, ParameterError> {
+    let (change, printed) = (row.change.0, row.effective.0);
+    let least = effective_inelasticity(change + HALF_DIGIT, 1.0)?;
+    let most = effective_inelasticity(change - HALF_DIGIT, 1.0)?;
+    let direct = (effective(row)? - printed).abs() <= HALF_DIGIT;
+    let rounding = least <= printed + HALF_DIGIT && printed - HALF_DIGIT <= most;
+    Ok(match (direct, rounding) {
+        (true, _) => "same digits",
+        (false, true) => "same within the rounding of <dE>",
+        (false, false) => "differs",
+    })
 }
 
 /// A point of a line that was found: its gravity, its transition, and the rule there.
@@ -118,7 +96,9 @@ fn read(folder: &Path) -> Result<Vec<Point>, Box<dyn Error>> {
 
 /// Returns the average over the points of a line, or `None` if there are none.
 fn measured(row: &Row, points: &[Point]) -> Result<Option<LineAverage>, ParameterError> {
-    let of = points.iter().filter(|point| point.gravity == row.gravity && point.transition == row.transition);
+    let of = points
+        .iter()
+        .filter(|point| point.gravity == row.gravity && point.transition == row.line.to_string());
     let line: Vec<Frictional> = of.map(|point| point.rule).collect();
     if line.is_empty() { Ok(None) } else { line_average(&line, &Maxwellian::new(1.0)?).map(Some) }
 }
@@ -155,18 +135,18 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         "g         transition   <dE>              q_eff             printed         verdict   (T_0 = 1)"
     );
     println!("±: the scatter along a line of transitions, not the error of its mean");
-    for row in &TABLE {
+    for row in &TABLE_1 {
         print(row)?;
         let measured = measured(row, &points)?;
         measured.iter().for_each(print_measured);
-        let (effective, error, verdict) = (row.effective()?, row.error()?, row.verdict()?);
-        let place = (row.gravity, row.transition);
+        let (effective, error, verdict) = (effective(row)?, error(row)?, verdict(row)?);
+        let place = (row.gravity, row.line.to_string());
         table.serialize((
             place,
             row.change,
             effective,
             error,
-            row.printed,
+            row.effective,
             verdict,
             cells(measured.as_ref()),
         ))?;
@@ -175,9 +155,9 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 }
 
 fn print(row: &Row) -> Result<(), ParameterError> {
-    let (effective, error, verdict) = (row.effective()?, row.error()?, row.verdict()?);
-    let (Row { gravity, transition, .. }, (change, spread), (printed, printed_error)) =
-        (row, row.change, row.printed);
+    let (effective, error, verdict) = (effective(row)?, error(row)?, verdict(row)?);
+    let (gravity, transition) = (row.gravity, row.line.to_string());
+    let ((change, spread), (printed, printed_error)) = (row.change, row.effective);
     println!(
         "{gravity:<8}  {transition:<10}  {change:.3} ± {spread:.3}   {effective:.4} ± {error:.4}   {printed:.3} ± {printed_error:.3}   {verdict}"
     );

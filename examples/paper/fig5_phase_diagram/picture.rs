@@ -9,6 +9,7 @@ use kuva::prelude::{Layout, Plot, TickFormat};
 
 use crate::common::look::{BLUE, INK, Look, Mark, PURPLE, QUIET, VERMILION};
 use crate::common::panel::{self, Margins, Panel, Place, SMALL};
+use crate::common::paper::TABLE_1;
 use crate::common::sheet::Sheet;
 
 /// A state that was seen in the plane.
@@ -50,12 +51,12 @@ const REGIMES: [(ConvectiveRegime, Look, &str); 5] = [
     (ConvectiveRegime::Collapsed, Look::marks("#868c93", Mark::Square), "collapse"),
 ];
 
-/// Looks of the lines, and the mean energy changes that the paper has for them at both gravities (Table I).
-const LINES: [(TransitionLine, Look, [f64; 2]); 4] = [
-    (TransitionLine::ZeroOne, Look::line(BLUE, ""), [-0.090, -0.047]),
-    (TransitionLine::OneTwoBeginning, Look::line(PURPLE, "2 3").with_width(3.0), [-0.351, -0.137]),
-    (TransitionLine::OneTwoEnd, Look::line(VERMILION, "8 3"), [-0.377, -0.147]),
-    (TransitionLine::TwoCollapse, Look::line(INK, "10 3 2 3"), [-0.614, -0.290]),
+/// Looks of the lines.
+const LINES: [(TransitionLine, Look); 4] = [
+    (TransitionLine::ZeroOne, Look::line(BLUE, "")),
+    (TransitionLine::OneTwoBeginning, Look::line(PURPLE, "2 3")),
+    (TransitionLine::OneTwoEnd, Look::line(VERMILION, "8 3")),
+    (TransitionLine::TwoCollapse, Look::line(INK, "10 3 2 3")),
 ];
 
 /// Frictions at the edges of the picture.
@@ -95,7 +96,7 @@ fn write_legend(sheet: &mut Sheet, top: f64, down: bool) {
     let (left, right) = (MARGINS[0], MARGINS[0] + 270.0);
     let states = REGIMES.map(|(_, look, name)| (look.with_size(4.0), name));
     sheet.legend((left, top), &states);
-    let names = LINES.map(|(line, look, _)| (look, format!("transition {line}")));
+    let names = LINES.map(|(line, look)| (look, format!("transition {line}")));
     sheet.legend((right, top), &names.each_ref().map(|(look, name)| (*look, name.as_str())));
     let thin = Look::line(QUIET, "").with_width(0.8);
     sheet.legend((right, top + 88.0), &[(thin, "⟨dE⟩ of the paper's Table I")]);
@@ -126,8 +127,11 @@ fn iso_lines(gravity: f64) -> Result<Vec<Plot>, ParameterError> {
         (0..=400).map(|step| low * (high / low).powf(f64::from(step) / 400.0)).collect();
     let gas = Maxwellian::new(1.0)?;
     let mut plots = Vec::new();
-    for (_, look, changes) in LINES {
-        let line = IsoLine::new(changes[usize::from(gravity > 0.01)], &gas)?;
+    for (line, look) in LINES {
+        let Some(row) = TABLE_1.iter().find(|row| row.gravity == gravity && row.line == line) else {
+            continue;
+        };
+        let line = IsoLine::new(row.change.0, &gas)?;
         let pieces = line.trace(&frictions, largest_inelasticity(gravity))?;
         plots.extend(pieces.into_iter().map(|piece| look.with_width(0.8).curve(piece)));
     }
@@ -148,7 +152,7 @@ fn add_states(sheet: &mut Sheet, panel: &Panel, states: &[State]) {
 /// Draws each line through its points. Low and high frictions are apart if the line leaves the plane between
 /// them.
 fn lines(crossings: &[Crossing]) -> Vec<Plot> {
-    let curves = LINES.iter().flat_map(|(line, look, _)| {
+    let curves = LINES.iter().flat_map(|(line, look)| {
         let of: Vec<&Crossing> = crossings.iter().filter(|at| at.line == *line).collect();
         branches(&of).into_iter().map(|branch| look.curve(branch)).collect::<Vec<_>>()
     });
@@ -178,7 +182,7 @@ fn means(mut points: Piece) -> Piece {
 
 /// Draws bars between the neighbors between which the points of the lines lie.
 fn add_bars(sheet: &mut Sheet, panel: &Panel, crossings: &[Crossing]) {
-    for (line, look, _) in LINES {
+    for (line, look) in LINES {
         let bars = crossings.iter().filter(|at| at.line == line).map(|at| at.between);
         sheet.bars(panel, look, bars);
     }

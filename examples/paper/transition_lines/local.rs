@@ -4,9 +4,9 @@ use std::error::Error;
 
 use granular_edmd::observable::{EnergyChangeProfile, SampleTimes};
 use granular_edmd::study::Experiment;
-use granular_edmd::study::vibrated_box::{Base, VibratedBox};
 
 use crate::ramps::Crossing;
+use crate::studies;
 
 /// Oscillations before measuring, and while measuring.
 const OSCILLATIONS: f64 = 3000.0;
@@ -22,13 +22,8 @@ pub(crate) struct Local {
 
 /// Runs the paper's box at a crossing, and measures it by layers two diameters high.
 pub(crate) fn measure(gravity: f64, at: &Crossing) -> Result<Local, Box<dyn Error>> {
-    let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
-    let experiment = VibratedBox::new(1000, 60.0, base)
-        .with_height(150.0)
-        .with_gravity(gravity)
-        .with_friction(at.friction)
-        .with_inelasticity(at.inelasticity)
-        .with_contact_duration(1e-4);
+    let experiment =
+        studies::vibrated_box(gravity).with_friction(at.friction).with_inelasticity(at.inelasticity);
     let settled = OSCILLATIONS * experiment.cycle();
     // Samples 10 oscillations apart but for a hundredth: all phases of the base are seen.
     let times = SampleTimes::every(9.99 * experiment.cycle())?.starting_at(settled)?;

@@ -22,6 +22,8 @@ mod numbers;
 mod phase_diagram;
 mod picture;
 mod ramps;
+#[path = "../../studies/mod.rs"]
+mod studies;
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -34,9 +36,10 @@ use granular_edmd::kinetic::effective_inelasticity;
 use granular_edmd::statistics::RunningMean;
 
 use common::command_line::{self, Failure};
+use common::paper::{Row, TABLE_1};
 use common::progress::Progress;
 use common::results::Results;
-use numbers::{Number, TABLE, average, formatted};
+use numbers::{Number, average, formatted};
 use ramps::{Crossing, Ramp};
 
 /// Averages along the transition lines of Fig. 5 (paper, Table I), from ramps at the paper's length.
@@ -126,7 +129,7 @@ fn lines(ramps: &[Ramp], arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         progress.show(done, all);
     }
     drop(progress);
-    for (gravity, line, mean, deviation) in TABLE {
+    for Row { gravity, line, change: (mean, deviation), .. } in TABLE_1 {
         println!("\ng = {gravity}, {line}: paper {mean:.3} ± {deviation:.3}");
         for choice in &CHOICES {
             let of_line: Vec<&Crossing> = crossings
@@ -215,11 +218,11 @@ fn walls(ramps: &[Ramp], results: &Results) -> Result<(), Box<dyn Error>> {
 }
 
 /// A row of Table I as it was found: gravity, line, and the average along it.
-type Row = (f64, String, RunningMean);
+type Found = (f64, String, RunningMean);
 
-fn print_account(crossings: &[(&Ramp, Crossing)], number: Number) -> Result<Vec<Row>, ParameterError> {
+fn print_account(crossings: &[(&Ramp, Crossing)], number: Number) -> Result<Vec<Found>, ParameterError> {
     let (mut squares, mut rows) = (0.0, Vec::new());
-    for (gravity, line, mean, deviation) in TABLE {
+    for Row { gravity, line, change: (mean, deviation), .. } in TABLE_1 {
         let is_of = |ramp: &Ramp, at: &Crossing| ramp.gravity == gravity && at.line == line;
         let of_line: Vec<&Crossing> =
             crossings.iter().filter(|(ramp, at)| is_of(ramp, at)).map(|(_, at)| at).collect();

@@ -1,7 +1,6 @@
 //! The numbers that may govern the transitions, at each crossing, and their averages along a line.
 
 use granular_edmd::ParameterError;
-use granular_edmd::analysis::TransitionLine;
 use granular_edmd::collision::Frictional;
 use granular_edmd::kinetic::{Maxwellian, mean_energy_change, sticking_fraction};
 use granular_edmd::statistics::RunningMean;
@@ -55,18 +54,6 @@ impl Number {
         }
     }
 }
-
-/// A row of the paper's Table I: gravity, line, mean energy change and its standard deviation along the line.
-pub(crate) const TABLE: [(f64, TransitionLine, f64, f64); 8] = [
-    (0.015_625, TransitionLine::ZeroOne, -0.047, 0.009),
-    (0.015_625, TransitionLine::OneTwoBeginning, -0.137, 0.022),
-    (0.015_625, TransitionLine::OneTwoEnd, -0.147, 0.025),
-    (0.015_625, TransitionLine::TwoCollapse, -0.290, 0.037),
-    (0.002_025, TransitionLine::ZeroOne, -0.090, 0.017),
-    (0.002_025, TransitionLine::OneTwoBeginning, -0.351, 0.042),
-    (0.002_025, TransitionLine::OneTwoEnd, -0.377, 0.046),
-    (0.002_025, TransitionLine::TwoCollapse, -0.614, 0.036),
-];
 
 /// Averages a number over the crossings of a line; each crossing counts alike.
 pub(crate) fn average(number: Number, crossings: &[&Crossing]) -> Result<RunningMean, ParameterError> {

@@ -155,7 +155,13 @@ impl Ramp {
             let of_leg = self.observations.iter().filter(|seen| seen.leg == leg);
             seen.extend(transitions(of_leg.map(|seen| (self.value(seen), seen.regime)))?);
         }
-        let sides = TransitionLine::ALL.into_iter().flat_map(|line| [(line, true), (line, false)]);
+        // A ramp that goes from one roll straight to the collapse has none to two rolls.
+        let has_two_rolls = self.observations.iter().any(|seen| seen.regime == ConvectiveRegime::TwoRolls);
+        let is_there = |line: &TransitionLine| {
+            has_two_rolls || !matches!(line, TransitionLine::OneTwoBeginning | TransitionLine::OneTwoEnd)
+        };
+        let sides =
+            TransitionLine::ALL.into_iter().filter(is_there).flat_map(|line| [(line, true), (line, false)]);
         Ok(sides.filter_map(|(line, rising)| self.crossing(line, rising, &seen)).collect())
     }
 
