@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::error::Error;
 
+use granular_edmd::analysis::ConvectiveRegime::TwoRolls;
 use granular_edmd::analysis::TransitionLine;
 use granular_edmd::statistics::RunningMean;
 
@@ -20,6 +21,11 @@ pub(crate) fn print(ramps: &[Ramp], results: &Results) -> Result<(), Box<dyn Err
     let mut found: BTreeMap<&str, [RunningMean; 2]> = BTreeMap::new();
     for ramp in ramps {
         for (line, mean) in LINES.iter().zip(found.entry(&ramp.study).or_default()) {
+            // A wide box has two rolls from the first friction on. What comes and goes at its collapse is no
+            // transition to them.
+            if *line == TransitionLine::OneTwoEnd && ramp.observations[0].regime == TwoRolls {
+                continue;
+            }
             let first = ramp.crossings()?.into_iter().find(|at| at.line == *line && at.rising);
             if let Some(at) = first {
                 mean.push(at.friction);

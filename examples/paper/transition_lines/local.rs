@@ -5,8 +5,7 @@ use std::error::Error;
 use granular_edmd::observable::{EnergyChangeProfile, SampleTimes};
 use granular_edmd::study::Experiment;
 
-use crate::ramps::Crossing;
-use crate::studies;
+use crate::ramps::{Crossing, Ramp};
 
 /// Oscillations before measuring, and while measuring.
 const OSCILLATIONS: f64 = 3000.0;
@@ -20,10 +19,9 @@ pub(crate) struct Local {
     pub(crate) temperature_ratio: f64,
 }
 
-/// Runs the paper's box at a crossing, and measures it by layers two diameters high.
-pub(crate) fn measure(gravity: f64, at: &Crossing) -> Result<Local, Box<dyn Error>> {
-    let experiment =
-        studies::vibrated_box(gravity).with_friction(at.friction).with_inelasticity(at.inelasticity);
+/// Runs the box of a ramp at one of its crossings, and measures it by layers two diameters high.
+pub(crate) fn measure(ramp: &Ramp, at: &Crossing) -> Result<Local, Box<dyn Error>> {
+    let experiment = ramp.experiment.clone().with_friction(at.friction).with_inelasticity(at.inelasticity);
     let settled = OSCILLATIONS * experiment.cycle();
     // Samples 10 oscillations apart but for a hundredth: all phases of the base are seen.
     let times = SampleTimes::every(9.99 * experiment.cycle())?.starting_at(settled)?;

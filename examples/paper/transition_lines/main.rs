@@ -22,24 +22,20 @@ mod numbers;
 mod phase_diagram;
 mod picture;
 mod ramps;
-#[path = "../../studies/mod.rs"]
-mod studies;
+mod walls;
 
-use std::collections::BTreeMap;
 use std::error::Error;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum};
-use granular_edmd::ParameterError;
-use granular_edmd::kinetic::effective_inelasticity;
-use granular_edmd::statistics::RunningMean;
+use granular_edmd::analysis::TransitionLine;
 
 use common::command_line::{self, Failure};
 use common::paper::{Row, TABLE_1};
 use common::progress::Progress;
 use common::results::Results;
-use numbers::{Number, average, formatted};
+use numbers::{Number, average};
 use ramps::{Crossing, Ramp};
 
 /// Averages along the transition lines of Fig. 5 (paper, Table I), from ramps at the paper's length.
@@ -48,9 +44,9 @@ struct Arguments {
     /// The question.
     #[arg(value_enum, default_value = "lines")]
     question: Question,
-    /// Folder of the ramps; that of the question in docs/reproduction unless given.
+    /// Folder of ramps, can be repeated; those of the question in docs/reproduction unless given.
     #[arg(long, value_name = "FOLDER")]
-    ramps: Option<PathBuf>,
+    ramps: Vec<PathBuf>,
     /// Measures every tenth crossing only; the other two questions measure none.
     #[arg(long)]
     quick: bool,
@@ -69,26 +65,29 @@ enum Question {
 }
 
 impl Question {
-    const fn folder(self) -> &'static str {
-        match self {
-            Self::Lines => "docs/reproduction/full-length",
-            Self::Walls => "docs/reproduction/walls",
-            Self::Dependences => "docs/reproduction/dependences",
-        }
+    /// Returns the folders of its ramps.
+    fn folders(self) -> Vec<PathBuf> {
+        let names: &[&str] = match self {
+            Self::Lines => &["full-length"],
+            Self::Walls => &["walls", "full-length", "full-length-elastic-walls"],
+            Self::Dependences => &["dependences"],
+        };
+        names.iter().map(|name| Path::new("docs/reproduction").join(name)).collect()
     }
 }
 
 fn main() -> ExitCode {
     command_line::main(|arguments: &Arguments| {
-        let folder = arguments.ramps.clone().unwrap_or_else(|| arguments.question.folder().into());
-        let ramps = ramps::read(&folder).map_err(Failure::usage)?;
-        if ramps.is_empty() {
-            return Err(Failure::usage(format_args!("{} has no tables of ramps", folder.display())));
+        let given = !arguments.ramps.is_empty();
+        let folders = if given { arguments.ramps.clone() } else { arguments.question.folders() };
+        let mut ramps = Vec::new();
+        for folder in folders {
+            ramps.extend(ramps::read(&folder).map_err(Failure::usage)?);
         }
         arguments.results.make_folder()?;
         let done = match arguments.question {
             Question::Lines => lines(&ramps, arguments),
-            Question::Walls => walls(&ramps, &arguments.results),
+            Question::Walls => walls::print(&ramps, &arguments.results),
             Question::Dependences => dependences::print(&ramps, &arguments.results),
         };
         done.map_err(Failure::run)
@@ -105,7 +104,7 @@ struct Choice {
     takes: fn(&Ramp, &Crossing) -> bool,
 }
 
-/// The rules by which crossings are averaged; each crossing counts alike.
+/// The rules by which crossings are averaged.
 const CHOICES: [Choice; 4] = [
     Choice { name: "ramps in q, all frictions", takes: |ramp, _| !ramp.along_friction },
     Choice {
@@ -125,24 +124,22 @@ fn lines(ramps: &[Ramp], arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let mut crossings: Vec<_> = crossings(ramps)?.into_iter().step_by(step).collect();
     let (progress, all) = (Progress::of("crossings"), crossings.len() as u64);
     for (done, (ramp, at)) in (1..).zip(&mut crossings) {
-        at.local = Some(local::measure(ramp.gravity, at)?);
+        at.local = Some(local::measure(ramp, at)?);
         progress.show(done, all);
     }
     drop(progress);
     for Row { gravity, line, change: (mean, deviation), .. } in TABLE_1 {
         println!("\ng = {gravity}, {line}: paper {mean:.3} ± {deviation:.3}");
         for choice in &CHOICES {
-            let of_line: Vec<&Crossing> = crossings
-                .iter()
-                .filter(|(ramp, at)| ramp.gravity == gravity && at.line == line && (choice.takes)(ramp, at))
-                .map(|(_, at)| at)
-                .collect();
+            let is_of =
+                |ramp: &Ramp, at: &Crossing| is_of(ramp, at, gravity, line) && (choice.takes)(ramp, at);
+            let of_line: Vec<_> = crossings.iter().filter(|(ramp, at)| is_of(ramp, at)).collect();
             if of_line.is_empty() {
                 continue;
             }
             println!("  {}", choice.name);
             for number in GOVERNING {
-                println!("    {:34}{}", number.name(), formatted(&average(number, &of_line)?));
+                println!("    {:34}{}", number.name(), average(number, &of_line)?);
             }
         }
     }
@@ -152,6 +149,10 @@ fn lines(ramps: &[Ramp], arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         picture::draw_diagram(gravity, ramps, &crossings)?.write(&arguments.results.path(name))?;
     }
     write_crossings(&crossings, &arguments.results)
+}
+
+fn is_of(ramp: &Ramp, at: &Crossing, gravity: f64, line: TransitionLine) -> bool {
+    ramp.gravity() == gravity && at.line == line
 }
 
 fn crossings(ramps: &[Ramp]) -> Result<Vec<(&Ramp, Crossing)>, Box<dyn Error>> {
@@ -189,59 +190,7 @@ fn write_crossings(crossings: &[(&Ramp, Crossing)], results: &Results) -> Result
             [at.friction, at.inelasticity, half_width, at.temperature_ratio].into_iter().chain(numbers);
         let rounded: Vec<String> = rounded.map(|value| format!("{value:.5}")).collect();
         let line = at.line.to_string();
-        table.serialize((&ramp.study, ramp.gravity, ramp.oscillations, line, at.rising, along, rounded))?;
+        table.serialize((&ramp.study, ramp.gravity(), ramp.oscillations, line, at.rising, along, rounded))?;
     }
     results.finish_table("transition_lines", table, Some(&picture::draw(crossings)?))
-}
-
-/// Prints Table I under each assumption about the walls, and its distance from the paper's.
-fn walls(ramps: &[Ramp], results: &Results) -> Result<(), Box<dyn Error>> {
-    const NAME: &str = "transition_lines-walls";
-    let columns =
-        ["study", "number", "gravity", "line", "points", "mean_energy_change", "standard_deviation"];
-    let mut table = results.table(NAME, &columns)?;
-    let mut accounts: BTreeMap<String, Vec<(&Ramp, Crossing)>> = BTreeMap::new();
-    for (ramp, at) in crossings(ramps)? {
-        let name = ramp.study.split("-gravity-").next().unwrap_or_default();
-        accounts.entry(name.to_owned()).or_default().push((ramp, at));
-    }
-    for (name, crossings) in &accounts {
-        for number in [Number::EqualTemperatures, Number::AsPrinted] {
-            println!("\n{name}, {}", number.name());
-            for (gravity, line, found) in print_account(crossings, number)? {
-                let (points, mean, deviation) = (found.count(), found.mean(), found.standard_deviation());
-                table.serialize((name, number.name(), gravity, line, points, mean, deviation))?;
-            }
-        }
-    }
-    results.finish_table(NAME, table, None)
-}
-
-/// A row of Table I as it was found: gravity, line, and the average along it.
-type Found = (f64, String, RunningMean);
-
-fn print_account(crossings: &[(&Ramp, Crossing)], number: Number) -> Result<Vec<Found>, ParameterError> {
-    let (mut squares, mut rows) = (0.0, Vec::new());
-    for Row { gravity, line, change: (mean, deviation), .. } in TABLE_1 {
-        let is_of = |ramp: &Ramp, at: &Crossing| ramp.gravity == gravity && at.line == line;
-        let of_line: Vec<&Crossing> =
-            crossings.iter().filter(|(ramp, at)| is_of(ramp, at)).map(|(_, at)| at).collect();
-        if of_line.is_empty() {
-            continue;
-        }
-        let found = average(number, &of_line)?;
-        squares += ((found.mean() - mean) / deviation).powi(2);
-        let effective = effective_inelasticity(found.mean(), 1.0)?;
-        println!(
-            "  {gravity:<9} {:12} paper {mean:.3} ± {deviation:.3}  here {}  q_eff {effective:.4}",
-            line.to_string(),
-            formatted(&found)
-        );
-        rows.push((gravity, line.to_string(), found));
-    }
-    println!(
-        "  rms deviation {:.2} of the paper's standard deviations",
-        (squares / rows.len() as f64).sqrt()
-    );
-    Ok(rows)
 }

@@ -1,11 +1,14 @@
 //! The numbers that may govern the transitions, at each crossing, and their averages along a line.
 
+use std::collections::BTreeMap;
+use std::fmt;
+
 use granular_edmd::ParameterError;
 use granular_edmd::collision::Frictional;
 use granular_edmd::kinetic::{Maxwellian, mean_energy_change, sticking_fraction};
 use granular_edmd::statistics::RunningMean;
 
-use crate::ramps::Crossing;
+use crate::ramps::{Crossing, Ramp};
 
 /// A mean energy change per collision, in units of the translational temperature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,17 +58,35 @@ impl Number {
     }
 }
 
-/// Averages a number over the crossings of a line; each crossing counts alike.
-pub(crate) fn average(number: Number, crossings: &[&Crossing]) -> Result<RunningMean, ParameterError> {
-    crossings.iter().map(|crossing| number.at(crossing)).collect()
+/// An average along a line.
+pub(crate) struct Average {
+    /// Over places; a place is a ramp of any seed, and counts once.
+    pub(crate) along: RunningMean,
+    /// Standard deviation between seeds at the same place; `None` with one seed.
+    pub(crate) between_seeds: Option<f64>,
 }
 
-/// Formats mean, standard deviation along the line and standard error of the mean.
-pub(crate) fn formatted(average: &RunningMean) -> String {
-    if average.count() == 0 {
-        return "-".to_owned();
+/// Averages a number over the crossings of a line.
+pub(crate) fn average(number: Number, crossings: &[&(&Ramp, Crossing)]) -> Result<Average, ParameterError> {
+    let mut places: BTreeMap<String, RunningMean> = BTreeMap::new();
+    for (ramp, at) in crossings {
+        places.entry(ramp.place(at)).or_default().push(number.at(at)?);
     }
-    let (mean, deviation, error) = (average.mean(), average.standard_deviation(), average.standard_error());
-    let relative = 100.0 * deviation / mean.abs();
-    format!("{mean:.3} ± {deviation:.3} ({relative:.0} %), error {error:.3}, {} points", average.count())
+    let several = || places.values().filter(|seeds| seeds.count() > 1);
+    let freedom: u64 = several().map(|seeds| seeds.count() - 1).sum();
+    let squares: f64 = several().map(|seeds| seeds.variance() * (seeds.count() - 1) as f64).sum();
+    let between_seeds = (freedom > 0).then(|| (squares / freedom as f64).sqrt());
+    Ok(Average { along: places.values().map(RunningMean::mean).collect(), between_seeds })
+}
+
+impl fmt::Display for Average {
+    /// Writes mean, standard deviation along the line, standard error of the mean, and the scatter of seeds.
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { along, between_seeds } = self;
+        let (mean, deviation, error) = (along.mean(), along.standard_deviation(), along.standard_error());
+        let share = 100.0 * deviation / mean.abs();
+        let places = along.count();
+        write!(to, "{mean:.3} ± {deviation:.3} ({share:.0} %), error {error:.3}, {places} places")?;
+        between_seeds.map_or(Ok(()), |seeds| write!(to, ", seeds ± {seeds:.3}"))
+    }
 }

@@ -53,7 +53,8 @@ pub(crate) fn draw(crossings: &[(&Ramp, Crossing)]) -> Result<Sheet, ParameterEr
             &format!("g = {gravity}"),
         );
         for (line, look, _) in LINES {
-            for (_, at) in crossings.iter().filter(|(ramp, at)| ramp.gravity == gravity && at.line == line) {
+            for (_, at) in crossings.iter().filter(|(ramp, at)| ramp.gravity() == gravity && at.line == line)
+            {
                 let loss = |number: Number, at: &Crossing| Ok((at.friction, -number.at(at)?));
                 let ends = at.ends().map(|end| loss(Number::MeasuredRatio, &end));
                 let [from, to]: [Result<_, ParameterError>; 2] = ends;
@@ -70,7 +71,7 @@ pub(crate) fn draw(crossings: &[(&Ramp, Crossing)]) -> Result<Sheet, ParameterEr
 fn means(gravity: f64, crossings: &[(&Ramp, Crossing)]) -> Result<Vec<Plot>, ParameterError> {
     let mut lines = Vec::new();
     for (line, look, _) in LINES {
-        let of = crossings.iter().filter(|(ramp, at)| ramp.gravity == gravity && at.line == line);
+        let of = crossings.iter().filter(|(ramp, at)| ramp.gravity() == gravity && at.line == line);
         let losses: Vec<f64> = of.map(|(_, at)| Number::MeasuredRatio.at(at)).collect::<Result<_, _>>()?;
         let mean = -losses.iter().copied().collect::<RunningMean>().mean();
         lines.push(
@@ -86,7 +87,7 @@ pub(crate) fn draw_diagram(
     ramps: &[Ramp],
     crossings: &[(&Ramp, Crossing)],
 ) -> Result<Sheet, Box<dyn Error>> {
-    let ramps: Vec<&Ramp> = ramps.iter().filter(|ramp| ramp.gravity == gravity).collect();
+    let ramps: Vec<&Ramp> = ramps.iter().filter(|ramp| ramp.gravity() == gravity).collect();
     let oscillations = ramps.first().map_or(0, |ramp| ramp.oscillations);
     let observed = ramps.iter().flat_map(|ramp| &ramp.observations);
     let states: Vec<State> = observed
@@ -99,7 +100,7 @@ pub(crate) fn draw_diagram(
         .collect();
     let crossings: Vec<phase_diagram::Crossing> = crossings
         .iter()
-        .filter(|(ramp, _)| ramp.gravity == gravity)
+        .filter(|(ramp, _)| ramp.gravity() == gravity)
         .map(|(_, at)| at.in_the_plane())
         .collect();
     let notes = format!(

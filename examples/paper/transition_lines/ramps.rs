@@ -43,7 +43,8 @@ pub(crate) struct Observation {
 pub(crate) struct Ramp {
     /// The name of the study's folder.
     pub(crate) study: String,
-    pub(crate) gravity: f64,
+    /// The box at the first value.
+    pub(crate) experiment: VibratedBox,
     /// Oscillations of each value.
     pub(crate) oscillations: u64,
     /// True if friction grows, false if inelasticity does.
@@ -103,6 +104,9 @@ pub(crate) fn read(folder: &Path) -> Result<Vec<Ramp>, Box<dyn Error>> {
         .iter()
         .map(|study| study_of(study).map_err(|error| format!("{}: {error}", study.display()).into()))
         .collect::<Result<_, Box<dyn Error>>>()?;
+    if ramps.is_empty() {
+        return Err(format!("{} has no tables of ramps", folder.display()).into());
+    }
     Ok(ramps.into_iter().flatten().collect())
 }
 
@@ -127,7 +131,7 @@ fn study_of(folder: &Path) -> Result<Vec<Ramp>, Box<dyn Error>> {
                 row.ramp,
                 Ramp {
                     study: folder.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-                    gravity: fixed.gravity,
+                    experiment: fixed.clone(),
                     oscillations: plan.protocol().cycles(),
                     along_friction,
                     observations: vec![observation],
@@ -144,6 +148,17 @@ fn regime(name: &str) -> Result<ConvectiveRegime, String> {
 }
 
 impl Ramp {
+    pub(crate) const fn gravity(&self) -> f64 {
+        self.experiment.gravity
+    }
+
+    /// Returns a name of the place of a crossing on its line, the same for all seeds.
+    pub(crate) fn place(&self, at: &Crossing) -> String {
+        let (parameter, fixed) =
+            if self.along_friction { ("inelasticity", at.inelasticity) } else { ("friction", at.friction) };
+        format!("{parameter} {fixed}, rising {}", at.rising)
+    }
+
     /// Returns the transitions on this ramp.
     ///
     /// Each leg is looked at alone, since bisected values are visited on one leg only. Coexistence begins
