@@ -15,7 +15,7 @@ const MOST: u64 = 1 << 40;
 /// use granular_edmd::study::Protocol;
 /// // The paper: 100 000 oscillations for each value, sampled every 100, the first 500 samples discarded.
 /// let protocol = Protocol::new(50_000, 500, 100);
-/// assert_eq!(protocol.cycles(), 100_000);
+/// assert_eq!((protocol.every(), protocol.cycles()), (100, 100_000));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -42,6 +42,21 @@ impl Protocol {
     /// the end of the cycle.
     pub const fn with_phase(self, phase: f64) -> Self {
         Self { phase, ..self }
+    }
+
+    /// Returns the number of cycles that a value settles before its samples.
+    pub const fn settle(&self) -> u64 {
+        self.settle
+    }
+
+    /// Returns the number of cycles from a sample to the next.
+    pub const fn every(&self) -> u64 {
+        self.every
+    }
+
+    /// Returns the phase of the samples in their cycle.
+    pub const fn phase(&self) -> f64 {
+        self.phase
     }
 
     /// Returns the number of samples of a value.
