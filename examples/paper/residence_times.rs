@@ -140,13 +140,13 @@ fn read_study(folder: &Path, quick: bool) -> Result<Vec<Value>, Box<dyn Error>> 
         csv::Reader::from_path(folder.join("values.csv"))?.deserialize().collect::<Result<_, _>>()?;
     let order = GzDecoder::new(File::open(folder.join("order.csv.gz"))?);
     let mut order = csv::ReaderBuilder::new().has_headers(false).from_reader(order);
-    // Ramp, value, and both order parameters in units of 1e-4.
+    // Ramp, value, and both order parameters in units of 1e-3.
     let order: Vec<(u32, u32, f64, f64)> = order.deserialize().collect::<Result<_, _>>()?;
     let study = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let take = if quick { samples / 10 } else { samples };
     let value = |row: Row| {
         let of_value = order.iter().filter(|sample| (sample.0, sample.1) == (row.ramp, row.value)).take(take);
-        let states = states(of_value.map(|sample| (1e-4 * sample.2, 1e-4 * sample.3)), row.thermal_noise);
+        let states = states(of_value.map(|sample| (1e-3 * sample.2, 1e-3 * sample.3)), row.thermal_noise);
         Value { study: study.clone(), row, every, states }
     };
     Ok(rows.into_iter().map(value).collect())

@@ -103,9 +103,10 @@ pub(crate) fn draw_diagram(
         .filter(|(ramp, _)| ramp.gravity() == gravity)
         .map(|(_, at)| at.in_the_plane())
         .collect();
+    let walls = ramps.first().map_or("", |ramp| ramp.walls());
     let notes = format!(
-        "N = 1000, box 60 × 150, base A = 0.1, ω = 10, contact duration 1e-4\n{oscillations} oscillations for each point, the \
-         first half discarded;\nramps in friction and in inelasticity, from below and from above"
+        "N = 1000, box 60 × 150, base A = 0.1, ω = 10, contact duration 1e-4; {walls}\n{oscillations} oscillations for each \
+         point, the first half discarded;\nramps in friction and in inelasticity, from below and from above"
     );
     let title = format!("Convective states at g = {gravity}");
     Ok(phase_diagram::draw(&Diagram {

@@ -152,6 +152,15 @@ impl Ramp {
         self.experiment.gravity
     }
 
+    /// Returns a name of the walls.
+    pub(crate) fn walls(&self) -> &'static str {
+        match (self.experiment.wall_inelasticity, self.experiment.base_inelasticity) {
+            (Some(0.0), _) => "elastic frictional walls",
+            (_, Some(0.0)) => "elastic frictional base",
+            _ => "walls as the disks",
+        }
+    }
+
     /// Returns a name of the place of a crossing on its line, the same for all seeds.
     pub(crate) fn place(&self, at: &Crossing) -> String {
         let (parameter, fixed) =

@@ -37,12 +37,7 @@ pub(crate) fn print(ramps: &[Ramp], results: &Results) -> Result<(), Box<dyn Err
 
 /// Returns a name of the walls, and of the length of the values.
 fn account(ramp: &Ramp) -> String {
-    let walls = match (ramp.experiment.wall_inelasticity, ramp.experiment.base_inelasticity) {
-        (Some(0.0), _) => "elastic frictional walls",
-        (_, Some(0.0)) => "elastic frictional base",
-        _ => "walls as the disks",
-    };
-    format!("{walls}, {} oscillations", ramp.oscillations)
+    format!("{}, {} oscillations", ramp.walls(), ramp.oscillations)
 }
 
 /// A row of Table I as it was found: gravity, line, and the average along it.
