@@ -18,11 +18,12 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use flate2::read::GzDecoder;
+use granular_edmd::statistics::RunningMean;
 use granular_edmd::study::Plan;
 use granular_edmd::study::vibrated_box::VibratedBox;
 
 use common::command_line::{self, Failure};
-use common::look::{BLUE, Look, Mark, VERMILION};
+use common::look::{BLUE, GREEN, Look, Mark, VERMILION};
 use common::panel::{self, Margins, Place};
 use common::results::Results;
 use common::sheet::Sheet;
@@ -74,43 +75,79 @@ struct Value {
     /// Oscillations between two samples.
     every: u64,
     states: Vec<State>,
+    /// Mean of the larger order parameter, over the noise of a gas at rest.
+    strength: f64,
 }
 
 impl Value {
-    fn samples(&self, state: State) -> usize {
-        self.states.iter().filter(|seen| **seen == state).count()
-    }
-
-    /// Returns how often a state ends.
-    fn ends(&self, state: State) -> usize {
-        self.states.windows(2).filter(|pair| pair[0] == state && pair[1] != state).count()
-    }
-
     /// Returns the share of the time in a state.
     fn share(&self, state: State) -> f64 {
-        self.samples(state) as f64 / self.states.len() as f64
+        self.states.iter().filter(|seen| **seen == state).count() as f64 / self.states.len() as f64
     }
 
-    /// Returns the mean residence time of states in oscillations, with its standard error, if they end: all
-    /// of their time over the number of their ends, which also counts the last stay, whose end is not seen.
-    fn residence(&self, states: &[State]) -> Option<(f64, f64)> {
-        let samples: usize = states.iter().map(|state| self.samples(*state)).sum();
-        let ends: usize = states.iter().map(|state| self.ends(*state)).sum();
-        let time = (samples as u64 * self.every) as f64 / ends as f64;
-        (ends > 0).then(|| (time, time / (ends as f64).sqrt()))
+    /// Returns how long one roll keeps its sense; two rolls between two stays of one roll do not count.
+    fn sense(&self) -> Option<Residence> {
+        let senses: Vec<bool> = self
+            .states
+            .iter()
+            .filter(|state| **state != State::TwoRolls)
+            .map(|state| *state == State::Clockwise)
+            .collect();
+        let changes = senses.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        self.residence(senses.len(), changes)
+    }
+
+    /// Returns how long two rolls stay, or one roll of either sense; `None` where rolls are weak, and two of
+    /// them a fluctuation of one.
+    fn rolls(&self, two: bool) -> Option<Residence> {
+        if self.strength < 5.0 {
+            return None;
+        }
+        let are_two: Vec<bool> = self.states.iter().map(|state| *state == State::TwoRolls).collect();
+        let are_two = without_short(&are_two, (FLUCTUATION / self.every) as usize);
+        let ends = are_two.windows(2).filter(|pair| pair[0] == two && pair[1] != two).count();
+        self.residence(are_two.iter().filter(|seen| **seen == two).count(), ends)
+    }
+
+    /// Returns the time of samples over the number of ends; so the last stay counts, too, whose end is not
+    /// seen. The stays are independent, and their number has the error of a count.
+    fn residence(&self, samples: usize, ends: usize) -> Option<Residence> {
+        let mean = (samples as u64 * self.every) as f64 / ends as f64;
+        (ends > 0).then(|| Residence { mean, error: mean / (ends as f64).sqrt() })
     }
 }
 
-/// Names the state of each sample. A state lasts until another one stands out by twice the noise of a gas at
-/// rest: less would count noise at the border as changes. Samples before the first that stands out are left
-/// out.
+/// A mean residence time in oscillations, with its standard error.
+#[derive(Debug, Clone, Copy)]
+struct Residence {
+    mean: f64,
+    error: f64,
+}
+
+/// Oscillations, ten of the paper's samples, that two rolls must last so as not to be a fluctuation of one
+/// roll, and the other way around.
+const FLUCTUATION: u64 = 1000;
+
+/// Returns a series of two values in which stays shorter than this many samples belong to the stay before.
+fn without_short(series: &[bool], least: usize) -> Vec<bool> {
+    let mut steady: Vec<bool> = Vec::with_capacity(series.len());
+    for stay in series.chunk_by(|before, after| before == after) {
+        let value = steady.last().copied().filter(|_| stay.len() < least).unwrap_or(stay[0]);
+        steady.extend(stay.iter().map(|_| value));
+    }
+    steady
+}
+
+/// Names the state of each sample. A state lasts until the order parameter of another one is above three times
+/// the noise of a gas at rest, and above the other order parameter by twice the noise: less would count noise
+/// as changes. Samples before the first such are left out.
 fn states(order: impl Iterator<Item = (f64, f64)>, noise: f64) -> Vec<State> {
-    let margin = 2.0 * noise;
+    let (least, margin) = (3.0 * noise, 2.0 * noise);
     let mut now = None;
     let named = order.map(move |(one, two)| {
-        if two > one.abs() + margin {
+        if two > least.max(one.abs() + margin) {
             now = Some(State::TwoRolls);
-        } else if one.abs() > two.max(0.0) + margin {
+        } else if one.abs() > least.max(two + margin) {
             now = Some(if one > 0.0 { State::Clockwise } else { State::Counterclockwise });
         }
         now
@@ -146,104 +183,114 @@ fn read_study(folder: &Path, quick: bool) -> Result<Vec<Value>, Box<dyn Error>> 
     let take = if quick { samples / 10 } else { samples };
     let value = |row: Row| {
         let of_value = order.iter().filter(|sample| (sample.0, sample.1) == (row.ramp, row.value)).take(take);
-        let states = states(of_value.map(|sample| (1e-3 * sample.2, 1e-3 * sample.3)), row.thermal_noise);
-        Value { study: study.clone(), row, every, states }
+        let of_value = of_value.map(|sample| (1e-3 * sample.2, 1e-3 * sample.3));
+        let larger: RunningMean = of_value.clone().map(|(one, two)| two.max(one.abs())).collect();
+        let states = states(of_value, row.thermal_noise);
+        let strength = larger.mean() / row.thermal_noise;
+        Value { study: study.clone(), row, every, states, strength }
     };
     Ok(rows.into_iter().map(value).collect())
 }
 
-/// The states whose residence is counted.
-const COUNTED: [(&str, &[State], Look); 2] = [
-    ("one roll of one sense", &[State::Clockwise, State::Counterclockwise], Look::new(BLUE, "", Mark::Disk)),
-    ("two rolls", &[State::TwoRolls], Look::new(VERMILION, "8 4", Mark::Square)),
+/// A stay that is counted: its name, its length at a value, and its look.
+struct Stay {
+    name: &'static str,
+    of: fn(&Value) -> Option<Residence>,
+    look: Look,
+}
+
+const STAYS: [Stay; 3] = [
+    Stay { name: "a roll of one sense", of: Value::sense, look: Look::marks(BLUE, Mark::Disk) },
+    Stay { name: "one roll", of: |value| value.rolls(false), look: Look::marks(GREEN, Mark::Triangle) },
+    Stay { name: "two rolls", of: |value| value.rolls(true), look: Look::marks(VERMILION, Mark::Square) },
+];
+
+const COLUMNS: [&str; 14] = [
+    "study",
+    "leg",
+    "friction",
+    "inelasticity",
+    "oscillations",
+    "clockwise",
+    "counterclockwise",
+    "two_rolls",
+    "sense_residence",
+    "sense_residence_error",
+    "one_roll_residence",
+    "one_roll_residence_error",
+    "two_rolls_residence",
+    "two_rolls_residence_error",
 ];
 
 fn finish(values: &[Value], results: &Results) -> Result<(), Box<dyn Error>> {
-    let columns = [
-        "study",
-        "leg",
-        "friction",
-        "inelasticity",
-        "oscillations",
-        "clockwise",
-        "counterclockwise",
-        "two_rolls",
-        "one_roll_residence",
-        "one_roll_residence_error",
-        "two_rolls_residence",
-        "two_rolls_residence_error",
-    ];
-    let mut table = results.table("residence_times", &columns)?;
+    let mut table = results.table("residence_times", &COLUMNS)?;
     for value in values {
         let Row { leg, friction, inelasticity, .. } = &value.row;
         let oscillations = value.states.len() as u64 * value.every;
         let shares = [State::Clockwise, State::Counterclockwise, State::TwoRolls].map(|s| value.share(s));
-        let times = COUNTED.map(|(_, states, _)| value.residence(states));
-        let rounded = |number: f64, digits| format!("{number:.digits$}");
-        let times_told = times.map(|time| time.map(|(mean, error)| (rounded(mean, 0), rounded(error, 0))));
-        let shares_told = shares.map(|share| rounded(share, 4));
-        table.serialize((
-            &value.study,
-            leg,
-            friction,
-            inelasticity,
-            oscillations,
-            shares_told,
-            times_told,
-        ))?;
-        print(value, shares, times);
+        let stays: Vec<_> = STAYS.iter().map(|stay| (stay.of)(value)).collect();
+        let cells = stays.iter().flat_map(|stay| {
+            stay.map_or_else(<[String; 2]>::default, |time| {
+                [time.mean, time.error].map(|t| format!("{t:.0}"))
+            })
+        });
+        let cells: Vec<String> = shares.iter().map(|share| format!("{share:.4}")).chain(cells).collect();
+        table.serialize((&value.study, leg, friction, inelasticity, oscillations, cells))?;
+        print(value, shares, &stays);
     }
     results.finish_table("residence_times", table, Some(&draw(values)))
 }
 
-fn print(value: &Value, shares: [f64; 3], times: [Option<(f64, f64)>; 2]) {
+fn print(value: &Value, shares: [f64; 3], stays: &[Option<Residence>]) {
     let Row { leg, friction, inelasticity, .. } = &value.row;
     let at = friction.map(|at| format!("κ = {at}")).or(inelasticity.map(|at| format!("q = {at}")));
-    let shares = shares.map(|share| format!("{:3.0} %", 100.0 * share));
-    let told = times.map(|time| {
-        time.map_or("-".to_owned(), |(mean, error)| format!("{mean:.0} ± {error:.0} oscillations"))
-    });
+    let [clockwise, counterclockwise, two] = shares.map(|share| format!("{:.0}", 100.0 * share));
     println!(
-        "{:10} {leg:4} {:11} one roll {} clockwise, {} counterclockwise, {}; two rolls {}, {}",
+        "{} {leg} {}: {clockwise} % clockwise, {counterclockwise} % counterclockwise, {two} % two rolls",
         value.study,
-        at.unwrap_or_default(),
-        shares[0],
-        shares[1],
-        told[0],
-        shares[2],
-        told[1]
+        at.unwrap_or_default()
     );
+    for (Stay { name, .. }, stay) in STAYS.iter().zip(stays) {
+        if let Some(Residence { mean, error }) = stay {
+            println!("    {name}: {mean:.0} ± {error:.0} oscillations");
+        }
+    }
 }
 
 const MARGINS: Margins = [74.0, 16.0, 16.0, 54.0];
-const HEADER: f64 = 100.0;
+const HEADER: f64 = 122.0;
 const SIZE: (f64, f64) = (640.0, 420.0);
 
 /// Ranges of friction and of residence times.
-const RANGES: [(f64, f64); 2] = [(0.0, 0.07), (1e2, 1e6)];
+const RANGES: [(f64, f64); 2] = [(0.0, 0.07), (1e3, 1e6)];
 
 /// Draws the residence times at the larger gravity over friction.
 fn draw(values: &[Value]) -> Sheet {
     let mut sheet = Sheet::new(SIZE.0, HEADER + SIZE.1);
-    let note = "N = 1000, g = 0.015625, q = 0, A = 0.1, ω = 10; a million oscillations for each friction";
-    sheet.header(MARGINS[0], "How long states last", &[note]);
-    sheet.legend_in_row((MARGINS[0], HEADER - 22.0), &COUNTED.map(|(name, _, look)| (look, name)));
+    let notes = [
+        "N = 1000, g = 0.015625, q = 0, A = 0.1, ω = 10; a million oscillations for",
+        "each friction. From κ = 0.025 to 0.055 no roll changed",
+    ];
+    sheet.header(MARGINS[0], "How long states last", &notes);
+    sheet.legend_in_row((MARGINS[0], HEADER - 22.0), &STAYS.map(|stay| (stay.look, stay.name)));
     let layout = panel::axes(RANGES[0], RANGES[1])
         .with_log_y()
         .with_x_label("friction κ")
         .with_y_label("mean residence time, in oscillations");
     let place = Place { x: 0.0, y: HEADER, width: SIZE.0, height: SIZE.1 };
-    let times = |states: &'static [State]| {
-        let of_sweep = values.iter().filter(|value| value.study == "senses");
-        of_sweep.filter_map(|value| Some((value.row.friction?, value.residence(states)?)))
-    };
-    let curves = COUNTED.map(|(_, states, look)| look.curve(times(states).map(|(at, (mean, _))| (at, mean))));
-    let panel = sheet.panel(place, MARGINS, curves.into(), layout);
-    for (_, states, look) in COUNTED {
-        let ends = times(states)
-            .map(|(at, (mean, error))| [(at, (mean - error).max(RANGES[1].0)), (at, mean + error)]);
-        sheet.bars(&panel, look, ends);
-        sheet.marks(&panel, look, times(states).map(|(at, (mean, _))| (at, mean)));
+    let panel = sheet.panel(place, MARGINS, Vec::new(), layout);
+    for stay in &STAYS {
+        let ends = |(at, Residence { mean, error }): (f64, Residence)| {
+            [mean - error, mean + error].map(|end| (at, end.clamp(RANGES[1].0, RANGES[1].1)))
+        };
+        sheet.bars(&panel, stay.look, times(stay, values).map(ends));
+        sheet.marks(&panel, stay.look, times(stay, values).map(|(at, time)| (at, time.mean)));
     }
     sheet
+}
+
+/// Returns the friction and the length of a stay at each value of the larger gravity that is no ramp.
+fn times(stay: &Stay, values: &[Value]) -> impl Iterator<Item = (f64, Residence)> {
+    let of_sweep = values.iter().filter(|value| value.row.leg.is_empty());
+    of_sweep.filter_map(|value| Some((value.row.friction?, (stay.of)(value)?)))
 }
