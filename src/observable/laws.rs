@@ -16,13 +16,13 @@ use crate::{Disk, ParameterError};
 #[non_exhaustive]
 pub enum Violation {
     /// The time of the next sample is NaN.
-    #[error("after the time {after} the next sample is at NaN")]
+    #[error("after the time {after:?} the next sample is at NaN")]
     NotANumber {
         /// Absolute time of the preceding start or sample.
         after: f64,
     },
     /// After the start of a run, the next sample is before the start.
-    #[error("the run starts at {start}, and the next sample is before, at {next}")]
+    #[error("the run starts at {start:?}, and the next sample is before, at {next:?}")]
     BeforeStart {
         /// Absolute time of the start.
         start: f64,
@@ -30,7 +30,7 @@ pub enum Violation {
         next: f64,
     },
     /// After a sample, the next one is not later.
-    #[error("after the sample at {sample} the next one is not later, at {next}")]
+    #[error("after the sample at {sample:?} the next one is not later, at {next:?}")]
     NotLater {
         /// Absolute time of the sample.
         sample: f64,
@@ -38,7 +38,7 @@ pub enum Violation {
         next: f64,
     },
     /// The time of the next sample changed without a start or a sample, so the engine did not see it.
-    #[error("between two samples the next one moved from {before} to {next}")]
+    #[error("between two samples the next one moved from {before:?} to {next:?}")]
     Moved {
         /// Absolute time of the next sample, as it was after the preceding start or sample.
         before: f64,

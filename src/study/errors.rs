@@ -67,7 +67,7 @@ pub enum PlanError {
         parameter: String,
     },
     /// A value is infinite or NaN.
-    #[error("a value of {parameter} must be finite, but is {value}")]
+    #[error("a value of {parameter} must be finite, but is {value:?}")]
     NotFinite {
         /// The parameter.
         parameter: String,
@@ -76,7 +76,7 @@ pub enum PlanError {
     },
     /// The values of a ramp are out of order.
     #[error(
-        "the values of a ramp must increase, but {parameter} has {value} after {before}; say `course` for the way"
+        "the values of a ramp must increase, but {parameter} has {value:?} after {before:?}; say `course` for the way"
     )]
     NotIncreasing {
         /// The parameter.

@@ -29,7 +29,7 @@ pub enum Violation {
         number: usize,
     },
     /// The time that was read is not the time of the frame.
-    #[error("frame {number} of time {written} is read as one of time {read}")]
+    #[error("frame {number} of time {written:?} is read as one of time {read:?}")]
     Time {
         /// Number of the frame.
         number: usize,

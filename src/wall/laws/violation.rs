@@ -7,7 +7,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum Violation {
     /// The reach is not two finite numbers in order.
-    #[error("its reach from {low} to {high} must be finite and in order")]
+    #[error("its reach from {low:?} to {high:?} must be finite and in order")]
     Reach {
         /// Lower end of the reach.
         low: f64,
@@ -15,13 +15,13 @@ pub enum Violation {
         high: f64,
     },
     /// The period is not finite and positive.
-    #[error("its period must be finite and positive, but is {period}")]
+    #[error("its period must be finite and positive, but is {period:?}")]
     PeriodValue {
         /// The period.
         period: f64,
     },
     /// An answer is infinite or not a number.
-    #[error("at phase {phase} its {quantity} is {value}")]
+    #[error("at phase {phase:?} its {quantity} is {value:?}")]
     NotFinite {
         /// Name of the quantity.
         quantity: &'static str,
@@ -31,7 +31,9 @@ pub enum Violation {
         value: f64,
     },
     /// The bounds of the acceleration are in the wrong order.
-    #[error("at phase {phase} its lower bound of the acceleration, {min}, is above the upper bound, {max}")]
+    #[error(
+        "at phase {phase:?} its lower bound of the acceleration, {min:?}, is above the upper bound, {max:?}"
+    )]
     Bounds {
         /// The phase asked for.
         phase: f64,
@@ -41,7 +43,7 @@ pub enum Violation {
         max: f64,
     },
     /// A piece does not end later than the phase asked for.
-    #[error("the piece of its motion from phase {phase} on ends at {until}, which is not later")]
+    #[error("the piece of its motion from phase {phase:?} on ends at {until:?}, which is not later")]
     PieceEnd {
         /// The phase asked for.
         phase: f64,
@@ -49,7 +51,7 @@ pub enum Violation {
         until: f64,
     },
     /// Pieces in a row advance so little that no search can follow them.
-    #[error("{pieces} pieces of its motion lead only from phase {phase} to {until}: they are too short")]
+    #[error("{pieces} pieces of its motion lead only from phase {phase:?} to {until:?}: they are too short")]
     ShortPieces {
         /// The phase at which the first begins.
         phase: f64,
@@ -59,7 +61,9 @@ pub enum Violation {
         pieces: u32,
     },
     /// The displacement is outside the reach.
-    #[error("at phase {phase} its displacement {displacement} is outside of its reach from {low} to {high}")]
+    #[error(
+        "at phase {phase:?} its displacement {displacement:?} is outside of its reach from {low:?} to {high:?}"
+    )]
     OutOfReach {
         /// The phase.
         phase: f64,
@@ -72,7 +76,7 @@ pub enum Violation {
     },
     /// The velocity changes faster than the bounds of the acceleration allow, or jumps inside a piece.
     #[error(
-        "from phase {from} to {to} its velocity changes by {gain}, which is not between {least} and {most}, as \
+        "from phase {from:?} to {to:?} its velocity changes by {gain:?}, which is not between {least:?} and {most:?}, as \
          its bounds of the acceleration say"
     )]
     Velocity {
@@ -88,7 +92,9 @@ pub enum Violation {
         most: f64,
     },
     /// The displacement is not the integral of the velocity, or jumps inside a piece.
-    #[error("from phase {from} to {to} its displacement changes by {rise}, but its velocity says {expected}")]
+    #[error(
+        "from phase {from:?} to {to:?} its displacement changes by {rise:?}, but its velocity says {expected:?}"
+    )]
     Displacement {
         /// The first phase.
         from: f64,
@@ -100,7 +106,7 @@ pub enum Violation {
         expected: f64,
     },
     /// The wall jumps toward the disks.
-    #[error("at phase {phase}, where a piece ends, it jumps toward the disks by {jump}")]
+    #[error("at phase {phase:?}, where a piece ends, it jumps toward the disks by {jump:?}")]
     Jump {
         /// The phase.
         phase: f64,
@@ -108,7 +114,9 @@ pub enum Violation {
         jump: f64,
     },
     /// The motion does not repeat after its period.
-    #[error("with the period {period}, the wall is not in the same state at phase {later} as at {phase}")]
+    #[error(
+        "with the period {period:?}, the wall is not in the same state at phase {later:?} as at {phase:?}"
+    )]
     Period {
         /// The phase.
         phase: f64,
