@@ -43,7 +43,7 @@ impl Observer for Force {
     }
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> anyhow::Result<()> {
     let base = BiParabolic::new(0.1, 10.0)?;
     let oscillation = std::f64::consts::TAU / base.angular_frequency();
     let container = Container::closed(30.0, 60.0)?.with_motion(Wall::Floor, base)?;
