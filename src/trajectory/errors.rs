@@ -55,8 +55,8 @@ pub enum RecordError {
     /// The file is of another run, since it has another frame, or none, at a time of this run.
     ///
     /// The file is left as it is.
-    #[error("{} is of another run: it goes to time {last:?}, and has {} at time {time:?}", path.display(),
-        if *.is_there { "another frame" } else { "no frame" })]
+    #[error("{} is of another run: it goes to time {}, and has {} at time {}", path.display(), Readable(*.last),
+        if *.is_there { "another frame" } else { "no frame" }, Readable(*.time))]
     AnotherRun {
         /// The path.
         path: PathBuf,

@@ -143,7 +143,7 @@ fn numbers_that_are_not_finite() {
     assert!(matches!(caught(root, Promises::new().with_energy_gain()), Violation::NotFinite { .. }));
     let angle =
         rubbing(|contact, normal| 0.1 * normal * (contact.slip_speed() / contact.closing_speed()).cos());
-    let violation = caught(angle, Promises::new());
+    let violation = caught(angle, Promises::new().with_energy_gain());
     assert!(matches!(violation, Violation::NotFinite { .. }));
     assert_eq!(violation.contact().closing_speed(), 0.0);
     let inverse =

@@ -66,7 +66,7 @@ fn disks_must_be_inside_and_apart() {
     let error = build(closed(), &[at(2.0, 2.0), at(9.0, 2.0)]).unwrap_err();
     assert!(matches!(error, BuildError::Outside { disk: 1, x: 9.0, y: 2.0, .. }), "{error}");
     assert!(
-        error.to_string().ends_with("(9, 2) is outside the domain: x from 0 to 8, y from 0 to 8"),
+        error.to_string().ends_with("(9, 2) is outside the domain: x from 0 to 8, y from 0 to 6"),
         "{error}"
     );
     let error = build(closed(), &[at(2.0, 2.0), at(4.0, 0.3)]).unwrap_err();

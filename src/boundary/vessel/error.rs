@@ -38,7 +38,7 @@ pub enum VesselError {
         second: usize,
     },
     /// A polygon has no area, so it has no inside.
-    #[error("the polygon has no area")]
+    #[error("the polygon has no area: its points are on one line, or it crosses itself")]
     NoArea,
     /// A polygon crosses or touches itself, so its inside is not clear. Side 0 begins at the first point.
     #[error(
