@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use crate::Flight;
 use crate::boundary::{Domain, Region};
-use crate::error::RoundedVector;
+use crate::error::{Readable, RoundedVector};
 
 /// A way in which a boundary breaks its contract.
 ///
@@ -45,7 +45,8 @@ pub enum Violation {
     },
     /// The check found no free place for a disk.
     #[error(
-        "no place was found in the domain where a disk of radius {radius:?} overlaps no wall at time {time:?}"
+        "no place was found in the domain where a disk of radius {radius} overlaps no wall at time {time}",
+        radius = Readable(*radius), time = Readable(*time)
     )]
     NoRoom {
         /// The radius.
@@ -55,7 +56,8 @@ pub enum Violation {
     },
     /// A disk gets into a wall without a touch.
     #[error(
-        "a disk is {depth:?} deep in wall {wall} at time {time:?}, before a touch at {found:?}, on {flight:?}"
+        "a disk is {depth} deep in wall {wall} at time {time}, before a touch at {found:?}, on {flight:?}",
+        time = Readable(*time), depth = Readable(*depth)
     )]
     LetThrough {
         /// The wall.
@@ -70,7 +72,10 @@ pub enum Violation {
         flight: Flight,
     },
     /// A disk leaves the domain without a touch.
-    #[error("a disk leaves the domain without a touch: at time {time:?} it is at {place}, on {flight:?}", place = RoundedVector(*place))]
+    #[error(
+        "a disk leaves the domain without a touch: at time {time} it is at {place}, on {flight:?}",
+        place = RoundedVector(*place), time = Readable(*time)
+    )]
     LeftDomain {
         /// Center of the disk.
         place: DVec2,
@@ -80,7 +85,10 @@ pub enum Violation {
         flight: Flight,
     },
     /// A touch is before the flight, after its limit, or not a number.
-    #[error("a touch at time {time:?} is outside of the flight, which ends at {until:?}: {flight:?}")]
+    #[error(
+        "a touch at time {time} is outside of the flight, which ends at {until}: {flight:?}",
+        time = Readable(*time), until = Readable(*until)
+    )]
     TouchTime {
         /// Time of the touch.
         time: f64,
@@ -100,7 +108,10 @@ pub enum Violation {
         flight: Flight,
     },
     /// A touch is found where the gap is still open.
-    #[error("wall {wall} is touched at time {time:?} where the gap is still open, on {flight:?}")]
+    #[error(
+        "wall {wall} is touched at time {time} where the gap is still open, on {flight:?}",
+        time = Readable(*time)
+    )]
     EarlyTouch {
         /// The wall.
         wall: usize,
@@ -111,7 +122,8 @@ pub enum Violation {
     },
     /// A touch is found while the disk leaves the wall.
     #[error(
-        "wall {wall} is touched at time {time:?} while the disk leaves it at speed {rate:?}, on {flight:?}"
+        "wall {wall} is touched at time {time} while the disk leaves it at speed {rate}, on {flight:?}",
+        time = Readable(*time), rate = Readable(*rate)
     )]
     Leaving {
         /// The wall.
@@ -132,7 +144,10 @@ pub enum Violation {
         flight: Flight,
     },
     /// A normal is not a unit vector.
-    #[error("the normal {normal} of wall {wall} is not a unit vector, for a disk at {place} at time {time:?}", place = RoundedVector(*place), normal = RoundedVector(*normal))]
+    #[error(
+        "the normal {normal} of wall {wall} is not a unit vector, for a disk at {place} at time {time}",
+        place = RoundedVector(*place), normal = RoundedVector(*normal), time = Readable(*time)
+    )]
     NormalLength {
         /// The wall.
         wall: usize,
@@ -145,7 +160,9 @@ pub enum Violation {
     },
     /// A disk that is moved along the normal does not come out of the wall.
     #[error(
-        "the normal {normal} of wall {wall} does not lead out of it, for a disk at {place} at time {time:?}", place = RoundedVector(*place), normal = RoundedVector(*normal))]
+        "the normal {normal} of wall {wall} does not lead out of it, for a disk at {place} at time {time}",
+        place = RoundedVector(*place), normal = RoundedVector(*normal), time = Readable(*time)
+    )]
     NormalDirection {
         /// The wall.
         wall: usize,
@@ -157,7 +174,10 @@ pub enum Violation {
         time: f64,
     },
     /// The velocity of a wall is not finite.
-    #[error("the velocity {velocity} of wall {wall} is not finite, at time {time:?}", velocity = RoundedVector(*velocity))]
+    #[error(
+        "the velocity {velocity} of wall {wall} is not finite, at time {time}",
+        velocity = RoundedVector(*velocity), time = Readable(*time)
+    )]
     Velocity {
         /// The wall.
         wall: usize,
@@ -167,7 +187,10 @@ pub enum Violation {
         time: f64,
     },
     /// `may_touch` is false for a region in which there is a touch.
-    #[error("a disk of radius {radius:?} touches at {place}, but `may_touch` denies it for {region:?}", place = RoundedVector(*place))]
+    #[error(
+        "a disk of radius {radius} touches at {place}, but `may_touch` denies it for {region:?}",
+        place = RoundedVector(*place), radius = Readable(*radius)
+    )]
     MayTouch {
         /// The region.
         region: Region,
@@ -178,8 +201,9 @@ pub enum Violation {
     },
     /// The same flight, given relative to another time origin, touches at another time.
     #[error(
-        "with a time origin earlier than {origin:?} by {shift:?}, the touch is at time {after:?} and not \
-         {before:?}, on {flight:?}"
+        "with a time origin earlier than {origin} by {shift}, the touch is at time {after:?} and not \
+         {before:?}, on {flight:?}",
+        origin = Readable(*origin), shift = Readable(*shift)
     )]
     TimeOrigin {
         /// The time origin.
