@@ -285,8 +285,8 @@ pub enum BoundaryFault {
     /// A surface whose normal is not a unit vector, whose velocity is not finite or is above 1e60, or whose
     /// radius is zero or NaN.
     #[error(
-        "the surface of wall {wall} has the normal {} and the velocity {}",
-        RoundedVector(*.normal), RoundedVector(*.velocity)
+        "the surface of wall {wall} has the normal ({}, {}) and the velocity {}",
+        Readable(.normal.x), Readable(.normal.y), RoundedVector(*.velocity)
     )]
     Surface {
         /// The wall.

@@ -145,8 +145,8 @@ pub enum Violation {
     },
     /// A normal is not a unit vector.
     #[error(
-        "the normal {normal} of wall {wall} is not a unit vector, for a disk at {place} at time {time}",
-        place = RoundedVector(*place), normal = RoundedVector(*normal), time = Readable(*time)
+        "the normal ({}, {}) of wall {wall} is not a unit vector, for a disk at {place} at time {time}",
+        Readable(normal.x), Readable(normal.y), place = RoundedVector(*place), time = Readable(*time)
     )]
     NormalLength {
         /// The wall.
