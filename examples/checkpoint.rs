@@ -10,7 +10,7 @@
 use granular_edmd::prelude::*;
 use granular_edmd::simulation::Checkpoint;
 
-fn container() -> Result<Container, Box<dyn std::error::Error>> {
+fn container() -> anyhow::Result<Container> {
     Ok(Container::closed(20.0, 50.0)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?)
 }
 
@@ -18,7 +18,7 @@ fn rule() -> Result<ContactDuration<Frictional>, ParameterError> {
     ContactDuration::new(Frictional::new(0.01, 0.1)?, 1e-4)
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> anyhow::Result<()> {
     let container = container()?;
     let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 100, 0.5)?, 0.5, 1)?;
     let mut whole = Simulation::builder(rule()?, container).disks(disks).gravity(0.015_625).build()?;

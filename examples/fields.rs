@@ -134,24 +134,17 @@ const UNIT: f64 = 4.4;
 /// Share of the disks of the fullest cell below which a cell stays white, since its averages are noise.
 const ENOUGH: f64 = 0.05;
 
-/// The beginning of the range of the colors.
-#[derive(Clone, Copy)]
-enum Lowest {
-    /// The range begins at zero.
-    Zero,
-    /// The range begins as far below zero as the largest value is above it.
-    Opposite,
-    /// The range begins at the smallest value.
-    Smallest,
-}
-
-/// A map of a field: its name, its value in a cell, and the color of a share of its range.
+/// A map of a field: its name, its value in a cell, the range of its colors for the smallest and the largest
+/// value, and the color of a share of that range.
 struct Map {
     name: &'static str,
     value: fn(&FieldCell) -> f64,
+    range: fn(f64, f64) -> (f64, f64),
     color: fn(f64) -> String,
-    lowest: Lowest,
 }
+
+/// The map that has the arrows.
+const FLOW: usize = 1;
 
 fn maps() -> [Map; 4] {
     let viridis = |share| ColorMap::Viridis.map(share);
@@ -160,26 +153,26 @@ fn maps() -> [Map; 4] {
         Map {
             name: "packing fraction",
             value: |cell| cell.packing_fraction,
+            range: |_, high| (0.0, high),
             color: viridis,
-            lowest: Lowest::Zero,
         },
         Map {
             name: "velocity upward, in Aω",
             value: |cell| cell.velocity.y,
+            range: |low, high| (-high.max(-low), high.max(-low)),
             color: |share| look::diverging(2.0 * share - 1.0),
-            lowest: Lowest::Opposite,
         },
         Map {
             name: "log₁₀ T, translational",
             value: |cell| cell.translational_temperature.log10(),
+            range: |low, high| (low, high),
             color: inferno,
-            lowest: Lowest::Smallest,
         },
         Map {
             name: "log₁₀ T, rotational",
             value: |cell| cell.rotational_temperature.log10(),
+            range: |low, high| (low, high),
             color: inferno,
-            lowest: Lowest::Smallest,
         },
     ]
 }
@@ -191,11 +184,12 @@ fn draw(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Sheet {
     write_header(&mut sheet, arguments, fine, coarse);
     for (column, map) in maps().iter().enumerate() {
         let x = column as f64 * size.0;
-        let range = range(map, fine);
+        let (low, high) = ends(seen(fine).map(|cell| (map.value)(&cell)));
+        let range = (map.range)(low, high);
         let place = Place { x, y: HEADER, width: size.0, height: BAR };
         draw_bar(&mut sheet, place, map, range);
         let mut plots = vec![heat_map(map, fine, range)];
-        if matches!(map.lowest, Lowest::Opposite) {
+        if column == FLOW {
             plots.push(arrows(coarse));
         }
         let place = Place { x, y: HEADER + BAR, width: size.0, height: size.1 };
@@ -240,15 +234,6 @@ fn enough(fields: &Fields) -> u64 {
 fn seen(fields: &Fields) -> impl Iterator<Item = FieldCell> {
     let enough = enough(fields);
     fields.iter().filter(move |cell| cell.count >= enough)
-}
-
-fn range(map: &Map, fields: &Fields) -> (f64, f64) {
-    let (low, high) = ends(seen(fields).map(|cell| (map.value)(&cell)));
-    match map.lowest {
-        Lowest::Zero => (0.0, high),
-        Lowest::Opposite => (-high.max(-low), high.max(-low)),
-        Lowest::Smallest => (low, high),
-    }
 }
 
 /// Returns the smallest and the largest value.

@@ -9,7 +9,8 @@
 
 use granular_edmd::prelude::*;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+// The crate `anyhow` shows an error as a sentence, with its causes. `Box<dyn Error>` would show its fields.
+fn main() -> anyhow::Result<()> {
     // The base of the box goes up and down by 0.1 diameters of a grain. Speeds are measured in units of its
     // speed, 0.1 × 10 = 1, and lengths in diameters.
     let base = BiParabolic::new(0.1, 10.0)?;

@@ -12,7 +12,7 @@ use granular_edmd::prelude::*;
 const GLASS: Kind = Kind::new(0);
 const STEEL: Kind = Kind::new(1);
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> anyhow::Result<()> {
     // 400 grains of radius 0.5, and 40 of radius 1 that are three times as dense.
     let glass = Disk::new(DVec2::ZERO, 0.5)?.with_kind(GLASS);
     let steel = Disk::new(DVec2::ZERO, 1.0)?.with_mass(12.0)?.with_kind(STEEL);

@@ -55,7 +55,7 @@ impl Boundary for Drum {
     }
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> anyhow::Result<()> {
     let radius = 15.0;
     let temperatures = [Thermal::new(2.0)?, Thermal::new(0.5)?];
     let mut drum = Drum { radius, rim: Brick::circle(DVec2::ZERO, radius)?, temperatures };

@@ -6,6 +6,7 @@
 //!
 //! A moment. You learn how an observer hears of collisions, has a clock, and never changes a run.
 
+use anyhow::Context;
 use granular_edmd::prelude::*;
 
 /// Sums up the momentum that the base receives, and begins anew at each beat of its clock.
@@ -43,7 +44,7 @@ impl Observer for Force {
     }
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> anyhow::Result<()> {
     let base = BiParabolic::new(0.1, 10.0)?;
     let oscillation = std::f64::consts::TAU / base.angular_frequency();
     let container = Container::closed(30.0, 60.0)?.with_motion(Wall::Floor, base)?;
@@ -54,7 +55,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let clock = SampleTimes::every(10.0 * oscillation)?;
     // Collisions name walls by their index in the boundary.
-    let base = Partner::Wall(simulation.boundary().index(Wall::Floor).ok_or("a box without a floor")?);
+    let base = Partner::Wall(simulation.boundary().index(Wall::Floor).context("a box without a floor")?);
     let mut force = Force { clock, base, momentum: 0.0, forces: Vec::new(), last: 0.0 };
     simulation.run_until(1000.0 * oscillation, &mut force)?;
 

@@ -30,7 +30,7 @@ impl CollisionRule for Viscous {
 }
 
 /// Returns the energy of a gas under this rule at times 0, 20, 40 and so on.
-fn cooling(rule: impl CollisionRule) -> Result<Vec<f64>, Box<dyn std::error::Error>> {
+fn cooling(rule: impl CollisionRule) -> anyhow::Result<Vec<f64>> {
     let container = Container::periodic(60.0, 60.0)?;
     let disks = initial::random(&container, 1000, 0.5, 60.0, 1)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
@@ -40,7 +40,7 @@ fn cooling(rule: impl CollisionRule) -> Result<Vec<f64>, Box<dyn std::error::Err
     Ok(series.values().iter().map(|energies| energies.translational).collect())
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> anyhow::Result<()> {
     let rule = Viscous { loss: 0.2 };
     // Ten thousand contacts, mild and extreme: does the rule part the surfaces, and gain no energy?
     laws::check_rule(&rule, &Promises::new())?;

@@ -57,7 +57,7 @@ impl WallMotion for Hopping {
     }
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> anyhow::Result<()> {
     println!("period  height of the center of mass");
     for period in [0.5, 1.0, 2.0, 4.0] {
         let base = Hopping { height: 0.2, period };

@@ -143,7 +143,7 @@ fn settled(arguments: &Arguments, remedy: Remedy) -> Result<Heap, Box<dyn Error>
     };
     let mut progress = Progress::of(format!("{} {}", remedy.name, remedy.parameter)).until(end);
     let mut ended = simulation.run(&limits(SETTLED * end), &mut progress);
-    let (mut before, mut since, mut start) = (*simulation.counters(), simulation.time(), simulation.disks());
+    let (mut before, mut since, start) = (*simulation.counters(), simulation.time(), simulation.disks());
     let (mut heat, mut samples) = (0.0, 0.0);
     if matches!(ended, Ok(RunEnd::Time)) {
         let mut watch = on_sample(SampleTimes::every(0.01 * end)?, |snapshot: &Snapshot<'_>| {
@@ -152,7 +152,7 @@ fn settled(arguments: &Arguments, remedy: Remedy) -> Result<Heap, Box<dyn Error>
         });
         ended = simulation.run(&limits(end), &mut (&mut watch, &mut progress));
     } else {
-        (before, since, start) = (Counters::default(), 0.0, simulation.disks());
+        (before, since) = (Counters::default(), 0.0);
     }
     let (time, disks) = (simulation.time(), simulation.disks());
     let events = simulation.counters().since(&before).events() as f64;
@@ -244,16 +244,14 @@ fn draw(heaps: &[Heap]) -> Sheet {
     let floor = if flat { "a flat floor" } else { "a floor with grains glued to it" };
     let about = format!("a column fell onto {floor}; g = 1, q = 0.1, κ = 0.5");
     sheet.header(MARGINS[0], "Fifty grains that came to rest", &[&about]);
-    for (k, (name, parameter)) in DRAWN.into_iter().enumerate() {
-        let Some(heap) = heaps.iter().find(|heap| heap.name == name && heap.parameter == parameter) else {
-            continue;
-        };
+    let drawn = heaps.iter().filter(|heap| DRAWN.contains(&(heap.name, heap.parameter)));
+    for (k, heap) in drawn.enumerate() {
         let (x, y) = ((k % 2) as f64 * frame[0], HEADER + (k / 2) as f64 * frame[1]);
         let layout = panel::axes((0.0, WIDTH), (0.0, SHOWN)).with_y_tick_step(2.0);
         let layout = layout.with_x_label("x, in diameters").with_y_label("height");
         let place = Place { x, y, width: frame[0], height: frame[1] };
         sheet.panel(place, MARGINS, faces(&heap.disks, &heap.glued), layout);
-        let title = format!("{name}, {parameter}: at time {:.0}", heap.time);
+        let title = format!("{}, {}: at time {:.0}", heap.name, heap.parameter, heap.time);
         sheet.text(x + MARGINS[0], y + 26.0, SMALL, INK, &title);
     }
     let below = HEADER + 2.0 * frame[1];

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use glam::DVec2;
 use thiserror::Error;
 
 /// An error: a parameter lies outside the range in which it has a meaning.
@@ -24,14 +25,36 @@ pub struct ParameterError {
     value: f64,
 }
 
-/// A number in a short form that identifies it. Very large and very small numbers have an exponent.
-struct Readable(f64);
+/// A number with all its digits. Very large and very small numbers have an exponent.
+///
+/// This is the form for numbers that a caller gave, or that are compared with each other in a message.
+pub(crate) struct Readable(pub(crate) f64);
 
 impl fmt::Display for Readable {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let size = self.0.abs();
         let is_plain = size == 0.0 || (1e-5..1e15).contains(&size) || !size.is_finite();
         if is_plain { write!(formatter, "{}", self.0) } else { write!(formatter, "{:e}", self.0) }
+    }
+}
+
+/// A number with its first six digits, for times and depths that the crate has computed.
+pub(crate) struct Rounded(pub(crate) f64);
+
+impl fmt::Display for Rounded {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // The number that is read back has no zeros at its end.
+        let rounded = format!("{:.5e}", self.0).parse().unwrap_or(self.0);
+        Readable(rounded).fmt(formatter)
+    }
+}
+
+/// A vector with the first six digits of its components.
+pub(crate) struct RoundedVector(pub(crate) DVec2);
+
+impl fmt::Display for RoundedVector {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "({}, {})", Rounded(self.0.x), Rounded(self.0.y))
     }
 }
 
@@ -57,5 +80,22 @@ impl ParameterError {
     /// Returns the condition that the value should have met.
     pub const fn requirement(&self) -> &'static str {
         self.requirement
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_in_messages_are_short() {
+        let rounded = |number: f64| Rounded(number).to_string();
+        assert_eq!([0.0, 3.0, -0.5, 20.0, 1e60].map(rounded), ["0", "3", "-0.5", "20", "1e60"]);
+        assert_eq!([0.1 + 0.2, 1.0 / 3.0, 123_456_789.0].map(rounded), ["0.3", "0.333333", "123457000"]);
+        assert_eq!([f64::NAN, f64::INFINITY, 1.0 / 3e8].map(rounded), ["NaN", "inf", "3.33333e-9"]);
+        assert_eq!(RoundedVector(DVec2::new(-1e300, 0.7)).to_string(), "(-1e300, 0.7)");
+        for number in [f64::MAX, f64::MIN_POSITIVE, -f64::MAX / 3.0] {
+            assert!(Readable(number).to_string().len() <= 24 && rounded(number).len() <= 13);
+        }
     }
 }

@@ -34,6 +34,7 @@ use thiserror::Error;
 use crate::ParameterError;
 use crate::boundary::Domain;
 use crate::disk::MOST_DISKS;
+use crate::error::Readable;
 use crate::quantity::accept;
 use crate::simulation::BuildError;
 
@@ -45,7 +46,7 @@ pub enum PlacementError {
     #[error(transparent)]
     Parameter(#[from] ParameterError),
     /// There is no room for so many disks.
-    #[error("there is room for {placed} of {count} disks of radius {radius}")]
+    #[error("there is room for {placed} of {count} disks of radius {}", Readable(*.radius))]
     NoRoom {
         /// Number of disks wanted.
         count: usize,

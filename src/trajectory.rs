@@ -21,7 +21,7 @@
 //! # Record a run
 //! ```
 //! use granular_edmd::prelude::*;
-//! use granular_edmd::trajectory::{ExtendedXyz, Recorder, State, open};
+//! use granular_edmd::trajectory::{ExtendedXyz, Recorder, State, read};
 //!
 //! # let folder = std::env::temp_dir().join(format!("granular-edmd-trajectory-{}", std::process::id()));
 //! # std::fs::create_dir_all(&folder)?;
@@ -36,7 +36,7 @@
 //! assert_eq!(recorder.times(), [0.5, 1.0, 1.5, 2.0]);
 //!
 //! // The last frame is the state of the disks, to the bit.
-//! let state = State::from_xyz(open(&path)?)?;
+//! let state = read(&path, State::from_xyz)?;
 //! assert_eq!(state.disks(), run.disks());
 //! let again = Simulation::builder(Frictional::new(0.01, 0.1)?, container)
 //!     .start_time(state.time().unwrap_or(0.0))
@@ -99,6 +99,6 @@ pub use errors::{ReadError, RecordError};
 pub use extended_xyz::{ExtendedXyz, XyzFrames};
 pub use format::{Format, Frame};
 pub use lammps_dump::LammpsDump;
-pub use open::open;
+pub use open::{open, read};
 pub use recorder::Recorder;
 pub use state::State;

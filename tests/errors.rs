@@ -8,11 +8,13 @@ use std::error::Error;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use granular_edmd::boundary::{Container, Wall};
+use granular_edmd::boundary::{Container, Domain, Part, Wall};
 use granular_edmd::collision::Frictional;
-use granular_edmd::simulation::{BuildError, CheckpointError};
+use granular_edmd::observable::SampleTimes;
+use granular_edmd::simulation::{BuildError, Checkpoint, CheckpointError};
 use granular_edmd::study::vibrated_box::{Base, VibratedBox};
 use granular_edmd::study::{Plan, PlanError, Protocol, Study, StudyError};
+use granular_edmd::trajectory::{self, ExtendedXyz, Recorder, State};
 use granular_edmd::{Disk, ParameterError, Simulation, glam::DVec2, initial};
 use report::{messages, report};
 
@@ -35,7 +37,7 @@ fn no_parameter() -> ParameterError {
 /// Returns one of each variant of a study's errors that has a source.
 fn study_errors() -> Vec<StudyError> {
     let path = PathBuf::from("study/values.csv");
-    let outside = BuildError::Outside { disk: 3, x: 1.0, y: -2.0 };
+    let outside = BuildError::Outside { disk: 3, x: 1.0, y: -2.0, domain: Domain::new(0.0, 4.0, 0.0, 4.0) };
     vec![
         StudyError::Plan(PlanError::Parameter(no_parameter())),
         StudyError::Plan(PlanError::Experiment { place: String::new(), source: no_parameter().into() }),
@@ -81,6 +83,30 @@ fn errors_that_happen_tell_each_thing_once() {
     let said = report(errors[5].as_ref());
     assert!(said.starts_with("cannot create") && said.contains("errors-"), "{said}");
     assert_eq!(messages(errors[5].as_ref()).len(), 2, "{said}");
+}
+
+/// Every function that takes a path names it if the contents of the file are wrong.
+#[test]
+fn errors_about_contents_name_the_file() {
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("contents-{}", std::process::id()));
+    std::fs::write(&file, "0 0\n4 4\n4 0\n0 3\n").unwrap();
+    let errors: [Box<dyn Error>; 6] = [
+        Box::new(Checkpoint::read(&file).unwrap_err()),
+        Box::new(Part::polygon_from_file(&file).unwrap_err()),
+        Box::new(trajectory::read(&file, State::from_xyz).unwrap_err()),
+        Box::new(trajectory::read(&file, State::from_csv).unwrap_err()),
+        Box::new(trajectory::read(&file, State::from_lammps_data).unwrap_err()),
+        Box::new(Recorder::append(&file, ExtendedXyz, SampleTimes::every(1.0).unwrap()).unwrap_err()),
+    ];
+    std::fs::remove_file(&file).unwrap();
+    for error in &errors {
+        tells_each_thing_once(error.as_ref());
+        assert!(error.to_string().contains(file.to_str().unwrap()), "{error}");
+    }
+    let said = report(errors[0].as_ref());
+    assert!(said.ends_with(": this is not a checkpoint: it does not begin as one"), "{said}");
+    let said = report(errors[1].as_ref());
+    assert!(said.contains("crosses or touches itself: its side from point 0"), "{said}");
 }
 
 fn thermal() -> granular_edmd::boundary::Thermal {

@@ -1,8 +1,11 @@
 //! Rectangles in which the centers of disks can be.
 
+use std::fmt;
+
 use glam::DVec2;
 
 use crate::Disk;
+use crate::error::Readable;
 
 /// The rectangle that holds the centers of all disks.
 ///
@@ -15,6 +18,7 @@ use crate::Disk;
 /// let domain = Domain::new(0.0, 60.0, -0.1, f64::INFINITY).with_periodic_sides();
 /// assert_eq!(domain.width(), 60.0);
 /// assert_eq!(domain.separation(DVec2::new(59.0, 0.0), DVec2::new(1.0, 0.0)).x, 2.0);
+/// assert_eq!(domain.to_string(), "x from 0 to 60 (periodic), y from -0.1 to inf");
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
@@ -119,6 +123,15 @@ impl Domain {
     pub fn unwrapped(&self, disk: &Disk) -> DVec2 {
         let [right, up] = disk.image();
         disk.position() + self.periods() * DVec2::new(f64::from(right), f64::from(up))
+    }
+}
+
+impl fmt::Display for Domain {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [left, right, bottom, top] = [self.left, self.right, self.bottom, self.top].map(Readable);
+        let sides = if self.periodic_sides { " (periodic)" } else { "" };
+        let ends = if self.periodic_ends { " (periodic)" } else { "" };
+        write!(formatter, "x from {left} to {right}{sides}, y from {bottom} to {top}{ends}")
     }
 }
 

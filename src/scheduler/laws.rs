@@ -159,7 +159,7 @@ impl fmt::Display for Answer {
         if (disk, due) == NOTHING_DUE {
             return formatter.write_str("nothing");
         }
-        write!(formatter, "disk {disk} at {due}")
+        write!(formatter, "disk {disk} at {due:?}")
     }
 }
 

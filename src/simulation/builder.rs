@@ -209,7 +209,7 @@ fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk], offset: f64)
         let inside = (domain.left - slack..=domain.right + slack).contains(&position.x)
             && (domain.bottom - slack..=domain.top + slack).contains(&position.y);
         if !inside {
-            return Err(BuildError::Outside { disk, x: position.x, y: position.y });
+            return Err(BuildError::Outside { disk, x: position.x, y: position.y, domain });
         }
         if let Some((wall, depth)) = boundary.overlap(position, radius, offset)
             && depth > TOUCHING * radius

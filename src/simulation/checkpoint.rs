@@ -102,7 +102,15 @@ pub enum CheckpointError {
         /// The cause.
         source: io::Error,
     },
-    /// The file is not a checkpoint.
+    /// The contents of a file are no checkpoint that can be used.
+    #[error("cannot use the checkpoint {}", .path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The cause.
+        source: Box<CheckpointError>,
+    },
+    /// The bytes are not a checkpoint.
     #[error("this is not a checkpoint: it does not begin as one")]
     NotACheckpoint,
     /// The checkpoint has another version of the format.
@@ -126,7 +134,7 @@ pub enum CheckpointError {
     #[error("the checkpoint is inconsistent: {0}")]
     Inconsistent(&'static str),
     /// The boundary has another domain than that of the run that was saved.
-    #[error("the checkpoint is of a run in the domain {saved:?}; the boundary's is {given:?}")]
+    #[error("the checkpoint is of a run in the domain {saved}; the boundary's is {given}")]
     Domain {
         /// The domain of the run that was saved.
         saved: Domain,
@@ -198,9 +206,11 @@ impl Checkpoint {
     /// Reads a checkpoint from a file.
     ///
     /// # Errors
-    /// If the file cannot be read, and the errors of [`Self::from_bytes`].
+    /// If the file cannot be read, or [`Self::from_bytes`] refuses its contents. The error names the file.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CheckpointError> {
-        Self::from_bytes(&std::fs::read(path.as_ref()).map_err(failed("read", path.as_ref()))?)
+        let path = path.as_ref();
+        let unusable = |source| CheckpointError::File { path: path.to_owned(), source: Box::new(source) };
+        Self::from_bytes(&std::fs::read(path).map_err(failed("read", path))?).map_err(unusable)
     }
 }
 

@@ -7,7 +7,9 @@ use thiserror::Error;
 
 use super::stall::{Named, Remedy};
 use crate::ParameterError;
+use crate::boundary::Domain;
 use crate::collision::{Contact, Impulse};
+use crate::error::{Readable, Rounded, RoundedVector};
 use crate::observable::{ObserverError, Partner};
 
 /// An error: the disks, the boundary and the parameters do not fit together.
@@ -19,8 +21,9 @@ pub enum BuildError {
     Parameter(#[from] ParameterError),
     /// Times at the start are too coarse for such fast disks: time would stand still.
     #[error(
-        "the run cannot start at time {start}: times there are {spacing:e} apart, too coarse for disks that go some tens of \
-         diameters in {epoch:e}; start nearer to 0"
+        "the run cannot start at time {}: times there are {} apart, too coarse for disks that go some tens of \
+         diameters in {}; start nearer to 0",
+        Readable(*.start), Rounded(*.spacing), Rounded(*.epoch)
     )]
     StartTime {
         /// The start time asked for.
@@ -31,12 +34,10 @@ pub enum BuildError {
         epoch: f64,
     },
     /// The boundary's domain is not a rectangle with finite sides and a finite bottom.
-    #[error(
-        "the domain must have finite sides and a finite bottom; only its top may be infinite: {domain:?}"
-    )]
+    #[error("the domain must have finite sides and a finite bottom; only its top may be infinite: {domain}")]
     Domain {
         /// The domain.
-        domain: crate::boundary::Domain,
+        domain: Domain,
     },
     /// There are more disks than the engine can number.
     #[error("{count} disks are too many: at most {most} are possible")]
@@ -55,7 +56,7 @@ pub enum BuildError {
         most: usize,
     },
     /// A disk is outside the boundary's domain.
-    #[error("disk {disk} at ({x}, {y}) is outside the domain")]
+    #[error("disk {disk} at ({}, {}) is outside the domain: {domain}", Readable(*.x), Readable(*.y))]
     Outside {
         /// Index of the disk.
         disk: usize,
@@ -63,9 +64,14 @@ pub enum BuildError {
         x: f64,
         /// Vertical position of its center.
         y: f64,
+        /// The domain.
+        domain: Domain,
     },
     /// A disk overlaps a wall.
-    #[error("disk {disk} at ({x}, {y}) overlaps the wall {wall:?} by {depth}")]
+    #[error(
+        "disk {disk} at ({}, {}) overlaps the wall {wall:?} by {}",
+        Readable(*.x), Readable(*.y), Rounded(*.depth)
+    )]
     OverlapsWall {
         /// Index of the disk.
         disk: usize,
@@ -79,7 +85,7 @@ pub enum BuildError {
         depth: f64,
     },
     /// Two disks overlap.
-    #[error("disks {first} and {second} overlap by {depth}")]
+    #[error("disks {first} and {second} overlap by {}", Rounded(*.depth))]
     Overlap {
         /// Index of the first disk.
         first: usize,
@@ -90,8 +96,9 @@ pub enum BuildError {
     },
     /// The domain has no area, or its periodic sides are so close that a disk could meet its own image.
     #[error(
-        "a domain of width {width} and height {height} is too small for disks of diameter {diameter}: \
-         where it is periodic, it must be longer than four diameters"
+        "a domain of width {} and height {} is too small for disks of diameter {}: \
+         where it is periodic, it must be longer than four diameters",
+        Readable(*.width), Readable(*.height), Readable(*.diameter)
     )]
     DomainTooSmall {
         /// Width of the domain.
@@ -114,7 +121,10 @@ pub(super) type Outcome<T> = Result<T, Box<RunError>>;
 #[non_exhaustive]
 pub enum RunError {
     /// The end is before the present, or not finite.
-    #[error("the run cannot end at time {end}: the end must be finite and not before the present, {time}")]
+    #[error(
+        "the run cannot end at time {}: the end must be finite and not before the present, {}",
+        Readable(*.end), Readable(*.time)
+    )]
     End {
         /// The end asked for.
         end: f64,
@@ -124,9 +134,9 @@ pub enum RunError {
     /// The run hardly progresses: disks come to rest, by an inelastic collapse or under gravity, and collide
     /// ever more often.
     #[error(
-        "the run stalled at time {time}: {events} events took it only {elapsed:e} further; disk {disk}{} is next to collide: \
+        "the run stalled at time {}: {events} events took it only {} further; disk {disk}{} is next to collide: \
          {remedy}; docs/rest.md compares the remedies, and Limits::with_least_progress allows less progress",
-        Named(*.partner, .wall.as_deref())
+        Rounded(*.time), Rounded(*.elapsed), Named(*.partner, .wall.as_deref())
     )]
     Stalled {
         /// The present.
@@ -148,7 +158,7 @@ pub enum RunError {
     #[error("the collision of {0}")]
     NotFinite(Box<FailedCollision>),
     /// The boundary gave an impossible answer.
-    #[error("the boundary gave an impossible answer for disk {disk} at time {time}: {fault}")]
+    #[error("the boundary gave an impossible answer for disk {disk} at time {}: {fault}", Rounded(*.time))]
     Boundary {
         /// The disk about which the engine asked the boundary.
         disk: usize,
@@ -159,8 +169,9 @@ pub enum RunError {
     },
     /// The scheduler named a disk that does not exist, or a time that was not set.
     #[error(
-        "the scheduler names disk {disk}, due at the offset {due}, at time {time}; {}",
-        .expected.map_or("there is no such disk".to_owned(), |expected| format!("it was set to {expected}"))
+        "the scheduler names disk {disk}, due at the offset {}, at time {}; {}",
+        Readable(*.due), Rounded(*.time),
+        .expected.map_or("there is no such disk".to_owned(), |due| format!("it was set to {}", Readable(due)))
     )]
     Scheduler {
         /// The disk that the scheduler named.
@@ -174,8 +185,9 @@ pub enum RunError {
     },
     /// Times are too coarse to go on: time would stand still.
     #[error(
-        "the run cannot go on at time {time}: times there are {spacing:e} apart, too coarse for disks that go some tens of \
-         diameters in {epoch:e}; the run is too late, or its disks have become too fast: does a rule or a wall add energy?"
+        "the run cannot go on at time {}: times there are {} apart, too coarse for disks that go some tens of diameters \
+         in {}; the run is too late, or its disks have become too fast: does a rule or a wall add energy?",
+        Readable(*.time), Rounded(*.spacing), Rounded(*.epoch)
     )]
     TimeTooLate {
         /// The present.
@@ -188,7 +200,8 @@ pub enum RunError {
     /// An observer asks for a sample at a time that is not a number, or that is not later than the last
     /// sample.
     #[error(
-        "an observer asks for its next sample at time {next}, which is not after the last one, at time {time}"
+        "an observer asks for its next sample at time {}, which is not after the last one, at time {}",
+        Readable(*.next), Readable(*.time)
     )]
     SampleTime {
         /// The time asked for.
@@ -197,7 +210,7 @@ pub enum RunError {
         time: f64,
     },
     /// An observer failed.
-    #[error("an observer failed at time {time}")]
+    #[error("an observer failed at time {}", Rounded(*.time))]
     Observer {
         /// The present.
         time: f64,
@@ -238,11 +251,12 @@ impl fmt::Display for FailedCollision {
         }
         write!(
             formatter,
-            " at time {time} leads to no finite motion: closing at {} and slipping at {}, the impulse is ({}, {})",
-            contact.closing_speed(),
-            contact.slip_speed(),
-            impulse.normal(),
-            impulse.tangential()
+            " at time {} leads to no finite motion: closing at {} and slipping at {}, the impulse is ({}, {})",
+            Rounded(*time),
+            Rounded(contact.closing_speed()),
+            Rounded(contact.slip_speed()),
+            Rounded(impulse.normal()),
+            Rounded(impulse.tangential())
         )?;
         match &self.explanation {
             Some(explanation) => write!(formatter, "; the rule says: {explanation}"),
@@ -256,7 +270,10 @@ impl fmt::Display for FailedCollision {
 #[non_exhaustive]
 pub enum BoundaryFault {
     /// A touch before the flight, after the end of the search, or with a wall that does not exist.
-    #[error("a touch with wall {wall}, of {walls} walls from 0 on, {} after the start of the flight", -early_by)]
+    #[error(
+        "a touch with wall {wall}, of {walls} walls from 0 on, {} after the start of the flight",
+        Rounded(-early_by)
+    )]
     Touch {
         /// The wall that the boundary named.
         wall: usize,
@@ -267,7 +284,10 @@ pub enum BoundaryFault {
     },
     /// A surface whose normal is not a unit vector, whose velocity is not finite or is above 1e60, or whose
     /// radius is zero or NaN.
-    #[error("the surface of wall {wall} has the normal {normal} and the velocity {velocity}")]
+    #[error(
+        "the surface of wall {wall} has the normal ({}, {}) and the velocity {}",
+        Readable(.normal.x), Readable(.normal.y), RoundedVector(*.velocity)
+    )]
     Surface {
         /// The wall.
         wall: usize,

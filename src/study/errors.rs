@@ -8,6 +8,7 @@ use thiserror::Error;
 use super::experiment::ExperimentError;
 use super::parameters::Difference;
 use crate::ParameterError;
+use crate::error::Readable;
 use crate::simulation::CheckpointError;
 
 /// An error in a plan, which therefore cannot be carried out.
@@ -67,7 +68,7 @@ pub enum PlanError {
         parameter: String,
     },
     /// A value is infinite or NaN.
-    #[error("a value of {parameter} must be finite, but is {value}")]
+    #[error("a value of {parameter} must be finite, but is {value}", value = Readable(*value))]
     NotFinite {
         /// The parameter.
         parameter: String,
@@ -76,7 +77,8 @@ pub enum PlanError {
     },
     /// The values of a ramp are out of order.
     #[error(
-        "the values of a ramp must increase, but {parameter} has {value} after {before}; say `course` for the way"
+        "the values of a ramp must increase, but {parameter} has {value} after {before}; say `course` for the way",
+        value = Readable(*value), before = Readable(*before)
     )]
     NotIncreasing {
         /// The parameter.

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::ParameterError;
+use crate::error::{Readable, Rounded};
 
 /// An error in recording a trajectory.
 ///
@@ -54,8 +55,8 @@ pub enum RecordError {
     /// The file is of another run, since it has another frame, or none, at a time of this run.
     ///
     /// The file is left as it is.
-    #[error("{} is of another run: it goes to time {last}, and has {} at time {time}", path.display(),
-        if *.is_there { "another frame" } else { "no frame" })]
+    #[error("{} is of another run: it goes to time {}, and has {} at time {}", path.display(), Readable(*.last),
+        if *.is_there { "another frame" } else { "no frame" }, Readable(*.time))]
     AnotherRun {
         /// The path.
         path: PathBuf,
@@ -90,6 +91,14 @@ impl RecordError {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ReadError {
+    /// The contents of a file are not what [`read`](super::read) looks for.
+    #[error("cannot use {}", path.display())]
+    File {
+        /// The path.
+        path: PathBuf,
+        /// The error, which names the line.
+        source: Box<ReadError>,
+    },
     /// The file cannot be opened.
     #[error("cannot open {}", path.display())]
     Open {
@@ -153,7 +162,7 @@ pub enum ReadError {
         what: String,
     },
     /// The center of a disk is outside the box that the file gives.
-    #[error("line {line}: the disk at ({x}, {y}) is outside of the box")]
+    #[error("line {line}: the disk at ({}, {}) is outside of the box", Readable(*.x), Readable(*.y))]
     Outside {
         /// Number of the line.
         line: usize,
@@ -163,7 +172,7 @@ pub enum ReadError {
         y: f64,
     },
     /// Two disks overlap by more than rounding.
-    #[error("line {line}: the disk overlaps that of line {other} by {depth}")]
+    #[error("line {line}: the disk overlaps that of line {other} by {}", Rounded(*.depth))]
     Overlap {
         /// Number of the line.
         line: usize,

@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use super::format::{Format, Frame};
 use crate::boundary::Domain;
+use crate::error::Readable;
 use crate::observable::Snapshot;
 use crate::{Disk, ParameterError};
 
@@ -29,7 +30,10 @@ pub enum Violation {
         number: usize,
     },
     /// The time that was read is not the time of the frame.
-    #[error("frame {number} of time {written} is read as one of time {read}")]
+    #[error(
+        "frame {number} of time {written} is read as one of time {read}",
+        written = Readable(*written), read = Readable(*read)
+    )]
     Time {
         /// Number of the frame.
         number: usize,

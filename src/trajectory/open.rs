@@ -1,4 +1,4 @@
-//! Files to read from.
+//! Files to read from, by their paths.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::errors::ReadError;
 
-/// Opens a file for the readers of this module.
+/// Opens a file for the readers of this module. [`read`] also names the file in their errors.
 ///
 /// With the feature `gzip`, a file whose name ends in `.gz` is decompressed.
 ///
@@ -29,6 +29,35 @@ pub fn open(path: impl AsRef<Path>) -> Result<Box<dyn BufRead + Send>, ReadError
     return Ok(Box::new(BufReader::new(flate2::bufread::MultiGzDecoder::new(file))));
     #[cfg(not(feature = "gzip"))]
     return Err(failed(std::io::Error::other("it is compressed, which needs the feature `gzip`")));
+}
+
+/// Reads a file with one of the readers of this module. Its errors name the file, and the line in it.
+///
+/// ```
+/// use granular_edmd::trajectory::{State, read};
+/// # let path = std::env::temp_dir().join(format!("granular-edmd-read-{}.csv", std::process::id()));
+/// // Let `path` be "disks.csv".
+/// std::fs::write(&path, "x,y,radius\n1,1,0.5\n3,1,0.5\n")?;
+/// assert_eq!(read(&path, State::from_csv)?.disks().len(), 2);
+///
+/// std::fs::write(&path, "x,y,radius\n1,1,0.5\n3,1,half\n")?;
+/// let error = read(&path, State::from_csv).unwrap_err();
+/// assert_eq!(error.to_string(), format!("cannot use {}", path.display()));
+/// # let cause = std::error::Error::source(&error).unwrap().to_string();
+/// assert_eq!(cause, "line 3: radius must be a number, but is \"half\"");
+/// # std::fs::remove_file(&path)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// If the file cannot be [opened](open), and the errors of the reader.
+pub fn read<T>(
+    path: impl AsRef<Path>,
+    reader: impl FnOnce(Box<dyn BufRead + Send>) -> Result<T, ReadError>,
+) -> Result<T, ReadError> {
+    let path = path.as_ref();
+    let failed = |source| ReadError::File { path: path.to_owned(), source: Box::new(source) };
+    reader(open(path)?).map_err(failed)
 }
 
 /// Returns true if the name of a file says that it is compressed.

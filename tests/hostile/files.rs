@@ -77,7 +77,7 @@ fn files_that_cannot_be_read_are_errors() {
     let scratch = Scratch::new("unreadable");
     for path in [scratch.0.clone(), scratch.0.join("none"), "/dev/null".into()] {
         let error = Checkpoint::read(&path).unwrap_err();
-        assert!(matches!(error, CheckpointError::Io { .. } | CheckpointError::NotACheckpoint), "{error}");
+        assert!(matches!(error, CheckpointError::Io { .. } | CheckpointError::File { .. }), "{error}");
     }
     let error = checkpoint().write(scratch.0.join("none/file")).unwrap_err();
     assert!(matches!(error, CheckpointError::Io { .. }), "{error}");

@@ -137,7 +137,7 @@ fn a_violation_names_the_step_and_both_answers() {
     assert_eq!(expected.0, given.0);
     let (disk, due) = expected;
     let said = violation.to_string();
-    let answers = format!("the earliest is disk {disk} at {due}, but disk {disk} at NaN is named");
+    let answers = format!("the earliest is disk {disk} at {due:?}, but disk {disk} at NaN is named");
     assert!(said.contains(&format!("step {step}, after ")) && said.ends_with(&answers), "{said}");
 
     let violation = check(|| Liar::with(Fault::SomebodyWithoutDisks)).unwrap_err().to_string();

@@ -64,7 +64,11 @@ fn gravity_has_a_bound() {
 #[test]
 fn disks_must_be_inside_and_apart() {
     let error = build(closed(), &[at(2.0, 2.0), at(9.0, 2.0)]).unwrap_err();
-    assert_eq!(error, BuildError::Outside { disk: 1, x: 9.0, y: 2.0 });
+    assert!(matches!(error, BuildError::Outside { disk: 1, x: 9.0, y: 2.0, .. }), "{error}");
+    assert!(
+        error.to_string().ends_with("(9, 2) is outside the domain: x from 0 to 8, y from 0 to 6"),
+        "{error}"
+    );
     let error = build(closed(), &[at(2.0, 2.0), at(4.0, 0.3)]).unwrap_err();
     assert!(matches!(&error, BuildError::OverlapsWall { disk: 1, wall, .. } if wall == "floor"), "{error}");
     assert!(error.to_string().contains("disk 1") && error.to_string().contains("0.2"), "{error}");

@@ -5,6 +5,7 @@ use thiserror::Error;
 
 use crate::Flight;
 use crate::boundary::{Domain, Region};
+use crate::error::{Readable, RoundedVector};
 
 /// A way in which a boundary breaks its contract.
 ///
@@ -13,13 +14,13 @@ use crate::boundary::{Domain, Region};
 #[non_exhaustive]
 pub enum Violation {
     /// The domain is not a rectangle with finite sides and a finite bottom; its top may be infinite.
-    #[error("the domain {domain:?} is not a rectangle with finite sides and a finite bottom")]
+    #[error("the domain {domain} is not a rectangle with finite sides and a finite bottom")]
     Domain {
         /// The domain.
         domain: Domain,
     },
     /// The interior is not inside the domain.
-    #[error("the interior {interior:?} is not inside the domain {domain:?}")]
+    #[error("the interior {interior} is not inside the domain {domain}")]
     Interior {
         /// The interior.
         interior: Domain,
@@ -27,7 +28,7 @@ pub enum Violation {
         domain: Domain,
     },
     /// The domain changes.
-    #[error("the domain was {before:?} and is now {now:?}")]
+    #[error("the domain was {before} and is now {now}")]
     DomainChanged {
         /// The domain at first.
         before: Domain,
@@ -44,7 +45,8 @@ pub enum Violation {
     },
     /// The check found no free place for a disk.
     #[error(
-        "no place was found in the domain where a disk of radius {radius} overlaps no wall at time {time}"
+        "no place was found in the domain where a disk of radius {radius} overlaps no wall at time {time}",
+        radius = Readable(*radius), time = Readable(*time)
     )]
     NoRoom {
         /// The radius.
@@ -54,7 +56,8 @@ pub enum Violation {
     },
     /// A disk gets into a wall without a touch.
     #[error(
-        "a disk is {depth} deep in wall {wall} at time {time}, before a touch at {found:?}, on {flight:?}"
+        "a disk is {depth} deep in wall {wall} at time {time}, before a touch at {found:?}, on {flight:?}",
+        time = Readable(*time), depth = Readable(*depth)
     )]
     LetThrough {
         /// The wall.
@@ -69,7 +72,10 @@ pub enum Violation {
         flight: Flight,
     },
     /// A disk leaves the domain without a touch.
-    #[error("a disk leaves the domain without a touch: at time {time} it is at {place}, on {flight:?}")]
+    #[error(
+        "a disk leaves the domain without a touch: at time {time} it is at {place}, on {flight:?}",
+        place = RoundedVector(*place), time = Readable(*time)
+    )]
     LeftDomain {
         /// Center of the disk.
         place: DVec2,
@@ -79,7 +85,10 @@ pub enum Violation {
         flight: Flight,
     },
     /// A touch is before the flight, after its limit, or not a number.
-    #[error("a touch at time {time} is outside of the flight, which ends at {until}: {flight:?}")]
+    #[error(
+        "a touch at time {time} is outside of the flight, which ends at {until}: {flight:?}",
+        time = Readable(*time), until = Readable(*until)
+    )]
     TouchTime {
         /// Time of the touch.
         time: f64,
@@ -99,7 +108,10 @@ pub enum Violation {
         flight: Flight,
     },
     /// A touch is found where the gap is still open.
-    #[error("wall {wall} is touched at time {time} where the gap is still open, on {flight:?}")]
+    #[error(
+        "wall {wall} is touched at time {time} where the gap is still open, on {flight:?}",
+        time = Readable(*time)
+    )]
     EarlyTouch {
         /// The wall.
         wall: usize,
@@ -109,7 +121,10 @@ pub enum Violation {
         flight: Flight,
     },
     /// A touch is found while the disk leaves the wall.
-    #[error("wall {wall} is touched at time {time} while the disk leaves it at speed {rate}, on {flight:?}")]
+    #[error(
+        "wall {wall} is touched at time {time} while the disk leaves it at speed {rate}, on {flight:?}",
+        time = Readable(*time), rate = Readable(*rate)
+    )]
     Leaving {
         /// The wall.
         wall: usize,
@@ -129,7 +144,10 @@ pub enum Violation {
         flight: Flight,
     },
     /// A normal is not a unit vector.
-    #[error("the normal {normal} of wall {wall} is not a unit vector, for a disk at {place} at time {time}")]
+    #[error(
+        "the normal ({}, {}) of wall {wall} is not a unit vector, for a disk at {place} at time {time}",
+        Readable(normal.x), Readable(normal.y), place = RoundedVector(*place), time = Readable(*time)
+    )]
     NormalLength {
         /// The wall.
         wall: usize,
@@ -142,7 +160,8 @@ pub enum Violation {
     },
     /// A disk that is moved along the normal does not come out of the wall.
     #[error(
-        "the normal {normal} of wall {wall} does not lead out of it, for a disk at {place} at time {time}"
+        "the normal {normal} of wall {wall} does not lead out of it, for a disk at {place} at time {time}",
+        place = RoundedVector(*place), normal = RoundedVector(*normal), time = Readable(*time)
     )]
     NormalDirection {
         /// The wall.
@@ -155,7 +174,10 @@ pub enum Violation {
         time: f64,
     },
     /// The velocity of a wall is not finite.
-    #[error("the velocity {velocity} of wall {wall} is not finite, at time {time}")]
+    #[error(
+        "the velocity {velocity} of wall {wall} is not finite, at time {time}",
+        velocity = RoundedVector(*velocity), time = Readable(*time)
+    )]
     Velocity {
         /// The wall.
         wall: usize,
@@ -165,7 +187,10 @@ pub enum Violation {
         time: f64,
     },
     /// `may_touch` is false for a region in which there is a touch.
-    #[error("a disk of radius {radius} touches at {place}, but `may_touch` denies it for {region:?}")]
+    #[error(
+        "a disk of radius {radius} touches at {place}, but `may_touch` denies it for {region:?}",
+        place = RoundedVector(*place), radius = Readable(*radius)
+    )]
     MayTouch {
         /// The region.
         region: Region,
@@ -177,7 +202,8 @@ pub enum Violation {
     /// The same flight, given relative to another time origin, touches at another time.
     #[error(
         "with a time origin earlier than {origin} by {shift}, the touch is at time {after:?} and not \
-         {before:?}, on {flight:?}"
+         {before:?}, on {flight:?}",
+        origin = Readable(*origin), shift = Readable(*shift)
     )]
     TimeOrigin {
         /// The time origin.

@@ -113,12 +113,12 @@ impl Part {
     ///
     /// # Errors
     /// If the file cannot be read, a line is not two numbers, or the points do not form a
-    /// [`polygon`](Self::polygon).
+    /// [`polygon`](Self::polygon). The error names the file.
     pub fn polygon_from_file(path: impl AsRef<Path>) -> Result<Self, VesselError> {
         let path = path.as_ref();
-        let text = std::fs::read_to_string(path);
-        let text =
-            text.map_err(|error| VesselError::File { path: path.to_owned(), reason: error.to_string() })?;
-        Self::polygon(Self::points_from_text(&text)?)
+        let failed = |reason: String| VesselError::File { path: path.to_owned(), reason };
+        let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;
+        let polygon = Self::points_from_text(&text).and_then(Self::polygon);
+        polygon.map_err(|error| failed(error.to_string()))
     }
 }

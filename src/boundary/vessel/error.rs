@@ -38,10 +38,13 @@ pub enum VesselError {
         second: usize,
     },
     /// A polygon has no area, so it has no inside.
-    #[error("the polygon has no area")]
+    #[error("the polygon has no area: its points are on one line, or it crosses itself")]
     NoArea,
-    /// Two sides of a polygon cross or touch, so its inside is not clear. Side 0 begins at the first point.
-    #[error("the sides {first} and {second} of the polygon cross or touch")]
+    /// A polygon crosses or touches itself, so its inside is not clear. Side 0 begins at the first point.
+    #[error(
+        "the polygon crosses or touches itself: its side from point {first} to the next one meets its side from point \
+         {second} to the next one, counted from 0; are the points in order around it?"
+    )]
     Crossing {
         /// Number of a side.
         first: usize,
@@ -65,8 +68,8 @@ pub enum VesselError {
         /// The line.
         line: String,
     },
-    /// A file cannot be read.
-    #[error("cannot read {}: {reason}", .path.display())]
+    /// A file cannot be read, or its points do not form a polygon.
+    #[error("cannot take a polygon from {}: {reason}", .path.display())]
     File {
         /// The file.
         path: PathBuf,

@@ -1,36 +1,51 @@
-//! Extreme contacts that a rule can meet.
+//! Contacts that a rule can meet, from mild to extreme.
 
 use crate::Kind;
 use crate::collision::Contact;
 
-/// Closing speeds: zero, almost zero, and decades up to the largest speed that a disk may have.
-const CLOSING_SPEEDS: [f64; 14] =
-    [0.0, 1e-300, 1e-60, 1e-30, 1e-12, 1e-6, 1e-3, 0.1, 1.0, 3.0, 1e3, 1e6, 1e12, 1e60];
+// Each list begins with its mildest values, so that a rule with a fault shows it with numbers of everyday.
 
-/// Slip speeds relative to the closing speed: none, small (central contacts), near the end of sticking, and
+/// Closing and slip speeds of mild contacts.
+const MILD_SPEEDS: [(f64, f64); 9] = [
+    (1.0, 0.0),
+    (1.0, 0.5),
+    (1.0, -0.5),
+    (2.0, 0.0),
+    (0.5, 0.0),
+    (1.0, 2.0),
+    (1.0, -2.0),
+    (0.5, 5.0),
+    (0.5, -5.0),
+];
+
+/// Closing speeds: everyday ones, zero, and decades between almost zero and the largest speed of a disk.
+const CLOSING_SPEEDS: [f64; 14] =
+    [1.0, 0.1, 3.0, 0.0, 1e-3, 1e3, 1e-6, 1e6, 1e-12, 1e12, 1e-30, 1e-60, 1e60, 1e-300];
+
+/// Slip speeds relative to the closing speed: none, near the end of sticking, small (central contacts), and
 /// large (grazing contacts).
-const SLIP_RATIOS: [f64; 12] = [0.0, 1e-15, 1e-9, 1e-3, 0.1, 0.3, 1.0, 3.0, 10.0, 1e3, 1e9, 1e15];
+const SLIP_RATIOS: [f64; 12] = [0.0, 1.0, 0.3, 3.0, 0.1, 10.0, 1e-3, 1e3, 1e-9, 1e9, 1e-15, 1e15];
 
 /// Slip speeds that do not depend on the closing speed.
-const SLIP_SPEEDS: [f64; 4] = [1e-30, 1e-6, 1.0, 1e60];
+const SLIP_SPEEDS: [f64; 4] = [1.0, 1e-6, 1e-30, 1e60];
 
-/// Reduced masses of the lightest and the heaviest disks, and some between.
-const MASSES: [f64; 5] = [1e-30, 1e-3, 0.5, 1e3, 1e30];
+/// Reduced masses: of two disks of mass 1, and up to those of the lightest and the heaviest disks.
+const MASSES: [f64; 5] = [0.5, 1e-3, 1e3, 1e-30, 1e30];
 
-/// Tangential masses relative to the normal one: all mass near the center, a homogeneous disk, a ring, and
-/// the bound.
-const MASS_RATIOS: [f64; 4] = [1e-6, 1.0 / 3.0, 0.5, 1.0];
+/// Tangential masses relative to the normal one: a homogeneous disk, a ring, the bound, and all mass near the
+/// center.
+const MASS_RATIOS: [f64; 4] = [1.0 / 3.0, 0.5, 1.0, 1e-6];
 
-/// Times since the last collision: none, very short, short, and infinite.
-const TIMES: [f64; 4] = [0.0, 1e-9, 1e-3, f64::INFINITY];
+/// Times since the last collision: infinite, short, none, and very short.
+const TIMES: [f64; 4] = [f64::INFINITY, 1e-3, 0.0, 1e-9];
 
-/// Partners: two disks, alike and as different as can be, and a disk and a wall.
+/// Partners: two disks, a disk and a wall, alike and as different as can be. The first three are mild.
 const PARTNERS: [([Kind; 2], [f64; 2]); 7] = [
     ([Kind::DEFAULT; 2], [0.5; 2]),
     ([Kind::DEFAULT, Kind::WALL], [0.5, f64::INFINITY]),
+    ([Kind::new(1), Kind::DEFAULT], [0.1, 1.0]),
     ([Kind::DEFAULT, Kind::new(1)], [1e-30, 1e30]),
     ([Kind::new(1), Kind::new(1)], [1e30; 2]),
-    ([Kind::new(1), Kind::DEFAULT], [0.1, 1.0]),
     ([Kind::DEFAULT, Kind::WALL], [1e30, f64::INFINITY]),
     ([Kind::new(1), Kind::WALL], [1e-30, f64::INFINITY]),
 ];
@@ -42,13 +57,32 @@ const PARTNERS: [([Kind; 2], [f64; 2]); 7] = [
 /// closing speed, and partners that have just collided. The partners are, in turn, disks of kinds 0 and 1 and
 /// straight walls, with radii up to the extremes that the engine accepts.
 ///
+/// Mild contacts come first, such as that of two disks of mass 1 that meet at speed 1. So the first contact
+/// at which a rule fails has numbers that a person can read, if there is one.
+///
 /// ```
 /// use granular_edmd::collision::laws::hostile_contacts;
+/// assert!(hostile_contacts().take(100).all(|contact| contact.closing_speed() <= 2.0));
 /// assert!(hostile_contacts().any(|contact| contact.closing_speed() == 0.0));
 /// assert!(hostile_contacts().any(|contact| contact.slip_speed().abs() > 1e9 * contact.closing_speed()));
 /// assert!(hostile_contacts().all(|contact| contact.tangential_mass() <= contact.normal_mass()));
 /// ```
 pub fn hostile_contacts() -> impl Iterator<Item = Contact> {
+    mild_contacts().chain(extreme_contacts())
+}
+
+/// Returns contacts of everyday speeds with mild partners only. Among the extreme contacts, partners take
+/// turns, so that a mild one comes with any speeds and masses.
+///
+/// The disks are rings of mass 1: their tangential mass, 0.25, reads better than a sixth.
+fn mild_contacts() -> impl Iterator<Item = Contact> {
+    MILD_SPEEDS.into_iter().flat_map(|(closing, slip)| {
+        let contact = Contact::new(closing, slip, 0.5, 0.25);
+        PARTNERS.into_iter().take(3).map(move |partners| between(contact, partners))
+    })
+}
+
+fn extreme_contacts() -> impl Iterator<Item = Contact> {
     let contacts = speeds().flat_map(|(closing, slip)| {
         masses().flat_map(move |(normal, tangential)| {
             let contact = Contact::new(closing, slip, normal, tangential);
@@ -57,9 +91,11 @@ pub fn hostile_contacts() -> impl Iterator<Item = Contact> {
     });
     // The number of partners has no factor in common with the numbers of masses and times, so each pair of
     // partners meets all of these.
-    contacts
-        .zip(PARTNERS.into_iter().cycle())
-        .map(|(contact, (kinds, radii))| contact.with_kinds(kinds).with_radii(radii))
+    contacts.zip(PARTNERS.into_iter().cycle()).map(|(contact, partners)| between(contact, partners))
+}
+
+fn between(contact: Contact, (kinds, radii): ([Kind; 2], [f64; 2])) -> Contact {
+    contact.with_kinds(kinds).with_radii(radii)
 }
 
 fn speeds() -> impl Iterator<Item = (f64, f64)> {

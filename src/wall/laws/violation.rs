@@ -2,12 +2,17 @@
 
 use thiserror::Error;
 
+use crate::error::Readable;
+
 /// A way in which a motion breaks its contract.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Violation {
     /// The reach is not two finite numbers in order.
-    #[error("its reach from {low} to {high} must be finite and in order")]
+    #[error(
+        "its reach from {low} to {high} must be finite and in order",
+        low = Readable(*low), high = Readable(*high)
+    )]
     Reach {
         /// Lower end of the reach.
         low: f64,
@@ -15,13 +20,13 @@ pub enum Violation {
         high: f64,
     },
     /// The period is not finite and positive.
-    #[error("its period must be finite and positive, but is {period}")]
+    #[error("its period must be finite and positive, but is {period}", period = Readable(*period))]
     PeriodValue {
         /// The period.
         period: f64,
     },
     /// An answer is infinite or not a number.
-    #[error("at phase {phase} its {quantity} is {value}")]
+    #[error("at phase {phase} its {quantity} is {value}", phase = Readable(*phase), value = Readable(*value))]
     NotFinite {
         /// Name of the quantity.
         quantity: &'static str,
@@ -31,7 +36,10 @@ pub enum Violation {
         value: f64,
     },
     /// The bounds of the acceleration are in the wrong order.
-    #[error("at phase {phase} its lower bound of the acceleration, {min}, is above the upper bound, {max}")]
+    #[error(
+        "at phase {phase} its lower bound of the acceleration, {min}, is above the upper bound, {max}",
+        phase = Readable(*phase), min = Readable(*min), max = Readable(*max)
+    )]
     Bounds {
         /// The phase asked for.
         phase: f64,
@@ -41,7 +49,10 @@ pub enum Violation {
         max: f64,
     },
     /// A piece does not end later than the phase asked for.
-    #[error("the piece of its motion from phase {phase} on ends at {until}, which is not later")]
+    #[error(
+        "the piece of its motion from phase {phase} on ends at {until}, which is not later",
+        phase = Readable(*phase), until = Readable(*until)
+    )]
     PieceEnd {
         /// The phase asked for.
         phase: f64,
@@ -49,7 +60,10 @@ pub enum Violation {
         until: f64,
     },
     /// Pieces in a row advance so little that no search can follow them.
-    #[error("{pieces} pieces of its motion lead only from phase {phase} to {until}: they are too short")]
+    #[error(
+        "{pieces} pieces of its motion lead only from phase {phase} to {until}: they are too short",
+        phase = Readable(*phase), until = Readable(*until)
+    )]
     ShortPieces {
         /// The phase at which the first begins.
         phase: f64,
@@ -59,7 +73,11 @@ pub enum Violation {
         pieces: u32,
     },
     /// The displacement is outside the reach.
-    #[error("at phase {phase} its displacement {displacement} is outside of its reach from {low} to {high}")]
+    #[error(
+        "at phase {phase} its displacement {displacement} is outside of its reach from {low} to {high}",
+        low = Readable(*low), high = Readable(*high), phase = Readable(*phase),
+        displacement = Readable(*displacement)
+    )]
     OutOfReach {
         /// The phase.
         phase: f64,
@@ -73,7 +91,9 @@ pub enum Violation {
     /// The velocity changes faster than the bounds of the acceleration allow, or jumps inside a piece.
     #[error(
         "from phase {from} to {to} its velocity changes by {gain}, which is not between {least} and {most}, as \
-         its bounds of the acceleration say"
+         its bounds of the acceleration say",
+        from = Readable(*from), to = Readable(*to), gain = Readable(*gain), least = Readable(*least),
+        most = Readable(*most)
     )]
     Velocity {
         /// The first phase.
@@ -88,7 +108,10 @@ pub enum Violation {
         most: f64,
     },
     /// The displacement is not the integral of the velocity, or jumps inside a piece.
-    #[error("from phase {from} to {to} its displacement changes by {rise}, but its velocity says {expected}")]
+    #[error(
+        "from phase {from} to {to} its displacement changes by {rise}, but its velocity says {expected}",
+        from = Readable(*from), to = Readable(*to), rise = Readable(*rise), expected = Readable(*expected)
+    )]
     Displacement {
         /// The first phase.
         from: f64,
@@ -100,7 +123,10 @@ pub enum Violation {
         expected: f64,
     },
     /// The wall jumps toward the disks.
-    #[error("at phase {phase}, where a piece ends, it jumps toward the disks by {jump}")]
+    #[error(
+        "at phase {phase}, where a piece ends, it jumps toward the disks by {jump}",
+        phase = Readable(*phase), jump = Readable(*jump)
+    )]
     Jump {
         /// The phase.
         phase: f64,
@@ -108,7 +134,10 @@ pub enum Violation {
         jump: f64,
     },
     /// The motion does not repeat after its period.
-    #[error("with the period {period}, the wall is not in the same state at phase {later} as at {phase}")]
+    #[error(
+        "with the period {period}, the wall is not in the same state at phase {later} as at {phase}",
+        period = Readable(*period), phase = Readable(*phase), later = Readable(*later)
+    )]
     Period {
         /// The phase.
         phase: f64,
