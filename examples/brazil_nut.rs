@@ -25,9 +25,10 @@ use granular_edmd::Kind;
 use granular_edmd::boundary::Obstacles;
 use granular_edmd::glam::DVec2;
 use granular_edmd::prelude::*;
-use kuva::prelude::{Layout, Plot, ScatterPlot};
+use kuva::prelude::{Layout, Plot};
 
 use common::command_line::{self, Failure, non_negative, positive};
+use common::faces::{GAP, faces};
 use common::look::{INK, Look, QUIET, VERMILION};
 use common::panel::{self, Margins, Place, SMALL};
 use common::progress::Progress;
@@ -203,7 +204,9 @@ fn draw(nuts: &[Nut]) -> Result<Sheet, Box<dyn Error>> {
         let place = Place { x: k as f64 * frame, y: HEADER, width: frame, height: HEIGHT };
         let layout = panel::axes((0.0, WIDTH), (0.0, SHOWN)).with_x_label("x, in diameters");
         let layout = if k == 0 { layout.with_y_label("height, in diameters") } else { layout };
-        sheet.panel(place, MARGINS, faces(disks, unit), layout.with_x_tick_step(10.0));
+        let color = |disk: &Disk| if disk.kind() == INTRUDER { VERMILION } else { "#a4abb3" };
+        let disks = vec![faces(disks.iter(), unit, GAP, color)];
+        sheet.panel(place, MARGINS, disks, layout.with_x_tick_step(10.0));
         let words = format!("diameter {}, {when}", shown.diameter);
         sheet.text(place.x + MARGINS[0], HEADER + 20.0, SMALL, INK, &words);
     }
@@ -239,14 +242,6 @@ impl Nut {
             format!("{diameter}, density {density}")
         }
     }
-}
-
-fn faces(disks: &[Disk], unit: f64) -> Vec<Plot> {
-    let color =
-        |disk: &Disk| if disk.kind() == INTRUDER { VERMILION.to_owned() } else { "#a4abb3".to_owned() };
-    let centers = disks.iter().map(|disk| (disk.position().x, disk.position().y));
-    let faces = ScatterPlot::new().with_data(centers).with_colors(disks.iter().map(color));
-    vec![faces.with_sizes(disks.iter().map(|disk| (disk.radius() * unit - 0.4).max(0.5))).into()]
 }
 
 fn lines(nuts: &[Nut]) -> Vec<Plot> {

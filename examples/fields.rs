@@ -23,11 +23,10 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{FieldCell, Fields};
 use granular_edmd::prelude::*;
 use kuva::plot::heatmap::ColorMap;
-use kuva::plot::quiver::QuiverPivot;
-use kuva::prelude::{Heatmap, Layout, Plot, QuiverPlot, TickAlign, TickFormat};
+use kuva::prelude::{Heatmap, Layout, Plot, TickAlign, TickFormat};
 
 use common::command_line::{self, Failure, non_negative};
-use common::flow;
+use common::flow::Arrows;
 use common::look::{self, INK};
 use common::panel::{self, MEDIUM, Margins, Place};
 use common::progress::Progress;
@@ -181,16 +180,17 @@ fn draw(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Sheet {
     let top = top(fine);
     let size = (UNIT * BOX.x + MARGINS[0] + MARGINS[1], UNIT * top + MARGINS[2] + MARGINS[3]);
     let mut sheet = Sheet::new(4.0 * size.0 + 10.0, HEADER + BAR + size.1);
-    write_header(&mut sheet, arguments, fine, coarse);
+    let arrows = Arrows::of(coarse, ENOUGH, 1.6);
+    write_header(&mut sheet, arguments, fine, &arrows);
     for (column, map) in maps().iter().enumerate() {
         let x = column as f64 * size.0;
-        let (low, high) = ends(seen(fine).map(|cell| (map.value)(&cell)));
+        let (low, high) = panel::ends(seen(fine).map(|cell| (map.value)(&cell)));
         let range = (map.range)(low, high);
         let place = Place { x, y: HEADER, width: size.0, height: BAR };
         draw_bar(&mut sheet, place, map, range);
         let mut plots = vec![heat_map(map, fine, range)];
         if column == FLOW {
-            plots.push(arrows(coarse));
+            plots.push(arrows.plot(1.6));
         }
         let place = Place { x, y: HEADER + BAR, width: size.0, height: size.1 };
         let axes = panel::axes((0.0, BOX.x), (0.0, top));
@@ -201,7 +201,7 @@ fn draw(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Sheet {
     sheet
 }
 
-fn write_header(sheet: &mut Sheet, arguments: &Arguments, fine: &Fields, coarse: &Fields) {
+fn write_header(sheet: &mut Sheet, arguments: &Arguments, fine: &Fields, arrows: &Arrows) {
     let title = format!("Density, flow and temperatures at κ = {}", arguments.friction);
     let system = "N = 1000, box 60 × 150, g = 0.015625, q = 0, base A = 0.1, ω = 10; temperatures in m(Aω)²";
     let protocol = format!(
@@ -212,10 +212,9 @@ fn write_header(sheet: &mut Sheet, arguments: &Arguments, fine: &Fields, coarse:
         enough(fine)
     );
     sheet.header(MARGINS[0], &title, &[system, &protocol]);
-    let speed = fastest(coarse);
-    let length = UNIT * LONGEST * BOX.x / COARSE.0 as f64;
-    let shown = flow::round(speed);
-    sheet.arrow((700.0, 30.0), length * shown / speed, &format!("velocity {shown} Aω"));
+    if let Some((speed, length)) = arrows.scale() {
+        sheet.arrow((700.0, 30.0), UNIT * length, &format!("velocity {speed} Aω"));
+    }
 }
 
 /// Returns the height that is shown: that of the highest cell with enough disks, and a little more.
@@ -234,13 +233,6 @@ fn enough(fields: &Fields) -> u64 {
 fn seen(fields: &Fields) -> impl Iterator<Item = FieldCell> {
     let enough = enough(fields);
     fields.iter().filter(move |cell| cell.count >= enough)
-}
-
-/// Returns the smallest and the largest value.
-fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    values
-        .filter(|value| value.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
 /// Draws the colors of a range above the panel.
@@ -266,7 +258,7 @@ fn heat_map(map: &Map, fields: &Fields, range: (f64, f64)) -> Plot {
     let cells = fields.iter().map(|cell| if cell.count >= enough { share(&cell) } else { f64::NAN });
     let cells: Vec<f64> = cells.map(|share| if share.is_finite() { share } else { f64::NAN }).collect();
     // The heat map stretches its data over all its colors, but the bar does not.
-    let (low, high) = ends(cells.iter().copied());
+    let (low, high) = panel::ends(cells.iter().copied());
     let color = map.color;
     let colors = move |stretched: f64| {
         if stretched.is_nan() { "#ffffff".to_owned() } else { color(low + stretched * (high - low)) }
@@ -279,21 +271,4 @@ fn heat_map(map: &Map, fields: &Fields, range: (f64, f64)) -> Plot {
         .with_y_range(0.0, top(fields))
         .with_cell_size(1.0)
         .into()
-}
-
-fn fastest(coarse: &Fields) -> f64 {
-    seen(coarse).map(|cell| cell.velocity.length()).fold(0.0, f64::max)
-}
-
-/// Length of the longest arrow, in cells.
-const LONGEST: f64 = 1.6;
-
-/// Returns the mean flow as arrows.
-fn arrows(coarse: &Fields) -> Plot {
-    let scale = LONGEST * BOX.x / COARSE.0 as f64 / fastest(coarse).max(f64::MIN_POSITIVE);
-    let arrows = seen(coarse)
-        .map(|cell| (cell.center.x, cell.center.y, scale * cell.velocity.x, scale * cell.velocity.y));
-    let plot = QuiverPlot::new().with_arrows(arrows).with_scale(1.0).with_pivot(QuiverPivot::Middle);
-    let plot = plot.with_color(INK).with_shaft_width(1.6).with_clip_to_plot_area();
-    plot.with_head_ratio(0.36).with_head_min_px(2.5).with_head_max_px(9.0).into()
 }

@@ -22,9 +22,10 @@ use granular_edmd::boundary::Obstacles;
 use granular_edmd::collision::TangentialResponse::{Reversing, Unchanged};
 use granular_edmd::prelude::*;
 use granular_edmd::simulation::Counters;
-use kuva::prelude::{Layout, Plot, ScatterPlot};
+use kuva::prelude::Layout;
 
 use common::command_line::{self, Failure, positive};
+use common::faces::{GAP, faces};
 use common::look::{INK, Look, QUIET, SKY};
 use common::panel::{self, Margins, Place, SMALL};
 use common::progress::Progress;
@@ -250,7 +251,11 @@ fn draw(heaps: &[Heap]) -> Sheet {
         let layout = panel::axes((0.0, WIDTH), (0.0, SHOWN)).with_y_tick_step(2.0);
         let layout = layout.with_x_label("x, in diameters").with_y_label("height");
         let place = Place { x, y, width: frame[0], height: frame[1] };
-        sheet.panel(place, MARGINS, faces(&heap.disks, &heap.glued), layout);
+        let plots = vec![
+            faces(heap.glued.iter(), UNIT, GAP, |_| QUIET),
+            faces(heap.disks.iter(), UNIT, GAP, |_| SKY),
+        ];
+        sheet.panel(place, MARGINS, plots, layout);
         let title = format!("{}, {}: at time {:.0}", heap.name, heap.parameter, heap.time);
         sheet.text(x + MARGINS[0], y + 26.0, SMALL, INK, &title);
     }
@@ -276,15 +281,6 @@ fn range(heaps: &[Heap], value: Quantity) -> (f64, f64) {
     let values = || heaps.iter().map(value).filter(|value| *value > 0.0 && value.is_finite());
     let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
     (10f64.powf(low.log10().floor()), 10f64.powf(high.log10().ceil()))
-}
-
-fn faces(disks: &[Disk], glued: &[Disk]) -> Vec<Plot> {
-    let faces = |disks: &[Disk], color: &str| {
-        let centers = disks.iter().map(|disk| (disk.position().x, disk.position().y));
-        let sizes = disks.iter().map(|disk| disk.radius() * UNIT - 0.4);
-        ScatterPlot::new().with_data(centers).with_color(color).with_sizes(sizes).into()
-    };
-    vec![faces(glued, QUIET), faces(disks, SKY)]
 }
 
 fn draw_curves(sheet: &mut Sheet, place: Place, layout: Layout, heaps: &[Heap], value: Quantity) {

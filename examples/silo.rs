@@ -23,9 +23,10 @@ use clap::Parser;
 use granular_edmd::Kind;
 use granular_edmd::glam::DVec2;
 use granular_edmd::prelude::*;
-use kuva::prelude::{LinePlot, Plot, ScatterPlot};
+use kuva::prelude::{LinePlot, Plot};
 
 use common::command_line::{self, Failure, positive};
+use common::faces::{GAP, faces};
 use common::look::{BLUE, INK, Look, Mark, ORANGE, SKY, VERMILION};
 use common::panel::{self, Margins, Place, SMALL};
 use common::progress::Progress;
@@ -243,8 +244,8 @@ fn draw(flows: &[Flow], law: Option<Law>) -> Result<Sheet, Box<dyn Error>> {
     let Some(shown) = flows.last() else { return Err("no outlet to draw".into()) };
     let place = Place { x: 0.0, y: HEADER, width: frame, height: HEIGHT };
     let layout = panel::axes((0.0, WIDTH), (0.0, SHOWN));
-    let mut plots = faces(&shown.shot, unit);
-    plots.extend(floor(shown.outlet));
+    let seen = shown.shot.iter().filter(|grain| grain.position().y < SHOWN);
+    let plots = [faces(seen, unit, GAP, color)].into_iter().chain(floor(shown.outlet)).collect();
     sheet.panel(
         place,
         MARGINS,
@@ -277,16 +278,11 @@ fn draw_flows(sheet: &mut Sheet, place: Place, flows: &[Flow], law: Option<Law>)
     sheet.legend((panel.place.x + 16.0, panel.place.y + 28.0), &names);
 }
 
-fn faces(disks: &[Disk], unit: f64) -> Vec<Plot> {
+/// Returns the color of the layer of a grain, or that of grains which came in again.
+fn color(grain: &Disk) -> &'static str {
     const LAYERS: [&str; 3] = [BLUE, SKY, "#c9ced6"];
-    let color = |disk: &Disk| {
-        let layer = usize::from(disk.kind().number());
-        if disk.kind() == AGAIN { ORANGE.to_owned() } else { LAYERS[layer % LAYERS.len()].to_owned() }
-    };
-    let shown = || disks.iter().filter(|disk| disk.position().y < SHOWN);
-    let faces = ScatterPlot::new().with_data(shown().map(|disk| (disk.position().x, disk.position().y)));
-    let faces = faces.with_colors(shown().map(color));
-    vec![faces.with_sizes(shown().map(|disk| (disk.radius() * unit - 0.4).max(0.5))).into()]
+    let layer = usize::from(grain.kind().number());
+    if grain.kind() == AGAIN { ORANGE } else { LAYERS[layer % LAYERS.len()] }
 }
 
 /// Draws both halves of the silo's floor.

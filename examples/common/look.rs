@@ -172,6 +172,16 @@ const CROSS: [(f64, f64); 12] = [
     (-0.7, -1.1),
 ];
 
+/// The look of noise in a legend.
+pub(crate) const NOISE: Look = Look::line("#e1e3e5", "").with_width(10.0);
+
+/// Returns a band of noise about zero, for a panel: places along it, and half its height there.
+pub(crate) fn noise(edge: &[(f64, f64)]) -> Plot {
+    let middle = LinePlot::new().with_data(edge.iter().map(|(x, _)| (*x, 0.0)));
+    let middle = middle.with_color("#9aa0a6").with_stroke_width(0.8);
+    middle.with_band(edge.iter().map(|(_, half)| -half), edge.iter().map(|(_, half)| *half)).into()
+}
+
 /// Returns a color from blue (-1) over light gray (0) to red (1).
 pub(crate) fn diverging(value: f64) -> String {
     let (middle, blue, red) = ([214.0, 217.0, 221.0], [33.0, 102.0, 172.0], [178.0, 34.0, 48.0]);

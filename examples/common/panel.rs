@@ -6,8 +6,8 @@ use kuva::render::theme::Theme;
 use super::look::INK;
 
 /// Sizes of letters: notes and numbers at ticks, names of axes and series, and the title.
-pub(crate) const SMALL: u32 = 14;
-pub(crate) const MEDIUM: u32 = 16;
+pub(crate) const SMALL: u32 = 16;
+pub(crate) const MEDIUM: u32 = 18;
 pub(crate) const LARGE: u32 = 20;
 
 /// A rectangle on the sheet, in its units; `y` points down.
@@ -124,6 +124,12 @@ impl Panel {
 pub(crate) fn axes(x: (f64, f64), y: (f64, f64)) -> Layout {
     let exact = Layout::new(x, y).with_x_axis_min(x.0).with_x_axis_max(x.1);
     exact.with_y_axis_min(y.0).with_y_axis_max(y.1).with_tick_align(TickAlign::Inside)
+}
+
+/// Returns the smallest and the largest of the values that are finite.
+pub(crate) fn ends(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+    let finite = values.into_iter().filter(|value| value.is_finite());
+    finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
 /// Gives a layout the size of its panel, and the style of all panels.

@@ -18,7 +18,7 @@ const PIXELS: f32 = 2.0;
 const FONTS: &str = "DejaVu Sans, Verdana, sans-serif";
 
 /// Distance of the lines of a legend, and length of its samples.
-const LINE: f64 = 22.0;
+const LINE: f64 = 24.0;
 const SAMPLE: f64 = 34.0;
 
 /// Lengths of the ticks of logarithmic axes.
@@ -99,7 +99,7 @@ impl Sheet {
                 self.line(vec![(at, y + height), (at, y + height - length)], INK, 1.0);
                 if long {
                     self.add_text(
-                        (at, y + height + 18.0),
+                        (at, y + height + 20.0),
                         SMALL,
                         TextAnchor::Middle,
                         INK,
@@ -220,7 +220,7 @@ impl Sheet {
         self.text(x, 30.0, LARGE, INK, title);
         let mut y = 34.0;
         for line in lines {
-            y += 19.0;
+            y += 22.0;
             self.text(x, y, SMALL, QUIET, line);
         }
         y

@@ -3,9 +3,10 @@
 use std::f64::consts::TAU;
 
 use granular_edmd::glam::DVec2;
-use kuva::prelude::{LinePlot, Plot, QuiverPivot, QuiverPlot, ScatterPlot};
+use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 
-use crate::common::flow;
+use crate::common::faces::{GAP, faces};
+use crate::common::flow::Arrows;
 use crate::common::look::{INK, Look, ORANGE, QUIET};
 use crate::common::panel::{self, Margins, Place, SMALL};
 use crate::common::sheet::Sheet;
@@ -18,12 +19,6 @@ const BELOW: f64 = 320.0;
 
 /// Grains that turn as one body with the drum.
 const BODY: Look = Look::line(QUIET, "4 3").with_width(1.2);
-
-/// Length of the longest arrow, in cells.
-const LONGEST: f64 = 2.0;
-
-/// Share of what the fullest cell holds, below which a cell shows no arrow.
-const ENOUGH: f64 = 0.15;
 
 /// Draws the drums in a row, and angles and flow below.
 pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Sheet {
@@ -51,16 +46,16 @@ fn draw_drum(sheet: &mut Sheet, place: Place, arguments: &Arguments, drum: &Turn
     let layout = panel::axes((-edge, edge), (-edge, edge))
         .with_x_label("x, in diameters")
         .with_y_label("y, in diameters");
-    sheet.panel(place, MARGINS, inside(arguments, drum, 0.5 * SIDE / edge), layout);
+    let (unit, arrows) = (0.5 * SIDE / edge, Arrows::of(&drum.flow, 0.15, 2.0));
+    sheet.panel(place, MARGINS, inside(arguments, drum, unit, &arrows), layout);
     let (angle, error) = (drum.angle.mean(), drum.angle.standard_error());
     let words = format!("{}: {angle:.1}° ± {error:.1}°, Ω²R/g = {:.3}", name(drum), drum.froude);
     sheet.text(place.x + MARGINS[0], place.y + 4.0, SMALL, INK, &words);
     // An arrow of this length in the corner is this fast.
-    let (unit, speed) = (0.5 * SIDE / edge, flow::fastest(&drum.flow, ENOUGH));
-    let shown = flow::round(speed);
-    let length = LONGEST * unit * flow::side(&drum.flow) * shown / speed;
-    let corner = (place.x + MARGINS[0] + 8.0, place.y + MARGINS[2] + SIDE - 8.0);
-    sheet.arrow(corner, length, &shown.to_string());
+    if let Some((speed, length)) = arrows.scale() {
+        let corner = (place.x + MARGINS[0] + 8.0, place.y + MARGINS[2] + SIDE - 8.0);
+        sheet.arrow(corner, unit * length, &speed.to_string());
+    }
 }
 
 fn draw_angles(sheet: &mut Sheet, place: Place, drums: &[Turned]) {
@@ -93,13 +88,11 @@ fn name(drum: &Turned) -> String {
 }
 
 /// Returns rim, pins, grains, mean flow and mean surface.
-fn inside(arguments: &Arguments, drum: &Turned, unit: f64) -> Vec<Plot> {
+fn inside(arguments: &Arguments, drum: &Turned, unit: f64, arrows: &Arrows) -> Vec<Plot> {
     let radius = arguments.radius;
     let rim = (0..=180).map(|k| radius * DVec2::from_angle(TAU * f64::from(k) / 180.0)).map(|p| (p.x, p.y));
     let rim = LinePlot::new().with_data(rim.collect::<Vec<_>>()).with_color(INK).with_stroke_width(1.4);
-    let centers = drum.disks.iter().map(|disk| (disk.position().x, disk.position().y));
-    let sizes = drum.disks.iter().map(|disk| disk.radius() * unit - 0.3);
-    let grains = ScatterPlot::new().with_data(centers).with_color("#d8c39a").with_sizes(sizes);
+    let grains = faces(drum.disks.iter(), unit, GAP, |_| "#d8c39a");
     let (angle, end) = (drum.angle.mean().to_radians(), 0.9 * radius);
     let middle =
         drum.surfaces.iter().map(|(_, surface)| surface.middle).sum::<f64>() / drum.surfaces.len() as f64;
@@ -110,15 +103,7 @@ fn inside(arguments: &Arguments, drum: &Turned, unit: f64) -> Vec<Plot> {
     let pins =
         pins.map(|angle| (radius - PIN) * DVec2::from_angle(angle + TAU * drum.turns)).map(|p| (p.x, p.y));
     let pins = ScatterPlot::new().with_data(pins).with_color(INK).with_size(2.5);
-    vec![rim.into(), grains.into(), pins.into(), arrows(drum).into(), line.into()]
-}
-
-/// Returns the mean flow as arrows.
-fn arrows(drum: &Turned) -> QuiverPlot {
-    let arrows = flow::arrows(&drum.flow, ENOUGH, LONGEST);
-    let plot = QuiverPlot::new().with_arrows(arrows).with_scale(1.0).with_pivot(QuiverPivot::Middle);
-    let plot = plot.with_color(INK).with_shaft_width(1.3);
-    plot.with_head_ratio(0.36).with_head_min_px(2.0).with_head_max_px(8.0)
+    vec![rim.into(), grains, pins.into(), arrows.plot(1.3), line.into()]
 }
 
 fn angles(drums: &[Turned]) -> Vec<Plot> {

@@ -141,8 +141,8 @@ fn draw(points: &[Point], slip: bool) -> Sheet {
 
 /// Returns the range of the heights with their errors, in whole tens.
 fn heights(points: &[Point]) -> (f64, f64) {
-    let low = points.iter().map(|point| point.height.mean() - point.height.standard_error());
-    let high = points.iter().map(|point| point.height.mean() + point.height.standard_error());
-    let (low, high) = (low.fold(f64::INFINITY, f64::min), high.fold(0.0, f64::max));
+    let bar =
+        |point: &Point| [-1.0, 1.0].map(|sign| point.height.mean() + sign * point.height.standard_error());
+    let (low, high) = panel::ends(points.iter().flat_map(bar));
     (10.0 * (0.1 * low - 0.2).floor(), 10.0 * (0.1 * high + 0.2).ceil())
 }

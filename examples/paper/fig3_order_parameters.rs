@@ -23,9 +23,9 @@ use std::process::ExitCode;
 use clap::Parser;
 use granular_edmd::study::vibrated_box::{Convection, Sample, VibratedBox};
 use granular_edmd::study::{Course, Leg, Plan, PlanError, Protocol, Ramp, Study};
-use kuva::prelude::{Layout, LinePlot, Plot, TickFormat};
+use kuva::prelude::{Layout, Plot, TickFormat};
 
-use common::look::{BLUE, Look, Mark, VERMILION};
+use common::look::{self, BLUE, Look, Mark, NOISE, VERMILION};
 use common::panel::{self, Place};
 use common::sheet::Sheet;
 
@@ -106,10 +106,6 @@ const MOST: f64 = 0.25;
 const WAYS: [Look; 2] =
     [Look::marks(BLUE, Mark::Disk).with_size(1.2), Look::marks(VERMILION, Mark::Disk).with_size(1.2)];
 
-/// Color of the band of thermal noise, and its paler face.
-const BAND: &str = "#9aa0a6";
-const FACE: &str = "#e1e3e5";
-
 /// An order parameter of a sample.
 type Quantity = fn(&Sample) -> f64;
 
@@ -126,8 +122,7 @@ fn draw(arguments: &Arguments, records: &[Record], study: &Study<VibratedBox>) -
     };
     let names: Vec<_> = WAYS.map(|look| look.with_size(3.5)).into_iter().zip(names.iter().copied()).collect();
     sheet.legend_in_row((LEFT, 77.0), &names);
-    let noise = (Look::line(FACE, "").with_width(10.0), "two standard deviations of thermal noise");
-    sheet.legend((LEFT, 98.0), &[noise]);
+    sheet.legend((LEFT, 98.0), &[(NOISE, "two standard deviations of thermal noise")]);
     let quantities: [(Quantity, &str); 2] =
         [(|sample| sample.one_roll, "Ψ₁, one roll"), (|sample| sample.two_rolls, "Ψ₂, two rolls")];
     for (number, (quantity, name)) in quantities.into_iter().enumerate() {
@@ -169,8 +164,5 @@ fn noise(records: &[Record]) -> Plot {
     let ends = |record: &Record| {
         [-0.5, 0.5].map(|end| (friction(record) + end * STEP, 2.0 * record.thermal_noise()))
     };
-    let edge: Vec<(f64, f64)> = up.flat_map(ends).collect();
-    let line = LinePlot::new().with_data(edge.iter().map(|(friction, _)| (*friction, 0.0)));
-    let line = line.with_color(BAND).with_stroke_width(0.8);
-    line.with_band(edge.iter().map(|(_, noise)| -noise), edge.iter().map(|(_, noise)| *noise)).into()
+    look::noise(&up.flat_map(ends).collect::<Vec<_>>())
 }

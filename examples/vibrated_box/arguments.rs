@@ -1,9 +1,9 @@
 //! The flags of the example.
 
 use std::f64::consts::TAU;
+use std::fmt::{self, Display, Formatter};
 
 use clap::{Parser, ValueEnum};
-use serde_json::{Value, json};
 
 use crate::common::command_line::{Failure, non_negative, positive, whole};
 use crate::common::results::Results;
@@ -131,6 +131,11 @@ impl Arguments {
         self.temperature.unwrap_or(1.0)
     }
 
+    /// Returns the height that is measured and drawn: that of the lid, or five times the width.
+    pub(crate) fn shown(&self) -> f64 {
+        if self.open { 5.0 * self.width } else { self.height }
+    }
+
     /// Returns the scale of the speeds that the base gives to disks.
     pub(crate) fn base_speed(&self) -> f64 {
         if self.base == Base::Thermal { self.temperature().sqrt() } else { self.amplitude() * self.omega }
@@ -140,25 +145,19 @@ impl Arguments {
     pub(crate) fn contact_duration(&self) -> f64 {
         self.contact_duration.unwrap_or(1e-4 / self.base_speed())
     }
+}
 
-    /// Returns the name of the base.
-    pub(crate) fn base_name(&self) -> String {
-        self.base.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
-    }
-
-    /// Returns all parameters, for programs.
-    pub(crate) fn to_json(&self) -> Value {
-        json!({
-            "disks": self.disks, "inertia": self.inertia, "width": self.width,
-            "height": (!self.open).then_some(self.height), "periodic": self.periodic, "gravity": self.gravity,
-            "inelasticity": self.inelasticity, "friction": self.friction,
-            "tangential_inelasticity": self.tangential_inelasticity.unwrap_or(self.inelasticity),
-            "dynamic_friction": self.dynamic_friction.unwrap_or(self.friction),
-            "wall_friction": self.wall_friction, "wall_inelasticity": self.wall_inelasticity,
-            "base": self.base_name(), "amplitude": self.amplitude(), "omega": self.omega,
-            "temperature": (self.base == Base::Thermal).then_some(self.temperature()),
-            "contact_duration": self.contact_duration(), "oscillations": self.oscillations(),
-            "every": self.every, "seed": self.seed,
-        })
+/// Describes the system in one line.
+impl Display for Arguments {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        let Self { width, height, base, omega, gravity, inelasticity, friction, .. } = self;
+        let top = if self.open { "open above".to_owned() } else { format!("{height} high") };
+        let sides = if self.periodic { ", periodic sides" } else { "" };
+        write!(formatter, "box {width} wide, {top}{sides}; {base:?} base, ")?;
+        match base {
+            Base::Thermal => write!(formatter, "T₀ = {}", self.temperature())?,
+            _ => write!(formatter, "A = {}, ω = {omega}", self.amplitude())?,
+        }
+        write!(formatter, "; g = {gravity}, q = {inelasticity}, κ = {friction}")
     }
 }

@@ -3,50 +3,55 @@
 use std::error::Error;
 use std::time::Instant;
 
-use granular_edmd::observable::Fields;
+use granular_edmd::analysis::{StateCriteria, thermal_noise};
+use granular_edmd::observable::{ConvectionOrder, DenseLayer, HeightProfile};
 use granular_edmd::prelude::*;
-use granular_edmd::simulation::Counters;
+use granular_edmd::statistics::BlockedMean;
 
 use crate::arguments::{Arguments, Base};
 use crate::common::command_line::Failure;
 use crate::common::{flow, progress::Progress};
 
+/// The quantities of a sample, and their values.
+type Quantities = (OrderParameters, CenterOfMass, Energies);
+pub(crate) type Sample = <Quantities as Observable>::Value;
+
 /// The results of one run.
 pub(crate) struct Outcome {
+    /// The box at the end.
+    pub(crate) simulation: Simulation<BoxedRule, Container>,
+    pub(crate) seconds: f64,
     /// Samples of the whole run.
-    pub(crate) series: Series<(OrderParameters, CenterOfMass, Energies)>,
-    /// Energy change of collisions of two disks in the second half, with the error of correlated collisions.
-    pub(crate) energy_change: Estimate,
-    /// Mean flow in the second half.
+    pub(crate) series: Series<Quantities>,
+    /// Energy changes of collisions in the second half.
+    pub(crate) energy_change: EnergyChange,
+    /// Mean fields in the second half.
     pub(crate) fields: Fields,
-    pub(crate) disks: Vec<Disk>,
-    pub(crate) counters: Counters,
-    pub(crate) run_seconds: f64,
-    pub(crate) final_state_hash: String,
+    /// Standard deviation of the order parameters in a gas without flow, and the name of the flow.
+    pub(crate) noise: f64,
+    pub(crate) flow: String,
 }
 
 /// Runs what the flags ask for.
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let mut simulation = build(arguments).map_err(Failure::usage)?;
     let at = |oscillation: u64| oscillation as f64 * arguments.period();
-    let (settled, end) = (at(arguments.oscillations() / 2), at(arguments.oscillations()));
-    let mut series =
-        Series::new((OrderParameters, CenterOfMass, Energies), SampleTimes::every(at(arguments.every))?);
+    let (middle, end) = (at(arguments.oscillations() / 2), at(arguments.oscillations()));
+    let mut simulation = build(arguments).map_err(Failure::usage)?;
+    let times = SampleTimes::every(at(arguments.every))?;
+    let mut series = Series::new(Quantities::default(), times);
+    let mut profile = HeightProfile::new(0.0, arguments.shown(), arguments.shown().ceil() as usize, times)?;
     let (mut energy_change, mut fields) = (EnergyChange::default(), grid(arguments)?);
     let mut progress = Progress::of("run").until(end);
 
     let start = Instant::now();
-    simulation.run_until(settled, &mut (&mut series, &mut progress))?;
-    simulation.run_until(end, &mut ((&mut series, &mut progress), (&mut energy_change, &mut fields)))?;
-    Ok(Outcome {
-        run_seconds: start.elapsed().as_secs_f64(),
-        series,
-        energy_change: energy_change.disks().estimate(),
-        fields,
-        counters: *simulation.counters(),
-        final_state_hash: hash(simulation.time(), &simulation.disks()),
-        disks: simulation.disks(),
-    })
+    simulation.run_until(middle, &mut (&mut series, &mut progress))?;
+    let mut second_half = (&mut energy_change, &mut fields, &mut profile);
+    simulation.run_until(end, &mut (&mut series, &mut progress, &mut second_half))?;
+    let seconds = start.elapsed().as_secs_f64();
+    let temperature = mean(settled(&series), |(.., energy)| energy.translational).mean();
+    let noise = thermal_noise(temperature, 1.0, simulation.disks().len())?;
+    let flow = name_of_flow(settled(&series), noise, profile.densest_layer(), arguments.periodic)?;
+    Ok(Outcome { simulation, seconds, series, energy_change, fields, noise, flow })
 }
 
 fn build(arguments: &Arguments) -> Result<Simulation<BoxedRule, Container>, Box<dyn Error>> {
@@ -90,20 +95,59 @@ fn rule(arguments: &Arguments) -> Result<BoxedRule, ParameterError> {
 }
 
 /// Returns a grid of about seven diameters a cell: fewer columns if the box is narrow, larger cells if it is
-/// wide. An open box is shown to five times its width.
+/// wide.
 fn grid(arguments: &Arguments) -> Result<Fields, ParameterError> {
     let columns = (arguments.width / 7.0).round().clamp(4.0, 24.0);
-    let height = if arguments.open { 5.0 * arguments.width } else { arguments.height };
     let times = SampleTimes::every(arguments.period())?;
-    flow::on_squares(DVec2::ZERO, DVec2::new(arguments.width, height), columns as usize, times)
+    flow::on_squares(DVec2::ZERO, DVec2::new(arguments.width, arguments.shown()), columns as usize, times)
 }
 
-/// Returns a name for the state, which depends on its last bit.
-fn hash(time: f64, disks: &[Disk]) -> String {
-    let numbers = |disk: &Disk| {
-        let (position, velocity) = (disk.position(), disk.velocity());
-        [position.x, position.y, velocity.x, velocity.y, disk.angle(), disk.angular_velocity()]
+/// Returns the samples of the second half.
+fn settled(series: &Series<Quantities>) -> &[Sample] {
+    &series.values()[series.values().len() / 2..]
+}
+
+fn mean(samples: &[Sample], quantity: fn(&Sample) -> f64) -> Estimate {
+    samples.iter().map(quantity).collect::<BlockedMean>().estimate()
+}
+
+/// Names the flow of these samples.
+fn name_of_flow(
+    samples: &[Sample],
+    noise: f64,
+    layer: Option<DenseLayer>,
+    periodic: bool,
+) -> Result<String, ParameterError> {
+    let order = |(order, ..): &Sample| match order {
+        // Without walls, a pair of rolls drifts from one order parameter to the other.
+        _ if periodic => ConvectionOrder::new(0.0, order.one_roll.hypot(order.two_rolls)),
+        _ => *order,
     };
-    let bytes: Vec<u8> = disks.iter().flat_map(numbers).chain([time]).flat_map(f64::to_le_bytes).collect();
-    blake3::hash(&bytes).to_hex()[..32].to_owned()
+    let order: Vec<_> = samples.iter().map(order).collect();
+    let found = StateCriteria::default().classify(&order, noise, layer)?;
+    Ok(if periodic { found.regime().to_string() } else { found.state().to_string() })
+}
+
+impl Outcome {
+    /// Returns the mean of a quantity in the second half.
+    pub(crate) fn mean(&self, quantity: fn(&Sample) -> f64) -> Estimate {
+        mean(settled(&self.series), quantity)
+    }
+
+    /// Returns the collisions of two disks in a second.
+    pub(crate) fn speed(&self) -> f64 {
+        self.simulation.counters().collisions as f64 / self.seconds
+    }
+
+    /// Returns a name for the last state, which depends on its last bit.
+    pub(crate) fn hash(&self) -> String {
+        let numbers = |disk: &Disk| {
+            let (position, velocity) = (disk.position(), disk.velocity());
+            [position.x, position.y, velocity.x, velocity.y, disk.angle(), disk.angular_velocity()]
+        };
+        let (disks, time) = (self.simulation.disks(), self.simulation.time());
+        let numbers = disks.iter().flat_map(numbers).chain([time]);
+        let bytes: Vec<u8> = numbers.flat_map(f64::to_le_bytes).collect();
+        blake3::hash(&bytes).to_hex()[..32].to_owned()
+    }
 }

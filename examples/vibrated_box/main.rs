@@ -13,22 +13,20 @@ mod experiment;
 mod picture;
 mod report;
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use crate::arguments::Arguments;
 use crate::common::command_line::{self, Failure};
-use crate::report::Means;
 
 fn main() -> ExitCode {
     command_line::main(|arguments: &Arguments| {
         arguments.check()?;
         arguments.results.make_folder()?;
         let outcome = experiment::run(arguments)?;
-        let means = Means::of(&outcome);
-        report::print(arguments, &outcome, &means);
-        let picture = picture::draw(arguments, &outcome, &means);
-        let numbers = report::json(arguments, &outcome, &means);
-        let table = |out: &mut dyn std::io::Write| outcome.series.write_csv(out);
+        report::print(&outcome);
+        let (picture, numbers) = (picture::draw(arguments, &outcome), report::json(&outcome));
+        let table = |out: &mut dyn Write| outcome.series.write_csv(out);
         arguments.results.finish_with("vibrated_box", table, &picture, &numbers).map_err(Failure::run)
     })
 }
