@@ -180,8 +180,8 @@ fn write(arguments: &Arguments, nuts: &[Nut]) -> Result<(), Box<dyn Error>> {
     arguments.results.finish("brazil_nut", table, &draw(nuts)?, &numbers)
 }
 
-const MARGINS: Margins = [58.0, 14.0, 28.0, 52.0];
-const HEADER: f64 = 56.0;
+const MARGINS: Margins = [62.0, 16.0, 28.0, 58.0];
+const HEADER: f64 = 66.0;
 const HEIGHT: f64 = 440.0;
 
 /// Height of the part of the box that is shown.
@@ -222,7 +222,7 @@ fn add_legend(sheet: &mut Sheet, (x, y): (f64, f64), nuts: &[Nut]) {
     let names = names.iter().map(String::as_str).enumerate().map(|(k, name)| (look(k), name));
     let names: Vec<_> = names.chain([(GRAIN, "mean of the grains")]).collect();
     let rows = names.len().div_ceil(2);
-    let top = y + 10.0 - 22.0 * rows as f64;
+    let top = y + 10.0 - 24.0 * rows as f64;
     for (column, names) in names.chunks(rows).enumerate() {
         sheet.legend((x + 230.0 * column as f64, top), names);
     }

@@ -122,13 +122,13 @@ fn write(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Result<(), Bo
     arguments.results.finish_table("fields", table, Some(&draw(arguments, fine, coarse)))
 }
 
-const MARGINS: Margins = [56.0, 14.0, 6.0, 52.0];
-const BAR_MARGINS: Margins = [56.0, 14.0, 34.0, 24.0];
-const HEADER: f64 = 84.0;
-const BAR: f64 = 74.0;
+const MARGINS: Margins = [56.0, 14.0, 6.0, 60.0];
+const BAR_MARGINS: Margins = [56.0, 14.0, 34.0, 28.0];
+const HEADER: f64 = 92.0;
+const BAR: f64 = 80.0;
 
 /// Length of a diameter on the sheet.
-const UNIT: f64 = 4.4;
+const UNIT: f64 = 3.3;
 
 /// Share of the disks of the fullest cell below which a cell stays white, since its averages are noise.
 const ENOUGH: f64 = 0.05;
@@ -190,7 +190,7 @@ fn draw(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Sheet {
         draw_bar(&mut sheet, place, map, range);
         let mut plots = vec![heat_map(map, fine, range)];
         if column == FLOW {
-            plots.push(arrows.plot(1.6));
+            plots.push(arrows.plot(1.4));
         }
         let place = Place { x, y: HEADER + BAR, width: size.0, height: size.1 };
         let axes = panel::axes((0.0, BOX.x), (0.0, top));
@@ -246,7 +246,7 @@ fn draw_bar(sheet: &mut Sheet, place: Place, map: &Map, range: (f64, f64)) {
         .with_y_range(0.0, 1.0)
         .with_cell_size(1.0);
     let axes: Layout = panel::axes(range, (0.0, 1.0));
-    let axes = axes.with_ticks(4).with_y_tick_step(2.0);
+    let axes = axes.with_ticks(3).with_y_tick_step(2.0);
     let axes = axes.with_y_tick_format(TickFormat::Custom(Arc::new(|_| String::new())));
     sheet.panel(place, BAR_MARGINS, vec![bar.into()], axes);
     sheet.text(place.x + MARGINS[0], place.y + 26.0, MEDIUM, INK, map.name);

@@ -22,7 +22,7 @@ use granular_edmd::study::{Axis, Column, Experiment, ExperimentError, Plan, Plan
 use serde::{Deserialize, Serialize};
 
 use common::look::Look;
-use common::panel::{self, Place};
+use common::panel::{self, COLUMN, Place};
 use common::sheet::Sheet;
 
 /// The parameters: a plan varies them by the names of these fields.
@@ -153,12 +153,12 @@ fn run(Arguments { common }: &Arguments) -> Result<(), Box<dyn std::error::Error
 
 /// Draws the angular momentum over the spin of the drum, with errors, for each loss.
 fn draw(points: &[(f64, f64, Estimate)]) -> Sheet {
-    let mut sheet = Sheet::new(520.0, 400.0);
+    let mut sheet = Sheet::new(COLUMN, 400.0);
     let most = points.iter().map(|(.., momentum)| momentum.mean()).fold(0.0, f64::max);
     let layout = panel::axes((0.0, 0.25), (0.0, 1.3 * most)).with_x_label("spin of the drum");
     let layout = layout.with_y_label("angular momentum of a disk");
-    let place = Place { x: 0.0, y: 0.0, width: 520.0, height: 400.0 };
-    let panel = sheet.panel(place, [74.0, 24.0, 14.0, 52.0], Vec::new(), layout);
+    let place = Place { x: 0.0, y: 0.0, width: COLUMN, height: 400.0 };
+    let panel = sheet.panel(place, [74.0, 24.0, 14.0, 60.0], Vec::new(), layout);
     for (k, series) in points.chunk_by(|a, b| a.0 == b.0).enumerate() {
         let look = Look::number(k).without_line();
         let bar = |(_, spin, momentum): &(f64, f64, Estimate)| {
@@ -167,7 +167,7 @@ fn draw(points: &[(f64, f64, Estimate)]) -> Sheet {
         sheet.bars(&panel, look, series.iter().map(bar));
         sheet.marks(&panel, look, series.iter().map(|(_, spin, momentum)| (*spin, momentum.mean())));
         let name = format!("loss {}", series[0].0);
-        sheet.legend((panel.place.x + 16.0, panel.place.y + 26.0 + 22.0 * k as f64), &[(look, &name)]);
+        sheet.legend((panel.place.x + 16.0, panel.place.y + 26.0 + 24.0 * k as f64), &[(look, &name)]);
     }
     sheet
 }

@@ -223,8 +223,8 @@ fn write(arguments: &Arguments, heaps: &[Heap]) -> Result<(), Box<dyn Error>> {
     arguments.results.finish("rest", table, &draw(heaps), &numbers)
 }
 
-const MARGINS: Margins = [66.0, 14.0, 34.0, 52.0];
-const HEADER: f64 = 60.0;
+const MARGINS: Margins = [84.0, 18.0, 34.0, 60.0];
+const HEADER: f64 = 64.0;
 const UNIT: f64 = 17.0;
 
 /// Height of the part of the heaps that is shown.

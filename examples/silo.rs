@@ -222,8 +222,8 @@ fn write(arguments: &Arguments, flows: &[Flow], law: Option<Law>) -> Result<(), 
     arguments.results.finish("silo", table, &picture, &serde_json::json!({ "flows": flows, "law": law }))
 }
 
-const MARGINS: Margins = [58.0, 14.0, 28.0, 52.0];
-const HEADER: f64 = 56.0;
+const MARGINS: Margins = [62.0, 16.0, 28.0, 58.0];
+const HEADER: f64 = 66.0;
 const HEIGHT: f64 = 520.0;
 
 /// Height of the part of the silo that is shown.

@@ -7,7 +7,8 @@
 //! The bench runs the same physical state in boxes of the same height and growing width, with at most
 //! `LARGEST` (10⁶) disks. It measures `ROUNDS` times, and the medians of the time on a processor count. The
 //! disks are numbered once by their place, which is the best for the caches, and once at random. The picture
-//! goes to `PICTURE`, or to `out/scaling.png` if that is not set, and as SVG beside it.
+//! goes to `PICTURE`, or to `out/scaling.png` if that is not set, and as SVG and as a table beside it. With
+//! `TABLE`, the path of such a table, nothing is measured: the picture shows the times of the table.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -24,6 +25,7 @@ mod raster;
 #[path = "../../examples/common/sheet.rs"]
 #[allow(dead_code, reason = "not all parts are needed here")]
 mod sheet;
+mod table;
 mod tiles;
 
 use std::path::PathBuf;
@@ -35,6 +37,7 @@ use common::quartiles::Quartiles;
 use common::state::{DILUTE, DISKS};
 use granular_edmd::scheduler::{BucketQueue, TournamentTree};
 use measurement::{Measurement, asked_for, measure};
+use table::Time;
 use tiles::{Numbering, Tiles};
 
 type Measure = fn(&Tiles, usize, Numbering, u32) -> Outcome<Measurement>;
@@ -75,6 +78,9 @@ fn main() -> ExitCode {
 }
 
 fn run() -> Outcome<()> {
+    if let Some(table) = ask::path("TABLE") {
+        return draw(&table::read(&table)?);
+    }
     let plan = Plan::asked_for()?;
     let mut rows = rows(plan.largest);
     if let Some(number) = asked_for() {
@@ -88,7 +94,7 @@ fn run() -> Outcome<()> {
         }
     }
     print(&rows);
-    if ask::is_test() { Ok(()) } else { draw(&rows) }
+    if ask::is_test() { Ok(()) } else { draw(&rows.iter().map(Time::of).collect::<Vec<_>>()) }
 }
 
 /// Measures this system in the present process, and prints the numbers.
@@ -158,13 +164,14 @@ fn bytes(row: &Row) -> String {
     if row.disks < 10_000 || bytes.is_nan() { "–".to_owned() } else { format!("{bytes:.0}") }
 }
 
-fn draw(rows: &[Row]) -> Outcome<()> {
+fn draw(times: &[Time]) -> Outcome<()> {
     let path = ask::path("PICTURE").unwrap_or_else(|| PathBuf::from("out/scaling.png"));
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder)?;
     }
     let path = path.with_extension("");
-    picture::draw(&DILUTE.to_string(), rows).write(&path)?;
-    println!("\nPicture: {0}.svg and {0}.png", path.display());
+    table::write(times, &path.with_extension("csv"))?;
+    picture::draw(&DILUTE.to_string(), times).write(&path)?;
+    println!("\nPicture: {0}.svg and {0}.png; table: {0}.csv", path.display());
     Ok(())
 }

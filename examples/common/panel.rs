@@ -10,6 +10,9 @@ pub(crate) const SMALL: u32 = 16;
 pub(crate) const MEDIUM: u32 = 18;
 pub(crate) const LARGE: u32 = 20;
 
+/// Width of a picture for one column of a page. Printed 8 cm wide, its small letters are 7 points high.
+pub(crate) const COLUMN: f64 = 500.0;
+
 /// A rectangle on the sheet, in its units; `y` points down.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Place {

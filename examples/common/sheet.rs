@@ -215,13 +215,14 @@ impl Sheet {
         self.scene.add(Primitive::Text { x, y, content, size, anchor, rotate: None, bold: false, color });
     }
 
-    /// Adds a title, and below it lines of small text. Returns the height of the last.
+    /// Adds a title, and below it lines of small text, broken where they would leave the sheet. Returns the
+    /// height of the last.
     pub(crate) fn header(&mut self, x: f64, title: &str, lines: &[&str]) -> f64 {
         self.text(x, 30.0, LARGE, INK, title);
-        let mut y = 34.0;
-        for line in lines {
+        let (mut y, room) = (34.0, self.scene.width - x);
+        for line in lines.iter().flat_map(|line| wrapped(line, room)) {
             y += 22.0;
-            self.text(x, y, SMALL, QUIET, line);
+            self.text(x, y, SMALL, QUIET, &line);
         }
         y
     }
@@ -276,7 +277,22 @@ const fn sample(look: Look) -> f64 {
     if look.dash.is_some() { SAMPLE } else { 10.0 }
 }
 
+/// Breaks small text into lines of at most this width, but not within an equation.
+pub(crate) fn wrapped(text: &str, room: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.replace(" = ", "\u{a0}=\u{a0}").split([' ', '\n']) {
+        match lines.last_mut() {
+            Some(line) if width(&format!("{line} {word}"), SMALL) <= room => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
 /// Returns about the width of a text.
 fn width(text: &str, size: u32) -> f64 {
-    0.58 * f64::from(size) * text.chars().count() as f64
+    0.55 * f64::from(size) * text.chars().count() as f64
 }

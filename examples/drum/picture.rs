@@ -12,10 +12,10 @@ use crate::common::panel::{self, Margins, Place, SMALL};
 use crate::common::sheet::Sheet;
 use crate::{Arguments, PIN, Turned};
 
-const MARGINS: Margins = [66.0, 14.0, 12.0, 52.0];
-const HEADER: f64 = 62.0;
+const MARGINS: Margins = [78.0, 18.0, 12.0, 60.0];
+const HEADER: f64 = 88.0;
 const SIDE: f64 = 300.0;
-const BELOW: f64 = 320.0;
+const BELOW: f64 = 330.0;
 
 /// Grains that turn as one body with the drum.
 const BODY: Look = Look::line(QUIET, "4 3").with_width(1.2);

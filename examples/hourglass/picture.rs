@@ -7,8 +7,8 @@ use crate::common::panel::{self, Margins, Place, SMALL};
 use crate::common::sheet::Sheet;
 use crate::{Arguments, Frame, Glass, Way, grains};
 
-const MARGINS: Margins = [64.0, 14.0, 12.0, 52.0];
-const HEADER: f64 = 84.0;
+const MARGINS: Margins = [72.0, 18.0, 12.0, 60.0];
+const HEADER: f64 = 90.0;
 const FILM: f64 = 340.0;
 const GAP: f64 = 16.0;
 

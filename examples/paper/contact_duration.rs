@@ -28,7 +28,7 @@ use granular_edmd::study::{Axis, Course, Outcome, Plan, PlanError, Protocol, Ram
 use kuva::prelude::Plot;
 
 use common::look::Look;
-use common::panel::{self, Margins, Place};
+use common::panel::{self, COLUMN, Margins, Place};
 use common::sheet::Sheet;
 
 /// Transitions at five contact durations.
@@ -181,23 +181,22 @@ fn by_duration(parameter: &str, records: &[Record]) -> Result<Vec<Ramps>, Parame
     records.chunks(values * RUNS).map(ramps).collect()
 }
 
-const MARGINS: Margins = [74.0, 14.0, 10.0, 52.0];
-const WIDTH: f64 = 560.0;
-const HEIGHT: f64 = 330.0;
-const HEADER: f64 = 118.0;
+const MARGINS: Margins = [74.0, 16.0, 10.0, 60.0];
+const HEIGHT: f64 = 320.0;
+const HEADER: f64 = 176.0;
 
 /// Draws the places of the transitions over the contact duration, for both parameters.
 fn draw(panels: &[(&str, Vec<Ramps>)]) -> Sheet {
-    let mut sheet = Sheet::new(WIDTH, HEADER + HEIGHT * panels.len() as f64);
+    let mut sheet = Sheet::new(COLUMN, HEADER + HEIGHT * panels.len() as f64);
     let system = format!("N = 1000, g = 0.015625; above: q = 0, below: κ = {FRICTION}");
     let note = format!("means of {RUNS} ramps with standard errors, a little apart sideways");
     sheet.header(MARGINS[0], "Transitions and the contact duration", &[&system, &note]);
     let names = TransitionLine::ALL.map(|line| line.to_string());
     let looks = (0..).map(Look::number);
     let entries: Vec<_> = looks.zip(names.iter().map(String::as_str)).collect();
-    sheet.legend_in_row((MARGINS[0], 102.0), &entries);
+    sheet.legend_in_row((16.0, HEADER - 14.0), &entries);
     for (number, (parameter, found)) in panels.iter().enumerate() {
-        let place = Place { x: 0.0, y: HEADER + HEIGHT * number as f64, width: WIDTH, height: HEIGHT };
+        let place = Place { x: 0.0, y: HEADER + HEIGHT * number as f64, width: COLUMN, height: HEIGHT };
         add_panel(&mut sheet, place, parameter, found);
     }
     sheet

@@ -22,7 +22,7 @@ use granular_edmd::statistics::BlockedMean;
 
 use common::command_line;
 use common::look::Look;
-use common::panel::{self, Margins, Place};
+use common::panel::{self, COLUMN, Margins, Place};
 use common::progress::Progress;
 use common::results::Results;
 use common::sheet::Sheet;
@@ -148,12 +148,12 @@ fn measured(arguments: &Arguments, rule: Frictional) -> Result<Measured, Box<dyn
     Ok(measured)
 }
 
-const MARGINS: Margins = [74.0, 14.0, 10.0, 52.0];
-const HEADER: f64 = 124.0;
+const MARGINS: Margins = [80.0, 16.0, 10.0, 60.0];
+const HEADER: f64 = 166.0;
 
 /// Draws the three energy changes over friction, with the errors of the run.
 fn draw(points: &[Point]) -> Sheet {
-    let mut sheet = Sheet::new(560.0, HEADER + 380.0);
+    let mut sheet = Sheet::new(COLUMN, HEADER + 380.0);
     let system = "N = 1000, box 60 × 150, g = 0.015625, A = 0.1, ω = 10, q = 0";
     sheet.header(MARGINS[0], "Mean energy change per collision", &[system]);
     let series: [(&str, Quantity); 3] = [
@@ -169,11 +169,11 @@ fn draw(points: &[Point]) -> Sheet {
     let lowest = points.iter().flat_map(|point| [point.equal, point.of_run, point.run - point.error]);
     let layout = panel::axes((0.007, 1.5), (1.1 * lowest.fold(0.0, f64::min), 0.0)).with_log_x();
     let layout = layout.with_x_label("friction κ").with_y_label("⟨dE⟩ / T");
-    let frame = Place { x: 0.0, y: HEADER, width: 560.0, height: 380.0 };
+    let frame = Place { x: 0.0, y: HEADER, width: COLUMN, height: 380.0 };
     let panel = sheet.panel(frame, MARGINS, curves, layout);
     let bar = |point: &Point| [-1.0, 1.0].map(|side| (point.friction, point.run + side * point.error));
     sheet.bars(&panel, Look::number(2), points.iter().map(bar));
     looks().for_each(|(look, _, value)| sheet.marks(&panel, look, place(value)));
-    sheet.legend((MARGINS[0], 78.0), &looks().map(|(look, name, _)| (look, name)).collect::<Vec<_>>());
+    sheet.legend((16.0, 106.0), &looks().map(|(look, name, _)| (look, name)).collect::<Vec<_>>());
     sheet
 }

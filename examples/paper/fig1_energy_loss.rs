@@ -25,7 +25,7 @@ use kuva::prelude::{Layout, TickFormat};
 
 use common::command_line::{self, positive};
 use common::look::{BLUE, INK, Look, SKY, VERMILION};
-use common::panel::{self, Margins, Place, SMALL};
+use common::panel::{self, COLUMN, Margins, Place, SMALL};
 use common::results::Results;
 use common::sheet::Sheet;
 
@@ -104,10 +104,10 @@ impl Panel {
     /// heights.
     fn label_place(&self, index: usize, piece: &Piece) -> (f64, f64) {
         let lowest = piece.iter().map(|&point| self.fraction(point).1).fold(1.0, f64::min);
-        let height = (0.38 + 0.11 * (index % 3) as f64).max(lowest + 0.15);
+        let height = (0.25 + 0.11 * (index % 5) as f64).max(lowest + 0.15);
         let distance = |&point: &(f64, f64)| {
             let (across, up) = self.fraction(point);
-            let edge = (0.05 - across).max(across - 0.95).max(0.03 - up).max(up - 0.97).max(0.0);
+            let edge = (0.07 - across).max(across - 0.92).max(0.03 - up).max(up - 0.97).max(0.0);
             let wanted = if self.logarithmic { up - height } else { across - 0.7 };
             wanted.abs() + 100.0 * edge
         };
@@ -191,23 +191,22 @@ fn tabulate(panels: &[Panel], gas: &Maxwellian, results: &Results) -> Result<(),
     results.write_tables_as_json(&tables)
 }
 
-const MARGINS: Margins = [72.0, 16.0, 10.0, 52.0];
-const WIDTH: f64 = 620.0;
-const HEIGHT: f64 = 420.0;
-const HEADER: f64 = 84.0;
+const MARGINS: Margins = [72.0, 20.0, 10.0, 60.0];
+const HEIGHT: f64 = 380.0;
+const HEADER: f64 = 94.0;
 
 /// The curve of the largest loss.
 const LARGEST: Look = Look::line(INK, "8 4").with_width(1.6);
 
 /// Draws both panels, one above the other.
 fn draw(panels: &[Panel], gas: &Maxwellian) -> Result<Sheet, ParameterError> {
-    let mut sheet = Sheet::new(WIDTH, HEADER + HEIGHT * panels.len() as f64);
+    let mut sheet = Sheet::new(COLUMN, HEADER + HEIGHT * panels.len() as f64);
     let temperature = gas.rotational_temperature();
-    let note = format!("Maxwellian gas of temperature T, with a rotational temperature of {temperature} T");
+    let note = format!("Maxwellian gas, rotational temperature {temperature} T");
     sheet.header(MARGINS[0], "Mean energy change per collision, ⟨dE⟩/T", &[&note]);
-    sheet.legend((MARGINS[0], 75.0), &[(LARGEST, "largest loss at each q; numbers: ⟨dE⟩/T")]);
+    sheet.legend((MARGINS[0], HEADER - 12.0), &[(LARGEST, "largest loss at each q; numbers: ⟨dE⟩/T")]);
     for (number, panel) in panels.iter().enumerate() {
-        let place = Place { x: 0.0, y: HEADER + HEIGHT * number as f64, width: WIDTH, height: HEIGHT };
+        let place = Place { x: 0.0, y: HEADER + HEIGHT * number as f64, width: COLUMN, height: HEIGHT };
         draw_panel(&mut sheet, place, panel, gas)?;
     }
     Ok(sheet)
@@ -235,7 +234,7 @@ fn draw_panel(
     let drawn = sheet.panel(place, MARGINS, plots, panel.layout());
     for (point, text) in labels {
         let (x, y) = drawn.at(point);
-        sheet.on_white((x, y + 5.0), SMALL - 1, &text);
+        sheet.on_white((x, y + 5.0), SMALL, &text);
     }
     Ok(())
 }

@@ -25,7 +25,7 @@ use granular_edmd::study::vibrated_box::{Base, VibratedBox};
 use granular_edmd::study::{Axis, Plan, PlanError, Protocol, Record, Study};
 
 use common::look::{LOOKS, Look, QUIET};
-use common::panel::{self, Margins, Place};
+use common::panel::{self, COLUMN, Margins, Place};
 use common::sheet::Sheet;
 
 /// Height of the center of mass against friction (paper, Fig. 2).
@@ -96,19 +96,18 @@ fn print(points: &[Point]) {
     }
 }
 
-const MARGINS: Margins = [64.0, 14.0, 10.0, 52.0];
-const WIDTH: f64 = 560.0;
+const MARGINS: Margins = [64.0, 18.0, 10.0, 60.0];
 const HEIGHT: f64 = 400.0;
-const HEADER: f64 = 64.0;
+const HEADER: f64 = 66.0;
 
 /// Frictions at the edges of the picture.
 const EDGES: (f64, f64) = (0.007, 14.0);
 
 fn draw(points: &[Point], slip: bool) -> Sheet {
-    let mut sheet = Sheet::new(WIDTH, HEADER + HEIGHT);
-    let base = if slip { "thermal base with slip" } else { "thermal base" };
-    let note = format!("N = 500, width 25, g = 0.002, q = 0.025, {base}");
-    sheet.header(MARGINS[0], "A column over a thermal base", &[&note]);
+    let mut sheet = Sheet::new(COLUMN, HEADER + HEIGHT);
+    let slip = if slip { " with slip" } else { "" };
+    let title = format!("A column over a thermal base{slip}");
+    sheet.header(MARGINS[0], &title, &["N = 500, width 25, g = 0.002, q = 0.025"]);
     // The axis is logarithmic, so the value without friction is drawn as a line.
     let drawn = || points.iter().filter(|point| point.friction > 0.0);
     let place = |point: &Point| (point.friction, point.height.mean());
@@ -124,7 +123,7 @@ fn draw(points: &[Point], slip: bool) -> Sheet {
     }
     let layout = panel::axes(EDGES, heights(points)).with_log_x();
     let layout = layout.with_x_label("friction κ").with_y_label("center of mass, in diameters σ");
-    let frame = Place { x: 0.0, y: HEADER, width: WIDTH, height: HEIGHT };
+    let frame = Place { x: 0.0, y: HEADER, width: COLUMN, height: HEIGHT };
     let panel = sheet.panel(frame, MARGINS, plots, layout);
     let bar = |point: &Point| {
         let (mean, error) = (point.height.mean(), point.height.standard_error());
@@ -135,7 +134,7 @@ fn draw(points: &[Point], slip: bool) -> Sheet {
         let look = if point.height.is_converged() { rough } else { rough.open() };
         sheet.marks(&panel, look, [place(point)]);
     }
-    sheet.legend((MARGINS[0] + 16.0, HEADER + HEIGHT - 118.0), &names);
+    sheet.legend((MARGINS[0] + 16.0, HEADER + HEIGHT - 130.0), &names);
     sheet
 }
 

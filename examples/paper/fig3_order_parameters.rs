@@ -26,7 +26,7 @@ use granular_edmd::study::{Course, Leg, Plan, PlanError, Protocol, Ramp, Study};
 use kuva::prelude::{Layout, Plot, TickFormat};
 
 use common::look::{self, BLUE, Look, Mark, NOISE, VERMILION};
-use common::panel::{self, Place};
+use common::panel::{self, COLUMN, Place};
 use common::sheet::Sheet;
 
 /// Order parameters while friction grows step by step (paper, Fig. 3).
@@ -94,10 +94,9 @@ const fn friction(record: &Record) -> f64 {
 }
 
 const LEFT: f64 = 70.0;
-const WIDTH: f64 = 640.0;
-const HEADER: f64 = 110.0;
-const HEIGHT: f64 = 230.0;
-const BELOW: f64 = 52.0;
+const HEADER: f64 = 164.0;
+const HEIGHT: f64 = 190.0;
+const BELOW: f64 = 60.0;
 
 /// Largest order parameter of the picture.
 const MOST: f64 = 0.25;
@@ -111,7 +110,7 @@ type Quantity = fn(&Sample) -> f64;
 
 /// Draws both order parameters, one above the other, over friction.
 fn draw(arguments: &Arguments, records: &[Record], study: &Study<VibratedBox>) -> Sheet {
-    let mut sheet = Sheet::new(WIDTH, HEADER + 2.0 * HEIGHT + BELOW);
+    let mut sheet = Sheet::new(COLUMN, HEADER + 2.0 * HEIGHT + BELOW);
     let cycles = study.plan().protocol().cycles();
     let note = format!("N = 1000, g = 0.015625, q = 0; {cycles} oscillations at each κ");
     sheet.header(LEFT, "Order parameters while friction changes", &[&note]);
@@ -120,13 +119,14 @@ fn draw(arguments: &Arguments, records: &[Record], study: &Study<VibratedBox>) -
     } else {
         &["samples, κ grows"]
     };
-    let names: Vec<_> = WAYS.map(|look| look.with_size(3.5)).into_iter().zip(names.iter().copied()).collect();
-    sheet.legend_in_row((LEFT, 77.0), &names);
-    sheet.legend((LEFT, 98.0), &[(NOISE, "two standard deviations of thermal noise")]);
+    let names = WAYS.map(|look| look.with_size(3.5)).into_iter().zip(names.iter().copied());
+    let noise = (NOISE, "two standard deviations of thermal noise");
+    let names: Vec<_> = names.chain([noise]).collect();
+    sheet.legend((LEFT, 106.0), &names);
     let quantities: [(Quantity, &str); 2] =
         [(|sample| sample.one_roll, "Ψ₁, one roll"), (|sample| sample.two_rolls, "Ψ₂, two rolls")];
     for (number, (quantity, name)) in quantities.into_iter().enumerate() {
-        let place = Place { x: 0.0, y: HEADER + HEIGHT * number as f64, width: WIDTH, height: HEIGHT };
+        let place = Place { x: 0.0, y: HEADER + HEIGHT * number as f64, width: COLUMN, height: HEIGHT };
         add_panel(&mut sheet, place, records, quantity, layout(number == 1).with_y_label(name));
     }
     sheet

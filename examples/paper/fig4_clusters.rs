@@ -31,7 +31,7 @@ use kuva::prelude::Plot;
 
 use common::command_line::{non_negative, whole};
 use common::look::{BLUE, GREEN, INK, Look, Mark, QUIET, VERMILION};
-use common::panel::{self, Margins, Panel, Place};
+use common::panel::{self, COLUMN, Margins, Panel, Place};
 use common::sheet::Sheet;
 
 /// Clusters of the order parameters where one roll and two coexist (paper, Fig. 4).
@@ -143,11 +143,11 @@ fn write_clusters(runs: &[Run], folder: &Path) -> Result<(), Box<dyn Error>> {
     Ok(table.flush()?)
 }
 
-const MARGINS: Margins = [70.0, 14.0, 10.0, 52.0];
-const HEADER: f64 = 152.0;
+const MARGINS: Margins = [72.0, 20.0, 10.0, 60.0];
+const HEADER: f64 = 226.0;
 
 /// Size of the panel, in which a unit is equally long in both directions.
-const SIZE: (f64, f64) = (640.0, 396.0);
+const SIZE: (f64, f64) = (COLUMN, 314.8);
 
 /// Ranges of both axes.
 const RANGES: [(f64, f64); 2] = [(-0.25, 0.25), (-0.08, 0.22)];
@@ -174,7 +174,7 @@ fn draw(arguments: &Arguments, study: &Study<VibratedBox>, run: &Run) -> Sheet {
     add_legend(&mut sheet, run);
     let layout = panel::axes(RANGES[0], RANGES[1]).with_x_label("Ψ₁, one roll").with_y_label("Ψ₂, two rolls");
     let place = Place { x: 0.0, y: HEADER, width: SIZE.0, height: SIZE.1 };
-    let panel = sheet.panel(place, MARGINS, vec![noise(run)], layout.with_y_tick_step(0.05));
+    let panel = sheet.panel(place, MARGINS, vec![noise(run)], layout.with_y_tick_step(0.1));
     add_clusters(&mut sheet, &panel, run);
     sheet
 }
@@ -184,8 +184,8 @@ fn add_legend(sheet: &mut Sheet, run: &Run) {
     let names: Vec<_> =
         run.found.iter().map(|(state, cluster)| (look(state), name(state, cluster.weight()))).collect();
     let names: Vec<_> = names.iter().map(|(look, name)| (look.with_size(4.0), name.as_str())).collect();
-    sheet.legend((MARGINS[0], 97.0), &names);
-    sheet.legend((370.0, 97.0), &[(CENTER, "center"), (NOISE, "three times the noise at rest")]);
+    let others = [(CENTER, "center"), (NOISE, "three times the noise at rest")];
+    sheet.legend((MARGINS[0], 124.0), &names.into_iter().chain(others).collect::<Vec<_>>());
 }
 
 /// Draws a circle about the origin, within which a gas at rest would be.
@@ -212,5 +212,5 @@ const fn look(state: ConvectiveState) -> Look {
         ConvectiveState::TwoRollsUp | ConvectiveState::TwoRollsDown => Look::marks(VERMILION, Mark::Square),
         _ => Look::marks(QUIET, Mark::Diamond),
     };
-    look.with_size(2.8)
+    look.with_size(2.4)
 }

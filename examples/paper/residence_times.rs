@@ -24,7 +24,7 @@ use granular_edmd::study::vibrated_box::VibratedBox;
 
 use common::command_line::{self, Failure};
 use common::look::{BLUE, GREEN, Look, Mark, VERMILION};
-use common::panel::{self, Margins, Place};
+use common::panel::{self, COLUMN, Margins, Place};
 use common::results::Results;
 use common::sheet::Sheet;
 
@@ -257,9 +257,9 @@ fn print(value: &Value, shares: [f64; 3], stays: &[Option<Residence>]) {
     }
 }
 
-const MARGINS: Margins = [74.0, 16.0, 16.0, 54.0];
-const HEADER: f64 = 122.0;
-const SIZE: (f64, f64) = (640.0, 420.0);
+const MARGINS: Margins = [74.0, 20.0, 16.0, 60.0];
+const HEADER: f64 = 130.0;
+const SIZE: (f64, f64) = (COLUMN, 360.0);
 
 /// Ranges of friction and of residence times.
 const RANGES: [(f64, f64); 2] = [(0.0, 0.07), (1e3, 1e6)];

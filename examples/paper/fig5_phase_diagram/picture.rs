@@ -8,9 +8,9 @@ use granular_edmd::kinetic::{IsoLine, Maxwellian, Piece};
 use kuva::prelude::{Layout, Plot, TickFormat};
 
 use crate::common::look::{BLUE, INK, Look, Mark, PURPLE, QUIET, VERMILION};
-use crate::common::panel::{self, Margins, Panel, Place, SMALL};
+use crate::common::panel::{self, COLUMN, Margins, Panel, Place, SMALL};
 use crate::common::paper::TABLE_1;
-use crate::common::sheet::Sheet;
+use crate::common::sheet::{Sheet, wrapped};
 
 /// A state that was seen in the plane.
 pub(crate) struct State {
@@ -36,7 +36,7 @@ pub(crate) struct Crossing {
 pub(crate) struct Diagram<'a> {
     pub(crate) gravity: f64,
     pub(crate) title: &'a str,
-    /// Small text below the title, in lines.
+    /// Small text below the title.
     pub(crate) notes: &'a str,
     pub(crate) states: &'a [State],
     pub(crate) crossings: &'a [Crossing],
@@ -66,26 +66,25 @@ const FRICTIONS: (f64, f64) = (0.0043, 3.5);
 const GAP: f64 = 20.0;
 
 /// Half the width of a mark: neighbors among the frictions from 0.05 to 0.07 do not touch.
-const SIZE: f64 = 2.8;
+const SIZE: f64 = 2.2;
 
 /// Distance of the marks of both ways.
-const APART: f64 = 7.0;
+const APART: f64 = 5.5;
 
-const MARGINS: Margins = [74.0, 14.0, 10.0, 52.0];
-const WIDTH: f64 = 640.0;
-const HEIGHT: f64 = 480.0;
-const LEGEND: f64 = 152.0;
+const MARGINS: Margins = [74.0, 14.0, 10.0, 60.0];
+const HEIGHT: f64 = 410.0;
+const LEGEND: f64 = 166.0;
 
 /// Draws the picture.
 pub(crate) fn draw(diagram: &Diagram) -> Result<Sheet, ParameterError> {
-    let notes: Vec<&str> = diagram.notes.lines().collect();
-    let top = 34.0 + 19.0 * notes.len() as f64;
-    let mut sheet = Sheet::new(WIDTH, top + LEGEND + HEIGHT);
-    sheet.header(MARGINS[0], diagram.title, &notes);
+    let notes = wrapped(diagram.notes, COLUMN - MARGINS[0]);
+    let top = 34.0 + 22.0 * notes.len() as f64;
+    let mut sheet = Sheet::new(COLUMN, top + LEGEND + HEIGHT);
+    sheet.header(MARGINS[0], diagram.title, &[diagram.notes]);
     write_legend(&mut sheet, top + 30.0, diagram.states.iter().any(|state| state.down));
     let mut plots = iso_lines(diagram.gravity)?;
     plots.extend(lines(diagram.crossings));
-    let place = Place { x: 0.0, y: top + LEGEND, width: WIDTH, height: HEIGHT };
+    let place = Place { x: 0.0, y: top + LEGEND, width: COLUMN, height: HEIGHT };
     let panel = sheet.panel(place, MARGINS, plots, layout(diagram.gravity));
     add_bars(&mut sheet, &panel, diagram.crossings);
     add_states(&mut sheet, &panel, diagram.states);
@@ -93,15 +92,15 @@ pub(crate) fn draw(diagram: &Diagram) -> Result<Sheet, ParameterError> {
 }
 
 fn write_legend(sheet: &mut Sheet, top: f64, down: bool) {
-    let (left, right) = (MARGINS[0], MARGINS[0] + 270.0);
+    let (left, right) = (16.0, 236.0);
     let states = REGIMES.map(|(_, look, name)| (look.with_size(4.0), name));
     sheet.legend((left, top), &states);
     let names = LINES.map(|(line, look)| (look, format!("transition {line}")));
     sheet.legend((right, top), &names.each_ref().map(|(look, name)| (*look, name.as_str())));
     let thin = Look::line(QUIET, "").with_width(0.8);
-    sheet.legend((right, top + 88.0), &[(thin, "⟨dE⟩ of the paper's Table I")]);
-    let ways = if down { "full: way up; open, below: way down; " } else { "" };
-    sheet.text(left, top + 112.0, SMALL, QUIET, &format!("{ways}bars: between neighbors"));
+    sheet.legend((right, top + 96.0), &[(thin, "⟨dE⟩ of Table I")]);
+    let ways = if down { "full: way up; open: way down; " } else { "" };
+    sheet.text(left, top + 122.0, SMALL, QUIET, &format!("{ways}bars: between neighbors"));
 }
 
 /// Returns the largest inelasticity of the picture. At the smaller gravity, everything needs more loss.

@@ -8,13 +8,13 @@ use granular_edmd::statistics::RunningMean;
 use kuva::prelude::Plot;
 
 use crate::common::look::{BLUE, GREEN, INK, Look, Mark, VERMILION};
-use crate::common::panel::{self, MEDIUM, Margins, Place};
+use crate::common::panel::{self, COLUMN, MEDIUM, Margins, Place};
 use crate::common::sheet::Sheet;
 use crate::numbers::Number;
 use crate::phase_diagram::{self, Diagram, State};
 use crate::ramps::{Crossing, Ramp};
 
-/// Gravities of the panels, from left to right, and the end of the axis of the energy loss.
+/// Gravities of the panels, from above, and the end of the axis of the energy loss.
 const PANELS: [(f64, f64); 2] = [(0.015_625, 0.4), (0.002_025, 0.7)];
 
 const LINES: [(TransitionLine, Look, &str); 4] = [
@@ -25,29 +25,28 @@ const LINES: [(TransitionLine, Look, &str); 4] = [
 ];
 
 const FRICTIONS: (f64, f64) = (0.003, 5.0);
-const MARGINS: Margins = [74.0, 16.0, 34.0, 54.0];
-const WIDTH: f64 = 470.0;
-const HEIGHT: f64 = 430.0;
-const HEADER: f64 = 132.0;
+const MARGINS: Margins = [74.0, 16.0, 34.0, 60.0];
+const HEIGHT: f64 = 380.0;
+const HEADER: f64 = 186.0;
 
 /// Draws the energy loss at the crossings: open marks at equal temperatures, full ones at the ratio of
 /// temperatures that the runs have, with bars over the width to which a crossing is known.
 pub(crate) fn draw(crossings: &[(&Ramp, Crossing)]) -> Result<Sheet, ParameterError> {
-    let mut sheet = Sheet::new(WIDTH * PANELS.len() as f64, HEADER + HEIGHT);
+    let mut sheet = Sheet::new(COLUMN, HEADER + HEIGHT * PANELS.len() as f64);
     sheet.header(MARGINS[0], "One number for the transitions?", &[
-        "Energy loss per collision at the transitions, by the closed form in a Maxwellian gas: open with T_rot = T, as in the paper,",
-        "full with the ratio T_rot/T of the runs, thin lines at their means. Bars: the width to which a transition is known",
+        "Energy loss per collision at the transitions, by the closed form in a Maxwellian gas: open with T_rot = T, as in the \
+         paper, full with the ratio T_rot/T of the runs, thin lines at their means. Bars: the width to which a transition is known",
     ]);
-    sheet.legend_in_row((MARGINS[0], HEADER - 26.0), &LINES.map(|(_, look, name)| (look, name)));
+    sheet.legend_in_row((MARGINS[0], HEADER - 12.0), &LINES.map(|(_, look, name)| (look, name)));
     for (number, (gravity, most)) in PANELS.into_iter().enumerate() {
-        let place = Place { x: WIDTH * number as f64, y: HEADER, width: WIDTH, height: HEIGHT };
+        let place = Place { x: 0.0, y: HEADER + HEIGHT * number as f64, width: COLUMN, height: HEIGHT };
         let layout = panel::axes(FRICTIONS, (0.0, most))
             .with_log_x()
             .with_x_label("friction κ")
             .with_y_label("energy loss −⟨dE⟩/T");
         let panel = sheet.panel(place, MARGINS, means(gravity, crossings)?, layout);
         sheet.centered(
-            (place.x + 0.5 * (WIDTH + MARGINS[0]), HEADER + 22.0),
+            (place.x + 0.5 * (COLUMN + MARGINS[0]), place.y + 22.0),
             MEDIUM,
             INK,
             &format!("g = {gravity}"),
@@ -105,8 +104,8 @@ pub(crate) fn draw_diagram(
         .collect();
     let walls = ramps.first().map_or("", |ramp| ramp.walls());
     let notes = format!(
-        "N = 1000, box 60 × 150, base A = 0.1, ω = 10, contact duration 1e-4; {walls}\n{oscillations} oscillations for each \
-         point, the first half discarded;\nramps in friction and in inelasticity, from below and from above"
+        "N = 1000, box 60 × 150, base A = 0.1, ω = 10, contact duration 1e-4; {walls}; {oscillations} oscillations for each \
+         point, the first half discarded; ramps in friction and in inelasticity, from below and from above"
     );
     let title = format!("Convective states at g = {gravity}");
     Ok(phase_diagram::draw(&Diagram {

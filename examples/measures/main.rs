@@ -10,9 +10,11 @@
 //! disks that cools. Theory: Henderson's contact value (Mol. Phys. 30, 971 (1975)) and Enskog's
 //! theory; for the cooling gas van Noije and Ernst (Granular Matter 1, 57 (1998)).
 //!
-//! The example writes `measures.csv`.
+//! The example writes `measures.csv`, and `measures.svg` and `.png`: g(r), and the speeds of both gases.
 
+#[path = "../common/mod.rs"]
 mod common;
+mod picture;
 
 use std::error::Error;
 use std::f64::consts::PI;
@@ -74,12 +76,13 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     println!("{DISKS} disks, packing fraction {}, {intervals} mean free times", gas.packing);
     println!("{:44} {:>24} {:>9}", "", "measured", "theory");
     let mut rows = Rows::default();
-    in_the_bulk(&gas, intervals, &mut rows)?;
+    let bulk = in_the_bulk(&gas, intervals, &mut rows)?;
     between_walls(&gas, intervals, &mut rows)?;
-    while_it_cools(arguments, intervals / 100, &mut rows)?;
+    let cooling = while_it_cools(arguments, intervals / 100, &mut rows)?;
     let mut table = arguments.results.table("measures", &["what", "measured", "standard_error", "theory"])?;
     rows.0.iter().try_for_each(|row| table.serialize(row))?;
-    arguments.results.finish_table("measures", table, None)
+    let picture = picture::draw(arguments, &gas, &bulk, &cooling);
+    arguments.results.finish_table("measures", table, Some(&picture))
 }
 
 /// The rows of the table: what was measured, the value, its standard error, and what theory says.
@@ -142,11 +145,17 @@ fn collide<R: CollisionRule>(run: &mut Simulation<R>, per_disk: u64) -> Result<(
     run.run(&Limits::until(f64::MAX).with_most_collisions(collisions), &mut ()).map(|_| ())
 }
 
-fn in_the_bulk(gas: &Gas, intervals: u32, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+/// What is drawn of the gas in the bulk.
+struct Bulk {
+    pairs: PairCorrelation,
+    velocities: VelocityDistribution,
+}
+
+fn in_the_bulk(gas: &Gas, intervals: u32, rows: &mut Rows) -> Result<Bulk, Box<dyn Error>> {
     let mut run = gas.settled(Container::periodic(gas.side(), gas.side())?, Elastic)?;
     let times = SampleTimes::every(1.0 / gas.collision_rate())?;
     let often = SampleTimes::every(0.1 / gas.collision_rate())?;
-    let mut pairs = PairCorrelation::new(1.2, 120, times)?;
+    let mut pairs = PairCorrelation::new(4.0, 400, times)?;
     let mut displacement = MeanSquaredDisplacement::new(times, 40)?;
     let mut memory = TimeCorrelation::new(Velocities, often, 1)?;
     let mut velocities = VelocityDistribution::new(3.0, 30, times)?.about_mean();
@@ -157,7 +166,7 @@ fn in_the_bulk(gas: &Gas, intervals: u32, rows: &mut Rows) -> Result<(), Box<dyn
     let temperature = run.measure(&Temperatures).translational();
     let ideal = gas.density() * temperature;
     let compressibility = stress.tensor().pressure.mean() / ideal;
-    let near: Vec<f64> = pairs.iter().skip(100).map(|(_, value)| value.mean()).collect();
+    let near: Vec<f64> = pairs.iter().skip(100).take(20).map(|(_, value)| value.mean()).collect();
     rows.add("pair correlation at contact", at_contact(&near), gas.contact_value());
     let expected = 1.0 + 2.0 * gas.packing * gas.contact_value();
     rows.add("p / nT, by the virial", compressibility, expected);
@@ -173,7 +182,7 @@ fn in_the_bulk(gas: &Gas, intervals: u32, rows: &mut Rows) -> Result<(), Box<dyn
     let expected = gas.collision_rate() * temperature.sqrt();
     rows.add("decay of the velocity autocorrelation", decay, expected);
     rows.add_estimate("second cumulant of the velocities", velocities.second_cumulant(), 0.0);
-    Ok(())
+    Ok(Bulk { pairs, velocities })
 }
 
 /// Returns the value at the beginning of a straight line through values at equal distances.
@@ -205,7 +214,11 @@ fn between_walls(gas: &Gas, intervals: u32, rows: &mut Rows) -> Result<(), Box<d
     Ok(())
 }
 
-fn while_it_cools(arguments: &Arguments, gases: u32, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
+fn while_it_cools(
+    arguments: &Arguments,
+    gases: u32,
+    rows: &mut Rows,
+) -> Result<VelocityDistribution, Box<dyn Error>> {
     let r = arguments.restitution;
     let mut velocities = VelocityDistribution::new(3.0, 30, SampleTimes::every(1.0)?)?.about_mean();
     for seed in 0..u64::from(gases) {
@@ -218,11 +231,12 @@ fn while_it_cools(arguments: &Arguments, gases: u32, rows: &mut Rows) -> Result<
             velocities.on_sample(&run.snapshot());
         }
     }
-    let expected = 16.0 * (1.0 - r) * (1.0 - 2.0 * r * r) / (57.0 - 25.0 * r + 30.0 * r * r * (1.0 - r));
-    rows.add_estimate(
-        &format!("second cumulant, cooling at r = {r}"),
-        velocities.second_cumulant(),
-        expected,
-    );
-    Ok(())
+    let name = format!("second cumulant, cooling at r = {r}");
+    rows.add_estimate(&name, velocities.second_cumulant(), second_cumulant(r));
+    Ok(velocities)
+}
+
+/// Returns the second cumulant of a gas that cools at this restitution.
+fn second_cumulant(r: f64) -> f64 {
+    16.0 * (1.0 - r) * (1.0 - 2.0 * r * r) / (57.0 - 25.0 * r + 30.0 * r * r * (1.0 - r))
 }
