@@ -8,13 +8,17 @@ use crate::sheet::Sheet;
 use crate::table::Time;
 
 const HEIGHT: f64 = 400.0;
-const HEADER: f64 = 66.0;
+const HEADER: f64 = 88.0;
 const MARGINS: Margins = [76.0, 20.0, 10.0, 60.0];
 
 /// Draws the picture, with bars from the lower quartiles to the upper ones.
 pub(crate) fn draw(subtitle: &str, times: &[Time]) -> Sheet {
     let mut sheet = Sheet::new(COLUMN, HEADER + HEIGHT);
-    sheet.header(MARGINS[0], "Time per collision of two disks", &[subtitle]);
+    sheet.header(
+        MARGINS[0],
+        "Time per collision of two disks",
+        &[subtitle, "bars: between the quartiles of the rounds"],
+    );
     let lines = lines(times);
     let lines = || lines.iter().enumerate().map(|(k, (name, times))| (Look::number(k), name, times));
     let point = |time: &&Time| (time.disks as f64, time.nanoseconds.median);
