@@ -257,7 +257,7 @@ fn print(value: &Value, shares: [f64; 3], stays: &[Option<Residence>]) {
     }
 }
 
-const MARGINS: Margins = [74.0, 20.0, 16.0, 60.0];
+const MARGINS: Margins = [74.0, 26.0, 16.0, 60.0];
 const HEADER: f64 = 190.0;
 const SIZE: (f64, f64) = (COLUMN, 360.0);
 
