@@ -257,9 +257,9 @@ fn print(value: &Value, shares: [f64; 3], stays: &[Option<Residence>]) {
     }
 }
 
-const MARGINS: Margins = [74.0, 20.0, 16.0, 60.0];
-const HEADER: f64 = 148.0;
-const SIZE: (f64, f64) = (COLUMN, 380.0);
+const MARGINS: Margins = [74.0, 26.0, 16.0, 60.0];
+const HEADER: f64 = 190.0;
+const SIZE: (f64, f64) = (COLUMN, 360.0);
 
 /// Ranges of friction and of residence times.
 const RANGES: [(f64, f64); 2] = [(0.0, 0.07), (1e3, 1e6)];
@@ -267,10 +267,10 @@ const RANGES: [(f64, f64); 2] = [(0.0, 0.07), (1e3, 1e6)];
 /// Draws the residence times at the larger gravity over friction.
 fn draw(values: &[Value]) -> Sheet {
     let mut sheet = Sheet::new(SIZE.0, HEADER + SIZE.1);
-    let note = "N = 1000, g = 0.015625, q = 0, A = 0.1, ω = 10; a million oscillations for each friction. From κ = 0.025 \
-                to 0.055 no roll changed";
-    sheet.header(MARGINS[0], "How long states last", &[note]);
-    sheet.legend_in_row((MARGINS[0], HEADER - 22.0), &STAYS.map(|stay| (stay.look, stay.name)));
+    let notes = "N = 1000, g = 0.015625, q = 0, A = 0.1, ω = 10; a million oscillations for each friction. From κ = 0.025 to \
+                 0.055 no roll changed";
+    sheet.header(MARGINS[0], "How long states last", &[notes]);
+    sheet.legend((MARGINS[0], HEADER - 66.0), &STAYS.map(|stay| (stay.look, stay.name)));
     let layout = panel::axes(RANGES[0], RANGES[1])
         .with_log_y()
         .with_x_label("friction κ")
