@@ -15,6 +15,10 @@ use crate::phase_diagram;
 /// Friction between the two branches of the lines: the loss is largest near it.
 const LARGEST_LOSS: f64 = 0.35;
 
+/// Names of the walls.
+pub(crate) const AS_THE_DISKS: &str = "walls as the disks";
+pub(crate) const ELASTIC_WALLS: &str = "elastic frictional walls";
+
 /// A row of a table of values; columns that are not named here are left out.
 #[derive(serde::Deserialize)]
 struct Row {
@@ -155,9 +159,9 @@ impl Ramp {
     /// Returns a name of the walls.
     pub(crate) fn walls(&self) -> &'static str {
         match (self.experiment.wall_inelasticity, self.experiment.base_inelasticity) {
-            (Some(0.0), _) => "elastic frictional walls",
+            (Some(0.0), _) => ELASTIC_WALLS,
             (_, Some(0.0)) => "elastic frictional base",
-            _ => "walls as the disks",
+            _ => AS_THE_DISKS,
         }
     }
 

@@ -9,7 +9,7 @@ use granular_edmd::kinetic::effective_inelasticity;
 use crate::common::paper::{Row, TABLE_1};
 use crate::common::results::Results;
 use crate::numbers::{Average, Number, average};
-use crate::ramps::{Crossing, Ramp};
+use crate::ramps::{AS_THE_DISKS, Crossing, ELASTIC_WALLS, Ramp};
 use crate::{crossings, is_of};
 
 const NAME: &str = "transition_lines-walls";
@@ -21,7 +21,9 @@ pub(crate) fn print(ramps: &[Ramp], results: &Results) -> Result<(), Box<dyn Err
     let mut table = results.table(NAME, &columns)?;
     let mut accounts: BTreeMap<String, Vec<(&Ramp, Crossing)>> = BTreeMap::new();
     for (ramp, at) in crossings(ramps)? {
-        accounts.entry(account(ramp)).or_default().push((ramp, at));
+        for account in account(ramp) {
+            accounts.entry(account).or_default().push((ramp, at.clone()));
+        }
     }
     for (name, crossings) in &accounts {
         for number in [Number::EqualTemperatures, Number::AsPrinted] {
@@ -35,9 +37,12 @@ pub(crate) fn print(ramps: &[Ramp], results: &Results) -> Result<(), Box<dyn Err
     results.finish_table(NAME, table, None)
 }
 
-/// Returns a name of the walls, and of the length of the values.
-fn account(ramp: &Ramp) -> String {
-    format!("{}, {} oscillations", ramp.walls(), ramp.oscillations)
+/// Returns the names of the walls, with the length of the values. Where disks lose nothing along the normal,
+/// walls under their rule are elastic ones, too.
+fn account(ramp: &Ramp) -> Vec<String> {
+    let both = ramp.along_friction && ramp.experiment.inelasticity == 0.0 && ramp.walls() == AS_THE_DISKS;
+    let names = [Some(ramp.walls()), both.then_some(ELASTIC_WALLS)];
+    names.into_iter().flatten().map(|walls| format!("{walls}, {} oscillations", ramp.oscillations)).collect()
 }
 
 /// A row of Table I as it was found: gravity, line, and the average along it.
