@@ -138,9 +138,9 @@ fn without_short(series: &[bool], least: usize) -> Vec<bool> {
     steady
 }
 
-/// Names the state of each sample. A state lasts until the order parameter of another one is above three times
-/// the noise of a gas at rest, and above the other order parameter by twice the noise: less would count noise
-/// as changes. Samples before the first such are left out.
+/// Names the state of each sample. A state lasts until the order parameter of another one is above three
+/// times the noise of a gas at rest, and above the other order parameter by twice the noise: less would count
+/// noise as changes. Samples before the first such are left out.
 fn states(order: impl Iterator<Item = (f64, f64)>, noise: f64) -> Vec<State> {
     let (least, margin) = (3.0 * noise, 2.0 * noise);
     let mut now = None;
