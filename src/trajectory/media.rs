@@ -10,17 +10,24 @@ use super::errors::RecordError;
 pub(super) trait Medium: Write + Seek {
     /// Cuts the bytes to this length.
     fn cut(&mut self, length: u64) -> io::Result<()>;
+
+    /// Gives back the lock of a file.
+    fn unlock(&self) {}
 }
 
 impl Medium for File {
     fn cut(&mut self, length: u64) -> io::Result<()> {
         self.set_len(length)
     }
+
+    fn unlock(&self) {
+        let _ = Self::unlock(self);
+    }
 }
 
 /// A file that grows by whole pieces: if a write fails, the piece is cut off again.
 #[derive(Debug)]
-pub(super) struct Growing<M> {
+pub(super) struct Growing<M: Medium> {
     medium: M,
     length: u64,
     /// The ending that follows the last whole piece.
@@ -62,6 +69,14 @@ impl<M: Medium> Growing<M> {
         self.medium.seek(SeekFrom::Start(self.length))?;
         self.medium.write_all(bytes)?;
         self.medium.cut(self.length + bytes.len() as u64)
+    }
+}
+
+impl<M: Medium> Drop for Growing<M> {
+    fn drop(&mut self) {
+        // A process that was forked meanwhile, to start another program, may have the file open, too. Then to
+        // close the file here would not give the lock back.
+        self.medium.unlock();
     }
 }
 
