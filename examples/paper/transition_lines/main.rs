@@ -44,7 +44,8 @@ struct Arguments {
     /// The question.
     #[arg(value_enum, default_value = "lines")]
     question: Question,
-    /// A study, or a folder of studies; can be repeated; those of the question in docs/reproduction unless given.
+    /// A study, or a folder of studies; can be repeated. Those of the question in docs/reproduction unless
+    /// given.
     #[arg(long, value_name = "FOLDER")]
     ramps: Vec<PathBuf>,
     /// Measures every tenth crossing only; the other two questions measure none.
