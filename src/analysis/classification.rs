@@ -48,15 +48,19 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 /// 2. A cluster is **conductive** if its center is at most `$3\sigma$` from the origin. It is collapsed
 ///    instead if the height profile has such a layer: near this transition, two rolls come and go over the
 ///    layer.
-/// 3. A cluster shows **two rolls** if `$|\Psi_2| > |\Psi_1|$`: up in the middle for a positive `$\Psi_2$`,
+/// 3. A cluster shows **two rolls** if `$|\Psi_2| > 2|\Psi_1|$`: up in the middle for a positive `$\Psi_2$`,
 ///    else down.
 /// 4. A cluster shows **one roll** otherwise: clockwise for a positive `$\Psi_1$`.
 ///
 /// The bound of `$3\sigma$` compares the center of a cluster with *single* samples of a gas at rest. A share
 /// of `$e^{-9/2}$` of these, one in ninety, lies as far out. Unlike an error of the mean, this bound does not
 /// depend on the correlation of the samples. The rolls of the paper's system are far stronger, so the number
-/// matters only at their onset. A state of one roll has some `$\Psi_2$`, too, but so little that it stays
-/// away from the diagonal.
+/// matters only at their onset.
+///
+/// In two equal rolls `$\Psi_1$` vanishes, while one roll may have any `$\Psi_2$` (paper, section III). At large
+/// gravity it has a third of `$\Psi_1$`; at small gravity the roll leans ever more to one side as the loss
+/// grows, until it meets the diagonal. A ratio of 1 would call it two rolls there. In all ramps of
+/// `docs/reproduction` the ratios from 1.5 to 3 give the same names.
 ///
 /// A collapsed run keeps a weak, slow `$\Psi_2$`, whose mean settles only after thousands of oscillations.
 ///
@@ -75,6 +79,7 @@ pub struct StateCriteria {
     noise_multiple: f64,
     packing_fraction: f64,
     collapsed_order: f64,
+    two_rolls: f64,
     least_weight: f64,
     seed: u64,
 }
@@ -85,6 +90,7 @@ impl Default for StateCriteria {
             noise_multiple: 3.0,
             packing_fraction: 0.60,
             collapsed_order: 0.03,
+            two_rolls: 2.0,
             least_weight: 0.05,
             seed: 0,
         }
@@ -115,6 +121,24 @@ impl StateCriteria {
             collapsed_order: non_negative("order of a collapsed state", order)?,
             ..self
         })
+    }
+
+    /// Sets the ratio |Ψ₂|/|Ψ₁| above which a cluster shows two rolls; 2 unless given.
+    ///
+    /// ```
+    /// use granular_edmd::analysis::{ConvectiveRegime, StateCriteria};
+    /// use granular_edmd::observable::ConvectionOrder;
+    /// let lopsided = [ConvectionOrder::new(0.043, 0.048)];
+    /// let regime = |criteria: StateCriteria| Ok(criteria.classify(&lopsided, 0.006, None)?.regime());
+    /// assert_eq!(regime(StateCriteria::default())?, ConvectiveRegime::OneRoll);
+    /// assert_eq!(regime(StateCriteria::default().with_two_rolls(1.0)?)?, ConvectiveRegime::TwoRolls);
+    /// # Ok::<(), granular_edmd::ParameterError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If it is not positive or not finite.
+    pub fn with_two_rolls(self, ratio: f64) -> Result<Self, ParameterError> {
+        Ok(Self { two_rolls: positive("ratio of two rolls to one", ratio)?, ..self })
     }
 
     /// Sets the least weight that one roll and two rolls must each have in order to coexist; 0.05 unless
@@ -169,7 +193,7 @@ impl StateCriteria {
         let DVec2 { x: one_roll, y: two_rolls } = cluster.center();
         if cluster.center().length() <= self.noise_multiple * noise {
             None
-        } else if two_rolls.abs() > one_roll.abs() {
+        } else if two_rolls.abs() > self.two_rolls * one_roll.abs() {
             Some(if two_rolls > 0.0 { ConvectiveState::TwoRollsUp } else { ConvectiveState::TwoRollsDown })
         } else if one_roll > 0.0 {
             Some(ConvectiveState::ClockwiseRoll)

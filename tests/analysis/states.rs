@@ -79,7 +79,8 @@ fn names_follow_the_mirror() -> Outcome {
     assert_eq!(name(0.01, -0.122)?, ConvectiveState::TwoRollsDown);
     assert_eq!(name(2.9 * NOISE, 0.0)?, ConvectiveState::Conductive);
     assert_eq!(name(3.1 * NOISE, 0.0)?, ConvectiveState::ClockwiseRoll);
-    assert_eq!(name(0.1, -0.1)?, ConvectiveState::ClockwiseRoll, "two rolls are above the diagonal");
+    assert_eq!(name(0.1, -0.19)?, ConvectiveState::ClockwiseRoll, "one roll leans to a side");
+    assert_eq!(name(0.1, -0.21)?, ConvectiveState::TwoRollsDown);
     Ok(())
 }
 

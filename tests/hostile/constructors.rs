@@ -146,6 +146,7 @@ fn watching() -> Vec<Case> {
             |value| told(StateCriteria::default().with_noise_multiple(value)),
             not_negative,
         ),
+        ("ratio of two rolls", |value| told(StateCriteria::default().with_two_rolls(value)), positive),
         ("packing fraction", |value| told(StateCriteria::default().with_collapse(value, 0.1)), not_negative),
         (
             "least weight",

@@ -4,17 +4,19 @@
 //! transition line: the paper's ⟨dE⟩ of a gas of equal temperatures, the same with the ratio of temperatures
 //! that the run has, and the energy change of the collisions in the run. The smaller the scatter along a
 //! line, the better the number governs the transition. It writes `transition_lines` as a table and a picture,
-//! and the phase diagrams `fig5_full_length-…`; for the other two questions `transition_lines-walls.csv` and
-//! `transition_lines-dependences.csv`.
+//! and the phase diagrams `fig5_full_length-…`; for each of the other questions a table with its name, such
+//! as `transition_lines-walls.csv`.
 //!
 //! ```text
 //! cargo run --release --features serde --example transition_lines -- lines
 //! cargo run --release --features serde --example transition_lines -- walls
+//! cargo run --release --features serde --example transition_lines -- criteria
 //! cargo run --release --features serde --example transition_lines -- dependences
 //! ```
 
 #[path = "../../common/mod.rs"]
 mod common;
+mod criteria;
 mod dependences;
 mod local;
 mod numbers;
@@ -48,7 +50,7 @@ struct Arguments {
     /// given.
     #[arg(long, value_name = "FOLDER")]
     ramps: Vec<PathBuf>,
-    /// Measures every tenth crossing only; the other two questions measure none.
+    /// Measures every tenth crossing only; the other questions measure none.
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
@@ -61,6 +63,8 @@ enum Question {
     Lines,
     /// What if the walls lose nothing along the normal, or only the base does?
     Walls,
+    /// What if states get their names by other criteria?
+    Criteria,
     /// What else moves the transitions?
     Dependences,
 }
@@ -69,7 +73,7 @@ impl Question {
     /// Returns the folders of its ramps.
     fn folders(self) -> Vec<PathBuf> {
         let names: &[&str] = match self {
-            Self::Lines => &["full-length"],
+            Self::Lines | Self::Criteria => &["full-length"],
             Self::Walls => &["walls", "full-length", "full-length-elastic-walls"],
             Self::Dependences => &["dependences"],
         };
@@ -89,6 +93,7 @@ fn main() -> ExitCode {
         let done = match arguments.question {
             Question::Lines => lines(&ramps, arguments),
             Question::Walls => walls::print(&ramps, &arguments.results),
+            Question::Criteria => criteria::print(&ramps, &arguments.results),
             Question::Dependences => dependences::print(&ramps, &arguments.results),
         };
         done.map_err(Failure::run)

@@ -2,9 +2,10 @@
 
 use std::error::Error;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use granular_edmd::analysis::{ConvectiveRegime, Transition, TransitionLine, transitions};
+use granular_edmd::observable::DenseLayer;
 use granular_edmd::statistics::RunningMean;
 use granular_edmd::study::Plan;
 use granular_edmd::study::vibrated_box::VibratedBox;
@@ -23,29 +24,44 @@ pub(crate) const ELASTIC_WALLS: &str = "elastic frictional walls";
 #[derive(serde::Deserialize)]
 struct Row {
     ramp: usize,
+    value: u32,
     leg: String,
     friction: Option<f64>,
     inelasticity: Option<f64>,
     state: String,
     translational_energy: f64,
     rotational_energy: f64,
+    /// Short ramps leave these out.
+    #[serde(default)]
+    thermal_noise: f64,
+    #[serde(default)]
+    densest_packing: f64,
+    #[serde(default)]
+    densest_height: f64,
 }
 
 /// The state at one value of a ramp.
 #[derive(Debug, Clone)]
 pub(crate) struct Observation {
+    /// The number of the value in the ramp.
+    pub(crate) value: u32,
     pub(crate) friction: f64,
     pub(crate) inelasticity: f64,
     pub(crate) leg: String,
     pub(crate) regime: ConvectiveRegime,
     /// Rotational over translational temperature of all disks.
     pub(crate) temperature_ratio: f64,
+    /// Standard deviation of the order parameters in a gas at rest.
+    pub(crate) noise: f64,
+    /// The densest layer. What lies below it is not in the tables: a gas, wherever a layer is compact.
+    pub(crate) layer: DenseLayer,
 }
 
 /// The observations of one ramp, in friction or in inelasticity, with its bisected values.
 #[derive(Debug, Clone)]
 pub(crate) struct Ramp {
-    /// The name of the study's folder.
+    /// The folder of the study, and its name.
+    pub(crate) folder: PathBuf,
     pub(crate) study: String,
     /// The box at the first value.
     pub(crate) experiment: VibratedBox,
@@ -125,17 +141,21 @@ fn study_of(folder: &Path) -> Result<Vec<Ramp>, Box<dyn Error>> {
     let mut ramps: Vec<(usize, Ramp)> = Vec::new();
     for row in rows {
         let observation = Observation {
+            value: row.value,
             friction: row.friction.unwrap_or(fixed.friction),
             inelasticity: row.inelasticity.unwrap_or(fixed.inelasticity),
             leg: row.leg,
             regime: regime(&row.state)?,
             temperature_ratio: 2.0 * row.rotational_energy / row.translational_energy,
+            noise: row.thermal_noise,
+            layer: DenseLayer::new(row.densest_height, row.densest_packing, 0.0),
         };
         match ramps.last_mut().filter(|(index, _)| *index == row.ramp) {
             Some((_, ramp)) => ramp.observations.push(observation),
             None => ramps.push((
                 row.ramp,
                 Ramp {
+                    folder: folder.to_owned(),
                     study: folder.file_name().unwrap_or_default().to_string_lossy().into_owned(),
                     experiment: fixed.clone(),
                     oscillations: plan.protocol().cycles(),
