@@ -34,6 +34,9 @@ struct Arguments {
     /// Folder of the studies.
     #[arg(long, value_name = "FOLDER", default_value = "docs/reproduction/long")]
     studies: PathBuf,
+    /// Oscillations that two rolls must last so as not to be a fluctuation of one roll, and the other way around.
+    #[arg(long, default_value_t = 2000)]
+    shortest: u64,
     /// Reads the first tenth of each run.
     #[arg(long)]
     quick: bool,
@@ -43,7 +46,7 @@ struct Arguments {
 
 fn main() -> ExitCode {
     command_line::main(|arguments: &Arguments| {
-        let values = read(&arguments.studies, arguments.quick).map_err(Failure::usage)?;
+        let values = read(arguments).map_err(Failure::usage)?;
         arguments.results.make_folder()?;
         finish(&values, &arguments.results).map_err(Failure::run)
     })
@@ -74,6 +77,8 @@ struct Value {
     row: Row,
     /// Oscillations between two samples.
     every: u64,
+    /// Oscillations of the shortest stay that counts.
+    shortest: u64,
     states: Vec<State>,
     /// Mean of the larger order parameter, over the noise of a gas at rest.
     strength: f64,
@@ -85,28 +90,28 @@ impl Value {
         self.states.iter().filter(|seen| **seen == state).count() as f64 / self.states.len() as f64
     }
 
-    /// Returns how long one roll keeps its sense; two rolls between two stays of one roll do not count.
+    /// Returns how long one roll keeps its sense; `None` where two rolls have more than a quarter of the time.
+    /// Two rolls between two stays of one roll do not count, nor does one roll for a moment between two.
     fn sense(&self) -> Option<Residence> {
-        let senses: Vec<bool> = self
-            .states
-            .iter()
-            .filter(|state| **state != State::TwoRolls)
-            .map(|state| *state == State::Clockwise)
-            .collect();
+        let are_two = self.two_rolls().unwrap_or_else(|| vec![false; self.states.len()]);
+        let alone = self.states.iter().zip(are_two).filter(|(state, two)| !two && **state != State::TwoRolls);
+        let senses: Vec<bool> = alone.map(|(state, _)| *state == State::Clockwise).collect();
         let changes = senses.windows(2).filter(|pair| pair[0] != pair[1]).count();
-        self.residence(senses.len(), changes)
+        self.residence(senses.len(), changes).filter(|_| self.share(State::TwoRolls) < 0.25)
     }
 
-    /// Returns how long two rolls stay, or one roll of either sense; `None` where rolls are weak, and two of
-    /// them a fluctuation of one.
+    /// Returns how long two rolls stay, or one roll of either sense.
     fn rolls(&self, two: bool) -> Option<Residence> {
-        if self.strength < 5.0 {
-            return None;
-        }
-        let are_two: Vec<bool> = self.states.iter().map(|state| *state == State::TwoRolls).collect();
-        let are_two = without_short(&are_two, (FLUCTUATION / self.every) as usize);
+        let are_two = self.two_rolls()?;
         let ends = are_two.windows(2).filter(|pair| pair[0] == two && pair[1] != two).count();
         self.residence(are_two.iter().filter(|seen| **seen == two).count(), ends)
+    }
+
+    /// Returns where there are two rolls, without fluctuations; `None` where rolls are weak: two of them come
+    /// from one by fluctuations there, and at the edge of the collapse both do from none.
+    fn two_rolls(&self) -> Option<Vec<bool>> {
+        let are_two: Vec<bool> = self.states.iter().map(|state| *state == State::TwoRolls).collect();
+        (self.strength >= 8.0).then(|| without_short(&are_two, (self.shortest / self.every) as usize))
     }
 
     /// Returns the time of samples over the number of ends; so the last stay counts, too, whose end is not
@@ -124,10 +129,6 @@ struct Residence {
     error: f64,
 }
 
-/// Oscillations, ten of the paper's samples, that two rolls must last so as not to be a fluctuation of one
-/// roll, and the other way around.
-const FLUCTUATION: u64 = 1000;
-
 /// Returns a series of two values in which stays shorter than this many samples belong to the stay before.
 fn without_short(series: &[bool], least: usize) -> Vec<bool> {
     let mut steady: Vec<bool> = Vec::with_capacity(series.len());
@@ -139,15 +140,16 @@ fn without_short(series: &[bool], least: usize) -> Vec<bool> {
 }
 
 /// Names the state of each sample. A state lasts until the order parameter of another one is above three
-/// times the noise of a gas at rest, and above the other order parameter by twice the noise: less would count
-/// noise as changes. Samples before the first such are left out.
+/// times the noise of a gas at rest, and by twice the noise on its side of Ψ₂ = 2 |Ψ₁|, between one roll that
+/// leans to a side and two rolls: less would count noise as changes. Samples before the first such are left
+/// out.
 fn states(order: impl Iterator<Item = (f64, f64)>, noise: f64) -> Vec<State> {
     let (least, margin) = (3.0 * noise, 2.0 * noise);
     let mut now = None;
     let named = order.map(move |(one, two)| {
-        if two > least.max(one.abs() + margin) {
+        if two > least.max(2.0 * (one.abs() + margin)) {
             now = Some(State::TwoRolls);
-        } else if one.abs() > least.max(two + margin) {
+        } else if one.abs() > least.max(0.5 * two + margin) {
             now = Some(if one > 0.0 { State::Clockwise } else { State::Counterclockwise });
         }
         now
@@ -155,14 +157,15 @@ fn states(order: impl Iterator<Item = (f64, f64)>, noise: f64) -> Vec<State> {
     named.flatten().collect()
 }
 
-fn read(folder: &Path, quick: bool) -> Result<Vec<Value>, Box<dyn Error>> {
+fn read(arguments: &Arguments) -> Result<Vec<Value>, Box<dyn Error>> {
+    let folder = &arguments.studies;
     let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let mut studies: Vec<PathBuf> = entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<_>>()?;
     studies.retain(|study| study.join("order.csv.gz").is_file());
     studies.sort();
     let values: Vec<Vec<Value>> = studies
         .iter()
-        .map(|study| read_study(study, quick).map_err(|error| format!("{}: {error}", study.display())))
+        .map(|study| read_study(study, arguments).map_err(|error| format!("{}: {error}", study.display())))
         .collect::<Result<_, _>>()?;
     if values.is_empty() {
         return Err(format!("{} has no long runs", folder.display()).into());
@@ -170,7 +173,7 @@ fn read(folder: &Path, quick: bool) -> Result<Vec<Value>, Box<dyn Error>> {
     Ok(values.into_iter().flatten().collect())
 }
 
-fn read_study(folder: &Path, quick: bool) -> Result<Vec<Value>, Box<dyn Error>> {
+fn read_study(folder: &Path, arguments: &Arguments) -> Result<Vec<Value>, Box<dyn Error>> {
     let plan = Plan::<VibratedBox>::from_toml(&fs::read_to_string(folder.join("plan.toml"))?)?;
     let (every, samples) = (plan.protocol().every(), plan.protocol().samples() as usize);
     let rows: Vec<Row> =
@@ -180,14 +183,14 @@ fn read_study(folder: &Path, quick: bool) -> Result<Vec<Value>, Box<dyn Error>> 
     // Ramp, value, and both order parameters in units of 1e-3.
     let order: Vec<(u32, u32, f64, f64)> = order.deserialize().collect::<Result<_, _>>()?;
     let study = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let take = if quick { samples / 10 } else { samples };
+    let take = if arguments.quick { samples / 10 } else { samples };
     let value = |row: Row| {
         let of_value = order.iter().filter(|sample| (sample.0, sample.1) == (row.ramp, row.value)).take(take);
         let of_value = of_value.map(|sample| (1e-3 * sample.2, 1e-3 * sample.3));
         let larger: RunningMean = of_value.clone().map(|(one, two)| two.max(one.abs())).collect();
         let states = states(of_value, row.thermal_noise);
         let strength = larger.mean() / row.thermal_noise;
-        Value { study: study.clone(), row, every, states, strength }
+        Value { study: study.clone(), row, every, shortest: arguments.shortest, states, strength }
     };
     Ok(rows.into_iter().map(value).collect())
 }

@@ -57,9 +57,9 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 /// depend on the correlation of the samples. The rolls of the paper's system are far stronger, so the number
 /// matters only at their onset.
 ///
-/// In two equal rolls `$\Psi_1$` vanishes, while one roll may have any `$\Psi_2$` (paper, section III). At large
-/// gravity it has a third of `$\Psi_1$`; at small gravity the roll leans ever more to one side as the loss
-/// grows, until it meets the diagonal. A ratio of 1 would call it two rolls there. In all ramps of
+/// In two equal rolls `$\Psi_1$` vanishes, while one roll may have any `$\Psi_2$` (paper, section III). At
+/// large gravity it has a third of `$\Psi_1$`. At small gravity the roll leans ever more to one side as the
+/// loss grows, until it meets the diagonal: a ratio of 1 would call it two rolls there. In all ramps of
 /// `docs/reproduction` the ratios from 1.5 to 3 give the same names.
 ///
 /// A collapsed run keeps a weak, slow `$\Psi_2$`, whose mean settles only after thousands of oscillations.
