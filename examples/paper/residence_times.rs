@@ -34,7 +34,8 @@ struct Arguments {
     /// Folder of the studies.
     #[arg(long, value_name = "FOLDER", default_value = "docs/reproduction/long")]
     studies: PathBuf,
-    /// Oscillations that two rolls must last so as not to be a fluctuation of one roll, and the other way around.
+    /// Oscillations that two rolls must last so as not to be a fluctuation of one roll, and the other way
+    /// around.
     #[arg(long, default_value_t = 2000)]
     shortest: u64,
     /// Reads the first tenth of each run.
@@ -90,8 +91,8 @@ impl Value {
         self.states.iter().filter(|seen| **seen == state).count() as f64 / self.states.len() as f64
     }
 
-    /// Returns how long one roll keeps its sense; `None` where two rolls have more than a quarter of the time.
-    /// Two rolls between two stays of one roll do not count, nor does one roll for a moment between two.
+    /// Returns how long one roll keeps its sense; `None` where two rolls have more than a quarter of the
+    /// time. Two rolls between two stays of one roll do not count, nor does one roll for a moment between two.
     fn sense(&self) -> Option<Residence> {
         let are_two = self.two_rolls().unwrap_or_else(|| vec![false; self.states.len()]);
         let alone = self.states.iter().zip(are_two).filter(|(state, two)| !two && **state != State::TwoRolls);
