@@ -92,7 +92,8 @@ impl Value {
     }
 
     /// Returns how long one roll keeps its sense; `None` where two rolls have more than a quarter of the
-    /// time. Two rolls between two stays of one roll do not count, nor does one roll for a moment between two.
+    /// time. Two rolls between two stays of one roll do not count, nor does a moment of one roll between
+    /// stays of two.
     fn sense(&self) -> Option<Residence> {
         let are_two = self.two_rolls().unwrap_or_else(|| vec![false; self.states.len()]);
         let alone = self.states.iter().zip(are_two).filter(|(state, two)| !two && **state != State::TwoRolls);
