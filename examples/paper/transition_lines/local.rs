@@ -7,9 +7,6 @@ use granular_edmd::study::Experiment;
 
 use crate::ramps::{Crossing, Ramp};
 
-/// Oscillations before measuring, and while measuring.
-const OSCILLATIONS: f64 = 3000.0;
-
 /// Means over the collisions of a run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Local {
@@ -19,10 +16,14 @@ pub(crate) struct Local {
     pub(crate) temperature_ratio: f64,
 }
 
-/// Runs the box of a ramp at one of its crossings, and measures it by layers two diameters high.
-pub(crate) fn measure(ramp: &Ramp, at: &Crossing) -> Result<Local, Box<dyn Error>> {
+/// Runs the box of a ramp at one of its crossings, from a lattice, and measures it by layers two diameters
+/// high. It settles for this number of oscillations, and is measured for as many.
+///
+/// The temperature of a layer is that of its vertical and horizontal motion in the frame of the box, over the
+/// whole width: the flow counts as heat, and what is hot and cold at the same height is averaged.
+pub(crate) fn measure(ramp: &Ramp, at: &Crossing, oscillations: u32) -> Result<Local, Box<dyn Error>> {
     let experiment = ramp.experiment.clone().with_friction(at.friction).with_inelasticity(at.inelasticity);
-    let settled = OSCILLATIONS * experiment.cycle();
+    let settled = f64::from(oscillations) * experiment.cycle();
     // Samples 10 oscillations apart but for a hundredth: all phases of the base are seen.
     let times = SampleTimes::every(9.99 * experiment.cycle())?.starting_at(settled)?;
     let mut profile = EnergyChangeProfile::new(0.0, 150.0, 75, times)?;

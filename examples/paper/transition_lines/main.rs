@@ -50,6 +50,9 @@ struct Arguments {
     /// given.
     #[arg(long, value_name = "FOLDER")]
     ramps: Vec<PathBuf>,
+    /// Oscillations to settle at a crossing, and as many to measure the losses there.
+    #[arg(long, default_value_t = 3000)]
+    oscillations: u32,
     /// Measures every tenth crossing only; the other questions measure none.
     #[arg(long)]
     quick: bool,
@@ -130,7 +133,7 @@ fn lines(ramps: &[Ramp], arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let mut crossings: Vec<_> = crossings(ramps)?.into_iter().step_by(step).collect();
     let (progress, all) = (Progress::of("crossings"), crossings.len() as u64);
     for (done, (ramp, at)) in (1..).zip(&mut crossings) {
-        at.local = Some(local::measure(ramp, at)?);
+        at.local = Some(local::measure(ramp, at, arguments.oscillations)?);
         progress.show(done, all);
     }
     drop(progress);
