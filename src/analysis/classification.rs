@@ -59,8 +59,8 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 ///
 /// In two equal rolls `$\Psi_1$` vanishes, while one roll may have any `$\Psi_2$` (paper, section III). At
 /// large gravity it has a third of `$\Psi_1$`. At small gravity the roll leans ever more to one side as the
-/// loss grows, until it meets the diagonal: a ratio of 1 would call it two rolls there. In all ramps of
-/// `docs/reproduction` the ratios from 1.5 to 3 give the same names.
+/// loss grows, until it meets the diagonal: a ratio of 1 would call it two rolls there. In the ramps
+/// of `docs/reproduction/full-length` the ratios from 1.5 to 3 give the same names.
 ///
 /// A collapsed run keeps a weak, slow `$\Psi_2$`, whose mean settles only after thousands of oscillations.
 ///
