@@ -40,7 +40,7 @@ struct Arguments {
     #[arg(long, default_value_t = 0.07, value_parser = non_negative)]
     friction: f64,
     /// Oscillations of the base; the first half is discarded.
-    #[arg(long, default_value_t = 4000, value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
+    #[arg(long, default_value_t = 40_000, value_parser = clap::value_parser!(u64).range(100..=10_000_000))]
     oscillations: u64,
     /// Seed of the initial velocities.
     #[arg(long, default_value_t = 1)]

@@ -107,23 +107,19 @@ fn main() -> ExitCode {
 const GOVERNING: [Number; 4] =
     [Number::EqualTemperatures, Number::MeasuredRatio, Number::LocalRatio, Number::InTheRun];
 
-/// Ramps along one parameter, or frictions on one side of the largest loss.
+/// Which crossings are averaged.
 struct Choice {
     name: &'static str,
     takes: fn(&Ramp, &Crossing) -> bool,
 }
 
-/// The rules by which crossings are averaged.
-const CHOICES: [Choice; 4] = [
-    Choice { name: "ramps in q, all frictions", takes: |ramp, _| !ramp.along_friction },
-    Choice {
-        name: "ramps in q, friction below 0.3",
-        takes: |ramp, at| !ramp.along_friction && at.friction < 0.3,
-    },
-    Choice {
-        name: "ramps in friction, below 0.3",
-        takes: |ramp, at| ramp.along_friction && at.friction < 0.3,
-    },
+/// The paper does not say which points of its lines it averaged.
+const CHOICES: [Choice; 6] = [
+    Choice { name: "ramps in inelasticity", takes: |ramp, _| !ramp.along_friction },
+    Choice { name: "ramps in friction", takes: |ramp, _| ramp.along_friction },
+    Choice { name: "friction below 0.3", takes: |_, at| at.friction < 0.3 },
+    Choice { name: "friction of 0.3 and more", takes: |_, at| at.friction >= 0.3 },
+    Choice { name: "friction from 0.02 to 0.5", takes: |_, at| (0.02..=0.5).contains(&at.friction) },
     Choice { name: "all crossings", takes: |_, _| true },
 ];
 

@@ -4,13 +4,12 @@ use std::error::Error;
 
 use granular_edmd::ParameterError;
 use granular_edmd::analysis::TransitionLine;
-use granular_edmd::statistics::RunningMean;
 use kuva::prelude::Plot;
 
 use crate::common::look::{BLUE, GREEN, INK, Look, Mark, VERMILION};
 use crate::common::panel::{self, COLUMN, MEDIUM, Margins, Place};
 use crate::common::sheet::Sheet;
-use crate::numbers::Number;
+use crate::numbers::{Number, average};
 use crate::phase_diagram::{self, Diagram, State};
 use crate::ramps::{Crossing, Ramp};
 
@@ -25,6 +24,10 @@ const LINES: [(TransitionLine, Look, &str); 4] = [
 ];
 
 const FRICTIONS: (f64, f64) = (0.003, 5.0);
+
+/// Friction of the largest loss.
+const LARGEST_LOSS: f64 = 0.3;
+
 const MARGINS: Margins = [74.0, 16.0, 34.0, 60.0];
 const HEIGHT: f64 = 380.0;
 const HEADER: f64 = 186.0;
@@ -35,7 +38,7 @@ pub(crate) fn draw(crossings: &[(&Ramp, Crossing)]) -> Result<Sheet, ParameterEr
     let mut sheet = Sheet::new(COLUMN, HEADER + HEIGHT * PANELS.len() as f64);
     sheet.header(MARGINS[0], "One number for the transitions?", &[
         "Energy loss per collision at the transitions, by the closed form in a Maxwellian gas: open with T_rot = T, as in the \
-         paper, full with the ratio T_rot/T of the runs, thin lines at their means. Bars: the width to which a transition is known",
+         paper, full with the ratio T_rot/T of the runs, thin lines at their means on both sides of κ = 0.3. Bars: the width to which a transition is known",
     ]);
     sheet.legend_in_row((MARGINS[0], HEADER - 12.0), &LINES.map(|(_, look, name)| (look, name)));
     for (number, (gravity, most)) in PANELS.into_iter().enumerate() {
@@ -66,16 +69,21 @@ pub(crate) fn draw(crossings: &[(&Ramp, Crossing)]) -> Result<Sheet, ParameterEr
     Ok(sheet)
 }
 
-/// Returns a thin line for each transition, at the mean of its full marks.
+/// Returns thin lines for each transition, at the means of its full marks on both sides of the largest loss.
 fn means(gravity: f64, crossings: &[(&Ramp, Crossing)]) -> Result<Vec<Plot>, ParameterError> {
     let mut lines = Vec::new();
     for (line, look, _) in LINES {
-        let of = crossings.iter().filter(|(ramp, at)| ramp.gravity() == gravity && at.line == line);
-        let losses: Vec<f64> = of.map(|(_, at)| Number::MeasuredRatio.at(at)).collect::<Result<_, _>>()?;
-        let mean = -losses.iter().copied().collect::<RunningMean>().mean();
-        lines.push(
-            Look::line(look.color, "").with_width(0.8).curve([(FRICTIONS.0, mean), (FRICTIONS.1, mean)]),
-        );
+        for (from, to) in [(FRICTIONS.0, LARGEST_LOSS), (LARGEST_LOSS, FRICTIONS.1)] {
+            let of_side = crossings.iter().filter(|(ramp, at)| {
+                ramp.gravity() == gravity && at.line == line && (from..to).contains(&at.friction)
+            });
+            let along = average(Number::MeasuredRatio, &of_side.collect::<Vec<_>>())?.along;
+            if along.count() == 0 {
+                continue;
+            }
+            let mean = -along.mean();
+            lines.push(Look::line(look.color, "").with_width(0.8).curve([(from, mean), (to, mean)]));
+        }
     }
     Ok(lines)
 }
