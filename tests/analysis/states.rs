@@ -50,6 +50,20 @@ fn a_rare_visit_is_a_cluster_but_no_coexistence() -> Outcome {
 }
 
 #[test]
+fn a_lean_on_the_way_to_the_collapse_is_no_coexistence() -> Outcome {
+    let states = |rolls: [usize; 3]| -> Vec<ConvectionOrder> {
+        let at = [(0.0, 0.0), (0.05, 0.04), (0.0, 0.1)];
+        let points = rolls.iter().zip(at).flat_map(|(&count, (x, y))| vec![DVec2::new(x, y); count]);
+        orders(&points.collect::<Vec<_>>())
+    };
+    let regime = |rolls| Ok(StateCriteria::default().classify(&states(rolls), 0.004, None)?.regime());
+    let found: Result<Vec<_>, ParameterError> =
+        [[30, 10, 60], [3, 10, 87], [0, 40, 60], [20, 60, 20]].into_iter().map(regime).collect();
+    assert_eq!(found?, [TwoRolls, Coexistence, Coexistence, OneRoll]);
+    Ok(())
+}
+
+#[test]
 fn correlated_noise_of_a_gas_at_rest_is_conductive() -> Outcome {
     for seed in 0..5 {
         let mut random = Random::new(seed);

@@ -202,7 +202,8 @@ impl Ramp {
     pub(crate) fn crossings(&self) -> Result<Vec<Crossing>, Box<dyn Error>> {
         let mut seen = Vec::new();
         for leg in ["up", "down"] {
-            seen.extend(transitions(self.regimes(leg))?);
+            let of_leg = self.observations.iter().filter(|seen| seen.leg == leg);
+            seen.extend(transitions(of_leg.map(|seen| (self.value(seen), seen.regime)))?);
         }
         // A ramp that goes from one roll straight to the collapse has none to two rolls.
         let has_two_rolls = self.observations.iter().any(|seen| seen.regime == ConvectiveRegime::TwoRolls);
@@ -212,27 +213,6 @@ impl Ramp {
         let sides =
             TransitionLine::ALL.into_iter().filter(is_there).flat_map(|line| [(line, true), (line, false)]);
         Ok(sides.filter_map(|(line, rising)| self.crossing(line, rising, &seen)).collect())
-    }
-
-    /// Returns the states of a leg, in the order of their values.
-    ///
-    /// Coexistence next to the collapse counts as two rolls: they come and go there, and lean to a side while
-    /// they do.
-    fn regimes(&self, leg: &str) -> Vec<(f64, ConvectiveRegime)> {
-        let of_leg = self.observations.iter().filter(|seen| seen.leg == leg);
-        let mut regimes: Vec<_> = of_leg.map(|seen| (self.value(seen), seen.regime)).collect();
-        regimes.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let collapsed = |at: Option<&(f64, ConvectiveRegime)>| {
-            at.is_some_and(|(_, regime)| *regime == ConvectiveRegime::Collapsed)
-        };
-        for at in 0..regimes.len() {
-            let is_next = collapsed(at.checked_sub(1).and_then(|before| regimes.get(before)))
-                || collapsed(regimes.get(at + 1));
-            if is_next && regimes[at].1 == ConvectiveRegime::Coexistence {
-                regimes[at].1 = ConvectiveRegime::TwoRolls;
-            }
-        }
-        regimes
     }
 
     fn value(&self, seen: &Observation) -> f64 {
