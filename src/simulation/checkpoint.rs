@@ -170,6 +170,11 @@ impl Checkpoint {
         self.len() == 0
     }
 
+    /// Returns the fingerprints of the rule and the boundary of the run.
+    pub(crate) const fn parts(&self) -> (Option<&Fingerprint>, Option<&Fingerprint>) {
+        (self.0.rule.as_ref(), self.0.boundary.as_ref())
+    }
+
     /// Returns the checkpoint as bytes: magic, version, checksum, contents.
     ///
     /// # Errors

@@ -231,6 +231,10 @@ fn run<E: Experiment>(
         say(&format!("{} was damaged and has been done again", file.display()));
     }
     say(&format!("{} of {} values are finished in {}", summary.finished, summary.total, out.display()));
+    if summary.unfinished > 0 {
+        let log = out.join("log.jsonl");
+        say(&format!("{} of them stalled or failed; {} says why", summary.unfinished, log.display()));
+    }
     Ok(match (summary.is_complete(), summary.elsewhere.is_empty()) {
         (true, _) => End::Done,
         (false, false) if !watch::is_stopped() => End::Elsewhere,

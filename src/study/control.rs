@@ -100,6 +100,9 @@ impl fmt::Debug for Control<'_> {
 pub struct Summary {
     /// Number of values that have a record now.
     pub finished: usize,
+    /// Number of these values that the engine could not finish, stalled or failed. They have fewer samples or
+    /// none; [`Outcome::reason`](super::Outcome::reason) and `log.jsonl` say why.
+    pub unfinished: usize,
     /// Number of values of the study, or of the ramps that were to be run.
     pub total: usize,
     /// Ramps that other processes are doing.

@@ -67,6 +67,16 @@ pub enum PlanError {
         /// The parameter.
         parameter: String,
     },
+    /// An axis has a value twice.
+    #[error(
+        "{parameter} takes the value {value} twice; for several runs of each value give the plan repeats"
+    )]
+    Twice {
+        /// The parameter.
+        parameter: String,
+        /// The value.
+        value: String,
+    },
     /// A value is infinite or NaN.
     #[error("a value of {parameter} must be finite, but is {value}", value = Readable(*value))]
     NotFinite {
@@ -187,6 +197,17 @@ pub enum StudyError {
     Foreign {
         /// The file.
         path: PathBuf,
+    },
+    /// A record was made with another rule or other walls than the experiment gives now: its code changed.
+    #[error(
+        "{} was made with another {part} than the experiment has now at these parameters; take a new folder for changed code",
+        path.display()
+    )]
+    Changed {
+        /// The file.
+        path: PathBuf,
+        /// The part that differs.
+        part: &'static str,
     },
     /// A file was made by another version of this crate, whose results may differ.
     #[error("{} was made by version {found}, but this is version {known}; take a new folder", path.display())]

@@ -74,8 +74,11 @@ impl Folder {
         self.ramp(ramp).join("done")
     }
 
+    /// Returns whether the folder holds a study. A plan alone is none: somebody may keep plans there, among
+    /// other files. A study has a lock beside it from its first moment, and a README soon after.
     pub(super) fn holds_study(&self) -> bool {
-        self.plan().exists()
+        let has_lock = self.root.join(lock::NAME).metadata().is_ok_and(|lock| is_lock(&lock));
+        self.plan().exists() && (has_lock || self.root.join(README).exists())
     }
 
     /// Puts a plan into the folder, which it creates if needed; returns false if there is a plan already.
@@ -117,8 +120,7 @@ impl Folder {
         for entry in entries {
             let entry = entry.map_err(cannot_read())?;
             let name = entry.file_name();
-            let is_lock =
-                name == lock::NAME && entry.metadata().is_ok_and(|data| data.is_file() && data.len() == 0);
+            let is_lock = name == lock::NAME && entry.metadata().is_ok_and(|lock| is_lock(&lock));
             if !is_lock && !is_temporary(&name) {
                 return Ok(Some(name.to_string_lossy().into_owned()));
             }
@@ -205,4 +207,9 @@ impl Folder {
         let path = self.root.join("log.jsonl");
         log::append(&path, line).map_err(StudyError::io("write", &path))
     }
+}
+
+/// Returns whether a file of the name of a lock is one: it is empty.
+fn is_lock(file: &fs::Metadata) -> bool {
+    file.is_file() && file.len() == 0
 }

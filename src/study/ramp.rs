@@ -202,9 +202,13 @@ impl Axis {
         if self.values.is_empty() {
             return Err(PlanError::NoValues { parameter: parameter() });
         }
-        match self.values.iter().filter_map(Scalar::number).find(|value| !value.is_finite()) {
-            Some(value) => Err(PlanError::NotFinite { parameter: parameter(), value }),
-            None => Ok(()),
+        if let Some(value) = self.values.iter().filter_map(Scalar::number).find(|value| !value.is_finite()) {
+            return Err(PlanError::NotFinite { parameter: parameter(), value });
         }
+        let twice =
+            self.values.iter().enumerate().find(|&(index, value)| self.values[..index].contains(value));
+        twice.map_or(Ok(()), |(_, value)| {
+            Err(PlanError::Twice { parameter: parameter(), value: value.to_string() })
+        })
     }
 }

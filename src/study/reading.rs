@@ -21,7 +21,10 @@ impl<E: Experiment> Study<E> {
         }
         let record = Record { experiment: self.plan.experiment_at(ramp, contents.at)?, contents };
         record.check(&self.plan).map_err(|reason| file::damaged(&path, reason))?;
-        Ok(Some(record))
+        match record.changed_part() {
+            Some(part) => Err(StudyError::Changed { path, part }),
+            None => Ok(Some(record)),
+        }
     }
 
     /// Iterates over all finished records, ramp by ramp, and reads them one by one.

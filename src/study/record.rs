@@ -4,6 +4,8 @@ use std::fmt;
 
 use super::refinement::Seen;
 use super::{Experiment, Leg, Plan, Scalar, parameters};
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
 use crate::simulation::{Checkpoint, Counters};
 use crate::statistics::{BlockedMean, Estimate};
 
@@ -53,6 +55,14 @@ impl Outcome {
             Self::Stopped { .. } => "stopped",
             Self::Stalled { .. } => "stalled",
             Self::Failed { .. } => "failed",
+        }
+    }
+
+    /// Returns the message of the engine, if it could not finish the value: the outcome is stalled or failed.
+    pub fn reason(&self) -> Option<&str> {
+        match self {
+            Self::Stalled { reason, .. } | Self::Failed { reason, .. } => Some(reason),
+            Self::Completed | Self::Stopped { .. } => None,
         }
     }
 }
@@ -217,6 +227,19 @@ impl<E: Experiment> Record<E> {
     /// Returns the state at the end of the value.
     pub const fn state(&self) -> &Checkpoint {
         &self.contents.state
+    }
+
+    /// Returns the part of the simulation that the experiment now makes otherwise than when the value was
+    /// done, if it does. Parts without fingerprints cannot be told apart.
+    pub(super) fn changed_part(&self) -> Option<&'static str> {
+        let (rule, boundary) = self.contents.state.parts();
+        if self.experiment.rule().is_ok_and(|now| now.fingerprint().as_ref() != rule) {
+            Some("rule")
+        } else if self.experiment.boundary().is_ok_and(|now| now.fingerprint().as_ref() != boundary) {
+            Some("boundary")
+        } else {
+            None
+        }
     }
 
     /// Returns the mean of a quantity over the samples, with an error that accounts for their correlation.

@@ -23,6 +23,8 @@ struct Shift<'a, E: Experiment> {
     control: &'a Control<'a>,
     meter: Meter<'a>,
     finished: AtomicUsize,
+    /// Number of values that the engine could not finish.
+    unfinished: AtomicUsize,
     /// Number of values that refinements have added.
     more: AtomicUsize,
     redone: Mutex<Vec<PathBuf>>,
@@ -79,7 +81,8 @@ impl<E: Experiment> Study<E> {
         let mut redone = shift.redone.into_inner().unwrap_or_else(PoisonError::into_inner);
         redone.sort();
         let total = total + shift.more.into_inner();
-        Ok(Summary { finished: shift.finished.into_inner(), total, elsewhere, redone })
+        let [finished, unfinished] = [shift.finished, shift.unfinished].map(AtomicUsize::into_inner);
+        Ok(Summary { finished, unfinished, total, elsewhere, redone })
     }
 
     /// Returns whether all ramps are done. It looks first at the ramps after `first`, which are the last to
@@ -112,6 +115,7 @@ impl<'a, E: Experiment> Shift<'a, E> {
             control,
             meter: Meter::new(control, steps),
             finished: AtomicUsize::new(0),
+            unfinished: AtomicUsize::new(0),
             more: AtomicUsize::new(0),
             redone: Mutex::default(),
             elsewhere: Mutex::default(),
@@ -158,9 +162,10 @@ impl<'a, E: Experiment> Shift<'a, E> {
                 None => self.next(ramp, value, step, last)?,
             };
             let Some(record) = found else { return Ok(()) };
+            self.finished.fetch_add(1, Ordering::Relaxed);
+            self.unfinished.fetch_add(usize::from(record.outcome().reason().is_some()), Ordering::Relaxed);
             seen.push(record.seen());
             last = Some(record);
-            self.finished.fetch_add(1, Ordering::Relaxed);
         }
         folder.mark_done(ramp)
     }

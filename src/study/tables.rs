@@ -8,7 +8,7 @@ use std::fmt::{Display, Write};
 use super::column::{Column, Kind};
 use super::{Bracket, Experiment, Plan, Record, Scalar, Table};
 use crate::statistics::Estimate;
-use points::Repeats;
+use points::{Repeat, Repeats};
 
 /// The tables of a study, as they grow.
 pub(super) struct Tables<'a, E: Experiment> {
@@ -135,7 +135,8 @@ impl<'a, E: Experiment> Tables<'a, E> {
         self.values.push('\n');
         // The values of a refinement are others in each repeat.
         if record.value() < self.plan.values() {
-            self.repeats.add(record.value(), estimates);
+            let is_unfinished = record.outcome().reason().is_some();
+            self.repeats.add(record.value(), Repeat { estimates, is_unfinished });
         }
     }
 

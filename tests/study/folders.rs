@@ -84,6 +84,16 @@ fn a_folder_with_files_of_others_is_refused_and_left_alone() -> Result<(), AnyEr
         assert!(contents(&scratch.0) == before, "nothing has changed");
         fs::remove_file(scratch.0.join(name))?;
     }
+    // Somebody's plan, among other files, is no study either.
+    fs::write(scratch.0.join("plan.toml"), small_plan().to_string())?;
+    fs::write(scratch.0.join("samples.csv"), "mine")?;
+    let before = contents(&scratch.0);
+    let refused = Study::open_or_create(&scratch.0, &small_plan()).unwrap_err();
+    assert!(matches!(&refused, StudyError::Occupied { .. }), "{refused}");
+    assert!(Study::<VibratedBox>::open(&scratch.0).is_err());
+    assert!(contents(&scratch.0) == before, "nothing has changed");
+    fs::remove_file(scratch.0.join("plan.toml"))?;
+    fs::remove_file(scratch.0.join("samples.csv"))?;
     // Left by a process that was killed before it had a plan.
     fs::write(scratch.0.join("lock"), "")?;
     fs::write(scratch.0.join(TEMPORARY), "of a killed process")?;

@@ -1,8 +1,10 @@
 //! Experiments of users, which are swept, ramped, recorded, resumed, or refused with an error.
 
 use std::fs;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use granular_edmd::boundary::Container;
+use granular_edmd::collision::Smooth;
 use granular_edmd::observable::{Observer, Snapshot};
 use granular_edmd::study::{
     Axis, Column, Control, Course, Experiment, ExperimentError, Plan, PlanError, Protocol, Ramp, Record,
@@ -208,5 +210,91 @@ fn an_observer_ends_a_value_and_the_ramp_goes_on_from_there() -> Result<(), AnyE
     assert!(
         second.times()[0] > first.state().time() && second.times()[0] <= first.state().time() + 1.0 + 1e-9
     );
+    Ok(())
+}
+
+/// Loss in hundredths that the code adds for three disks, as if somebody had changed it. Tests that run at
+/// the same time have other numbers of disks.
+static ADDED: AtomicU32 = AtomicU32::new(0);
+
+/// Disks that fall, and at large losses come to rest, where time stalls.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Fall {
+    count: usize,
+    loss: f64,
+}
+
+impl Experiment for Fall {
+    type Rule = Smooth;
+    type Boundary = Container;
+    type Observer = ();
+    type Sample = f64;
+
+    fn rule(&self) -> Result<Smooth, ExperimentError> {
+        let added = if self.count == 3 { ADDED.load(Ordering::Relaxed) } else { 0 };
+        Ok(Smooth::new(self.loss + 0.01 * f64::from(added))?)
+    }
+
+    fn boundary(&self) -> Result<Container, ExperimentError> {
+        Ok(Container::closed(6.0, 20.0)?)
+    }
+
+    fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
+        let disks = initial::lattice(&self.boundary()?, self.count, 0.5)?;
+        Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
+    }
+
+    fn gravity(&self) -> f64 {
+        1.0
+    }
+
+    fn sample(&self, snapshot: &Snapshot<'_>, (): &mut ()) -> f64 {
+        snapshot.mean(|disk| disk.position().y)
+    }
+
+    fn columns() -> Vec<Column<Self>> {
+        vec![Column::sampled("height", "length", |height| *height)]
+    }
+}
+
+#[test]
+fn a_parameter_of_the_first_disks_alone_cannot_be_ramped() -> Result<(), AnyError> {
+    let plan = Plan::new(Fall { count: 4, loss: 0.0 }, Protocol::new(0, 2, 1), 1)?;
+    plan.clone().with_ramp(Ramp::new("loss", [0.0, 0.1], Course::Up))?;
+    let error = plan.with_ramp(Ramp::new("count", [4.0, 8.0], Course::Up)).unwrap_err();
+    assert_eq!(report(&error), "count cannot be ramped with the disks in place; sweep it instead");
+    Ok(())
+}
+
+#[test]
+fn values_that_stall_are_counted_and_say_why() -> Result<(), AnyError> {
+    let plan = Plan::new(Fall { count: 12, loss: 0.4 }, Protocol::new(0, 200, 1), 1)?.with_repeats(3)?;
+    let scratch = Scratch::new("unfinished");
+    let study = Study::create(&scratch.0, &plan)?;
+    for summary in [study.run(&Control::default())?, study.run(&Control::default())?] {
+        assert_eq!((summary.finished, summary.unfinished), (3, 3));
+    }
+    let log = fs::read_to_string(scratch.0.join("log.jsonl"))?;
+    assert!(log.contains(r#""outcome":"stalled","reason":"#), "{log}");
+    let points = fs::read_to_string(scratch.0.join("points.csv"))?;
+    assert!(points.starts_with("point,value,leg,repeats,unfinished,height,"), "{points}");
+    assert!(points.lines().nth(1).is_some_and(|line| line.starts_with("0,0,,3,3,")), "{points}");
+    Ok(())
+}
+
+#[test]
+fn records_of_changed_code_are_refused() -> Result<(), AnyError> {
+    let plan = Plan::new(Fall { count: 3, loss: 0.0 }, Protocol::new(0, 2, 1), 1)?;
+    let scratch = Scratch::new("changed");
+    let study = Study::create(&scratch.0, &plan)?;
+    study.run(&Control::default())?;
+    ADDED.store(1, Ordering::Relaxed);
+    let refused = [study.record(0, 0).map(drop), study.run(&Control::default()).map(drop)];
+    ADDED.store(0, Ordering::Relaxed);
+    for result in refused {
+        let error = result.unwrap_err();
+        assert!(matches!(&error, StudyError::Changed { part: "rule", .. }), "{error}");
+    }
+    assert!(study.record(0, 0)?.is_some(), "nothing was touched");
     Ok(())
 }

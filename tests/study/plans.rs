@@ -30,7 +30,7 @@ values = [0.01, 0.02]
 
 [[sweep]]
 parameter = "inelasticity"
-values = [0.0, 0.01, 0.01]
+values = [0.0, 0.01, 0.02]
 "#;
 
 #[test]
@@ -42,7 +42,7 @@ fn a_plan_is_read_as_it_is_written() -> Result<(), AnyError> {
         1,
     )?
     .with_ramp(Ramp::new("friction", vec![0.01, 0.02], Course::Up))?
-    .with_axis(Axis::new("inelasticity", [0.0, 0.01, 0.01]))?;
+    .with_axis(Axis::new("inelasticity", [0.0, 0.01, 0.02]))?;
     assert_eq!(plan, by_hand);
     assert_eq!(Plan::<VibratedBox>::from_toml(&plan.to_string())?, plan);
     assert_eq!((plan.ramps(), plan.values()), (3, 2));
@@ -50,7 +50,7 @@ fn a_plan_is_read_as_it_is_written() -> Result<(), AnyError> {
 }
 
 /// A line of a plan, the line in its place, and the text of the error.
-const REFUSED: [(&str, &str, &str); 19] = [
+const REFUSED: [(&str, &str, &str); 20] = [
     ("seed = 1", "seed = 1\nsede = 2", "unknown field `sede`"),
     ("disks = 30", "disks = 30\nmass = 2", "unknown field `mass`"),
     ("disks = 30", "disks = 0", "number of disks must be at least 1, but is 0"),
@@ -72,7 +72,8 @@ const REFUSED: [(&str, &str, &str); 19] = [
     ("samples = 10", "samples = 0", "number of samples must be in 1..=2^40, but is 0"),
     ("every = 10", "every = 10\nphase = 0.0", "phase of the samples must be in (0, 1], but is 0"),
     ("values = [0.01, 0.02]", "values = [0.02, 0.01]", "friction has 0.01 after 0.02"),
-    ("values = [0.0, 0.01, 0.01]", "values = [0.7]", "normal inelasticity must be in [0, 0.5], but is 0.7"),
+    ("values = [0.0, 0.01, 0.02]", "values = [0.7]", "normal inelasticity must be in [0, 0.5], but is 0.7"),
+    ("values = [0.0, 0.01, 0.02]", "values = [0.01, 0.0, 0.01]", "inelasticity takes the value 0.01 twice"),
     ("parameter = \"inelasticity\"", "parameter = \"friction\"", "friction varies twice"),
 ];
 

@@ -1,6 +1,8 @@
 //! Checks of a plan when it is made, so that no run fails because of it later.
 
 use super::Plan;
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
 use crate::quantity::accept;
 use crate::study::parameters::{self, probe, whole_name};
 use crate::study::{Axis, Experiment, PlanError, Ramp, column};
@@ -87,7 +89,28 @@ impl<E: Experiment> Plan<E> {
                 self.experiment_of(&varied)?.check().map_err(|source| Self::refused(&varied, source))?;
             }
         }
-        self.check_disks()
+        self.check_disks()?;
+        self.check_ramp()
+    }
+
+    /// Checks that the ramped parameter changes the simulation, not only the disks at its start: they stay
+    /// what they are along a ramp.
+    fn check_ramp(&self) -> Result<(), PlanError> {
+        let (Some(ramp), true) = (&self.ramp, self.values() > 1) else { return Ok(()) };
+        let varied = self.parameters(0, 1);
+        let refused = |source| Self::refused(&varied, source);
+        let first = self.experiment_of(&self.parameters(0, 0))?;
+        let next = self.experiment_of(&varied)?;
+        if first.disks(0).map_err(refused)? == next.disks(0).map_err(refused)? {
+            return Ok(());
+        }
+        let mut run = first.build(0).map_err(refused)?;
+        let before = run.checkpoint();
+        next.change(&mut run).map_err(refused)?;
+        // Parts without fingerprints may have changed.
+        let told = run.rule().fingerprint().is_some() && run.boundary().fingerprint().is_some();
+        let is_same = told && E::cycle(&first) == E::cycle(&next) && run.checkpoint() == before;
+        if is_same { Err(PlanError::NotRampable { parameter: ramp.parameter().to_owned() }) } else { Ok(()) }
     }
 
     /// Checks that the disks fit in, with all axes at their first values, and with each axis in turn at each

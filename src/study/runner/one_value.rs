@@ -133,11 +133,16 @@ impl<E: Experiment> Shift<'_, E> {
 
     fn log(&self, record: &Record<E>, started: Instant) -> Result<(), StudyError> {
         let unix_time = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
+        // A reason is one line of words and numbers; what JSON would take for its own is left out.
+        let reason = record.outcome().reason().map(|reason| {
+            format!(r#","reason":"{}""#, reason.replace(['"', '\\'], "'").replace(char::is_control, " "))
+        });
         self.study.folder.log(&format!(
-            r#"{{"ramp":{},"value":{},"outcome":"{}","collisions":{},"seconds":{:.3},"unix_time":{unix_time}}}"#,
+            r#"{{"ramp":{},"value":{},"outcome":"{}"{},"collisions":{},"seconds":{:.3},"unix_time":{unix_time}}}"#,
             record.ramp(),
             record.value(),
             record.outcome().name(),
+            reason.unwrap_or_default(),
             record.counters().collisions,
             started.elapsed().as_secs_f64(),
         ))

@@ -81,7 +81,7 @@ pub(super) fn of_samples<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -
 pub(super) fn of_points<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -> Vec<Described> {
     let mut all: Vec<_> = ["point", "value", "leg"].map(|name| described(name, "")).into();
     all.extend(plan.varied().map(|name| described(name, "")));
-    all.push(described("repeats", ""));
+    all.extend(["repeats", "unfinished"].map(|name| described(name, "")));
     let estimated = columns.iter().filter(|column| column.is_in_values() && column.has_error());
     all.extend(estimated.flat_map(of_estimate));
     all.push(described("not_converged", ""));

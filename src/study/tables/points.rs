@@ -4,18 +4,24 @@ use super::{append, append_estimate, not_converged};
 use crate::statistics::Estimate;
 use crate::study::{Experiment, Plan};
 
-/// The estimates of the repeats of one point: a list for each value, in it one for each repeat, with the
-/// names of columns.
+/// The repeats of one point: a list for each value.
 #[derive(Default)]
-pub(super) struct Repeats(Vec<Vec<Vec<(&'static str, Estimate)>>>);
+pub(super) struct Repeats(Vec<Vec<Repeat>>);
+
+/// The estimates of one repeat of a value, with the names of columns.
+pub(super) struct Repeat {
+    pub(super) estimates: Vec<(&'static str, Estimate)>,
+    /// True if the engine could not finish it.
+    pub(super) is_unfinished: bool,
+}
 
 impl Repeats {
-    /// Adds the estimates of a value of one repeat.
-    pub(super) fn add(&mut self, value: usize, estimates: Vec<(&'static str, Estimate)>) {
+    /// Adds a value of one repeat.
+    pub(super) fn add(&mut self, value: usize, repeat: Repeat) {
         if self.0.len() <= value {
             self.0.resize_with(value + 1, Vec::new);
         }
-        self.0[value].push(estimates);
+        self.0[value].push(repeat);
     }
 
     /// Writes a row for each value of which a repeat is finished.
@@ -28,12 +34,7 @@ impl Repeats {
     }
 }
 
-fn row<E: Experiment>(
-    plan: &Plan<E>,
-    point: usize,
-    value: usize,
-    repeats: &[Vec<(&'static str, Estimate)>],
-) -> String {
+fn row<E: Experiment>(plan: &Plan<E>, point: usize, value: usize, repeats: &[Repeat]) -> String {
     let mut line = format!("{point},{value},");
     if let Some(leg) = plan.leg(value) {
         line.push_str(&leg.to_string());
@@ -42,8 +43,9 @@ fn row<E: Experiment>(
         append(&mut line, &parameter);
     }
     append(&mut line, &repeats.len());
-    let of_column = |column: usize| repeats.iter().map(move |estimates| estimates[column].1);
-    let names = repeats[0].iter().map(|(name, _)| *name).enumerate();
+    append(&mut line, &repeats.iter().filter(|repeat| repeat.is_unfinished).count());
+    let of_column = |column: usize| repeats.iter().map(move |repeat| repeat.estimates[column].1);
+    let names = repeats[0].estimates.iter().map(|(name, _)| *name).enumerate();
     let together: Vec<(&str, Estimate)> =
         names.map(|(column, name)| (name, Estimate::over_repeats(of_column(column)))).collect();
     for (_, estimate) in &together {
