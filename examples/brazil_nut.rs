@@ -212,19 +212,18 @@ fn draw(nuts: &[Nut]) -> Result<Sheet, Box<dyn Error>> {
     }
     let place = Place { x: 2.0 * frame, y: HEADER, width: 560.0, height: HEIGHT };
     sheet.panel(place, MARGINS, lines(nuts), heights(nuts));
-    add_legend(&mut sheet, (place.x + MARGINS[0] + 12.0, HEADER + HEIGHT - MARGINS[3]), nuts);
+    add_legend(&mut sheet, (place.x + MARGINS[0] + 12.0, HEADER + MARGINS[2] + 20.0), nuts);
     Ok(sheet)
 }
 
-/// Adds the names of the intruders and of the grains above a place, two in a row.
+/// Adds the names of the intruders and of the grains below a place, two in a row.
 fn add_legend(sheet: &mut Sheet, (x, y): (f64, f64), nuts: &[Nut]) {
     let names: Vec<String> = nuts.iter().map(Nut::name).collect();
     let names = names.iter().map(String::as_str).enumerate().map(|(k, name)| (look(k), name));
     let names: Vec<_> = names.chain([(GRAIN, "mean of the grains")]).collect();
     let rows = names.len().div_ceil(2);
-    let top = y + 10.0 - 24.0 * rows as f64;
     for (column, names) in names.chunks(rows).enumerate() {
-        sheet.legend((x + 230.0 * column as f64, top), names);
+        sheet.legend((x + 230.0 * column as f64, y), names);
     }
 }
 
@@ -255,7 +254,6 @@ fn lines(nuts: &[Nut]) -> Vec<Plot> {
 fn heights(nuts: &[Nut]) -> Layout {
     let last =
         nuts.iter().filter_map(|nut| nut.heights.last()).map(|[time, ..]| time + 1.0).fold(1.0, f64::max);
-    // Below the floor is room for the names.
-    let layout = panel::axes((0.0, last), (-8.0, SHOWN));
+    let layout = panel::axes((0.0, last), (0.0, SHOWN));
     layout.with_x_label("oscillations").with_y_label("height of the intruder, in diameters")
 }

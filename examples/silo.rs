@@ -270,7 +270,7 @@ fn draw_flows(sheet: &mut Sheet, place: Place, flows: &[Flow], law: Option<Law>)
     let panel = sheet.panel(place, MARGINS, curve.into_iter().collect(), layout);
     sheet.marks(&panel, MEASURED, flows.iter().map(|flow| (flow.outlet, flow.rate)));
     let text = law.map(|Law { prefactor, lost, scatter }| {
-        format!("W = {prefactor:.2} (D − {lost:.2})^3/2, scatter {:.1} %", 100.0 * scatter)
+        format!("W = {prefactor:.2} (D − {lost:.2})¹·⁵, scatter {:.1} %", 100.0 * scatter)
     });
     let names: Vec<_> =
         text.iter().map(|text| (LAW, text.as_str())).chain([(MEASURED, "measured")]).collect();

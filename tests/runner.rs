@@ -75,7 +75,7 @@ fn a_new_plan_is_a_plan_and_overwrites_nothing() {
         "{text}"
     );
     let check = scratch.runs(&["check", "mine.toml"]);
-    assert_eq!(said(&check), "2 ramps of 4 values of 1500 cycles, 1 repeats among them\n");
+    assert_eq!(said(&check), "2 ramps of 4 values of 1500 cycles\n");
     let again = scratch.runs(&["new", "mine.toml"]);
     assert_eq!(code(&again), Some(1));
     assert!(said(&again).starts_with("error: cannot write mine.toml"), "{}", said(&again));

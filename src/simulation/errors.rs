@@ -186,7 +186,8 @@ pub enum RunError {
     /// Times are too coarse to go on: time would stand still.
     #[error(
         "the run cannot go on at time {}: times there are {} apart, too coarse for disks that go some tens of diameters \
-         in {}; the run is too late, or its disks have become too fast: does a rule or a wall add energy?",
+         in {}; the run is too late, or its disks have become too fast: does a rule or a wall add energy? \
+         collision::laws::check_rule and wall::laws::check try them",
         Readable(*.time), Rounded(*.spacing), Rounded(*.epoch)
     )]
     TimeTooLate {
@@ -285,7 +286,7 @@ pub enum BoundaryFault {
     /// A surface whose normal is not a unit vector, whose velocity is not finite or is above 1e60, or whose
     /// radius is zero or NaN.
     #[error(
-        "the surface of wall {wall} has the normal ({}, {}) and the velocity {}",
+        "the surface of wall {wall} has the normal ({}, {}), which must be a unit vector, and the velocity {}",
         Readable(.normal.x), Readable(.normal.y), RoundedVector(*.velocity)
     )]
     Surface {

@@ -20,7 +20,7 @@
 //! | exit code | meaning |
 //! |---|---|
 //! | 0 | all that was asked for is done |
-//! | 1 | the command failed; one line on standard error says why |
+//! | 1 | the command failed; standard error says why |
 //! | 2 | the command line or the plan cannot be used |
 //! | 3 | other processes do the rest (`--no-wait`); from `status`: not all ramps are done |
 //! | 130 | stopped by Ctrl-C or SIGTERM with all work saved; the same command goes on |
@@ -184,19 +184,28 @@ fn read(path: &Path) -> Result<String, Failure> {
     Ok(fs::read_to_string(path).map_err(StudyError::io("read", path))?)
 }
 
+/// Returns the error of a plan in a file, which names the file.
+fn refused(path: &Path) -> impl Fn(PlanError) -> Failure {
+    move |source| Failure::Plan(StudyError::Unreadable { path: path.to_owned(), source }.into())
+}
+
 /// Opens or creates the study of a plan in a folder.
 fn study<E: Experiment>(path: &Path, folder: &Path) -> Result<Study<E>, Failure> {
-    let plan = Plan::from_toml_unproven(&read(path)?)?;
-    Ok(Study::open_or_create_unproven(folder, plan)?)
+    let plan = Plan::from_toml_unproven(&read(path)?).map_err(refused(path))?;
+    Study::open_or_create_unproven(folder, plan).map_err(|error| match error {
+        StudyError::Plan(source) => refused(path)(source),
+        error => error.into(),
+    })
 }
 
 fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
-    let plan = Plan::<E>::from_toml(&read(path)?)?;
+    let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
     let (ramps, values, cycles) = (plan.ramps(), plan.values(), plan.protocol().cycles());
-    say(&format!(
-        "{ramps} ramps of {values} values of {cycles} cycles, {} repeats among them",
-        plan.repeats()
-    ));
+    let repeats = match plan.repeats() {
+        1 => String::new(),
+        repeats => format!(", {repeats} repeats among them"),
+    };
+    say(&format!("{ramps} ramps of {values} values of {cycles} cycles{repeats}"));
     Ok(End::Done)
 }
 

@@ -127,8 +127,8 @@ pub enum StudyError {
     /// The plan cannot be carried out.
     #[error(transparent)]
     Plan(#[from] PlanError),
-    /// The plan of a folder cannot be read as one of this experiment.
-    #[error("{} is no plan of this experiment", path.display())]
+    /// A file cannot be used as a plan of this experiment.
+    #[error("{} cannot be used as a plan of this experiment", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,

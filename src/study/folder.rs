@@ -23,7 +23,7 @@ samples.csv           a row for each sample
 points.csv            a row for each value, all repeats of it together
 transitions.csv       a row for each transition that a refined ramp brackets
 columns.csv           the names and units of all columns of all tables
-ramps/R/V.record      value V of ramp R: samples, counts and last state, with a checksum; read by the library
+ramps/R/V.record      value V of ramp R (0000/0000.record is the first): samples, counts and last state, with a checksum
 ramps/R/V.partial     a value half done
 ramps/R/value.json    the swept parameters of ramp R, if the study was prepared for an engine that goes by folders
 ramps/R/done          there once all values of ramp R have a record

@@ -1,5 +1,7 @@
 //! A plan with comments.
 
+use std::collections::HashSet;
+
 use crate::study::{Experiment, Plan, PlanError, parameters};
 
 /// Explanations of lines of a plan, by the beginning of the line.
@@ -34,7 +36,11 @@ pub(super) fn commented<E: Experiment>(plan: &Plan<E>) -> Result<String, PlanErr
     let absent = EXAMPLES.iter().filter(|(start, _)| !bare.lines().any(|line| begins(line, start)));
     lines.extend(absent.map(|(_, example)| format!("\n# {example}")));
     let names = parameters::names(&parameters::tree(&plan.experiment)?).join(", ");
-    let columns: Vec<&str> = E::columns().iter().map(crate::study::Column::name).collect();
+    let columns = E::columns();
+    // A column of the values and one of the samples may have the same name.
+    let mut known = HashSet::new();
+    let columns: Vec<_> =
+        columns.iter().map(crate::study::Column::name).filter(|name| known.insert(*name)).collect();
     lines.push(format!("\n# Parameters: {names}."));
     lines.push("# Those without a value are not named here.".to_owned());
     lines.push(format!("# Measured: {}.\n", columns.join(", ")));

@@ -20,7 +20,8 @@ impl<E: Experiment> Plan<E> {
     /// Reads a plan without a check of the experiment of each value, which takes seconds for large plans and
     /// is needed only once.
     pub(in crate::study) fn from_toml_unproven(text: &str) -> Result<Self, PlanError> {
-        let raw: Raw<E> = toml::from_str(text).map_err(|error| PlanError::Toml(error.to_string()))?;
+        let raw: Raw<E> =
+            toml::from_str(text).map_err(|error| PlanError::Toml(error.to_string().trim_end().to_owned()))?;
         raw.plan().consistent()
     }
 
