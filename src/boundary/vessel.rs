@@ -27,7 +27,8 @@ const MOST_WALLS: usize = 1 << 16;
 /// A vessel of any shape: named [parts](Part) in a [`Container`].
 ///
 /// A disk must be free of the container's walls and of each part. So two blocks make a hopper, and a polygon
-/// can have pegs in it. Parts may overlap, and may reach beyond the container. They are added, replaced and
+/// can have pegs in it. Parts may overlap, and may reach beyond the container. Across periodic sides they are
+/// repeated: a part that reaches beyond one side comes in again at the other. They are added, replaced and
 /// removed by name, also between runs
 /// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
 ///

@@ -62,6 +62,8 @@ impl Part {
 
     /// Creates a thin wall from point to point, with disks on both sides.
     ///
+    /// Initial states put disks on both sides, too. For a solid body, take [`block`](Self::block).
+    ///
     /// # Errors
     /// If there are fewer than two points, a coordinate is not finite, or neighboring points are equal.
     pub fn polyline(points: impl IntoIterator<Item = DVec2>) -> Result<Self, VesselError> {
