@@ -38,6 +38,7 @@ run again by the same version. Any number of processes may run it at the same ti
 
 const PLAN: &str = "plan.toml";
 const README: &str = "README.txt";
+const RAMPS: &str = "ramps";
 
 /// The folder of a study.
 #[derive(Debug, Clone)]
@@ -59,7 +60,7 @@ impl Folder {
     }
 
     pub(super) fn ramp(&self, ramp: usize) -> PathBuf {
-        self.root.join("ramps").join(format!("{ramp:04}"))
+        self.root.join(RAMPS).join(format!("{ramp:04}"))
     }
 
     pub(super) fn record(&self, ramp: usize, value: usize) -> PathBuf {
@@ -75,10 +76,12 @@ impl Folder {
     }
 
     /// Returns whether the folder holds a study. A plan alone is none: somebody may keep plans there, among
-    /// other files. A study has a lock beside it from its first moment, and a README soon after.
+    /// other files. A study has a lock beside it from its first moment, soon a README, and then its ramps; a
+    /// copy of it may lack some of these.
     pub(super) fn holds_study(&self) -> bool {
         let has_lock = self.root.join(lock::NAME).metadata().is_ok_and(|lock| is_lock(&lock));
-        self.plan().exists() && (has_lock || self.root.join(README).exists())
+        let has_others = || [README, RAMPS].iter().any(|name| self.root.join(name).exists());
+        self.plan().exists() && (has_lock || has_others())
     }
 
     /// Puts a plan into the folder, which it creates if needed; returns false if there is a plan already.

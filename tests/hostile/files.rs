@@ -82,6 +82,7 @@ fn files_that_cannot_be_read_are_errors() {
     let error = checkpoint().write(scratch.0.join("none/file")).unwrap_err();
     assert!(matches!(error, CheckpointError::Io { .. }), "{error}");
     fs::write(scratch.0.join("plan.toml"), [0xff, 0xfe, 0]).unwrap();
+    fs::write(scratch.0.join("lock"), "").unwrap();
     let error = Study::<VibratedBox>::open(&scratch.0).unwrap_err().to_string();
     assert!(error.contains("plan.toml"), "{error}");
 }
