@@ -37,8 +37,8 @@ const HEADER: f64 = 186.0;
 pub(crate) fn draw(crossings: &[(&Ramp, Crossing)]) -> Result<Sheet, ParameterError> {
     let mut sheet = Sheet::new(COLUMN, HEADER + HEIGHT * PANELS.len() as f64);
     sheet.header(MARGINS[0], "One number for the transitions?", &[
-        "Energy loss per collision at the transitions, by the closed form in a Maxwellian gas: open with T_rot = T, as in the \
-         paper, full with the ratio T_rot/T of the runs, thin lines at their means on both sides of κ = 0.3. Bars: the width to which a transition is known",
+        "Energy loss per collision in a Maxwellian gas. Open: at equal temperatures, as in the paper. Full: at the ratio of \
+         temperatures of the runs, with their means on both sides of κ = 0.3. Bars: how well a transition is known",
     ]);
     sheet.legend_in_row((MARGINS[0], HEADER - 12.0), &LINES.map(|(_, look, name)| (look, name)));
     for (number, (gravity, most)) in PANELS.into_iter().enumerate() {
