@@ -58,9 +58,9 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 /// matters only at their onset.
 ///
 /// In two equal rolls `$\Psi_1$` vanishes, while one roll may have any `$\Psi_2$` (paper, section III). At
-/// large gravity it has a third of `$\Psi_1$`. At small gravity the roll leans ever more to one side as the
-/// loss grows, until it meets the diagonal: a ratio of 1 would call it two rolls there. Whether the ratio is
-/// 1.5, 2 or 3 hardly matters: it changes the names of two states out of a thousand in
+/// large gravity, that `$\Psi_2$` is a third of `$|\Psi_1|$`. At small gravity, the roll leans further to one
+/// side as the loss grows, until the two are equal: a ratio of 1 would call it two rolls there. A ratio of
+/// 1.5 or 3 instead of 2 hardly matters: it renames at most two of a thousand states in
 /// `docs/reproduction/full-length`.
 ///
 /// A collapsed run keeps a weak, slow `$\Psi_2$`, whose mean settles only after thousands of oscillations.

@@ -39,8 +39,8 @@ pub struct CollisionHistograms {
 }
 
 impl CollisionHistograms {
-    /// Creates histograms of closing speeds up to `speed` and impulses up to `impulse`, each in this many
-    /// bins.
+    /// Creates histograms of closing speeds up to `speed` and impulses up to `impulse`, each in
+    /// `bins` bins.
     ///
     /// # Errors
     /// If the speed or the impulse is not finite and positive, or the number of bins is not in `1..=2^20`.

@@ -53,7 +53,7 @@ pub struct EnergyChangeProfile {
 }
 
 impl EnergyChangeProfile {
-    /// Creates a profile with this many layers from the height `bottom` to `top`, with temperatures sampled
+    /// Creates a profile of `layers` layers from the height `bottom` to `top`, with temperatures sampled
     /// at these times.
     ///
     /// Collisions and disks outside are left out.

@@ -87,7 +87,7 @@ pub struct HeightProfile {
 }
 
 impl HeightProfile {
-    /// Creates a profile with this many bins from the height `bottom` to `top`.
+    /// Creates a profile of `bins` bins from the height `bottom` to `top`.
     ///
     /// Disks outside are left out.
     ///

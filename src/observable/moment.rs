@@ -24,7 +24,7 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// Creates a moment of a run with this many disks and walls.
+    /// Creates a moment of a run with these numbers of disks and walls.
     ///
     /// The engine creates moments, and tests may do so.
     pub const fn new(time: f64, disk_count: usize, wall_count: usize, domain: Domain, gravity: f64) -> Self {

@@ -42,7 +42,7 @@ pub struct HistogramBin {
 }
 
 impl Histogram {
-    /// Creates a histogram with this many equal bins from `low` to `high`.
+    /// Creates a histogram of `bins` equal bins from `low` to `high`.
     ///
     /// # Errors
     /// If an end is not finite, `high` is not above `low`, or the number of bins is not in `1..=2^20`.

@@ -75,9 +75,9 @@ impl Folder {
         self.ramp(ramp).join("done")
     }
 
-    /// Returns whether the folder holds a study. A plan alone is none: somebody may keep plans there, among
-    /// other files. A study has a lock beside it from its first moment, soon a README, and then its ramps; a
-    /// copy of it may lack some of these.
+    /// Returns whether the folder holds a study. A plan alone is not a study: somebody may keep plans there,
+    /// among other files. A study has a lock beside its plan from the first moment, soon a README, and then
+    /// ramps. A copy of a study may lack some of these.
     pub(super) fn holds_study(&self) -> bool {
         let has_lock = self.root.join(lock::NAME).metadata().is_ok_and(|lock| is_lock(&lock));
         let has_others = || [README, RAMPS].iter().any(|name| self.root.join(name).exists());

@@ -59,8 +59,8 @@ fn open(path: &Path) -> Result<File, StudyError> {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // A process that was forked meanwhile, to start another program, may have the file open, too. Then to
-        // close the file here would not give the lock back.
+        // A process that was forked meanwhile, to start another program, may have the file open, too.
+        // Closing the file here would then not release the lock.
         let _ = self.file.unlock();
     }
 }

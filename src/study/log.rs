@@ -12,8 +12,8 @@ pub(super) fn append(path: &Path, line: &str) -> io::Result<()> {
     let mut file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
     file.lock()?;
     let written = to_last_line_end(&mut file).and_then(|()| file.write_all(format!("{line}\n").as_bytes()));
-    // A process that was forked meanwhile may have the file open, too. Then to close the file here would not
-    // give the lock back.
+    // A process that was forked meanwhile may have the file open, too. Closing the file here would then not
+    // release the lock.
     let _ = file.unlock();
     written
 }

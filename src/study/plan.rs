@@ -103,7 +103,7 @@ impl<E: Experiment> Plan<E> {
         self.checked()
     }
 
-    /// Returns the same plan with this many repeats of each point, with different seeds.
+    /// Returns the same plan with `repeats` repeats of each point, each with another seed.
     ///
     /// # Errors
     /// If the number is 0, or the plan then has too many values.

@@ -229,8 +229,8 @@ impl<E: Experiment> Record<E> {
         &self.contents.state
     }
 
-    /// Returns the part of the simulation that the experiment now makes otherwise than when the value was
-    /// done, if it does. Parts without fingerprints cannot be told apart.
+    /// Returns the part of the simulation that the experiment now makes differently than when the value was
+    /// done, if there is one. Parts without fingerprints cannot be told apart.
     pub(super) fn changed_part(&self) -> Option<&'static str> {
         let (rule, boundary) = self.contents.state.parts();
         if self.experiment.rule().is_ok_and(|now| now.fingerprint().as_ref() != rule) {

@@ -133,7 +133,7 @@ impl<'a, E: Experiment> Tables<'a, E> {
         append(&mut line, &not_converged(&estimates));
         self.values.push_str(&line);
         self.values.push('\n');
-        // The values of a refinement are others in each repeat.
+        // A refinement has different values in each repeat.
         if record.value() < self.plan.values() {
             let is_unfinished = record.outcome().reason().is_some();
             self.repeats.add(record.value(), Repeat { estimates, is_unfinished });
@@ -161,7 +161,7 @@ fn append_estimate(line: &mut String, estimate: &Estimate) {
     append(line, &Scalar::from(estimate.independent_samples()));
 }
 
-/// Returns the names of those whose error is only a lower bound, apart by spaces.
+/// Returns the names of the estimates whose error is only a lower bound, separated by spaces.
 fn not_converged(estimates: &[(&'static str, Estimate)]) -> String {
     let names = estimates.iter().filter(|(_, estimate)| !estimate.is_converged()).map(|(name, _)| *name);
     names.collect::<Vec<_>>().join(" ")

@@ -1,7 +1,7 @@
 //! The paper's system: equal disks in a box over a base that vibrates or is hot.
 //!
-//! [`VibratedBox`] is the experiment, an implementation of [`Experiment`] like one of your own. [`Sample`] is
-//! what is measured of it, and [`Convection`] what its records tell of the flow.
+//! [`VibratedBox`] is the experiment. It implements [`Experiment`] as a type of your own would. [`Sample`]
+//! holds what is measured, and [`Convection`] finds the flow in its records.
 
 mod base;
 mod convection;
@@ -58,12 +58,12 @@ pub struct VibratedBox {
     /// Gravity `$g$`.
     #[serde(default)]
     pub gravity: f64,
-    /// Inelasticity `$q$`: normal, and tangential unless that is given for itself.
+    /// Inelasticity `$q$`: normal, and tangential unless that is given separately.
     #[serde(default)]
     pub inelasticity: f64,
     /// Tangential inelasticity `$q_t$`, if not `$q$`.
     pub tangential_inelasticity: Option<f64>,
-    /// Friction `$\kappa$`: static, and dynamic unless that is given for itself.
+    /// Friction `$\kappa$`: static, and dynamic unless that is given separately.
     #[serde(default)]
     pub friction: f64,
     /// Dynamic friction `$\kappa_d$`, if not `$\kappa$`.
@@ -234,7 +234,7 @@ impl Experiment for VibratedBox {
         if self.disks == 0 {
             return Err(ParameterError::new("number of disks", "at least 1", 0.0).into());
         }
-        // An open box has room for any number: a slip of the pen must not cost all memory.
+        // An open box has room for any number: a typing error must not take all memory.
         accept(self.disks <= MOST_DISKS, "number of disks", "at most 2^24", self.disks as f64)?;
         let disks = initial::lattice(&self.container()?, self.disks, RADIUS)?;
         Ok(initial::with_maxwellian_velocities(disks, self.initial_temperature, seed)?)

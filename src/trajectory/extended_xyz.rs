@@ -104,7 +104,7 @@ const fn letter(is_periodic: bool) -> char {
     if is_periodic { 'T' } else { 'F' }
 }
 
-/// Returns the top of the box, above the highest disk if the box is open, for programs that know no open
+/// Returns the top of the box, above the highest disk if the box is open, for programs that have no open
 /// boxes.
 pub(super) fn shown_top(domain: &Domain, disks: &[Disk]) -> f64 {
     if domain.top.is_finite() {

@@ -74,8 +74,8 @@ impl<M: Medium> Growing<M> {
 
 impl<M: Medium> Drop for Growing<M> {
     fn drop(&mut self) {
-        // A process that was forked meanwhile, to start another program, may have the file open, too. Then to
-        // close the file here would not give the lock back.
+        // A process that was forked meanwhile, to start another program, may have the file open, too.
+        // Closing the file here would then not release the lock.
         self.medium.unlock();
     }
 }

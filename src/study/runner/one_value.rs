@@ -133,7 +133,7 @@ impl<E: Experiment> Shift<'_, E> {
 
     fn log(&self, record: &Record<E>, started: Instant) -> Result<(), StudyError> {
         let unix_time = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
-        // A reason is one line of words and numbers; what JSON would take for its own is left out.
+        // A reason is one line of text. Characters that have a meaning in JSON are replaced.
         let reason = record.outcome().reason().map(|reason| {
             format!(r#","reason":"{}""#, reason.replace(['"', '\\'], "'").replace(char::is_control, " "))
         });

@@ -53,8 +53,8 @@ fn place<E: Experiment>(plan: &Plan<E>) -> Vec<Described> {
     place
 }
 
-/// Describes the columns of the table of values. Its last column names those whose error is a lower bound,
-/// apart by spaces: they have too few samples for their correlations.
+/// Describes the columns of the table of values. Its last column names the columns whose error is only
+/// a lower bound, separated by spaces: they have too few samples for their correlations.
 pub(super) fn of_values<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -> Vec<Described> {
     let mut all = place(plan);
     all.extend(["seed", "outcome", "samples"].map(|name| described(name, "")));
