@@ -9,7 +9,10 @@ const NOTES: [(&str, &str); 6] = [
     ("seed", "Seed of all random numbers: the same plan gives the same bytes."),
     ("repeats", "Times that each point is done, with different seeds."),
     ("[experiment]", "The system: each of its parameters can be ramped or swept."),
-    ("[protocol]", "In cycles: each value settles for `settle`, then takes `samples` samples, one after each `every` cycles."),
+    (
+        "[protocol]",
+        "In cycles: each value settles for `settle`, then takes `samples` samples, one after each `every` cycles.",
+    ),
     (
         "[ramp]",
         "A parameter that changes step by step, each value from the last state of the one before.\n# course: up, down or up_and_down.",
