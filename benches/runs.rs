@@ -9,8 +9,8 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 /// Returns the time for this many collisions.
 fn collide(run: &mut Run, collisions: u64) -> Duration {
-    let (start, last) = (Instant::now(), run.counters().collisions + collisions);
-    while run.counters().collisions < last {
+    let (start, last) = (Instant::now(), run.counters().disk_collisions + collisions);
+    while run.counters().disk_collisions < last {
         run.step_until(run.time() + 1.0, &mut ()).expect("the run goes on");
     }
     start.elapsed()

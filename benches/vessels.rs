@@ -115,7 +115,8 @@ fn run() -> Outcome<()> {
     let plain = gases[0].best;
     for Gas { name, run, best } in &gases {
         let counters = run.counters();
-        let walls = counters.wall_collisions as f64 / (counters.wall_collisions + counters.collisions) as f64;
+        let walls =
+            counters.wall_collisions as f64 / (counters.wall_collisions + counters.disk_collisions) as f64;
         println!("| {name} | {:.0} | {:.2} | {:.0} % |", 1e9 * best, best / plain, 100.0 * walls);
     }
     Ok(())

@@ -20,7 +20,7 @@ use std::time::Instant;
 use clap::Parser;
 use granular_edmd::boundary::Region;
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{FieldCell, Fields};
+use granular_edmd::observable::{FieldCell, Fields, Grid};
 use granular_edmd::prelude::*;
 use kuva::plot::heatmap::ColorMap;
 use kuva::prelude::{Heatmap, Layout, Plot, TickAlign, TickFormat};
@@ -94,8 +94,10 @@ fn measured(arguments: &Arguments) -> Result<(Fields, Fields), Box<dyn Error>> {
     simulation.run_until(0.5 * end, &mut progress)?;
     let times = SampleTimes::every(INTERVAL * oscillation)?.starting_at(0.5 * end)?;
     let region = Region::new(DVec2::ZERO, BOX);
-    let mut fields =
-        (Fields::new(region, FINE.0, FINE.1, times)?, Fields::new(region, COARSE.0, COARSE.1, times)?);
+    let mut fields = (
+        Fields::new(Grid::new(region, FINE.0, FINE.1)?, times),
+        Fields::new(Grid::new(region, COARSE.0, COARSE.1)?, times),
+    );
     simulation.run_until(end, &mut (&mut fields, &mut progress))?;
     Ok(fields)
 }

@@ -38,6 +38,6 @@ fn main() -> anyhow::Result<()> {
         let count = time / oscillation;
         println!("{count:11.0} {:9.3} {:10.3} {:8.2}", order.one_roll, order.two_rolls, center.y);
     }
-    println!("{} collisions", simulation.counters().collisions);
+    println!("{} collisions", simulation.counters().disk_collisions);
     Ok(())
 }

@@ -43,7 +43,7 @@ fn cooling(rule: impl CollisionRule) -> anyhow::Result<Vec<f64>> {
 fn main() -> anyhow::Result<()> {
     let rule = Viscous { loss: 0.2 };
     // Ten thousand contacts, mild and extreme: does the rule part the surfaces, and gain no energy?
-    laws::check_rule(&rule, &Promises::new())?;
+    laws::check(&rule, &Promises::new())?;
 
     let own = cooling(rule)?;
     // The restitution that the rule has at speed 1, at all speeds.

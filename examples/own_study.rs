@@ -105,6 +105,9 @@ impl Experiment for Turning {
         let disks = initial::random(&self.boundary()?, self.disks, 0.5, 16.0, seed)?;
         Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
     }
+    fn observer(&self) -> Result<CollisionCounts, ExperimentError> {
+        Ok(CollisionCounts::default())
+    }
     fn sample(&self, snapshot: &Snapshot<'_>, counts: &mut CollisionCounts) -> Flow {
         let orbit = |disk: &Disk| disk.mass() * disk.position().perp_dot(disk.velocity());
         let spin = |disk: &Disk| disk.moment_of_inertia() * disk.angular_velocity();

@@ -40,7 +40,7 @@
 //! }
 //!
 //! let rule = Viscoelastic { loss: 0.3, friction: Friction::new(0.25, 0.5)? };
-//! laws::check_rule(&rule, &laws::Promises::new().with_friction(0.5))?;
+//! laws::check(&rule, &laws::Promises::new().with_friction(0.5))?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -103,7 +103,7 @@ use crate::Fingerprint;
 /// 4. The collision gains no energy, unless the rule is meant to drive. Otherwise, the system heats up
 ///    unnoticed.
 ///
-/// [`laws::check_rule`] tests all four.
+/// [`laws::check`] tests all four.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a collision rule",
     label = "the trait `CollisionRule` is not implemented for `{Self}`",

@@ -46,7 +46,7 @@ pub enum PlacementError {
     #[error(transparent)]
     Parameter(#[from] ParameterError),
     /// There is no room for so many disks.
-    #[error("there is room for {placed} of {count} disks of radius {}", Readable(*.radius))]
+    #[error("there is room for {placed} of {count} disks of radius {} in {interior}", Readable(*.radius))]
     NoRoom {
         /// Number of disks wanted.
         count: usize,
@@ -54,6 +54,8 @@ pub enum PlacementError {
         placed: usize,
         /// Radius of the disks.
         radius: f64,
+        /// Interior of the boundary, up to the height to which disks were placed.
+        interior: Domain,
     },
     /// The disks jam before they are packed.
     #[error("the disks jam at the area fraction {reached:.4}: they would need {wanted:.4}")]

@@ -14,7 +14,7 @@ pub use crate::collision::{
 pub use crate::glam::DVec2;
 pub use crate::initial::{self, Radii};
 pub use crate::observable::{
-    BetweenKinds, CenterOfMass, Collision, CollisionCounts, Energies, EnergyChange, Fields, Moment,
+    BetweenKinds, CenterOfMass, Collision, CollisionCounts, Energies, EnergyChange, Fields, Grid, Moment,
     Observable, Observer, OfKind, OrderParameters, Partner, SampleTimes, Series, Snapshot, Tabular,
     Temperatures, Verdict, on_collision, on_sample, stop_when, stop_when_sampled,
 };

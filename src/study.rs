@@ -196,8 +196,12 @@ impl<E: Experiment> Study<E> {
     }
 
     /// Returns the progress of a ramp.
-    pub fn status(&self, ramp: usize) -> RampStatus {
-        if self.folder.is_done(ramp) {
+    ///
+    /// # Errors
+    /// If there is no such ramp.
+    pub fn status(&self, ramp: usize) -> Result<RampStatus, StudyError> {
+        self.check_ramp(ramp)?;
+        Ok(if self.folder.is_done(ramp) {
             RampStatus::Done
         } else if self.folder.is_taken(ramp) {
             RampStatus::Running
@@ -205,7 +209,13 @@ impl<E: Experiment> Study<E> {
             RampStatus::Begun
         } else {
             RampStatus::Waiting
-        }
+        })
+    }
+
+    /// Checks that there is a ramp of this index.
+    fn check_ramp(&self, ramp: usize) -> Result<(), StudyError> {
+        let ramps = self.plan.ramp_count();
+        if ramp < ramps { Ok(()) } else { Err(StudyError::NoSuchRamp { ramp, ramps }) }
     }
 
     fn origin(&self, ramp: usize, value: usize) -> Origin {

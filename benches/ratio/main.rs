@@ -140,9 +140,9 @@ fn measure(plan: &Plan, state: &State, programs: &[Program], round: u32) -> Outc
 /// Runs this crate for this many oscillations to settle from the lattice, and for as many to measure.
 fn ours(state: &State, seed: u64, oscillations: u32) -> Outcome<Speed> {
     let mut run = state.settled(seed, oscillations)?;
-    let (start, before) = (Instant::now(), run.counters().collisions);
+    let (start, before) = (Instant::now(), run.counters().disk_collisions);
     oscillate(&mut run, oscillations)?;
-    let (seconds, after) = (start.elapsed().as_secs_f64(), run.counters().collisions);
+    let (seconds, after) = (start.elapsed().as_secs_f64(), run.counters().disk_collisions);
     let collisions = (after - before) as f64;
     Ok(Speed { per_second: collisions / seconds, per_oscillation: collisions / f64::from(oscillations) })
 }

@@ -76,7 +76,7 @@ pub(crate) fn measure<S: EventScheduler + Default>(
     oscillate(&mut run, oscillations)?;
     let (seconds, after) = (watch.seconds(), run.counters());
     Ok(Measurement {
-        nanoseconds_per_collision: 1e9 * seconds / (after.collisions - before.collisions) as f64,
+        nanoseconds_per_collision: 1e9 * seconds / (after.disk_collisions - before.disk_collisions) as f64,
         events_per_second: (events(after) - events(&before)) as f64 / seconds,
         bytes_per_disk,
         set_up_seconds,
@@ -84,8 +84,8 @@ pub(crate) fn measure<S: EventScheduler + Default>(
 }
 
 fn events(counters: &Counters) -> u64 {
-    let Counters { collisions, wall_collisions, cell_crossings, repredictions, .. } = counters;
-    collisions + wall_collisions + cell_crossings + repredictions
+    let Counters { disk_collisions, wall_collisions, cell_crossings, repredictions, .. } = counters;
+    disk_collisions + wall_collisions + cell_crossings + repredictions
 }
 
 /// Returns the memory of this process that is in use; NaN if Linux does not report it.

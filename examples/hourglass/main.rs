@@ -202,7 +202,7 @@ fn way(arguments: &Arguments, run: &mut Run) -> Result<Way, Box<dyn Error>> {
     });
     let ended = run.run(&limits(arguments, start + END), &mut empty)?;
     let counters = run.counters().since(&before);
-    let collisions = counters.collisions + counters.wall_collisions;
+    let collisions = counters.disk_collisions + counters.wall_collisions;
     Ok(Way { frames, ended, seconds: since.elapsed().as_secs_f64(), collisions })
 }
 

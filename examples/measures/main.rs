@@ -156,8 +156,8 @@ fn in_the_bulk(gas: &Gas, intervals: u32, rows: &mut Rows) -> Result<Bulk, Box<d
     let times = SampleTimes::every(1.0 / gas.collision_rate())?;
     let often = SampleTimes::every(0.1 / gas.collision_rate())?;
     let mut pairs = PairCorrelation::new(4.0, 400, times)?;
-    let mut displacement = MeanSquaredDisplacement::new(times, 40)?;
-    let mut memory = TimeCorrelation::new(Velocities, often, 1)?;
+    let mut displacement = MeanSquaredDisplacement::new(40, times)?;
+    let mut memory = TimeCorrelation::new(Velocities, 1, often)?;
     let mut velocities = VelocityDistribution::new(3.0, 30, times)?.about_mean();
     let mut stress = Stress::new(times);
     let mut observers = (&mut pairs, (&mut displacement, &mut memory), &mut velocities, &mut stress);

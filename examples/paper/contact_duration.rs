@@ -23,7 +23,7 @@ use clap::Parser;
 use granular_edmd::ParameterError;
 use granular_edmd::analysis::{ConvectiveRegime, StateCriteria, Transition, TransitionLine, transitions};
 use granular_edmd::statistics::RunningMean;
-use granular_edmd::study::vibrated_box::{Convection, VibratedBox};
+use granular_edmd::study::vibrated_box::VibratedBox;
 use granular_edmd::study::{Axis, Course, Outcome, Plan, PlanError, Protocol, Ramp};
 use kuva::prelude::Plot;
 
@@ -167,7 +167,7 @@ fn told(crossing: Option<&Crossing>) -> String {
 /// Returns the share of all collisions, with disks and walls, that the model made elastic.
 fn share_changed<'a>(records: impl Iterator<Item = &'a Record>) -> f64 {
     let (changed, all) = records.map(Record::counters).fold((0, 0), |(changed, all), counters| {
-        let collisions = counters.collisions + counters.wall_collisions;
+        let collisions = counters.disk_collisions + counters.wall_collisions;
         (changed + counters.contact_duration_collisions, all + collisions)
     });
     changed as f64 / all as f64

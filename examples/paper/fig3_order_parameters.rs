@@ -21,7 +21,7 @@ use std::error::Error;
 use std::process::ExitCode;
 
 use clap::Parser;
-use granular_edmd::study::vibrated_box::{Convection, Sample, VibratedBox};
+use granular_edmd::study::vibrated_box::{Sample, VibratedBox};
 use granular_edmd::study::{Course, Leg, Plan, PlanError, Protocol, Ramp, Study};
 use kuva::prelude::{Layout, Plot, TickFormat};
 

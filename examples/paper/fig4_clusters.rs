@@ -25,7 +25,7 @@ use clap::Parser;
 use granular_edmd::analysis::{Classification, ConvectiveState, StateCriteria};
 use granular_edmd::glam::DVec2;
 use granular_edmd::statistics::RunningMean;
-use granular_edmd::study::vibrated_box::{Convection, VibratedBox};
+use granular_edmd::study::vibrated_box::VibratedBox;
 use granular_edmd::study::{Plan, PlanError, Protocol, Record, Study};
 use kuva::prelude::Plot;
 
@@ -103,7 +103,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 }
 
 fn print(run: &Run) {
-    println!("run {}, seed {}:", run.record.ramp() + 1, run.record.seed());
+    println!("run {}, seed {}:", run.record.ramp_index() + 1, run.record.seed());
     for (state, cluster) in run.found.iter() {
         let DVec2 { x, y } = cluster.center();
         println!("    {:3.0} %  Psi1 = {x:6.3}  Psi2 = {y:6.3}  {state}", 100.0 * cluster.weight());
@@ -136,7 +136,7 @@ fn write_clusters(runs: &[Run], folder: &Path) -> Result<(), Box<dyn Error>> {
     for run in runs {
         for (state, cluster) in run.found.iter() {
             let (center, spread) = (cluster.center(), [DVec2::X, DVec2::Y].map(|axis| cluster.spread(axis)));
-            let place = (run.record.ramp() + 1, state.to_string(), cluster.count(), cluster.weight());
+            let place = (run.record.ramp_index() + 1, state.to_string(), cluster.count(), cluster.weight());
             table.serialize((place, center.x, center.y, spread))?;
         }
     }
@@ -165,7 +165,7 @@ fn draw(arguments: &Arguments, study: &Study<VibratedBox>, run: &Run) -> Sheet {
         "{} samples in the second half of {} oscillations; run {} of {}, seed {}",
         protocol.samples(),
         protocol.cycles(),
-        run.record.ramp() + 1,
+        run.record.ramp_index() + 1,
         arguments.runs,
         arguments.common.seed
     );

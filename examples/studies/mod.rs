@@ -83,7 +83,7 @@ pub(crate) fn complete<E: Experiment>(
     for file in &summary.redone {
         println!("{} was damaged and has been done again", file.display());
     }
-    if (0..plan.ramps()).all(|ramp| study.status(ramp) == RampStatus::Done) {
+    if (0..plan.ramp_count()).all(|ramp| matches!(study.status(ramp), Ok(RampStatus::Done))) {
         return Ok(Some(study));
     }
     println!(

@@ -134,7 +134,7 @@ impl Outcome {
 
     /// Returns the collisions of two disks in a second.
     pub(crate) fn speed(&self) -> f64 {
-        self.simulation.counters().collisions as f64 / self.seconds
+        self.simulation.counters().disk_collisions as f64 / self.seconds
     }
 
     /// Returns a name for the last state, which depends on its last bit.

@@ -26,7 +26,10 @@ pub(crate) fn print(outcome: &Outcome) {
     }
     line("noise of a gas at rest", &format!("{:.4}", outcome.noise));
     line("energy change, collision", &outcome.energy_change.disks().estimate());
-    line("disk–disk collisions", &format!("{}, {:.2e} per second", counters.collisions, outcome.speed()));
+    line(
+        "disk–disk collisions",
+        &format!("{}, {:.2e} per second", counters.disk_collisions, outcome.speed()),
+    );
     line("collisions with walls", &counters.wall_collisions);
     line("contact-duration ones", &counters.contact_duration_collisions);
     line("largest overlap", &format!("{:.1e}", counters.max_overlap));
@@ -39,7 +42,7 @@ pub(crate) fn json(outcome: &Outcome) -> Value {
     let counters = outcome.simulation.counters();
     let mut numbers = json!({
         "flow": outcome.flow, "noise": outcome.noise, "samples": outcome.series.values().len(),
-        "collisions": counters.collisions, "wall_collisions": counters.wall_collisions,
+        "collisions": counters.disk_collisions, "wall_collisions": counters.wall_collisions,
         "contact_duration_collisions": counters.contact_duration_collisions,
         "max_overlap": counters.max_overlap, "run_seconds": outcome.seconds,
         "collisions_per_second": outcome.speed(), "final_state_hash": outcome.hash(),

@@ -76,8 +76,8 @@ pub enum ConvectiveRegime {
 
 impl ConvectiveRegime {
     /// All regimes, in the order of growing energy loss.
-    pub const ALL: [Self; 5] =
-        [Self::Conductive, Self::OneRoll, Self::Coexistence, Self::TwoRolls, Self::Collapsed];
+    pub const ALL: &'static [Self] =
+        &[Self::Conductive, Self::OneRoll, Self::Coexistence, Self::TwoRolls, Self::Collapsed];
 }
 
 impl fmt::Display for ConvectiveRegime {

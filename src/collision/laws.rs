@@ -4,21 +4,22 @@
 //! impulse and its opposite at the contact point. The rule is responsible for separation, energy and
 //! friction.
 //!
-//! [`check_rule`] asks a rule about tens of thousands of contacts, always the same ones, and fits into a
+//! [`check`] asks a rule about tens of thousands of contacts, always the same ones, and fits into a
 //! plain test:
 //!
 //! ```
 //! use granular_edmd::collision::laws::{self, Promises, Violation};
 //! use granular_edmd::collision::{Contact, Frictional, Impulse, from_fn};
 //!
-//! laws::check_rule(&Frictional::new(0.1, 0.3)?, &Promises::new().with_friction(0.3))?;
+//! laws::check(&Frictional::new(0.1, 0.3)?, &Promises::new().with_friction(0.3))?;
 //!
 //! let glue = from_fn(|_: &Contact| Impulse::new(0.0, 0.0));
-//! assert!(matches!(laws::check_rule(&glue, &Promises::new()), Err(Violation::StillClosing { .. })));
+//! assert!(matches!(laws::check(&glue, &Promises::new()), Err(Violation::StillClosing { .. })));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! To check contacts of your own, use [`check`], [`check_friction_opposes_slip`] and [`check_friction_cone`].
+//! To check contacts of your own, use [`check_impulse`], [`check_friction_opposes_slip`] and
+//! [`check_friction_cone`].
 //! With the feature `proptest`, the module `strategies` makes random contacts.
 
 mod hostile;
@@ -26,7 +27,7 @@ mod rule;
 mod violation;
 
 pub use hostile::hostile_contacts;
-pub use rule::{Promises, check_rule};
+pub use rule::{Promises, check};
 pub use violation::Violation;
 
 use super::{Contact, Impulse};
@@ -47,13 +48,13 @@ const LEAST: f64 = f64::MIN_POSITIVE;
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse, laws};
 /// let contact = Contact::new(1.0, 0.0, 0.5, 0.5 / 3.0);
-/// assert!(laws::check(&contact, Impulse::new(0.8, 0.0)).is_ok());
+/// assert!(laws::check_impulse(&contact, Impulse::new(0.8, 0.0)).is_ok());
 /// assert!(matches!(
-///     laws::check(&contact, Impulse::new(0.2, 0.0)),
+///     laws::check_impulse(&contact, Impulse::new(0.2, 0.0)),
 ///     Err(laws::Violation::StillClosing { .. })
 /// ));
 /// ```
-pub fn check(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
+pub fn check_impulse(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
     check_separation(contact, impulse)?;
     let energy_change = impulse.energy_change(contact);
     if energy_change > ROUNDING * available_energy(contact) + LEAST {
@@ -77,7 +78,7 @@ fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation
 /// Checks that the tangential impulse can be friction: it slows the slip, and at most reverses it.
 ///
 /// A rule may add to the slip and still lose energy, if it takes that energy from the normal direction.
-/// [`check`] allows this, but friction never does it.
+/// [`check_impulse`] allows this, but friction never does it.
 ///
 /// # Errors
 /// If the impulse pushes along the slip, or the slip is faster after the collision.

@@ -35,7 +35,8 @@ pub fn lattice<B: Boundary + ?Sized>(
 ) -> Result<Vec<Disk>, PlacementError> {
     positive("radius", radius)?;
     countable(count)?;
-    let room = room(&boundary.interior(), radius);
+    let interior = boundary.interior();
+    let room = room(&interior, radius);
     let mut most = 0;
     for spacing in spacings() {
         let disks = free_disks(boundary, &room, 2.0 * radius * spacing, count, radius)?;
@@ -44,7 +45,7 @@ pub fn lattice<B: Boundary + ?Sized>(
         }
         most = most.max(disks.len());
     }
-    Err(PlacementError::NoRoom { count, placed: most, radius })
+    Err(PlacementError::NoRoom { count, placed: most, radius, interior })
 }
 
 /// Returns up to `count` disks on a square lattice with at least this spacing, where they overlap no wall.

@@ -84,10 +84,10 @@ pub fn packed_at_random<B: Boundary + ?Sized>(
 /// Returns the error with the full radius of the disk that finds no room, instead of the radius with which it
 /// would have begun to grow. The largest disks are placed first.
 fn with_full_radius(error: PlacementError, disks: &[Disk]) -> PlacementError {
-    let PlacementError::NoRoom { count, placed, radius } = error else { return error };
+    let PlacementError::NoRoom { count, placed, radius, interior } = error else { return error };
     let mut radii: Vec<f64> = disks.iter().map(Disk::radius).collect();
     radii.sort_by(|a, b| b.total_cmp(a));
-    PlacementError::NoRoom { count, placed, radius: radii.get(placed).copied().unwrap_or(radius) }
+    PlacementError::NoRoom { count, placed, radius: radii.get(placed).copied().unwrap_or(radius), interior }
 }
 
 /// Lets the disks move and grow by turns until all have their radii, or jam in a room of this area.

@@ -81,7 +81,7 @@ pub fn placed_at_random<B: Boundary + ?Sized>(
     let (count, mut placed) = (disks.len(), Vec::with_capacity(disks.len()));
     for disk in disks {
         let radius = disk.radius();
-        let no_room = PlacementError::NoRoom { count, placed: placed.len(), radius };
+        let no_room = PlacementError::NoRoom { count, placed: placed.len(), radius, interior };
         let Some(room) = room_for(&interior, radius) else { return Err(no_room) };
         let sites = std::iter::repeat_with(|| random_site(&room, &mut generator)).take(TRIALS);
         let mut free = sites.filter(|&site| boundary.overlap(site, radius, 0.0).is_none());

@@ -44,7 +44,7 @@ pub fn placed_in_rows<B: Boundary + ?Sized>(
         most = most.max(sites.len());
     }
     let radius = disks.get(most).map_or(0.0, Disk::radius);
-    Err(PlacementError::NoRoom { count: disks.len(), placed: most, radius })
+    Err(PlacementError::NoRoom { count: disks.len(), placed: most, radius, interior: boundary.interior() })
 }
 
 /// The rows as far as they are filled.

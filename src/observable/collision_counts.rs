@@ -9,7 +9,7 @@ use crate::collision::Regime;
 ///
 /// ```
 /// use granular_edmd::observable::CollisionCounts;
-/// let counts = CollisionCounts::since(0.0);
+/// let counts = CollisionCounts::default();
 /// assert_eq!(counts.disk_collisions() + counts.wall_collisions(), 0);
 /// assert_eq!(counts.collisions_with_wall(3), 0);
 /// assert_eq!(counts.rate_per_disk(1000, 10.0), 0.0);
@@ -19,7 +19,6 @@ use crate::collision::Regime;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawCollisionCounts"))]
 pub struct CollisionCounts {
-    start: f64,
     disks: u64,
     walls: BTreeMap<usize, u64>,
     sticking: u64,
@@ -29,11 +28,6 @@ pub struct CollisionCounts {
 }
 
 impl CollisionCounts {
-    /// Creates counts whose rates are averages from this absolute time on.
-    pub fn since(start: f64) -> Self {
-        Self { start, ..Self::default() }
-    }
-
     /// Returns the number of collisions of two disks.
     pub const fn disk_collisions(&self) -> u64 {
         self.disks
@@ -50,7 +44,7 @@ impl CollisionCounts {
     }
 
     /// Returns the number of collisions in this regime, with disks and walls.
-    pub fn regime(&self, regime: Regime) -> u64 {
+    pub fn collisions_in_regime(&self, regime: Regime) -> u64 {
         match regime {
             Regime::Sticking => self.sticking,
             Regime::Sliding => self.sliding,
@@ -63,11 +57,17 @@ impl CollisionCounts {
         }
     }
 
-    /// Returns the number of disk–disk collisions per disk and time, up to the absolute time `now`.
+    /// Returns the number of disk–disk collisions per disk and time, if all of them were counted in this
+    /// duration.
     ///
     /// Each collision counts for both partners.
-    pub fn rate_per_disk(&self, disks: usize, now: f64) -> f64 {
-        2.0 * self.disks as f64 / (disks as f64 * (now - self.start))
+    pub fn rate_per_disk(&self, disks: usize, duration: f64) -> f64 {
+        2.0 * self.disks as f64 / (disks as f64 * duration)
+    }
+
+    /// Forgets all collisions so far.
+    pub fn clear(&mut self) {
+        *self = Self::default();
     }
 }
 
@@ -91,7 +91,6 @@ impl Observer for CollisionCounts {
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields, rename = "CollisionCounts")]
 struct RawCollisionCounts {
-    start: f64,
     disks: u64,
     walls: BTreeMap<usize, u64>,
     sticking: u64,
@@ -105,15 +104,13 @@ impl TryFrom<RawCollisionCounts> for CollisionCounts {
     type Error = crate::ParameterError;
 
     fn try_from(raw: RawCollisionCounts) -> Result<Self, Self::Error> {
-        let RawCollisionCounts { start, disks, walls, sticking, sliding, contact_duration, elastic_below } =
-            raw;
-        crate::quantity::finite("start of the counts", start)?;
+        let RawCollisionCounts { disks, walls, sticking, sliding, contact_duration, elastic_below } = raw;
         // The sum has 128 bits, so that sums of forged counts do not wrap.
         let sum = |counts: &[u64]| counts.iter().map(|&count| u128::from(count)).sum::<u128>();
         let all = u128::from(disks) + walls.values().map(|&count| u128::from(count)).sum::<u128>();
         let regimes = sum(&[sticking, sliding, contact_duration, elastic_below]);
         let fits = regimes <= all && all <= u128::from(u64::MAX / 2);
         crate::quantity::accept(fits, "number of collisions", "at least that of all regimes", all as f64)?;
-        Ok(Self { start, disks, walls, sticking, sliding, contact_duration, elastic_below })
+        Ok(Self { disks, walls, sticking, sliding, contact_duration, elastic_below })
     }
 }

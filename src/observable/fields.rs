@@ -4,8 +4,6 @@ use glam::DVec2;
 
 use super::grid::CellSums;
 use super::{Grid, Moment, Observer, SampleTimes, Snapshot};
-use crate::ParameterError;
-use crate::boundary::Region;
 
 /// The fields in one cell of a grid, averaged over all samples; made by [`Fields`].
 ///
@@ -45,11 +43,11 @@ pub struct FieldCell {
 /// ```
 /// use granular_edmd::boundary::{Domain, Region};
 /// use granular_edmd::glam::DVec2;
-/// use granular_edmd::observable::{Fields, Observer, SampleTimes, Snapshot};
+/// use granular_edmd::observable::{Fields, Grid, Observer, SampleTimes, Snapshot};
 /// use granular_edmd::Disk;
 ///
 /// let region = Region::new(DVec2::ZERO, DVec2::new(4.0, 2.0));
-/// let mut fields = Fields::new(region, 2, 1, SampleTimes::every(1.0)?)?;
+/// let mut fields = Fields::new(Grid::new(region, 2, 1)?, SampleTimes::every(1.0)?);
 /// let disk = |x, vx| Disk::new(DVec2::new(x, 1.0), 0.4)?.with_velocity(DVec2::new(vx, 0.0));
 /// let disks = [disk(0.5, 1.0)?, disk(1.5, 3.0)?];
 /// let domain = Domain::new(0.0, 4.0, 0.0, 2.0);
@@ -71,21 +69,11 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// Creates a grid of `columns` times `rows` cells over a region.
+    /// Creates fields over the cells of a grid.
     ///
     /// Disks outside are left out.
-    ///
-    /// # Errors
-    /// If an edge of the region is not finite, the region has no area, or the number of cells is not in
-    /// `1..=2^22`.
-    pub fn new(
-        region: Region,
-        columns: usize,
-        rows: usize,
-        times: SampleTimes,
-    ) -> Result<Self, ParameterError> {
-        let grid = Grid::new(region, columns, rows)?;
-        Ok(Self { grid, sample_times: times, sums: vec![CellSums::default(); grid.count()], samples: 0 })
+    pub fn new(grid: Grid, times: SampleTimes) -> Self {
+        Self { grid, sample_times: times, sums: vec![CellSums::default(); grid.count()], samples: 0 }
     }
 
     /// Returns the number of samples that were taken.
@@ -93,23 +81,23 @@ impl Fields {
         self.samples
     }
 
-    /// Returns the number of columns and rows.
-    pub const fn shape(&self) -> (usize, usize) {
-        self.grid.shape()
+    /// Returns the grid.
+    pub const fn grid(&self) -> &Grid {
+        &self.grid
     }
 
     /// Returns the fields in a cell, or `None` outside the grid.
     ///
     /// Columns count from the left and rows from below.
     pub fn cell(&self, column: usize, row: usize) -> Option<FieldCell> {
-        let (columns, rows) = self.shape();
+        let (columns, rows) = self.grid.shape();
         let inside = column < columns && row < rows;
         inside.then(|| self.averaged(column, row))
     }
 
     /// Iterates over the fields in all cells, row by row from below.
     pub fn iter(&self) -> impl Iterator<Item = FieldCell> {
-        let (columns, rows) = self.shape();
+        let (columns, rows) = self.grid.shape();
         (0..rows).flat_map(move |row| (0..columns).map(move |column| self.averaged(column, row)))
     }
 
@@ -122,7 +110,7 @@ impl Fields {
     fn averaged(&self, column: usize, row: usize) -> FieldCell {
         let size = self.grid.cell_size();
         let CellSums { count, area, velocity: [x, y], angular_velocity } =
-            self.sums[row * self.shape().0 + column];
+            self.sums[row * self.grid.shape().0 + column];
         let seen = size.x * size.y * self.samples.max(1) as f64;
         let disks = count.max(1) as f64;
         FieldCell {
@@ -170,9 +158,9 @@ struct RawFields {
 
 #[cfg(feature = "serde")]
 impl TryFrom<RawFields> for Fields {
-    type Error = ParameterError;
+    type Error = crate::ParameterError;
 
-    fn try_from(raw: RawFields) -> Result<Self, ParameterError> {
+    fn try_from(raw: RawFields) -> Result<Self, Self::Error> {
         let RawFields { grid, sample_times, sums, samples } = raw;
         let given = sums.len();
         let requirement = "that of the cells";

@@ -26,7 +26,7 @@ use crate::statistics::{BlockedMean, Estimate};
 /// use granular_edmd::{Disk, Simulation};
 ///
 /// let disk = Disk::new(DVec2::ONE, 0.5)?.with_velocity(DVec2::new(3.0, 4.0))?;
-/// let mut displacement = MeanSquaredDisplacement::new(SampleTimes::every(1.0)?, 4)?;
+/// let mut displacement = MeanSquaredDisplacement::new(4, SampleTimes::every(1.0)?)?;
 /// let container = Container::periodic(8.0, 8.0)?;
 /// Simulation::builder(Elastic, container).disks(vec![disk]).build()?.run_until(20.0, &mut displacement)?;
 /// // A free disk of speed 5.
@@ -50,7 +50,7 @@ impl MeanSquaredDisplacement {
     ///
     /// # Errors
     /// If the number of lags is not in `1..=2^20`.
-    pub fn new(times: SampleTimes, lags: usize) -> Result<Self, ParameterError> {
+    pub fn new(lags: usize, times: SampleTimes) -> Result<Self, ParameterError> {
         Ok(Self { lags: Lags::new(times, lags)?, periods: DVec2::ZERO, diffusion: BlockedMean::new() })
     }
 

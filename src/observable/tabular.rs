@@ -28,6 +28,13 @@ impl Heading {
     }
 }
 
+impl<N: Into<String>, U: Into<String>> From<(N, U)> for Heading {
+    /// Takes the name and the unit.
+    fn from((name, unit): (N, U)) -> Self {
+        Self::new(name, unit)
+    }
+}
+
 /// An observable whose values are rows of numbers, each with a name and a unit.
 ///
 /// [`OrderParameters`](super::OrderParameters), [`CenterOfMass`](super::CenterOfMass),

@@ -86,7 +86,7 @@ impl Observable for Velocities {
 /// let container = Container::periodic(20.0, 20.0)?;
 /// let disks = initial::random(&container, 100, 0.5, 20.0, 1)?;
 /// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
-/// let mut correlation = TimeCorrelation::new(Velocities, SampleTimes::every(0.5)?, 10)?;
+/// let mut correlation = TimeCorrelation::new(Velocities, 10, SampleTimes::every(0.5)?)?;
 /// let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
 /// run.run_until(100.0, &mut correlation)?;
 /// let values: Vec<f64> = correlation.iter().map(|(_, value)| value.mean()).collect();
@@ -118,7 +118,7 @@ impl<Q: Observable> TimeCorrelation<Q> {
     ///
     /// # Errors
     /// If the number of lags is not in `1..=2^20`.
-    pub fn new(observable: Q, times: SampleTimes, lags: usize) -> Result<Self, ParameterError> {
+    pub fn new(observable: Q, lags: usize, times: SampleTimes) -> Result<Self, ParameterError> {
         Ok(Self { observable, lags: Lags::new(times, lags)? })
     }
 

@@ -51,7 +51,7 @@ impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
     ///     .gravity(1.0)
     ///     .build()?;
     /// simulation.run_until(2.0, &mut ())?;
-    /// assert!(simulation.counters().collisions > 0);
+    /// assert!(simulation.counters().disk_collisions > 0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub const fn builder(rule: R, boundary: B) -> SimulationBuilder<R, B> {
@@ -240,7 +240,8 @@ fn check_overlaps<B: Boundary + ?Sized>(
             let depth = contact - domain.separation(a.position(), b.position()).length();
             if depth > TOUCHING * contact {
                 let (second, first) = (first.max(second as usize), first.min(second as usize));
-                return Err(BuildError::Overlap { first, second, depth });
+                let positions = [first, second].map(|disk| disks[disk].position());
+                return Err(BuildError::Overlap { first, second, positions, depth });
             }
         }
     }

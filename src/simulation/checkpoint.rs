@@ -132,7 +132,7 @@ pub enum CheckpointError {
     },
     /// The contents are not a possible state.
     #[error("the checkpoint is inconsistent: {0}")]
-    Inconsistent(&'static str),
+    Inconsistent(String),
     /// The boundary has another domain than that of the run that was saved.
     #[error("the checkpoint is of a run in the domain {saved}; the boundary's is {given}")]
     Domain {
@@ -161,13 +161,8 @@ impl Checkpoint {
     }
 
     /// Returns the number of disks.
-    pub fn len(&self) -> usize {
+    pub fn disk_count(&self) -> usize {
         self.0.trajectories.len()
-    }
-
-    /// Tells whether there are no disks.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 
     /// Returns the fingerprints of the rule and the boundary of the run.

@@ -58,7 +58,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[cold]
     pub(super) fn adapt_cells(&mut self) {
         let tally =
-            Tally { cell_crossings: self.counters.cell_crossings, collisions: self.counters.collisions };
+            Tally { cell_crossings: self.counters.cell_crossings, collisions: self.counters.disk_collisions };
         let last = std::mem::replace(&mut self.clock.tally, tally);
         let crossings = tally.cell_crossings - last.cell_crossings;
         let size = self.cells.grid().cell_size();

@@ -85,12 +85,18 @@ pub enum BuildError {
         depth: f64,
     },
     /// Two disks overlap.
-    #[error("disks {first} and {second} overlap by {}", Rounded(*.depth))]
+    #[error(
+        "disks {first} and {second} at ({}, {}) and ({}, {}) overlap by {}",
+        Readable(.positions[0].x), Readable(.positions[0].y), Readable(.positions[1].x), Readable(.positions[1].y),
+        Rounded(*.depth)
+    )]
     Overlap {
         /// Index of the first disk.
         first: usize,
         /// Index of the second disk.
         second: usize,
+        /// Positions of their centers.
+        positions: [DVec2; 2],
         /// Depth of the overlap.
         depth: f64,
     },
@@ -187,7 +193,7 @@ pub enum RunError {
     #[error(
         "the run cannot go on at time {}: times there are {} apart, too coarse for disks that go some tens of diameters \
          in {}; the run is too late, or its disks have become too fast: does a rule or a wall add energy? \
-         collision::laws::check_rule and wall::laws::check try them",
+         collision::laws::check and wall::laws::check try them",
         Readable(*.time), Rounded(*.spacing), Rounded(*.epoch)
     )]
     TimeTooLate {

@@ -89,7 +89,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             self.prepare_for_pair(disk, partner)?;
         }
         let touching = self.bodies.radius(disk) + self.bodies.radius(partner);
-        self.counters.collisions += 1;
+        self.counters.disk_collisions += 1;
         self.counters.max_overlap = self.counters.max_overlap.max(touching - collision.distance);
         self.count_regime(&collision);
         self.kick(disk, &kicks[0]);

@@ -50,7 +50,7 @@ pub enum RunEnd {
 #[non_exhaustive]
 pub struct Counters {
     /// Collisions of two disks.
-    pub collisions: u64,
+    pub disk_collisions: u64,
     /// Collisions of a disk with a wall.
     pub wall_collisions: u64,
     /// Collisions, with disks or walls, that a contact-duration model made elastic.
@@ -77,7 +77,7 @@ impl Counters {
     #[must_use]
     pub const fn since(&self, earlier: &Self) -> Self {
         Self {
-            collisions: self.collisions.saturating_sub(earlier.collisions),
+            disk_collisions: self.disk_collisions.saturating_sub(earlier.disk_collisions),
             wall_collisions: self.wall_collisions.saturating_sub(earlier.wall_collisions),
             contact_duration_collisions: self
                 .contact_duration_collisions
@@ -93,6 +93,6 @@ impl Counters {
 
     /// Returns the number of all events.
     pub const fn events(&self) -> u64 {
-        self.collisions + self.wall_collisions + self.cell_crossings + self.repredictions + self.horizons
+        self.disk_collisions + self.wall_collisions + self.cell_crossings + self.repredictions + self.horizons
     }
 }

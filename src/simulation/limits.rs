@@ -30,7 +30,7 @@ const EVENTS_BETWEEN_LOOKS: u64 = 1024;
 /// let limits = Limits::until(1e3).with_most_collisions(500).with_wall_clock(Duration::from_secs(60));
 /// assert_eq!(simulation.run(&limits, &mut ())?, RunEnd::Collisions);
 /// let counters = simulation.counters();
-/// assert_eq!(counters.collisions + counters.wall_collisions, 500);
+/// assert_eq!(counters.disk_collisions + counters.wall_collisions, 500);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -153,5 +153,5 @@ impl<'a> Watch<'a> {
 }
 
 const fn collisions(counters: &Counters) -> u64 {
-    counters.collisions + counters.wall_collisions
+    counters.disk_collisions + counters.wall_collisions
 }

@@ -66,7 +66,7 @@ impl BlockedMean {
         self.ungrouped().count()
     }
 
-    /// Returns the mean of the numbers; 0 if there were none.
+    /// Returns the mean of the numbers; NaN if there were none.
     pub fn mean(&self) -> f64 {
         self.ungrouped().mean()
     }
@@ -85,8 +85,8 @@ impl BlockedMean {
     pub fn estimate(&self) -> Estimate {
         let whole = self.ungrouped();
         let naive = whole.standard_error();
-        if naive == 0.0 {
-            return Estimate::blocked(whole.mean(), 0.0, whole.count(), 1.0, true);
+        if whole.count() < 2 || naive == 0.0 {
+            return Estimate::blocked(whole.mean(), naive, whole.count(), 1.0, true);
         }
         let several = self.levels.iter().map(|level| level.blocks).take_while(|blocks| blocks.count() >= 2);
         let errors: Vec<BlockError> = several.map(|blocks| BlockError::of(&blocks)).collect();

@@ -31,9 +31,9 @@ impl RunningMean {
         self.0.weight as u64
     }
 
-    /// Returns the mean of the numbers; 0 if there were none.
+    /// Returns the mean of the numbers; NaN if there were none.
     pub const fn mean(&self) -> f64 {
-        self.0.mean
+        if self.0.weight > 0.0 { self.0.mean } else { f64::NAN }
     }
 
     /// Returns the sum of the numbers.
@@ -41,9 +41,9 @@ impl RunningMean {
         self.0.mean * self.0.weight
     }
 
-    /// Returns the unbiased variance of the numbers; 0 for fewer than two.
+    /// Returns the unbiased variance of the numbers; NaN for fewer than two.
     pub fn variance(&self) -> f64 {
-        if self.0.weight < 2.0 { 0.0 } else { self.0.squares / (self.0.weight - 1.0) }
+        if self.0.weight < 2.0 { f64::NAN } else { self.0.squares / (self.0.weight - 1.0) }
     }
 
     /// Returns the standard deviation of the numbers, the square root of the variance.
@@ -51,9 +51,10 @@ impl RunningMean {
         self.variance().sqrt()
     }
 
-    /// Returns the standard error of the mean of n independent numbers, √(variance/n); 0 for fewer than two.
+    /// Returns the standard error of the mean of n independent numbers, √(variance/n); NaN for fewer than
+    /// two.
     pub fn standard_error(&self) -> f64 {
-        if self.0.weight < 2.0 { 0.0 } else { (self.variance() / self.0.weight).sqrt() }
+        (self.variance() / self.0.weight).sqrt()
     }
 
     /// Returns the mean with the error of independent numbers.

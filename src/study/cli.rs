@@ -200,7 +200,7 @@ fn study<E: Experiment>(path: &Path, folder: &Path) -> Result<Study<E>, Failure>
 
 fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
     let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
-    let (ramps, values, cycles) = (plan.ramps(), plan.values(), plan.protocol().cycles());
+    let (ramps, values, cycles) = (plan.ramp_count(), plan.value_count(), plan.protocol().cycles());
     let repeats = match plan.repeats() {
         1 => String::new(),
         repeats => format!(", {repeats} repeats among them"),
@@ -213,7 +213,7 @@ fn prepare<E: Experiment>(path: &Path, out: &Path) -> Result<End, Failure> {
     let study = study::<E>(path, out)?;
     study.prepare()?;
     workflow::write(out)?;
-    say(&format!("{} ramps are prepared in {}", study.plan().ramps(), out.display()));
+    say(&format!("{} ramps are prepared in {}", study.plan().ramp_count(), out.display()));
     Ok(End::Done)
 }
 
@@ -240,9 +240,9 @@ fn run<E: Experiment>(
         say(&format!("{} was damaged and has been done again", file.display()));
     }
     say(&format!("{} of {} values are finished in {}", summary.finished, summary.total, out.display()));
-    if summary.unfinished > 0 {
+    if summary.failed > 0 {
         let log = out.join("log.jsonl");
-        say(&format!("{} of them stalled or failed; {} says why", summary.unfinished, log.display()));
+        say(&format!("{} of them stalled or failed; {} says why", summary.failed, log.display()));
     }
     Ok(match (summary.is_complete(), summary.elsewhere.is_empty()) {
         (true, _) => End::Done,
@@ -253,8 +253,8 @@ fn run<E: Experiment>(
 
 fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
     let study = Study::<E>::open(folder)?;
-    let ramps = study.plan().ramps();
-    let all: Vec<RampStatus> = (0..ramps).map(|ramp| study.status(ramp)).collect();
+    let ramps = study.plan().ramp_count();
+    let all: Vec<RampStatus> = (0..ramps).map(|ramp| study.status(ramp)).collect::<Result<_, _>>()?;
     let of = |wanted| (0..ramps).filter(|&ramp| all[ramp] == wanted).collect::<Vec<usize>>();
     let found = [
         ("done", of(RampStatus::Done)),

@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::errors::PlanError;
 use super::{Experiment, Record, Scalar};
+use crate::observable::Heading;
 use crate::statistics::Estimate;
 
 type OfSample<E> = Box<dyn Fn(&<E as Experiment>::Sample) -> Scalar + Send + Sync>;
@@ -22,8 +23,7 @@ type OfRecord<E, T> = Box<dyn Fn(&Record<E>) -> T + Send + Sync>;
 /// assert_eq!((height.name(), overlap.unit()), ("height", "diameter"));
 /// ```
 pub struct Column<E: Experiment> {
-    name: &'static str,
-    unit: &'static str,
+    heading: Heading,
     kind: Kind<E>,
     in_samples: bool,
     in_values: bool,
@@ -41,31 +41,32 @@ impl<E: Experiment> Column<E> {
     /// The table of samples has its values. The table of values has its mean, with the error and the number
     /// of independent samples.
     pub fn sampled<T: Into<Scalar>>(
-        name: &'static str,
-        unit: &'static str,
+        name: impl Into<String>,
+        unit: impl Into<String>,
         value: impl Fn(&E::Sample) -> T + Send + Sync + 'static,
     ) -> Self {
         let kind = Kind::Sample(Box::new(move |sample| value(sample).into()));
-        Self { name, unit, kind, in_samples: true, in_values: true }
+        Self { heading: Heading::new(name, unit), kind, in_samples: true, in_values: true }
     }
 
     /// Creates a column of the table of values from a quantity of each record.
     pub fn of_record<T: Into<Scalar>>(
-        name: &'static str,
-        unit: &'static str,
+        name: impl Into<String>,
+        unit: impl Into<String>,
         value: impl Fn(&Record<E>) -> T + Send + Sync + 'static,
     ) -> Self {
         let kind = Kind::Record(Box::new(move |record| value(record).into()));
-        Self { name, unit, kind, in_samples: false, in_values: true }
+        Self { heading: Heading::new(name, unit), kind, in_samples: false, in_values: true }
     }
 
     /// Creates a column of the table of values from a quantity of each record that has an error.
     pub fn estimated(
-        name: &'static str,
-        unit: &'static str,
+        name: impl Into<String>,
+        unit: impl Into<String>,
         value: impl Fn(&Record<E>) -> Estimate + Send + Sync + 'static,
     ) -> Self {
-        Self { name, unit, kind: Kind::Estimate(Box::new(value)), in_samples: false, in_values: true }
+        let (heading, kind) = (Heading::new(name, unit), Kind::Estimate(Box::new(value)));
+        Self { heading, kind, in_samples: false, in_values: true }
     }
 
     /// Returns the same column for the table of samples alone.
@@ -79,13 +80,17 @@ impl<E: Experiment> Column<E> {
     }
 
     /// Returns the name of the column.
-    pub const fn name(&self) -> &'static str {
-        self.name
+    pub fn name(&self) -> &str {
+        self.heading.name()
     }
 
     /// Returns the unit of the column.
-    pub const fn unit(&self) -> &'static str {
-        self.unit
+    pub fn unit(&self) -> &str {
+        self.heading.unit()
+    }
+
+    pub(super) const fn heading(&self) -> &Heading {
+        &self.heading
     }
 
     pub(super) const fn kind(&self) -> &Kind<E> {
@@ -118,23 +123,23 @@ impl<E: Experiment> Column<E> {
 impl<E: Experiment> fmt::Debug for Column<E> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut debug = formatter.debug_struct("Column");
-        debug.field("name", &self.name).field("unit", &self.unit).finish_non_exhaustive()
+        debug.field("name", &self.name()).field("unit", &self.unit()).finish_non_exhaustive()
     }
 }
 
 /// A table besides those of values and samples, with some rows for each record.
 ///
 /// ```
-/// use granular_edmd::study::{Table, vibrated_box::{Convection, VibratedBox}};
+/// use granular_edmd::study::{Table, vibrated_box::VibratedBox};
 /// let profiles: Table<VibratedBox> =
-///     Table::new("profiles", &[("height", "diameter"), ("packing_fraction", "1")], |record| {
+///     Table::new("profiles", [("height", "diameter"), ("packing_fraction", "1")], |record| {
 ///         record.profile().map(|(height, fraction)| vec![height, fraction]).collect()
 ///     });
 /// assert_eq!(profiles.name(), "profiles");
 /// ```
 pub struct Table<E: Experiment> {
-    name: &'static str,
-    columns: &'static [(&'static str, &'static str)],
+    name: String,
+    columns: Vec<Heading>,
     rows: OfRecord<E, Vec<Vec<f64>>>,
 }
 
@@ -144,21 +149,22 @@ impl<E: Experiment> Table<E> {
     ///
     /// A row has a number for each column: missing numbers are NaN, and surplus numbers are left out.
     pub fn new(
-        name: &'static str,
-        columns: &'static [(&'static str, &'static str)],
+        name: impl Into<String>,
+        columns: impl IntoIterator<Item: Into<Heading>>,
         rows: impl Fn(&Record<E>) -> Vec<Vec<f64>> + Send + Sync + 'static,
     ) -> Self {
-        Self { name, columns, rows: Box::new(rows) }
+        let columns = columns.into_iter().map(Into::into).collect();
+        Self { name: name.into(), columns, rows: Box::new(rows) }
     }
 
     /// Returns the name of the table, which is that of its file without the ending.
-    pub const fn name(&self) -> &'static str {
-        self.name
+    pub fn name(&self) -> &str {
+        &self.name
     }
 
-    /// Returns the names and units of the columns.
-    pub const fn columns(&self) -> &'static [(&'static str, &'static str)] {
-        self.columns
+    /// Returns the headings of the columns.
+    pub fn columns(&self) -> &[Heading] {
+        &self.columns
     }
 
     pub(super) fn rows(&self, record: &Record<E>) -> Vec<Vec<f64>> {
@@ -175,8 +181,19 @@ impl<E: Experiment> fmt::Debug for Table<E> {
 
 /// Names that are taken: those of the tables of every study, and those of the columns of every table.
 const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
-const PLACE: [&str; 10] =
-    ["ramp", "point", "value", "leg", "repeat", "repeats", "seed", "outcome", "samples", "not_converged"];
+const PLACE: [&str; 11] = [
+    "ramp",
+    "point",
+    "value",
+    "leg",
+    "repeat",
+    "repeats",
+    "failed",
+    "seed",
+    "outcome",
+    "samples",
+    "not_converged",
+];
 
 /// Returns the names of the two columns that follow a column of means: the error, and the number of
 /// independent samples.
@@ -189,22 +206,23 @@ pub(super) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanErro
     let (columns, tables) = (E::columns(), E::tables());
     let taken = [PLACE.as_slice(), varied].concat();
     let of = |is_in: fn(&Column<E>) -> bool| -> Vec<&str> {
-        columns.iter().filter(|column| is_in(column)).map(|column| column.name).collect()
+        columns.iter().filter(|column| is_in(column)).map(Column::name).collect()
     };
     check("column", &of(Column::is_in_samples), &[taken.as_slice(), &["time"]].concat())?;
     let with_errors = columns.iter().filter(|column| column.is_in_values() && column.has_error());
-    let errors: Vec<String> = with_errors.flat_map(|column| error_names(column.name)).collect();
+    let errors: Vec<String> = with_errors.flat_map(|column| error_names(column.name())).collect();
     let errors: Vec<&str> = errors.iter().map(String::as_str).collect();
     check("column", &of(Column::is_in_values), &[taken.as_slice(), &errors].concat())?;
     for table in &tables {
-        check("column", &table.columns.iter().map(|(name, _)| *name).collect::<Vec<_>>(), &taken)?;
+        check("column", &table.columns.iter().map(Heading::name).collect::<Vec<_>>(), &taken)?;
     }
     check("table", &tables.iter().map(Table::name).collect::<Vec<_>>(), &TABLES)
 }
 
 fn check(what: &'static str, names: &[&str], taken: &[&str]) -> Result<(), PlanError> {
     for (index, name) in names.iter().enumerate() {
-        let refuse = |reason| Err(PlanError::Name { name: (*name).to_owned(), what, reason });
+        let refuse =
+            |reason: &str| Err(PlanError::Name { name: (*name).to_owned(), what, reason: reason.to_owned() });
         let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
         if name.is_empty() || !name.chars().all(is_plain) {
             return refuse("it must be of letters, digits and underscores");

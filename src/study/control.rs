@@ -102,7 +102,7 @@ pub struct Summary {
     pub finished: usize,
     /// Number of these values that the engine could not finish, stalled or failed. They have fewer samples or
     /// none; [`Outcome::reason`](super::Outcome::reason) and `log.jsonl` say why.
-    pub unfinished: usize,
+    pub failed: usize,
     /// Number of values of the study, or of the ramps that were to be run.
     pub total: usize,
     /// Ramps that other processes are doing.

@@ -114,7 +114,7 @@ pub enum PlanError {
         /// The thing that has it: `column` or `table`.
         what: &'static str,
         /// The reason.
-        reason: &'static str,
+        reason: String,
     },
 }
 
@@ -154,6 +154,14 @@ pub enum StudyError {
         /// The number of ramps.
         ramps: usize,
     },
+    /// The grid of the study has no such point.
+    #[error("there is no point {point}: the study has {points}, counted from 0")]
+    NoSuchPoint {
+        /// The index that was asked for.
+        point: usize,
+        /// The number of points.
+        points: usize,
+    },
     /// A file or folder cannot be read or written.
     #[error("cannot {action} {}", path.display())]
     Io {
@@ -190,7 +198,7 @@ pub enum StudyError {
         /// The file.
         path: PathBuf,
         /// The damage.
-        reason: &'static str,
+        reason: String,
     },
     /// A record belongs to another plan, so somebody has changed the record or the plan.
     #[error("{} is of another plan than that in its folder; take a new folder for a new one", path.display())]

@@ -72,6 +72,9 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
 ///         let disks = initial::lattice(&self.boundary()?, self.disks, 0.5)?;
 ///         Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
 ///     }
+///     fn observer(&self) -> Result<(), ExperimentError> {
+///         Ok(())
+///     }
 ///     fn sample(&self, snapshot: &Snapshot<'_>, _: &mut ()) -> f64 {
 ///         snapshot.mean(|disk| 0.5 * disk.velocity().length_squared())
 ///     }
@@ -101,7 +104,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Type of the walls.
     type Boundary: Boundary;
     /// Type of the observer; `()` for none.
-    type Observer: Observer + Default + Serialize + DeserializeOwned;
+    type Observer: Observer + Serialize + DeserializeOwned;
     /// Type of the data that a sample keeps: numbers, lists, anything that can be serialized.
     type Sample: Serialize + DeserializeOwned;
 
@@ -135,9 +138,10 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     }
 
     /// Returns the observer with which a value begins.
-    fn observer(&self) -> Self::Observer {
-        Self::Observer::default()
-    }
+    ///
+    /// # Errors
+    /// If these parameters do not give one.
+    fn observer(&self) -> Result<Self::Observer, ExperimentError>;
 
     /// Returns the sample of this moment.
     ///
@@ -195,6 +199,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     fn check(&self) -> Result<(), ExperimentError> {
         self.rule()?;
         self.boundary()?;
+        self.observer()?;
         finite("gravity", self.gravity())?;
         positive("cycle", self.cycle())?;
         Ok(())
@@ -216,9 +221,9 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         &self,
         samples: &[Self::Sample],
         observer: &Self::Observer,
-        state: &Checkpoint,
-    ) -> Result<(), &'static str> {
-        let _ = (samples, observer, state);
+        checkpoint: &Checkpoint,
+    ) -> Result<(), ExperimentError> {
+        let _ = (samples, observer, checkpoint);
         Ok(())
     }
 

@@ -77,8 +77,8 @@ pub(super) fn read_sealed<T: DeserializeOwned>(path: &Path) -> Result<Option<T>,
     unseal(&bytes).map(Some).map_err(|reason| damaged(path, reason))
 }
 
-pub(super) fn damaged(path: &Path, reason: &'static str) -> StudyError {
-    StudyError::Damaged { path: path.to_owned(), reason }
+pub(super) fn damaged(path: &Path, reason: impl Into<String>) -> StudyError {
+    StudyError::Damaged { path: path.to_owned(), reason: reason.into() }
 }
 
 fn unseal<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, &'static str> {

@@ -47,13 +47,13 @@ impl<'a, E: Experiment> Value<'a, E> {
     pub(super) fn begin(&'a self) -> Result<Active<'a, E>, StudyError> {
         let run = self.first_state()?;
         let (start, counters) = (self.start(), *run.counters());
-        let measured =
-            Measured { times: Vec::new(), samples: Vec::new(), observer: self.experiment.observer() };
+        let observer = self.experiment.observer().map_err(|source| self.cannot_start(source))?;
+        let measured = Measured { times: Vec::new(), samples: Vec::new(), observer };
         Ok(Active { value: self, work: Work { start, steps: 0, counters, measured }, run })
     }
 
     /// Goes on with the value where it was saved. The error says why that is impossible.
-    pub(super) fn go_on(&'a self, (_, work, state): Partial<E>) -> Result<Active<'a, E>, &'static str> {
+    pub(super) fn go_on(&'a self, (_, work, state): Partial<E>) -> Result<Active<'a, E>, String> {
         work.check(self.plan.protocol())?;
         check(work.start == self.start(), "it starts elsewhere")?;
         let passed = self.plan.protocol().cycles_of(work.steps) as f64;
@@ -77,7 +77,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         let Some(before) = self.before else {
             return self.experiment.build(self.origin.seed).map_err(|source| self.cannot_start(source));
         };
-        let resumed = Self::resume(before.state(), &before.experiment);
+        let resumed = Self::resume(before.checkpoint(), &before.experiment);
         let mut run = resumed.map_err(|error| match error {
             Unresumed::Experiment(source) => self.cannot_start(source),
             Unresumed::Checkpoint(source) => {

@@ -37,7 +37,7 @@ use crate::quantity::accept;
 ///     sweep = [{ parameter = "inelasticity", values = [0.0, 0.01] }]
 ///     "#,
 /// )?;
-/// assert_eq!((plan.ramps(), plan.values()), (2, 5));
+/// assert_eq!((plan.ramp_count(), plan.value_count()), (2, 5));
 /// assert_eq!(plan.experiment(1, 4)?.friction, 0.01);
 /// assert_eq!(plan.parameters(1, 4)[0], ("inelasticity", Scalar::Number(0.01)));
 /// assert_eq!(plan.parameters(1, 4)[1], ("friction", Scalar::Number(0.01)));
@@ -127,17 +127,17 @@ impl<E: Experiment> Plan<E> {
     }
 
     /// Returns the number of ramps, which is the number of points times the number of repeats.
-    pub fn ramps(&self) -> usize {
-        self.points() * self.repeats
+    pub fn ramp_count(&self) -> usize {
+        self.point_count() * self.repeats
     }
 
     /// Returns the number of points of the grid.
-    pub fn points(&self) -> usize {
+    pub fn point_count(&self) -> usize {
         self.sweep.iter().map(|axis| axis.values().len()).product()
     }
 
     /// Returns the number of values of each ramp, without those that a refinement adds.
-    pub fn values(&self) -> usize {
+    pub fn value_count(&self) -> usize {
         self.ramp.as_ref().map_or(1, Ramp::len)
     }
 
@@ -159,7 +159,7 @@ impl<E: Experiment> Plan<E> {
 
     /// Returns the parameters that vary, as they are in a value; empty if there is no such value.
     pub fn parameters(&self, ramp: usize, value: usize) -> Vec<(&str, Scalar)> {
-        if ramp >= self.ramps() || value >= self.values() {
+        if ramp >= self.ramp_count() || value >= self.value_count() {
             return Vec::new();
         }
         self.parameters_at(ramp, self.step(value).map(|(_, at)| at))
@@ -184,8 +184,8 @@ impl<E: Experiment> Plan<E> {
     /// # Errors
     /// If there is no such ramp or value.
     pub fn experiment(&self, ramp: usize, value: usize) -> Result<E, PlanError> {
-        accept(ramp < self.ramps(), "index of a ramp", "below the number of ramps", ramp as f64)?;
-        accept(value < self.values(), "index of a value", "below the number of values", value as f64)?;
+        accept(ramp < self.ramp_count(), "index of a ramp", "below the number of ramps", ramp as f64)?;
+        accept(value < self.value_count(), "index of a value", "below the number of values", value as f64)?;
         self.experiment_of(&self.parameters(ramp, value))
     }
 
@@ -201,7 +201,7 @@ impl<E: Experiment> Plan<E> {
 
     /// Returns whether ramps bisect transitions, and so have more values than the plan names.
     pub(super) fn is_refined(&self) -> bool {
-        self.ramp.as_ref().is_some_and(|ramp| ramp.refine().is_some())
+        self.ramp.as_ref().is_some_and(|ramp| ramp.refinement().is_some())
     }
 
     /// Returns the next value of a ramp after those that are done; `None` if there is none.

@@ -44,7 +44,7 @@ impl<E: Experiment> Point<E> {
     }
 
     /// Returns the index of the value in the ramp.
-    pub const fn value(&self) -> usize {
+    pub const fn value_index(&self) -> usize {
         self.value
     }
 

@@ -75,8 +75,8 @@ pub enum Width {
 
 impl Ramp {
     /// Creates a ramp of the parameter of this name through these values, which must increase.
-    pub fn new(parameter: impl Into<String>, values: impl Into<Vec<f64>>, course: Course) -> Self {
-        Self { parameter: parameter.into(), values: values.into(), course, refine: None }
+    pub fn new(parameter: impl Into<String>, values: impl IntoIterator<Item = f64>, course: Course) -> Self {
+        Self { parameter: parameter.into(), values: values.into_iter().collect(), course, refine: None }
     }
 
     /// Returns the same ramp, which bisects each transition between two of its values down to this width.
@@ -90,7 +90,7 @@ impl Ramp {
     }
 
     /// Returns the width to which transitions are bisected, if they are.
-    pub const fn refine(&self) -> Option<Width> {
+    pub const fn refinement(&self) -> Option<Width> {
         self.refine
     }
 

@@ -10,8 +10,9 @@ impl<E: Experiment> Study<E> {
     /// Returns the record of a value; `None` if it is not finished.
     ///
     /// # Errors
-    /// If the file is damaged, of another study, or cannot be read.
+    /// If there is no such ramp, or the file is damaged, of another study, or cannot be read.
     pub fn record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
+        self.check_ramp(ramp)?;
         let path = self.folder.record(ramp, value);
         let Some(contents) = file::read_sealed::<Contents<_, _>>(&path)? else { return Ok(None) };
         self.check_origin(&contents.origin, ramp, value, &path)?;
@@ -29,26 +30,33 @@ impl<E: Experiment> Study<E> {
 
     /// Iterates over all finished records, ramp by ramp, and reads them one by one.
     pub fn records(&self) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
-        (0..self.plan.ramps()).flat_map(|ramp| self.ramp_records(ramp))
+        (0..self.plan.ramp_count()).flat_map(|ramp| self.ramp_records(ramp))
     }
 
     /// Iterates over all finished records of a ramp, and reads them one by one.
+    ///
+    /// If there is no such ramp, the only item is an error.
     pub fn ramp_records(&self, ramp: usize) -> impl Iterator<Item = Result<Record<E>, StudyError>> {
-        let values = self.plan.values();
+        let missing = self.check_ramp(ramp).err();
+        let values = if missing.is_some() { 0 } else { self.plan.value_count() };
         let own = (0..values).filter_map(move |value| self.record(ramp, value).transpose());
         // The values of a refinement have no gaps, and their number is known only at the end.
-        let is_refined = self.plan.is_refined();
+        let is_refined = self.plan.is_refined() && missing.is_none();
         let more = (values..)
             .take_while(move |_| is_refined)
             .map_while(move |value| self.record(ramp, value).transpose());
-        own.chain(more)
+        missing.into_iter().map(Err).chain(own).chain(more)
     }
 
     /// Returns a value at a point of the grid, with all its finished repeats; `None` if there are none.
     ///
     /// # Errors
-    /// If a record is damaged, of another study, or cannot be read.
+    /// If there is no such point, or a record is damaged, of another study, or cannot be read.
     pub fn point(&self, index: usize, value: usize) -> Result<Option<Point<E>>, StudyError> {
+        let points = self.plan.point_count();
+        if index >= points {
+            return Err(StudyError::NoSuchPoint { point: index, points });
+        }
         let repeats = self.plan.repeats();
         let ramps = index * repeats..(index + 1) * repeats;
         let records = ramps.filter_map(|ramp| self.record(ramp, value).transpose());
@@ -60,15 +68,15 @@ impl<E: Experiment> Study<E> {
     ///
     /// The values that a refinement adds differ between repeats, and are not among them.
     pub fn points(&self) -> impl Iterator<Item = Result<Point<E>, StudyError>> {
-        let values = move |index| (0..self.plan.values()).map(move |value| (index, value));
-        let places = (0..self.plan.points()).flat_map(values);
+        let values = move |index| (0..self.plan.value_count()).map(move |value| (index, value));
+        let places = (0..self.plan.point_count()).flat_map(values);
         places.filter_map(|(index, value)| self.point(index, value).transpose())
     }
 
     /// Returns the transitions that a refined ramp has bracketed; empty before all of them are.
     ///
     /// # Errors
-    /// If a record is damaged, of another study, or cannot be read.
+    /// If there is no such ramp, or a record is damaged, of another study, or cannot be read.
     pub fn transitions(&self, ramp: usize) -> Result<Vec<Bracket>, StudyError> {
         let seen: Vec<Seen> =
             self.ramp_records(ramp).map(|record| Ok(record?.seen())).collect::<Result<_, StudyError>>()?;
@@ -88,7 +96,7 @@ impl<E: Experiment> Study<E> {
     pub fn write_tables(&self) -> Result<usize, StudyError> {
         let mut tables = Tables::new(&self.plan);
         let mut finished = 0;
-        for ramp in 0..self.plan.ramps() {
+        for ramp in 0..self.plan.ramp_count() {
             let mut seen = Vec::new();
             for record in self.ramp_records(ramp) {
                 let record = record?;

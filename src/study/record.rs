@@ -131,7 +131,7 @@ impl Cycles {
 
 impl<E: Experiment> Record<E> {
     /// Checks that the record can belong to its place in this study. The error says why it cannot.
-    pub(super) fn check(&self, plan: &Plan<E>) -> Result<(), &'static str> {
+    pub(super) fn check(&self, plan: &Plan<E>) -> Result<(), String> {
         let Contents { origin, leg, at, outcome, end, measured, state, .. } = &self.contents;
         let protocol = plan.protocol();
         let (most, samples) =
@@ -150,12 +150,12 @@ impl<E: Experiment> Record<E> {
     }
 
     /// Returns the index of the ramp.
-    pub const fn ramp(&self) -> usize {
+    pub const fn ramp_index(&self) -> usize {
         self.contents.origin.ramp
     }
 
     /// Returns the index of the value in the ramp.
-    pub const fn value(&self) -> usize {
+    pub const fn value_index(&self) -> usize {
         self.contents.origin.value
     }
 
@@ -175,13 +175,13 @@ impl<E: Experiment> Record<E> {
     }
 
     /// Returns the value of the ramped parameter; `None` without a ramp.
-    pub const fn at(&self) -> Option<f64> {
+    pub const fn ramped_value(&self) -> Option<f64> {
         self.contents.at
     }
 
     /// Returns the parts of the record on which the path of the ramp depends.
     pub(super) fn seen(&self) -> Seen {
-        Seen { leg: self.leg(), at: self.at(), state: E::state(self) }
+        Seen { leg: self.leg(), at: self.ramped_value(), state: E::state(self) }
     }
 
     /// Returns the experiment, with the parameters of this value.
@@ -225,7 +225,7 @@ impl<E: Experiment> Record<E> {
     }
 
     /// Returns the state at the end of the value.
-    pub const fn state(&self) -> &Checkpoint {
+    pub const fn checkpoint(&self) -> &Checkpoint {
         &self.contents.state
     }
 
@@ -287,14 +287,14 @@ impl<E: Experiment> fmt::Debug for Record<E> {
 
 impl<S, O> Measured<S, O> {
     /// Checks that the times, the samples and the observer can have been measured.
-    pub(super) fn check<E>(&self, experiment: &E, state: &Checkpoint) -> Result<(), &'static str>
+    pub(super) fn check<E>(&self, experiment: &E, state: &Checkpoint) -> Result<(), String>
     where
         E: Experiment<Sample = S, Observer = O>,
     {
         check(self.times.len() == self.samples.len(), "its times are not as many as its samples")?;
         check(self.times.iter().all(|time| time.is_finite()), "a time is not finite")?;
         check(self.times.is_sorted(), "its times are out of order")?;
-        experiment.check_measured(&self.samples, &self.observer, state)
+        experiment.check_measured(&self.samples, &self.observer, state).map_err(|reason| reason.to_string())
     }
 }
 

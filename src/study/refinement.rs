@@ -53,7 +53,7 @@ impl Ramp {
         if let Some((leg, at)) = self.at(seen.len()) {
             return Err(Step { leg: Some(leg), at: Some(at), before: seen.len().checked_sub(1) });
         }
-        let Some(width) = self.refine() else { return Ok(Vec::new()) };
+        let Some(width) = self.refinement() else { return Ok(Vec::new()) };
         let mut search = Search { seen, width, halves: own..seen.len(), brackets: Vec::new() };
         for (near, far) in (0..own).zip(1..own) {
             search.between(near, far)?;

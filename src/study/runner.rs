@@ -24,7 +24,7 @@ struct Shift<'a, E: Experiment> {
     meter: Meter<'a>,
     finished: AtomicUsize,
     /// Number of values that the engine could not finish.
-    unfinished: AtomicUsize,
+    failed: AtomicUsize,
     /// Number of values that refinements have added.
     more: AtomicUsize,
     redone: Mutex<Vec<PathBuf>>,
@@ -49,7 +49,7 @@ impl<E: Experiment> Study<E> {
     /// If the plan of the folder has changed, files cannot be read or written, records were made by another
     /// version, or a value cannot be started.
     pub fn run(&self, control: &Control<'_>) -> Result<Summary, StudyError> {
-        self.run_ramps((0..self.plan().ramps()).collect(), control)
+        self.run_ramps((0..self.plan().ramp_count()).collect(), control)
     }
 
     /// Does the values of one ramp that have no record yet, and writes the tables if all other ramps are
@@ -58,7 +58,7 @@ impl<E: Experiment> Study<E> {
     /// # Errors
     /// The same as for [`Self::run`], and if there is no such ramp.
     pub fn run_ramp(&self, ramp: usize, control: &Control<'_>) -> Result<Summary, StudyError> {
-        let ramps = self.plan().ramps();
+        let ramps = self.plan().ramp_count();
         if ramp >= ramps {
             return Err(StudyError::NoSuchRamp { ramp, ramps });
         }
@@ -67,9 +67,9 @@ impl<E: Experiment> Study<E> {
 
     fn run_ramps(&self, ramps: Vec<usize>, control: &Control<'_>) -> Result<Summary, StudyError> {
         self.check_plan()?;
-        let total = ramps.len() * self.plan().values();
+        let total = ramps.len() * self.plan().value_count();
         let last = ramps.last().copied().unwrap_or(0);
-        let is_whole = ramps.len() == self.plan().ramps();
+        let is_whole = ramps.len() == self.plan().ramp_count();
         let shift = Shift::new(self, control, ramps.len());
         let elsewhere = shift.all(ramps)?;
         // A run of the whole study writes lost tables again. One of many tasks that finds everything done
@@ -81,14 +81,14 @@ impl<E: Experiment> Study<E> {
         let mut redone = shift.redone.into_inner().unwrap_or_else(PoisonError::into_inner);
         redone.sort();
         let total = total + shift.more.into_inner();
-        let [finished, unfinished] = [shift.finished, shift.unfinished].map(AtomicUsize::into_inner);
-        Ok(Summary { finished, unfinished, total, elsewhere, redone })
+        let [finished, failed] = [shift.finished, shift.failed].map(AtomicUsize::into_inner);
+        Ok(Summary { finished, failed, total, elsewhere, redone })
     }
 
     /// Returns whether all ramps are done. It looks first at the ramps after `first`, which are the last to
     /// be done.
     fn is_done(&self, first: usize) -> bool {
-        let ramps = self.plan().ramps();
+        let ramps = self.plan().ramp_count();
         (1..=ramps).map(|step| (first + step) % ramps).all(|ramp| self.folder.is_done(ramp))
     }
 }
@@ -109,13 +109,13 @@ fn for_each_ramp<F: Fn(usize) -> Result<(), StudyError>>(ramps: &[usize], work: 
 
 impl<'a, E: Experiment> Shift<'a, E> {
     fn new(study: &'a Study<E>, control: &'a Control<'a>, ramps: usize) -> Self {
-        let steps = (ramps * study.plan().values()) as u64 * study.plan().protocol().steps();
+        let steps = (ramps * study.plan().value_count()) as u64 * study.plan().protocol().steps();
         Self {
             study,
             control,
             meter: Meter::new(control, steps),
             finished: AtomicUsize::new(0),
-            unfinished: AtomicUsize::new(0),
+            failed: AtomicUsize::new(0),
             more: AtomicUsize::new(0),
             redone: Mutex::default(),
             elsewhere: Mutex::default(),
@@ -152,7 +152,7 @@ impl<'a, E: Experiment> Shift<'a, E> {
         let (mut seen, mut last) = (Vec::new(), None);
         while let Some(step) = self.study.plan.next(&seen) {
             let value = seen.len();
-            if value >= self.study.plan.values() {
+            if value >= self.study.plan.value_count() {
                 self.more.fetch_add(1, Ordering::Relaxed);
                 self.meter.extend(self.study.plan.protocol().steps());
             }
@@ -163,7 +163,7 @@ impl<'a, E: Experiment> Shift<'a, E> {
             };
             let Some(record) = found else { return Ok(()) };
             self.finished.fetch_add(1, Ordering::Relaxed);
-            self.unfinished.fetch_add(usize::from(record.outcome().reason().is_some()), Ordering::Relaxed);
+            self.failed.fetch_add(usize::from(record.outcome().reason().is_some()), Ordering::Relaxed);
             seen.push(record.seen());
             last = Some(record);
         }

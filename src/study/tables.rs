@@ -104,14 +104,14 @@ impl<'a, E: Experiment> Tables<'a, E> {
 
     /// Returns the first columns of all rows of a record.
     fn place(&self, record: &Record<E>) -> String {
-        let mut place = format!("{},{},", record.ramp(), record.value());
+        let mut place = format!("{},{},", record.ramp_index(), record.value_index());
         if let Some(leg) = record.leg() {
             place.push_str(&leg.to_string());
         }
         if self.plan.repeats() > 1 {
-            append(&mut place, &(record.ramp() % self.plan.repeats()));
+            append(&mut place, &(record.ramp_index() % self.plan.repeats()));
         }
-        let parameters = self.plan.parameters_at(record.ramp(), record.at());
+        let parameters = self.plan.parameters_at(record.ramp_index(), record.ramped_value());
         for (_, value) in &parameters {
             append(&mut place, value);
         }
@@ -125,7 +125,7 @@ impl<'a, E: Experiment> Tables<'a, E> {
         for column in self.columns.iter().filter(|column| column.is_in_values()) {
             if let Some(estimate) = column.estimate(record) {
                 append_estimate(&mut line, &estimate);
-                estimates.push((column.name(), estimate));
+                estimates.push((column.name().to_owned(), estimate));
             } else if let Kind::Record(value) = column.kind() {
                 append(&mut line, &value(record));
             }
@@ -134,9 +134,9 @@ impl<'a, E: Experiment> Tables<'a, E> {
         self.values.push_str(&line);
         self.values.push('\n');
         // A refinement has different values in each repeat.
-        if record.value() < self.plan.values() {
-            let is_unfinished = record.outcome().reason().is_some();
-            self.repeats.add(record.value(), Repeat { estimates, is_unfinished });
+        if record.value_index() < self.plan.value_count() {
+            let is_failed = record.outcome().reason().is_some();
+            self.repeats.add(record.value_index(), Repeat { estimates, is_failed });
         }
     }
 
@@ -162,8 +162,9 @@ fn append_estimate(line: &mut String, estimate: &Estimate) {
 }
 
 /// Returns the names of the estimates whose error is only a lower bound, separated by spaces.
-fn not_converged(estimates: &[(&'static str, Estimate)]) -> String {
-    let names = estimates.iter().filter(|(_, estimate)| !estimate.is_converged()).map(|(name, _)| *name);
+fn not_converged(estimates: &[(String, Estimate)]) -> String {
+    let names =
+        estimates.iter().filter(|(_, estimate)| !estimate.is_converged()).map(|(name, _)| name.as_str());
     names.collect::<Vec<_>>().join(" ")
 }
 

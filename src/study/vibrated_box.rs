@@ -1,7 +1,8 @@
 //! The paper's system: equal disks in a box over a base that vibrates or is hot.
 //!
 //! [`VibratedBox`] is the experiment. It implements [`Experiment`] as a type of your own would. [`Sample`]
-//! holds what is measured, and [`Convection`] finds the flow in its records.
+//! holds what is measured. Its [`Record`] has methods for the flow: order, densest layer, energy change and
+//! noise.
 
 mod base;
 mod convection;
@@ -9,7 +10,6 @@ mod rule;
 mod sample;
 
 pub use base::{Base, Sides};
-pub use convection::Convection;
 pub use rule::BoxRule;
 pub use sample::{Measurement, Sample};
 
@@ -249,6 +249,10 @@ impl Experiment for VibratedBox {
         self.base.period().unwrap_or(1.0)
     }
 
+    fn observer(&self) -> Result<Measurement, ExperimentError> {
+        Ok(Measurement::default())
+    }
+
     fn sample(&self, snapshot: &Snapshot<'_>, measurement: &mut Measurement) -> Sample {
         measurement.sample(snapshot)
     }
@@ -280,11 +284,12 @@ impl Experiment for VibratedBox {
         &self,
         samples: &[Sample],
         measurement: &Measurement,
-        state: &Checkpoint,
-    ) -> Result<(), &'static str> {
-        if state.len() != self.disks {
-            return Err("it has another number of disks than the box");
+        checkpoint: &Checkpoint,
+    ) -> Result<(), ExperimentError> {
+        let (found, disks) = (checkpoint.disk_count(), self.disks);
+        if found != disks {
+            return Err(format!("it has {found} disks instead of {disks}").into());
         }
-        sample::check(samples, measurement)
+        Ok(sample::check(samples, measurement)?)
     }
 }

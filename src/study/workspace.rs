@@ -23,7 +23,7 @@ impl<E: Experiment> Study<E> {
         self.check_plan()?;
         let root = self.folder();
         let _lock = Lock::take(root)?;
-        for ramp in 0..self.plan().ramps() {
+        for ramp in 0..self.plan().ramp_count() {
             let folder = self.folder.ramp(ramp);
             fs::create_dir_all(&folder).map_err(StudyError::io("create", &folder))?;
             let (path, value) = (folder.join(VALUE), value(self.plan(), ramp));

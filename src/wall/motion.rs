@@ -115,7 +115,7 @@ mod file {
     use super::Motion;
     use crate::ParameterError;
     use crate::wall::laws::Violation;
-    use crate::wall::{BiParabolic, Delayed, Fixed, Sawtooth, Sinusoidal, Triangular, WallMotion};
+    use crate::wall::{BiParabolic, Fixed, Sawtooth, Sinusoidal, StartingAt, Triangular, WallMotion};
 
     /// The motions of the crate.
     #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -144,10 +144,10 @@ mod file {
         pub(super) fn of(motion: &dyn Any) -> Option<Self> {
             let plain = Known::of(motion).map(|motion| (motion, 0.0));
             let known = plain
-                .or_else(|| delayed(motion, Known::BiParabolic))
-                .or_else(|| delayed(motion, Known::Sinusoidal))
-                .or_else(|| delayed(motion, Known::Triangular))
-                .or_else(|| delayed(motion, Known::Sawtooth));
+                .or_else(|| starting_at(motion, Known::BiParabolic))
+                .or_else(|| starting_at(motion, Known::Sinusoidal))
+                .or_else(|| starting_at(motion, Known::Triangular))
+                .or_else(|| starting_at(motion, Known::Sawtooth));
             known.map(|(motion, start)| Self { motion, start, is_mirrored: false })
         }
 
@@ -156,13 +156,13 @@ mod file {
         }
     }
 
-    /// Recognizes a delayed motion of type `M`, and returns it with its start.
-    fn delayed<M: WallMotion + Copy + 'static>(
+    /// Recognizes a motion of type `M` that starts at a time, and returns it with that time.
+    fn starting_at<M: WallMotion + Copy + 'static>(
         motion: &dyn Any,
         known: fn(M) -> Known,
     ) -> Option<(Known, f64)> {
-        let delayed = motion.downcast_ref::<Delayed<M>>()?;
-        Some((known(*delayed.motion()), delayed.start()))
+        let starting_at = motion.downcast_ref::<StartingAt<M>>()?;
+        Some((known(*starting_at.motion()), starting_at.start()))
     }
 
     /// Builds a motion from the data of a file, or returns the reason why it cannot.
@@ -171,8 +171,9 @@ mod file {
         if start == 0.0 {
             return Motion::new(motion).map_err(told);
         }
-        let delayed = Delayed::new(motion, start).map_err(|error: ParameterError| error.to_string())?;
-        Motion::new(delayed).map_err(told)
+        let starting_at =
+            StartingAt::new(motion, start).map_err(|error: ParameterError| error.to_string())?;
+        Motion::new(starting_at).map_err(told)
     }
 
     impl Known {

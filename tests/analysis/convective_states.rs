@@ -14,7 +14,8 @@ use granular_edmd::boundary::{Container, Region, Wall};
 use granular_edmd::collision::Frictional;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    ConvectionOrder, Fields, HeightProfile, OrderParameters, SampleTimes, Series, Temperature, Temperatures,
+    ConvectionOrder, Fields, Grid, HeightProfile, OrderParameters, SampleTimes, Series, Temperature,
+    Temperatures,
 };
 use granular_edmd::statistics::block_average;
 use granular_edmd::wall::BiParabolic;
@@ -44,7 +45,7 @@ impl Measured {
         let mut measured = Self {
             orders: Series::new((OrderParameters, Temperatures), times),
             profile: HeightProfile::new(0.0, 150.0, 150, times)?,
-            fields: Fields::new(region, 6, 6, times)?,
+            fields: Fields::new(Grid::new(region, 6, 6)?, times),
         };
         let Self { orders, profile, fields } = &mut measured;
         simulation.run_until(oscillations * PERIOD, &mut (orders, profile, fields))?;

@@ -63,8 +63,8 @@ fn the_last_rule_of_a_pair_counts() {
 fn a_table_keeps_the_laws_that_its_rules_keep() {
     let friction = |coefficient| Frictional::new(0.1, coefficient).unwrap();
     let rules = RulesByKind::new(friction(0.3)).with(Kind::DEFAULT, Kind::new(1), friction(0.1));
-    laws::check_rule(&rules, &laws::Promises::new().with_friction(0.3)).unwrap();
-    let broken = laws::check_rule(&rules, &laws::Promises::new().with_friction(0.1)).unwrap_err();
+    laws::check(&rules, &laws::Promises::new().with_friction(0.3)).unwrap();
+    let broken = laws::check(&rules, &laws::Promises::new().with_friction(0.1)).unwrap_err();
     assert!(!broken.contact().is_between(Kind::DEFAULT, Kind::new(1)));
 }
 
@@ -82,7 +82,7 @@ fn faults_of_single_pairs_are_found() {
             let restitution = if is_faulty(contact) { -1.0 } else { 1.0 };
             Impulse::new(contact.normal_impulse(restitution), 0.0)
         });
-        assert!(laws::check_rule(&rule, &laws::Promises::new()).is_err());
+        assert!(laws::check(&rule, &laws::Promises::new()).is_err());
     }
 }
 

@@ -2,14 +2,14 @@
 
 use std::cell::Cell;
 
-use granular_edmd::collision::laws::{Promises, Violation, check_rule, hostile_contacts};
+use granular_edmd::collision::laws::{Promises, Violation, check, hostile_contacts};
 use granular_edmd::collision::{
     CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Impulse,
     LeastRebound, Rough, Smooth, SpeedDependent, TangentialResponse, from_fn,
 };
 
 fn caught(rule: impl Fn(&Contact) -> Impulse, promises: Promises) -> Violation {
-    check_rule(&from_fn(rule), &promises).expect_err("the fault was not caught")
+    check(&from_fn(rule), &promises).expect_err("the fault was not caught")
 }
 
 /// A rule with this normal impulse, in units of the one that stops, and no other.
@@ -28,32 +28,31 @@ fn rubbing(friction: impl Fn(&Contact, f64) -> f64) -> impl Fn(&Contact) -> Impu
 #[test]
 fn the_rules_of_the_library_pass() {
     let frictionless = Promises::new().with_friction(0.0);
-    check_rule(&Elastic, &frictionless).unwrap();
+    check(&Elastic, &frictionless).unwrap();
     for inelasticity in [0.0, 1e-15, 0.1, 0.5] {
-        check_rule(&Smooth::new(inelasticity).unwrap(), &frictionless).unwrap();
+        check(&Smooth::new(inelasticity).unwrap(), &frictionless).unwrap();
         for tangential in [0.0, 0.3, 1.0] {
             let rough = Rough::new(inelasticity, tangential).unwrap();
-            check_rule(&rough, &Promises::new().with_opposed_slip()).unwrap();
+            check(&rough, &Promises::new().with_opposed_slip()).unwrap();
             for (held, slid) in [(0.0, 0.0), (0.3, 0.3), (0.5, 0.1), (1e9, 0.0), (f64::MAX, f64::MAX)] {
                 let rule = Frictional::from_inelasticity(inelasticity, tangential).unwrap();
                 let rule = rule.with_friction(held, slid).unwrap();
                 let promises = Promises::new().with_friction(held);
-                check_rule(&rule, &promises).unwrap();
+                check(&rule, &promises).unwrap();
                 let model = ContactDuration::new(rule, 1e-6).unwrap();
-                check_rule(&model, &promises).unwrap();
-                check_rule(&model.with_tangential_response(TangentialResponse::Unchanged), &promises)
-                    .unwrap();
+                check(&model, &promises).unwrap();
+                check(&model.with_tangential_response(TangentialResponse::Unchanged), &promises).unwrap();
                 for speed in [1e-60, 0.5, 1e60] {
                     let remedy = ElasticBelow::new(rule, speed).unwrap();
-                    check_rule(&remedy, &promises).unwrap();
-                    check_rule(&remedy.with_tangential_response(TangentialResponse::Unchanged), &promises)
+                    check(&remedy, &promises).unwrap();
+                    check(&remedy.with_tangential_response(TangentialResponse::Unchanged), &promises)
                         .unwrap();
                     let rebound = LeastRebound::new(rule, speed).unwrap();
-                    check_rule(&rebound, &promises.with_energy_gain()).unwrap();
+                    check(&rebound, &promises.with_energy_gain()).unwrap();
                     let friction = Friction::from_inelasticity(tangential).unwrap();
                     let friction = friction.with_coefficients(held, slid).unwrap();
                     let bizon = SpeedDependent::new(1.0 - 2.0 * inelasticity, speed).unwrap();
-                    check_rule(&bizon.with_friction(friction), &promises).unwrap();
+                    check(&bizon.with_friction(friction), &promises).unwrap();
                 }
             }
         }
@@ -93,13 +92,13 @@ fn a_kick_at_no_closing_speed() {
     let violation = caught(kick, Promises::new());
     assert!(matches!(violation, Violation::EnergyGained { .. }));
     assert_eq!(violation.contact().closing_speed(), 0.0);
-    assert_eq!(check_rule(&from_fn(kick), &Promises::new().with_energy_gain()), Ok(()));
+    assert_eq!(check(&from_fn(kick), &Promises::new().with_energy_gain()), Ok(()));
 }
 
 #[test]
 fn more_friction_than_promised() {
     let cone = Promises::new().with_friction(0.5);
-    let violation = check_rule(&Rough::new(0.1, 0.0).unwrap(), &cone).unwrap_err();
+    let violation = check(&Rough::new(0.1, 0.0).unwrap(), &cone).unwrap_err();
     assert!(matches!(violation, Violation::OutsideFrictionCone { .. }));
     let slightly = Friction::new(0.1, 0.5 + 1e-9).unwrap();
     let rule = rubbing(move |contact, normal| slightly.impulse(contact, normal).tangential());
@@ -118,7 +117,7 @@ fn friction_of_the_wrong_sign() {
     };
     let violation = caught(rule(), Promises::new().with_opposed_slip());
     assert!(matches!(violation, Violation::SlipSpedUp { .. }));
-    assert_eq!(check_rule(&from_fn(rule()), &Promises::new()), Ok(()), "no other law is broken");
+    assert_eq!(check(&from_fn(rule()), &Promises::new()), Ok(()), "no other law is broken");
 }
 
 /// The sign of a zero is one, not zero.
@@ -179,7 +178,7 @@ fn an_answer_that_depends_on_the_past() {
 #[test]
 fn a_rule_that_drives_may_say_so() {
     let driven = pushing(|_| 2.5);
-    assert_eq!(check_rule(&from_fn(driven), &Promises::new().with_energy_gain()), Ok(()));
+    assert_eq!(check(&from_fn(driven), &Promises::new().with_energy_gain()), Ok(()));
     assert_eq!(Promises::default(), Promises::new());
 }
 
@@ -209,5 +208,5 @@ fn hostile_contacts_are_possible() {
         assert!(contact.tangential_mass() > 0.0 && contact.tangential_mass() <= contact.normal_mass());
     }
     let boxed: Box<dyn CollisionRule> = Box::new(Elastic);
-    assert_eq!(check_rule(&*boxed, &Promises::new()), Ok(()), "also a rule of unknown type");
+    assert_eq!(check(&*boxed, &Promises::new()), Ok(()), "also a rule of unknown type");
 }

@@ -1,7 +1,7 @@
 //! The check for rules of users, which names each broken law, and passes everything that breaks none.
 
 use granular_edmd::collision::laws::{
-    Violation, available_energy, check, check_friction_cone, check_friction_opposes_slip,
+    Violation, available_energy, check_friction_cone, check_friction_opposes_slip, check_impulse,
     closing_speed_after, slip_speed_after,
 };
 use granular_edmd::collision::{Contact, Impulse};
@@ -25,7 +25,7 @@ proptest! {
     #[test]
     fn what_breaks_no_law_passes(contact in contact(), normal in 1.0..=2.0, tangential in 0.0..=2.0) {
         let impulse = impulse(&contact, normal, tangential);
-        prop_assert_eq!(check(&contact, impulse), Ok(()));
+        prop_assert_eq!(check_impulse(&contact, impulse), Ok(()));
     }
 
     #[test]
@@ -34,7 +34,7 @@ proptest! {
         let closing_speed = closing_speed_after(&contact, impulse);
         prop_assert!(closing_speed > 0.0);
         let violation = Violation::StillClosing { closing_speed, contact, impulse };
-        prop_assert_eq!(check(&contact, impulse), Err(violation));
+        prop_assert_eq!(check_impulse(&contact, impulse), Err(violation));
     }
 
     #[test]
@@ -44,7 +44,7 @@ proptest! {
         let available = available_energy(&contact);
         prop_assume!(energy_change > 1e-9 * available, "the gain is lost in the rounding of the slip");
         let violation = Violation::EnergyGained { energy_change, contact, impulse };
-        prop_assert_eq!(check(&contact, impulse), Err(violation));
+        prop_assert_eq!(check_impulse(&contact, impulse), Err(violation));
     }
 
     /// The impulse goes from nothing to the full reversal, in the cone that just holds it.
@@ -78,7 +78,7 @@ proptest! {
         prop_assume!(energy_change > 1e-9 * available, "the gain is lost in the rounding of the approach");
         prop_assert!(slip_speed_after(&contact, impulse).abs() > contact.slip_speed().abs());
         let violation = Violation::EnergyGained { energy_change, contact, impulse };
-        prop_assert_eq!(check(&contact, impulse), Err(violation));
+        prop_assert_eq!(check_impulse(&contact, impulse), Err(violation));
     }
 }
 
@@ -93,7 +93,7 @@ fn of_contact(slip: &str) -> String {
 fn numbers_that_are_not_finite_are_named() {
     let contact = Contact::new(1.0, 0.5, 0.5, 0.125);
     for (normal, tangential) in [(f64::INFINITY, 0.0), (1.0, f64::NEG_INFINITY), (1.0, f64::NAN)] {
-        let violation = check(&contact, Impulse::new(normal, tangential)).unwrap_err();
+        let violation = check_impulse(&contact, Impulse::new(normal, tangential)).unwrap_err();
         assert!(matches!(violation, Violation::NotFinite { .. }));
         let impulse = format!("({normal:?}, {tangential:?})");
         assert_eq!(
@@ -106,7 +106,7 @@ fn numbers_that_are_not_finite_are_named() {
 #[test]
 fn messages_carry_the_numbers() {
     let contact = Contact::new(1.0, 0.0, 0.5, 0.125);
-    let text = |normal| check(&contact, Impulse::new(normal, 0.0)).unwrap_err().to_string();
+    let text = |normal| check_impulse(&contact, Impulse::new(normal, 0.0)).unwrap_err().to_string();
     let weak = "after the impulse (0.25, 0.0) the surfaces still close, at speed 0.5";
     assert_eq!(text(0.25), format!("{weak} {}", of_contact("0.0")));
     assert_eq!(text(1.5), format!("the impulse (1.5, 0.0) gains the energy 0.75 {}", of_contact("0.0")));
@@ -126,7 +126,7 @@ fn messages_carry_the_numbers() {
 #[test]
 fn surfaces_at_rest_may_stay_so() {
     let contact = Contact::new(0.0, 0.0, 0.5, 0.5 / 3.0);
-    assert_eq!(check(&contact, Impulse::new(0.0, 0.0)), Ok(()));
+    assert_eq!(check_impulse(&contact, Impulse::new(0.0, 0.0)), Ok(()));
 }
 
 /// The available energy is what stopping the surfaces loses: what `$\mu v_n$` and `$\mu_t v_t$` take away.

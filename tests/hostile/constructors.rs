@@ -7,7 +7,7 @@ use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::{Maxwellian, MonteCarlo};
 use granular_edmd::observable::{
-    EnergyChangeProfile, Fields, HeightProfile, PairCorrelation, SampleTimes, WallStress,
+    EnergyChangeProfile, Grid, HeightProfile, PairCorrelation, SampleTimes, WallStress,
 };
 use granular_edmd::statistics::Histogram;
 use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
@@ -156,8 +156,8 @@ fn watching() -> Vec<Case> {
     ]
 }
 
-fn grid(right: f64) -> Result<Fields, granular_edmd::ParameterError> {
-    Fields::new(Region::new(DVec2::ONE, DVec2::new(right, 2.0)), 1, 1, times())
+fn grid(right: f64) -> Result<Grid, granular_edmd::ParameterError> {
+    Grid::new(Region::new(DVec2::ONE, DVec2::new(right, 2.0)), 1, 1)
 }
 
 #[test]

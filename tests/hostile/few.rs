@@ -13,7 +13,7 @@ use granular_edmd::kinetic::{
     frictionless_energy_change, mean_energy_change, sticking_fraction,
 };
 use granular_edmd::observable::{
-    CenterOfMass, ConvectionOrder, DenseLayer, Energies, EnergyChangeProfile, Fields, HeightProfile,
+    CenterOfMass, ConvectionOrder, DenseLayer, Energies, EnergyChangeProfile, Fields, Grid, HeightProfile,
     OrderParameters, SampleTimes, Temperatures,
 };
 use granular_edmd::statistics::block_average;
@@ -40,7 +40,8 @@ fn a_run_of_none_one_or_two_is_measured_under_each_scheduler() {
         let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
         let builder = Simulation::builder(Elastic, container.clone()).disks(disks).scheduler(scheduler());
         let mut run = builder.build().unwrap();
-        let mut watched = (HeightProfile::new(0.0, 5.0, 5, times()).unwrap(), grid(2, 2).unwrap());
+        let mut watched =
+            (HeightProfile::new(0.0, 5.0, 5, times()).unwrap(), Fields::new(grid(2, 2).unwrap(), times()));
         run.run_until(20.0, &mut watched).unwrap();
         let (order, height) = (run.measure(&OrderParameters), run.measure(&CenterOfMass).y);
         let (energy, temperature) = (run.measure(&Energies), run.measure(&Temperatures));
@@ -51,8 +52,8 @@ fn a_run_of_none_one_or_two_is_measured_under_each_scheduler() {
     }
 }
 
-fn grid(columns: usize, rows: usize) -> Result<Fields, granular_edmd::ParameterError> {
-    Fields::new(Region::new(DVec2::ZERO, DVec2::splat(5.0)), columns, rows, times())
+fn grid(columns: usize, rows: usize) -> Result<Grid, granular_edmd::ParameterError> {
+    Grid::new(Region::new(DVec2::ZERO, DVec2::splat(5.0)), columns, rows)
 }
 
 #[test]

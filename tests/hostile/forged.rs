@@ -17,7 +17,7 @@ use granular_edmd::boundary::Container;
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::{Checkpoint, CheckpointError};
-use granular_edmd::study::vibrated_box::{Convection, Sample};
+use granular_edmd::study::vibrated_box::Sample;
 use granular_edmd::study::{Control, Experiment, Plan, Record, Study};
 use granular_edmd::{Disk, Simulation};
 
@@ -238,8 +238,8 @@ fn forged_records() {
     forge_records("forged", &plan(), |record| {
         let quantity = |sample: &Sample| sample.height;
         let _ = (record.mean(quantity), record.energy_change(), record.thermal_noise(), record.order());
-        let _ = (record.densest_layer(), record.profile().count(), record.state().time());
-        let _ = resume(record.state());
+        let _ = (record.densest_layer(), record.profile().count(), record.checkpoint().time());
+        let _ = resume(record.checkpoint());
     });
     forge_records("forged-own", &own_plan(), |record| {
         let _ = (record.mean(|sample| sample.angular_momentum), record.estimate("risen"), record.observer());

@@ -53,7 +53,7 @@ impl Specimen {
     fn assert_damaged(&self, expected: &str) {
         let error = self.study.record(0, 1).unwrap_err();
         let StudyError::Damaged { path, reason, .. } = &error else { panic!("{error}") };
-        assert_eq!((path, *reason), (&self.path, expected));
+        assert_eq!((path, reason.as_str()), (&self.path, expected));
     }
 }
 
@@ -68,7 +68,7 @@ fn a_record_with_impossible_numbers_is_damaged() {
         record.assert_damaged("a sample is not finite");
     }
     fs::write(&record.path, &record.file).unwrap();
-    let time = record.study.record(0, 1).unwrap().unwrap().state().time();
+    let time = record.study.record(0, 1).unwrap().unwrap().checkpoint().time();
     for bad in [0.0, 2.0 * time, 1e300] {
         // The state has its own checksum.
         record.put(bad, time);

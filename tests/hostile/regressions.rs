@@ -42,7 +42,7 @@ fn a_disk_on_the_line_between_periodic_sides_is_inside_both_ways() {
         run.run_until(100.0, &mut ()).unwrap();
         // The first collision comes after a way of 7.5. The others come each time that the disks have gone
         // round the ring, less two diameters.
-        assert_eq!(run.counters().collisions, 7, "{x}");
+        assert_eq!(run.counters().disk_collisions, 7, "{x}");
         run.set_boundary(container.clone()).unwrap();
     }
 }

@@ -130,7 +130,7 @@ fn what_was_measured_with_a_field_too_many_is_refused() {
     refuses(&run.measure(&Energies));
     refuses(&run.measure(&Temperatures));
     let region = granular_edmd::boundary::Region::new(DVec2::ZERO, DVec2::ONE);
-    let fields = Fields::new(region, 1, 1, SampleTimes::every(1.0).unwrap()).unwrap();
+    let fields = Fields::new(Grid::new(region, 1, 1).unwrap(), SampleTimes::every(1.0).unwrap());
     refuses(&fields.cell(0, 0).unwrap());
     let transition = json!({ "line": "ZeroOne", "value": 0.1, "error": 0.01, "rising": true });
     refuses(&serde_json::from_value::<Transition>(transition).unwrap());
@@ -150,14 +150,14 @@ fn measurements_with_a_field_too_many_are_refused() {
     let region = granular_edmd::boundary::Region::new(low, high);
     let mut series = Series::new((CenterOfMass, Energies), times);
     let mut change = EnergyChange::default();
-    let mut counts = CollisionCounts::since(0.0);
+    let mut counts = CollisionCounts::default();
     let mut layers = EnergyChangeProfile::new(0.0, 10.0, 1, times.starting_at(0.3).unwrap()).unwrap();
     let mut heights = HeightProfile::new(0.0, 10.0, 2, times).unwrap();
-    let mut fields = Fields::new(region, 1, 1, times).unwrap();
+    let mut fields = Fields::new(Grid::new(region, 1, 1).unwrap(), times);
     let grid = Grid::new(region, 2, 1).unwrap();
     let mut pairs = PairCorrelation::new(1.0, 2, times).unwrap().within(region).unwrap();
-    let mut displacement = MeanSquaredDisplacement::new(times, 2).unwrap();
-    let mut memory = TimeCorrelation::new(Velocities, times, 2).unwrap();
+    let mut displacement = MeanSquaredDisplacement::new(2, times).unwrap();
+    let mut memory = TimeCorrelation::new(Velocities, 2, times).unwrap();
     let mut stress = Stress::new(times).within(region).unwrap();
     let mut walls = WallStress::new(times).with_wall(0, 10.0).unwrap();
     let mut velocities = VelocityDistribution::new(3.0, 2, times).unwrap().about_flow(grid);
@@ -245,7 +245,7 @@ fn plans_that_are_too_deep_or_too_long_are_refused_at_once() {
     assert!(error.contains("1000001"), "{error}");
     let values: Vec<f64> = (0..200_000).map(f64::from).collect();
     let ramp = Ramp::new("gravity", values, Course::UpAndDown);
-    assert_eq!(plan().with_ramp(ramp).unwrap().values(), 399_999, "in time that grows with it only");
+    assert_eq!(plan().with_ramp(ramp).unwrap().value_count(), 399_999, "in time that grows with it only");
     let crowd = initial::lattice(&container(), usize::MAX, 0.5).unwrap_err().to_string();
     assert!(crowd.contains("number of disks"), "{crowd}");
 }

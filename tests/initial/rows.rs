@@ -1,7 +1,7 @@
 //! Disks of any sizes in rows.
 
 use granular_edmd::Disk;
-use granular_edmd::boundary::{Container, Obstacles};
+use granular_edmd::boundary::{Boundary, Container, Obstacles};
 use granular_edmd::glam::DVec2;
 use granular_edmd::initial::{self, PlacementError, Radii};
 
@@ -83,7 +83,10 @@ fn obstacles_are_left_out() {
 fn what_has_no_room_is_told() {
     let container = Container::closed(10.0, 10.0).unwrap();
     let placed = |radii: &[f64]| initial::placed_in_rows(&container, disks(radii.iter().copied()));
-    assert_eq!(placed(&[0.5, 6.0]), Err(PlacementError::NoRoom { count: 2, placed: 1, radius: 6.0 }));
+    assert_eq!(
+        placed(&[0.5, 6.0]),
+        Err(PlacementError::NoRoom { count: 2, placed: 1, radius: 6.0, interior: container.interior() })
+    );
     assert!(matches!(placed(&[0.5; 200]), Err(PlacementError::NoRoom { count: 200, .. })));
     assert_eq!(placed(&[]), Ok(vec![]));
 }

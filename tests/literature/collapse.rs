@@ -35,7 +35,7 @@ fn collisions(
     let mut simulation = Simulation::builder(rule, container).disks(disks).build()?;
     // A collapse ends the run with an error, or disappears in rounding.
     let _ = simulation.run_until(300.0, &mut ());
-    Ok(simulation.counters().collisions + simulation.counters().wall_collisions)
+    Ok(simulation.counters().disk_collisions + simulation.counters().wall_collisions)
 }
 
 /// Cases of collapse: the number of disks, whether they are free, the restitution below which they collapse,

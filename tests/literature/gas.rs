@@ -104,8 +104,8 @@ pub(crate) fn run_for<R: CollisionRule, B: Boundary, O: Observer + ?Sized>(
     observer: &mut O,
 ) -> Outcome {
     let wanted = (0.5 * collisions_per_disk * simulation.len() as f64) as u64;
-    let last = simulation.counters().collisions + wanted;
-    while simulation.counters().collisions < last {
+    let last = simulation.counters().disk_collisions + wanted;
+    while simulation.counters().disk_collisions < last {
         simulation.step_until(simulation.time() + 1.0, observer)?;
     }
     Ok(())

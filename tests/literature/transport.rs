@@ -17,7 +17,7 @@ fn disks_diffuse_faster_than_enskog_says_by_the_known_factor() -> Outcome {
     for (packing, factor) in [(0.1, 1.10), (0.3, 1.30)] {
         let mut gas = periodic_gas(1000, packing, Elastic, 1)?;
         let times = SampleTimes::every(1.0 / collision_rate(packing))?;
-        let mut displacement = MeanSquaredDisplacement::new(times, 40)?;
+        let mut displacement = MeanSquaredDisplacement::new(40, times)?;
         gas.run_until(gas.time() + 1000.0 * times.interval(), &mut displacement)?;
         let measured = displacement.diffusion_coefficient();
         let thermal = (gas.measure(&Temperatures).translational() * 1000.0 / 999.0).sqrt();
@@ -36,11 +36,11 @@ fn velocities_forget_themselves_at_the_rate_of_collisions() -> Outcome {
     let mut gas = periodic_gas(1000, packing, Elastic, 3)?;
     let rate = collision_rate(packing);
     let times = SampleTimes::every(0.1 / rate)?;
-    let mut correlation = TimeCorrelation::new(Velocities, times, 20)?;
-    let start = gas.counters().collisions;
+    let mut correlation = TimeCorrelation::new(Velocities, 20, times)?;
+    let start = gas.counters().disk_collisions;
     gas.run_until(gas.time() + 400.0 / rate, &mut correlation)?;
     // The temperature is not quite 1, so the rate is the one that was counted.
-    let counted = 2.0 * (gas.counters().collisions - start) as f64 / 1000.0 / 400.0;
+    let counted = 2.0 * (gas.counters().disk_collisions - start) as f64 / 1000.0 / 400.0;
     assert!(agrees("collisions", counted, 1.0, 0.03));
     let values: Vec<f64> = correlation.iter().map(|(_, value)| value.mean()).collect();
     // A collision takes all of the memory of a velocity on average, so C(t) = C(0) e^{-wt}, exactly at first

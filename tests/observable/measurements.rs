@@ -40,18 +40,18 @@ fn watchers() -> Result<Watchers, ParameterError> {
     let grid = Grid::new(region, 2, 2)?;
     Ok((
         Series::new(observables, times),
-        (EnergyChange::default(), CollisionCounts::since(0.0)),
+        (EnergyChange::default(), CollisionCounts::default()),
         EnergyChangeProfile::new(0.0, 20.0, 5, times.starting_at(0.7)?)?,
         (
             HeightProfile::new(0.0, 20.0, 7, times)?,
-            Fields::new(region, 3, 4, times)?,
+            Fields::new(Grid::new(region, 3, 4)?, times),
             VelocityDistribution::new(3.0, 6, times)?.about_flow(grid),
             CollisionHistograms::new(5.0, 5.0, 6)?,
         ),
         (
             PairCorrelation::new(2.0, 8, times)?.within(region)?,
-            MeanSquaredDisplacement::new(times, 5)?,
-            TimeCorrelation::new(Velocities, times, 5)?,
+            MeanSquaredDisplacement::new(5, times)?,
+            TimeCorrelation::new(Velocities, 5, times)?,
         ),
         (
             Stress::new(times).within(region)?,

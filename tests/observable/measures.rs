@@ -104,9 +104,9 @@ fn free_disks_move_by_their_speed() -> Outcome {
     let disks = initial::with_maxwellian_velocities(disks, 4.0, 1)?;
     let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
     let squared: f64 = run.disks().iter().map(|disk| disk.velocity().length_squared()).sum::<f64>() / 50.0;
-    let mut displacement = MeanSquaredDisplacement::new(SampleTimes::every(0.5)?, 20)?;
+    let mut displacement = MeanSquaredDisplacement::new(20, SampleTimes::every(0.5)?)?;
     run.run_until(50.0, &mut displacement)?;
-    assert_eq!(run.counters().collisions, 0);
+    assert_eq!(run.counters().disk_collisions, 0);
     for (time, value) in displacement.iter() {
         let expected = squared * time * time;
         assert!((value.mean() - expected).abs() < 1e-9 * (1.0 + expected), "{time}: {value}");
@@ -122,7 +122,7 @@ fn free_disks_move_by_their_speed() -> Outcome {
 fn a_gap_and_another_number_of_disks_begin_with_new_origins() -> Outcome {
     let domain = BOX.with_periodic_sides();
     let disk = |x: f64| Disk::new(DVec2::new(x, 1.0), 0.5);
-    let mut displacement = MeanSquaredDisplacement::new(times()?, 3)?;
+    let mut displacement = MeanSquaredDisplacement::new(3, times()?)?;
     for (time, places) in
         [(1.0, vec![1.0]), (2.0, vec![2.0]), (5.0, vec![9.0]), (6.0, vec![9.5]), (7.0, vec![1.0, 2.0])]
     {
@@ -147,7 +147,7 @@ fn an_observable_of_known_memory_has_its_correlation() -> Outcome {
         })
         .collect();
     let value = from_fn(|snapshot: &Snapshot<'_>| series[snapshot.time() as usize]);
-    let mut correlation = TimeCorrelation::new(value, times()?, 5)?;
+    let mut correlation = TimeCorrelation::new(value, 5, times()?)?;
     for time in 0..20_000 {
         correlation.on_sample(&Snapshot::new(f64::from(time), &[], BOX, 0.0));
     }
@@ -173,8 +173,8 @@ fn parameters_that_measure_nothing_are_refused() -> Outcome {
     assert!(Stress::new(times).within(nowhere).is_err());
     assert!(WallStress::new(times).with_wall(0, 0.0).is_err());
     for lags in [0, usize::MAX] {
-        assert!(MeanSquaredDisplacement::new(times, lags).is_err());
-        assert!(TimeCorrelation::new(Velocities, times, lags).is_err());
+        assert!(MeanSquaredDisplacement::new(lags, times).is_err());
+        assert!(TimeCorrelation::new(Velocities, lags, times).is_err());
     }
     assert!(VelocityDistribution::new(-1.0, 10, times).is_err());
     assert!(CollisionHistograms::new(1.0, f64::NAN, 10).is_err());

@@ -9,7 +9,7 @@ use granular_edmd::collision::{Contact, Impulse};
 use granular_edmd::observable::laws::{self, Violation};
 use granular_edmd::observable::{
     CenterOfMass, Collision, CollisionCounts, CollisionHistograms, EnergyChange, EnergyChangeProfile, Fields,
-    HeightProfile, MeanSquaredDisplacement, Moment, Observable, Observer, PairCorrelation, Partner,
+    Grid, HeightProfile, MeanSquaredDisplacement, Moment, Observable, Observer, PairCorrelation, Partner,
     SampleTimes, Series, Snapshot, Stress, TimeCorrelation, Velocities, VelocityDistribution, Verdict,
     WallStress, from_fn, on_collision, on_sample, stop_when, stop_when_sampled,
 };
@@ -237,9 +237,9 @@ fn all_observers_keep_their_contract() -> Outcome {
     let (mut collisions, mut samples) = (0, 0);
     let mut all = (
         (Series::new(CenterOfMass, times), Series::new(height, times.starting_at(-3.0)?)),
-        (EnergyChange::default(), CollisionCounts::since(0.0)),
+        (EnergyChange::default(), CollisionCounts::default()),
         (EnergyChangeProfile::new(0.0, 10.0, 5, times)?, HeightProfile::new(0.0, 10.0, 5, times)?),
-        Fields::new(region, 3, 3, times)?,
+        Fields::new(Grid::new(region, 3, 3)?, times),
         on_collision(|_: &Collision| collisions += 1),
         on_sample(times, |_: &Snapshot<'_>| samples += 1),
     );
@@ -249,8 +249,8 @@ fn all_observers_keep_their_contract() -> Outcome {
     drop(all);
     assert!(collisions > 100 && samples > 50);
     let mut measures = (
-        (PairCorrelation::new(2.0, 4, times)?, MeanSquaredDisplacement::new(times, 3)?),
-        (TimeCorrelation::new(Velocities, times, 3)?, VelocityDistribution::new(3.0, 4, times)?.about_mean()),
+        (PairCorrelation::new(2.0, 4, times)?, MeanSquaredDisplacement::new(3, times)?),
+        (TimeCorrelation::new(Velocities, 3, times)?, VelocityDistribution::new(3.0, 4, times)?.about_mean()),
         (Stress::new(times).within(region)?, WallStress::new(times).with_wall(1, 10.0)?),
         CollisionHistograms::new(3.0, 3.0, 4)?,
     );
@@ -325,5 +325,5 @@ fn walls_that_were_never_touched_have_no_collisions() {
     for (wall, expected) in [(0, 0), (2, 1), (3, 0), (usize::MAX - 1, 0), (usize::MAX, 1)] {
         assert_eq!((counts.collisions_with_wall(wall), change.wall(wall).count()), (expected, expected));
     }
-    assert_eq!((change.wall(2).mean(), change.wall(7).mean()), (-0.75, 0.0));
+    assert!(change.wall(2).mean() == -0.75 && change.wall(7).mean().is_nan());
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use granular_edmd::boundary::{Container, Domain, Region};
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{DenseLayer, Fields, HeightProfile, Observer, SampleTimes, Snapshot};
+use granular_edmd::observable::{DenseLayer, Fields, Grid, HeightProfile, Observer, SampleTimes, Snapshot};
 use granular_edmd::{Disk, ParameterError, initial};
 
 const DOMAIN: Domain = Domain::new(0.0, 60.0, 0.0, 150.0);
@@ -107,7 +107,7 @@ fn a_sediment_has_nothing_below() -> Result<(), ParameterError> {
 fn a_swirl_is_flow_and_not_temperature() -> Result<(), Box<dyn std::error::Error>> {
     // The state is uniform in each cell: two disks with u + c and u - c, spins w + d and w - d.
     let region = Region::new(DVec2::ZERO, DVec2::new(60.0, 150.0));
-    let mut fields = Fields::new(region, 6, 5, times()?)?;
+    let mut fields = Fields::new(Grid::new(region, 6, 5)?, times()?);
     let flow = |column: i32, row: i32| DVec2::new(f64::from(row) - 2.0, 2.5 - f64::from(column)) * 1e3;
     let mut disks = Vec::new();
     for (column, row) in (0..6).flat_map(|column| (0..5).map(move |row| (column, row))) {
@@ -130,7 +130,7 @@ fn a_swirl_is_flow_and_not_temperature() -> Result<(), Box<dyn std::error::Error
         assert!((cell.rotational_temperature - 0.125 * 4.0).abs() < 1e-9);
         assert_eq!(cell.center, DVec2::new(10.0 * f64::from(column) + 5.0, 30.0 * f64::from(row) + 15.0));
     }
-    assert_eq!((fields.iter().count(), fields.shape(), fields.samples()), (30, (6, 5), 2));
+    assert_eq!((fields.iter().count(), fields.grid().shape(), fields.samples()), (30, (6, 5), 2));
     Ok(())
 }
 
@@ -138,7 +138,7 @@ fn a_swirl_is_flow_and_not_temperature() -> Result<(), Box<dyn std::error::Error
 #[test]
 fn a_mixture_has_the_flow_and_the_temperatures_of_its_masses() -> Result<(), ParameterError> {
     let region = Region::new(DVec2::new(10.0, 20.0), DVec2::new(16.0, 24.0));
-    let mut fields = Fields::new(region, 3, 1, times()?)?;
+    let mut fields = Fields::new(Grid::new(region, 3, 1)?, times()?);
     let kind = |x: f64, mass: f64, factor: f64, vx: f64, vy: f64, spin: f64| {
         let disk =
             Disk::new(DVec2::new(x, 20.5), 0.25 * mass)?.with_mass(mass)?.with_inertia_factor(factor)?;
@@ -174,7 +174,7 @@ fn a_mixture_has_the_flow_and_the_temperatures_of_its_masses() -> Result<(), Par
 #[test]
 fn a_gas_at_rest_has_its_temperature_and_no_flow() -> Result<(), Box<dyn std::error::Error>> {
     let region = Region::new(DVec2::ZERO, DVec2::new(60.0, 150.0));
-    let mut fields = Fields::new(region, 1, 1, times()?)?;
+    let mut fields = Fields::new(Grid::new(region, 1, 1)?, times()?);
     let disks = gas()?;
     fields.on_sample(&Snapshot::new(1.0, &disks, DOMAIN, 0.0));
     let cell = fields.cell(0, 0).unwrap();
@@ -199,7 +199,7 @@ fn grids_without_extent_are_refused() -> Result<(), ParameterError> {
         (1.0, 1.0, usize::MAX, 2),
         (1e-300, 1e-300, 1, 1),
     ] {
-        assert!(Fields::new(region(x, y), columns, rows, times).is_err(), "{x} {y} {columns} {rows}");
+        assert!(Grid::new(region(x, y), columns, rows).is_err(), "{x} {y} {columns} {rows}");
     }
     assert!(HeightProfile::new(1.0, 1.0, 1, times).is_err());
     assert!(HeightProfile::new(0.0, f64::INFINITY, 1, times).is_err());

@@ -196,6 +196,6 @@ fn upcoming_disks_that_do_not_exist_are_ignored_by_the_engine() {
     let mut plain = builder().build().unwrap();
     misled.run_until(0.2, &mut ()).unwrap();
     plain.run_until(0.2, &mut ()).unwrap();
-    assert!(plain.counters().collisions > 1000, "{:?}", plain.counters());
+    assert!(plain.counters().disk_collisions > 1000, "{:?}", plain.counters());
     assert_eq!(misled.disks(), plain.disks());
 }

@@ -15,7 +15,7 @@ use crate::setups::{Base, Log, Setup, config, elastic_gas, setup};
 /// Relative change of the energy of an elastic gas over this many collisions.
 fn drift(mut simulation: Simulation<Elastic>, collisions: u64) -> f64 {
     let before = simulation.measure(&Energies).total();
-    while simulation.counters().collisions < collisions {
+    while simulation.counters().disk_collisions < collisions {
         let end = simulation.time() + 10.0;
         simulation.run_until(end, &mut ()).unwrap();
     }

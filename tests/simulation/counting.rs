@@ -27,7 +27,7 @@ impl Observer for Told {
 
 impl Told {
     fn by(counters: &Counters) -> Self {
-        Self { collisions: counters.collisions, wall_collisions: counters.wall_collisions }
+        Self { collisions: counters.disk_collisions, wall_collisions: counters.wall_collisions }
     }
 }
 
@@ -55,8 +55,8 @@ proptest! {
         }
         prop_assert_eq!(&told, &stepped);
         prop_assert_eq!(told, Told::by(run.counters()));
-        let Counters { collisions, wall_collisions, cell_crossings, repredictions, horizons, .. } = *run.counters();
-        let sum = collisions + wall_collisions + cell_crossings + repredictions + horizons;
+        let Counters { disk_collisions, wall_collisions, cell_crossings, repredictions, horizons, .. } = *run.counters();
+        let sum = disk_collisions + wall_collisions + cell_crossings + repredictions + horizons;
         prop_assert_eq!(run.counters().events(), sum);
         let earlier = *run.counters();
         let mut told = Told::default();

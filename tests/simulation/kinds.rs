@@ -75,11 +75,11 @@ fn kinds_alone_change_nothing() -> Outcome {
 #[test]
 fn observers_by_kind_share_out_the_whole() -> Outcome {
     let times = SampleTimes::every(2.0)?;
-    let mut all = (Series::new(Energies, times), EnergyChange::default(), CollisionCounts::since(0.0));
+    let mut all = (Series::new(Energies, times), EnergyChange::default(), CollisionCounts::default());
     let mut small =
-        (Series::new(OfKind::new(SMALL, Energies), times), OfKind::new(SMALL, CollisionCounts::since(0.0)));
+        (Series::new(OfKind::new(SMALL, Energies), times), OfKind::new(SMALL, CollisionCounts::default()));
     let mut large =
-        (Series::new(OfKind::new(LARGE, Energies), times), OfKind::new(LARGE, CollisionCounts::since(0.0)));
+        (Series::new(OfKind::new(LARGE, Energies), times), OfKind::new(LARGE, CollisionCounts::default()));
     let between = |first, second| BetweenKinds::new(first, second, EnergyChange::default());
     let mut pairs = vec![between(SMALL, SMALL), between(LARGE, SMALL), between(LARGE, LARGE)];
     let mut floor = between(FELT, LARGE);
@@ -142,7 +142,7 @@ fn a_resumed_run_keeps_its_kinds() -> Outcome {
 fn a_wall_of_a_kind_is_no_disk_of_it() -> Outcome {
     let ball = Disk::new(DVec2::new(6.0, 3.0), 0.5)?.with_kind(SMALL);
     let mut counts =
-        (OfKind::new(FELT, CollisionCounts::since(0.0)), OfKind::new(SMALL, CollisionCounts::since(0.0)));
+        (OfKind::new(FELT, CollisionCounts::default()), OfKind::new(SMALL, CollisionCounts::default()));
     let mut run = Simulation::builder(Elastic, container()?).disks([ball]).gravity(1.0).build()?;
     run.run_until(20.0, &mut counts)?;
     assert_eq!(counts.0.inner().wall_collisions(), 0);

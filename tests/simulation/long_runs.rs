@@ -30,17 +30,17 @@ const ROUNDING: f64 = 4.0 / (1_u64 << 44) as f64;
 fn run(mut simulation: Simulation<Elastic>, collisions: u64) {
     let (start, before) = (simulation.time(), simulation.measure(&Energies).total());
     let mut told = 0;
-    while simulation.counters().collisions < collisions {
+    while simulation.counters().disk_collisions < collisions {
         let end = simulation.time() + 64.0;
         simulation.run_until(end, &mut ()).unwrap();
         let counters = *simulation.counters();
         let drift = simulation.measure(&Energies).total() / before - 1.0;
-        if counters.collisions >= told {
+        if counters.disk_collisions >= told {
             let time = simulation.time() - start;
             let overlap = counters.max_overlap;
             println!(
                 "{:.2e} collisions, {time:.0} after {start:e}: drift {drift:.1e}, overlap {overlap:.1e}",
-                counters.collisions as f64
+                counters.disk_collisions as f64
             );
             told += collisions.div_ceil(100);
         }
@@ -76,7 +76,7 @@ fn a_run_at_ten_million_has_the_digits_of_one_at_zero() {
         (simulation.disks(), *simulation.counters())
     };
     let (early, late) = (after(0.0), after(1e7));
-    assert!(early.1.collisions > 20_000, "{:?}", early.1);
+    assert!(early.1.disk_collisions > 20_000, "{:?}", early.1);
     assert_eq!(early.0, late.0);
     assert_eq!(early.1, late.1);
 }

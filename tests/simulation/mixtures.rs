@@ -90,16 +90,16 @@ proptest! {
         let mut step = 1e-3;
         for _ in 0..200 {
             run.run_until(run.time() + step, &mut ()).unwrap();
-            step = if run.counters().collisions < 20_000 { 1.2 * step } else { step };
+            step = if run.counters().disk_collisions < 20_000 { 1.2 * step } else { step };
             let overlap = deepest(&container, &run.disks());
             prop_assert!(overlap < 1e-9, "{overlap:e} at {}", run.time());
             // A floor that moves heats a gas that loses nothing: it gets higher and higher.
-            if run.counters().collisions > 30_000 || run.counters().wall_collisions > 30_000 {
+            if run.counters().disk_collisions > 30_000 || run.counters().wall_collisions > 30_000 {
                 break;
             }
         }
         let counters = run.counters();
-        prop_assert!(counters.collisions > 100, "{counters:?}");
+        prop_assert!(counters.disk_collisions > 100, "{counters:?}");
         prop_assert!(counters.max_overlap < 1e-8 * ratio, "{counters:?}");
         prop_assert!(counters.max_wall_overlap < 1e-8 * ratio, "{counters:?}");
     }
@@ -124,7 +124,7 @@ proptest! {
             scan.run_until(end, &mut ()).unwrap();
             prop_assert_eq!(tree.disks(), queue.disks());
             prop_assert_eq!(tree.disks(), scan.disks());
-            if tree.counters().collisions > 5000 {
+            if tree.counters().disk_collisions > 5000 {
                 break;
             }
         }
@@ -140,7 +140,10 @@ fn a_disk_inside_another_is_an_overlap() {
             for disks in [[first, second, disk(5.0, 0.01)], [second, first, disk(5.0, 0.01)]] {
                 let run = Simulation::builder(Elastic, container(sides, 100.0)).disks(disks).build();
                 let error = run.err().map(|error| error.to_string()).unwrap_or_default();
-                assert!(error.starts_with("disks 0 and 1 overlap"), "{error}");
+                assert!(
+                    error.starts_with("disks 0 and 1 at (4") && error.contains(", 40) overlap by "),
+                    "{error}"
+                );
             }
         }
     }

@@ -59,7 +59,7 @@ fn two_lone_disks_without_restitution_never_stall() {
         let mut run = Simulation::builder(sticky(), smooth_box(20.0)).disks(disks).build().unwrap();
         let end = run.run_until(200.0, &mut ());
         assert!(end.is_ok(), "case {case}: {}", end.unwrap_err());
-        collided += u64::from(run.counters().collisions > 0);
+        collided += u64::from(run.counters().disk_collisions > 0);
         assert!(run.counters().max_overlap < 1e-12, "case {case}: {:?}", run.counters());
     }
     assert!(collided > 600, "{collided}");
@@ -136,7 +136,7 @@ fn what_makes_disks_part_changes_neither_momentum_nor_energy() {
         let disks = pair(&mut random, 1e3, masses);
         let mut run = Simulation::builder(sticky(), smooth_box(1e3)).disks(disks).build().unwrap();
         let (before, _) = balance(&disks);
-        while run.counters().collisions + run.counters().wall_collisions == 0 {
+        while run.counters().disk_collisions + run.counters().wall_collisions == 0 {
             run.step_until(run.time() + 10.0, &mut ()).unwrap();
         }
         if run.counters().wall_collisions > 0 {

@@ -55,7 +55,7 @@ fn momentum_is_kept_and_the_middle_moves_along() -> Outcome {
         assert!((velocity - drift).length() < 1e-13);
         assert!((middle(&run) - start - drift * time).length() < 1e-11);
     }
-    assert!(run.counters().collisions > 1000, "{:?}", run.counters());
+    assert!(run.counters().disk_collisions > 1000, "{:?}", run.counters());
     Ok(())
 }
 

@@ -190,7 +190,7 @@ fn under_a_least_rebound_a_column_has_at_most_the_collisions_of_its_weight() {
         let floor = f64::from(count) * end / speed;
         let pairs = f64::from(count * (count - 1) / 2) * end / (0.5 * speed);
         let counters = run.counters();
-        let share = [counters.wall_collisions as f64 / floor, counters.collisions as f64 / pairs];
+        let share = [counters.wall_collisions as f64 / floor, counters.disk_collisions as f64 / pairs];
         assert!(share.iter().all(|share| (0.3..1.0).contains(share)), "{normal}: {share:?}");
     }
 }
@@ -228,7 +228,7 @@ fn a_heap_that_only_has_slow_collisions_keeps_its_energy() {
     let before = run.measure(&Energies).total();
     run.run_until(50.0, &mut ()).unwrap();
     assert!((run.measure(&Energies).total() / before - 1.0).abs() < 1e-10);
-    assert!(run.counters().collisions > 1000);
+    assert!(run.counters().disk_collisions > 1000);
 }
 
 /// Returns the number of grains in a silo when its flow has ended, the time that it took, and the seconds.

@@ -30,7 +30,7 @@ proptest! {
         }
         prop_assert_eq!(log.0, expected);
         let told = simulation.counters();
-        prop_assert_eq!((told.collisions, told.wall_collisions), (collisions, wall_collisions));
+        prop_assert_eq!((told.disk_collisions, told.wall_collisions), (collisions, wall_collisions));
     }
 }
 

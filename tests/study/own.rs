@@ -44,7 +44,7 @@ fn an_own_experiment_is_swept_ramped_and_recorded() -> Result<(), AnyError> {
         "numbers of the field's kind"
     );
     assert_eq!(records[3].experiment().disks.large, 4);
-    assert_eq!(records[3].state().len(), 16);
+    assert_eq!(records[3].checkpoint().disk_count(), 16);
     // The cycle changes along the ramp, and the next value starts at the end of the previous one.
     let cycles = [1.0 / 1.1, 1.0 / 1.2];
     let expected = 14.0 * cycles[0] + (4.0 + 1.5) * cycles[1];
@@ -168,6 +168,10 @@ impl Experiment for Careless {
         Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
     }
 
+    fn observer(&self) -> Result<Patience, ExperimentError> {
+        Ok(Patience::default())
+    }
+
     fn sample(&self, snapshot: &Snapshot<'_>, _: &mut Patience) -> Gap {
         let speed = snapshot.mean(|disk| disk.velocity().length());
         Gap { maybe: (self.loss > 0.0).then_some(speed), always: speed }
@@ -208,7 +212,8 @@ fn an_observer_ends_a_value_and_the_ramp_goes_on_from_there() -> Result<(), AnyE
     assert!(!first.samples().is_empty() && first.samples().len() < 50);
     assert_eq!(first.observer().0, 40);
     assert!(
-        second.times()[0] > first.state().time() && second.times()[0] <= first.state().time() + 1.0 + 1e-9
+        second.times()[0] > first.checkpoint().time()
+            && second.times()[0] <= first.checkpoint().time() + 1.0 + 1e-9
     );
     Ok(())
 }
@@ -248,6 +253,10 @@ impl Experiment for Fall {
         1.0
     }
 
+    fn observer(&self) -> Result<(), ExperimentError> {
+        Ok(())
+    }
+
     fn sample(&self, snapshot: &Snapshot<'_>, (): &mut ()) -> f64 {
         snapshot.mean(|disk| disk.position().y)
     }
@@ -269,15 +278,15 @@ fn a_parameter_of_the_first_disks_alone_cannot_be_ramped() -> Result<(), AnyErro
 #[test]
 fn values_that_stall_are_counted_and_say_why() -> Result<(), AnyError> {
     let plan = Plan::new(Fall { count: 12, loss: 0.4 }, Protocol::new(0, 200, 1), 1)?.with_repeats(3)?;
-    let scratch = Scratch::new("unfinished");
+    let scratch = Scratch::new("failed");
     let study = Study::create(&scratch.0, &plan)?;
     for summary in [study.run(&Control::default())?, study.run(&Control::default())?] {
-        assert_eq!((summary.finished, summary.unfinished), (3, 3));
+        assert_eq!((summary.finished, summary.failed), (3, 3));
     }
     let log = fs::read_to_string(scratch.0.join("log.jsonl"))?;
     assert!(log.contains(r#""outcome":"stalled","reason":"#), "{log}");
     let points = fs::read_to_string(scratch.0.join("points.csv"))?;
-    assert!(points.starts_with("point,value,leg,repeats,unfinished,height,"), "{points}");
+    assert!(points.starts_with("point,value,leg,repeats,failed,height,"), "{points}");
     assert!(points.lines().nth(1).is_some_and(|line| line.starts_with("0,0,,3,3,")), "{points}");
     Ok(())
 }

@@ -45,7 +45,7 @@ fn a_plan_is_read_as_it_is_written() -> Result<(), AnyError> {
     .with_axis(Axis::new("inelasticity", [0.0, 0.01, 0.02]))?;
     assert_eq!(plan, by_hand);
     assert_eq!(Plan::<VibratedBox>::from_toml(&plan.to_string())?, plan);
-    assert_eq!((plan.ramps(), plan.values()), (3, 2));
+    assert_eq!((plan.ramp_count(), plan.value_count()), (3, 2));
     Ok(())
 }
 

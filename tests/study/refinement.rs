@@ -49,8 +49,10 @@ fn a_transition_is_bracketed_from_below_and_from_above() -> Result<(), AnyError>
         // The first half starts where the value on the near side has ended.
         let records: Vec<Record<Mixture>> = study.ramp_records(ramp).collect::<Result<_, _>>()?;
         let (near, half) = (&records[0], &records[7]);
-        assert!(half.times()[0] > near.state().time() && half.times()[0] < records[1].state().time());
-        assert_eq!(half.at(), Some(0.125));
+        assert!(
+            half.times()[0] > near.checkpoint().time() && half.times()[0] < records[1].checkpoint().time()
+        );
+        assert_eq!(half.ramped_value(), Some(0.125));
     }
     let table = fs::read_to_string(scratch.0.join("transitions.csv"))?;
     assert!(table.starts_with("ramp,leg,loss,near,far,from_state,to_state\n0,up,0.0,0.13"), "{table}");

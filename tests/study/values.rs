@@ -1,6 +1,6 @@
 //! Values: their records, their length, and their ends.
 
-use granular_edmd::study::vibrated_box::{Base, Convection, VibratedBox};
+use granular_edmd::study::vibrated_box::{Base, VibratedBox};
 use granular_edmd::study::{Course, Experiment, Leg, Outcome, Plan, Protocol, Ramp};
 
 use crate::support::{AnyError, BASE, done, small_box, small_plan};
@@ -13,9 +13,9 @@ fn a_study_records_what_it_was_asked_for() {
     for record in &records {
         assert_eq!(record.outcome(), &Outcome::Completed);
         assert_eq!(record.samples().len(), 6);
-        assert_eq!(record.seed(), study.plan().ramp_seed(record.ramp()));
+        assert_eq!(record.seed(), study.plan().ramp_seed(record.ramp_index()));
         let sampled: u64 = record.samples().iter().map(|sample| sample.collisions).sum();
-        assert!(sampled > 0 && sampled < record.counters().collisions, "settling has collisions too");
+        assert!(sampled > 0 && sampled < record.counters().disk_collisions, "settling has collisions too");
         // All disks are in the profile: its area is theirs.
         let area: f64 = record.profile().map(|(_, fraction)| fraction * 10.0).sum();
         approx::assert_relative_eq!(area, 30.0 * std::f64::consts::FRAC_PI_4, max_relative = 1e-3);
@@ -45,7 +45,7 @@ fn a_value_is_the_engine_s_run() -> Result<(), AnyError> {
     let every = study.record(0, 0)?.ok_or("no record")?;
     let thinned: Vec<_> = every.samples().iter().skip(34).step_by(10).map(|sample| sample.one_roll).collect();
     assert_eq!(record.samples().iter().map(|sample| sample.one_roll).collect::<Vec<_>>(), thinned);
-    assert_eq!(record.state().to_bytes()?, every.state().to_bytes()?);
+    assert_eq!(record.checkpoint().to_bytes()?, every.checkpoint().to_bytes()?);
     // From its last state, it goes on like any other run.
     let container = granular_edmd::boundary::Container::closed(10.0, 30.0)?.with_motion(
         granular_edmd::boundary::Wall::Floor,
@@ -56,7 +56,7 @@ fn a_value_is_the_engine_s_run() -> Result<(), AnyError> {
         1e-4,
     )?;
     let scheduler = granular_edmd::scheduler::TournamentTree::default();
-    let resumption = granular_edmd::Simulation::resume(record.state(), rule, container);
+    let resumption = granular_edmd::Simulation::resume(record.checkpoint(), rule, container);
     let mut run = resumption.with_another_rule().scheduler(scheduler).build()?;
     let period = std::f64::consts::TAU / 10.0;
     let times = SampleTimes::every(10.0 * period)?.starting_at(95.0 * period)?;
@@ -100,7 +100,7 @@ fn a_stalled_value_does_not_stop_the_study() -> Result<(), AnyError> {
     assert_eq!(outcomes, ["completed", "stalled", "completed"]);
     let (before, stalled, after) = (study.record(0, 0)?, study.record(0, 1)?, study.record(0, 2)?);
     let time = |record: &Option<granular_edmd::study::Record<VibratedBox>>| {
-        record.as_ref().map(|r| r.state().time())
+        record.as_ref().map(|r| r.checkpoint().time())
     };
     assert_eq!(time(&before), time(&stalled), "the next value starts where this one did");
     assert!(time(&after) > time(&stalled));

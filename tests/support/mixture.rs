@@ -77,6 +77,10 @@ impl Experiment for Mixture {
         1.0 / (1.0 + self.weight)
     }
 
+    fn observer(&self) -> Result<CollisionCounts, ExperimentError> {
+        Ok(CollisionCounts::default())
+    }
+
     fn sample(&self, snapshot: &Snapshot<'_>, observer: &mut CollisionCounts) -> Risen {
         let middle = snapshot.mean(|disk| disk.position().y);
         let large = snapshot.disks().iter().filter(|disk| disk.radius() > 0.5);
@@ -103,7 +107,7 @@ impl Experiment for Mixture {
     }
 
     fn tables() -> Vec<Table<Self>> {
-        vec![Table::new("heights", &[("sample", "1"), ("height", "diameter")], |record| {
+        vec![Table::new("heights", [("sample", "1"), ("height", "diameter")], |record| {
             let heights = |(index, sample): (usize, &Risen)| -> Vec<Vec<f64>> {
                 sample.heights.iter().map(|height| vec![index as f64, *height]).collect()
             };

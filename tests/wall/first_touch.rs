@@ -7,8 +7,8 @@ mod motions;
 use std::f64::consts::TAU;
 
 use granular_edmd::wall::{
-    AccelerationBounds, Approach, BiParabolic, Delayed, Fixed, Sawtooth, Sinusoidal, Triangular, WallMotion,
-    WallState, first_touch,
+    AccelerationBounds, Approach, BiParabolic, Fixed, Sawtooth, Sinusoidal, StartingAt, Triangular,
+    WallMotion, WallState, first_touch,
 };
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -40,7 +40,7 @@ fn motions() -> Vec<(&'static str, Box<dyn WallMotion>)> {
         ("sinusoidal", Box::new(Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap())),
         ("triangular", Box::new(Triangular::new(AMPLITUDE, FREQUENCY).unwrap())),
         ("sawtooth", Box::new(Sawtooth::new(AMPLITUDE, FREQUENCY).unwrap())),
-        ("delayed", Box::new(Delayed::new(Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap(), 7.3).unwrap())),
+        ("late", Box::new(StartingAt::new(Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap(), 7.3).unwrap())),
         ("loose", Box::new(Loose(Sinusoidal::new(AMPLITUDE, FREQUENCY).unwrap()))),
     ]
 }

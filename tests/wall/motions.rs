@@ -6,7 +6,7 @@ use std::error::Error;
 use granular_edmd::boundary::{Container, Wall, WallError};
 use granular_edmd::wall::laws::{Violation, check, check_finite};
 use granular_edmd::wall::{
-    AccelerationBounds, BiParabolic, Delayed, Fixed, Sinusoidal, WallMotion, WallState,
+    AccelerationBounds, BiParabolic, Fixed, Sinusoidal, StartingAt, WallMotion, WallState,
 };
 
 const AMPLITUDE: f64 = 0.1;
@@ -217,23 +217,23 @@ fn a_missing_wall_is_named() {
     assert_eq!(error.to_string(), "the container has no wall \"lid\"");
 }
 
-/// A delayed motion keeps the contract, and begins when it should, however late that is.
+/// A motion with a start keeps the contract, and begins when it should, however late that is.
 #[test]
-fn delayed_motions_begin_at_their_start() {
+fn motions_begin_at_their_start() {
     fn check_one(motion: impl WallMotion + Copy + std::fmt::Debug) {
         for start in [0.0, 1e-9, 0.7, -3.0, 628.318_530_7, 12_345.678, 1e9] {
-            let delayed = Delayed::new(motion, start).unwrap();
-            check(&delayed, 0.0, 20.0).unwrap();
+            let late = StartingAt::new(motion, start).unwrap();
+            check(&late, 0.0, 20.0).unwrap();
             let phase = motion.period().map_or(start, |period| start % period);
             for wait in [0.0, 0.1, 0.4] {
-                let (now, then) = (delayed.state(phase + wait), motion.state(wait));
+                let (now, then) = (late.state(phase + wait), motion.state(wait));
                 let scale = if motion.period().is_some() { 1.0 } else { start.abs().max(1.0) };
                 assert!((now.displacement - then.displacement).abs() < 1e-13 * scale, "{start} {wait}");
                 assert!((now.velocity - then.velocity).abs() < 1e-12 * scale, "{start} {wait}");
             }
         }
         for bad in [f64::NAN, f64::INFINITY] {
-            let error = Delayed::new(motion, bad).unwrap_err().to_string();
+            let error = StartingAt::new(motion, bad).unwrap_err().to_string();
             assert!(error.starts_with("start of a motion must be finite"), "{error}");
         }
     }
@@ -244,10 +244,10 @@ fn delayed_motions_begin_at_their_start() {
 
 #[cfg(feature = "serde")]
 #[test]
-fn delayed_motions_come_back_from_files() {
+fn motions_with_a_start_come_back_from_files() {
     use granular_edmd::boundary::Boundary;
 
-    let base = Delayed::new(BiParabolic::new(0.1, 10.0).unwrap(), 12.5).unwrap();
+    let base = StartingAt::new(BiParabolic::new(0.1, 10.0).unwrap(), 12.5).unwrap();
     let container = Container::open(4.0).unwrap().with_motion(Wall::Floor, base).unwrap();
     let text = serde_json::to_string(&container).unwrap();
     assert!(text.contains("12.5"), "{text}");

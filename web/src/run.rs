@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::observable::on_collision;
 use granular_edmd::simulation::{Limits, RunEnd};
-use granular_edmd::wall::{Delayed, WallMotion};
+use granular_edmd::wall::{StartingAt, WallMotion};
 use granular_edmd::{Disk, Simulation, initial};
 
 use crate::plan::{Plan, Rule, Setting};
@@ -203,7 +203,7 @@ impl Run {
 
     /// Returns the number of all collisions.
     pub fn collisions(&self) -> u64 {
-        self.simulation.counters().collisions + self.simulation.counters().wall_collisions
+        self.simulation.counters().disk_collisions + self.simulation.counters().wall_collisions
     }
 
     /// Returns a name for the state, which depends on its last bit: that of `examples/vibrated_box`.
@@ -242,6 +242,6 @@ fn numbers(disk: &Disk) -> [f64; 6] {
 
 /// Returns the box with its base, which begins an oscillation at this time.
 fn container(setting: &Setting, time: f64) -> Result<Container, Failure> {
-    let base = Delayed::new(setting.base()?, time)?;
+    let base = StartingAt::new(setting.base()?, time)?;
     Ok(Container::closed(WIDTH, HEIGHT)?.with_motion(Wall::Floor, base)?)
 }

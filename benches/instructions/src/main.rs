@@ -30,9 +30,9 @@ fn run() -> Outcome<u64> {
         _ => return Err("which state: dilute or dense?".into()),
     };
     let mut run = state.settled(1, settle)?;
-    let before = run.counters().collisions;
+    let before = run.counters().disk_collisions;
     counted_part(&mut run, oscillations)?;
-    Ok(run.counters().collisions - before)
+    Ok(run.counters().disk_collisions - before)
 }
 
 /// Runs the part that is counted. Callgrind finds it by this name.

@@ -101,7 +101,7 @@ fn run(
     second.set_rule(self::rule(0.05, 0.5)?);
     second.set_gravity(1.5 * gravity)?;
     second.run_until(start + duration, &mut ())?;
-    let collisions = second.counters().collisions + second.counters().wall_collisions;
+    let collisions = second.counters().disk_collisions + second.counters().wall_collisions;
     Ok(format!("{collisions} {:016x} {:016x}", of_state(&second), of_bytes(&bytes)))
 }
 

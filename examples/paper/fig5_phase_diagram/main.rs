@@ -108,7 +108,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 }
 
 fn caption(arguments: &Arguments, parts: &[Part], finished: usize) -> String {
-    let total: usize = parts.iter().map(|part| part.plan.ramps() * part.plan.values()).sum();
+    let total: usize = parts.iter().map(|part| part.plan.ramp_count() * part.plan.value_count()).sum();
     let cycles = parts[0].plan.protocol().cycles();
     let unfinished =
         if finished < total { format!(", {finished} of {total} points so far") } else { String::new() };

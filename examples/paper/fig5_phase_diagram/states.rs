@@ -5,7 +5,7 @@ use std::path::Path;
 
 use granular_edmd::ParameterError;
 use granular_edmd::analysis::{ConvectiveRegime, PlaneTransition, StateCriteria, plane_transitions};
-use granular_edmd::study::vibrated_box::{Convection, VibratedBox};
+use granular_edmd::study::vibrated_box::VibratedBox;
 use granular_edmd::study::{Leg, Record, Study};
 
 use crate::picture::{Crossing, State};

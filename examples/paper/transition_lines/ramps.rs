@@ -169,7 +169,7 @@ fn study_of(folder: &Path) -> Result<Vec<Ramp>, Box<dyn Error>> {
 }
 
 fn regime(name: &str) -> Result<ConvectiveRegime, String> {
-    let found = ConvectiveRegime::ALL.into_iter().find(|regime| regime.to_string() == name);
+    let found = ConvectiveRegime::ALL.iter().copied().find(|regime| regime.to_string() == name);
     found.ok_or_else(|| format!("`{name}` is no state"))
 }
 

@@ -2,18 +2,19 @@
 
 use super::violation::same;
 use super::{
-    Violation, check, check_friction_cone, check_friction_opposes_slip, check_separation, hostile_contacts,
+    Violation, check_friction_cone, check_friction_opposes_slip, check_impulse, check_separation,
+    hostile_contacts,
 };
 use crate::collision::{CollisionRule, Contact, Impulse};
 
 /// The promises of a rule, beyond finite impulses that separate the surfaces and repeat to the bit.
 ///
 /// ```
-/// use granular_edmd::collision::laws::{Promises, check_rule};
+/// use granular_edmd::collision::laws::{Promises, check};
 /// use granular_edmd::collision::{Rough, Smooth};
 ///
-/// check_rule(&Smooth::new(0.2)?, &Promises::new().with_friction(0.0))?;
-/// check_rule(&Rough::new(0.2, 0.1)?, &Promises::new().with_opposed_slip())?;
+/// check(&Smooth::new(0.2)?, &Promises::new().with_friction(0.0))?;
+/// check(&Rough::new(0.2, 0.1)?, &Promises::new().with_opposed_slip())?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,7 +51,7 @@ impl Promises {
     /// # Errors
     /// The first promise that is broken.
     pub fn check(&self, contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
-        if self.energy_gain { check_separation(contact, impulse) } else { check(contact, impulse) }?;
+        if self.energy_gain { check_separation(contact, impulse) } else { check_impulse(contact, impulse) }?;
         if let Some(static_friction) = self.static_friction {
             check_friction_cone(contact, impulse, static_friction)?;
         }
@@ -69,7 +70,7 @@ impl Default for Promises {
 ///
 /// # Errors
 /// The first promise that is broken, with the contact and the impulse that break it.
-pub fn check_rule<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result<(), Violation> {
+pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result<(), Violation> {
     let mut answers = Vec::new();
     for contact in hostile_contacts() {
         let impulse = rule.impulse(&contact);

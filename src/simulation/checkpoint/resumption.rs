@@ -87,7 +87,8 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         let wall_count = count_walls(&self.boundary)?;
         check_numbers(saved, wall_count)?;
         let bodies = bodies_of(saved);
-        let misfit = || CheckpointError::Inconsistent("its neighbor cells are not those of the domain");
+        let misfit =
+            || CheckpointError::Inconsistent("its neighbor cells are not those of the domain".to_owned());
         check_places(saved, &grids(saved, &bodies).ok_or_else(misfit)?, &bodies)?;
         let diameters = (0..bodies.len()).map(|disk| 2.0 * bodies.radius(disk));
         let cells = Cells::filled(&self.boundary, &saved.layouts, diameters, saved.places.clone());

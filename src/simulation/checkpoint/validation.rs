@@ -25,7 +25,7 @@ const SLACK: f64 = 1e-3;
 const MOST_EPOCHS: f64 = 1e6;
 
 pub(super) fn check(valid: bool, what: &'static str) -> Result<(), CheckpointError> {
-    if valid { Ok(()) } else { Err(CheckpointError::Inconsistent(what)) }
+    if valid { Ok(()) } else { Err(CheckpointError::Inconsistent(what.to_owned())) }
 }
 
 /// Checks everything that does not depend on the cells.
@@ -43,8 +43,8 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     check(saved.spins.iter().all(|spin| is_spin(spin, saved.now)), "a rotation is beyond all bounds")?;
     check(are_forecasts(saved, walls), "an event is of nobody, or in the past")?;
     check(are_counted(&saved.counters) && is_guard(&saved.guard), "its counters are beyond all counting")?;
-    let Counters { cell_crossings, collisions, .. } = saved.counters;
-    let forward = saved.tally.cell_crossings <= cell_crossings && saved.tally.collisions <= collisions;
+    let Counters { cell_crossings, disk_collisions, .. } = saved.counters;
+    let forward = saved.tally.cell_crossings <= cell_crossings && saved.tally.collisions <= disk_collisions;
     check(forward, "its counters run backwards")
 }
 
@@ -132,9 +132,9 @@ fn is_guard(guard: &Guard) -> bool {
 }
 
 fn are_counted(counters: &Counters) -> bool {
-    let Counters { collisions, wall_collisions, contact_duration_collisions, .. } = *counters;
+    let Counters { disk_collisions, wall_collisions, contact_duration_collisions, .. } = *counters;
     let Counters { cell_crossings, repredictions, horizons, cell_resizes, .. } = *counters;
-    let physics = [collisions, wall_collisions, contact_duration_collisions];
+    let physics = [disk_collisions, wall_collisions, contact_duration_collisions];
     let bookkeeping = [cell_crossings, repredictions, horizons, cell_resizes];
     physics.iter().chain(&bookkeeping).all(|&count| count <= MOST_COUNTED)
         && counters.max_overlap >= 0.0

@@ -72,7 +72,8 @@ impl<E: Experiment> Plan<E> {
     }
 
     fn check_count(&self) -> Result<(), PlanError> {
-        let lengths = self.sweep.iter().map(|axis| axis.values().len()).chain([self.values(), self.repeats]);
+        let lengths =
+            self.sweep.iter().map(|axis| axis.values().len()).chain([self.value_count(), self.repeats]);
         let count = lengths.map(|length| length as u128).fold(1_u128, u128::saturating_mul);
         if count > MOST_VALUES as u128 {
             return Err(PlanError::TooMany { count, most: MOST_VALUES });
@@ -83,8 +84,8 @@ impl<E: Experiment> Plan<E> {
     /// Checks that the experiment takes the parameters of each value.
     fn check_experiments(&self) -> Result<(), PlanError> {
         self.experiment.check().map_err(|source| Self::refused(&[], source))?;
-        for ramp in (0..self.ramps()).step_by(self.repeats) {
-            for value in 0..self.values() {
+        for ramp in (0..self.ramp_count()).step_by(self.repeats) {
+            for value in 0..self.value_count() {
                 let varied = self.parameters(ramp, value);
                 self.experiment_of(&varied)?.check().map_err(|source| Self::refused(&varied, source))?;
             }
@@ -96,7 +97,7 @@ impl<E: Experiment> Plan<E> {
     /// Checks that the ramped parameter changes the simulation, not only the disks at its start: they stay
     /// what they are along a ramp.
     fn check_ramp(&self) -> Result<(), PlanError> {
-        let (Some(ramp), true) = (&self.ramp, self.values() > 1) else { return Ok(()) };
+        let (Some(ramp), true) = (&self.ramp, self.value_count() > 1) else { return Ok(()) };
         let varied = self.parameters(0, 1);
         let refused = |source| Self::refused(&varied, source);
         let first = self.experiment_of(&self.parameters(0, 0))?;
@@ -116,7 +117,7 @@ impl<E: Experiment> Plan<E> {
     /// Checks that the disks fit in, with all axes at their first values, and with each axis in turn at each
     /// of its other values.
     fn check_disks(&self) -> Result<(), PlanError> {
-        let mut stride = self.ramps();
+        let mut stride = self.ramp_count();
         let mut ramps = vec![0];
         for axis in &self.sweep {
             stride /= axis.values().len();

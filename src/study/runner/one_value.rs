@@ -44,8 +44,8 @@ impl<E: Experiment> Shift<'_, E> {
     /// since.
     fn on_the_way(&self, record: Option<Record<E>>, step: Step) -> Result<Option<Record<E>>, StudyError> {
         match record {
-            Some(record) if (record.leg(), record.at()) != (step.leg, step.at) => {
-                let path = self.study.folder.record(record.ramp(), record.value());
+            Some(record) if (record.leg(), record.ramped_value()) != (step.leg, step.at) => {
+                let path = self.study.folder.record(record.ramp_index(), record.value_index());
                 Err(file::damaged(&path, "it is of another value"))
             }
             record => Ok(record),
@@ -58,7 +58,7 @@ impl<E: Experiment> Shift<'_, E> {
             Err(StudyError::Damaged { path, reason }) => {
                 let folder = &self.study.folder;
                 folder.mark_undone(ramp)?;
-                folder.log(&format!(r#"{{"damaged":"{}","reason":"{reason}"}}"#, name(&path)))?;
+                folder.log(&format!(r#"{{"damaged":"{}","reason":"{}"}}"#, name(&path), in_json(&reason)))?;
                 self.redone.lock().unwrap_or_else(PoisonError::into_inner).push(path);
                 Ok(None)
             }
@@ -133,17 +133,14 @@ impl<E: Experiment> Shift<'_, E> {
 
     fn log(&self, record: &Record<E>, started: Instant) -> Result<(), StudyError> {
         let unix_time = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
-        // A reason is one line of text. Characters that have a meaning in JSON are replaced.
-        let reason = record.outcome().reason().map(|reason| {
-            format!(r#","reason":"{}""#, reason.replace(['"', '\\'], "'").replace(char::is_control, " "))
-        });
+        let reason = record.outcome().reason().map(|reason| format!(r#","reason":"{}""#, in_json(reason)));
         self.study.folder.log(&format!(
             r#"{{"ramp":{},"value":{},"outcome":"{}"{},"collisions":{},"seconds":{:.3},"unix_time":{unix_time}}}"#,
-            record.ramp(),
-            record.value(),
+            record.ramp_index(),
+            record.value_index(),
             record.outcome().name(),
             reason.unwrap_or_default(),
-            record.counters().collisions,
+            record.counters().disk_collisions,
             started.elapsed().as_secs_f64(),
         ))
     }
@@ -155,6 +152,12 @@ fn check_version(origin: &Origin, path: &Path) -> Result<(), StudyError> {
         return Ok(());
     }
     Err(StudyError::Version { path: path.to_owned(), found: origin.version.clone(), known: CRATE_VERSION })
+}
+
+/// Returns a reason as JSON can hold it: one line of text, in which characters that have a meaning in JSON
+/// are replaced.
+fn in_json(reason: &str) -> String {
+    reason.replace(['"', '\\'], "'").replace(char::is_control, " ")
 }
 
 /// Returns the name of a file after the name of its folder.

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use crate::observable::Heading;
 use crate::study::column::{Column, error_names};
 use crate::study::{Experiment, Plan, Scalar, Table};
 
@@ -21,32 +22,26 @@ pub(super) fn table<'a, E: Experiment + 'a>(
     tables.extend(own.map(|table| (table.name(), of_own(plan, table))));
     let mut text = String::from("table,column,unit\n");
     for (table, columns) in tables {
-        for Described { name, unit } in columns {
+        for column in columns {
             // Writing to a string does not fail.
-            let _ = writeln!(text, "{table},{name},{}", Scalar::from(unit));
+            let _ = writeln!(text, "{table},{},{}", column.name(), Scalar::from(column.unit()));
         }
     }
     text
 }
 
 /// Returns the first line of a table.
-pub(super) fn line(columns: Vec<Described>) -> String {
-    let names: Vec<String> = columns.into_iter().map(|column| column.name).collect();
+pub(super) fn line(columns: Vec<Heading>) -> String {
+    let names: Vec<&str> = columns.iter().map(Heading::name).collect();
     format!("{}\n", names.join(","))
 }
 
-/// A column by name and unit.
-pub(super) struct Described {
-    name: String,
-    unit: &'static str,
-}
-
-fn described(name: impl Into<String>, unit: &'static str) -> Described {
-    Described { name: name.into(), unit }
+fn described(name: impl Into<String>, unit: impl Into<String>) -> Heading {
+    Heading::new(name, unit)
 }
 
 /// Describes the first columns of all tables but that of points.
-fn place<E: Experiment>(plan: &Plan<E>) -> Vec<Described> {
+fn place<E: Experiment>(plan: &Plan<E>) -> Vec<Heading> {
     let mut place: Vec<_> = ["ramp", "value", "leg"].map(|name| described(name, "")).into();
     place.extend((plan.repeats() > 1).then(|| described("repeat", "")));
     place.extend(plan.varied().map(|name| described(name, "")));
@@ -55,33 +50,33 @@ fn place<E: Experiment>(plan: &Plan<E>) -> Vec<Described> {
 
 /// Describes the columns of the table of values. Its last column names the columns whose error is only
 /// a lower bound, separated by spaces: they have too few samples for their correlations.
-pub(super) fn of_values<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -> Vec<Described> {
+pub(super) fn of_values<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -> Vec<Heading> {
     let mut all = place(plan);
     all.extend(["seed", "outcome", "samples"].map(|name| described(name, "")));
     for column in columns.iter().filter(|column| column.is_in_values()) {
         if column.has_error() {
             all.extend(of_estimate(column));
         } else {
-            all.push(described(column.name(), column.unit()));
+            all.push(column.heading().clone());
         }
     }
     all.push(described("not_converged", ""));
     all
 }
 
-pub(super) fn of_samples<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -> Vec<Described> {
+pub(super) fn of_samples<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -> Vec<Heading> {
     let mut all = place(plan);
     all.push(described("time", "time"));
     let sampled = columns.iter().filter(|column| column.is_in_samples());
-    all.extend(sampled.map(|column| described(column.name(), column.unit())));
+    all.extend(sampled.map(|column| column.heading().clone()));
     all
 }
 
 /// Describes the columns of the table of points: the repeats of each value together.
-pub(super) fn of_points<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -> Vec<Described> {
+pub(super) fn of_points<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -> Vec<Heading> {
     let mut all: Vec<_> = ["point", "value", "leg"].map(|name| described(name, "")).into();
     all.extend(plan.varied().map(|name| described(name, "")));
-    all.extend(["repeats", "unfinished"].map(|name| described(name, "")));
+    all.extend(["repeats", "failed"].map(|name| described(name, "")));
     let estimated = columns.iter().filter(|column| column.is_in_values() && column.has_error());
     all.extend(estimated.flat_map(of_estimate));
     all.push(described("not_converged", ""));
@@ -89,7 +84,7 @@ pub(super) fn of_points<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) ->
 }
 
 /// Describes a mean, its error, and the number of independent samples that they rest on.
-fn of_estimate<E: Experiment>(column: &Column<E>) -> [Described; 3] {
+fn of_estimate<E: Experiment>(column: &Column<E>) -> [Heading; 3] {
     let (name, unit) = (column.name(), column.unit());
     let [error, independent] = error_names(name);
     [described(name, unit), described(error, unit), described(independent, "")]
@@ -97,7 +92,7 @@ fn of_estimate<E: Experiment>(column: &Column<E>) -> [Described; 3] {
 
 /// Describes the columns of the table of transitions: the values of the ramped parameter and the states on
 /// both sides.
-pub(super) fn of_transitions<E: Experiment>(plan: &Plan<E>) -> Vec<Described> {
+pub(super) fn of_transitions<E: Experiment>(plan: &Plan<E>) -> Vec<Heading> {
     let mut all: Vec<_> = ["ramp", "leg"].map(|name| described(name, "")).into();
     all.extend((plan.repeats() > 1).then(|| described("repeat", "")));
     let swept = plan.varied().count() - usize::from(plan.ramp().is_some());
@@ -106,8 +101,8 @@ pub(super) fn of_transitions<E: Experiment>(plan: &Plan<E>) -> Vec<Described> {
     all
 }
 
-pub(super) fn of_own<E: Experiment>(plan: &Plan<E>, table: &Table<E>) -> Vec<Described> {
+pub(super) fn of_own<E: Experiment>(plan: &Plan<E>, table: &Table<E>) -> Vec<Heading> {
     let mut all = place(plan);
-    all.extend(table.columns().iter().map(|(name, unit)| described(*name, unit)));
+    all.extend(table.columns().iter().cloned());
     all
 }

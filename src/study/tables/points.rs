@@ -10,9 +10,9 @@ pub(super) struct Repeats(Vec<Vec<Repeat>>);
 
 /// The estimates of one repeat of a value, with the names of columns.
 pub(super) struct Repeat {
-    pub(super) estimates: Vec<(&'static str, Estimate)>,
+    pub(super) estimates: Vec<(String, Estimate)>,
     /// True if the engine could not finish it.
-    pub(super) is_unfinished: bool,
+    pub(super) is_failed: bool,
 }
 
 impl Repeats {
@@ -43,10 +43,10 @@ fn row<E: Experiment>(plan: &Plan<E>, point: usize, value: usize, repeats: &[Rep
         append(&mut line, &parameter);
     }
     append(&mut line, &repeats.len());
-    append(&mut line, &repeats.iter().filter(|repeat| repeat.is_unfinished).count());
+    append(&mut line, &repeats.iter().filter(|repeat| repeat.is_failed).count());
     let of_column = |column: usize| repeats.iter().map(move |repeat| repeat.estimates[column].1);
-    let names = repeats[0].estimates.iter().map(|(name, _)| *name).enumerate();
-    let together: Vec<(&str, Estimate)> =
+    let names = repeats[0].estimates.iter().map(|(name, _)| name.clone()).enumerate();
+    let together: Vec<(String, Estimate)> =
         names.map(|(column, name)| (name, Estimate::over_repeats(of_column(column)))).collect();
     for (_, estimate) in &together {
         append_estimate(&mut line, estimate);

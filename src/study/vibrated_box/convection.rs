@@ -11,7 +11,7 @@ use crate::study::{Column, Experiment, Record, Table};
 /// ```no_run
 /// use granular_edmd::analysis::StateCriteria;
 /// use granular_edmd::study::Study;
-/// use granular_edmd::study::vibrated_box::{Convection, VibratedBox};
+/// use granular_edmd::study::vibrated_box::VibratedBox;
 ///
 /// for record in Study::<VibratedBox>::open("study")?.records() {
 ///     let record = record?;
@@ -20,40 +20,26 @@ use crate::study::{Column, Experiment, Record, Table};
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub trait Convection {
+impl Record<VibratedBox> {
     /// Returns `$(\Psi_1, \Psi_2)$` of each sample.
-    fn order(&self) -> Vec<ConvectionOrder>;
-
-    /// Returns the packing fraction by height, averaged over the samples: heights of the middles of bins of
-    /// one diameter, and fractions.
-    fn profile(&self) -> impl Iterator<Item = (f64, f64)>;
-
-    /// Returns the densest layer of the profile; `None` without samples.
-    fn densest_layer(&self) -> Option<DenseLayer>;
-
-    /// Returns the mean energy change in a collision of two disks, each collision counting alike.
-    fn energy_change(&self) -> Estimate;
-
-    /// Returns the standard deviation of `$\Psi_1$` and `$\Psi_2$` in a gas at rest of this temperature,
-    /// `$\sqrt{T_y/2N}$`.
-    fn thermal_noise(&self) -> f64;
-}
-
-impl Convection for Record<VibratedBox> {
-    fn order(&self) -> Vec<ConvectionOrder> {
+    pub fn order(&self) -> Vec<ConvectionOrder> {
         let order = |sample: &Sample| ConvectionOrder::new(sample.one_roll, sample.two_rolls);
         self.samples().iter().map(order).collect()
     }
 
-    fn profile(&self) -> impl Iterator<Item = (f64, f64)> {
+    /// Returns the packing fraction by height, averaged over the samples: heights of the middles of bins of
+    /// one diameter, and fractions.
+    pub fn profile(&self) -> impl Iterator<Item = (f64, f64)> {
         self.observer().profile()
     }
 
-    fn densest_layer(&self) -> Option<DenseLayer> {
+    /// Returns the densest layer of the profile; `None` without samples.
+    pub fn densest_layer(&self) -> Option<DenseLayer> {
         DenseLayer::among(self.profile())
     }
 
-    fn energy_change(&self) -> Estimate {
+    /// Returns the mean energy change in a collision of two disks, each collision counting alike.
+    pub fn energy_change(&self) -> Estimate {
         let collisions: f64 = self.samples().iter().map(|sample| sample.collisions as f64).sum();
         let total: f64 = self.samples().iter().map(|s| s.collisions as f64 * s.energy_change).sum();
         let mean = total / collisions;
@@ -62,7 +48,9 @@ impl Convection for Record<VibratedBox> {
         self.mean(|s| s.collisions as f64 * (s.energy_change - mean) / per_sample).about(mean)
     }
 
-    fn thermal_noise(&self) -> f64 {
+    /// Returns the standard deviation of `$\Psi_1$` and `$\Psi_2$` in a gas at rest of this temperature,
+    /// `$\sqrt{T_y/2N}$`.
+    pub fn thermal_noise(&self) -> f64 {
         let temperature = self.mean(|sample| sample.vertical_temperature).mean();
         thermal_noise(temperature, 1.0, self.experiment().disks).unwrap_or(f64::NAN)
     }
@@ -81,15 +69,15 @@ pub(super) fn columns() -> Vec<Column<VibratedBox>> {
         Column::sampled("vertical_temperature", "energy", |s: &Sample| s.vertical_temperature),
         Column::sampled("collisions", "1", |s: &Sample| s.collisions).in_samples_only(),
         Column::sampled("energy_change", "energy", |s: &Sample| s.energy_change).in_samples_only(),
-        Column::estimated("energy_change", "energy", Convection::energy_change),
-        Column::of_record("thermal_noise", "1", Convection::thermal_noise),
+        Column::estimated("energy_change", "energy", Record::energy_change),
+        Column::of_record("thermal_noise", "1", Record::thermal_noise),
         Column::of_record("densest_packing", "1", |record| {
             record.densest_layer().map_or(f64::NAN, |layer| layer.packing_fraction)
         }),
         Column::of_record("densest_height", "diameter", |record| {
             record.densest_layer().map_or(f64::NAN, |layer| layer.height)
         }),
-        Column::of_record("collisions", "1", |record| record.counters().collisions),
+        Column::of_record("collisions", "1", |record| record.counters().disk_collisions),
         Column::of_record("wall_collisions", "1", |record| record.counters().wall_collisions),
         Column::of_record("contact_duration_collisions", "1", |record| {
             record.counters().contact_duration_collisions
@@ -100,7 +88,7 @@ pub(super) fn columns() -> Vec<Column<VibratedBox>> {
 
 /// Returns the table of profiles.
 pub(super) fn tables() -> Vec<Table<VibratedBox>> {
-    vec![Table::new("profiles", &[("height", "diameter"), ("packing_fraction", "1")], |record| {
+    vec![Table::new("profiles", [("height", "diameter"), ("packing_fraction", "1")], |record| {
         record.profile().map(|(height, fraction)| vec![height, fraction]).collect()
     })]
 }

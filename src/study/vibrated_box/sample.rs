@@ -66,7 +66,7 @@ impl Measurement {
             rotational_energy: energies.rotational,
             vertical_temperature: Temperatures.measure(snapshot).vertical,
             collisions: change.disks().count(),
-            energy_change: change.disks().mean(),
+            energy_change: if change.disks().count() == 0 { 0.0 } else { change.disks().mean() },
         }
     }
 

@@ -83,7 +83,7 @@ fn all_schedulers_give_the_same_bits() {
         let builder = Simulation::builder(rule, drum).disks(disks).gravity(0.1);
         let mut simulation = builder.scheduler(scheduler).build().unwrap();
         simulation.run_until(15.0, &mut ()).unwrap();
-        assert!(simulation.counters().collisions > 300);
+        assert!(simulation.counters().disk_collisions > 300);
         simulation.disks()
     }
     let ours = last_state(TournamentTree::new());

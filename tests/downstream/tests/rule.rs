@@ -17,7 +17,7 @@ proptest! {
     #[test]
     fn every_rule_is_lawful(loss in 0.0..10.0, friction in 0.0..2.0) {
         let rule = Viscoelastic::new(loss, friction).unwrap();
-        prop_assert_eq!(laws::check_rule(&rule, &laws::Promises::new().with_friction(friction)), Ok(()));
+        prop_assert_eq!(laws::check(&rule, &laws::Promises::new().with_friction(friction)), Ok(()));
     }
 
     #[test]

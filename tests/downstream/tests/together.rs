@@ -56,7 +56,7 @@ fn a_vector_of_observers_sees_what_each_would_see_alone() {
     let mut impacts = HardestImpacts::new(every(1.5));
     let mut momentum = Series::new(ABOUT, every(1.0));
     let mut energies = Series::new(Energies, every(0.7));
-    let mut counts = CollisionCounts::since(0.0);
+    let mut counts = CollisionCounts::default();
     let mut observers: Vec<Box<dyn Observer + '_>> = vec![
         Box::new(&mut impacts),
         Box::new(&mut momentum),
@@ -79,7 +79,7 @@ fn a_vector_of_observers_sees_what_each_would_see_alone() {
     assert_eq!(momentum.values(), momentum_alone.values());
     assert_eq!(momentum.times().len(), 21);
     assert_eq!(energies.times().len(), 30);
-    assert_eq!(counts.disk_collisions(), simulation.counters().collisions);
+    assert_eq!(counts.disk_collisions(), simulation.counters().disk_collisions);
     assert_eq!(counts.wall_collisions(), simulation.counters().wall_collisions);
     assert_eq!(simulation.disks(), alone.disks());
 }

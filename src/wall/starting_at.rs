@@ -10,22 +10,22 @@ use crate::{Fingerprint, ParameterError};
 /// start is no delay: before it, the wall goes through the phases before 0.
 ///
 /// ```
-/// use granular_edmd::wall::{BiParabolic, Delayed, WallMotion};
+/// use granular_edmd::wall::{BiParabolic, StartingAt, WallMotion};
 ///
-/// let base = Delayed::new(BiParabolic::new(0.1, 7.0)?, 30.0)?;
+/// let base = StartingAt::new(BiParabolic::new(0.1, 7.0)?, 30.0)?;
 /// assert!(base.state(30.0).displacement.abs() < 1e-12);
 /// assert!(base.state(30.0).velocity > 0.0);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Delayed<M> {
+pub struct StartingAt<M> {
     motion: M,
     start: f64,
     /// Phase of the motion at time 0.
     lead: f64,
 }
 
-impl<M: WallMotion> Delayed<M> {
+impl<M: WallMotion> StartingAt<M> {
     /// Creates the motion that has phase 0 at this absolute time.
     ///
     /// # Errors
@@ -53,7 +53,7 @@ impl<M: WallMotion> Delayed<M> {
     }
 }
 
-impl<M: WallMotion> WallMotion for Delayed<M> {
+impl<M: WallMotion> WallMotion for StartingAt<M> {
     fn state(&self, phase: f64) -> WallState {
         self.motion.state(phase + self.lead)
     }
@@ -78,6 +78,6 @@ impl<M: WallMotion> WallMotion for Delayed<M> {
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
-        Some(Fingerprint::of("Delayed").number(self.start).part(self.motion.fingerprint()?))
+        Some(Fingerprint::of("StartingAt").number(self.start).part(self.motion.fingerprint()?))
     }
 }
