@@ -27,16 +27,16 @@ impl<'a, E: Experiment> Tables<'a, E> {
     pub(super) fn new(plan: &'a Plan<E>) -> Self {
         let columns = E::columns();
         let more = E::tables().into_iter().map(|table| {
-            let header = headers::line(headers::of_own(plan, &table));
+            let header = headers::line(&headers::of_own(plan, &table));
             (table, header)
         });
         Self {
             plan,
             more: more.collect(),
-            values: headers::line(headers::of_values(plan, &columns)),
-            samples: headers::line(headers::of_samples(plan, &columns)),
-            transitions: headers::line(headers::of_transitions(plan)),
-            points: headers::line(headers::of_points(plan, &columns)),
+            values: headers::line(&headers::of_values(plan, &columns)),
+            samples: headers::line(&headers::of_samples(plan, &columns)),
+            transitions: headers::line(&headers::of_transitions(plan)),
+            points: headers::line(&headers::of_points(plan, &columns)),
             repeats: Repeats::default(),
             columns,
         }

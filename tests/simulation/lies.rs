@@ -398,7 +398,7 @@ fn an_observer_that_fails_ends_the_run_there() {
         match stage {
             Stage::Start => assert_eq!(*time, 0.0),
             Stage::Collision => {
-                assert_eq!(run.counters().disk_collisions + run.counters().wall_collisions, 1)
+                assert_eq!(run.counters().disk_collisions + run.counters().wall_collisions, 1);
             }
             Stage::Sample => assert_eq!(*time, 1.0),
             Stage::End => assert_eq!(*time, 5.0),

@@ -31,7 +31,7 @@ pub(super) fn table<'a, E: Experiment + 'a>(
 }
 
 /// Returns the first line of a table.
-pub(super) fn line(columns: Vec<Heading>) -> String {
+pub(super) fn line(columns: &[Heading]) -> String {
     let names: Vec<&str> = columns.iter().map(Heading::name).collect();
     format!("{}\n", names.join(","))
 }
