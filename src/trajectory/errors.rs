@@ -162,7 +162,7 @@ pub enum ReadError {
         what: String,
     },
     /// The center of a disk is outside the box that the file gives.
-    #[error("line {line}: the disk at ({}, {}) is outside of the box", Readable(*.x), Readable(*.y))]
+    #[error("line {line}: the disk at ({}, {}) is outside the box", Readable(*.x), Readable(*.y))]
     Outside {
         /// Number of the line.
         line: usize,

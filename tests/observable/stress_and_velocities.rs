@@ -89,7 +89,7 @@ fn flow_is_no_temperature_on_a_grid() -> Outcome {
             )
         };
         // The rest is the flow within a cell of side 1 and of 1/5: m γ²h²/12. The mean square of 4e4 uniform
-        // numbers is known to 0.9/√4e4, half of a per cent.
+        // numbers is known to 0.9/√4e4, half of a percent.
         let left = 0.25 / 12.0;
         let (coarse, fine) = (about(20, 10)?, about(100, 50)?);
         assert!((coarse.horizontal / left - 1.0).abs() < 0.03, "{coarse:?}");

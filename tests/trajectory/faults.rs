@@ -61,7 +61,7 @@ fn faults_of_extended_xyz() {
         &format!("1\n{keys}\n1 1 1 2 0.5\n"),
         "line 3: the third component must be 0, for disks lie in a plane, but is \"2\"",
     );
-    told(&format!("1\n{keys}\n1 1 11 0 0.5\n"), "line 3: the disk at (1, 11) is outside of the box");
+    told(&format!("1\n{keys}\n1 1 11 0 0.5\n"), "line 3: the disk at (1, 11) is outside the box");
     told(
         &format!("2\n{keys}\n1 1 1 0 0.5\n2 1 1.5 0 0.5\n"),
         "line 4: the disk overlaps that of line 3 by 0.5",
@@ -129,7 +129,7 @@ fn faults_of_data_of_lammps() {
     let atoms = format!("{head}Atoms\n\n2 1 1 1 2 2 0\n");
     told(&format!("{atoms}2 1 1 1 4 4 0\n"), "line 11: the atom 2 stands in line 10 already");
     told(&format!("{atoms}1 1 1 1 2.5 2 0\n"), "line 11: the disk overlaps that of line 10 by 0.5");
-    told(&format!("{atoms}1 1 1 1 9.5 2 0\n"), "line 11: the disk at (9.5, 2) is outside of the box");
+    told(&format!("{atoms}1 1 1 1 9.5 2 0\n"), "line 11: the disk at (9.5, 2) is outside the box");
     told(
         &format!("{atoms}1 1 0 1 4 2 0\n"),
         "line 11 is no disk: radius must be finite and positive, but is 0",

@@ -33,7 +33,7 @@ pub struct Advance {
 
 /// The paper's box with settings that change while it runs.
 ///
-/// Settings change at whole oscillations, when the base passes its middle upwards, so that it never jumps.
+/// Settings change at whole oscillations, when the base passes its middle upward, so that it never jumps.
 /// The state is then a function of the seed and of the plan alone, not of frames and clicks.
 ///
 /// ```

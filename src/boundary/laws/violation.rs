@@ -86,7 +86,7 @@ pub enum Violation {
     },
     /// A touch is before the flight, after its limit, or not a number.
     #[error(
-        "a touch at time {time} is outside of the flight, which ends at {until}: {flight:?}",
+        "a touch at time {time} is outside the flight, which ends at {until}: {flight:?}",
         time = Readable(*time), until = Readable(*until)
     )]
     TouchTime {

@@ -74,7 +74,7 @@ pub enum Violation {
     },
     /// The displacement is outside the reach.
     #[error(
-        "at phase {phase} its displacement {displacement} is outside of its reach from {low} to {high}",
+        "at phase {phase} its displacement {displacement} is outside its reach from {low} to {high}",
         low = Readable(*low), high = Readable(*high), phase = Readable(*phase),
         displacement = Readable(*displacement)
     )]
