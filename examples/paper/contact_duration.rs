@@ -154,7 +154,8 @@ fn crossing(line: TransitionLine, ramps: &Ramps) -> Option<Crossing> {
     let half_steps: RunningMean = first.iter().map(|transition| transition.error).collect();
     // The transition lies anywhere in a step with equal probability. Its standard deviation is the half step
     // over the root of three.
-    let error = values.standard_error().hypot(half_steps.mean() / 3.0_f64.sqrt());
+    let scatter = if values.count() > 1 { values.standard_error() } else { 0.0 };
+    let error = scatter.hypot(half_steps.mean() / 3.0_f64.sqrt());
     (values.count() > 0).then(|| Crossing { value: values.mean(), error, count: values.count() })
 }
 

@@ -29,9 +29,11 @@ mod walls;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use clap::{Parser, ValueEnum};
 use granular_edmd::analysis::TransitionLine;
+use rayon::prelude::*;
 
 use common::command_line::{self, Failure};
 use common::paper::{Row, TABLE_1};
@@ -128,10 +130,14 @@ fn lines(ramps: &[Ramp], arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let step = if arguments.quick { 10 } else { 1 };
     let mut crossings: Vec<_> = crossings(ramps)?.into_iter().step_by(step).collect();
     let (progress, all) = (Progress::of("crossings"), crossings.len() as u64);
-    for (done, (ramp, at)) in (1..).zip(&mut crossings) {
-        at.local = Some(local::measure(ramp, at, arguments.oscillations)?);
-        progress.show(done, all);
-    }
+    let done = AtomicU64::new(0);
+    // Each run stands alone, so any order of them gives the same numbers.
+    crossings.par_iter_mut().try_for_each(|(ramp, at)| {
+        let local = local::measure(ramp, at, arguments.oscillations).map_err(|error| error.to_string())?;
+        at.local = Some(local);
+        progress.show(done.fetch_add(1, Ordering::Relaxed) + 1, all);
+        Ok::<_, String>(())
+    })?;
     drop(progress);
     for Row { gravity, line, change: (mean, deviation), .. } in TABLE_1 {
         println!("\ng = {gravity}, {line}: paper {mean:.3} ± {deviation:.3}");
