@@ -72,6 +72,8 @@ pub struct VibratedBox {
     pub wall_inelasticity: Option<f64>,
     /// Inelasticity of the base alone, if not that of the walls.
     pub base_inelasticity: Option<f64>,
+    /// Tangential inelasticity `$q_t$` of the base alone, if not the normal one of the base.
+    pub base_tangential_inelasticity: Option<f64>,
     /// Friction of the walls, static and dynamic, if not that of the disks.
     pub wall_friction: Option<f64>,
     /// Contact duration `$t_c$`; none without the model [`ContactDuration`].
@@ -104,6 +106,7 @@ impl VibratedBox {
             dynamic_friction: None,
             wall_inelasticity: None,
             base_inelasticity: None,
+            base_tangential_inelasticity: None,
             wall_friction: None,
             contact_duration: None,
             initial_temperature: 1.0,
@@ -149,7 +152,12 @@ impl VibratedBox {
 
     /// Returns the same box with a base of an inelasticity of its own, normal and tangential.
     pub const fn with_base_inelasticity(self, inelasticity: f64) -> Self {
-        Self { base_inelasticity: Some(inelasticity), ..self }
+        Self { base_inelasticity: Some(inelasticity), base_tangential_inelasticity: None, ..self }
+    }
+
+    /// Returns the same box with a base of these inelasticities, normal and tangential.
+    pub const fn with_base_inelasticities(self, normal: f64, tangential: f64) -> Self {
+        Self { base_tangential_inelasticity: Some(tangential), ..self.with_base_inelasticity(normal) }
     }
 
     /// Returns the same box with walls of a friction of their own, static and dynamic.
@@ -177,12 +185,13 @@ impl VibratedBox {
             Some(height) => Container::closed(self.width, height)?,
             None => Container::open(self.width)?,
         };
-        if let Some(rule) = self.wall_rule(self.wall_inelasticity)? {
+        if let Some(rule) = self.wall_rule(self.wall_inelasticity, None)? {
             for wall in [Wall::Left, Wall::Right].into_iter().chain(self.height.map(|_| Wall::Lid)) {
                 container = container.with_rule(wall, rule)?;
             }
         }
-        if let Some(rule) = self.wall_rule(self.base_inelasticity.or(self.wall_inelasticity))? {
+        let base = self.base_inelasticity.or(self.wall_inelasticity);
+        if let Some(rule) = self.wall_rule(base, self.base_tangential_inelasticity)? {
             container = container.with_rule(Wall::Floor, rule)?;
         }
         let container = match self.sides {
@@ -193,14 +202,21 @@ impl VibratedBox {
         self.base.under(container)
     }
 
-    /// Returns the rule of walls of this inelasticity, if it is not that of the disks.
-    fn wall_rule(&self, inelasticity: Option<f64>) -> Result<Option<BoxRule>, ExperimentError> {
-        if inelasticity.or(self.wall_friction).is_none() {
+    /// Returns the rule of walls of these inelasticities, if it is not that of the disks.
+    fn wall_rule(
+        &self,
+        normal: Option<f64>,
+        tangential: Option<f64>,
+    ) -> Result<Option<BoxRule>, ExperimentError> {
+        if normal.or(tangential).or(self.wall_friction).is_none() {
             return Ok(None);
         }
         let mut walls = self.clone();
-        if let Some(inelasticity) = inelasticity {
-            walls = walls.with_inelasticity(inelasticity);
+        if let Some(normal) = normal {
+            walls = walls.with_inelasticity(normal);
+        }
+        if let Some(tangential) = tangential {
+            walls = walls.with_tangential_inelasticity(tangential);
         }
         if let Some(friction) = self.wall_friction {
             walls = walls.with_friction(friction);
