@@ -60,7 +60,7 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 /// In two equal rolls `$\Psi_1$` vanishes, while one roll may have any `$\Psi_2$` (paper, section III). At
 /// large gravity, that `$\Psi_2$` is a third of `$|\Psi_1|$`. At small gravity, the roll leans further to one
 /// side as the loss grows, until the two are equal: a ratio of 1 would call it two rolls there. A ratio of
-/// 1.5 or 3 instead of 2 hardly matters: it renames at most two of a thousand states in
+/// 1.5 or 3 instead of 2 hardly matters: it renames three or four of 1682 states in
 /// `docs/reproduction/full-length`.
 ///
 /// A collapsed run keeps a weak, slow `$\Psi_2$`, whose mean settles only after thousands of oscillations.
@@ -256,8 +256,8 @@ impl Classification {
     /// Returns the region of Fig. 5: coexistence if one roll and two rolls both have the least weight, and no
     /// rolls have less; otherwise the region of the number of rolls with the largest weight.
     ///
-    /// Where two rolls come and go at the edge of the collapse, they lean to a side on the way. That is a
-    /// passage from flow to none, not one roll beside two.
+    /// Two rolls that come and go at the edge of the collapse lean to a side on the way. This is a passage
+    /// from flow to none, not one roll beside two.
     pub fn regime(&self) -> ConvectiveRegime {
         let [none, one, two] = [0, 1, 2].map(|rolls| self.weight_of_rolls(rolls));
         let collapsed = self.weight(ConvectiveState::Collapsed);

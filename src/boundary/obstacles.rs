@@ -44,7 +44,7 @@ pub struct Obstacles<B> {
 impl<B: Boundary> Obstacles<B> {
     /// Puts obstacles into a boundary, with the places, radii and kinds of these disks.
     ///
-    /// Where the boundary is periodic, an obstacle outside the domain is moved into it by whole periods.
+    /// An obstacle outside a periodic domain is moved into it by whole periods.
     pub fn new(boundary: B, obstacles: impl IntoIterator<Item = Disk>) -> Self {
         let domain = boundary.domain();
         // An obstacle whose new place would be out of range keeps the old one.

@@ -117,7 +117,7 @@ impl Vessel {
     /// The container is a rectangle around the parts, which no disk touches.
     ///
     /// # Errors
-    /// As [`put`](Self::put), or if a part extends to infinity.
+    /// The same as for [`put`](Self::put), and if a part extends to infinity.
     ///
     /// ```
     /// use granular_edmd::boundary::{Boundary, Part, Vessel};
@@ -158,7 +158,7 @@ impl Vessel {
     /// Returns the same vessel with one more part.
     ///
     /// # Errors
-    /// As [`put`](Self::put).
+    /// The same as for [`put`](Self::put).
     pub fn with(mut self, name: impl Into<String>, part: Part) -> Result<Self, VesselError> {
         self.put(name, part)?;
         Ok(self)

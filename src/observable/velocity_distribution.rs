@@ -20,7 +20,7 @@ use crate::{Disk, ParameterError};
 ///
 /// Moments of a few disks are smaller than the moments of their distribution, since the sample itself defines
 /// `$T$` and the mean. The moments are therefore divided by the moments of a Maxwellian gas of as many disks.
-/// Thus, all cumulants of a Maxwellian gas are 0 for any number of disks. Errors come from blocks of samples.
+/// So all cumulants of a Maxwellian gas are 0 for any number of disks. Errors come from blocks of samples.
 ///
 /// Velocities are taken in the frame of the container, unless [`about_mean`](Self::about_mean) or
 /// [`about_flow`](Self::about_flow) subtracts a mean velocity.

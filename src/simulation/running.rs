@@ -27,7 +27,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// This is [`Self::run`] without any other limit.
     ///
     /// # Errors
-    /// As [`Self::run`].
+    /// The same as for [`Self::run`].
     pub fn run_until<O: Observer + ?Sized>(
         &mut self,
         end: f64,
@@ -97,7 +97,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// ```
     ///
     /// # Errors
-    /// As [`Self::run_until`].
+    /// The same as for [`Self::run_until`].
     pub fn step_until<O: Observer + ?Sized>(
         &mut self,
         end: f64,

@@ -58,10 +58,7 @@ impl<E: Experiment> Study<E> {
     /// # Errors
     /// The same as for [`Self::run`], and if there is no such ramp.
     pub fn run_ramp(&self, ramp: usize, control: &Control<'_>) -> Result<Summary, StudyError> {
-        let ramps = self.plan().ramp_count();
-        if ramp >= ramps {
-            return Err(StudyError::NoSuchRamp { ramp, ramps });
-        }
+        self.check_ramp(ramp)?;
         self.run_ramps(vec![ramp], control)
     }
 

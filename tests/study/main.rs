@@ -18,3 +18,4 @@ mod report;
 mod support;
 mod tables;
 mod values;
+mod watched;

@@ -35,7 +35,7 @@ impl Container {
     /// also move along its normal.
     ///
     /// # Errors
-    /// As [`with_motion`](Self::with_motion).
+    /// The same as for [`with_motion`](Self::with_motion).
     pub fn with_sliding(
         mut self,
         wall: Wall,
@@ -76,7 +76,7 @@ impl Container {
     /// Motions along the horizontal stay.
     ///
     /// # Errors
-    /// As [`shaken_sideways`](Self::shaken_sideways).
+    /// The same as for [`shaken_sideways`](Self::shaken_sideways).
     pub fn shaken_vertically(
         self,
         motion: impl WallMotion + Send + Sync + 'static,

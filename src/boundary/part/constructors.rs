@@ -46,7 +46,7 @@ impl Part {
     /// The points may go around in either direction.
     ///
     /// # Errors
-    /// As [`polygon`](Self::polygon).
+    /// The same as for [`polygon`](Self::polygon).
     ///
     /// ```
     /// use granular_edmd::boundary::Part;

@@ -36,15 +36,11 @@ pub(super) fn line(columns: &[Heading]) -> String {
     format!("{}\n", names.join(","))
 }
 
-fn described(name: impl Into<String>, unit: impl Into<String>) -> Heading {
-    Heading::new(name, unit)
-}
-
 /// Describes the first columns of all tables but that of points.
 fn place<E: Experiment>(plan: &Plan<E>) -> Vec<Heading> {
-    let mut place: Vec<_> = ["ramp", "value", "leg"].map(|name| described(name, "")).into();
-    place.extend((plan.repeats() > 1).then(|| described("repeat", "")));
-    place.extend(plan.varied().map(|name| described(name, "")));
+    let mut place: Vec<_> = ["ramp", "value", "leg"].map(|name| Heading::new(name, "")).into();
+    place.extend((plan.repeats() > 1).then(|| Heading::new("repeat", "")));
+    place.extend(plan.varied().map(|name| Heading::new(name, "")));
     place
 }
 
@@ -52,7 +48,7 @@ fn place<E: Experiment>(plan: &Plan<E>) -> Vec<Heading> {
 /// a lower bound, separated by spaces: they have too few samples for their correlations.
 pub(super) fn of_values<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -> Vec<Heading> {
     let mut all = place(plan);
-    all.extend(["seed", "outcome", "samples"].map(|name| described(name, "")));
+    all.extend(["seed", "outcome", "samples"].map(|name| Heading::new(name, "")));
     for column in columns.iter().filter(|column| column.is_in_values()) {
         if column.has_error() {
             all.extend(of_estimate(column));
@@ -60,13 +56,13 @@ pub(super) fn of_values<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) ->
             all.push(column.heading().clone());
         }
     }
-    all.push(described("not_converged", ""));
+    all.push(Heading::new("not_converged", ""));
     all
 }
 
 pub(super) fn of_samples<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -> Vec<Heading> {
     let mut all = place(plan);
-    all.push(described("time", "time"));
+    all.push(Heading::new("time", "time"));
     let sampled = columns.iter().filter(|column| column.is_in_samples());
     all.extend(sampled.map(|column| column.heading().clone()));
     all
@@ -74,12 +70,12 @@ pub(super) fn of_samples<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -
 
 /// Describes the columns of the table of points: the repeats of each value together.
 pub(super) fn of_points<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) -> Vec<Heading> {
-    let mut all: Vec<_> = ["point", "value", "leg"].map(|name| described(name, "")).into();
-    all.extend(plan.varied().map(|name| described(name, "")));
-    all.extend(["repeats", "failed"].map(|name| described(name, "")));
+    let mut all: Vec<_> = ["point", "value", "leg"].map(|name| Heading::new(name, "")).into();
+    all.extend(plan.varied().map(|name| Heading::new(name, "")));
+    all.extend(["repeats", "failed"].map(|name| Heading::new(name, "")));
     let estimated = columns.iter().filter(|column| column.is_in_values() && column.has_error());
     all.extend(estimated.flat_map(of_estimate));
-    all.push(described("not_converged", ""));
+    all.push(Heading::new("not_converged", ""));
     all
 }
 
@@ -87,17 +83,17 @@ pub(super) fn of_points<E: Experiment>(plan: &Plan<E>, columns: &[Column<E>]) ->
 fn of_estimate<E: Experiment>(column: &Column<E>) -> [Heading; 3] {
     let (name, unit) = (column.name(), column.unit());
     let [error, independent] = error_names(name);
-    [described(name, unit), described(error, unit), described(independent, "")]
+    [column.heading().clone(), Heading::new(error, unit), Heading::new(independent, "")]
 }
 
 /// Describes the columns of the table of transitions: the values of the ramped parameter and the states on
 /// both sides.
 pub(super) fn of_transitions<E: Experiment>(plan: &Plan<E>) -> Vec<Heading> {
-    let mut all: Vec<_> = ["ramp", "leg"].map(|name| described(name, "")).into();
-    all.extend((plan.repeats() > 1).then(|| described("repeat", "")));
+    let mut all: Vec<_> = ["ramp", "leg"].map(|name| Heading::new(name, "")).into();
+    all.extend((plan.repeats() > 1).then(|| Heading::new("repeat", "")));
     let swept = plan.varied().count() - usize::from(plan.ramp().is_some());
-    all.extend(plan.varied().take(swept).map(|name| described(name, "")));
-    all.extend(["near", "far", "from_state", "to_state"].map(|name| described(name, "")));
+    all.extend(plan.varied().take(swept).map(|name| Heading::new(name, "")));
+    all.extend(["near", "far", "from_state", "to_state"].map(|name| Heading::new(name, "")));
     all
 }
 
