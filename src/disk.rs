@@ -20,7 +20,7 @@ pub(crate) const LARGEST: f64 = 1e60;
 
 /// A rotating hard disk: position, velocity, angle, angular velocity, radius, mass, inertia factor and kind.
 ///
-/// The moment of inertia is `$I = \beta m R^2$`, where `$\beta = 1/2$` unless another factor is given.
+/// The moment of inertia is $`I = \beta m R^2`$, where $`\beta = 1/2`$ unless another factor is given.
 /// Lengths, times and masses are in any consistent units; the paper takes the diameter and the mass of a disk
 /// as units.
 ///

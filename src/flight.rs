@@ -4,7 +4,7 @@ use glam::DVec2;
 
 /// The free flight of a disk at constant acceleration, from a given time on.
 ///
-/// The center moves as `$\vec r(t) = \vec r_0 + \vec v_0 (t-t_0) + \tfrac12\vec a (t-t_0)^2$`. Times are
+/// The center moves as $`\vec r(t) = \vec r_0 + \vec v_0 (t-t_0) + \tfrac12\vec a (t-t_0)^2`$. Times are
 /// offsets from the time origin that the [`Boundary`](crate::boundary::Boundary) was last given.
 ///
 /// ```

@@ -1,19 +1,19 @@
 //! Mean energy loss per collision, the quantity that governs the states of the driven system.
 //!
 //! A gas of disks with Maxwellian velocities and spins ([`Maxwellian`]) collides under a rule. The mean
-//! change of kinetic energy per collision is `$\langle dE\rangle$`, negative when energy is lost. Two ways
+//! change of kinetic energy per collision is $`\langle dE\rangle`$, negative when energy is lost. Two ways
 //! lead to it, and each tests the other: [`mean_energy_change`] in closed form for the paper's rule, and
 //! [`MonteCarlo`] for any [`CollisionRule`](crate::collision::CollisionRule). Neither needs a simulation.
 //!
 //! | question | answer | source |
 //! |---|---|---|
-//! | `$\langle dE\rangle$` of the paper's rule | [`mean_energy_change`] | paper, Fig. 1 |
+//! | $`\langle dE\rangle`$ of the paper's rule | [`mean_energy_change`] | paper, Fig. 1 |
 //! | the share of its collisions that stick | [`sticking_fraction`] | paper, section II |
-//! | `$\langle dE\rangle$` of any rule | [`MonteCarlo`] | paper, section II |
-//! | friction with the largest loss | [`friction_of_largest_loss`] | paper, `$\kappa\approx0.3$` |
+//! | $`\langle dE\rangle`$ of any rule | [`MonteCarlo`] | paper, section II |
+//! | friction with the largest loss | [`friction_of_largest_loss`] | paper, $`\kappa\approx0.3`$ |
 //! | one coefficient for inelasticity and friction | [`effective_inelasticity`] | paper, Eq. (9) |
 //! | its inverse: loss without friction | [`frictionless_energy_change`] | paper, Eq. (8) |
-//! | lines of equal loss in the plane of `$\kappa$` and `$q$` | [`IsoLine`] | paper, Fig. 1 |
+//! | lines of equal loss in the plane of $`\kappa`$ and $`q`$ | [`IsoLine`] | paper, Fig. 1 |
 //!
 //! ```
 //! use granular_edmd::collision::Frictional;

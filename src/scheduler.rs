@@ -7,9 +7,9 @@
 //! | scheduler | cost of an event | use |
 //! |---|---|---|
 //! | [`BySize`] | that of the faster of the next two | default |
-//! | [`TournamentTree`] | `$O(\log N)$`, no branches | up to some ten thousand disks |
-//! | [`BucketQueue`] | `$O(1)$` | more |
-//! | [`LinearScan`] | `$O(N)$` | the oracle that tests the others |
+//! | [`TournamentTree`] | $`O(\log N)`$, no branches | up to some ten thousand disks |
+//! | [`BucketQueue`] | $`O(1)`$ | more |
+//! | [`LinearScan`] | $`O(N)`$ | the oracle that tests the others |
 //!
 //! A scheduler of your own implements [`EventScheduler`], and [`laws::check`] tests it in one line.
 
@@ -51,7 +51,7 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 /// - Times are offsets from the epoch of the run, and never NaN. An infinite time stands for an event that
 ///   never comes.
 /// - `reset` is called first, and again whenever many times change at once, as when the epoch moves. After a
-///   `reset` with `$n$` times, `set` is called only for disks below `$n$`.
+///   `reset` with $`n`$ times, `set` is called only for disks below $`n`$.
 /// - For each event, the engine calls `earliest`, and then `set` for the disks whose next event has changed,
 ///   mostly one or two. In between, it calls [`upcoming`](Self::upcoming) in systems so large that memory is
 ///   slow.

@@ -10,7 +10,7 @@
 //!    into pieces.
 //! 2. Equal times are ordered by the smaller disk index, then by the smaller partner index, with disks before
 //!    walls.
-//! 3. A sample at time `$t$` has seen all events up to and at `$t$`.
+//! 3. A sample at time $`t`$ has seen all events up to and at $`t`$.
 //! 4. A run that hardly progresses ends with [`RunError::Stalled`], within seconds. Progress is the simulated
 //!    time per event, over windows of 200 000 events and 20 more for each disk. The caller sets how much
 //!    progress a run needs: [`Limits::with_least_progress`].

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | [`Fixed`] | none | |
 //! | [`BiParabolic`] | two parabolic arcs per period | paper, Sec. III |
-//! | [`Sinusoidal`] | `$A\sin\omega t$` | |
+//! | [`Sinusoidal`] | $`A\sin\omega t`$ | |
 //! | [`Triangular`] | constant speed up, constant speed down | |
 //! | [`Sawtooth`] | constant speed up, instantly back | |
 //! | [`StartingAt`] | any of these, with phase 0 at a later time | |

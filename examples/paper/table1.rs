@@ -50,7 +50,7 @@ fn effective(row: &Row) -> Result<f64, ParameterError> {
 }
 
 /// Returns the error that follows from that of the mean energy change, by the slope of Eq. (9),
-/// `$1/(4(1-2q))$`.
+/// $`1/(4(1-2q))`$.
 fn error(row: &Row) -> Result<f64, ParameterError> {
     Ok(row.change.1 / (4.0 * (1.0 - 2.0 * effective(row)?)))
 }

@@ -17,9 +17,9 @@ use crate::quantity::{accept, non_negative, positive};
 /// \sigma = \sqrt{\frac{T_y}{2Nm}},
 /// ```
 ///
-/// for `$N$` disks of mass `$m$` at the vertical temperature `$T_y = m\langle v_y^2\rangle$`. The formula
+/// for $`N`$ disks of mass $`m`$ at the vertical temperature $`T_y = m\langle v_y^2\rangle`$. The formula
 /// holds for independent velocities and for disks spread evenly over the width, where
-/// `$\langle\sin^2\rangle = 1/2$`. Just below the onset of convection the slow mode `$\Psi_1$` fluctuates
+/// $`\langle\sin^2\rangle = 1/2`$. Just below the onset of convection the slow mode $`\Psi_1`$ fluctuates
 /// more than that.
 ///
 /// # Errors
@@ -39,31 +39,31 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 
 /// The criteria by which a state gets its name.
 ///
-/// The samples of `$(\Psi_1, \Psi_2)$` are divided into [distinct clusters](distinct_clusters). The names
-/// follow from these clusters and the [`thermal_noise`] `$\sigma$`:
+/// The samples of $`(\Psi_1, \Psi_2)`$ are divided into [distinct clusters](distinct_clusters). The names
+/// follow from these clusters and the [`thermal_noise`] $`\sigma`$:
 ///
 /// 1. A run as a whole is **collapsed** if two conditions hold. Its height profile has a compact layer, of
 ///    packing fraction above 0.60, on a gas of less than half of that. And its two-roll flow has died,
-///    `$|\langle\Psi_2\rangle| < 0.03$`.
-/// 2. A cluster is **conductive** if its center is at most `$3\sigma$` from the origin. It is collapsed
+///    $`|\langle\Psi_2\rangle| < 0.03`$.
+/// 2. A cluster is **conductive** if its center is at most $`3\sigma`$ from the origin. It is collapsed
 ///    instead if the height profile has such a layer: near this transition, two rolls come and go over the
 ///    layer.
-/// 3. A cluster shows **two rolls** if `$|\Psi_2| > 2|\Psi_1|$`: up in the middle for a positive `$\Psi_2$`,
+/// 3. A cluster shows **two rolls** if $`|\Psi_2| > 2|\Psi_1|`$: up in the middle for a positive $`\Psi_2`$,
 ///    else down.
-/// 4. A cluster shows **one roll** otherwise: clockwise for a positive `$\Psi_1$`.
+/// 4. A cluster shows **one roll** otherwise: clockwise for a positive $`\Psi_1`$.
 ///
-/// The bound of `$3\sigma$` compares the center of a cluster with *single* samples of a gas at rest. A share
-/// of `$e^{-9/2}$` of these, one in ninety, lies as far out. Unlike an error of the mean, this bound does not
+/// The bound of $`3\sigma`$ compares the center of a cluster with *single* samples of a gas at rest. A share
+/// of $`e^{-9/2}`$ of these, one in ninety, lies as far out. Unlike an error of the mean, this bound does not
 /// depend on the correlation of the samples. The rolls of the paper's system are far stronger, so the number
 /// matters only at their onset.
 ///
-/// In two equal rolls `$\Psi_1$` vanishes, while one roll may have any `$\Psi_2$` (paper, section III). At
-/// large gravity, that `$\Psi_2$` is a third of `$|\Psi_1|$`. At small gravity, the roll leans further to one
+/// In two equal rolls $`\Psi_1`$ vanishes, while one roll may have any $`\Psi_2`$ (paper, section III). At
+/// large gravity, that $`\Psi_2`$ is a third of $`|\Psi_1|`$. At small gravity, the roll leans further to one
 /// side as the loss grows, until the two are equal: a ratio of 1 would call it two rolls there. A ratio of
 /// 1.5 or 3 instead of 2 hardly matters: it renames three or four of 1682 states in
 /// `docs/reproduction/full-length`.
 ///
-/// A collapsed run keeps a weak, slow `$\Psi_2$`, whose mean settles only after thousands of oscillations.
+/// A collapsed run keeps a weak, slow $`\Psi_2`$, whose mean settles only after thousands of oscillations.
 ///
 /// ```
 /// use granular_edmd::analysis::{ConvectiveRegime, StateCriteria};
@@ -110,7 +110,7 @@ impl StateCriteria {
     /// Sets the packing fraction above which a layer is compact, 0.60 unless given, and the |⟨Ψ₂⟩| below
     /// which rolls have died, 0.03 unless given.
     ///
-    /// The bound on `$|\langle\Psi_2\rangle|$` is a velocity; 0.03 is meant for `$A\omega = 1$`, as in the
+    /// The bound on $`|\langle\Psi_2\rangle|`$ is a velocity; 0.03 is meant for $`A\omega = 1`$, as in the
     /// paper.
     ///
     /// # Errors

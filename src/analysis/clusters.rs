@@ -114,14 +114,14 @@ impl Clusters {
 
     /// Returns the least separation of two clusters, infinite for a single one.
     ///
-    /// The separation of two clusters `$a$` and `$b$` is the fraction in
+    /// The separation of two clusters $`a`$ and $`b`$ is the fraction in
     ///
     /// ```math
     /// D = \min_{a\ne b}\frac{|c_a - c_b|}{\max(s_{ab}, \sigma)},\qquad
     /// s_{ab}^2 = \frac{n_a s_a^2 + n_b s_b^2}{n_a + n_b},
     /// ```
     ///
-    /// with the standard deviations `$s_a$`, `$s_b$` along the line of the centers. The `noise` `$\sigma$` is
+    /// with the standard deviations $`s_a`$, $`s_b`$ along the line of the centers. The `noise` $`\sigma`$ is
     /// the least spread that counts.
     pub fn separation(&self, noise: f64) -> f64 {
         let pairs = self.clusters.iter().enumerate();

@@ -20,7 +20,7 @@ const LARGEST: f64 = 1e100;
 
 /// k-means clustering in a plane, the best of several restarts.
 ///
-/// The search looks for the centers `$c_j$` that minimize the scatter `$\sum_i \min_j |r_i - c_j|^2$`
+/// The search looks for the centers $`c_j`$ that minimize the scatter $`\sum_i \min_j |r_i - c_j|^2`$
 /// (MacQueen 1967, the paper's reference 14). It starts from centers that k-means++ chooses (Arthur &
 /// Vassilvitskii 2007). The result depends on the points and the seed, but not on the order of the points,
 /// which are sorted first.

@@ -28,8 +28,8 @@ impl LineAverage {
 
 /// Averages the energy change per collision and the effective inelasticity along a line of transitions.
 ///
-/// Each point is the rule at which a transition was seen. Its `$\langle dE\rangle$` is the [closed
-/// form](mean_energy_change) in a Maxwellian `gas`, and its `$q_\text{eff}$` follows by the paper's Eq. (9).
+/// Each point is the rule at which a transition was seen. Its $`\langle dE\rangle`$ is the [closed
+/// form](mean_energy_change) in a Maxwellian `gas`, and its $`q_\text{eff}`$ follows by the paper's Eq. (9).
 /// Both are averaged over the points, as in the paper's Table I. The table's "±" is their [standard
 /// deviation](RunningMean::standard_deviation), not the error of the mean, because the scatter along the line
 /// tests the paper's hypothesis.

@@ -24,7 +24,7 @@ pub struct PlaneTransition {
 
 /// Finds the transitions in the plane of friction and inelasticity (paper, Fig. 5).
 ///
-/// The observations are `$(\kappa, q)$` and the regime of all runs on a grid, in any order. Runs of the same
+/// The observations are $`(\kappa, q)`$ and the regime of all runs on a grid, in any order. Runs of the same
 /// inelasticity are compared along the friction, as on the paper's ramps. Runs of the same friction are
 /// compared along the inelasticity, since only these comparisons cross a line that runs flat through the
 /// plane. The middle of two frictions is the middle of their logarithms. Hysteresis is treated as in

@@ -29,12 +29,12 @@ const MARGIN: f64 = 1e-12;
 /// [`reversed`](Self::reversed) turns the direction around, and with it the free side.
 /// [`two_sided`](Self::two_sided) makes a thin wall, with disks on both sides.
 ///
-/// | brick | center of a touching disk of radius `$R$` | the time is a root of a |
+/// | brick | center of a touching disk of radius $`R`$ | the time is a root of a |
 /// |---|---|---|
-/// | [`segment`](Self::segment), [`half_line`](Self::half_line) | beside it, at `$R$` | parabola |
-/// | [`circle`](Self::circle), [`arc`](Self::arc), from inside | at `$r - R$` from the center | quartic |
-/// | the same, from outside | at `$r + R$` from the center | quartic |
-/// | [`point`](Self::point) | at `$R$` from the point | quartic |
+/// | [`segment`](Self::segment), [`half_line`](Self::half_line) | beside it, at $`R`$ | parabola |
+/// | [`circle`](Self::circle), [`arc`](Self::arc), from inside | at $`r - R`$ from the center | quartic |
+/// | the same, from outside | at $`r + R`$ from the center | quartic |
+/// | [`point`](Self::point) | at $`R`$ from the point | quartic |
 ///
 /// ```
 /// use granular_edmd::boundary::Brick;

@@ -98,8 +98,8 @@ impl fmt::Debug for Response<'_> {
 /// A thermal wall: a disk that touches it leaves as if it came from a gas of the wall's temperature, at rest
 /// behind the wall.
 ///
-/// The normal speed has the flux-weighted density `$(m v/T_0)\,e^{-m v^2/2T_0}$`; the tangential velocity and
-/// the angular velocity are Gaussian with variances `$T_0/m$` and `$T_0/I$`. The slip variant redraws only
+/// The normal speed has the flux-weighted density $`(m v/T_0)\,e^{-m v^2/2T_0}`$; the tangential velocity and
+/// the angular velocity are Gaussian with variances $`T_0/m`$ and $`T_0/I`$. The slip variant redraws only
 /// the normal speed, as the base of Ramírez, Risso and Cordero, PRL 85, 1230 (2000), does.
 ///
 /// ```

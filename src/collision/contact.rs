@@ -7,11 +7,11 @@ use crate::Kind;
 /// A contact of two surfaces: their closing and slip speeds, the masses that resist, and the kinds and radii
 /// of the partners.
 ///
-/// With `$\hat n$` from partner 2 to partner 1 and `$\vec v = \vec v_{C2} - \vec v_{C1}$` the relative
-/// velocity of the points in contact, the closing speed is `$v_n = \vec v\cdot\hat n$` and the slip speed
-/// `$v_t = \vec v\cdot\hat t$`. An impulse `$\Delta_n$` changes `$v_n$` by `$-\Delta_n/\mu$`, and
-/// `$\Delta_t$` changes `$v_t$` by `$-\Delta_t/\mu_t$`, where `$1/\mu = \sum 1/m_i$` and
-/// `$1/\mu_t = \sum (1 + 1/\beta_i)/m_i$` (for homogeneous disks `$\mu_t = \mu/3$`).
+/// With $`\hat n`$ from partner 2 to partner 1 and $`\vec v = \vec v_{C2} - \vec v_{C1}`$ the relative
+/// velocity of the points in contact, the closing speed is $`v_n = \vec v\cdot\hat n`$ and the slip speed
+/// $`v_t = \vec v\cdot\hat t`$. An impulse $`\Delta_n`$ changes $`v_n`$ by $`-\Delta_n/\mu`$, and
+/// $`\Delta_t`$ changes $`v_t`$ by $`-\Delta_t/\mu_t`$, where $`1/\mu = \sum 1/m_i`$ and
+/// $`1/\mu_t = \sum (1 + 1/\beta_i)/m_i`$ (for homogeneous disks $`\mu_t = \mu/3`$).
 ///
 /// A wall is a partner of infinite mass. The radius of a straight one is infinite, that of a hollow one
 /// negative.
@@ -141,7 +141,7 @@ impl Contact {
 
     /// Returns the normal impulse for a restitution coefficient (paper, Eqs. (1), (3)).
     ///
-    /// The impulse is `$\Delta_n = (1 + r_n)\,\mu\,v_n$`. The function does not check the restitution,
+    /// The impulse is $`\Delta_n = (1 + r_n)\,\mu\,v_n`$. The function does not check the restitution,
     /// because rules that compute it from the contact call it in every collision.
     ///
     /// ```

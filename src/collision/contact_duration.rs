@@ -9,8 +9,8 @@ use crate::{Fingerprint, ParameterError};
 ///
 /// Without the model, disks in dense inelastic states collide infinitely often in finite time, and the run
 /// ends with an error. The simulation counts the collisions that the model changes; their number shows
-/// whether the model matters. With a collision rate `$\omega_c$` per disk, the model removes a share of about
-/// `$2.25\,\omega_c t_c$` of the dissipation.
+/// whether the model matters. With a collision rate $`\omega_c`$ per disk, the model removes a share of about
+/// $`2.25\,\omega_c t_c`$ of the dissipation.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, ContactDuration, Frictional, Regime};

@@ -10,7 +10,7 @@ use crate::{Fingerprint, ParameterError};
 /// ```math
 /// \Delta_t = \begin{cases}
 /// 2(1-q_t)\,\mu_t\,v_t & \text{if } |2(1-q_t)\,\mu_t\,v_t| < \kappa_s\Delta_n \quad\text{(sticking)}\\
-/// \operatorname{sgn}(v_t)\,\kappa_d\,\Delta_n & \text{else} \quad\text{(sliding)}
+/// \mathrm{sgn}(v_t)\,\kappa_d\,\Delta_n & \text{else} \quad\text{(sliding)}
 /// \end{cases}
 /// ```
 ///

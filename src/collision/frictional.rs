@@ -11,11 +11,11 @@ use crate::{Fingerprint, ParameterError};
 /// \Delta_n = 2(1-q_n)\,\mu\,v_n,\qquad
 /// \Delta_t = \begin{cases}
 /// 2(1-q_t)\,\mu_t\,v_t & \text{if } |2(1-q_t)\,\mu_t\,v_t| < \kappa_s\Delta_n \quad\text{(sticking)}\\
-/// \operatorname{sgn}(v_t)\,\kappa_d\,\Delta_n & \text{else} \quad\text{(sliding)}
+/// \mathrm{sgn}(v_t)\,\kappa_d\,\Delta_n & \text{else} \quad\text{(sliding)}
 /// \end{cases}
 /// ```
 ///
-/// For homogeneous disks `$\mu_t=\mu/3$`, which gives the paper's factors 2/3 and 3.
+/// For homogeneous disks $`\mu_t=\mu/3`$, which gives the paper's factors 2/3 and 3.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Frictional, Regime};

@@ -10,14 +10,14 @@ use crate::{Fingerprint, ParameterError};
 /// v_n' = \max\left(r_n v_n,\ v_c\right)
 /// ```
 ///
-/// A grain at rest then bounces at `$v_c$`, as if the ground trembled. Each collision transfers at least the
-/// momentum `$\mu v_c$`. So a contact that carries the mean force `$F$` has at most `$F/\mu v_c$` collisions
+/// A grain at rest then bounces at $`v_c`$, as if the ground trembled. Each collision transfers at least the
+/// momentum $`\mu v_c`$. So a contact that carries the mean force $`F`$ has at most $`F/\mu v_c`$ collisions
 /// in a unit of time, however much the rule loses. The cost of matter at rest is therefore known beforehand,
 /// and friction stays as it is.
 ///
 /// **The rule gains energy** where surfaces close more slowly than they part, at most
-/// `$\tfrac12\mu(v_c^2 - v_n^2)$`. Friction and faster collisions take this energy away. Matter at rest keeps
-/// a granular temperature of the order of `$m v_c^2$` and creeps because of it. Without gravity, disks that
+/// $`\tfrac12\mu(v_c^2 - v_n^2)`$. Friction and faster collisions take this energy away. Matter at rest keeps
+/// a granular temperature of the order of $`m v_c^2`$ and creeps because of it. Without gravity, disks that
 /// should cool forever do not. The page `docs/rest.md` of the repository compares this remedy with others.
 ///
 /// ```

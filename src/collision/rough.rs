@@ -6,10 +6,10 @@ use crate::{Fingerprint, ParameterError};
 
 /// Rough inelastic collisions without a Coulomb limit, in which every collision sticks.
 ///
-/// The impulses are `$\Delta_n = 2(1-q_n)\mu v_n$` and `$\Delta_t = 2(1-q_t)\mu_t v_t$` (paper, Eqs. (3), (4)
-/// with `$\kappa\to\infty$`).
+/// The impulses are $`\Delta_n = 2(1-q_n)\mu v_n`$ and $`\Delta_t = 2(1-q_t)\mu_t v_t`$ (paper, Eqs. (3), (4)
+/// with $`\kappa\to\infty`$).
 ///
-/// Disks with `$q_t = 0$` are perfectly rough and elastic in the tangential direction, disks with `$q_t = 1$`
+/// Disks with $`q_t = 0`$ are perfectly rough and elastic in the tangential direction, disks with $`q_t = 1`$
 /// perfectly smooth.
 ///
 /// ```

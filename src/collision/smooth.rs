@@ -6,7 +6,7 @@ use crate::{Fingerprint, ParameterError};
 
 /// Smooth inelastic collisions: a normal impulse (paper, Eq. (3)) and no tangential one.
 ///
-/// The normal impulse is `$\Delta_n = 2(1-q_n)\mu v_n$`.
+/// The normal impulse is $`\Delta_n = 2(1-q_n)\mu v_n`$.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Smooth};

@@ -11,10 +11,10 @@ use crate::{Fingerprint, ParameterError};
 /// r_n(v_n) = \max\left(r_0,\ 1 - (1 - r_0)\,(v_n/v_0)^{3/4}\right)
 /// ```
 ///
-/// Bizon et al. take `$v_0 = \sqrt{g\sigma}$`, with the diameter `$\sigma$`. Slow collisions lose next to
+/// Bizon et al. take $`v_0 = \sqrt{g\sigma}`$, with the diameter $`\sigma`$. Slow collisions lose next to
 /// nothing, as with real grains, so disks without gravity do not collapse. A disk on a floor still comes to
 /// rest after infinitely many bounces in a finite time, only later: its speed falls by
-/// `$(1 - r_0)\,v\,(v/v_0)^{3/4}$` in each bounce, and the durations `$2v/g$` of the bounces have a finite
+/// $`(1 - r_0)\,v\,(v/v_0)^{3/4}`$ in each bounce, and the durations $`2v/g`$ of the bounces have a finite
 /// sum. Matter at rest needs [`LeastRebound`](super::LeastRebound) or [`ElasticBelow`](super::ElasticBelow)
 /// around this rule.
 ///

@@ -56,8 +56,8 @@ impl Radii {
     ///
     /// The logarithm of the radius has the standard deviation `deviation`.
     ///
-    /// The density is `$\propto R^{-1}\,e^{-\ln^2(R/R_0)/2\sigma^2}$` for the median `$R_0$` of the uncut
-    /// distribution and the deviation `$\sigma$`.
+    /// The density is $`\propto R^{-1}\,e^{-\ln^2(R/R_0)/2\sigma^2}`$ for the median $`R_0`$ of the uncut
+    /// distribution and the deviation $`\sigma`$.
     ///
     /// # Errors
     /// If a number is not finite and positive, or the median is not between the bounds.
@@ -158,7 +158,7 @@ impl Radii {
 
 /// Returns homogeneous disks of these radii, all at rest at the origin, for the functions that place disks.
 ///
-/// Masses are in proportion to the area, `$m = m_1 (2R)^2$`, where `mass` is the mass `$m_1$` of a disk of
+/// Masses are in proportion to the area, $`m = m_1 (2R)^2`$, where `mass` is the mass $`m_1`$ of a disk of
 /// diameter 1. For equal masses, take [`Disk::new`] and [`Disk::with_mass`].
 ///
 /// # Errors

@@ -12,7 +12,7 @@ use crate::{Disk, ParameterError};
 ///
 /// The center of mass is at rest, and all angular velocities stay as they are.
 ///
-/// Each component is normal with variance `$T/m$`. The total momentum is then removed, in proportion to the
+/// Each component is normal with variance $`T/m`$. The total momentum is then removed, in proportion to the
 /// masses.
 ///
 /// # Errors

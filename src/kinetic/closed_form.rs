@@ -11,12 +11,12 @@ use crate::collision::Frictional;
 /// + 2\kappa_d^2p^2\lambda\,(1-s)^2(2+s)
 /// ```
 ///
-/// with `$p = 1-q_n$`, `$\lambda = \mu/\mu_t$`, `$w^2 = 1+(\lambda-1)T_r/T$`, and the sticking probability
-/// `$s = \sin\alpha$`, `$k = \cos\alpha$`, `$\tan\alpha = \lambda p\kappa_s/\big((1-q_t)w\big)$`. The result
+/// with $`p = 1-q_n`$, $`\lambda = \mu/\mu_t`$, $`w^2 = 1+(\lambda-1)T_r/T`$, and the sticking probability
+/// $`s = \sin\alpha`$, $`k = \cos\alpha`$, $`\tan\alpha = \lambda p\kappa_s/\big((1-q_t)w\big)`$. The result
 /// is an energy, in the units of the temperature. The paper computes this average by Monte Carlo only (Fig.
 /// 1). At zero friction the average is the paper's Eq. (8). The derivation is in `docs/physics-kinetic.md`.
 ///
-/// Masses enter through `$\lambda$` alone, which is 3 for homogeneous disks of any masses. Therefore, Fig. 1
+/// Masses enter through $`\lambda`$ alone, which is 3 for homogeneous disks of any masses. Therefore, Fig. 1
 /// of the paper holds for any mixture at equal temperatures.
 ///
 /// ```
@@ -43,7 +43,7 @@ pub fn mean_energy_change(rule: &Frictional, gas: &Maxwellian) -> f64 {
 
 /// Returns the fraction of collisions that stick, under the paper's rule in a Maxwellian gas.
 ///
-/// The fraction is `$s = \sin\alpha$` with `$\tan\alpha = \lambda(1-q_n)\kappa_s/\big((1-q_t)w\big)$` (see
+/// The fraction is $`s = \sin\alpha`$ with $`\tan\alpha = \lambda(1-q_n)\kappa_s/\big((1-q_t)w\big)`$ (see
 /// [`mean_energy_change`]).
 ///
 /// ```

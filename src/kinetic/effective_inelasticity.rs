@@ -13,13 +13,13 @@ use crate::quantity::{accept, positive};
 /// q_\text{eff} = \tfrac12\left(1 - \sqrt{1 + \langle dE\rangle/T}\right),
 /// ```
 ///
-/// in `[0, 1/2]`, for a mean energy change in `$[-T, 0]$`, with `$T$` the translational temperature. No gas
-/// of smooth disks is outside that range: with restitution zero they lose exactly `$T$`, and they never gain
+/// in `[0, 1/2]`, for a mean energy change in $`[-T, 0]`$, with $`T`$ the translational temperature. No gas
+/// of smooth disks is outside that range: with restitution zero they lose exactly $`T`$, and they never gain
 /// energy. Disks with friction can lose more, and a Monte Carlo mean can be above zero within its error. The
 /// function refuses such values instead of clipping them.
 ///
 /// # Errors
-/// If the temperature is not positive, or the mean energy change is not in `$[-T, 0]$`.
+/// If the temperature is not positive, or the mean energy change is not in $`[-T, 0]`$.
 ///
 /// ```
 /// use granular_edmd::kinetic::effective_inelasticity;
@@ -38,7 +38,7 @@ pub fn effective_inelasticity(mean_energy_change: f64, temperature: f64) -> Resu
 
 /// Returns the mean energy change per collision without friction, the inverse of [`effective_inelasticity`].
 ///
-/// The energy change is `$\langle dE\rangle = -4q_n(1-q_n)T$` (paper, Eq. (8)).
+/// The energy change is $`\langle dE\rangle = -4q_n(1-q_n)T`$ (paper, Eq. (8)).
 ///
 /// # Errors
 /// If the inelasticity is not in `[0, 1/2]`, or the temperature is not positive.

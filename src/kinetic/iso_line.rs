@@ -11,8 +11,8 @@ pub type Piece = Vec<(f64, f64)>;
 
 /// A line ⟨dE⟩ = const in the plane of κ = κ_s = κ_d and q = q_n = q_t (paper, Fig. 1), for the paper's rule.
 ///
-/// With equal inelasticities the sticking probability does not depend on `$q$`, and `$\langle dE\rangle$` is
-/// a polynomial of second degree in `$q$`. Each friction therefore has at most two values of `$q$`, and none
+/// With equal inelasticities the sticking probability does not depend on $`q`$, and $`\langle dE\rangle`$ is
+/// a polynomial of second degree in $`q`$. Each friction therefore has at most two values of $`q`$, and none
 /// is missed.
 ///
 /// ```
@@ -90,8 +90,8 @@ impl IsoLine {
 
     /// Returns both real values of q at a friction, in ascending order, also those outside the plane.
     ///
-    /// The values solve `$a q^2 - b q + c = 0$` with
-    /// `$c = (\langle dE\rangle|_{q=0} - \langle dE\rangle)/T$`.
+    /// The values solve $`a q^2 - b q + c = 0`$ with
+    /// $`c = (\langle dE\rangle|_{q=0} - \langle dE\rangle)/T`$.
     fn roots(&self, friction: f64) -> [Option<f64>; 2] {
         let sector = StickSlip::new(friction, self.mass_ratio, self.slip_ratio);
         let squared = self.slip_ratio * self.slip_ratio / self.mass_ratio;

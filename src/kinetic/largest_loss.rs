@@ -7,21 +7,21 @@ use crate::collision::Frictional;
 /// Returns the static friction at which the mean energy loss is largest, for the other coefficients of
 /// `rule`.
 ///
-/// The ratio `$\rho = \kappa_d/\kappa_s$` also stays as it is (1 if the rule has no friction). At a
-/// stationary point the sticking probability `$s$` depends on `$\rho$` and `$q_t$` alone; for `$\rho = 1$`
+/// The ratio $`\rho = \kappa_d/\kappa_s`$ also stays as it is (1 if the rule has no friction). At a
+/// stationary point the sticking probability $`s`$ depends on $`\rho`$ and $`q_t`$ alone; for $`\rho = 1`$
 ///
 /// ```math
 /// s = \sqrt{\frac{2(1-q_t)}{1-2q_t}} - 1,\qquad
 /// \kappa = \frac{(1-q_t)\,w}{\lambda(1-q_n)}\,\frac{s}{\sqrt{1-s^2}},
 /// ```
 ///
-/// which exists for `$q_t < 1/3$`. The notation is that of [`mean_energy_change`](super::mean_energy_change);
-/// the derivation is in `docs/physics-kinetic.md`. Elastic disks lose most at `$\kappa = 0.2627$`, the
-/// paper's `$\kappa\approx0.3$`.
+/// which exists for $`q_t < 1/3`$. The notation is that of [`mean_energy_change`](super::mean_energy_change);
+/// the derivation is in `docs/physics-kinetic.md`. Elastic disks lose most at $`\kappa = 0.2627`$, the
+/// paper's $`\kappa\approx0.3`$.
 ///
 /// The result is `None` if the loss has no maximum at a finite friction. If sticking itself loses much
-/// (`$q_t\ge1/3$` for `$\rho=1$`), the loss grows with friction all the way to rough disks. There is no
-/// maximum for `$\rho = 0$` either, because sliding friction then loses nothing.
+/// ($`q_t\ge1/3`$ for $`\rho=1`$), the loss grows with friction all the way to rough disks. There is no
+/// maximum for $`\rho = 0`$ either, because sliding friction then loses nothing.
 ///
 /// ```
 /// use granular_edmd::collision::Frictional;
@@ -49,9 +49,9 @@ fn friction_ratio(rule: &Frictional) -> f64 {
 /// A function of the sticking probability s that has the sign of the derivative of ⟨dE⟩ with respect to
 /// friction.
 ///
-/// The function is `$-\rho + 3Gs^2 + 2H\,(1-(1+s)^{-2})$` with `$H = \rho^2(1-q_t)$`, `$G = \rho - q_t - H$`.
-/// It starts negative: the loss grows with friction. For `$G<0$` it stays negative. Otherwise it rises, and
-/// its one root, if there is one, is the only minimum of `$\langle dE\rangle$`.
+/// The function is $`-\rho + 3Gs^2 + 2H\,(1-(1+s)^{-2})`$ with $`H = \rho^2(1-q_t)`$, $`G = \rho - q_t - H`$.
+/// It starts negative: the loss grows with friction. For $`G<0`$ it stays negative. Otherwise it rises, and
+/// its one root, if there is one, is the only minimum of $`\langle dE\rangle`$.
 struct Slope {
     ratio: f64,
     quadratic: f64,

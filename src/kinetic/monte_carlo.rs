@@ -22,14 +22,14 @@ const FIRST_ROUND: u64 = 16;
 
 /// A Monte Carlo average of the energy change per collision, for any rule.
 ///
-/// In units of `$\sqrt S$` and `$\sqrt V$` (see [`Maxwellian`]), the closing and the slip speed are the
-/// radius and the height of an isotropic vector of length `$R$` and polar angle `$\theta$`. Samples are drawn
+/// In units of $`\sqrt S`$ and $`\sqrt V`$ (see [`Maxwellian`]), the closing and the slip speed are the
+/// radius and the height of an isotropic vector of length $`R`$ and polar angle $`\theta`$. Samples are drawn
 /// where they matter:
 ///
 /// - The angle is drawn uniformly, in 64 strata, so that grazing collisions get more samples than they would
 ///   by chance.
-/// - The density of `$R^2$` is the true one times `$R^2$`, because the energy of the relative motion, the
-///   most that a collision can lose, is proportional to `$R^2$`.
+/// - The density of $`R^2`$ is the true one times $`R^2`$, because the energy of the relative motion, the
+///   most that a collision can lose, is proportional to $`R^2`$.
 ///
 /// A weight compensates for both choices, so the estimate is unbiased for every rule. Under a rule without a
 /// speed scale, like the paper's, the only remaining scatter is that of the angle within a stratum.
@@ -187,8 +187,8 @@ struct Sample {
 impl Sample {
     /// Draws a collision in this stratum of the angle.
     ///
-    /// The angle is uniform instead of having the density `$\tfrac12\sin\theta$`. The square of the length is
-    /// chi-squared with 5 degrees of freedom instead of 3, which is the same density times `$R^2/3$`.
+    /// The angle is uniform instead of having the density $`\tfrac12\sin\theta`$. The square of the length is
+    /// chi-squared with 5 degrees of freedom instead of 3, which is the same density times $`R^2/3`$.
     fn draw(stratum: u32, generator: &mut Xoshiro256PlusPlus) -> Self {
         use std::f64::consts::{FRAC_PI_2, PI};
         let angle = PI * (f64::from(stratum) + uniform(generator)) / f64::from(STRATA);

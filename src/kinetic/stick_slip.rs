@@ -2,12 +2,12 @@
 
 /// The sine and cosine of the half angle α of the sticking sector.
 ///
-/// In the scaled speeds `$x = v_n/\sqrt S$`, `$z = v_t/\sqrt V$`, a collision sticks for
-/// `$|z| < x\tan\alpha$`. The vector (x cos φ, x sin φ, z) is isotropic, so `$\sin\alpha$` is the probability
+/// In the scaled speeds $`x = v_n/\sqrt S`$, $`z = v_t/\sqrt V`$, a collision sticks for
+/// $`|z| < x\tan\alpha`$. The vector (x cos φ, x sin φ, z) is isotropic, so $`\sin\alpha`$ is the probability
 /// of sticking.
 ///
-/// Formulas use `$s = \sin\alpha$` and `$k = \cos\alpha$` side by side. At large friction `$s$` rounds to 1
-/// and `$1 - s$` would have no digits left; `$k^2/(1 + s)$` is the same number with all of them.
+/// Formulas use $`s = \sin\alpha`$ and $`k = \cos\alpha`$ side by side. At large friction $`s`$ rounds to 1
+/// and $`1 - s`$ would have no digits left; $`k^2/(1 + s)`$ is the same number with all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StickSlip {
     pub(super) sine: f64,

@@ -6,7 +6,7 @@ use super::{Heading, Observable, Snapshot, Tabular};
 
 /// The position of the center of mass, or NaN without disks.
 ///
-/// It is `$\sum m_i\vec r_i/\sum m_i$`. Its `y` is the `$Y_{cm}$` of the paper's Fig. 2.
+/// It is $`\sum m_i\vec r_i/\sum m_i`$. Its `y` is the $`Y_{cm}`$ of the paper's Fig. 2.
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;

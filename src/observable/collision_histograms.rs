@@ -7,10 +7,10 @@ use crate::statistics::Histogram;
 /// An observer that keeps histograms of the obliqueness, the closing speed and the normal impulse of
 /// collisions.
 ///
-/// The obliqueness is the sine of the angle of impact, `$b = v_t/\sqrt{v_n^2 + v_t^2}$` in `[-1, 1]`, from
+/// The obliqueness is the sine of the angle of impact, $`b = v_t/\sqrt{v_n^2 + v_t^2}`$ in `[-1, 1]`, from
 /// the relative velocity of the *surfaces*: 0 is head-on. For disks that do not rotate, it is the impact
 /// parameter divided by the distance of the centers. In a gas of equal disks that do not rotate, at the
-/// temperature `$T$`,
+/// temperature $`T`$,
 ///
 /// ```math
 /// p(b) = \frac12,\qquad p(v_n) = \frac{v_n}{2T/m}\,e^{-m v_n^2/4T} .

@@ -37,7 +37,7 @@ pub struct FieldCell {
 ///
 /// A disk counts in the cell of its center. Temperatures are taken about the mean velocity *of the cell*,
 /// over all samples. A flow that changes between samples, such as a roll that reverses, counts as
-/// temperature. If `$n$` disks are seen in a cell, its temperatures are too small by a factor `$1 - 1/n$`,
+/// temperature. If $`n`$ disks are seen in a cell, its temperatures are too small by a factor $`1 - 1/n`$,
 /// for independent samples.
 ///
 /// ```

@@ -49,7 +49,7 @@ impl DenseLayer {
 
 /// An observer that averages the packing fraction by height over samples.
 ///
-/// The packing fraction `$\phi(y)$` is the area of the disks between two heights, divided by the area of the
+/// The packing fraction $`\phi(y)`$ is the area of the disks between two heights, divided by the area of the
 /// box there,
 ///
 /// ```math

@@ -67,8 +67,8 @@ impl MeanSquaredDisplacement {
     /// D = \frac{\langle r^2(t)\rangle - \langle r^2(t/2)\rangle}{4\,(t - t/2)} .
     /// ```
     ///
-    /// The longest lag `$t$` should be many times the mean free time. In two dimensions, the slope keeps
-    /// growing slowly with `$t$` (Alder and Wainwright 1970), so report both.
+    /// The longest lag $`t`$ should be many times the mean free time. In two dimensions, the slope keeps
+    /// growing slowly with $`t`$ (Alder and Wainwright 1970), so report both.
     pub fn diffusion_coefficient(&self) -> Estimate {
         self.diffusion.estimate()
     }

@@ -29,7 +29,7 @@ impl ConvectionOrder {
 /// \Psi_2 = -\frac1N\sum_i v_{yi}\cos\frac{2\pi x_i}{L_x}.
 /// ```
 ///
-/// In a gas at rest, each of them fluctuates with the standard deviation `$\sqrt{T_y/2Nm}$`. A roll stands
+/// In a gas at rest, each of them fluctuates with the standard deviation $`\sqrt{T_y/2Nm}`$. A roll stands
 /// out if its order parameter is larger than that. Positions count from the left end of the domain. Both
 /// order parameters are 0 without disks.
 ///

@@ -15,7 +15,7 @@ use crate::{Disk, Kind, ParameterError};
 
 /// An observer of the pair correlation function g(r), also called radial distribution function.
 ///
-/// It is the number of disks at a distance `$r$` from a disk, divided by that number in a gas without
+/// It is the number of disks at a distance $`r`$ from a disk, divided by that number in a gas without
 /// correlations,
 ///
 /// ```math
@@ -23,10 +23,10 @@ use crate::{Disk, Kind, ParameterError};
 /// {\langle N_i\rangle\langle N_j\rangle\,(1 - \delta_{ij}/N)\; 2\pi r\,\Delta r} .
 /// ```
 ///
-/// `$N_{ij}(r)$` counts the pairs of a disk `$i$` in a region and a partner `$j$` anywhere, by the distance
-/// of their centers, to the nearest image. `$N_i$` and `$N_j$` count the disks in the region, whose area is
-/// `$A$`. A disk is not its own partner: if `$i$` and `$j$` are of one kind, it has `$N - 1$` partners among
-/// the `$N$` disks of that kind in the box. Shells have their exact areas. In a periodic box, the region is
+/// $`N_{ij}(r)`$ counts the pairs of a disk $`i`$ in a region and a partner $`j`$ anywhere, by the distance
+/// of their centers, to the nearest image. $`N_i`$ and $`N_j`$ count the disks in the region, whose area is
+/// $`A`$. A disk is not its own partner: if $`i`$ and $`j`$ are of one kind, it has $`N - 1`$ partners among
+/// the $`N`$ disks of that kind in the box. Shells have their exact areas. In a periodic box, the region is
 /// the whole domain. The region keeps a distance of the range from walls, so that all shells lie inside the
 /// domain. A region given by [`within`](Self::within) should keep that distance, too. Where the density
 /// varies, under gravity for example, choose a thin layer.

@@ -15,7 +15,7 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 ///
 /// # When a run starts
 /// An observer passes the start of each run to [`Self::start_at`]. Beats before the start are left out, and
-/// so is a beat on the start, within rounding. A run of `$n$` intervals therefore gives `$n$` samples, the
+/// so is a beat on the start, within rounding. A run of $`n`$ intervals therefore gives $`n`$ samples, the
 /// first after one interval. This holds for a run from time 0, from another start, from a checkpoint, or
 /// after a run to settle. There are two exceptions:
 /// - A run that starts exactly at the first time of `starting_at` takes a sample there.

@@ -40,9 +40,9 @@ pub struct StressTensor {
 /// ```
 ///
 /// in units of energy per area. The kinetic part is sampled, with velocities in the frame of the container.
-/// The collisional part is exact. Each collision adds the impulse `$\vec\Delta$` on a disk, normal and
-/// tangential, times the vector `$\vec r$`, which points to the center of the disk from the center of its
-/// partner, or from the point where it touches a wall. In a region, only the share of `$\vec r$` inside the
+/// The collisional part is exact. Each collision adds the impulse $`\vec\Delta`$ on a disk, normal and
+/// tangential, times the vector $`\vec r`$, which points to the center of the disk from the center of its
+/// partner, or from the point where it touches a wall. In a region, only the share of $`\vec r`$ inside the
 /// region counts. Each interval between two samples gives one value of the stress, and the errors come from
 /// blocks of these values.
 ///
@@ -121,7 +121,7 @@ impl Stress {
 
     /// Returns the kinetic part of the stress, from the momentum that disks carry.
     ///
-    /// It is `$\langle\sum m v_a v_b\rangle/A$`.
+    /// It is $`\langle\sum m v_a v_b\rangle/A`$.
     pub fn kinetic(&self) -> StressTensor {
         self.kinetic.estimate()
     }

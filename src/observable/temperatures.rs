@@ -32,7 +32,7 @@ impl Temperature {
 /// without disks.
 ///
 /// The flow of convection rolls counts as temperature here, but contributes only a small part
-/// (`$\Psi^2\ll T$`).
+/// ($`\Psi^2\ll T`$).
 ///
 /// ```
 /// use granular_edmd::glam::DVec2;

@@ -4,16 +4,16 @@ use super::{Grid, Heading, Observable, Snapshot, Tabular, Temperature};
 
 /// The temperatures about the mean flow, from the velocities minus the mean velocity in each cell of a grid.
 ///
-/// With `$C$` cells that hold disks and `$N$` disks in the grid,
+/// With $`C`$ cells that hold disks and $`N`$ disks in the grid,
 ///
 /// ```math
 /// T_x = \frac1{N - C}\sum_i m_i (v_{i,x} - u_x)^2
 /// ```
 ///
-/// with `$u = \sum m v/\sum m$` in the cell of the disk, and likewise for `$y$` and the rotation about the
+/// with $`u = \sum m v/\sum m`$ in the cell of the disk, and likewise for $`y`$ and the rotation about the
 /// mean spin. A gas at rest has the same temperature on any grid, since each mean takes one degree of
-/// freedom. Flow that varies within a cell still counts: a shear rate `$\gamma$` across a cell of height
-/// `$h$` adds `$m\gamma^2h^2/12$` to `$T_x$`. The values are NaN if no cell holds two disks.
+/// freedom. Flow that varies within a cell still counts: a shear rate $`\gamma`$ across a cell of height
+/// $`h`$ adds $`m\gamma^2h^2/12`$ to $`T_x`$. The values are NaN if no cell holds two disks.
 ///
 /// ```
 /// use granular_edmd::boundary::{Domain, Region};

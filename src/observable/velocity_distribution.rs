@@ -10,16 +10,16 @@ use crate::{Disk, ParameterError};
 /// An observer of the distribution of velocities: histograms of both components and of the speed, cumulants
 /// and kurtosis.
 ///
-/// Velocities are in units of the thermal speed of their sample, `$\vec c = \vec v/\sqrt{2T/m}$`, so that the
-/// gas may cool or heat. For a Maxwellian gas, the histograms show `$p(c_x) = e^{-c_x^2}/\sqrt\pi$` and
-/// `$p(c) = 2c\,e^{-c^2}$`. The cumulants are the coefficients of the Sonine expansion in two dimensions,
+/// Velocities are in units of the thermal speed of their sample, $`\vec c = \vec v/\sqrt{2T/m}`$, so that the
+/// gas may cool or heat. For a Maxwellian gas, the histograms show $`p(c_x) = e^{-c_x^2}/\sqrt\pi`$ and
+/// $`p(c) = 2c\,e^{-c^2}`$. The cumulants are the coefficients of the Sonine expansion in two dimensions,
 ///
 /// ```math
 /// a_2 = \tfrac12\langle c^4\rangle - 1,\qquad a_3 = 1 + 3a_2 - \tfrac16\langle c^6\rangle .
 /// ```
 ///
 /// Moments of a few disks are smaller than the moments of their distribution, since the sample itself defines
-/// `$T$` and the mean. The moments are therefore divided by the moments of a Maxwellian gas of as many disks.
+/// $`T`$ and the mean. The moments are therefore divided by the moments of a Maxwellian gas of as many disks.
 /// So all cumulants of a Maxwellian gas are 0 for any number of disks. Errors come from blocks of samples.
 ///
 /// Velocities are taken in the frame of the container, unless [`about_mean`](Self::about_mean) or
@@ -119,7 +119,7 @@ impl VelocityDistribution {
 
     /// Returns the excess kurtosis of the horizontal and of the vertical component.
     ///
-    /// It is `$\langle c_x^4\rangle/\langle c_x^2\rangle^2 - 3$`, which is 0 for a Maxwellian gas.
+    /// It is $`\langle c_x^4\rangle/\langle c_x^2\rangle^2 - 3`$, which is 0 for a Maxwellian gas.
     pub fn excess_kurtosis(&self) -> [Estimate; 2] {
         [self.excess_kurtosis[0].estimate(), self.excess_kurtosis[1].estimate()]
     }

@@ -15,9 +15,9 @@ use crate::statistics::{BlockedMean, Estimate};
 /// p = \frac1{L\,t}\sum\Delta_n,\qquad \tau = -\frac1{L\,t}\sum\Delta_t,
 /// ```
 ///
-/// in units of energy per area, for a wall of length `$L$` over a time `$t$`. `$\Delta_n$` and `$\Delta_t$`
-/// are the normal and tangential [impulses](crate::collision::Impulse) on the disks. So `$p$` is positive
-/// where disks push the wall, and `$\tau$` where they drag it along the tangent, which is the normal turned
+/// in units of energy per area, for a wall of length $`L`$ over a time $`t`$. $`\Delta_n`$ and $`\Delta_t`$
+/// are the normal and tangential [impulses](crate::collision::Impulse) on the disks. So $`p`$ is positive
+/// where disks push the wall, and $`\tau`$ where they drag it along the tangent, which is the normal turned
 /// counterclockwise (to the left on a floor). Each interval between two samples gives one value, and the
 /// errors come from blocks of these values. A disk that hits a wall comes back to it, so the values of short
 /// intervals are anticorrelated, and their errors up to three times too large: take intervals of many

@@ -84,8 +84,8 @@ impl Limits {
     /// run that may stand still.
     ///
     /// Progress is judged over windows of 200 000 events, and 20 more for each disk. A run with less progress
-    /// is [stalled](crate::simulation::RunError::Stalled). Without this limit, `$N$` disks may have some
-    /// `$1.3\times10^8 + 4\times10^6 N$` events in the time in which a typical disk goes or falls some tens
+    /// is [stalled](crate::simulation::RunError::Stalled). Without this limit, $`N`$ disks may have some
+    /// $`1.3\times10^8 + 4\times10^6 N`$ events in the time in which a typical disk goes or falls some tens
     /// of diameters.
     ///
     /// # Errors

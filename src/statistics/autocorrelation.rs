@@ -6,7 +6,7 @@ use crate::quantity::accept;
 
 /// Returns the autocorrelation of a time series, with errors, for lags of 0 to `lags` samples.
 ///
-/// The autocorrelation at a lag of `$k$` samples is
+/// The autocorrelation at a lag of $`k`$ samples is
 ///
 /// ```math
 /// \rho_k = \frac{\langle(x_i-\bar x)(x_{i+k}-\bar x)\rangle}{\langle(x_i-\bar x)^2\rangle},

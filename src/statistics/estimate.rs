@@ -102,7 +102,7 @@ impl Estimate {
 
     /// Returns the number of consecutive samples that are worth one independent sample.
     ///
-    /// The number is `$1 + 2\sum_k\rho_k$` for autocorrelations `$\rho_k$`. It is 1 if the samples are taken
+    /// The number is $`1 + 2\sum_k\rho_k`$ for autocorrelations $`\rho_k`$. It is 1 if the samples are taken
     /// as independent, or if all are equal.
     pub const fn correlated_samples(&self) -> f64 {
         self.correlated_samples

@@ -23,7 +23,7 @@ use crate::quantity::accept;
 /// parameter ends with it.
 ///
 /// A ramp is a function of plan, index and seed alone. The seed of a ramp is the first eight bytes of
-/// `$\mathrm{BLAKE3}(\text{seed}, \text{index})$`. In the index of a ramp, the repeat counts fastest.
+/// $`\mathrm{BLAKE3}(\text{seed}, \text{index})`$. In the index of a ramp, the repeat counts fastest.
 ///
 /// ```
 /// use granular_edmd::study::{Plan, Scalar, vibrated_box::VibratedBox};
@@ -77,7 +77,7 @@ impl<E: Experiment> Plan<E> {
     ///
     /// # Errors
     /// If the experiment refuses its parameters, the protocol is out of range, or the seed is not below
-    /// `$2^{63}$`.
+    /// $`2^{63}`$.
     pub fn new(experiment: E, protocol: Protocol, seed: u64) -> Result<Self, PlanError> {
         let (ramp, sweep, tree, varied) = (None, Vec::new(), Table::new(), Vec::new());
         Self { seed, repeats: 1, experiment, protocol, ramp, sweep, tree, varied }.checked()

@@ -51,32 +51,32 @@ const MOST_DISKS: usize = 1 << 24;
 pub struct VibratedBox {
     /// Number of disks.
     pub disks: usize,
-    /// Width `$L_x$`.
+    /// Width $`L_x`$.
     pub width: f64,
-    /// Height `$L_y$`; none without a lid.
+    /// Height $`L_y`$; none without a lid.
     pub height: Option<f64>,
-    /// Gravity `$g$`.
+    /// Gravity $`g`$.
     #[serde(default)]
     pub gravity: f64,
-    /// Inelasticity `$q$`: normal, and tangential unless that is given separately.
+    /// Inelasticity $`q`$: normal, and tangential unless that is given separately.
     #[serde(default)]
     pub inelasticity: f64,
-    /// Tangential inelasticity `$q_t$`, if not `$q$`.
+    /// Tangential inelasticity $`q_t`$, if not $`q`$.
     pub tangential_inelasticity: Option<f64>,
-    /// Friction `$\kappa$`: static, and dynamic unless that is given separately.
+    /// Friction $`\kappa`$: static, and dynamic unless that is given separately.
     #[serde(default)]
     pub friction: f64,
-    /// Dynamic friction `$\kappa_d$`, if not `$\kappa$`.
+    /// Dynamic friction $`\kappa_d`$, if not $`\kappa`$.
     pub dynamic_friction: Option<f64>,
     /// Inelasticity of the walls, normal and tangential, if not that of the disks.
     pub wall_inelasticity: Option<f64>,
     /// Inelasticity of the base alone, if not that of the walls.
     pub base_inelasticity: Option<f64>,
-    /// Tangential inelasticity `$q_t$` of the base alone, if not the normal one of the base.
+    /// Tangential inelasticity $`q_t`$ of the base alone, if not the normal one of the base.
     pub base_tangential_inelasticity: Option<f64>,
     /// Friction of the walls, static and dynamic, if not that of the disks.
     pub wall_friction: Option<f64>,
-    /// Contact duration `$t_c$`; none without the model [`ContactDuration`].
+    /// Contact duration $`t_c`$; none without the model [`ContactDuration`].
     pub contact_duration: Option<f64>,
     /// Temperature of the velocities at the start.
     #[serde(default = "one")]
@@ -125,22 +125,22 @@ impl VibratedBox {
         Self { gravity, ..self }
     }
 
-    /// Returns the same box with the inelasticity `$q = q_n = q_t$`.
+    /// Returns the same box with the inelasticity $`q = q_n = q_t`$.
     pub const fn with_inelasticity(self, inelasticity: f64) -> Self {
         Self { inelasticity, tangential_inelasticity: None, ..self }
     }
 
-    /// Returns the same box with a tangential inelasticity `$q_t$` of its own.
+    /// Returns the same box with a tangential inelasticity $`q_t`$ of its own.
     pub const fn with_tangential_inelasticity(self, tangential: f64) -> Self {
         Self { tangential_inelasticity: Some(tangential), ..self }
     }
 
-    /// Returns the same box with the friction `$\kappa = \kappa_s = \kappa_d$`.
+    /// Returns the same box with the friction $`\kappa = \kappa_s = \kappa_d`$.
     pub const fn with_friction(self, friction: f64) -> Self {
         Self { friction, dynamic_friction: None, ..self }
     }
 
-    /// Returns the same box with a dynamic friction `$\kappa_d$` of its own.
+    /// Returns the same box with a dynamic friction $`\kappa_d`$ of its own.
     pub const fn with_dynamic_friction(self, dynamic: f64) -> Self {
         Self { dynamic_friction: Some(dynamic), ..self }
     }

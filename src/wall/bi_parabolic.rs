@@ -6,14 +6,14 @@ use crate::{Fingerprint, ParameterError};
 
 /// Piecewise constant acceleration that mimics a sine, with two parabolic arcs per period (paper, Sec. III).
 ///
-/// With the half period `$H=\pi/\omega$` and `$s = t/H$`,
+/// With the half period $`H=\pi/\omega`$ and $`s = t/H`$,
 ///
 /// ```math
 /// z(t) = 4A\,s(1-s)\quad (0\le s<1),\qquad z(t+H) = -z(t),
 /// ```
 ///
-/// so amplitude and period are those of `$A\sin\omega t$`. The peak speed is `$4A/H = 4A\omega/\pi$` and the
-/// acceleration is `$\mp 8A/H^2$`. Every contact is the root of a parabola, which is exact and needs no
+/// so amplitude and period are those of $`A\sin\omega t`$. The peak speed is $`4A/H = 4A\omega/\pi`$ and the
+/// acceleration is $`\mp 8A/H^2`$. Every contact is the root of a parabola, which is exact and needs no
 /// iteration.
 ///
 /// ```

@@ -7,7 +7,7 @@ use crate::{Fingerprint, ParameterError};
 
 /// Sawtooth motion: from −A to A in one period at constant speed, then instantly back to −A.
 ///
-/// The speed is `$A\omega/\pi$`. A disk always meets the rising wall, as in the theory of gases on fast
+/// The speed is $`A\omega/\pi`$. A disk always meets the rising wall, as in the theory of gases on fast
 /// vibrating walls.
 ///
 /// ```

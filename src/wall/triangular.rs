@@ -7,7 +7,7 @@ use crate::{Fingerprint, ParameterError};
 
 /// Triangular motion: from −A to A in half a period at constant speed, and back at the same speed.
 ///
-/// The speed is `$2A\omega/\pi$`; at time 0 the wall is at its lowest and starts to rise.
+/// The speed is $`2A\omega/\pi`$; at time 0 the wall is at its lowest and starts to rise.
 ///
 /// ```
 /// use granular_edmd::wall::{Triangular, WallMotion};

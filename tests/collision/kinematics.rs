@@ -13,12 +13,12 @@ pub(crate) fn normal(first: &Disk, second: &Disk) -> DVec2 {
     line / line.x.hypot(line.y)
 }
 
-/// Velocity of the point of `disk` at `arm` from its center, `$\vec v + \vec\omega\times\vec r$`.
+/// Velocity of the point of `disk` at `arm` from its center, $`\vec v + \vec\omega\times\vec r`$.
 pub(crate) fn surface_velocity(disk: &Disk, arm: DVec2) -> DVec2 {
     disk.velocity() + disk.angular_velocity() * DVec2::new(-arm.y, arm.x)
 }
 
-/// Relative velocity of the points in contact, `$\vec v_{C2} - \vec v_{C1}$`, along the normal and the
+/// Relative velocity of the points in contact, $`\vec v_{C2} - \vec v_{C1}`$, along the normal and the
 /// tangent.
 pub(crate) fn contact_velocity(normal: DVec2, first: &Disk, second: &Disk) -> (f64, f64) {
     let velocity = surface_velocity(second, normal * second.radius())

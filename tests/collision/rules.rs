@@ -66,7 +66,7 @@ impl Law {
         if self.adapted { Box::new(ContactDuration::new(rule, 1e-4).unwrap()) } else { Box::new(rule) }
     }
 
-    /// Returns whether the surfaces hold: the paper's inequality, with `$\mu/\mu_t$` for its 3.
+    /// Returns whether the surfaces hold: the paper's inequality, with $`\mu/\mu_t`$ for its 3.
     pub(crate) fn sticks(&self, contact: &Contact) -> bool {
         let holding = (1.0 - self.tangential_inelasticity) * contact.tangential_mass() * contact.slip_speed();
         let limit = (1.0 - self.normal_inelasticity) * contact.normal_mass() * contact.closing_speed();

@@ -29,7 +29,7 @@ proptest! {
         prop_assert_eq!(contact.time_since_last_collision(), f64::INFINITY);
     }
 
-    /// The effective masses, from the paper's moments of inertia: `$1/\mu_t = \sum 1/m_i + R_i^2/I_i$`.
+    /// The effective masses, from the paper's moments of inertia: $`1/\mu_t = \sum 1/m_i + R_i^2/I_i`$.
     #[test]
     fn the_masses_are_those_of_the_disks((first, second) in touching_pair()) {
         let contact = collide(&Elastic, &first, &second).contact;
@@ -40,7 +40,7 @@ proptest! {
         prop_assert!((contact.tangential_mass() / tangential - 1.0).abs() <= 16.0 * EPSILON);
     }
 
-    /// `$v_n' = -(1-2q_n)v_n$`, and `$v_t' = -(1-2q_t)v_t$` when the surfaces hold.
+    /// $`v_n' = -(1-2q_n)v_n`$, and $`v_t' = -(1-2q_t)v_t`$ when the surfaces hold.
     #[test]
     fn the_surfaces_part_as_the_restitution_says(law in law(), (first, second) in touching_pair()) {
         let encounter = collide(&law.rule(), &first, &second);

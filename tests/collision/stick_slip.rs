@@ -64,7 +64,7 @@ proptest! {
     }
 }
 
-/// Homogeneous disks stick below `$3(1-q_n)\kappa_s v_n/(1-q_t)$`, the paper's number.
+/// Homogeneous disks stick below $`3(1-q_n)\kappa_s v_n/(1-q_t)`$, the paper's number.
 #[test]
 fn the_threshold_of_homogeneous_disks() {
     let rule = rule(0.1, 0.2, 0.5, 0.4);
@@ -76,7 +76,7 @@ fn the_threshold_of_homogeneous_disks() {
     assert_eq!(regime(-STEP - limit), Regime::Sliding);
 }
 
-/// The loss would jump by `$6\kappa^2 q_t(1-q_n)^2/(1-q_t)$` at the boundary, if Eq. (6) were right as
+/// The loss would jump by $`6\kappa^2 q_t(1-q_n)^2/(1-q_t)`$ at the boundary, if Eq. (6) were right as
 /// printed, without the factor 1/3. This is one of the reasons to read it as a misprint.
 #[test]
 fn the_printed_loss_would_jump() {
@@ -90,7 +90,7 @@ fn the_printed_loss_would_jump() {
     assert!((jump - expected).abs() < 1e-7, "{jump} != {expected}");
 }
 
-/// The paper's estimate below Fig. 2: sliding loses most at `$\kappa_d = |v_t|/[6 v_n(1-q_n)]$`.
+/// The paper's estimate below Fig. 2: sliding loses most at $`\kappa_d = |v_t|/[6 v_n(1-q_n)]`$.
 #[test]
 fn the_friction_that_loses_most() {
     let (normal, closing, slip) = (0.1, 1.5, 4.0);

@@ -129,7 +129,7 @@ fn surfaces_at_rest_may_stay_so() {
     assert_eq!(check_impulse(&contact, Impulse::new(0.0, 0.0)), Ok(()));
 }
 
-/// The available energy is what stopping the surfaces loses: what `$\mu v_n$` and `$\mu_t v_t$` take away.
+/// The available energy is what stopping the surfaces loses: what $`\mu v_n`$ and $`\mu_t v_t`$ take away.
 #[test]
 fn the_available_energy_is_what_stopping_loses() {
     let contact = Contact::new(2.0, 3.0, 0.5, 0.25);

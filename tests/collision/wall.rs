@@ -85,7 +85,7 @@ proptest! {
         prop_assert!(change.abs() <= 16.0 * EPSILON * size);
     }
 
-    /// The wall's motion does the work `$\vec\Delta\cdot\vec V$` in the laboratory, on top of the loss.
+    /// The wall's motion does the work $`\vec\Delta\cdot\vec V`$ in the laboratory, on top of the loss.
     #[test]
     fn a_moving_wall_does_work(law in law(), (disk, normal, velocity) in disk_closing_on_wall()) {
         let encounter = collide_with_wall(&law.rule(), &disk, normal, velocity);

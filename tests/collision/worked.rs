@@ -1,6 +1,6 @@
 //! Six collisions worked by hand, with numbers to compare any implementation with.
 //!
-//! Radius 1/2 and mass 1 unless said; `$\hat n$` from the second body to the first.
+//! Radius 1/2 and mass 1 unless said; $`\hat n`$ from the second body to the first.
 
 use glam::DVec2;
 use granular_edmd::Disk;

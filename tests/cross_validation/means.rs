@@ -6,7 +6,7 @@ pub(crate) struct Means {
     pub(crate) height: f64,
     pub(crate) translational: f64,
     pub(crate) rotational: f64,
-    /// Mean of `$|\Psi_1|$`.
+    /// Mean of $`|\Psi_1|`$.
     pub(crate) one_roll: f64,
     pub(crate) two_rolls: f64,
     /// Disk–disk collisions per unit of time.

@@ -55,7 +55,7 @@ fn intervals(output: &str) -> Result<Vec<Interval>, Box<dyn Error>> {
     Ok(intervals)
 }
 
-/// Reads a state: `pt`, friction, index, `$\Psi_1$`, `$\Psi_2$`, height, translational and rotational energy.
+/// Reads a state: `pt`, friction, index, $`\Psi_1`$, $`\Psi_2`$, height, translational and rotational energy.
 fn read_state(line: &str) -> Result<Interval, Box<dyn Error>> {
     let numbers: Vec<f64> = line.split_whitespace().skip(3).map(str::parse).collect::<Result<_, _>>()?;
     let [one_roll, two_rolls, height, translational, rotational] = numbers[..] else {

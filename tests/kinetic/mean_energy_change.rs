@@ -173,7 +173,7 @@ fn monte_carlo_averages_the_other_rules() -> Outcome {
     Ok(())
 }
 
-/// `$S = T\sum 1/m$` and `$V = S + T_r\sum 1/\beta m$`, of a disk of mass 2 and a ring of mass 4.
+/// $`S = T\sum 1/m`$ and $`V = S + T_r\sum 1/\beta m`$, of a disk of mass 2 and a ring of mass 4.
 #[test]
 fn variances_are_those_of_the_two_temperatures() -> Outcome {
     let gas = Maxwellian::new(2.0)?.with_rotational_temperature(0.5)?;
@@ -205,7 +205,7 @@ fn without_dynamic_friction_there_is_no_largest_loss() -> Outcome {
     Ok(())
 }
 
-/// The loss at large friction has its maximum below `$q$` = 1/2 if spins are hot. Just below the maximum
+/// The loss at large friction has its maximum below $`q`$ = 1/2 if spins are hot. Just below the maximum
 /// there are two inelasticities.
 #[test]
 fn iso_line_finds_both_inelasticities() -> Outcome {

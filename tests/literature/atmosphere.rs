@@ -43,8 +43,8 @@ fn local_height() -> f64 {
 }
 
 /// Returns the correction of first order in density. The density changes within a diameter, and ends at the
-/// base: the virial of pairs is `$(N/L)\tfrac12\int\cos^2\theta\,e^{-g\sigma\cos\theta/T}d\theta$` over half
-/// a turn, not `$\tfrac\pi4N/L$`.
+/// base: the virial of pairs is $`(N/L)\tfrac12\int\cos^2\theta\,e^{-g\sigma\cos\theta/T}d\theta`$ over half
+/// a turn, not $`\tfrac\pi4N/L`$.
 fn layering() -> f64 {
     let cosines = (0..1000).map(|k| (PI * ((f64::from(k) + 0.5) / 1000.0 - 0.5)).cos());
     let integral: f64 = cosines.map(|c| c * c * (1.0 - (-GRAVITY * c).exp())).sum::<f64>() * PI / 1000.0;

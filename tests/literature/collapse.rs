@@ -40,7 +40,7 @@ fn collisions(
 
 /// Cases of collapse: the number of disks, whether they are free, the restitution below which they collapse,
 /// and a number of collisions between those 3 % above and those 3 % below. The restitution is
-/// `$\tan^2(\pi/12)$` for three free disks (McNamara & Young 1992), and `$\tan^2[(\pi/4)(1-1/n)]$` for n
+/// $`\tan^2(\pi/12)`$ for three free disks (McNamara & Young 1992), and $`\tan^2[(\pi/4)(1-1/n)]`$ for n
 /// disks at a wall (Bernu & Mazighi 1990).
 const CASES: [(usize, bool, f64, u64); 3] =
     [(3, true, 0.071_796_77, 25), (2, false, 0.171_572_88, 100), (3, false, 1.0 / 3.0, 120)];

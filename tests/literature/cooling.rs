@@ -1,7 +1,7 @@
 //! Gases that cool, against the rate equations of a homogeneous Maxwellian gas.
 //!
-//! The gases are dilute and below the size at which vortices grow: with `$k = 2\pi/L$`,
-//! `$N < 4\pi/(n\sigma^2(1-r^2))$`. A smooth wall mirrors the flow, so boxes are twice as wide as high.
+//! The gases are dilute and below the size at which vortices grow: with $`k = 2\pi/L`$,
+//! $`N < 4\pi/(n\sigma^2(1-r^2))`$. A smooth wall mirrors the flow, so boxes are twice as wide as high.
 
 use std::f64::consts::PI;
 
@@ -154,7 +154,7 @@ fn rates_of_both_temperatures_add_up_to_the_closed_form() -> Outcome {
     Ok(())
 }
 
-/// Returns the fourth cumulant `$a_2 = \langle v^4\rangle/2\langle v^2\rangle^2 - 1$` and `$d\ln T/d\tau$` of
+/// Returns the fourth cumulant $`a_2 = \langle v^4\rangle/2\langle v^2\rangle^2 - 1`$ and $`d\ln T/d\tau`$ of
 /// smooth disks that have cooled for 10 collisions each, over the next 8.
 fn cumulant(restitution: f64, count: usize, gases: u64) -> Result<(f64, f64), Box<dyn std::error::Error>> {
     let [mut fourth, mut slope] = [RunningMean::default(); 2];

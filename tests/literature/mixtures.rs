@@ -102,7 +102,7 @@ fn tracer_temperature(restitution: f64, mass: f64, gases: u64) -> Result<Running
     Ok(means)
 }
 
-/// Tracers are cooler than the gas, by `$T_t/T = (1 + r)M/(2M + 1 - r)$`, where `$M$` is the ratio of
+/// Tracers are cooler than the gas, by $`T_t/T = (1 + r)M/(2M + 1 - r)`$, where $`M`$ is the ratio of
 /// masses (Martin and Piasecki, Europhys. Lett. 46, 613 (1999)). The result is exact for a gas that is
 /// dilute.
 fn check_tracers(gases: u64, tolerance: f64) -> Outcome {
@@ -131,8 +131,8 @@ fn long_inelastic_tracers_are_cooler_than_the_gas() -> Outcome {
 /// Returns the cooling rates of both species at these temperatures, up to a common factor.
 ///
 /// Both gases are Maxwellian. A collision with a partner of kind `j` takes place at the rate `$\propto
-/// n_j\sigma_{ij}\chi_{ij}\sqrt{s}$` with `$s = T_i/m_i + T_j/m_j$`, and changes the energy of the disk by
-/// `$m_i s\,c\,(c - 2T_i/(m_i s))$` on average, with `$c = (1 + r)m_j/(m_i + m_j)$` (Garzo and Dufty, Phys.
+/// n_j\sigma_{ij}\chi_{ij}\sqrt{s}$` with $`s = T_i/m_i + T_j/m_j`$, and changes the energy of the disk by
+/// $`m_i s\,c\,(c - 2T_i/(m_i s))`$ on average, with $`c = (1 + r)m_j/(m_i + m_j)`$ (Garzo and Dufty, Phys.
 /// Rev. E 60, 5706 (1999), in two dimensions).
 fn cooling_rates(mixture: &Mixture, restitution: f64, temperatures: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|i| {
@@ -198,8 +198,8 @@ fn species_cool_together_at_different_temperatures() -> Outcome {
     Ok(())
 }
 
-/// The pressure of an elastic mixture, `$Z = 1 + \tfrac{\pi}{2}n\sum x_ix_j\sigma_{ij}^2\chi_{ij}$`, from
-/// the virial of its collisions, `$Z = 1 + \sum\sigma_{ij}\Delta_n/2NTt$`.
+/// The pressure of an elastic mixture, $`Z = 1 + \tfrac{\pi}{2}n\sum x_ix_j\sigma_{ij}^2\chi_{ij}`$, from
+/// the virial of its collisions, $`Z = 1 + \sum\sigma_{ij}\Delta_n/2NTt`$.
 ///
 /// The statistical errors are 0.1 to 0.2 %. The correlation functions are good to 0.5 % at these densities.
 #[test]
@@ -239,7 +239,7 @@ fn the_pressure_of_a_mixture_is_that_of_its_correlations() -> Outcome {
 /// Viscoelastic grains: the restitution falls with the speed of the impact as `$r = 1 -
 /// BR_\text{eff}^{1/5}\mu^{-2/5}v_n^{1/5}$` (Schwager and Poschel, Phys. Rev. E 57, 650 (1998), to first
 /// order). The energy lost per collision of each pair of kinds is the mean over a Maxwellian gas, in which
-/// `$v_n^2/2s^2$` is exponential with `$s^2 = T/\mu$`.
+/// $`v_n^2/2s^2`$ is exponential with $`s^2 = T/\mu`$.
 ///
 /// The errors of the means are 0.5 to 1 %.
 #[test]

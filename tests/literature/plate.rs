@@ -14,8 +14,8 @@ use granular_edmd::{Disk, Simulation, initial};
 
 use crate::{Outcome, agrees};
 
-/// Returns the mean square velocity `$\langle U^2\rangle$` of the bi-parabolic plate: a third of the square
-/// of its largest velocity `$4A\omega/\pi$`.
+/// Returns the mean square velocity $`\langle U^2\rangle`$ of the bi-parabolic plate: a third of the square
+/// of its largest velocity $`4A\omega/\pi`$.
 const fn mean_square_velocity(amplitude: f64, angular_frequency: f64) -> f64 {
     let largest = 4.0 * FRAC_1_PI * amplitude * angular_frequency;
     largest * largest / 3.0

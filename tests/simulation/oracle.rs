@@ -19,7 +19,7 @@ struct Naive {
     disks: Vec<Disk>,
 }
 
-/// The first positive root of `$a t^2 + 2 b t + c$` that is reached from above.
+/// The first positive root of $`a t^2 + 2 b t + c`$ that is reached from above.
 fn first_root(a: f64, b: f64, c: f64) -> f64 {
     let discriminant = b * b - a * c;
     if discriminant < 0.0 {

@@ -185,7 +185,7 @@ fn under_a_least_rebound_a_column_has_at_most_the_collisions_of_its_weight() {
         let builder = Simulation::builder(rule, Container::open(4.0).unwrap()).disks(balls);
         let mut run = builder.gravity(1.0).build().unwrap();
         run.run_until(end, &mut ()).unwrap();
-        // A collision passes on the momentum `$\mu(v + v_c)$` or more, and in the mean all that weighs on it:
+        // A collision passes on the momentum $`\mu(v + v_c)`$ or more, and in the mean all that weighs on it:
         // the floor carries five weights, and the four contacts above it 4, 3, 2 and 1.
         let floor = f64::from(count) * end / speed;
         let pairs = f64::from(count * (count - 1) / 2) * end / (0.5 * speed);

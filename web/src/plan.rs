@@ -9,15 +9,15 @@ use granular_edmd::wall::BiParabolic;
 /// What the sliders set.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setting {
-    /// Friction `$\kappa$`, static and dynamic.
+    /// Friction $`\kappa`$, static and dynamic.
     pub friction: f64,
-    /// Inelasticity `$q$`, normal and tangential.
+    /// Inelasticity $`q`$, normal and tangential.
     pub inelasticity: f64,
-    /// Gravity `$g$`.
+    /// Gravity $`g`$.
     pub gravity: f64,
-    /// Amplitude `$A$` of the base.
+    /// Amplitude $`A`$ of the base.
     pub amplitude: f64,
-    /// Angular frequency `$\omega$` of the base.
+    /// Angular frequency $`\omega`$ of the base.
     pub angular_frequency: f64,
 }
 

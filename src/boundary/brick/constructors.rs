@@ -42,7 +42,7 @@ impl Brick {
 
     /// Creates an arc, counterclockwise from the angle `from` to the angle `to`.
     ///
-    /// Disks are free inside. Angles are in radians from the `$x$` axis.
+    /// Disks are free inside. Angles are in radians from the $`x`$ axis.
     ///
     /// # Errors
     /// If a number is not finite, the radius is not positive, or `to - from` is not above 0 and below a whole

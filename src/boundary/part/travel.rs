@@ -193,7 +193,7 @@ impl Travel {
 /// Returns a path in the frame that turns about the origin, with the error that it can have in this time. Its
 /// components refer to axes that do not turn.
 ///
-/// The third derivative of the path there is `$-3\omega a_\perp - 3\omega^2 v + \omega^3 r_\perp$`. A bound
+/// The third derivative of the path there is $`-3\omega a_\perp - 3\omega^2 v + \omega^3 r_\perp`$. A bound
 /// of it, times a third of the time, is an acceleration that bounds the error.
 fn turning_path(place: DVec2, velocity: DVec2, pull: DVec2, angular_velocity: f64, wait: f64) -> Path {
     let turning = angular_velocity;

@@ -14,21 +14,21 @@ use crate::wall::{BiParabolic, Sinusoidal, WallMotion};
 pub enum Base {
     /// The paper's vibrating base, [`BiParabolic`].
     BiParabolic {
-        /// `$A$`.
+        /// $`A`$.
         amplitude: f64,
-        /// `$\omega$`.
+        /// $`\omega`$.
         angular_frequency: f64,
     },
     /// A true sine, [`Sinusoidal`].
     Sinusoidal {
-        /// `$A$`.
+        /// $`A`$.
         amplitude: f64,
-        /// `$\omega$`.
+        /// $`\omega`$.
         angular_frequency: f64,
     },
     /// A thermal base, [`Thermal`].
     Thermal {
-        /// `$T_0$`.
+        /// $`T_0`$.
         temperature: f64,
         /// True if tangential and angular velocity stay as they are.
         #[serde(default)]

@@ -21,7 +21,7 @@ use crate::study::{Column, Experiment, Record, Table};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 impl Record<VibratedBox> {
-    /// Returns `$(\Psi_1, \Psi_2)$` of each sample.
+    /// Returns $`(\Psi_1, \Psi_2)`$ of each sample.
     pub fn order(&self) -> Vec<ConvectionOrder> {
         let order = |sample: &Sample| ConvectionOrder::new(sample.one_roll, sample.two_rolls);
         self.samples().iter().map(order).collect()
@@ -48,8 +48,8 @@ impl Record<VibratedBox> {
         self.mean(|s| s.collisions as f64 * (s.energy_change - mean) / per_sample).about(mean)
     }
 
-    /// Returns the standard deviation of `$\Psi_1$` and `$\Psi_2$` in a gas at rest of this temperature,
-    /// `$\sqrt{T_y/2N}$`.
+    /// Returns the standard deviation of $`\Psi_1`$ and $`\Psi_2`$ in a gas at rest of this temperature,
+    /// $`\sqrt{T_y/2N}`$.
     pub fn thermal_noise(&self) -> f64 {
         let temperature = self.mean(|sample| sample.vertical_temperature).mean();
         thermal_noise(temperature, 1.0, self.experiment().disks).unwrap_or(f64::NAN)

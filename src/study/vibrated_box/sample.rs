@@ -16,17 +16,17 @@ const OPEN_PROFILE: f64 = 256.0;
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Sample {
-    /// `$\Psi_1$`.
+    /// $`\Psi_1`$.
     pub one_roll: f64,
-    /// `$\Psi_2$`.
+    /// $`\Psi_2`$.
     pub two_rolls: f64,
     /// Height of the center of mass.
     pub height: f64,
-    /// `$\langle\tfrac12 m v^2\rangle$`.
+    /// $`\langle\tfrac12 m v^2\rangle`$.
     pub translational_energy: f64,
-    /// `$\langle\tfrac12 I\omega^2\rangle$`.
+    /// $`\langle\tfrac12 I\omega^2\rangle`$.
     pub rotational_energy: f64,
-    /// `$T_y$`.
+    /// $`T_y`$.
     pub vertical_temperature: f64,
     /// Collisions of two disks since the sample before.
     pub collisions: u64,
