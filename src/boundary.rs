@@ -45,8 +45,11 @@ pub use container::{Container, Wall, WallError};
 pub use domain::{Domain, Region};
 pub use obstacles::Obstacles;
 pub use part::Part;
-pub use surface::{Response, Surface, Thermal};
+#[doc(alias("thermostat", "heat bath"))]
+pub use surface::Thermal;
+pub use surface::{Response, Surface};
 pub use touch::Touch;
+#[doc(alias("silo", "hopper", "hourglass"))]
 pub use vessel::{Vessel, VesselError};
 
 use std::borrow::Cow;

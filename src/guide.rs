@@ -1,9 +1,14 @@
 #![doc = include_str!("../docs/guide/index.md")]
-#![doc(alias("event-driven", "hard-sphere", "tutorial"))]
+#![doc(alias("event-driven", "hard-sphere", "tutorial", "timestep"))]
+#![cfg_attr(feature = "serde", doc = "[`study`]: crate::study")]
+#![cfg_attr(feature = "serde", doc = "[`Checkpoint`]: crate::simulation::Checkpoint")]
+#![cfg_attr(not(feature = "serde"), doc = "[`sweep_it`]: crate#features")]
+#![cfg_attr(not(feature = "serde"), doc = "[`study`]: crate#features")]
+#![cfg_attr(not(feature = "serde"), doc = "[`Checkpoint`]: crate#features")]
 // Chapters are modules without items, so that the tests compile and run their code, and the search of the
 // documentation finds them.
 
-#[doc(alias("restitution", "friction", "contact model", "hard-sphere"))]
+#[doc(alias("coefficient of restitution", "friction", "contact model", "hard-sphere"))]
 #[doc = include_str!("../docs/guide/choose_a_rule.md")]
 pub mod choose_a_rule {}
 
@@ -11,11 +16,11 @@ pub mod choose_a_rule {}
 #[doc = include_str!("../docs/guide/shake_it.md")]
 pub mod shake_it {}
 
-#[doc(alias("polydisperse", "bidisperse", "initial condition"))]
+#[doc(alias("polydisperse", "bidisperse", "initial condition", "packing fraction"))]
 #[doc = include_str!("../docs/guide/fill_it.md")]
 pub mod fill_it {}
 
-#[doc(alias("pressure", "measurement"))]
+#[doc(alias("pressure", "measurement", "viscosity"))]
 #[doc = include_str!("../docs/guide/watch_it.md")]
 pub mod watch_it {}
 
@@ -28,7 +33,7 @@ pub mod sweep_it {}
 #[doc = include_str!("../docs/guide/believe_it.md")]
 pub mod believe_it {}
 
-#[doc(alias("plot", "visualization"))]
+#[doc(alias("plot", "visualization", "Python"))]
 #[doc = include_str!("../docs/guide/draw_it.md")]
 pub mod draw_it {}
 
@@ -44,10 +49,47 @@ pub mod bring_your_own {}
 #[doc = include_str!("../docs/guide/when_it_stalls.md")]
 pub mod when_it_stalls {}
 
-#[doc(alias("performance", "speed"))]
+#[doc(alias("speed", "parallel"))]
 #[doc = include_str!("../docs/guide/when_it_is_slow.md")]
 pub mod when_it_is_slow {}
 
 #[doc(alias("symbols", "notation"))]
 #[doc = include_str!("../docs/guide/glossary.md")]
 pub mod glossary {}
+
+// Pages of the repository. On code hosts, their links lead to files. A definition that comes first wins, so the ones
+// here lead to modules instead, or nowhere, for pictures: their descriptions are shown.
+
+#[doc(alias("equations", "notation", "thermal wall"))]
+#[doc = "[physics-kinetic.md]: crate::guide::physics_kinetic"]
+#[doc = "[rest.md]: crate::guide::rest"]
+#[doc = include_str!("../docs/physics.md")]
+pub mod physics {}
+
+#[doc(alias("dissipation", "energy loss"))]
+#[doc = include_str!("../docs/physics-kinetic.md")]
+pub mod physics_kinetic {}
+
+#[doc(alias("heap", "silo", "jamming"))]
+#[doc = "[validation.md]: crate::guide::validation"]
+#[doc = "[images/rest.png]: data:,"]
+#[doc = include_str!("../docs/rest.md")]
+pub mod rest {}
+
+#[doc(alias("literature", "tests"))]
+#[doc = include_str!("../docs/validation.md")]
+pub mod validation {}
+
+#[doc(alias("Verlet", "neighbor", "cell list", "design", "internals"))]
+#[doc = "[performance.md]: crate::guide::performance"]
+#[doc = include_str!("../docs/architecture.md")]
+pub mod architecture {}
+
+#[doc(alias("benchmark", "LAMMPS"))]
+#[doc = "[images/scaling.png]: data:,"]
+#[doc = include_str!("../docs/performance.md")]
+pub mod performance {}
+
+#[doc(alias("semver", "compatibility"))]
+#[doc = include_str!("../docs/stability.md")]
+pub mod stability {}

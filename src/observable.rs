@@ -117,29 +117,45 @@ mod wall_stress;
 
 pub use by_kind::{BetweenKinds, OfKind};
 pub use center_of_mass::CenterOfMass;
+#[doc(alias("collision rate", "collision frequency"))]
 pub use collision_counts::CollisionCounts;
 pub use collision_event::{Collision, Partner};
 pub use collision_histograms::CollisionHistograms;
-pub use contract::{Observable, Observer, ObserverError, Verdict};
+#[doc(alias("compute", "measurement"))]
+pub use contract::Observable;
+#[doc(alias("callback", "hook", "fix"))]
+pub use contract::Observer;
+pub use contract::{ObserverError, Verdict};
 pub use energies::{Energies, EnergyPerDisk};
+#[doc(alias("dissipation", "energy loss", "dE"))]
 pub use energy_change::EnergyChange;
 pub use energy_change_profile::{EnergyChangeLayer, EnergyChangeProfile};
+#[doc(alias("density", "velocity field", "coarse-graining"))]
 pub use fields::{FieldCell, Fields};
 pub use from_fn::{FromFn, OnCollision, OnSample, from_fn, on_collision, on_sample};
 pub use grid::Grid;
+#[doc(alias("density profile", "volume fraction"))]
 pub use height_profile::{DenseLayer, HeightProfile};
+#[doc(alias("MSD", "mean squared", "diffusion"))]
 pub use mean_squared_displacement::MeanSquaredDisplacement;
 pub use moment::Moment;
+#[doc(alias("convection", "psi", "Ψ1", "Ψ2"))]
 pub use order_parameters::{ConvectionOrder, OrderParameters};
+#[doc(alias("pair correlation", "radial distribution", "RDF", "structure"))]
 pub use pair_correlation::PairCorrelation;
 pub use sample_times::SampleTimes;
 pub use series::Series;
 pub use snapshot::Snapshot;
 pub use stop::{StopWhen, StopWhenSampled, stop_when, stop_when_sampled};
+#[doc(alias("pressure", "pressure tensor", "virial"))]
 pub use stress::{Stress, StressTensor};
 pub use tabular::{Heading, Named, Tabular};
+#[doc(alias("granular temperature"))]
 pub use temperatures::{Temperature, Temperatures};
 pub use temperatures_about_flow::TemperaturesAboutFlow;
+#[doc(alias("autocorrelation", "VACF"))]
 pub use time_correlation::{InnerProduct, TimeCorrelation, Velocities};
+#[doc(alias("velocity distribution", "Sonine", "kurtosis", "Maxwellian"))]
 pub use velocity_distribution::VelocityDistribution;
+#[doc(alias("pressure", "wall force"))]
 pub use wall_stress::WallStress;

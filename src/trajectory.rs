@@ -96,9 +96,13 @@ mod store;
 mod vtk;
 
 pub use errors::{ReadError, RecordError};
+#[doc(alias = "OVITO")]
 pub use extended_xyz::{ExtendedXyz, XyzFrames};
 pub use format::{Format, Frame};
+#[doc(alias("OVITO", "VMD"))]
 pub use lammps_dump::LammpsDump;
 pub use open::{open, read};
+#[doc(alias("dump", "movie"))]
 pub use recorder::Recorder;
+#[doc(alias("read_data", "initial condition"))]
 pub use state::State;

@@ -14,7 +14,6 @@ use crate::collision::Regime;
 /// assert_eq!(counts.collisions_with_wall(3), 0);
 /// assert_eq!(counts.rate_per_disk(1000, 10.0), 0.0);
 /// ```
-#[doc(alias("collision rate", "collision frequency"))]
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawCollisionCounts"))]

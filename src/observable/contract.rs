@@ -12,7 +12,6 @@ use super::{Collision, Moment, Snapshot};
 /// that is not defined is NaN.
 ///
 /// The engine measures copies of the disks, so nothing that an observable does reaches the run.
-#[doc(alias("compute", "measurement"))]
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observable",
     label = "an `Observable` is expected here",
@@ -64,7 +63,6 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// An observer that breaks the first or the second promise ends the run with an error, since the run would
 /// sample forever. An observer that breaks the third or the fourth gets samples at other times than it meant.
 /// [`SampleTimes`](super::SampleTimes) keeps all four, and [`laws::check`](super::laws::check) tests them.
-#[doc(alias("callback", "hook", "fix"))]
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observer",
     label = "an `Observer` is expected here",

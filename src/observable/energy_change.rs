@@ -18,7 +18,6 @@ use crate::statistics::BlockedMean;
 /// assert_eq!(energy_change.disks().count(), 0);
 /// assert_eq!(energy_change.wall(0).count(), 0);
 /// ```
-#[doc(alias("dissipation", "energy loss", "dE"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct EnergyChange {

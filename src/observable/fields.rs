@@ -57,7 +57,6 @@ pub struct FieldCell {
 /// assert_eq!(fields.cell(1, 0).unwrap().count, 0);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
-#[doc(alias("density", "velocity field", "coarse-graining"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawFields"))]

@@ -74,7 +74,6 @@ impl DenseLayer {
 /// assert!(profile.iter().zip(expected).all(|((_, packing), expected)| (packing - expected).abs() < 1e-15));
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
-#[doc(alias("density profile", "volume fraction"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawHeightProfile"))]

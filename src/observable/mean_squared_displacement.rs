@@ -35,7 +35,6 @@ use crate::statistics::{BlockedMean, Estimate};
 /// assert!((squared.mean() - 225.0).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[doc(alias("MSD", "diffusion"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct MeanSquaredDisplacement {

@@ -48,7 +48,6 @@ impl ConvectionOrder {
 /// assert!((order.one_roll - 1.0).abs() < 1e-12 && order.two_rolls.abs() < 1e-12);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
-#[doc(alias("convection", "psi", "Ψ1", "Ψ2"))]
 #[derive(Debug, Clone, Copy, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OrderParameters;

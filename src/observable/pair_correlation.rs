@@ -55,7 +55,6 @@ use crate::{Disk, Kind, ParameterError};
 /// assert!(values[10] > 1.2 && (values[29] - 1.0).abs() < 0.1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[doc(alias("RDF", "radial distribution function", "structure"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawPairCorrelation"))]

@@ -27,7 +27,6 @@ pub struct StopWhen<F> {
 /// assert!(observer.verdict()?.is_break());
 /// # Ok::<(), granular_edmd::observable::ObserverError>(())
 /// ```
-#[doc(alias = "termination")]
 pub const fn stop_when<F: FnMut(&Collision) -> bool>(condition: F) -> StopWhen<F> {
     StopWhen { condition, holds: false }
 }

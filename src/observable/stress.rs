@@ -16,7 +16,6 @@ use crate::statistics::{BlockedMean, Estimate};
 ///
 /// The first letter is the direction of the momentum. The second letter is the normal of the line through
 /// which the momentum passes.
-#[doc(alias = "pressure tensor")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct StressTensor {
@@ -71,7 +70,6 @@ pub struct StressTensor {
 /// assert!((stress.kinetic().pressure.mean() / ideal - 1.0).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[doc(alias("pressure", "virial"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]

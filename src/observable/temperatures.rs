@@ -46,7 +46,6 @@ impl Temperature {
 /// assert_eq!((temperature.horizontal, temperature.vertical, temperature.rotational), (1.0, 4.0, 2.0));
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
-#[doc(alias = "granular temperature")]
 #[derive(Debug, Clone, Copy, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Temperatures;

@@ -95,7 +95,6 @@ impl Observable for Velocities {
 /// assert!((values[0] - 2.0 * temperature).abs() < 1e-9 && values[1] < 0.9 * values[0]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[doc(alias("autocorrelation", "VACF"))]
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(

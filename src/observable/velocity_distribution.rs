@@ -39,7 +39,6 @@ use crate::{Disk, ParameterError};
 /// assert!(velocities.second_cumulant().mean().abs() < 0.05);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[doc(alias("Sonine", "kurtosis", "Maxwellian"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct VelocityDistribution {

@@ -42,7 +42,6 @@ use crate::statistics::{BlockedMean, Estimate};
 /// assert_eq!(stress.shear(floor).unwrap().mean(), 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[doc(alias("pressure", "wall force"))]
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct WallStress {

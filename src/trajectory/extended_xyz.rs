@@ -45,7 +45,6 @@ use crate::boundary::Domain;
 /// assert_eq!(state.domain(), Some(snapshot.domain()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[doc(alias("OVITO", "trajectory"))]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ExtendedXyz;
 

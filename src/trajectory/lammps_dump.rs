@@ -34,7 +34,6 @@ use crate::boundary::Domain;
 /// assert!(text.contains("ITEM: BOX BOUNDS pp ff pp\n0.0 4.0\n0.0 6.0\n"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[doc(alias("OVITO", "VMD", "trajectory"))]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct LammpsDump;
 

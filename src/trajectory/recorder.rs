@@ -55,7 +55,6 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 /// # std::fs::remove_dir_all(&folder)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[doc(alias("trajectory", "dump", "movie"))]
 pub struct Recorder {
     clock: SampleTimes,
     format: Box<dyn Format + Send + Sync>,

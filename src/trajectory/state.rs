@@ -21,7 +21,6 @@ use crate::observable::Snapshot;
 /// assert_eq!(error.to_string(), "line 3: the disk overlaps that of line 2 by 0.5");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[doc(alias("restart", "read_data", "initial condition"))]
 #[derive(Debug, Clone, PartialEq)]
 pub struct State {
     pub(super) disks: Vec<Disk>,
