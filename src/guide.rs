@@ -1,10 +1,10 @@
-#![doc = include_str!("../docs/guide/index.md")]
 #![doc(alias("event-driven", "hard-sphere", "tutorial", "timestep"))]
 #![cfg_attr(feature = "serde", doc = "[`study`]: crate::study")]
 #![cfg_attr(feature = "serde", doc = "[`Checkpoint`]: crate::simulation::Checkpoint")]
 #![cfg_attr(not(feature = "serde"), doc = "[`sweep_it`]: crate#features")]
 #![cfg_attr(not(feature = "serde"), doc = "[`study`]: crate#features")]
 #![cfg_attr(not(feature = "serde"), doc = "[`Checkpoint`]: crate#features")]
+#![doc = include_str!("../docs/guide/index.md")]
 // Chapters are modules without items, so that the tests compile and run their code, and the search of the
 // documentation finds them.
 
@@ -72,7 +72,7 @@ pub mod physics_kinetic {}
 
 #[doc(alias("heap", "silo", "jamming"))]
 #[doc = "[validation.md]: crate::guide::validation"]
-#[doc = "[images/rest.png]: data:,"]
+#[doc = "[images/rest.png]: data:image/png,"]
 #[doc = include_str!("../docs/rest.md")]
 pub mod rest {}
 
@@ -86,7 +86,7 @@ pub mod validation {}
 pub mod architecture {}
 
 #[doc(alias("benchmark", "LAMMPS"))]
-#[doc = "[images/scaling.png]: data:,"]
+#[doc = "[images/scaling.png]: data:image/png,"]
 #[doc = include_str!("../docs/performance.md")]
 pub mod performance {}
 
