@@ -1,4 +1,4 @@
-"""Reads the files of examples/export by OVITO, VTK and LAMMPS, and compares every number with what the run had."""
+"""Reads the files of `export` by OVITO, VTK and LAMMPS, and compares every number with what the run had."""
 
 import csv
 import gzip

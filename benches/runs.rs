@@ -1,10 +1,8 @@
 //! Whole runs: collisions of two disks per second, in the paper's box with a thousand disks.
 
-mod common;
-
 use std::time::{Duration, Instant};
 
-use common::state::{DENSE, DILUTE, Run};
+use benches::state::{DENSE, DILUTE, Run};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 /// Returns the time for this many collisions.

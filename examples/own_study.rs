@@ -4,26 +4,17 @@
 //! Stopped or killed, the same command goes on; so does any number of them at the same time.
 //!
 //! ```text
-//! cargo run --release --features serde,rayon --example own_study -- --quick
-//! cargo run --release --features serde,rayon --example own_study -- --out out --ramp 3
+//! cargo run --release --features serde --example own_study
 //! ```
 //!
-//! Writes `own_study.svg` and `.png`, and the tables of the study.
+//! A moment. You learn what an experiment is, and find the tables of the study in `out/own_study`.
 
-mod common;
-mod studies;
-
-use std::process::ExitCode;
-
-use clap::Parser;
 use granular_edmd::prelude::*;
 use granular_edmd::quantity::{finite, non_negative};
-use granular_edmd::study::{Axis, Column, Experiment, ExperimentError, Plan, PlanError, Protocol};
+use granular_edmd::study::{
+    Axis, Column, Control, Experiment, ExperimentError, Plan, PlanError, Protocol, Study,
+};
 use serde::{Deserialize, Serialize};
-
-use common::look::Look;
-use common::panel::{self, COLUMN, Place};
-use common::sheet::Sheet;
 
 /// The parameters: a plan varies them by the names of these fields.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -122,55 +113,22 @@ impl Experiment for Turning {
     }
 }
 
-fn plan(common: &studies::Common) -> Result<Plan<Turning>, PlanError> {
-    let protocol = if common.quick { Protocol::new(50, 1000, 1) } else { Protocol::new(500, 5000, 5) };
-    Plan::new(Turning { disks: 60, loss: 0.1, spin: 0.1 }, protocol, common.seed)?
+fn plan() -> Result<Plan<Turning>, PlanError> {
+    Plan::new(Turning { disks: 60, loss: 0.1, spin: 0.1 }, Protocol::new(50, 1000, 1), 1)?
         .with_axis(Axis::new("loss", [0.0, 0.1, 0.3]))?
         .with_axis(Axis::new("spin", [0.05, 0.1, 0.2]))?
         .with_repeats(3)
 }
 
-/// Spin of rough grains in a hot round drum that turns, over their loss and the spin of the drum.
-#[derive(Parser)]
-struct Arguments {
-    #[command(flatten)]
-    common: studies::Common,
-}
-
-fn main() -> ExitCode {
-    common::command_line::main(run)
-}
-
-fn run(Arguments { common }: &Arguments) -> Result<(), Box<dyn std::error::Error>> {
-    let Some(study) = common.complete("own_study", &plan(common)?)? else { return Ok(()) };
-    let mut points = Vec::new();
+fn main() -> anyhow::Result<()> {
+    let study = Study::open_or_create("out/own_study", &plan()?)?;
+    study.run(&Control::default())?;
+    println!("loss  spin  angular momentum");
     for point in study.points() {
         let point = point?;
-        let (momentum, Turning { loss, spin, .. }) =
-            (point.mean(|flow| flow.angular_momentum), point.experiment());
-        println!("loss {loss}, spin {spin}: angular momentum {momentum}");
-        points.push((*loss, *spin, momentum));
+        let Turning { loss, spin, .. } = point.experiment();
+        println!("{loss:4}  {spin:4}  {}", point.mean(|flow| flow.angular_momentum));
     }
-    common.finish(&draw(&points), &study, "own_study")
-}
-
-/// Draws the angular momentum over the spin of the drum, with errors, for each loss.
-fn draw(points: &[(f64, f64, Estimate)]) -> Sheet {
-    let mut sheet = Sheet::new(COLUMN, 400.0);
-    let most = points.iter().map(|(.., momentum)| momentum.mean()).fold(0.0, f64::max);
-    let layout = panel::axes((0.0, 0.25), (0.0, 1.3 * most)).with_x_label("spin of the drum");
-    let layout = layout.with_y_label("angular momentum of a disk");
-    let place = Place { x: 0.0, y: 0.0, width: COLUMN, height: 400.0 };
-    let panel = sheet.panel(place, [74.0, 24.0, 14.0, 60.0], Vec::new(), layout);
-    for (k, series) in points.chunk_by(|a, b| a.0 == b.0).enumerate() {
-        let look = Look::number(k).without_line();
-        let bar = |(_, spin, momentum): &(f64, f64, Estimate)| {
-            [-1.0, 1.0].map(|side| (*spin, momentum.mean() + side * momentum.standard_error()))
-        };
-        sheet.bars(&panel, look, series.iter().map(bar));
-        sheet.marks(&panel, look, series.iter().map(|(_, spin, momentum)| (*spin, momentum.mean())));
-        let name = format!("loss {}", series[0].0);
-        sheet.legend((panel.place.x + 16.0, panel.place.y + 26.0 + 24.0 * k as f64), &[(look, &name)]);
-    }
-    sheet
+    println!("the tables are in {}", study.folder().display());
+    Ok(())
 }

@@ -206,7 +206,7 @@ impl Run {
         self.simulation.counters().disk_collisions + self.simulation.counters().wall_collisions
     }
 
-    /// Returns a name for the state, which depends on its last bit: that of `examples/vibrated_box`.
+    /// Returns a name for the state, which depends on its last bit: that of `vibrated_box` of the gallery.
     pub fn hash(&self) -> String {
         let mut hasher = blake3::Hasher::new();
         for disk in self.simulation.disks() {

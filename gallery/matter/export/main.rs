@@ -1,0 +1,168 @@
+//! A run in files that other programs open: OVITO, LAMMPS, ParaView, spreadsheets.
+//!
+//! Two kinds of disks in a vibrated box with periodic sides. Each format gets the same frames, so that the
+//! files can be compared; `.ci/readers` opens them by the modules of OVITO and VTK.
+//!
+//! ```text
+//! cargo run --release -p gallery --features gzip --bin export -- --out export
+//! cargo run --release -p gallery --features gzip --bin export -- --quick --measure --out export
+//! ```
+//!
+//! The example writes `run.xyz`, `run.dump`, `run.pvd` with its folder, `end.csv`, `end.data`, `series.csv`,
+//! `series.jsonl`, and with the feature `gzip` `run.xyz.gz` and `run.dump.gz`. Nothing is overwritten.
+
+mod measure;
+
+use std::error::Error;
+use std::f64::consts::TAU;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Parser;
+use granular_edmd::Kind;
+use granular_edmd::observable::from_fn;
+use granular_edmd::prelude::*;
+use granular_edmd::trajectory::{ExtendedXyz, LammpsDump, RecordError, Recorder, State};
+use serde_json::{Value, json};
+
+use gallery::command_line::{self, Failure, whole};
+use gallery::progress::Progress;
+
+/// A run in files that other programs open.
+#[derive(Parser)]
+struct Arguments {
+    /// Number of frames, one for each oscillation.
+    #[arg(long, default_value_t = 20, value_parser = whole::<100_000>)]
+    frames: u64,
+    /// Number of disks.
+    #[arg(long, default_value_t = 1000, value_parser = whole::<100_000>)]
+    disks: u64,
+    /// Seed of the initial velocities.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Takes 100 disks and 4 frames at most.
+    #[arg(long)]
+    quick: bool,
+    /// Prints frames per second and bytes per frame of each format, too.
+    #[arg(long)]
+    measure: bool,
+    /// Folder for the results.
+    #[arg(long, value_name = "FOLDER", default_value = "out/export")]
+    out: PathBuf,
+    /// File for everything that the frames hold as JSON, to compare with what a reader finds.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// The kind of the small disks.
+const SMALL: Kind = Kind::new(7);
+
+type Run = Simulation<ContactDuration<Frictional>>;
+
+fn main() -> ExitCode {
+    command_line::main(run)
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    command_line::make_folder(&arguments.out)?;
+    write_all(arguments)?;
+    println!(
+        "wrote run.xyz, run.dump, run.pvd, end.csv, end.data, series.csv and series.jsonl in {}",
+        arguments.out.display()
+    );
+    if arguments.measure { measure::print(arguments).map_err(Failure::run) } else { Ok(()) }
+}
+
+/// Returns the run before its first oscillation: every third disk is small and light.
+fn start(arguments: &Arguments) -> Result<Run, Box<dyn Error>> {
+    let count = if arguments.quick { arguments.disks.min(100) } else { arguments.disks };
+    let width = if arguments.quick { 20.0 } else { 60.0 };
+    let base = BiParabolic::new(0.1, 10.0)?;
+    let container = Container::open(width)?.with_periodic_sides().with_motion(Wall::Floor, base)?;
+    let disks = initial::lattice(&container, count as usize, 0.5)?;
+    let mut disks = initial::with_maxwellian_velocities(disks, 0.5, arguments.seed)?;
+    for disk in disks.iter_mut().step_by(3) {
+        *disk = Disk::new(disk.position(), 0.35)?
+            .with_velocity(disk.velocity())?
+            .with_mass(0.49)?
+            .with_kind(SMALL);
+    }
+    let rule = ContactDuration::new(Frictional::new(0.01, 0.1)?, 1e-4)?;
+    Ok(Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?)
+}
+
+/// Returns the time between two frames, and the time of the last one.
+fn times(arguments: &Arguments) -> (f64, f64) {
+    let frames = if arguments.quick { arguments.frames.min(4) } else { arguments.frames };
+    let oscillation = TAU / 10.0;
+    (oscillation, frames as f64 * oscillation)
+}
+
+/// Begins a file of each format.
+fn recorders(folder: &Path, times: SampleTimes) -> Result<Vec<Recorder>, RecordError> {
+    let mut recorders = vec![
+        Recorder::create(folder.join("run.xyz"), ExtendedXyz, times)?,
+        Recorder::create(folder.join("run.dump"), LammpsDump, times)?,
+        Recorder::create_vtk(folder.join("run.pvd"), times)?,
+    ];
+    if cfg!(feature = "gzip") {
+        recorders.push(Recorder::create(folder.join("run.xyz.gz"), ExtendedXyz, times)?);
+        recorders.push(Recorder::create(folder.join("run.dump.gz"), LammpsDump, times)?);
+    }
+    Ok(recorders)
+}
+
+fn write_all(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let (out, (interval, end)) = (&arguments.out, times(arguments));
+    let clock = SampleTimes::every(interval)?;
+    let mut run = start(arguments)?;
+    let mut recorders = recorders(out, clock)?;
+    let fastest =
+        |s: &Snapshot<'_>| s.disks().iter().map(|disk| disk.velocity().length()).fold(0.0, f64::max);
+    let fastest = from_fn(fastest).named("fastest", "length/time");
+    let mut series = Series::new((CenterOfMass, OfKind::new(SMALL, Temperatures), fastest), clock);
+    let mut frames = Vec::new();
+    let mut expected = on_sample(clock, |snapshot: &Snapshot<'_>| frames.push(all_of(snapshot)));
+    let mut progress = Progress::of("run").until(end);
+    run.run_until(end, &mut ((&mut recorders, &mut progress), &mut series, &mut expected))?;
+    let state = State::of(&run.snapshot());
+    state.write_csv(File::create_new(out.join("end.csv"))?)?;
+    state.write_lammps_data(File::create_new(out.join("end.data"))?)?;
+    series.write_csv(File::create_new(out.join("series.csv"))?)?;
+    series.write_json_lines(File::create_new(out.join("series.jsonl"))?)?;
+    if let Some(path) = &arguments.json {
+        let file = File::create_new(path).map_err(|error| format!("--json {}: {error}", path.display()))?;
+        serde_json::to_writer(file, &frames)?;
+    }
+    Ok(())
+}
+
+/// Returns everything that a frame holds.
+fn all_of(snapshot: &Snapshot<'_>) -> Value {
+    let domain = snapshot.domain();
+    let disk = |(index, disk): (usize, &Disk)| {
+        json!({
+            "id": index + 1,
+            "kind": disk.kind().number(),
+            "position": disk.position().to_array(),
+            "unwrapped": domain.unwrapped(disk).to_array(),
+            "image": disk.image(),
+            "velocity": disk.velocity().to_array(),
+            "angle": disk.angle(),
+            "angular_velocity": disk.angular_velocity(),
+            "radius": disk.radius(),
+            "mass": disk.mass(),
+            "inertia_factor": disk.inertia_factor(),
+        })
+    };
+    json!({
+        "time": snapshot.time(),
+        "gravity": snapshot.gravity(),
+        "left": domain.left,
+        "right": domain.right,
+        "bottom": domain.bottom,
+        "periodic": [domain.periodic_sides, domain.periodic_ends],
+        "disks": snapshot.disks().iter().enumerate().map(disk).collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,114 @@
+//! Parts that the programs that run studies share: progress, Ctrl-C, and pictures.
+
+use std::error::Error;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::Args;
+use granular_edmd::study::vibrated_box::{Base, VibratedBox};
+use granular_edmd::study::{Control, Experiment, Plan, RampStatus, Study, StudyError, Summary};
+
+use crate::progress::Progress;
+use crate::results::Results;
+use crate::sheet::Sheet;
+
+/// Set by Ctrl-C.
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Flags of all studies.
+#[derive(Args)]
+pub struct Common {
+    /// A short run that shows the same features with larger errors.
+    #[arg(long)]
+    pub quick: bool,
+    /// Seed of all random numbers.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Does this ramp alone, counted from 0: to share the work among processes.
+    #[arg(long)]
+    ramp: Option<usize>,
+    #[command(flatten)]
+    pub results: Results,
+}
+
+impl Common {
+    /// Does what is not done yet of a study in a folder of this name, or of one ramp of it; see [`complete`].
+    pub fn complete<E: Experiment>(
+        &self,
+        name: &str,
+        plan: &Plan<E>,
+    ) -> Result<Option<Study<E>>, Box<dyn Error>> {
+        self.results.make_folder()?;
+        let folder = self.results.path(&if self.quick { format!("{name}-quick") } else { name.to_owned() });
+        complete(&folder, plan, self.ramp)
+    }
+
+    /// Writes a picture of this name into the folder of a study, and the values of the study as JSON.
+    pub fn finish<E: Experiment>(
+        &self,
+        picture: &Sheet,
+        study: &Study<E>,
+        name: &str,
+    ) -> Result<(), Box<dyn Error>> {
+        let path = study.folder().join(name);
+        picture.write(&path)?;
+        println!("wrote {0}.svg and {0}.png; the tables are beside them", path.display());
+        self.results.write_tables_as_json(&[("values", study.folder().join("values.csv"))])
+    }
+}
+
+/// Returns the paper's vibrated box at this gravity, with the contact duration that our figures take.
+pub fn vibrated_box(gravity: f64) -> VibratedBox {
+    let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
+    VibratedBox::new(1000, 60.0, base).with_height(150.0).with_gravity(gravity).with_contact_duration(1e-4)
+}
+
+/// Does what is not done yet of a study, or of one ramp of it, and returns the study once all of it is
+/// complete.
+///
+/// The same command starts a study and goes on with it. Ctrl-C stops with all that was done saved; a second
+/// one ends the program at once, with what was saved by then.
+pub fn complete<E: Experiment>(
+    folder: &Path,
+    plan: &Plan<E>,
+    ramp: Option<usize>,
+) -> Result<Option<Study<E>>, Box<dyn Error>> {
+    println!("study in {}:\n\n{plan}", folder.display());
+    let study = Study::open_or_create(folder, plan)?;
+    let summary = watched(|control| match ramp {
+        Some(ramp) => study.run_ramp(ramp, control),
+        None => study.run(control),
+    })?;
+    for file in &summary.redone {
+        println!("{} was damaged and has been done again", file.display());
+    }
+    if (0..plan.ramp_count()).all(|ramp| matches!(study.status(ramp), Ok(RampStatus::Done))) {
+        return Ok(Some(study));
+    }
+    println!(
+        "{} of {} values are finished; this command goes on, and draws once all ramps are done",
+        summary.finished, summary.total
+    );
+    Ok(None)
+}
+
+/// Runs a study and shows its progress, until it is done or Ctrl-C comes.
+fn watched(run: impl FnOnce(&Control<'_>) -> Result<Summary, StudyError>) -> Result<Summary, Box<dyn Error>> {
+    stop_on_ctrl_c()?;
+    let progress = Progress::of("study");
+    let show = |now: &granular_edmd::study::Progress| progress.show(now.done, now.total);
+    Ok(run(&Control::default().with_progress(&show).with_interrupt(&STOP))?)
+}
+
+/// Sets the handler of Ctrl-C, once; more calls do nothing.
+fn stop_on_ctrl_c() -> Result<(), ctrlc::Error> {
+    let handler = || {
+        if STOP.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    };
+    match ctrlc::set_handler(handler) {
+        Err(ctrlc::Error::MultipleHandlers) => Ok(()),
+        other => other,
+    }
+}
