@@ -80,7 +80,7 @@ pub mod rest {}
 #[doc = include_str!("../docs/validation.md")]
 pub mod validation {}
 
-#[doc(alias("Verlet", "neighbor", "cell list", "design", "internals"))]
+#[doc(alias("Verlet", "neighbor", "cell list", "design"))]
 #[doc = "[performance.md]: crate::guide::performance"]
 #[doc = include_str!("../docs/architecture.md")]
 pub mod architecture {}
