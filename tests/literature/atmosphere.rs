@@ -11,7 +11,7 @@ use granular_edmd::observable::{
 use granular_edmd::statistics::block_average;
 use granular_edmd::{Simulation, initial};
 
-use crate::{Outcome, agrees};
+use crate::{Outcome, agrees, measured};
 
 const DISKS: usize = 40;
 const WIDTH: f64 = 40.0;
@@ -78,7 +78,7 @@ fn an_isothermal_atmosphere_has_its_height_temperature_and_virial() -> Outcome {
     let vertical = average(|(temperature, _)| temperature.vertical)?;
     let translational = average(|(temperature, _)| temperature.translational())?;
     let rotational = average(|(temperature, _)| temperature.rotational)?;
-    println!("standard errors: Y {:.4}, T {:.4}", center.standard_error(), translational.standard_error());
+    measured("error of Y", center.standard_error());
     // The standard errors are 0.25 % of Y and 0.3 % of T. Layers at the base are known to first order in
     // density; the next order is some 0.1 of 2 %.
     assert!(agrees("Y", center.mean(), local_height() - layering(), 0.013));

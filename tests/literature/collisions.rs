@@ -4,8 +4,8 @@ use granular_edmd::collision::Elastic;
 use granular_edmd::observable::{CollisionHistograms, Temperatures};
 use granular_edmd::statistics::Histogram;
 
-use crate::Outcome;
 use crate::gas::{periodic_gas, run_for};
+use crate::{Outcome, measured};
 
 /// Returns chi squared of a histogram against a cumulative distribution, over bins with 10 expected numbers
 /// or more, and the number of these bins.
@@ -35,7 +35,7 @@ fn disks_meet_at_any_offset_and_with_the_speeds_of_the_flux() -> Outcome {
     ];
     assert_eq!(histograms.obliqueness().count(), 100_000);
     for (what, (chi, bins)) in tests {
-        println!("{what}: chi squared {chi:.1} of {bins} bins");
+        measured(what, chi);
         // The 1e5 collisions are nearly independent. Chi squared exceeds its mean by five standard deviations
         // once in 1e5 cases.
         let free = bins as f64;

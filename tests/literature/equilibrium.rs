@@ -70,7 +70,7 @@ fn equation_of_state(disks: usize, collisions_per_disk: f64, tolerance: f64) -> 
         let slope = |phi: f64| (1.0 + phi * phi / 8.0) / (1.0 - phi).powi(2);
         let expected = expected * slope(measured.bulk) / slope(packing);
         let ideal = 4.0 * measured.bulk / PI * measured.temperature;
-        let name = |road| format!("Z by {road} at {:.4}", measured.bulk);
+        let name = |road| format!("Z by {road}, {:.4}", measured.bulk);
         assert!(agrees(&name("walls"), measured.walls / ideal, expected, tolerance));
         assert!(agrees(&name("virial"), measured.virial / ideal, expected, tolerance));
     }
@@ -169,8 +169,8 @@ fn collisions_sample_the_maxwell_averages() -> Outcome {
     let fraction = sticking_fraction(&law, &Maxwellian::new(temperature)?);
     // There are 5e4 collisions. The standard errors are 0.45 % (exponential), 0.63 % (square of a normal
     // variable), and 0.5 % of 0.46.
-    assert!(agrees("<v_n^2>", normal.mean(), 4.0 * temperature, 0.022));
-    assert!(agrees("<v_t^2>", slip.mean(), 6.0 * temperature, 0.03));
+    assert!(agrees("v_n^2", normal.mean(), 4.0 * temperature, 0.022));
+    assert!(agrees("v_t^2", slip.mean(), 6.0 * temperature, 0.03));
     assert!(agrees("fraction that sticks", sticking.mean(), fraction, 0.025));
     Ok(())
 }

@@ -6,7 +6,7 @@ use granular_edmd::observable::{CenterOfMass, SampleTimes, Series};
 use granular_edmd::statistics::block_average;
 use granular_edmd::{Simulation, initial};
 
-use crate::Outcome;
+use crate::{Outcome, measured};
 
 /// Returns the height of the center of mass and its standard error.
 fn height(friction: f64, base: Thermal) -> Result<(f64, f64), Box<dyn std::error::Error>> {
@@ -31,10 +31,9 @@ fn the_column_is_lowest_near_a_friction_of_0_3() -> Outcome {
         let mut heights = Vec::new();
         for (friction, expected) in expected {
             let (height, error) = height(friction, base)?;
-            println!(
-                "slip {} friction {friction}: Y {height:.2} +- {error:.2}, expected {expected}",
-                base.slip()
-            );
+            let kind = if base.slip() { "slip" } else { "full" };
+            measured(&format!("Y, {kind}"), height);
+            measured(&format!("error, {kind}"), error);
             assert!((height - expected).abs() < 0.02 * expected + 4.0 * error.hypot(0.3));
             heights.push(height);
         }

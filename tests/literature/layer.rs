@@ -8,7 +8,7 @@ use granular_edmd::observable::{CenterOfMass, SampleTimes, Series};
 use granular_edmd::wall::Sinusoidal;
 use granular_edmd::{Disk, Simulation, initial};
 
-use crate::{Outcome, agrees};
+use crate::{Outcome, agrees, measured};
 
 /// Returns the difference of long and short flights, as the mean alternation of the height of the center of
 /// mass from period to period, in amplitudes of the plate.
@@ -42,7 +42,7 @@ fn long_flights_of_a_layer_alternate_from_the_acceleration_of_a_body_without_res
     for step in 0..16 {
         let acceleration = 3.2 + 0.1 * f64::from(step);
         let alternation = alternation(acceleration)?;
-        println!("{acceleration:.2}: {alternation:.4}");
+        measured(&format!("alternation at {acceleration:.1}"), alternation);
         if onset.is_none() && alternation > 0.2 {
             onset = Some(acceleration);
         }

@@ -4,6 +4,8 @@
 //! cargo test --test literature
 //! cargo test --release --test literature -- --ignored --nocapture
 //! ```
+//!
+//! `.ci/validation` compares the table with the values that the tests write.
 
 mod atmosphere;
 mod collapse;
@@ -13,6 +15,8 @@ mod equilibrium;
 mod figure_2;
 mod gas;
 mod layer;
+#[path = "../support/measured.rs"]
+mod measured;
 mod mixtures;
 mod order_parameters;
 mod plate;
@@ -24,14 +28,15 @@ mod thermal_walls;
 mod transport;
 mod velocities;
 
+use measured::measured;
+
 /// The result of a test.
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
-/// Returns whether `measured` is `expected` up to this relative deviation, and prints both, for the table.
-fn agrees(what: &str, measured: f64, expected: f64, tolerance: f64) -> bool {
-    let deviation = measured / expected - 1.0;
-    println!(
-        "{what}: measured {measured:.5}, expected {expected:.5}, deviation {deviation:.5} of {tolerance}"
-    );
+/// Returns whether `value` is `expected` up to this relative deviation, and writes it, for the table.
+fn agrees(quantity: &str, value: f64, expected: f64, tolerance: f64) -> bool {
+    let deviation = value / expected - 1.0;
+    measured(quantity, value);
+    println!("  expected {expected:.5}, deviation {deviation:.5} of {tolerance}");
     deviation.abs() < tolerance
 }

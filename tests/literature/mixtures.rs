@@ -109,7 +109,7 @@ fn check_tracers(gases: u64, tolerance: f64) -> Outcome {
     for (restitution, mass) in [(0.9, 1.0), (0.5, 0.5), (0.5, 4.0), (0.0, 1.0)] {
         let expected = (1.0 + restitution) * mass / (2.0 * mass + 1.0 - restitution);
         let measured = tracer_temperature(restitution, mass, gases)?;
-        let what = format!("T_t/T at r = {restitution}, M = {mass}");
+        let what = format!("T_t/T, r = {restitution}, M = {mass}");
         assert!(agrees(&what, measured.mean(), expected, tolerance));
     }
     Ok(())
@@ -191,7 +191,7 @@ fn species_cool_together_at_different_temperatures() -> Outcome {
         }
         let expected = common_cooling(&mixture, restitution);
         let what =
-            format!("T2/T1 of a gas that cools, r = {restitution}, m = {}, R = {}", large.mass, large.radius);
+            format!("T2/T1, r = {restitution}, m = {}, R = {}", large.mass, large.radius);
         let measured = shares.mean() / (1.0 - shares.mean());
         assert!(agrees(&what, measured, expected, 0.04));
     }
@@ -229,7 +229,7 @@ fn the_pressure_of_a_mixture_is_that_of_its_correlations() -> Outcome {
                     expected += 0.5 * PI * density * share(i) * share(j) * touching * touching * correlation;
                 }
             }
-            let what = format!("Z of a mixture, R2/R1 = {}, fraction {packing_fraction}", 2.0 * large.radius);
+            let what = format!("Z, R2/R1 = {}, fraction {packing_fraction}", 2.0 * large.radius);
             assert!(agrees(&what, measured, expected, 0.01));
         }
     }
@@ -276,7 +276,7 @@ fn viscoelastic_grains_lose_what_their_effective_radius_says() -> Outcome {
         }
     }
     for (mean, (a, b, ..)) in means.iter().zip(pairs) {
-        assert!(agrees(&format!("energy lost by viscoelastic kinds {a} and {b}"), mean.mean(), 1.0, 0.04));
+        assert!(agrees(&format!("energy lost, kinds {a} and {b}"), mean.mean(), 1.0, 0.04));
     }
     Ok(())
 }

@@ -4,8 +4,8 @@ use granular_edmd::boundary::Container;
 use granular_edmd::collision::{CollisionRule, Elastic, Rough};
 use granular_edmd::{Disk, ParameterError, Simulation, initial};
 
-use crate::Outcome;
 use crate::gas::run_for;
+use crate::{Outcome, measured};
 
 fn reversed(disk: &Disk) -> Result<Disk, ParameterError> {
     disk.with_velocity(-disk.velocity())?.with_angular_velocity(-disk.angular_velocity())
@@ -35,7 +35,8 @@ fn time_can_be_reversed() -> Outcome {
     for (collisions, bound) in [(1.0, 1e-10), (4.0, 1e-6)] {
         let smooth = distance_after(Elastic, collisions)?;
         let rough = distance_after(Rough::new(0.0, 0.0)?, collisions)?;
-        println!("after {collisions} collisions: smooth {smooth:.1e}, rough {rough:.1e}");
+        measured("smooth", smooth);
+        measured("rough", rough);
         assert!(smooth < bound && rough < bound);
     }
     assert!(distance_after(Elastic, 30.0)? > 0.1, "chaos");

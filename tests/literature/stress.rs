@@ -9,12 +9,13 @@ use granular_edmd::observable::{Energies, SampleTimes, Stress, WallStress};
 use granular_edmd::statistics::Estimate;
 
 use crate::gas::{Gas, collision_rate, contact_value, periodic_gas, run_for};
-use crate::{Outcome, agrees};
+use crate::{Outcome, agrees, measured};
 
 /// Returns whether two estimates agree within four standard errors of their difference.
 fn agree(what: &str, one: Estimate, other: Estimate) -> bool {
     let error = one.standard_error().hypot(other.standard_error());
-    println!("{what}: {one}, {other}");
+    measured(&format!("{what}, one"), one);
+    measured(&format!("{what}, other"), other);
     (one.mean() - other.mean()).abs() < 4.0 * error
 }
 

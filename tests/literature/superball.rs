@@ -6,7 +6,7 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, on_collision};
 use granular_edmd::{Disk, Simulation};
 
-use crate::Outcome;
+use crate::{Outcome, measured};
 
 /// Returns the lowest and highest height, relative to the start, at which a ball touches the sides in this
 /// many touches.
@@ -32,13 +32,14 @@ fn a_superball_between_no_slip_walls_stays_up() -> Outcome {
     // (Cox & Feres 2016, Chumley et al. 2018). Nothing here is random. The bounds are those of an independent
     // study, for another start.
     let (low, high) = range(Rough::new(0.0, 0.0)?, 20_000)?;
-    println!("no slip: {low:.2} to {high:.2}");
+    measured("no slip, low", low);
+    measured("no slip, high", high);
     assert!(low > -60.0 && high <= 0.0);
     let (low, high) = range(Frictional::new(0.0, 0.3)?, 20_000)?;
-    println!("friction 0.3: {low:.2} to {high:.2}");
+    measured("friction 0.3, low", low);
+    measured("friction 0.3, high", high);
     assert!(low > -90.0 && high <= 0.0);
     let (low, _) = range(Frictional::new(0.0, 0.1)?, 200)?;
-    println!("friction 0.1: {low:.2}");
     assert!(low < -1000.0);
     Ok(())
 }

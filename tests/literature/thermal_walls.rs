@@ -33,7 +33,7 @@ fn a_knudsen_gas_conducts_heat_as_computed() -> Outcome {
     // There are 1e5 round trips, whose times scatter by about their mean (their variance diverges, but only
     // as a logarithm): 0.5 %. The heat per round trip is 1.5 ± 2.2: 0.5 %.
     let trips = FRAC_2_PI.sqrt() / (gap * (hot.powf(-0.5) + cold.powf(-0.5)));
-    assert!(agrees("<v_y^2>", square / time, (hot * cold).sqrt(), 0.025));
+    assert!(agrees("v_y^2", square / time, (hot * cold).sqrt(), 0.025));
     assert!(agrees("round trips", 0.5 * f64::from(touches) / time, trips, 0.025));
     // Normal motion carries T. Tangential motion and spin carry T/2 each.
     assert!(agrees("heat flux", heat / time, trips * 2.0 * (hot - cold), 0.03));

@@ -3,8 +3,8 @@
 use granular_edmd::collision::{Elastic, Smooth};
 use granular_edmd::observable::{Observer, SampleTimes, VelocityDistribution};
 
-use crate::Outcome;
 use crate::gas::{periodic_gas, run_for};
+use crate::{Outcome, measured};
 
 fn distribution() -> Result<VelocityDistribution, Box<dyn std::error::Error>> {
     Ok(VelocityDistribution::new(3.0, 30, SampleTimes::every(1.0)?)?.about_mean())
@@ -21,8 +21,10 @@ fn a_gas_at_rest_is_maxwellian() -> Outcome {
             velocities.on_sample(&gas.snapshot());
         }
         let cumulants = [velocities.second_cumulant(), velocities.third_cumulant()];
+        for cumulant in cumulants {
+            measured(&format!("{count} disks"), cumulant);
+        }
         for estimate in cumulants.into_iter().chain(velocities.excess_kurtosis()) {
-            println!("{count} disks: {estimate}");
             // The error of 4e5 disks, half of them independent, is 0.002 for the cumulants, and the root of
             // 24 times that for the kurtosis.
             assert!(estimate.standard_error() < 0.015);
@@ -60,11 +62,11 @@ fn a_cooling_gas_has_the_second_cumulant_of_van_noije_and_ernst() -> Outcome {
     // in a_2; direct simulation of the Boltzmann equation gives -0.026 and 0.033.
     for (r, gases) in [(0.8_f64, 6), (0.6, 6)] {
         let expected = 16.0 * (1.0 - r) * (1.0 - 2.0 * r * r) / (57.0 - 25.0 * r + 30.0 * r * r * (1.0 - r));
-        let measured = cooling_cumulant(r, gases)?;
-        println!("a_2 at r = {r}: {measured}, expected {expected:.4}");
+        let cumulant = cooling_cumulant(r, gases)?;
+        measured("a_2", cumulant);
         // There are 45 000 disks, nearly independent after four collisions each: 0.005.
-        assert!((measured.mean() - expected).abs() < 0.02, "{measured}, {expected}");
-        assert!(measured.mean().signum() == expected.signum());
+        assert!((cumulant.mean() - expected).abs() < 0.02, "{cumulant}, {expected}");
+        assert!(cumulant.mean().signum() == expected.signum());
     }
     Ok(())
 }
