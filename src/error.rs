@@ -43,7 +43,7 @@ pub(crate) struct Rounded(pub(crate) f64);
 
 impl fmt::Display for Rounded {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // The number that is read back has no zeros at its end.
+        // Reading the number back drops the zeros at its end.
         let rounded = format!("{:.5e}", self.0).parse().unwrap_or(self.0);
         Readable(rounded).fmt(formatter)
     }

@@ -37,7 +37,7 @@ impl Fingerprint {
 
     /// Adds a parameter that is a text.
     pub const fn text(self, text: &str) -> Self {
-        // The length follows the text, so that two texts in a row differ from one text that is cut elsewhere.
+        // The length follows the text, so that ("ab", "c") and ("a", "bc") differ.
         self.bytes(text.as_bytes()).bytes(&(text.len() as u64).to_le_bytes())
     }
 
@@ -62,8 +62,8 @@ impl Fingerprint {
 mod tests {
     use super::Fingerprint;
 
-    /// Checkpoints keep these numbers. After a change of the hash, no kept number would match its part any
-    /// more.
+    /// Checkpoints keep these numbers. If the hash changed, every old checkpoint would seem to belong to
+    /// other parts.
     #[test]
     fn fingerprints_keep_their_bits() {
         let part = Fingerprint::of("Frictional").number(0.1).text("sliding");

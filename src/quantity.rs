@@ -52,7 +52,7 @@ pub fn finite(name: &'static str, value: f64) -> Result<f64, ParameterError> {
     accept(value.is_finite(), name, "finite", value)
 }
 
-/// Returns `value` if `valid` holds, and otherwise the error that says what the value should have been.
+/// Returns `value` if `valid` holds, and otherwise an error that states the condition.
 ///
 /// ```
 /// use granular_edmd::quantity::accept;
@@ -119,7 +119,7 @@ impl<Q> Checked<Q> {
     }
 }
 
-// These traits are written out, because derived ones would require them of `Q`. A kind has no values to copy
+// These traits are written out, because derived ones would require them of `Q`, which has no values to copy
 // or compare.
 
 impl<Q> Clone for Checked<Q> {

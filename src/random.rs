@@ -5,8 +5,8 @@ use rand::Rng;
 
 /// Draws a number uniformly from the open interval (0, 1).
 pub(crate) fn uniform<G: Rng + ?Sized>(generator: &mut G) -> f64 {
-    // The samples are the middles of 2⁵² equal intervals. Neither end is drawn, so a logarithm of the result
-    // is finite.
+    // The samples are the middles of 2⁵² equal intervals. Neither 0 nor 1 is drawn, so a logarithm of the
+    // result is finite.
     const SCALE: f64 = 1.0 / (1u64 << 52) as f64;
     ((generator.next_u64() >> 12) as f64 + 0.5) * SCALE
 }

@@ -1,4 +1,4 @@
-//! Squares for finding the disks near a place.
+//! A grid of squares, to find the disks near a place.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -71,8 +71,8 @@ impl Squares {
     }
 }
 
-/// A hash of the numbers of a square, faster than the usual one. It need not resist attacks, since nobody
-/// chooses places in order to make hashes collide.
+/// A hash of the numbers of a square, faster than the usual one. It need not resist attacks: the places come
+/// from the program itself.
 #[derive(Default)]
 struct Mixer(u64);
 

@@ -45,7 +45,7 @@ impl<R> ContactDuration<R> {
     /// and frictionless.
     ///
     /// # Errors
-    /// If the duration is not finite and positive. If you want no contact duration, use the rule alone.
+    /// If the duration is not finite and positive. To have no contact duration, use the rule alone.
     pub fn new(rule: R, duration: f64) -> Result<Self, ParameterError> {
         let duration = Checked::new(duration)?;
         Ok(Self { rule, duration, tangential_response: TangentialResponse::default() })

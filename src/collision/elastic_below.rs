@@ -11,10 +11,10 @@ use crate::{Fingerprint, ParameterError};
 /// v_n' = \max\left(r_n v_n,\ \min(v_n, v_c)\right)
 /// ```
 ///
-/// A disk that comes to rest on a floor then bounces at the speed $`v_c`$, once in each time $`2v_c/g`$. Many
-/// disks share the energy that the last fast collisions left them. If the tangential response loses nothing,
-/// their granular temperature stays constant. But it may be far below $`m v_c^2`$, and the lower it is, the
-/// more events there are. [`LeastRebound`](super::LeastRebound) bounds their number. In a gas of temperature
+/// A disk that comes to rest on a floor then bounces at the speed $`v_c`$, once every $`2v_c/g`$. Many disks
+/// share the energy that the last fast collisions left them. If the tangential response loses nothing, their
+/// granular temperature stays constant. But it may be far below $`m v_c^2`$, and the lower it is, the more
+/// often disks collide. [`LeastRebound`](super::LeastRebound) bounds their number. In a gas of temperature
 /// $`T`$, the share $`1 - (1 + x)\,e^{-x} \approx x^2/2`$ of the normal dissipation belongs to collisions
 /// below $`v_c`$, with $`x = m v_c^2/4T`$, and the remedy removes it. The page `docs/rest.md` of the
 /// repository compares the remedies.
@@ -51,7 +51,7 @@ impl<R> ElasticBelow<R> {
     /// Creates the remedy over `rule`: collisions below this closing speed are elastic and frictionless.
     ///
     /// # Errors
-    /// If the speed is not finite and positive. If you want no such speed, use the rule alone.
+    /// If the speed is not finite and positive. To have no such speed, use the rule alone.
     pub fn new(rule: R, speed: f64) -> Result<Self, ParameterError> {
         let speed = Checked::new(speed)?;
         Ok(Self { rule, speed, tangential_response: TangentialResponse::default() })

@@ -4,11 +4,11 @@ use std::fmt;
 
 use super::Contact;
 
-/// The course that a collision took, for statistics.
+/// The regime of a collision, for statistics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum Regime {
-    /// The rule does not say.
+    /// The rule does not report a regime.
     #[default]
     Unspecified,
     /// The surfaces held: the tangential impulse stayed below the limit of static friction.
@@ -56,7 +56,8 @@ impl Impulse {
     #[inline]
     pub(super) fn parting_at_least(self, speed: f64, contact: &Contact) -> Self {
         let least = contact.normal_mass() * (contact.closing_speed() + speed);
-        // The comparison is false for an impulse that is not a number. The engine must see such an impulse.
+        // The comparison is false for an impulse that is not a number, so the engine sees such an impulse and
+        // reports it.
         if self.normal < least { Self { normal: least, ..self } } else { self }
     }
 

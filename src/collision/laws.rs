@@ -125,7 +125,7 @@ pub fn check_friction_cone(
     }
 }
 
-/// Returns the rounding of a speed after an impulse on this mass. The impulse itself has a rounding of
+/// Returns the rounding error of a speed after an impulse on this mass. The impulse itself is uncertain by
 /// [`LEAST`].
 fn rounding_of(speed: f64, mass: f64) -> f64 {
     ROUNDING * speed.abs() + LEAST / mass

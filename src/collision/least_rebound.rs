@@ -1,10 +1,10 @@
-//! Surfaces that never part too slowly: a remedy for matter at rest that keeps friction.
+//! A least speed at which surfaces part: a remedy for matter at rest that keeps friction.
 
 use super::{CollisionRule, Contact, Impulse};
 use crate::quantity::{Checked, Quantity, Range};
 use crate::{Fingerprint, ParameterError};
 
-/// A rule after whose collisions the surfaces part at least at a speed v_c:
+/// A rule with a least parting speed: after each collision, the surfaces part at v_c or faster.
 ///
 /// ```math
 /// v_n' = \max\left(r_n v_n,\ v_c\right)
@@ -17,8 +17,9 @@ use crate::{Fingerprint, ParameterError};
 ///
 /// **The rule gains energy** where surfaces close more slowly than they part, at most
 /// $`\tfrac12\mu(v_c^2 - v_n^2)`$. Friction and faster collisions take this energy away. Matter at rest keeps
-/// a granular temperature of the order of $`m v_c^2`$ and creeps because of it. Without gravity, disks that
-/// should cool forever do not. The page `docs/rest.md` of the repository compares this remedy with others.
+/// a granular temperature of the order of $`m v_c^2`$ and creeps because of it. Without gravity, a gas that
+/// should cool forever stops cooling. The page `docs/rest.md` of the repository compares this remedy with
+/// others.
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Frictional, LeastRebound, laws};
@@ -50,7 +51,7 @@ impl<R> LeastRebound<R> {
     /// Creates the remedy over `rule`, with this least parting speed.
     ///
     /// # Errors
-    /// If the speed is not finite and positive. If you want no such speed, use the rule alone.
+    /// If the speed is not finite and positive. To have no least speed, use the rule alone.
     pub fn new(rule: R, speed: f64) -> Result<Self, ParameterError> {
         Ok(Self { rule, speed: Checked::new(speed)? })
     }

@@ -9,8 +9,8 @@ use crate::{Fingerprint, Kind};
 ///
 /// The order of the partners does not matter. Walls are partners, too. Their kind is [`Kind::WALL`], unless
 /// they were given another one ([`Container::with_kind`](crate::boundary::Container::with_kind)). The table
-/// has no part in collisions with a wall that has its own rule. Rules of several types go into the table as
-/// [`BoxedRule`](crate::simulation::BoxedRule), or as an enum of your own, which can also be serialized.
+/// does not apply to collisions with a wall that has its own rule. Rules of several types go into the table
+/// as [`BoxedRule`](crate::simulation::BoxedRule), or as an enum of your own, which can also be serialized.
 ///
 /// ```
 /// use granular_edmd::Kind;

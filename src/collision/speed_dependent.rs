@@ -4,8 +4,8 @@ use super::{CollisionRule, Contact, Friction, Impulse};
 use crate::quantity::{Checked, Quantity, Range};
 use crate::{Fingerprint, ParameterError};
 
-/// Restitution that falls from 1 with the speed of the impact until it is constant, with Coulomb friction
-/// (C. Bizon et al., Phys. Rev. Lett. **80**, 57 (1998)):
+/// Restitution that falls with the speed of the impact, from 1 to a constant, with Coulomb friction (C. Bizon
+/// et al., Phys. Rev. Lett. **80**, 57 (1998)):
 ///
 /// ```math
 /// r_n(v_n) = \max\left(r_0,\ 1 - (1 - r_0)\,(v_n/v_0)^{3/4}\right)
@@ -80,7 +80,7 @@ impl SpeedDependent {
         self.least_restitution.get()
     }
 
-    /// Returns the closing speed v_0 from which on the restitution is constant.
+    /// Returns the closing speed v_0 above which the restitution is constant.
     pub const fn speed(&self) -> f64 {
         self.speed.get()
     }

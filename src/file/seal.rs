@@ -8,14 +8,14 @@ pub(crate) struct Seal {
     pub(crate) version: u32,
 }
 
-/// A reason not to trust contents.
+/// A fault that a seal shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Broken {
     /// The contents are of another format.
     Foreign,
     /// The contents are of another version of the format.
     Version(u32),
-    /// The contents were cut.
+    /// The contents are cut short.
     Cut,
     /// The checksum does not match the contents.
     Changed,

@@ -29,7 +29,7 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let (temporary, file) = create_temporary(path)?;
     let written = write_synced(file, bytes).and_then(|()| fs::rename(&temporary, path));
     if written.is_err() {
-        // The remains of the attempt help nobody. A failure to remove them is ignored, since the first error
+        // The temporary file is of no use any more. A failure to remove it is ignored, since the first error
         // is the one to report.
         let _ = fs::remove_file(&temporary);
         return written;

@@ -30,7 +30,7 @@ const SMALLER: f64 = 1.0 / (1u64 << 60) as f64;
 /// let first = first_descent_of_quartic(&gap, f64::INFINITY).unwrap();
 /// assert!((first - 1.0).abs() < 1e-15);
 /// assert_eq!(first_descent_of_quartic(&gap, 0.5), None);
-/// // A disk flies across a circle of radius 2 from its middle, at speed 1: what is left is 4 - t².
+/// // A disk flies across a circle of radius 2 from its middle, at speed 1: the gap is 4 - t².
 /// assert_eq!(first_descent_of_quartic(&[4.0, 0.0, -1.0, 0.0, 0.0], 10.0), Some(2.0));
 /// ```
 pub fn first_descent_of_quartic(coefficients: &[f64; 5], end: f64) -> Option<f64> {
@@ -101,7 +101,7 @@ fn derivative(&[_, c1, c2, c3, c4]: &Coefficients) -> Coefficients {
 }
 
 fn middle(low: f64, high: f64) -> f64 {
-    // Half of the sum would not do, because the sum may overflow.
+    // Not half of the sum, because the sum may overflow.
     low + 0.5 * (high - low)
 }
 

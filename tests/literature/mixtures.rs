@@ -190,8 +190,7 @@ fn species_cool_together_at_different_temperatures() -> Outcome {
             shares.push(share.mean());
         }
         let expected = common_cooling(&mixture, restitution);
-        let what =
-            format!("T2/T1, r = {restitution}, m = {}, R = {}", large.mass, large.radius);
+        let what = format!("T2/T1, r = {restitution}, m = {}, R = {}", large.mass, large.radius);
         let measured = shares.mean() / (1.0 - shares.mean());
         assert!(agrees(&what, measured, expected, 0.04));
     }

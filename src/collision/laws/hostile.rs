@@ -3,7 +3,7 @@
 use crate::Kind;
 use crate::collision::Contact;
 
-// Each list begins with its mildest values, so that a rule with a fault shows it with numbers of everyday.
+// Each list begins with its mildest values, so that a faulty rule fails first at ordinary numbers.
 
 /// Closing and slip speeds of mild contacts.
 const MILD_SPEEDS: [(f64, f64); 9] = [
@@ -18,11 +18,11 @@ const MILD_SPEEDS: [(f64, f64); 9] = [
     (0.5, -5.0),
 ];
 
-/// Closing speeds: everyday ones, zero, and decades between almost zero and the largest speed of a disk.
+/// Closing speeds: ordinary ones, zero, and decades between almost zero and the largest speed of a disk.
 const CLOSING_SPEEDS: [f64; 14] =
     [1.0, 0.1, 3.0, 0.0, 1e-3, 1e3, 1e-6, 1e6, 1e-12, 1e12, 1e-30, 1e-60, 1e60, 1e-300];
 
-/// Slip speeds relative to the closing speed: none, near the end of sticking, small (central contacts), and
+/// Slip speeds relative to the closing speed: none, near the limit of sticking, small (central contacts), and
 /// large (grazing contacts).
 const SLIP_RATIOS: [f64; 12] = [0.0, 1.0, 0.3, 3.0, 0.1, 10.0, 1e-3, 1e3, 1e-9, 1e9, 1e-15, 1e15];
 
@@ -50,15 +50,15 @@ const PARTNERS: [([Kind; 2], [f64; 2]); 7] = [
     ([Kind::new(1), Kind::WALL], [1e-30, f64::INFINITY]),
 ];
 
-/// Returns contacts that rules tend to forget, the same ones in the same order every time.
+/// Returns contacts that authors of rules tend to forget, the same ones in the same order every time.
 ///
 /// The contacts cover closing and slip speeds, masses and mass ratios over all decades that the engine
 /// accepts. Among them are slips of both signs and none, central and grazing contacts, contacts without
 /// closing speed, and partners that have just collided. The partners are, in turn, disks of kinds 0 and 1 and
 /// straight walls, with radii up to the extremes that the engine accepts.
 ///
-/// Mild contacts come first, such as that of two disks of mass 1 that meet at speed 1. So the first contact
-/// at which a rule fails has numbers that a person can read, if there is one.
+/// Mild contacts come first, such as that of two disks of mass 1 that meet at speed 1. So if a rule fails at
+/// a mild contact, its error shows numbers that are easy to read.
 ///
 /// ```
 /// use granular_edmd::collision::laws::hostile_contacts;
@@ -71,8 +71,8 @@ pub fn hostile_contacts() -> impl Iterator<Item = Contact> {
     mild_contacts().chain(extreme_contacts())
 }
 
-/// Returns contacts of everyday speeds with mild partners only. Among the extreme contacts, partners take
-/// turns, so that a mild one comes with any speeds and masses.
+/// Returns contacts of ordinary speeds with mild partners only. Among the extreme contacts, partners take
+/// turns, so each pair of partners, mild or not, meets all speeds and masses.
 ///
 /// The disks are rings of mass 1: their tangential mass, 0.25, reads better than a sixth.
 fn mild_contacts() -> impl Iterator<Item = Contact> {

@@ -7,7 +7,8 @@ use super::{
 };
 use crate::collision::{CollisionRule, Contact, Impulse};
 
-/// The promises of a rule, beyond finite impulses that separate the surfaces and repeat to the bit.
+/// The promises of a rule. Every rule also promises finite impulses that separate the surfaces and repeat to
+/// the bit.
 ///
 /// ```
 /// use granular_edmd::collision::laws::{Promises, check};
@@ -25,7 +26,7 @@ pub struct Promises {
 }
 
 impl Promises {
-    /// Creates the promise that energy is not gained, which says nothing about the tangential direction.
+    /// Creates the promise that a collision gains no energy. It says nothing about the tangential direction.
     pub const fn new() -> Self {
         Self { energy_gain: false, opposed_slip: false, static_friction: None }
     }
@@ -77,7 +78,7 @@ pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result
         promises.check(&contact, impulse)?;
         answers.push((contact, impulse));
     }
-    // The second pass runs backward, so that a rule with a memory has other contacts in it.
+    // The second pass runs backward, so that a rule with a memory remembers other contacts.
     for (contact, impulse) in answers.into_iter().rev() {
         let later = rule.impulse(&contact);
         if !same(impulse, later) {

@@ -36,7 +36,7 @@ pub enum Violation {
         /// The impulse that was given.
         impulse: Impulse,
     },
-    /// The tangential impulse pushes along the slip, or reverses it to a faster one.
+    /// The tangential impulse speeds up the slip, or reverses it and makes it faster.
     #[error("the impulse {impulse} makes the slip faster: {slip_speed:?} ({contact})")]
     SlipSpedUp {
         /// Slip speed after the collision.
