@@ -1,4 +1,4 @@
-//! Boundaries: the walls around the disks, and what a touch does.
+//! Boundaries: the walls around the disks, and the outcome of a touch.
 //!
 //! [`Container`] is the rectangular box of the paper, with variations. It has side walls or periodic sides, a
 //! floor that is fixed, moving or thermal, and a lid or an open top. Each wall can have its own rule. Walls
@@ -103,7 +103,7 @@ use crate::{Fingerprint, Flight};
 /// # Boundaries that break the contract
 /// [`laws::check`] finds most faults. A missed touch lets a disk leave the domain unseen. An early touch
 /// turns disks back in mid-air. A touch with a wall that the disk is leaving comes again at once, until the
-/// run ends for lack of progress. A velocity or normal that is not finite ends the run with an error.
+/// run fails for lack of progress. A velocity or a normal that is not finite is an error of the run.
 ///
 /// ```
 /// use std::borrow::Cow;

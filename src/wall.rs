@@ -1,4 +1,4 @@
-//! Wall motions: how a wall moves along its normal, and when a disk first touches it.
+//! Wall motions: the motion of a wall along its normal, and its first touch with a disk.
 //!
 //! | motion | displacement | source |
 //! |---|---|---|
@@ -83,7 +83,7 @@ impl AccelerationBounds {
 /// the run. For a motion with a period, the phase is the absolute time less some whole periods, which keeps
 /// all digits of late times. It is below one period in magnitude when an epoch of the run begins, grows as
 /// the epoch goes on, and is negative only in runs that begin at a negative time. A motion whose smallest and
-/// largest displacements are equal never moves. It is asked only about small phases, whatever the time.
+/// largest displacements are equal never moves, and is asked only about small phases, whatever the time.
 ///
 /// # Contract
 /// An implementation guarantees, for every phase:

@@ -96,8 +96,8 @@ struct Sight {
     /// Unit vector from that point to the place.
     normal: DVec2,
     side: Side,
-    /// Distance from the brick when it is extended straight beyond its ends. If two bricks end at the nearest
-    /// point, the one with the larger such distance decides the side.
+    /// Distance from the brick, extended straight beyond its ends. If two bricks meet at the nearest point,
+    /// the one with the larger such distance decides the side.
     weight: f64,
 }
 
@@ -126,8 +126,8 @@ impl Brick {
         matches!(self.shape, Shape::Arc(arc) if arc.is_whole() && arc.center() == place)
     }
 
-    /// Tells whether a direction leads to the only free side of the brick, or along the brick. Then the brick
-    /// meets no disk when it jumps against that direction.
+    /// Tells whether a direction leads to the only free side of the brick, or along the brick. If the brick
+    /// jumps the other way, it hits no disk.
     pub(super) fn faces(&self, direction: DVec2) -> bool {
         match (self.shape, self.free) {
             (Shape::Segment(segment), Free::Left) => segment.direction().perp_dot(direction) >= 0.0,

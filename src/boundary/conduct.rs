@@ -7,7 +7,7 @@ use super::{Response, Thermal};
 use crate::Fingerprint;
 use crate::collision::CollisionRule;
 
-/// The response of a wall to a touch, in owned form. [`Response`] lends it out.
+/// The response of a wall to a touch, as the wall keeps it. [`Response`] borrows it.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]

@@ -24,13 +24,13 @@ use crate::error::Readable;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Domain {
-    /// Left end.
+    /// Left edge.
     pub left: f64,
-    /// Right end.
+    /// Right edge.
     pub right: f64,
-    /// Lower end.
+    /// Lower edge.
     pub bottom: f64,
-    /// Upper end; infinite without a lid.
+    /// Upper edge; infinite without a lid.
     #[cfg_attr(feature = "serde", serde(with = "open_top", default = "open_top::open"))]
     pub top: f64,
     /// True if a disk that leaves on one side enters on the other.
@@ -82,7 +82,7 @@ impl Domain {
         shifts(periods.x).flat_map(move |x| shifts(periods.y).map(move |y| DVec2::new(x, y)))
     }
 
-    /// Returns the vector from `from` to `to`, by the shortest way where the rectangle is periodic.
+    /// Returns the shortest vector from `from` to `to`, across periodic sides where that is shorter.
     pub fn separation(&self, from: DVec2, to: DVec2) -> DVec2 {
         let mut separation = to - from;
         if self.periodic_sides {
@@ -135,7 +135,7 @@ impl fmt::Display for Domain {
     }
 }
 
-/// The upper end in files. Some text formats have no infinite numbers, so text files hold `None` for an open
+/// The upper edge in files. Some text formats have no infinite numbers, so text files hold `None` for an open
 /// top.
 #[cfg(feature = "serde")]
 mod open_top {

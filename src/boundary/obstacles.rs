@@ -96,7 +96,7 @@ impl<B: Boundary> Boundary for Obstacles<B> {
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
         let is_near = |place: DVec2, contact: f64| {
             let nearest = place.clamp(region.min, region.max);
-            // A region is one of centers. The margin keeps rounding from hiding a touch at its edge.
+            // The region is one of centers. The margin keeps rounding from hiding a touch at its edge.
             nearest.distance(place) <= 1.001 * contact
         };
         self.boundary.may_touch(region, radius)

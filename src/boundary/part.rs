@@ -1,4 +1,4 @@
-//! Parts: bricks that belong together, with a rule, a motion and a surface of their own.
+//! Parts: bricks that share a rule, a motion and a surface.
 
 mod constructors;
 mod corners;
@@ -115,8 +115,8 @@ impl Part {
     /// Returns the same part, turning about a point in place of an earlier motion, counterclockwise at this
     /// angular velocity.
     ///
-    /// A circle about that point stays where it is; only its surface moves. Any other part is where it was
-    /// built at time 0, and after each whole turn.
+    /// A circle about that point stays in place; only its surface moves. Any other part is where it was built
+    /// at time 0, and after each whole turn.
     ///
     /// # Errors
     /// If a number is not finite, or the angular velocity is so small or large that a turn would take more
@@ -290,8 +290,8 @@ impl Sighted {
         Self { nearest, rounding: ROUNDING * (nearest.distance + place.length()) }
     }
 
-    /// Tells whether this brick is nearer than another one, or is equally near and tells better what is
-    /// behind it.
+    /// Tells whether this brick decides the side of a place rather than another one: it is nearer, or equally
+    /// near and seen less edge-on.
     ///
     /// Two bricks that meet at the nearest point are equally far away up to rounding. Of these, the brick
     /// whose extension beyond its ends is farther from the place decides: the place sees it less from its

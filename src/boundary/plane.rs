@@ -18,7 +18,7 @@ pub(super) struct Plane {
     /// Place of the wall at rest, along its normal.
     place: f64,
     motion: Motion,
-    /// Upper end of the motion's reach.
+    /// Largest displacement of the motion.
     highest: f64,
     conduct: Conduct,
     kind: Kind,
@@ -158,7 +158,7 @@ impl Plane {
         position.dot(self.normal) - self.place - radius <= self.highest
     }
 
-    /// Returns how far a disk reaches into the wall; negative if the disk does not touch the wall.
+    /// Returns the depth to which a disk reaches into the wall; negative if the disk does not touch the wall.
     pub(super) fn depth(&self, position: DVec2, radius: f64, time: f64) -> f64 {
         let wall = self.place + self.motion.state(time + self.phase).displacement;
         wall + radius - position.dot(self.normal)

@@ -30,7 +30,7 @@ pub struct Surface<'a> {
     pub response: Response<'a>,
     /// Kind of the wall, which rules find in the contact.
     pub kind: Kind,
-    /// Radius of the surface, which rules find in the contact: infinite if it is straight, negative if it is
+    /// Radius of the surface, for the contact that a rule sees: infinite if it is straight, negative if it is
     /// hollow.
     pub radius: f64,
 }

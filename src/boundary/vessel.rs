@@ -112,7 +112,7 @@ impl Vessel {
         }
     }
 
-    /// Creates a vessel of parts that enclose the disks by themselves.
+    /// Creates a vessel of parts that enclose the disks without a container.
     ///
     /// The container is a rectangle around the parts, which no disk touches.
     ///
@@ -297,7 +297,7 @@ impl Boundary for Vessel {
     }
 
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
-        // A region is one of centers. The margin keeps rounding from hiding a touch at its edge.
+        // The region is one of centers. The margin keeps rounding from hiding a touch at its edge.
         let reach = 1.001 * radius;
         let mut near = self.index.near(region.min - reach, region.max + reach);
         self.container.may_touch(region, radius)

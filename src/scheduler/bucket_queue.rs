@@ -11,20 +11,20 @@ use crate::prefetch::prefetch;
 use piles::Piles;
 
 /// Number of events that are due within the time of one bucket. With so many events in each, there are few
-/// buckets, and the ends of all of them stay in the caches.
+/// buckets, and the last entries of all of them stay in the caches.
 const EVENTS_PER_BUCKET: usize = 512;
 
 /// Number of events per disk in a page. They share the cost of dealing out the disk to the next page.
 const EVENTS_PER_DISK: usize = 2;
 
-/// Number of events per disk after which a page is turned at the latest. A page was meant to last half as
-/// long, so its buckets are too wide then.
+/// Largest number of events per disk in a page. A page is meant to last half as long, so one that lasts
+/// longer has too wide buckets.
 const LONGEST_PAGE: usize = 2 * EVENTS_PER_DISK;
 
 /// Number of disks in the sample from which the density of events is first estimated.
 const SAMPLE: usize = 256;
 
-/// Inverse of the share of the sample that counts in the estimate: the disks that are due soonest.
+/// Inverse of the fraction of the sample that counts in the estimate: the disks that are due soonest.
 const SOON: usize = 8;
 
 /// Number of events that are known in order ahead of the present one, and are named as upcoming.
@@ -37,7 +37,7 @@ const SIGHT: usize = 48;
 /// - A disk that gets a new time is written to the end of the bucket of that time. Its old entry stays where
 ///   it is.
 /// - A bucket is opened just before its time comes. Old entries are dropped, and the others are sorted.
-/// - A disk that becomes due within a bucket that is open already waits in a heap.
+/// - A disk that becomes due within an open bucket waits in a heap.
 /// - A disk that is due after the page is not written down. When the page is used up, all disks are dealt out
 ///   to a new one, whose buckets are as wide as the events of the last page suggest.
 ///
@@ -75,7 +75,7 @@ struct Page {
 }
 
 impl Page {
-    /// Returns the bucket of a time. Buckets follow each other without end, also beyond those of the page.
+    /// Returns the bucket of a time. The numbers of buckets go on beyond those of the page.
     #[inline]
     fn bucket(self, due: f64) -> usize {
         // The cast saturates: times before the page belong to its first bucket, and infinite times to the
@@ -166,16 +166,16 @@ impl BucketQueue {
         let Self { due, open, page, .. } = self;
         let (from, bucket) = (open.len(), self.opened);
         self.buckets.take(bucket, |disks| {
-            // The times of these disks lie anywhere in memory. Requested all at once, they take hardly longer
-            // than a few of them would.
+            // The times of these disks are scattered in memory. Requests for all of them at once take hardly
+            // longer than for a few.
             for &disk in disks {
                 prefetch(due, disk as usize);
             }
             for &disk in disks {
                 let (disk, due) = (disk as usize, due[disk as usize]);
                 // An entry is out of date if the time of its disk has moved to another bucket. A disk that
-                // got a new time within this bucket has two entries here, with the same time, which does no
-                // harm.
+                // got a new time within this bucket has two entries here, with the same time, which is
+                // harmless.
                 if page.bucket(due) == bucket {
                     open.push(Entry::new(disk, due));
                 }

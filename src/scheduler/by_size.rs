@@ -2,7 +2,7 @@
 
 use super::{BucketQueue, EventScheduler, TournamentTree};
 
-/// Number of disks from which on the processor's caches no longer hold a system.
+/// Number of disks beyond which the system no longer fits the caches.
 ///
 /// Above it, an event waits for the memory, and work that saves accesses to memory pays: an order that is
 /// written page by page ([`BucketQueue`]), and early requests for what the next events will need. Below it,

@@ -14,9 +14,9 @@ const LEAST_ROOM: f64 = 1e-3;
 /// stays away from a large part of its stated reach.
 const MOST_STEPS: u32 = 1 << 20;
 
-/// Largest number of steps that are so short that floating-point times can hardly tell their ends apart. A
-/// search that converges takes some such steps at its end. It takes more of them under a motion whose pieces
-/// are too short, or whose bounds are too large, for its times.
+/// Largest number of steps that floating-point times can hardly resolve. A search that converges takes a few
+/// such steps last. It takes many if the pieces of the motion are too short, or its bounds too large, for its
+/// times.
 const MOST_SHORT_STEPS: u32 = 1 << 10;
 
 /// The approach of a surface to a wall: its height above the wall's place at rest, along the wall's normal.
@@ -48,8 +48,8 @@ impl Approach {
     /// always no, and the caller must search.
     #[inline]
     pub(crate) fn stays_above(&self, height: f64, until: f64) -> bool {
-        // Under a downward pull the surface is higher in between than at its ends, so the ends are enough.
-        // The tests do not branch, since most flights pass both.
+        // Under a downward pull, the surface is lowest at the first or the last of these times, so two tests
+        // are enough. They do not branch, since most flights pass both.
         (self.acceleration <= 0.0) & (self.height > height) & (self.height(until) > height)
     }
 
@@ -112,7 +112,7 @@ pub fn first_touch<M: WallMotion + ?Sized>(motion: &M, approach: &Approach, unti
     None
 }
 
-/// A counter of steps. It makes a search end under any motion.
+/// A counter of steps, so that a search ends under any motion.
 #[derive(Default)]
 struct Patience {
     steps: u32,
@@ -170,7 +170,7 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
         Self { motion, approach, reach }
     }
 
-    /// Returns the first time, from this one on, at which the surface is no higher than the wall ever gets.
+    /// Returns the first time, from this one on, at which the wall could reach the surface, at its highest.
     fn enters_reach(&self, time: f64) -> Option<f64> {
         let Approach { acceleration, .. } = *self.approach;
         let above = self.approach.height(time) - self.reach.1;
@@ -222,8 +222,8 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
     ///
     /// The gap itself does not show when such a bounce is over. But the bounce is so short that the
     /// acceleration does not change in it: the gap follows a parabola that starts from its present value, and
-    /// the bounce ends when the gap closes as fast as it opened. With an earlier end, bounces would lose
-    /// speed that no rule takes. With a later end, each bounce would go deeper into the wall than the last.
+    /// the bounce is over when the gap closes as fast as it opened. Any earlier, and bounces would lose speed
+    /// that no rule takes. Any later, and each bounce would go deeper into the wall than the last.
     fn low_bounce(&self, start: f64) -> Option<f64> {
         let first = self.look(start);
         let is_low = |pull: f64| first.rate * first.rate <= -2.0 * pull * first.tolerance;

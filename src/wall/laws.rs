@@ -18,10 +18,10 @@ const MOST_PIECES: u32 = 10_000;
 /// Allowed rounding, relative to the lengths and speeds from which a number is computed.
 const ROUNDING: f64 = 256.0 * f64::EPSILON;
 
-/// Part of a piece between its last sample and its end, where the state may jump.
+/// Fraction of a piece that is left after its last sample, since the state may jump at the end of a piece.
 const LAST: f64 = 1.0 / (1u64 << 20) as f64;
 
-/// Length below which a piece counts as pure rounding, relative to its phase and the period.
+/// Length below which a piece may be an artifact of rounding, relative to its phase and the period.
 const SHORT: f64 = 1e-9;
 
 /// Number of pieces in a row that together must advance by more than rounding.
@@ -34,10 +34,10 @@ const PROBES: [f64; 9] = [0.0, 1e-3, 0.1, 1.0, 10.0, 1e2, 1e3, 1e4, 1e6];
 ///
 /// The check samples each piece that begins between the phases. The state must be finite and within the
 /// reach, and the bounds must hold for the change of the velocity between samples. The displacement must be
-/// the integral of the velocity. Pieces must advance, and jumps may only be at their ends and away from the
-/// disks. The motion must repeat after its period. The check can miss a fault that is narrower than a
-/// five-hundredth of a piece, so check a motion with one long piece on several short stretches. It refuses a
-/// stretch of more than ten thousand pieces.
+/// the integral of the velocity. Pieces must advance, and the wall may jump only where one ends, and away
+/// from the disks. The motion must repeat after its period. The check can miss a fault that is narrower than
+/// a five-hundredth of a piece, so check a motion with one long piece on several short stretches. It refuses
+/// a stretch of more than ten thousand pieces.
 ///
 /// # Errors
 /// The first violation that the check finds.
@@ -82,9 +82,9 @@ pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(
     Err(Violation::ShortPieces { phase: from, until: phase, pieces: MOST_PIECES })
 }
 
-/// Checks that a motion gives finite numbers, and pieces that advance.
+/// Checks that a motion gives finite numbers and that its pieces advance.
 ///
-/// No run can do without these.
+/// Every run depends on both.
 ///
 /// The check looks at phases in the first period, or between 0 and a million for a motion without a period.
 ///
@@ -230,8 +230,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
         }
         let rise = to.state.displacement - from.state.displacement;
         let expected = 0.5 * (from.state.velocity + to.state.velocity) * wait;
-        // Given the velocities at both ends, the displacement is extreme if the acceleration takes first the
-        // one bound and then the other. It then differs from the displacement at the mean velocity by the
+        // Given the first and the last velocity, the displacement is extreme if the acceleration is first at
+        // one bound and then at the other. It then differs from the displacement at the mean velocity by the
         // area of a triangle, which is at most `spread`.
         let spread = 0.125 * (bounds.max - bounds.min) * wait * wait;
         if (rise - expected).abs() > spread + self.length_rounding(from, bounds) + slack * wait {
@@ -256,7 +256,7 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
     /// Checks that the motion is the same some periods later, at a phase inside a piece of this length.
     fn repeats(&self, phase: f64, length: f64) -> Result<(), Violation> {
         let Some(period) = self.motion.period() else { return Ok(()) };
-        // A piece that is pure rounding of its ends may be elsewhere, or missing, in the next period.
+        // A piece as short as the rounding of its times may be elsewhere, or missing, in the next period.
         if length < SHORT * (phase.abs() + period) {
             return Ok(());
         }
@@ -269,8 +269,8 @@ impl<M: WallMotion + ?Sized> Check<'_, M> {
             let changed = (then_bounds.min - bounds.min).abs().max((then_bounds.max - bounds.max).abs());
             let differs = moved > self.length_rounding(then, &bounds)
                 || gained > self.speed_rounding(then, &bounds)
-                // The ends of pieces are rounded. The bounds there change with the third derivative, which
-                // the motion does not provide.
+                // The times at which pieces end are rounded. The bounds there change with the third
+                // derivative, which the motion does not provide.
                 || changed > 1e-6 * strength;
             if differs {
                 return Err(Violation::Period { phase, period, later });

@@ -50,8 +50,8 @@ impl Motion {
         }
     }
 
-    /// Tells whether the motion jumps at the end of a piece. Looks at the first period, or at the first
-    /// thousand pieces if these end earlier.
+    /// Tells whether the motion jumps at the end of a piece. The function looks at the first period, or at
+    /// the first thousand pieces if they are over earlier.
     pub(crate) fn jumps(&self) -> bool {
         const PIECES: usize = 1000;
         let (low, high) = self.reach();
@@ -78,11 +78,9 @@ impl Motion {
     pub(crate) fn phase(&self, origin: f64) -> f64 {
         let (low, high) = self.reach();
         match self.period() {
-            // A wall that never leaves its place is the same at all times. With phase 0, times lose none of
-            // their digits.
+            // A wall that never moves is the same at all times. At phase 0, times lose none of their digits.
             _ if low == high => 0.0,
-            // The remainder of two floats is exact, so the phase keeps all its digits however late the time
-            // is.
+            // The remainder of two floats is exact, so the phase keeps all its digits, however late the time.
             Some(period) => origin % period,
             None => origin,
         }

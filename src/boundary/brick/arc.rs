@@ -143,8 +143,8 @@ impl Arc {
         farthest + sagitta < LESS * (self.radius - path.radius)
     }
 
-    /// Returns the largest growth that the search allows a disk of this radius: half of the room that it has
-    /// inside.
+    /// Returns the largest growth that the search allows a disk of this radius: half of its room inside the
+    /// circle.
     pub(super) fn most_growth(&self, radius: f64) -> f64 {
         if self.radius > radius { 0.5 * (self.radius - radius) } else { f64::INFINITY }
     }

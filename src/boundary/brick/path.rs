@@ -52,8 +52,7 @@ impl Path {
         }
     }
 
-    /// Returns the same path for a disk that has shrunk from `radius` by as much as this one has grown from
-    /// it, and that shrinks on as this one grows.
+    /// Returns the same path for a disk that shrinks from `radius` as fast as this one grows.
     pub(super) fn shrinking(&self, radius: f64) -> Self {
         Self { radius: 2.0 * radius - self.radius, widening: -self.widening, spread: -self.spread, ..*self }
     }
@@ -132,7 +131,7 @@ impl Beside {
     pub(super) fn stretches(&self, wait: f64) -> impl Iterator<Item = (f64, f64)> {
         let [first, second] = self.quantities.map(|quantity| quantity.zeros());
         // Between neighboring marks, no quantity changes its sign. A zero that is not a number or is outside
-        // the interval is moved to its end, where it does no harm.
+        // the interval is moved to its end, where it is harmless.
         let inside = |time: f64| if time > 0.0 && time < wait { time } else { wait };
         let mut marks = [0.0, inside(first[0]), inside(first[1]), inside(second[0]), inside(second[1]), wait];
         marks.sort_by(f64::total_cmp);

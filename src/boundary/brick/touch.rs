@@ -47,8 +47,8 @@ impl Brick {
     /// If the disk grows, there is no earlier touch, but there need not be one at that time either.
     ///
     /// The disk can touch only the side of the brick on which its center is. A disk whose center is behind
-    /// the brick goes on until it has come out in front. Only touches beside the brick count. The next brick,
-    /// or a point, closes the gap that this leaves at the ends.
+    /// the brick goes on until it has come out in front. Only touches beside the brick count. At its ends,
+    /// the next brick or a point takes over.
     pub(in crate::boundary) fn wait_for_touch(&self, path: &Path, wait: f64) -> Option<f64> {
         let beside = match self.shape {
             Shape::Segment(segment) if segment.is_out_of_reach(path, wait) => return None,
@@ -62,8 +62,8 @@ impl Brick {
         let side = self.side(path.place);
         if self.free.has(side) {
             // In most cases, the disk is beside the brick when it reaches the line or the circle, and this
-            // one root is enough. A disk beyond the end may already be across the line, so that it does not
-            // come to it.
+            // one root is enough. A disk beyond the end may be across the line already, and never reach it
+            // from the front.
             let gap = self.gap(path, side);
             if (gap[0] > 0.0 || beside.holds(0.0))
                 && let Some(touch) = first_descent_of_quartic(&gap, wait)
@@ -80,14 +80,14 @@ impl Brick {
         let (here, wait) = (path.later(from), to - from);
         let side = self.side(here.place);
         let growth = here.radius - path.radius;
-        // Within the growth, the true center may be on the other side of the line.
+        // The center is known only up to the growth, so it may be on the other side of the line.
         if growth > 0.0 && self.distance_from_line(here.place) <= growth {
             return Some(from);
         }
         if self.free.has(side) {
             let gap = self.gap(&here, side);
             // A gap that rounding has closed counts only while it closes further. A gap that growth has
-            // closed may in truth be open, so the search must look again from here.
+            // closed may still be open for the true disk, so the search must look again from here.
             if growth > 0.0 && gap[0] <= 0.0 {
                 return Some(from);
             }

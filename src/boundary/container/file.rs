@@ -60,7 +60,7 @@ impl TryFrom<Record> for Container {
         if !has(Wall::Floor) {
             container = container.with_periodic_ends().map_err(|error| error.to_string())?;
         }
-        // The walls must be those that the container has now, in their order.
+        // The walls must be those of the container as it is now, in their order.
         if !walls.iter().map(|record| record.wall).eq(container.walls.iter().copied()) {
             return Err("no container has just these walls in this order".to_owned());
         }

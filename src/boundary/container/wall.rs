@@ -13,7 +13,7 @@ use crate::wall::laws::Violation;
 pub enum Wall {
     /// The base, at height 0.
     Floor,
-    /// The upper end.
+    /// The lid.
     Lid,
     /// The left side.
     Left,
@@ -65,7 +65,7 @@ pub enum WallError {
         /// The answer of the motion.
         violation: Violation,
     },
-    /// The motion jumps back, which would move the wall on the other side into the disks.
+    /// The motion jumps back, and the wall on the other side would jump into the disks.
     #[error("the motion jumps back at times, and would move the wall \"{wall}\" into disks")]
     Jump {
         /// The wall that would jump.

@@ -13,11 +13,11 @@ const SAMPLES: u32 = 200;
 /// Longest flight, in units of the time that a disk takes to cross the domain.
 const LONGEST: f64 = 3.0;
 
-/// Fraction of the speeds below which a touch is grazing. Rounding decides when such a touch comes, or
-/// whether it comes at all.
+/// Closing speed below which a touch is grazing, as a fraction of the speeds. Rounding decides the time of
+/// such a touch, or that there is none.
 const GRAZING: f64 = 1e-2;
 
-/// Fraction of the radius by which a disk is moved to see where a wall is.
+/// Fraction of the radius by which a disk is moved to probe a wall.
 const STEP: f64 = 1e-3;
 
 /// Largest errors of a normal: of its squared length, and of its direction. The direction is judged by the
@@ -187,7 +187,7 @@ fn check_limits<B: Boundary + ?Sized>(
         return Ok(());
     }
     let going_on = Flight::new(time, meeting.place, meeting.velocity, flight.acceleration(), flight.radius());
-    // Rounding may have left the gap open; it closes within this time.
+    // Rounding may have left the gap open. It then closes within this time.
     let soon = time + 4.0 * trial.rounding() / meeting.rate.abs();
     match trial.boundary.first_touch(&going_on, soon) {
         Some(again) if again.time >= time && again.time <= soon => Ok(()),
@@ -197,8 +197,8 @@ fn check_limits<B: Boundary + ?Sized>(
 
 /// Checks that the same flight, given relative to another time origin, touches at the same absolute time.
 ///
-/// A grazing touch, or one at the very end of the flight, may be found with one origin only, because rounding
-/// decides.
+/// Rounding decides a grazing touch, or one just before the flight is over, so it may be found with one
+/// origin only.
 fn check_origin<B: Boundary + ?Sized>(
     trial: &mut Trial<'_, B>,
     flight: &Flight,
@@ -232,8 +232,7 @@ fn check_origin<B: Boundary + ?Sized>(
     if agree { Ok(()) } else { Err(Violation::TimeOrigin { origin, shift, before, after, flight: *flight }) }
 }
 
-/// Returns how far apart the times of the same touch may be: the time in which the gap closes by its
-/// rounding.
+/// Returns the uncertainty of the time of a touch: the time in which the gap closes by its rounding.
 fn slack<B: Boundary + ?Sized>(trial: &Trial<'_, B>, meeting: &Meeting) -> f64 {
     4.0 * trial.rounding() / meeting.rate.abs()
 }

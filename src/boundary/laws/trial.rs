@@ -10,8 +10,8 @@ use crate::boundary::{Boundary, Domain, Region};
 /// Allowed rounding, relative to the size of the domain.
 const ROUNDING: f64 = 1e-9;
 
-/// Sizes of the regions around a touch, relative to the radius. The smallest region contains no more than the
-/// rounding of the place.
+/// Sizes of the regions around a touch, relative to the radius. The smallest region is a point, up to
+/// rounding.
 const REGIONS: [f64; 3] = [0.0, 0.5, 5.0];
 
 /// A boundary, and the numbers of its trial.
@@ -73,12 +73,12 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
         self.origin = origin;
     }
 
-    /// Returns the wall that a disk larger by `more` overlaps at this place, and the depth.
+    /// Returns the wall that a disk with a radius larger by `more` overlaps at this place, and the depth.
     pub(super) fn depth(&self, place: DVec2, more: f64, time: f64) -> Option<(usize, f64)> {
         self.boundary.overlap(place, self.radius + more, time)
     }
 
-    /// Checks some flights of a disk in a row. Each wall that the disk touches turns it back.
+    /// Checks consecutive flights of a disk. Each wall that the disk touches turns it back.
     pub(super) fn run(&mut self, origin: f64, first: Flight, flights: usize) -> Result<(), Violation> {
         self.set_origin(origin);
         let mut flight = first;
@@ -120,8 +120,8 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
         Ok(())
     }
 
-    /// Returns the region as the engine would extend it: it reaches to infinity where it comes near an edge
-    /// of the domain.
+    /// Returns the region, extended as the engine does it: to infinity where it is near an edge of the
+    /// domain.
     fn open_at_edges(&self, region: Region) -> Region {
         let Domain { left, right, bottom, top, periodic_sides, periodic_ends } = self.domain;
         let near = 2.0 * self.radius;

@@ -11,7 +11,7 @@ use crate::boundary::conduct::Conduct;
 use crate::boundary::vessel::VesselError;
 
 impl Part {
-    /// Creates a part of these bricks, with points at those ends that disks can touch.
+    /// Creates a part of these bricks, and adds points at the ends that disks can touch.
     ///
     /// The wall is behind a one-sided brick. A brick with a free end should therefore be
     /// [two-sided](Brick::two_sided), because disks come around the end.
@@ -31,8 +31,8 @@ impl Part {
 
     /// Creates a closed polygon with the disks inside.
     ///
-    /// The points may go around in either direction, and the last one may repeat the first. Brick 0 is
-    /// between the first two points.
+    /// The points may be in either order around the polygon, and the last one may repeat the first. Brick 0
+    /// is between the first two points.
     ///
     /// # Errors
     /// If there are fewer than three points, a coordinate is not finite, neighboring points are equal, the
@@ -43,7 +43,7 @@ impl Part {
 
     /// Creates a closed polygon with the disks outside: a solid block.
     ///
-    /// The points may go around in either direction.
+    /// The points may be in either order around the block.
     ///
     /// # Errors
     /// The same as for [`polygon`](Self::polygon).

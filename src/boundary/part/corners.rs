@@ -6,11 +6,11 @@ use glam::DVec2;
 
 use crate::boundary::brick::Brick;
 
-/// Sine of the angle by which bricks must turn toward the disks so that their corner needs no point. In such
-/// a corner, a disk touches both bricks and never the corner itself.
+/// Sine of the smallest angle at which two bricks, turned toward the disks, shield their corner. A disk there
+/// touches both bricks and never the corner itself, so the corner needs no point.
 const CLEARLY: f64 = 1e-6;
 
-/// The bricks that end at a place, by the directions in which they arrive and leave.
+/// The bricks that meet at a place, by the directions in which they arrive and leave.
 #[derive(Debug, Default)]
 struct Joint {
     coming: Vec<DVec2>,
@@ -37,7 +37,7 @@ pub(super) fn corners(bricks: &[Brick]) -> Vec<Brick> {
         let [start, end] = brick.ends();
         for (end, is_start) in [(start, true), (end, false)] {
             let Some((place, direction)) = end else { continue };
-            // The sum turns a negative zero into a positive one, which has other bits.
+            // The sum turns a negative zero into a positive one: the two are equal, but their bits differ.
             let key = [(place.x + 0.0).to_bits(), (place.y + 0.0).to_bits()];
             if !joints.contains_key(&key) {
                 places.push((key, place));

@@ -9,7 +9,7 @@ use crate::boundary::conduct::Conduct;
 use crate::boundary::vessel::VesselError;
 use crate::quantity::finite;
 
-/// A part as it stands in a file.
+/// A part as files hold it.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Part")]
 pub(super) struct Record {

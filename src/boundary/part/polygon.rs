@@ -13,7 +13,7 @@ pub(super) fn sides(mut points: Vec<DVec2>, inside: bool) -> Result<Vec<Brick>, 
     for point in &points {
         finite_point(*point)?;
     }
-    // In many files, a polygon ends with its first point.
+    // In many files, the first point of a polygon is repeated as the last.
     if points.len() > 3 && points.first() == points.last() {
         points.pop();
     }
@@ -21,7 +21,7 @@ pub(super) fn sides(mut points: Vec<DVec2>, inside: bool) -> Result<Vec<Brick>, 
         return Err(VesselError::EqualPoints { first, second: (first + 1) % points.len() });
     }
     let area = doubled_area(&points);
-    // A polygon without area may have sides that do not cross: a line that goes back and forth.
+    // A line that goes back and forth has no area, though its sides do not cross.
     if area == 0.0 {
         return Err(VesselError::NoArea);
     }

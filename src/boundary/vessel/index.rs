@@ -20,7 +20,7 @@ pub(super) struct Index {
     density: DVec2,
     pub(super) columns: usize,
     rows: usize,
-    /// Index of the first entry of each cell, and after them the number of all entries.
+    /// Index of the first entry of each cell, followed by the number of all entries.
     starts: Vec<u32>,
     entries: Vec<Entry>,
 }
@@ -96,7 +96,8 @@ impl Index {
         self.cells(place, place).next().unwrap_or(0)
     }
 
-    /// Returns the middle of a cell, without the endless part of a cell at an edge.
+    /// Returns the middle of a cell. A cell at an edge of the grid extends to infinity; its middle is that of
+    /// its finite part.
     pub(super) fn middle(&self, cell: usize) -> DVec2 {
         let (column, row) = ((cell % self.columns) as f64, (cell / self.columns) as f64);
         self.corner + DVec2::new(column + 0.5, row + 0.5) / self.density

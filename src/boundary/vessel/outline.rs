@@ -12,8 +12,8 @@ impl Vessel {
     /// Each item is the name of the part and a line of points along the brick. The points of an arc are at
     /// most three degrees apart.
     ///
-    /// Walls of the container and single points are left out. Half-lines end after ten times the size of the
-    /// container.
+    /// Walls of the container and single points are left out. Half-lines are cut off at ten times the size of
+    /// the container.
     ///
     /// ```
     /// use granular_edmd::boundary::{Part, Vessel};

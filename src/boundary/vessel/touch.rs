@@ -115,13 +115,13 @@ impl Search<'_> {
                 Step::Open(next) => time = next.max(time.next_up()),
             }
         }
-        // A search that makes no progress may be at a touch, so this returns one. If the run then makes no
-        // progress either, the engine reports it.
+        // A search that makes no progress may be at a touch, so the function returns one. If the run makes no
+        // progress either, the engine reports that.
         Some(time.min(self.until))
     }
 
-    /// Tells whether a turning brick is so far away at this time that the disk does not reach it. Most bricks
-    /// of a turning part are that far away, even where the circles on which they turn are near.
+    /// Tells whether a turning brick is out of the disk's reach at this time. Most bricks of a turning part
+    /// are, even where the circles on which they turn are near.
     fn is_out_of_reach(&self, time: f64) -> bool {
         let travel = self.placed.part.travel();
         let Travel::Turning { about, angular_velocity } = travel else { return false };
@@ -154,9 +154,9 @@ impl Search<'_> {
         if brick.wait_for_touch(&at_once, 0.0).is_some() {
             return Step::Touch(time);
         }
-        // In each step the gap may close by its rounding, so that the search advances. Otherwise, a disk that
-        // leaves the brick with a speed near rounding would be followed in steps too small to show anything
-        // new.
+        // In each step the gap may close by its rounding, so that the search advances. Otherwise, the search
+        // would follow a disk that leaves the brick at a speed near rounding in steps too small to change
+        // anything.
         let smaller = Path { radius: path.radius - rounding, ..path };
         let open = brick.wait_for_touch(&smaller, wait).unwrap_or(wait);
         Step::Open(time + open.max(time_for(&path, rounding)))

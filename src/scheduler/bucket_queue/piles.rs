@@ -1,4 +1,4 @@
-//! Piles of disks, which are written only at their ends and read as a whole.
+//! Piles of disks, which grow at one end and are read as a whole.
 
 /// Number of disks in a block. With the link to another block they fill four cache lines.
 const ROOM: usize = 63;

@@ -59,7 +59,7 @@ pub enum Violation {
         /// The end of the piece.
         until: f64,
     },
-    /// Pieces in a row advance so little that no search can follow them.
+    /// Consecutive pieces advance so little that no search can follow them.
     #[error(
         "{pieces} pieces of its motion lead only from phase {phase} to {until}: they are too short",
         phase = Readable(*phase), until = Readable(*until)
