@@ -26,10 +26,10 @@ pub(crate) use by_size::LARGE_SYSTEM;
 pub use linear_scan::LinearScan;
 pub use tournament_tree::TournamentTree;
 
-/// The answer of a scheduler without disks: no disk, at no time.
+/// The answer of a scheduler without disks.
 ///
-/// The index is that of no disk, and the time is after the end of any run. The engine compares the time of
-/// each event with the end anyway, and this comparison rejects the answer.
+/// No disk has this index, and the time is later than any run lasts. The engine compares the time of each
+/// event with the end of the run anyway, and this comparison rejects the answer.
 pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 
 /// A scheduler: it orders the events of the disks by their times.
@@ -91,7 +91,7 @@ pub trait EventScheduler {
     /// Forgets everything, and takes these times, one for each disk.
     fn reset(&mut self, due: &[f64]);
 
-    /// Takes a new time for the event of `disk`, in place of its last one.
+    /// Sets a new time for the event of `disk`, in place of its last one.
     ///
     /// The new time may be earlier or later.
     fn set(&mut self, disk: usize, due: f64);

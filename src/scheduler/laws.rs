@@ -13,7 +13,7 @@ use thiserror::Error;
 use super::{EventScheduler, LinearScan, NOTHING_DUE};
 use script::{Operation, SCRIPTS, Script, Stage};
 
-/// A law that a scheduler breaks, and the place in a script where it does.
+/// A law that a scheduler breaks, and the step of a script at which it does.
 ///
 /// The scripts never change within a version, so the same scheduler breaks the same law at the same step
 /// again.
@@ -54,8 +54,8 @@ pub enum Violation {
 /// Checks that a scheduler keeps the contract of [`EventScheduler`].
 ///
 /// The closure `make` returns a fresh scheduler without disks, and is called for every script. The scripts
-/// have from none to some ten thousand disks. They contain times that go on, come back, or are before the
-/// last answer, ties, both zeros, negative and infinite times, a single busy disk among many that wait, and
+/// have from none to some ten thousand disks. They contain times that advance, go back, or are before the
+/// last answer; ties, both zeros, negative and infinite times; a single busy disk among many that wait; and
 /// resets to more, fewer and no disks. Now and then they ask for [`upcoming`](EventScheduler::upcoming)
 /// disks, which must not change the order.
 ///
@@ -139,7 +139,7 @@ impl<S: EventScheduler> Performance<S> {
 
     /// Asks for upcoming disks, as the engine does in large systems.
     fn look_ahead(&mut self) -> Result<(), Violation> {
-        // Any disks can stand for those that the engine has collected already.
+        // Any numbers will do for the disks that the engine has collected already.
         let mut named = vec![usize::MAX, 0];
         self.scheduler.upcoming(&mut named);
         if !named.starts_with(&[usize::MAX, 0]) {

@@ -4,7 +4,7 @@ use super::{EventScheduler, NOTHING_DUE};
 
 /// The obvious scheduler, which looks through all times for the earliest at each call.
 ///
-/// It is slow and plainly right, and serves as the oracle for all other schedulers.
+/// It is slow and obviously right, so all other schedulers are tested against it.
 #[derive(Debug, Clone, Default)]
 pub struct LinearScan {
     due: Vec<f64>,

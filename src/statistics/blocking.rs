@@ -4,7 +4,7 @@ use super::{BlockedMean, Estimate, RunningMean};
 use crate::ParameterError;
 use crate::quantity::accept;
 
-/// Largest sample. Its square, summed over a series, stays finite.
+/// Largest sample allowed, so that a sum of squares stays finite.
 const LARGEST: f64 = 1e100;
 
 /// Smallest number of blocks with a meaningful scatter. The error of eight blocks is uncertain by a quarter.
@@ -29,10 +29,10 @@ const FEWEST_BLOCKS: u64 = 8;
 ///    error.
 ///
 /// The first condition suffices for a series with one correlation time. The others detect a second, longer
-/// one, whose share of the variance is small, such as heat that comes and goes in a gas whose collisions are
-/// otherwise independent. Sizes with fewer than eight blocks are not considered. So if a series is shorter
-/// than some hundred times [`Estimate::correlated_samples`], no blocks meet all conditions. The estimate is
-/// then not converged, and its error is the largest that was found.
+/// one with a small share of the variance, such as heat that slowly comes and goes in a gas whose collisions
+/// are otherwise independent. Sizes with fewer than eight blocks are not considered. So if a series is
+/// shorter than some hundred times [`Estimate::correlated_samples`], no blocks meet all conditions. The
+/// estimate is then not converged, and its error is the largest that was found.
 ///
 /// # Errors
 /// If there are fewer than two samples, or one is not finite or above 1e100 in size.
@@ -66,7 +66,7 @@ pub(super) struct BlockError {
 }
 
 impl BlockError {
-    /// Returns the error from two blocks or more, as if they were independent.
+    /// Returns the error from two or more blocks that are taken as independent.
     pub(super) fn of(blocks: &RunningMean) -> Self {
         let count = blocks.count();
         // The uncertainty is that of a standard deviation of normal numbers.

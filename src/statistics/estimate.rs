@@ -6,8 +6,8 @@ use std::fmt;
 ///
 /// The error of correlated samples is taken from blocks ([`BlockedMean`](super::BlockedMean),
 /// [`block_average`](super::block_average)). A series that is too short for that gives an estimate that is
-/// not converged: its error is then a lower bound. Samples that are independent, or are assumed to be, give
-/// an estimate that says so.
+/// not converged: its error is then a lower bound. An estimate from samples that are independent, or are
+/// assumed to be, says so.
 ///
 /// Printed with a precision, the mean and the error have that many decimals. Without a precision, the error
 /// has two significant digits. A note on the basis of the error follows in words.
@@ -40,11 +40,11 @@ pub struct Estimate {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Basis {
-    /// The scatter of samples that are taken as independent.
+    /// The samples were taken as independent.
     Independent,
-    /// The scatter of blocks that are long enough.
+    /// The error is that of blocks that were long enough.
     Blocks,
-    /// The largest scatter of blocks, none of which is long enough.
+    /// No block was long enough; this is the largest error found.
     ShortBlocks,
 }
 
@@ -100,7 +100,7 @@ impl Estimate {
         self.samples
     }
 
-    /// Returns the number of consecutive samples that are worth one independent sample.
+    /// Returns the number of consecutive samples that are worth as much as one independent sample.
     ///
     /// The number is $`1 + 2\sum_k\rho_k`$ for autocorrelations $`\rho_k`$. It is 1 if the samples are taken
     /// as independent, or if all are equal.
@@ -127,7 +127,7 @@ impl Estimate {
         matches!(self.basis, Basis::Independent)
     }
 
-    /// Returns the number of decimals that shows two digits of the error.
+    /// Returns the number of decimals with which the error shows two digits.
     fn decimals(&self) -> usize {
         const MOST: usize = 17;
         let mut shown = self.standard_error;

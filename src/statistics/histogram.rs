@@ -34,7 +34,7 @@ pub struct HistogramBin {
     pub high: f64,
     /// Count of the numbers in the bin.
     pub count: u64,
-    /// Share of all numbers in the bin, over its width; NaN without numbers.
+    /// Density: the fraction of all numbers that are in the bin, over its width; NaN without numbers.
     pub density: f64,
     /// Standard error of the density for n independent numbers: √(p(1 − p)/n)/w for the share p and the width
     /// w; NaN without numbers. It is too small for correlated numbers.

@@ -2,24 +2,24 @@
 
 use super::Estimate;
 
-/// Fewest repeats whose scatter alone gives a meaningful error, as with blocks.
+/// Smallest number of repeats with a meaningful scatter, as with blocks.
 const ENOUGH: usize = 8;
 
 impl Estimate {
     /// Combines the estimates of several independent runs into one, as if all samples were of one run.
     ///
-    /// Each run counts by the number of its samples. The error is the larger of two: the one that follows
-    /// from the errors of the runs, and the one from the scatter of their means,
+    /// Each run is weighted by the number of its samples. The error is the larger of two: the one that
+    /// follows from the errors of the runs, and the one from the scatter of their means,
     ///
     /// ```math
     /// \epsilon^2 = \max\left(\sum_i w_i^2\epsilon_i^2,\; \frac{1}{k-1}\sum_i w_i(\bar x_i-\bar x)^2\right),
     /// \quad w_i = n_i/n .
     /// ```
     ///
-    /// The scatter shows what a single run is too short to show, such as a roll in the other sense. The
-    /// scatter of two or three runs may be small by chance, and the errors of the runs are then better. The
-    /// estimate has converged if the estimates of all runs have, or if there are at least eight runs. Runs
-    /// without samples are left out.
+    /// The scatter shows changes that a single run is too short to see, such as a roll that turns the other
+    /// way. But the scatter of two or three runs may be small by chance; then the errors of the runs count.
+    /// The estimate has converged if the estimates of all runs have, or if there are at least eight runs.
+    /// Runs without samples are left out.
     ///
     /// ```
     /// use granular_edmd::statistics::{Estimate, block_average};
@@ -30,7 +30,7 @@ impl Estimate {
     /// assert_eq!(together.samples(), 4096);
     /// assert!(together.is_converged() && together.standard_error() < runs[0].standard_error());
     ///
-    /// // Two runs that found different states: only their number counts, not that of their samples.
+    /// // Two runs that found different states: two numbers, however many samples each has.
     /// let run = |level: f64| chaos[..1024].iter().map(|x| level + 0.01 * x).collect::<Vec<_>>();
     /// let together = Estimate::over_repeats([block_average(&run(0.0))?, block_average(&run(1.0))?]);
     /// assert!((together.standard_error() - 0.5).abs() < 0.01);

@@ -44,7 +44,7 @@ pub enum RecordError {
         /// The path.
         path: PathBuf,
     },
-    /// The file has no whole frame after which a recorder could go on.
+    /// The file has no whole frame after which a recorder could continue.
     ///
     /// The file is left as it is.
     #[error("{} has no whole frame to go on from; it is left as it is", path.display())]
@@ -70,7 +70,7 @@ pub enum RecordError {
 }
 
 impl RecordError {
-    /// Returns a function that turns an error of the system into one that names the action and the file.
+    /// Returns a function that adds the action and the file to an error of the system.
     pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::Io { action, path, source }
@@ -91,7 +91,7 @@ impl RecordError {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ReadError {
-    /// The contents of a file are not what [`read`](super::read) looks for.
+    /// The contents of a file are not those that its reader expects.
     #[error("cannot use {}", path.display())]
     File {
         /// The path.
@@ -115,7 +115,7 @@ pub enum ReadError {
         /// The error of the system.
         source: io::Error,
     },
-    /// The input ends too early.
+    /// The input is cut short.
     #[error("the file ends after line {line}, where {what} should follow")]
     End {
         /// Number of the last line.
@@ -123,7 +123,7 @@ pub enum ReadError {
         /// The thing that is missing.
         what: String,
     },
-    /// A part of a line is not what it must be.
+    /// A field of a line is not of the form that it must have.
     #[error("line {line}: {what} must be {requirement}, but is {found:?}")]
     Unexpected {
         /// Number of the line.
@@ -135,7 +135,7 @@ pub enum ReadError {
         /// The text in its place.
         found: String,
     },
-    /// A part that is needed is missing.
+    /// A field or a line is missing.
     #[error("line {line}: {what} is missing")]
     Missing {
         /// Number of the line.
@@ -158,7 +158,7 @@ pub enum ReadError {
         line: usize,
         /// Number of the first line.
         first: usize,
-        /// The thing that appears twice, with its value.
+        /// The name and value that appear twice.
         what: String,
     },
     /// The center of a disk is outside the box that the file gives.
@@ -184,7 +184,7 @@ pub enum ReadError {
 }
 
 impl ReadError {
-    /// Creates the error for a part that is not what it must be.
+    /// Creates the error for a field of the wrong form.
     pub(super) fn unexpected(
         line: usize,
         what: impl Into<String>,
@@ -195,7 +195,7 @@ impl ReadError {
         Self::Unexpected { line, what: what.into(), requirement: requirement.into(), found }
     }
 
-    /// Creates the error for a part that is missing.
+    /// Creates the error for a missing field.
     pub(super) fn missing(line: usize, what: impl Into<String>) -> Self {
         Self::Missing { line, what: what.into() }
     }

@@ -30,7 +30,7 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// A format of trajectories, which decides what each frame looks like in the file.
+/// A format of trajectories: the form of a frame in the file.
 ///
 /// # Contract
 /// 1. `write_frame` depends on the frame alone: written twice, the same frame gives the same bytes.
@@ -51,8 +51,7 @@ pub trait Format {
     /// If the writer fails, or the format has no place for a value of the frame.
     fn write_frame(&self, frame: &Frame<'_>, out: &mut dyn Write) -> io::Result<()>;
 
-    /// Skips the next frame of the input, and returns its time, or `None` if the input ends before the frame
-    /// does.
+    /// Skips the next frame of the input, and returns its time, or `None` if the frame is cut short.
     ///
     /// [`Recorder::append`](super::Recorder::append) needs it to find the last whole frame of a file. A
     /// format without it records new files only.
@@ -65,14 +64,14 @@ pub trait Format {
     }
 }
 
-/// Returns the next line without its end, or `None` if the input ends before the line does.
+/// Returns the next line without its line break, or `None` if the input is cut short.
 pub(super) fn whole_line(input: &mut dyn BufRead) -> io::Result<Option<String>> {
     let mut line = String::new();
     input.read_line(&mut line)?;
     Ok(line.strip_suffix('\n').map(|line| line.trim_end_matches('\r').to_owned()))
 }
 
-/// Skips this many lines, and returns false if the input ends before that.
+/// Skips this many lines, and returns false if the input has fewer.
 pub(super) fn skip_lines(input: &mut dyn BufRead, count: usize) -> io::Result<bool> {
     let mut line = Vec::new();
     for _ in 0..count {

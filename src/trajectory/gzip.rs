@@ -18,10 +18,10 @@ const HEAD: [u8; 10] = [0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255];
 /// The last block of a member, which is empty.
 const LAST_BLOCK: [u8; 2] = [3, 0];
 
-/// Bytes with which a sync flush ends.
+/// The last bytes of a sync flush.
 const FLUSHED: [u8; 4] = [0, 0, 255, 255];
 
-/// A member as far as it is written: the checksum of its data, and whether it has begun.
+/// The state of a member that is being written: the checksum of its data, and whether it has begun.
 #[derive(Debug, Default)]
 pub(super) struct Member {
     crc: Crc,
@@ -37,7 +37,7 @@ impl Member {
         let mut encoder = DeflateEncoder::new(head.to_vec(), Compression::fast());
         encoder.write_all(bytes)?;
         encoder.flush()?;
-        // The bytes are copied out, since to finish the encoder would end the stream.
+        // The bytes are copied out, because finishing the encoder would end the stream.
         Ok((encoder.get_ref().clone(), self.with(bytes)))
     }
 
@@ -104,8 +104,7 @@ fn check_ending(mut packed: Vec<u8>, input: &mut impl BufRead, ending: &[u8]) ->
     if packed.len() <= ending.len() { Ok(()) } else { Err(no_frame("a whole frame", "a damaged one")) }
 }
 
-/// Decompresses some bytes of a stream, and returns whether the stream goes on. It does not go on after its
-/// end, or where it is damaged.
+/// Decompresses some bytes of a stream, and returns false at the end of the stream, or where it is damaged.
 fn goes_on(inflater: &mut Decompress, mut packed: &[u8], bytes: &mut Vec<u8>) -> bool {
     loop {
         bytes.reserve(4 * packed.len() + 1024);

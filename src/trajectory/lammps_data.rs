@@ -1,4 +1,4 @@
-//! Data files of LAMMPS, with which one state runs in both codes.
+//! Data files of LAMMPS, so that one state can be run in both codes.
 
 mod header;
 mod read;

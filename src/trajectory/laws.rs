@@ -111,7 +111,7 @@ pub fn check(format: &dyn Format) -> Result<(), Violation> {
     Ok(())
 }
 
-/// Checks that the format notices a frame that is cut short, at whatever byte.
+/// Checks that the format notices a frame that is cut short at any byte.
 fn check_torn(format: &dyn Format, number: usize, frame: &[u8]) -> Result<(), Violation> {
     let written = frame.len();
     match (1..written).find(|&kept| !matches!(format.skip_frame(&mut &frame[..kept]), Ok(None))) {

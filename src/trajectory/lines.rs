@@ -22,7 +22,7 @@ impl<R: BufRead> Lines<R> {
         self.line
     }
 
-    /// Returns the next line without its end, and its number, if there is one.
+    /// Returns the next line without its line break, and its number, if there is one.
     pub(super) fn next(&mut self) -> Result<Option<(&str, usize)>, ReadError> {
         self.text.clear();
         let line = self.line + 1;

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::errors::RecordError;
 
-/// Bytes that can grow and be cut: a file, or its stand-in for tests.
+/// Bytes that can be appended and cut off: a file, or its stand-in for tests.
 pub(super) trait Medium: Write + Seek {
     /// Cuts the bytes to this length.
     fn cut(&mut self, length: u64) -> io::Result<()>;
@@ -25,7 +25,7 @@ impl Medium for File {
     }
 }
 
-/// A file that grows by whole pieces: if a write fails, the piece is cut off again.
+/// A file that grows by whole pieces. If a write fails, the piece is cut off again.
 #[derive(Debug)]
 pub(super) struct Growing<M: Medium> {
     medium: M,
@@ -35,8 +35,8 @@ pub(super) struct Growing<M: Medium> {
 }
 
 impl<M: Medium> Growing<M> {
-    /// Creates a file that goes on in a medium after this many bytes and an ending. The first write cuts off
-    /// whatever else follows.
+    /// Resumes writing after the first `length` bytes, which this ending follows. The first write cuts off
+    /// all other bytes.
     pub(super) const fn new(medium: M, length: u64, ending: Vec<u8>) -> Self {
         Self { medium, length, ending }
     }
@@ -96,8 +96,8 @@ pub(super) fn reopen(path: &Path) -> Result<File, RecordError> {
     locked(file.map_err(RecordError::io("open", path))?, path)
 }
 
-/// Locks a file; the lock ends with the process at the latest. The file stays unlocked where there are no
-/// locks, and outside Unix, where a lock could keep other programs from reading.
+/// Locks a file until it is unlocked or the process ends. The file stays unlocked where there are no locks,
+/// and outside Unix, where a lock could keep other programs from reading.
 fn locked(file: File, path: &Path) -> Result<File, RecordError> {
     match if cfg!(unix) { file.try_lock() } else { Ok(()) } {
         Err(TryLockError::WouldBlock) => Err(RecordError::Locked { path: path.to_owned() }),

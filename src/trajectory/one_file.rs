@@ -99,7 +99,7 @@ impl Store for OneFile {
 }
 
 impl Packing {
-    /// Makes the packing of compressed files, in programs that can compress.
+    /// Makes the compressor of a file, if this program can compress.
     #[cfg(feature = "gzip")]
     const GZIP: Option<fn() -> Self> = Some(|| Self::Gzip(Member::default()));
     #[cfg(not(feature = "gzip"))]
@@ -169,7 +169,7 @@ fn plain_frames(input: &mut impl BufRead, format: &dyn Format) -> io::Result<Fra
     Ok(frames)
 }
 
-/// A reader that keeps a copy of what was taken from it.
+/// A reader that keeps a copy of the bytes that were read.
 struct Copied<'a, R> {
     input: &'a mut R,
     taken: Vec<u8>,

@@ -60,7 +60,7 @@ pub fn read<T>(
     reader(open(path)?).map_err(failed)
 }
 
-/// Returns true if the name of a file says that it is compressed.
+/// Returns true if a file is compressed, by its name.
 pub(super) fn is_gzip(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "gz")
 }

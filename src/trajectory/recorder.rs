@@ -27,7 +27,7 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 /// After a kill, resume the run from its checkpoint and [`append`](Self::append). The run comes again to the
 /// frames that were written after the checkpoint, with the same bits. The recorder compares them with those
 /// in the file and does not write them twice. If they differ, the file is of another run, and the error says
-/// so. If the process died in the middle of a frame, the next frame replaces what it left.
+/// so. If the process died in the middle of a frame, the next frame overwrites the torn one.
 ///
 /// A checkpoint later than the last frame leaves a gap, since the recorder takes only the frames that the run
 /// comes to. After disks are removed, `id` numbers the remaining ones.
@@ -62,7 +62,7 @@ pub struct Recorder {
     /// Bytes of the present frame.
     bytes: Vec<u8>,
     failure: Option<RecordError>,
-    /// The clock before a frame that failed, with which the next run takes that frame again.
+    /// Clock to restore so that the next run retries the failed frame.
     before_failure: Option<SampleTimes>,
 }
 

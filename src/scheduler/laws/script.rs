@@ -160,7 +160,7 @@ fn few(stage: &mut Stage) -> Operation {
     extreme(stage, disks)
 }
 
-/// Makes the operations of a run: the first disk gets a later time. Now and then another disk does, or
+/// Makes the operations of a run: the first disk gets a later time. Now and then another disk gets one, or
 /// returns to its previous time.
 fn run(stage: &mut Stage, first: usize, now: f64) -> Operation {
     if !now.is_finite() {
@@ -191,7 +191,7 @@ fn to_extremes(stage: &mut Stage, first: usize, _: f64) -> Operation {
     Operation::Set([first, other][stage.below(2)], stage.extreme_time())
 }
 
-/// Makes one disk busy in long steps, while all others never have an event.
+/// Gives one disk many events, far apart, while all others wait forever.
 fn one_busy(stage: &mut Stage, first: usize, now: f64) -> Operation {
     if now < f64::INFINITY {
         Operation::Set(first, now + 1e6)

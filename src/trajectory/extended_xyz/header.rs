@@ -49,7 +49,7 @@ pub(super) fn value<'a>(keys: &'a str, key: &str) -> Option<&'a str> {
     None
 }
 
-/// Returns the fields of each disk, with [`Field::Other`] for columns that no property of a disk belongs to.
+/// Returns the fields of each disk, with [`Field::Other`] for columns that are no property of a disk.
 fn fields(properties: &str, line: usize) -> Result<Vec<Field>, ReadError> {
     let parts: Vec<&str> = properties.split(':').collect();
     let mut fields = Vec::new();
