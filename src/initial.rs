@@ -8,12 +8,12 @@
 //! | [`packed_at_random`] | any | random places, up to an area fraction of 0.8 |
 //!
 //! [`Radii`] draws radii from distributions, [`homogeneous`] makes disks of them, and
-//! [`with_maxwellian_velocities`] sets them in motion. To place disks around others that have a place
-//! already, put those into the boundary as [`Obstacles`](crate::boundary::Obstacles).
+//! [`with_maxwellian_velocities`] sets them in motion. To place disks around others that are placed already,
+//! put those into the boundary as [`Obstacles`](crate::boundary::Obstacles).
 //!
 //! The functions place no disk into a wall: at time 0,
 //! [`Boundary::overlap`](crate::boundary::Boundary::overlap) is `None` for each disk. So they work in a
-//! boundary of any shape, even in one that leaves only a part of its interior to the disks.
+//! boundary of any shape, even if it leaves only some of its interior free.
 
 mod lattice;
 mod packed;
@@ -89,8 +89,8 @@ fn spacings() -> impl Iterator<Item = f64> {
     (0..=40).map(|k| LOOSE + (CLOSE - LOOSE) * f64::from(k) / 40.0)
 }
 
-/// Cuts the interior of a boundary at a height above its bottom. If the cut is below the upper periodic end,
-/// the ends are no longer periodic.
+/// Cuts the interior of a boundary at a height above its bottom. A box that is periodic upward and cut below
+/// its top is no longer periodic there.
 fn cut(interior: Domain, below: f64) -> Result<Domain, ParameterError> {
     let is_within = below.is_finite() && below > interior.bottom;
     let below = accept(is_within, "height", "finite and above the bottom of the interior", below)?;

@@ -1,7 +1,7 @@
 //! Trajectories written to files for other programs, and disks read from files.
 //!
 //! A [`Recorder`] is an [`Observer`](crate::observable::Observer) that writes a frame to a file at set times.
-//! Its [`Format`] says what a frame looks like. Numbers are written so that they read back to the same bits.
+//! Its [`Format`] defines the form of a frame. Numbers are written so that they read back to the same bits.
 //!
 //! | format | file | opened by |
 //! |---|---|---|
@@ -30,7 +30,7 @@
 //! let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 50, 0.5)?, 0.5, 42)?;
 //! let mut run = Simulation::builder(Frictional::new(0.01, 0.1)?, container.clone()).disks(disks).build()?;
 //!
-//! // Let `path` be "run.xyz". A file that is there already is not overwritten.
+//! // Let `path` be "run.xyz". An existing file is never overwritten.
 //! let mut recorder = Recorder::create(&path, ExtendedXyz, SampleTimes::every(0.5)?)?;
 //! run.run_until(2.0, &mut recorder)?;
 //! assert_eq!(recorder.times(), [0.5, 1.0, 1.5, 2.0]);
@@ -48,7 +48,7 @@
 //! ```
 //!
 //! # A format of your own
-//! In a plain test, [`laws::check`] finds out whether a format keeps its contract.
+//! In a plain test, [`laws::check`] checks the contract of a format.
 //!
 //! ```
 //! use std::io::{self, BufRead, Write};

@@ -52,15 +52,15 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 ///    else down.
 /// 4. A cluster shows **one roll** otherwise: clockwise for a positive $`\Psi_1`$.
 ///
-/// The bound of $`3\sigma`$ compares the center of a cluster with *single* samples of a gas at rest. A share
-/// of $`e^{-9/2}`$ of these, one in ninety, lies as far out. Unlike an error of the mean, this bound does not
-/// depend on the correlation of the samples. The rolls of the paper's system are far stronger, so the number
-/// matters only at their onset.
+/// The bound of $`3\sigma`$ compares the center of a cluster with *single* samples of a gas at rest. A
+/// fraction $`e^{-9/2}`$ of these, one in ninety, lies as far out. Unlike an error of the mean, this bound
+/// does not depend on the correlation of the samples. The rolls of the paper's system are far stronger, so
+/// the number matters only at their onset.
 ///
 /// In two equal rolls $`\Psi_1`$ vanishes, while one roll may have any $`\Psi_2`$ (paper, section III). At
 /// large gravity, that $`\Psi_2`$ is a third of $`|\Psi_1|`$. At small gravity, the roll leans further to one
 /// side as the loss grows, until the two are equal: a ratio of 1 would call it two rolls there. A ratio of
-/// 1.5 or 3 instead of 2 hardly matters: it renames three or four of 1682 states in
+/// 1.5 or 3 instead of 2 hardly matters: it changes the names of three or four of 1682 states in
 /// `docs/reproduction/full-length`.
 ///
 /// A collapsed run keeps a weak, slow $`\Psi_2`$, whose mean settles only after thousands of oscillations.
@@ -256,8 +256,8 @@ impl Classification {
     /// Returns the region of Fig. 5: coexistence if one roll and two rolls both have the least weight, and no
     /// rolls have less; otherwise the region of the number of rolls with the largest weight.
     ///
-    /// Two rolls that come and go at the edge of the collapse lean to a side on the way. This is a passage
-    /// from flow to none, not one roll beside two.
+    /// Two rolls that come and go near the collapse lean to one side in between. This is the transition from
+    /// flow to no flow, and not the coexistence of one roll with two.
     pub fn regime(&self) -> ConvectiveRegime {
         let [none, one, two] = [0, 1, 2].map(|rolls| self.weight_of_rolls(rolls));
         let collapsed = self.weight(ConvectiveState::Collapsed);

@@ -12,7 +12,7 @@ use crate::random::uniform;
 /// Default number of restarts. With four clusters or fewer, most of them find the same best result.
 const RESTARTS: usize = 16;
 
-/// Largest number of rounds of one descent, far above the usual number.
+/// Largest number of iterations from one start, far above the usual number.
 const ROUNDS: usize = 1000;
 
 /// Largest coordinate. Its square, summed over all points, stays finite.

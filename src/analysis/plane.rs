@@ -18,7 +18,7 @@ pub struct PlaneTransition {
     pub inelasticity: f64,
     /// The two neighbors, as (κ, q), between which the transition lies. They share one coordinate.
     pub between: [(f64, f64); 2],
-    /// True if the regime moves up from the first neighbor to the second.
+    /// True if the regime goes up from the first neighbor to the second.
     pub rising: bool,
 }
 

@@ -72,7 +72,7 @@ pub struct Transition {
     /// Half the distance of these control values. The transition lies between `value - error` and
     /// `value + error`.
     pub error: f64,
-    /// True if the regime moves up with a growing control value. It moves down where the paper finds
+    /// True if the regime goes up with a growing control value. It goes down where the paper finds
     /// re-entrance.
     pub rising: bool,
 }

@@ -12,19 +12,19 @@ use crate::quantity::accept;
 use enclosure::Enclosure;
 use packing::Packing;
 
-/// Number of steps of growth after which disks count as jammed if too little has changed.
+/// Number of growth steps with too little change after which the disks count as jammed.
 const PATIENCE: usize = 100;
 
 /// Share of the missing area that must be gained in these steps.
 const LEAST_GAIN: f64 = 0.05;
 
-/// Relative amount by which disks are larger while they are packed, so that rounding lets none overlap.
+/// Relative amount by which disks are enlarged while they are packed, so that no two overlap after rounding.
 const APART: f64 = 1e-9;
 
 /// Returns these disks, of any mix of radii, packed at random below the height `below` (or the lid, if that
 /// is lower).
 ///
-/// The disks start small at random places, and move and collide without loss. Again and again, each of them
+/// The disks start small at random places, and move and collide without loss. Step by step, each of them
 /// grows into the room that it finds, until it has its full radius. Two sizes reach an area fraction of 0.8
 /// and more without order. Equal disks crystallize above 0.7, as they do in any packing: they form crystal
 /// grains with boundaries between them. The disks have the same order, radii, masses and velocities as
@@ -81,8 +81,8 @@ pub fn packed_at_random<B: Boundary + ?Sized>(
     Ok(packed.collect::<Result<_, _>>()?)
 }
 
-/// Returns the error with the full radius of the disk that finds no room, instead of the radius with which it
-/// would have begun to grow. The largest disks are placed first.
+/// Returns the error with the full radius of the disk that finds no room, instead of its initial, smaller
+/// radius. The largest disks are placed first.
 fn with_full_radius(error: PlacementError, disks: &[Disk]) -> PlacementError {
     let PlacementError::NoRoom { count, placed, radius, interior } = error else { return error };
     let mut radii: Vec<f64> = disks.iter().map(Disk::radius).collect();

@@ -85,9 +85,9 @@ impl Radii {
         Self::within(Law::Power { exponent }, smallest, largest)
     }
 
-    /// Creates a distribution of two radii, in which exactly this share of all disks is large.
+    /// Creates a distribution of two radii, in which exactly this fraction of all disks is large.
     ///
-    /// The number of large disks is this share of all disks, rounded to a whole number.
+    /// The number of large disks is this fraction of all disks, rounded to a whole number.
     ///
     /// # Errors
     /// If a radius is not finite and positive, the large one is below the small one, or the share is not in

@@ -99,8 +99,8 @@ impl<'a, B: Boundary + ?Sized> Rows<'a, B> {
             self.corner = DVec2::new(self.interior.left, self.corner.y + self.height);
             self.column = DVec2::ZERO;
         }
-        // Under a lid, no gap is needed. At periodic ends, the first row is the next neighbor, so the gap
-        // stays.
+        // Under a lid, no gap is needed. If top and bottom are periodic, the first row is the next neighbor,
+        // so the gap stays.
         let end = if self.interior.periodic_ends { size } else { 0.5 * size + radius };
         self.corner.y + self.column.y + end <= self.interior.top
     }

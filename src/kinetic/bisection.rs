@@ -3,8 +3,7 @@
 /// Returns the last number from `inside`, where `holds` is true, toward `outside`, where it is false.
 ///
 /// If the condition changes more than once in between, the search finds one of the changes. It halves the
-/// interval until no floating-point number is left inside. About two thousand halvings always suffice for
-/// that.
+/// interval until no floating-point number is left inside. About two thousand halvings always suffice.
 pub(super) fn boundary(inside: f64, outside: f64, holds: impl Fn(f64) -> bool) -> f64 {
     let (mut inside, mut outside) = (inside, outside);
     loop {

@@ -24,13 +24,13 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 /// [`with_walls`](Self::with_walls) gives them to the recorder.
 ///
 /// # Going on in a file
-/// After a kill, resume the run from its checkpoint and [`append`](Self::append). The run comes again to the
-/// frames that were written after the checkpoint, with the same bits. The recorder compares them with those
-/// in the file and does not write them twice. If they differ, the file is of another run, and the error says
-/// so. If the process died in the middle of a frame, the next frame overwrites the torn one.
+/// After a kill, resume the run from its checkpoint, and [`append`](Self::append) to its file. The run makes
+/// the frames after the checkpoint again, with the same bits. The recorder compares them with those in the
+/// file and does not write them twice. If they differ, the file is of another run, and the error says so. If
+/// the process died in the middle of a frame, the next frame overwrites the torn one.
 ///
-/// A checkpoint later than the last frame leaves a gap, since the recorder takes only the frames that the run
-/// comes to. After disks are removed, `id` numbers the remaining ones.
+/// A checkpoint later than the last frame leaves a gap, since the run does not go back to make the frames in
+/// between. After disks are removed, `id` numbers the remaining ones.
 ///
 /// The times of the frames increase. On Unix, no two recorders write to one file at a time.
 ///
@@ -83,7 +83,7 @@ impl Recorder {
         Ok(Self::new(format, OneFile::create(path.as_ref())?, times))
     }
 
-    /// Creates a recorder that goes on in a file that [`create`](Self::create) began.
+    /// Creates a recorder that continues a file that [`create`](Self::create) began.
     ///
     /// It reads the whole file once.
     ///
@@ -112,7 +112,7 @@ impl Recorder {
         Ok(Self::new(PolyData, Series::create(path.as_ref())?, times))
     }
 
-    /// Creates a recorder that goes on in a series that [`create_vtk`](Self::create_vtk) began.
+    /// Creates a recorder that continues a series that [`create_vtk`](Self::create_vtk) began.
     ///
     /// # Errors
     /// If the files cannot be opened, another recorder writes to them, or they are not such a series. They
@@ -175,7 +175,7 @@ impl Recorder {
 
     /// Records a frame now, for example of the state before a run.
     ///
-    /// A run takes its own first frame after one interval.
+    /// A run records its first frame after one interval.
     ///
     /// # Errors
     /// If the frame cannot be written, or the file reaches this time already and does not have this frame.

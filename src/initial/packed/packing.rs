@@ -10,28 +10,28 @@ use crate::observable::{Collision, stop_when};
 use crate::squares::Squares;
 use crate::{Disk, ParameterError, Simulation};
 
-/// Area fraction at which the disks begin to grow. Random places for them are found soon, for any mix of
-/// radii.
+/// Area fraction at which the disks begin to grow. It is so low that random places are found fast, for any
+/// mix of radii.
 const START: f64 = 0.35;
 
-/// Factor by which the disks begin smaller in the next attempt, if obstacles leave less room than the area
+/// Factor by which the disks are smaller in the next attempt, if obstacles leave less room than the area
 /// suggests.
 const SMALLER: f64 = 0.7;
 
 /// Number of attempts to find random places.
 const ATTEMPTS: i32 = 8;
 
-/// Number of collisions per disk between two steps of growth. With fewer, the packing ends sooner but less
-/// dense.
+/// Number of collisions per disk between two steps of growth. With fewer, packing is faster, and jams at a
+/// lower density.
 const COLLISIONS: usize = 4;
 
-/// Longest time between two steps. In this time, a disk of the largest size goes about its radius.
+/// Longest time between two steps, in which a disk of the largest size moves by about its radius.
 const LONGEST: f64 = 1.0;
 
 /// Least mass, in units of that of the largest disk.
 const LEAST_MASS: f64 = 1e-20;
 
-/// Share of a gap that a disk may grow into, so that it touches nothing.
+/// Fraction of a gap that a disk may grow into, so that it touches nothing.
 const SHARE: f64 = 0.99;
 
 /// Disks on their way to their radii.
@@ -97,8 +97,8 @@ impl<'a> Packing<'a> {
         let domain = room.domain();
         let mut squares = Squares::new(&domain, self.full.iter().map(Disk::radius));
         for (index, (disk, full)) in self.grown.iter().zip(self.full).enumerate() {
-            // Disks are entered with their full radii. Two disks that do not overlap even then are never in
-            // each other's way.
+            // Disks are entered with their full radii. Two that do not overlap even then never hinder each
+            // other.
             squares.add(disk.position(), full.radius(), index);
         }
         for index in 0..self.grown.len() {
@@ -113,8 +113,8 @@ impl<'a> Packing<'a> {
         Ok(())
     }
 
-    /// Returns the radius to which a disk may grow such that it leaves its neighbors room to grow, too; at
-    /// most its full radius.
+    /// Returns the radius to which a disk may grow and leave its neighbors room to grow, too; at most its
+    /// full radius.
     fn free_radius(&self, index: usize, domain: &Domain, squares: &Squares) -> f64 {
         let (disk, full) = (&self.grown[index], self.full[index].radius());
         let most = |other: usize| {
@@ -149,7 +149,7 @@ fn placed<B: Boundary + ?Sized>(
     };
     let disks = order.iter().map(small).collect::<Result<Vec<_>, _>>()?;
     let disks = placed_at_random(room, disks, room.domain().top, seed)?;
-    // At this temperature, a disk of the largest size goes about its radius in a unit of time.
+    // At this temperature, a disk of the largest size moves by about its radius in a unit of time.
     let moving = with_maxwellian_velocities(disks, largest * largest, seed)?;
     let mut placed = moving.clone();
     for (index, disk) in order.into_iter().zip(moving) {
@@ -158,7 +158,7 @@ fn placed<B: Boundary + ?Sized>(
     Ok(placed)
 }
 
-/// Returns a radius, up to this one, with which a disk at this place overlaps no wall; 0 if it finds none.
+/// Returns a radius, at most this one, with which a disk at this place overlaps no wall; 0 if there is none.
 fn radius_inside<B: Boundary + ?Sized>(room: &Enclosure<B>, place: DVec2, radius: f64) -> f64 {
     let Some((_, depth)) = room.overlap(place, radius, 0.0) else { return radius };
     let free = radius - depth / SHARE;

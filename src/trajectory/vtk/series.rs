@@ -65,7 +65,7 @@ impl Series {
         self.folder.join(file_name(part, number))
     }
 
-    /// Writes one of the files of a frame. A killed run may have left that file, or its beginning.
+    /// Writes one of the files of a frame. A killed run may have left that file, whole or torn.
     fn write(&self, part: &str, bytes: &[u8]) -> Result<(), RecordError> {
         let path = self.file_of(part, self.times.len());
         let file = match fs::read(&path) {
@@ -76,7 +76,7 @@ impl Series {
         };
         let mut file = file.map_err(RecordError::io("create", &path))?;
         file.write_all(bytes).map_err(|error| {
-            // The part that was written would do no harm, but takes room on a full drive.
+            // A torn file is harmless, but it takes room on a full drive.
             let _ = fs::remove_file(&path);
             RecordError::io("write to", &path)(error)
         })
@@ -161,8 +161,7 @@ fn times(text: &str, folder: &str) -> (Vec<f64>, usize) {
     (times, length)
 }
 
-/// Returns true if the rest of a file of times is no longer than its ending, or is the beginning of a frame
-/// that was not finished.
+/// Returns true if the rest of a file of times is no longer than its ending, or is an unfinished frame.
 fn is_torn(rest: &str, folder: &str, number: usize) -> bool {
     let time = rest.strip_prefix("<DataSet timestep=\"").and_then(|rest| rest.split_once('"'));
     let entry = time.and_then(|(time, _)| time.parse().ok()).map(|time| entry(folder, number, time) + TAIL);
