@@ -38,7 +38,7 @@
 //!
 //! # An observer of your own
 //! [`SampleTimes`] is the clock of all observers here, and can serve yours. In a plain test, [`laws::check`]
-//! finds out whether an observer keeps its contract.
+//! checks the contract of an observer.
 //!
 //! ```
 //! use granular_edmd::observable::{Collision, Moment, Observer, SampleTimes, Snapshot, laws};
@@ -76,8 +76,8 @@
 //!
 //! # Measurements in files
 //! With the feature `serde`, you can write the observers of this module, except for closures, to a file
-//! beside the checkpoint of the run. Read back and lent to the resumed run, they end with the same bits as in
-//! a run without interruption. JSON keeps the bits if its reader rounds correctly (serde_json's
+//! beside the checkpoint of the run. Read back and lent to the resumed run, they have the same bits in the
+//! end as in a run without interruption. JSON keeps the bits if its reader rounds correctly (serde_json's
 //! `float_roundtrip`). JSON has no NaN, which some observables return without disks. For those, take a binary
 //! format such as postcard.
 

@@ -68,10 +68,10 @@ impl IsoLine {
     /// Traces the line at these ascending frictions, where the inelasticity is at most
     /// `largest_inelasticity`.
     ///
-    /// The result contains the connected pieces of the line. A piece that ends between two of the frictions
-    /// gets its exact end as a last point. At such an end, the line leaves the plane, or its lower and its
-    /// upper inelasticity meet. If they meet, both pieces have this point. The trace misses a piece that lies
-    /// entirely between two of the frictions.
+    /// The result contains the connected pieces of the line. If a piece ends between two of the frictions,
+    /// its exact end is its last point. There, the line leaves the plane, or its lower and its upper
+    /// inelasticity meet, and both pieces have this point. The trace misses a piece that lies entirely
+    /// between two of the frictions.
     ///
     /// # Errors
     /// If a friction is negative or not finite, the frictions do not ascend, or `largest_inelasticity` is not
@@ -110,7 +110,7 @@ fn roots(a: f64, b: f64, c: f64) -> [Option<f64>; 2] {
         return [None; 2];
     }
     // The root of larger size adds two numbers of the same sign. The other root would be their difference,
-    // with few digits left. The product of both roots, c/a, gives it to full precision.
+    // with few digits left, so it comes from the product of both roots, c/a, to full precision.
     let larger = 0.5 * (b + discriminant.sqrt().copysign(b));
     if larger == 0.0 {
         return [Some(0.0); 2];

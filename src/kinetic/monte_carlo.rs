@@ -16,8 +16,7 @@ const STRATA: u32 = 64;
 const SAMPLES: u32 = 64;
 /// Number of collisions in one chunk, the unit of parallel work.
 const CHUNK: u64 = STRATA as u64 * SAMPLES as u64;
-/// Number of chunks before the error is checked for the first time. With this many, the error itself is well
-/// known.
+/// Number of chunks before the error is checked for the first time, enough to know the error itself well.
 const FIRST_ROUND: u64 = 16;
 
 /// A Monte Carlo average of the energy change per collision, for any rule.
@@ -73,7 +72,7 @@ impl MonteCarlo {
         Self { samples, ..self }
     }
 
-    /// Returns the same average, which stops early once the standard error is this small.
+    /// Returns the same average, which stops early when the standard error is this small.
     ///
     /// The error is checked after 2¹⁶ collisions and at each doubling. If the collisions run out first,
     /// [`Estimate::standard_error`] is the error that was reached.

@@ -3,7 +3,7 @@
 use super::{Collision, Heading, Moment, Observable, Observer, Partner, Snapshot, Tabular, Verdict};
 use crate::{Disk, Kind};
 
-/// An observable or observer that sees only disks of one kind.
+/// A filter: an observable or observer that sees only disks of one kind.
 ///
 /// Its snapshots hold only these disks, in their order. It passes on the collisions in which a disk of the
 /// kind takes part. It passes on a [`Moment`] as it is, with the number of all disks.

@@ -1,4 +1,4 @@
-//! The traits [`Observable`] and [`Observer`], and what both sides of each trait promise.
+//! The traits [`Observable`] and [`Observer`], and the promises of both sides of each trait.
 
 use std::ops::ControlFlow;
 
@@ -11,7 +11,7 @@ use super::{Collision, Moment, Snapshot};
 /// not panic for a snapshot without disks, or of a domain without a lid, whose height is infinite. A value
 /// that is not defined is NaN.
 ///
-/// The engine measures copies of the disks, so nothing that an observable does reaches the run.
+/// The engine measures copies of the disks, so an observable cannot change the run.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observable",
     label = "an `Observable` is expected here",
@@ -26,7 +26,7 @@ pub trait Observable {
     fn measure(&self, snapshot: &Snapshot<'_>) -> Self::Value;
 }
 
-/// An error with which an observer ends a run.
+/// The error of an observer that makes a run fail.
 pub type ObserverError = Box<dyn std::error::Error + Send + Sync>;
 
 /// An observer's decision on the run: go on, stop here, or fail.
@@ -60,8 +60,8 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
 /// 4. The value of `next_sample` changes only in `on_start` and `on_sample`. The engine asks for it after
 ///    these calls, and would notice another change too late.
 ///
-/// An observer that breaks the first or the second promise ends the run with an error, since the run would
-/// sample forever. An observer that breaks the third or the fourth gets samples at other times than it meant.
+/// If an observer breaks the first or the second promise, the run fails, since it would sample forever. If it
+/// breaks the third or the fourth, it gets samples at times that it did not mean.
 /// [`SampleTimes`](super::SampleTimes) keeps all four, and [`laws::check`](super::laws::check) tests them.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not an observer",
@@ -72,7 +72,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
     note = "lend an observer to a run as `&mut observer`, two as `&mut (&mut first, &mut second)`, none as `&mut ()`"
 )]
 pub trait Observer {
-    /// Receives the start of a run, which may go on from an earlier run.
+    /// Receives the start of a run, which may continue an earlier run.
     fn on_start(&mut self, moment: &Moment) {
         let _ = moment;
     }
@@ -92,7 +92,7 @@ pub trait Observer {
         let _ = snapshot;
     }
 
-    /// Receives the end of a run, however it ends.
+    /// Receives the end of a run, whatever the reason.
     fn on_end(&mut self, moment: &Moment) {
         let _ = moment;
     }

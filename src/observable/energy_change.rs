@@ -31,7 +31,7 @@ impl Default for EnergyChange {
     }
 }
 
-/// The mean over no collisions, for a wall that was never touched.
+/// An empty mean, for a wall that was never touched.
 static NEVER_TOUCHED: BlockedMean = BlockedMean::new();
 
 impl EnergyChange {

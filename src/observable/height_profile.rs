@@ -123,7 +123,7 @@ impl HeightProfile {
 
     fn add(&mut self, disk: &Disk, width: f64) {
         let (height, radius) = (disk.position().y, disk.radius());
-        // A disk outside the profile counts in the bin at the end of the profile, where it has no area.
+        // A disk outside the profile counts in the first or the last bin, to which it adds no area.
         let first = self.bins.at_or_above(height - radius);
         let last = self.bins.at_or_above(height + radius).min(self.bins.count() - 1);
         let mut below = area_below(self.bins.edge(first) - height, radius);

@@ -1,7 +1,7 @@
 //! Checks of an observer's contract, for observers of your own.
 //!
 //! An observer cannot change a trajectory, whatever it does, since the engine shows it copies. But the
-//! observer is responsible for its clock: a wrong clock can hang a run, or wait for samples that never come.
+//! observer is responsible for its clock. A wrong clock can hang a run, or ask for samples that never come.
 
 use glam::DVec2;
 use thiserror::Error;
@@ -50,9 +50,9 @@ pub enum Violation {
         next = Readable(*next), before = Readable(*before)
     )]
     Moved {
-        /// Absolute time of the next sample, as it was after the preceding start or sample.
+        /// Absolute time of the next sample, after the preceding start or sample.
         before: f64,
-        /// Absolute time of the next sample, as it is after a collision, a verdict or the end of a run.
+        /// Absolute time of the next sample, after a collision, a verdict or the end of a run.
         next: f64,
     },
 }
@@ -71,11 +71,11 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Checks that an observer keeps its contract in a few runs of a made-up system.
 ///
-/// The runs have three disks and four walls, collisions with each partner and in all regimes, and up to
-/// fifty samples each, at the times that the observer asks for. The first run starts at time 0, the second
-/// goes on where the first ended, the third starts later and off the beat, and the last is another run from a
-/// time before 0. A run ends early if the observer stops it or fails. The observer keeps what it has
-/// collected in the check, so make a new one for a measurement.
+/// The runs have three disks and four walls, collisions with each partner and in all regimes, and up to fifty
+/// samples each, at the times that the observer asks for. The first run starts at time 0, the second
+/// continues the first, the third starts later and off the beat, and the last is another run from a time
+/// before 0. A run ends early if the observer stops it or fails. The observer keeps what it has collected in
+/// the check, so make a new one for a measurement.
 ///
 /// # Errors
 /// The first promise that is broken.
@@ -133,7 +133,7 @@ impl<'a, O: Observer + ?Sized> Script<'a, O> {
         Ok(self.now)
     }
 
-    /// Lets disks collide until the next sample, or for a while if no sample is wanted.
+    /// Lets disks collide until the next sample, or a few times if no sample is wanted.
     fn collide(&mut self) -> Result<bool, Violation> {
         let wait = if self.wanted.is_finite() { (self.wanted - self.now).max(0.0) } else { 1.0 };
         for _ in 0..3 {

@@ -19,11 +19,11 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// first after one interval. This holds for a run from time 0, from another start, from a checkpoint, or
 /// after a run to settle. There are two exceptions:
 /// - A run that starts exactly at the first time of `starting_at` takes a sample there.
-/// - A clock that has run before goes on. If the next run starts on the upcoming beat, within rounding, it
-///   takes the sample there, since the previous run ended too early for it. A run in pieces thus has the same
+/// - A clock that has run before continues. If the next run starts on the upcoming beat, within rounding, it
+///   takes the sample there, since the previous run ended just before it. A run in pieces thus has the same
 ///   samples as a run in one piece.
 ///
-/// A run that starts before the last beat counts as another run, for which the clock begins anew.
+/// If a run starts before the last beat, it counts as another run, and the clock begins anew.
 ///
 /// To sample at a fixed phase of a vibrating base, take a whole number of its periods as the interval, and a
 /// time of that phase as the first time. Compute the end of a run as a multiple, too
@@ -87,7 +87,7 @@ impl SampleTimes {
         self.time_of(self.beat)
     }
 
-    /// Goes on to the first beat after this absolute time.
+    /// Advances to the first beat after this absolute time.
     ///
     /// Call this with the time of each sample.
     pub fn advance_past(&mut self, time: f64) {

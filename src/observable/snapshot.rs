@@ -5,7 +5,7 @@ use crate::boundary::Domain;
 
 /// The disks at one time, as copies.
 ///
-/// Nothing that you do to them reaches the run.
+/// The run does not see changes of these copies.
 #[derive(Debug, Clone, Copy)]
 pub struct Snapshot<'a> {
     time: f64,
@@ -42,7 +42,7 @@ impl<'a> Snapshot<'a> {
         self.gravity
     }
 
-    /// Returns a snapshot of other disks, such as some of these, in the same domain at the same time.
+    /// Returns a snapshot of other disks, for example of some of these, in the same domain at the same time.
     #[must_use]
     pub const fn with_disks<'b>(&self, disks: &'b [Disk]) -> Snapshot<'b> {
         Snapshot { time: self.time, disks, domain: self.domain, gravity: self.gravity }

@@ -13,7 +13,7 @@ pub struct StopWhen<F> {
 
 /// Makes an observer that stops a run at the first collision for which the closure returns true.
 ///
-/// A later run with the same observer goes on until another collision meets the condition.
+/// A later run with the same observer stops at the next collision that meets the condition.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse};
@@ -57,7 +57,7 @@ pub struct StopWhenSampled<F> {
 
 /// Makes an observer that stops a run at the first of these times at which the closure returns true.
 ///
-/// A later run with the same observer goes on until another sample meets the condition.
+/// A later run with the same observer stops at the next sample that meets the condition.
 ///
 /// ```
 /// use granular_edmd::observable::{CenterOfMass, Observable, Observer, SampleTimes, Snapshot};

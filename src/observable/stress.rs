@@ -41,9 +41,9 @@ pub struct StressTensor {
 /// in units of energy per area. The kinetic part is sampled, with velocities in the frame of the container.
 /// The collisional part is exact. Each collision adds the impulse $`\vec\Delta`$ on a disk, normal and
 /// tangential, times the vector $`\vec r`$, which points to the center of the disk from the center of its
-/// partner, or from the point where it touches a wall. In a region, only the share of $`\vec r`$ inside the
-/// region counts. Each interval between two samples gives one value of the stress, and the errors come from
-/// blocks of these values.
+/// partner, or from the point where it touches a wall. In a region, only the fraction of $`\vec r`$ inside
+/// the region counts. Each interval between two samples gives one value of the stress, and the errors come
+/// from blocks of these values.
 ///
 /// In a box without gravity, the normal stress is the pressure on the walls. Without a region, the area is
 /// that of the domain, which reaches to walls at rest and to the outermost positions of moving walls. A run
@@ -142,8 +142,8 @@ impl Stress {
         }
     }
 
-    /// Returns the share of the segment between two places that lies in the region, summed over the images of
-    /// the segment in a periodic box.
+    /// Returns the fraction of the segment between two places that lies in the region, summed over the images
+    /// of the segment in a periodic box.
     fn share_inside(&self, from: DVec2, to: DVec2) -> f64 {
         let Some(region) = self.region else { return 1.0 };
         let share = |image| share_in(&region, from + image, to + image);
@@ -155,7 +155,7 @@ impl Stress {
     }
 }
 
-/// Returns the share of a segment that lies in a rectangle (Liang and Barsky 1984).
+/// Returns the fraction of a segment that lies in a rectangle (Liang and Barsky 1984).
 fn share_in(region: &Region, from: DVec2, to: DVec2) -> f64 {
     let way = to - from;
     let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);

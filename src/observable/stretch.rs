@@ -7,9 +7,9 @@ const ROUNDING: f64 = 1e-9;
 
 /// The stretch of time since the latest sample.
 ///
-/// A stretch counts if it is a whole interval of the clock. A run that begins off the beat begins with a part
-/// of an interval, which does not count. A run that begins where the previous run ended continues the stretch
-/// of that run.
+/// A stretch counts if it is a whole interval of the clock. If a run begins off the beat, its first stretch
+/// is shorter and does not count. A run that begins where the previous run ended continues the stretch of
+/// that run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(super) struct Stretch {
@@ -43,8 +43,7 @@ impl Stretch {
         self.end = Some(time);
     }
 
-    /// Begins a new stretch at the time of a sample, and returns the length of the previous stretch if that
-    /// counts.
+    /// Begins a new stretch at the time of a sample, and returns the length of the previous one if it counts.
     pub(super) fn finish(&mut self, time: f64) -> Option<f64> {
         let interval = self.sample_times.interval();
         let start = self.start.replace(time);

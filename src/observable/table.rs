@@ -8,8 +8,8 @@ impl<Q: Tabular> Series<Q> {
     /// Writes the series as comma-separated values: a line of headings, such as `center_y [length]`, and a
     /// line for each time.
     ///
-    /// The heading of a pure number has no unit. Numbers read back to the same bits. A number that is not
-    /// defined is `NaN`.
+    /// The heading of a pure number has no unit. Numbers read back to the same bits. An undefined number is
+    /// `NaN`.
     ///
     /// ```
     /// use granular_edmd::boundary::Domain;

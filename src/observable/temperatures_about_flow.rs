@@ -11,7 +11,7 @@ use super::{Grid, Heading, Observable, Snapshot, Tabular, Temperature};
 /// ```
 ///
 /// with $`u = \sum m v/\sum m`$ in the cell of the disk, and likewise for $`y`$ and the rotation about the
-/// mean spin. A gas at rest has the same temperature on any grid, since each mean takes one degree of
+/// mean spin. A gas at rest has the same temperature on any grid, since each mean costs one degree of
 /// freedom. Flow that varies within a cell still counts: a shear rate $`\gamma`$ across a cell of height
 /// $`h`$ adds $`m\gamma^2h^2/12`$ to $`T_x`$. The values are NaN if no cell holds two disks.
 ///

@@ -7,7 +7,7 @@ use super::{Moment, Observable, Observer, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::statistics::Estimate;
 
-/// A value that can be correlated with another one of its type.
+/// A value that can be correlated with another one of the same type.
 ///
 /// Implement it for the value of an observable of your own. Return NaN if two values have no product.
 ///

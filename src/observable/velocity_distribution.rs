@@ -20,7 +20,8 @@ use crate::{Disk, ParameterError};
 ///
 /// Moments of a few disks are smaller than the moments of their distribution, since the sample itself defines
 /// $`T`$ and the mean. The moments are therefore divided by the moments of a Maxwellian gas of as many disks.
-/// So all cumulants of a Maxwellian gas are 0 for any number of disks. Errors come from blocks of samples.
+/// All cumulants of a Maxwellian gas are therefore 0, for any number of disks. Errors come from blocks of
+/// samples.
 ///
 /// Velocities are taken in the frame of the container, unless [`about_mean`](Self::about_mean) or
 /// [`about_flow`](Self::about_flow) subtracts a mean velocity.
@@ -132,8 +133,8 @@ impl VelocityDistribution {
 }
 
 impl Frame {
-    /// Returns the scaled velocities √m (v − u) of the disks, each with the share of its variance that
-    /// remains once the mean is subtracted, and the degrees of freedom of each component.
+    /// Returns the scaled velocities √m (v − u) of the disks, each with the fraction of its variance that
+    /// remains when the mean is subtracted, and the degrees of freedom of each component.
     fn peculiar(&self, disks: &[Disk]) -> (Vec<(DVec2, f64)>, f64) {
         match self {
             Self::Container => {
@@ -173,7 +174,7 @@ fn about(
 /// squares.
 ///
 /// `moment` is the sum of the numbers to the power `order`, and `squares` the sum of their squares. Each
-/// number has kept a share of its variance; `shares` is the sum of these shares to the power `order`/2.
+/// number has kept a fraction of its variance; `shares` is the sum of these fractions to the power `order`/2.
 /// `freedom` counts the degrees of freedom of the squares, and `normal` is the moment of this order of one
 /// normal number.
 fn relative_moment(moment: f64, squares: f64, order: i32, shares: f64, freedom: f64, normal: f64) -> f64 {

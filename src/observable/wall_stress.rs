@@ -19,8 +19,8 @@ use crate::statistics::{BlockedMean, Estimate};
 /// are the normal and tangential [impulses](crate::collision::Impulse) on the disks. So $`p`$ is positive
 /// where disks push the wall, and $`\tau`$ where they drag it along the tangent, which is the normal turned
 /// counterclockwise (to the left on a floor). Each interval between two samples gives one value, and the
-/// errors come from blocks of these values. A disk that hits a wall comes back to it, so the values of short
-/// intervals are anticorrelated, and their errors up to three times too large: take intervals of many
+/// errors come from blocks of these values. A disk comes back to a wall that it has hit, so the values of
+/// short intervals are anticorrelated, and their errors up to three times too large: take intervals of many
 /// collisions.
 ///
 /// A run ends with an error if an index is not that of a wall.
