@@ -210,6 +210,14 @@ pub trait Boundary {
     /// The result is `None` if the disk is inside.
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)>;
 
+    /// Returns the walls at `time` as lines of points, for pictures.
+    ///
+    /// The edges of the domain are left out, since they are drawn anyway.
+    fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>> {
+        let _ = time;
+        Vec::new()
+    }
+
     /// Returns the fingerprint of the boundary: its name and everything that decides what it does.
     ///
     /// Checkpoints compare it when a run is resumed. Without one, the boundary is not compared.

@@ -187,7 +187,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the present value of an observable.
     pub fn measure<Q: Observable + ?Sized>(&self, observable: &Q) -> Q::Value {
         let disks = self.disks();
-        observable.measure(&Snapshot::new(self.time(), &disks, self.boundary.domain(), self.bodies.gravity))
+        observable.measure(&self.snapshot_of(self.time(), &disks))
     }
 
     /// Returns the present state, for observables and observers of your own.
@@ -204,7 +204,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let Self { bodies, scratch, clock, .. } = self;
         scratch.copies.clear();
         scratch.copies.extend((0..bodies.len()).map(|disk| bodies.disk(disk, clock.now)));
-        Snapshot::new(time, &self.scratch.copies, self.boundary.domain(), self.bodies.gravity)
+        self.snapshot_of(time, &self.scratch.copies)
+    }
+
+    fn snapshot_of<'a>(&'a self, time: f64, disks: &'a [Disk]) -> Snapshot<'a> {
+        let (domain, gravity) = (self.boundary.domain(), self.bodies.gravity);
+        Snapshot::new(time, disks, domain, gravity).with_walls(&self.boundary, self.clock.now)
     }
 
     /// Returns the numbers of events since the simulation was built.

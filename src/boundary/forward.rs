@@ -35,6 +35,9 @@ impl<T: Boundary + ?Sized> Boundary for &mut T {
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
         (**self).overlap(position, radius, time)
     }
+    fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>> {
+        (**self).wall_lines(time)
+    }
     fn fingerprint(&self) -> Option<Fingerprint> {
         (**self).fingerprint()
     }
@@ -67,6 +70,9 @@ impl<T: Boundary + ?Sized> Boundary for Box<T> {
     }
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
         (**self).overlap(position, radius, time)
+    }
+    fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>> {
+        (**self).wall_lines(time)
     }
     fn fingerprint(&self) -> Option<Fingerprint> {
         (**self).fingerprint()

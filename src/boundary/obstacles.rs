@@ -130,6 +130,11 @@ impl<B: Boundary> Boundary for Obstacles<B> {
         surface.with_kind(obstacle.kind()).with_radius(obstacle.radius())
     }
 
+    fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>> {
+        let circle = |obstacle: &Disk| Brick::round(obstacle.position(), obstacle.radius()).outline(0.0);
+        self.boundary.wall_lines(time).into_iter().chain(self.obstacles.iter().map(circle)).collect()
+    }
+
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
         let depth = |(index, obstacle): (usize, &Disk)| {
             let distance = self.domain().separation(obstacle.position(), position).length();

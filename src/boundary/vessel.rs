@@ -326,6 +326,10 @@ impl Boundary for Vessel {
         all.filter(|&(_, depth)| depth > 0.0).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
+    fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>> {
+        self.outline(self.origin + time).map(|(_, line)| line).collect()
+    }
+
     fn fingerprint(&self) -> Option<Fingerprint> {
         let vessel = Fingerprint::of("Vessel").part(self.container.fingerprint()?);
         self.parts.iter().try_fold(vessel, |vessel, placed| {

@@ -28,9 +28,7 @@ impl State {
     pub fn from_csv(input: impl BufRead) -> Result<Self, ReadError> {
         let mut lines = Lines::new(input);
         let (names, line) = lines.need("the names of the columns")?;
-        // Some programs begin a text with a byte order mark.
-        let names = names.trim_start_matches('\u{feff}').split(',');
-        let fields = names.map(|name| field(name, line)).collect::<Result<_, _>>()?;
+        let fields = names.split(',').map(|name| field(name, line)).collect::<Result<_, _>>()?;
         let columns = Columns::new(fields, line)?;
         let mut entries = Vec::new();
         while let Some((text, line)) = lines.next_filled()? {

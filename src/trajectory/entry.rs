@@ -82,18 +82,14 @@ impl Columns {
         cells: impl Iterator<Item = &'a str>,
         line: usize,
     ) -> Result<Entry, ReadError> {
+        let cells: Vec<&str> = cells.collect();
+        if cells.len() != self.0.len() {
+            let (requirement, found) = (format!("{}, one for each column", self.0.len()), cells.len());
+            return Err(ReadError::unexpected(line, "the number of values", requirement, found.to_string()));
+        }
         let mut draft = Draft::default();
-        let mut fields = self.0.iter();
-        for cell in cells {
-            let &field = fields.next().ok_or_else(|| {
-                ReadError::unexpected(line, "the line", format!("of {} columns", self.0.len()), "more")
-            })?;
-            draft.set(field, cell, line)?;
-        }
-        match fields.next() {
-            None => draft.entry(line),
-            Some(field) => Err(ReadError::missing(line, format!("a value of `{}`", field.name()))),
-        }
+        self.0.iter().zip(cells).try_for_each(|(&field, cell)| draft.set(field, cell, line))?;
+        draft.entry(line)
     }
 }
 

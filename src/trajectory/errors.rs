@@ -67,6 +67,20 @@ pub enum RecordError {
         /// True if the file has a frame at this time.
         is_there: bool,
     },
+    /// The run begins after a frame that the file does not have.
+    #[error("{} ends at time {}, so a run from time {} on would leave out the frame at time {}; go on from an \
+        earlier checkpoint, or accept the gap by SampleTimes::starting_at", path.display(), Readable(*.last),
+        Readable(*.time), Readable(*.missed))]
+    Gap {
+        /// The path.
+        path: PathBuf,
+        /// Time of the last frame in the file.
+        last: f64,
+        /// Time of the frame that would be missing.
+        missed: f64,
+        /// Time at which the run begins.
+        time: f64,
+    },
 }
 
 impl RecordError {

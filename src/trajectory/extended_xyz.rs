@@ -72,8 +72,7 @@ impl Format for ExtendedXyz {
         let Some(count) = whole_line(input)? else { return Ok(None) };
         let count: usize = count.trim().parse().map_err(|_| no_frame("a number of disks", &count))?;
         let Some(keys) = whole_line(input)? else { return Ok(None) };
-        let time = header::value(&keys, "Time").and_then(|time| time.parse().ok());
-        let time = time.ok_or_else(|| no_frame("the key `Time` and a number", &keys))?;
+        let time = header::time(&keys).ok_or_else(|| no_frame("the key `Time` and a number", &keys))?;
         Ok(skip_lines(input, count)?.then_some(time))
     }
 }

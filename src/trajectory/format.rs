@@ -1,7 +1,8 @@
 //! Frames of a trajectory, and the trait of the formats in which they are written.
 
-use std::io::{self, BufRead, Write};
+use std::io::{self, BufRead, Read, Write};
 
+use super::lines::LONGEST;
 use crate::observable::Snapshot;
 
 /// A snapshot in a trajectory, with its number.
@@ -66,22 +67,33 @@ pub trait Format {
 
 /// Returns the next line without its line break, or `None` if the input is cut short.
 pub(super) fn whole_line(input: &mut dyn BufRead) -> io::Result<Option<String>> {
-    let mut line = String::new();
-    input.read_line(&mut line)?;
-    Ok(line.strip_suffix('\n').map(|line| line.trim_end_matches('\r').to_owned()))
+    let mut line = Vec::new();
+    if !take_line(input, &mut line)? {
+        return Ok(None);
+    }
+    let line = String::from_utf8(line).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?;
+    Ok(Some(line.trim_end_matches(['\n', '\r']).to_owned()))
 }
 
 /// Skips this many lines, and returns false if the input has fewer.
 pub(super) fn skip_lines(input: &mut dyn BufRead, count: usize) -> io::Result<bool> {
     let mut line = Vec::new();
     for _ in 0..count {
-        line.clear();
-        input.read_until(b'\n', &mut line)?;
-        if !line.ends_with(b"\n") {
+        if !take_line(input, &mut line)? {
             return Ok(false);
         }
     }
     Ok(true)
+}
+
+/// Reads a line of bounded length, and returns false if the input ends before the line does.
+fn take_line(input: &mut dyn BufRead, line: &mut Vec<u8>) -> io::Result<bool> {
+    line.clear();
+    let length = input.take(LONGEST).read_until(b'\n', line)? as u64;
+    if length == LONGEST {
+        return Err(no_frame("a shorter line", &String::from_utf8_lossy(line)));
+    }
+    Ok(line.ends_with(b"\n"))
 }
 
 /// Creates the error of an input that is not a frame.

@@ -11,6 +11,9 @@ use super::state::State;
 use crate::Disk;
 use crate::boundary::Domain;
 
+/// Words in the title that tell the files of this crate from others.
+const WRITER: &str = "written by granular-edmd";
+
 impl State {
     /// Writes a data file of LAMMPS with `atom_style sphere`, for its `read_data`.
     ///
@@ -30,7 +33,7 @@ impl State {
         let domain = self.domain.unwrap_or_else(|| around(disks));
         let (top, half) = (shown_top(&domain, disks), 0.5 * shown_depth(disks));
         let types = disks.iter().map(|disk| u32::from(disk.kind().number()) + 1).max().unwrap_or(1);
-        write!(out, "LAMMPS data file, atom_style sphere, written by granular-edmd")?;
+        write!(out, "LAMMPS data file, atom_style sphere, {WRITER}")?;
         self.time.map_or(Ok(()), |time| write!(out, ", time = {time:?}"))?;
         writeln!(out, "\n\n{} atoms\n{types} atom types\n", disks.len())?;
         writeln!(out, "{:?} {:?} xlo xhi\n{:?} {top:?} ylo yhi", domain.left, domain.right, domain.bottom)?;

@@ -142,7 +142,7 @@ impl Frames {
 
     /// Adds a frame that was found in a file.
     pub(super) fn add(&mut self, time: f64, bytes: &[u8], end: u64) -> io::Result<()> {
-        if self.times.last().is_some_and(|&last| last >= time) || time.is_nan() {
+        if self.times.last().is_some_and(|&last| last >= time) || !time.is_finite() {
             return Err(no_frame("a frame after the one before", &format!("time {time:?}")));
         }
         self.push(time, bytes, end);

@@ -1,70 +1,90 @@
 //! Overlaps among disks.
 
+use std::collections::HashMap;
+
 use glam::DVec2;
 
 use crate::Disk;
 use crate::boundary::Domain;
 use crate::disk::TOUCHING;
 
-/// A disk, or the image of one in a periodic box.
-struct Image {
-    disk: usize,
-    position: DVec2,
-    radius: f64,
-    is_itself: bool,
+/// Disks of similar size, in squares a little wider than the largest of them.
+///
+/// With squares for one size only, a single giant would make every disk a neighbor of every other.
+struct Class {
+    side: f64,
+    /// The numbers of a square are whole floating-point numbers, which do not overflow, as their bits.
+    squares: HashMap<[u64; 2], Vec<usize>>,
+}
+
+impl Class {
+    /// Creates the class whose largest disk has this radius. The excess over a diameter covers rounding.
+    fn new(radius: f64) -> Self {
+        Self { side: 2.001 * radius, squares: HashMap::new() }
+    }
+
+    /// Tells whether the class has room for a disk of this radius, which is not above those in it.
+    fn takes(&self, radius: f64) -> bool {
+        8.0 * radius > self.side
+    }
+
+    fn square(&self, place: DVec2) -> DVec2 {
+        (place / self.side).floor()
+    }
+
+    /// Returns the disks in the square of a place and in the eight around it.
+    fn near(&self, place: DVec2) -> impl Iterator<Item = usize> {
+        let middle = self.square(place);
+        let squares =
+            (0..9).map(move |n| key(middle + DVec2::new(f64::from(n % 3 - 1), f64::from(n / 3 - 1))));
+        squares.filter_map(|key| self.squares.get(&key)).flatten().copied()
+    }
+}
+
+/// Returns the numbers of a square as a key. The sum makes one zero of both.
+fn key(square: DVec2) -> [u64; 2] {
+    [(square.x + 0.0).to_bits(), (square.y + 0.0).to_bits()]
 }
 
 /// Returns two disks that overlap by more than rounding, and the depth of their overlap, if there are such
 /// disks.
 ///
-/// A sweep along the longer side of the area that the disks fill compares each disk only with those beside
-/// it.
+/// The disks come in the order of their sizes, the largest first, and each looks among those that came
+/// before. Since these do not overlap, a square holds only a few of them.
 pub(super) fn first(disks: &[Disk], domain: Option<&Domain>) -> Option<(usize, usize, f64)> {
-    let images = images(disks, domain);
-    let along = longer_side(disks);
-    let near_end = |image: &Image| image.position.dot(along) - image.radius;
-    let mut order: Vec<&Image> = images.iter().collect();
-    order.sort_by(|a, b| near_end(a).total_cmp(&near_end(b)));
-    for (place, image) in order.iter().enumerate() {
-        let end = image.position.dot(along) + image.radius;
-        let beside = order[place + 1..].iter().take_while(|other| near_end(other) < end);
-        for other in beside.filter(|other| (image.is_itself || other.is_itself) && image.disk != other.disk) {
-            let contact = image.radius + other.radius;
-            let depth = contact - image.position.distance(other.position);
-            if depth > TOUCHING * contact {
-                return Some((image.disk, other.disk, depth));
+    let shifts: Vec<DVec2> = domain.map_or_else(|| vec![DVec2::ZERO], |domain| domain.images().collect());
+    let mut order: Vec<usize> = (0..disks.len()).collect();
+    order.sort_by(|&a, &b| disks[b].radius().total_cmp(&disks[a].radius()));
+    let mut classes: Vec<Class> = Vec::new();
+    for index in order {
+        let disk = &disks[index];
+        for (class, shift) in classes.iter().flat_map(|class| shifts.iter().map(move |shift| (class, shift)))
+        {
+            let place = disk.position() + shift;
+            if *shift != DVec2::ZERO && !domain.is_some_and(|domain| is_near(place, class.side, domain)) {
+                continue;
             }
+            for other in class.near(place).filter(|&other| other != index) {
+                let contact = disk.radius() + disks[other].radius();
+                let depth = contact - place.distance(disks[other].position());
+                if depth > TOUCHING * contact {
+                    return Some((index, other, depth));
+                }
+            }
+        }
+        if !classes.last().is_some_and(|class| class.takes(disk.radius())) {
+            classes.push(Class::new(disk.radius()));
+        }
+        if let Some(class) = classes.last_mut() {
+            let key = key(class.square(disk.position()));
+            class.squares.entry(key).or_default().push(index);
         }
     }
     None
 }
 
-/// Returns the disks, and the images that reach into a periodic box.
-fn images(disks: &[Disk], domain: Option<&Domain>) -> Vec<Image> {
-    let shifts: Vec<DVec2> = domain.map_or_else(|| vec![DVec2::ZERO], |domain| domain.images().collect());
-    let reach = disks.iter().map(Disk::radius).fold(0.0, f64::max);
-    let mut images = Vec::with_capacity(disks.len());
-    for (disk, body) in disks.iter().enumerate() {
-        for &shift in &shifts {
-            let (position, radius, is_itself) =
-                (body.position() + shift, body.radius(), shift == DVec2::ZERO);
-            let reach = radius + reach;
-            let is_near = |domain: &Domain| {
-                (domain.left - reach..=domain.right + reach).contains(&position.x)
-                    && (domain.bottom - reach..=domain.top + reach).contains(&position.y)
-            };
-            if is_itself || domain.is_some_and(is_near) {
-                images.push(Image { disk, position, radius, is_itself });
-            }
-        }
-    }
-    images
-}
-
-/// Returns the direction in which the disks extend further.
-fn longer_side(disks: &[Disk]) -> DVec2 {
-    let places = || disks.iter().map(Disk::position);
-    let low = places().fold(DVec2::INFINITY, DVec2::min);
-    let size = places().fold(DVec2::NEG_INFINITY, DVec2::max) - low;
-    if size.x > size.y { DVec2::X } else { DVec2::Y }
+/// Tells whether a place is no farther than this from a box.
+fn is_near(place: DVec2, reach: f64, domain: &Domain) -> bool {
+    (domain.left - reach..=domain.right + reach).contains(&place.x)
+        && (domain.bottom - reach..=domain.top + reach).contains(&place.y)
 }

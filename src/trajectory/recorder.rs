@@ -4,8 +4,6 @@ use std::fmt;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use glam::DVec2;
-
 use super::errors::RecordError;
 use super::format::{Format, Frame};
 use super::one_file::OneFile;
@@ -20,8 +18,8 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 /// frame. The next run with the same recorder takes the frame that was missed.
 ///
 /// [`OfKind`](crate::observable::OfKind) around a recorder records only the disks of one kind, and `id` then
-/// numbers these. Files hold the box. Files for ParaView also hold the parts of a vessel, if
-/// [`with_walls`](Self::with_walls) gives them to the recorder.
+/// numbers these. Files hold the box. Files for ParaView also hold the walls of the run's boundary as they are
+/// at each frame ([`Snapshot::wall_lines`]).
 ///
 /// # Going on in a file
 /// After a kill, resume the run from its checkpoint, and [`append`](Self::append) to its file. The run makes
@@ -29,8 +27,10 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 /// file and does not write them twice. If they differ, the file is of another run, and the error says so. If
 /// the process died in the middle of a frame, the next frame overwrites the torn one.
 ///
-/// A checkpoint later than the last frame leaves a gap, since the run does not go back to make the frames in
-/// between. After disks are removed, `id` numbers the remaining ones.
+/// The recorder goes on with the first beat after the last frame of the file. If the run is later than that
+/// beat, as from a checkpoint that is newer than the file, the run ends with an error, since frames would be
+/// missing. If you want the gap, give `times` a first time after it ([`SampleTimes::starting_at`]). After
+/// disks are removed, `id` numbers the remaining ones.
 ///
 /// The times of the frames increase. On Unix, no two recorders write to one file at a time.
 ///
@@ -64,6 +64,8 @@ pub struct Recorder {
     failure: Option<RecordError>,
     /// Clock to restore so that the next run retries the failed frame.
     before_failure: Option<SampleTimes>,
+    /// True for a recorder that goes on in a file, until a run does so without a gap.
+    must_follow: bool,
 }
 
 /// Constructors.
@@ -96,14 +98,34 @@ impl Recorder {
         times: SampleTimes,
     ) -> Result<Self, RecordError> {
         let store = OneFile::reopen(path.as_ref(), &format)?;
-        Ok(Self::new(format, store, times))
+        Ok(Self::new(format, store, times).going_on())
     }
 
     /// Creates a recorder that begins a series of files for ParaView.
     ///
     /// A file such as `run.pvd` holds the times. A new folder beside it, here `run`, holds two files for each
     /// frame: the disks, as [`State::write_vtk`](super::State::write_vtk) writes them, and the edges of the
-    /// box.
+    /// box with the walls in it, such as the parts of a vessel.
+    ///
+    /// ```
+    /// use granular_edmd::prelude::*;
+    /// use granular_edmd::trajectory::Recorder;
+    ///
+    /// # let folder = std::env::temp_dir().join(format!("granular-edmd-walls-{}", std::process::id()));
+    /// # std::fs::create_dir_all(&folder)?;
+    /// # let path = folder.join("run.pvd");
+    /// let drum = Part::drum(DVec2::splat(4.0), 4.0)?.with_rotation(DVec2::splat(4.0), 1.0)?;
+    /// let vessel = Vessel::around([("drum", drum)])?;
+    /// let disks = initial::random(&vessel, 10, 0.5, 8.0, 1)?;
+    /// let mut run = Simulation::builder(Elastic, vessel).disks(disks).build()?;
+    ///
+    /// // Let `path` be "run.pvd".
+    /// let mut recorder = Recorder::create_vtk(&path, SampleTimes::every(1.0)?)?;
+    /// run.run_until(3.0, &mut recorder)?;
+    /// assert_eq!(recorder.times(), [1.0, 2.0, 3.0]);
+    /// # std::fs::remove_dir_all(&folder)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// If the path does not end in `.pvd`, a file or a folder of these names exists, or they cannot be
@@ -118,36 +140,7 @@ impl Recorder {
     /// If the files cannot be opened, another recorder writes to them, or they are not such a series. They
     /// are then left as they are.
     pub fn append_vtk(path: impl AsRef<Path>, times: SampleTimes) -> Result<Self, RecordError> {
-        Ok(Self::new(PolyData, Series::reopen(path.as_ref())?, times))
-    }
-
-    /// Returns the same recorder, which also writes these walls, given as lines of points at each time.
-    ///
-    /// Only series for ParaView have room for walls; other files do not change.
-    ///
-    /// ```
-    /// use granular_edmd::prelude::*;
-    /// use granular_edmd::trajectory::Recorder;
-    ///
-    /// # let folder = std::env::temp_dir().join(format!("granular-edmd-walls-{}", std::process::id()));
-    /// # std::fs::create_dir_all(&folder)?;
-    /// # let path = folder.join("run.pvd");
-    /// let drum = Part::drum(DVec2::splat(4.0), 4.0)?.with_rotation(DVec2::splat(4.0), 1.0)?;
-    /// let vessel = Vessel::around([("drum", drum)])?;
-    /// let shown = vessel.clone();
-    /// let walls = move |time| shown.outline(time).map(|(_, line)| line).collect();
-    /// let mut recorder = Recorder::create_vtk(&path, SampleTimes::every(1.0)?)?.with_walls(walls);
-    ///
-    /// let disks = initial::random(&vessel, 10, 0.5, 8.0, 1)?;
-    /// let mut run = Simulation::builder(Elastic, vessel).disks(disks).build()?;
-    /// run.run_until(3.0, &mut recorder)?;
-    /// # std::fs::remove_dir_all(&folder)?;
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[must_use]
-    pub fn with_walls(mut self, walls: impl Fn(f64) -> Vec<Vec<DVec2>> + Send + Sync + 'static) -> Self {
-        self.store.set_walls(Box::new(walls));
-        self
+        Ok(Self::new(PolyData, Series::reopen(path.as_ref())?, times).going_on())
     }
 
     fn new(
@@ -162,7 +155,20 @@ impl Recorder {
             bytes: Vec::new(),
             failure: None,
             before_failure: None,
+            must_follow: false,
         }
+    }
+
+    /// Returns the same recorder, with its clock as it was after the last frame of the file.
+    ///
+    /// A clock that begins anew would take a beat just after the start of the run for a beat on the start,
+    /// and leave it out. Then a run in pieces that was killed between two of them would lack a frame.
+    fn going_on(mut self) -> Self {
+        if let Some(&last) = self.times().last() {
+            self.clock.start_at(last);
+            self.clock.advance_past(last);
+        }
+        Self { must_follow: true, ..self }
     }
 }
 
@@ -181,8 +187,8 @@ impl Recorder {
     /// If the frame cannot be written, or the file reaches this time already and does not have this frame.
     pub fn record(&mut self, snapshot: &Snapshot<'_>) -> Result<(), RecordError> {
         let time = snapshot.time();
-        let last = self.times().last().copied();
-        if let Some(last) = last.filter(|&last| time <= last) {
+        let last = self.times().last().copied().unwrap_or(f64::NEG_INFINITY);
+        if time <= last || !time.is_finite() {
             return self.compare(snapshot, last);
         }
         self.write_frame(self.times().len(), snapshot)?;
@@ -218,7 +224,15 @@ impl Recorder {
 impl Observer for Recorder {
     fn on_start(&mut self, moment: &Moment) {
         self.clock = self.before_failure.take().unwrap_or(self.clock);
-        self.clock.start_at(moment.time());
+        let (time, missed) = (moment.time(), self.clock.upcoming());
+        let mut clock = self.clock;
+        clock.start_at(time);
+        if self.must_follow && missed < clock.upcoming().min(time) {
+            let last = self.times().last().copied().unwrap_or(f64::NAN);
+            self.failure = Some(RecordError::Gap { path: self.store.path().to_owned(), last, missed, time });
+            return;
+        }
+        (self.clock, self.must_follow) = (clock, false);
     }
 
     fn next_sample(&self) -> f64 {

@@ -2,13 +2,8 @@
 
 use std::path::Path;
 
-use glam::DVec2;
-
 use super::errors::RecordError;
 use crate::observable::Snapshot;
-
-/// The walls at a time, as lines of points.
-pub(super) type Walls = Box<dyn Fn(f64) -> Vec<Vec<DVec2>> + Send + Sync>;
 
 /// A store for the bytes of frames, one after another. A stored frame stays whole, whatever happens later.
 pub(super) trait Store {
@@ -23,9 +18,6 @@ pub(super) trait Store {
 
     /// Waits until the system has stored everything.
     fn sync(&mut self) -> Result<(), RecordError>;
-
-    /// Takes the walls to write with each frame, if the store has room for walls.
-    fn set_walls(&mut self, _walls: Walls) {}
 
     /// Returns the path, for messages.
     fn path(&self) -> &Path;

@@ -84,8 +84,8 @@ fn write_disks(
 
 /// Writes the edges of the box and other walls as lines. The array `periodic` is 1 for edges that are not
 /// walls, and `part` is 1 for walls that are not edges. An open box has no lid.
-fn write_box(out: &mut dyn Write, snapshot: &Snapshot<'_>, walls: &[Vec<DVec2>]) -> io::Result<()> {
-    let domain = snapshot.domain();
+fn write_box(out: &mut dyn Write, snapshot: &Snapshot<'_>) -> io::Result<()> {
+    let (domain, walls) = (snapshot.domain(), snapshot.wall_lines());
     let Domain { left, right, bottom, .. } = domain;
     let top = shown_top(&domain, snapshot.disks());
     let corners = [(left, top), (left, bottom), (right, bottom), (right, top)].map(DVec2::from);

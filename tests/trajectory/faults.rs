@@ -1,7 +1,12 @@
 //! Every fault of a file, with its line and its value.
 
+use std::fmt::Write as _;
+use std::io::Read as _;
+
+use granular_edmd::boundary::Domain;
+use granular_edmd::glam::DVec2;
 use granular_edmd::observable::Snapshot;
-use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, ReadError, State, XyzFrames};
+use granular_edmd::trajectory::{ExtendedXyz, Format, Frame, LammpsDump, ReadError, State, XyzFrames};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -20,8 +25,12 @@ fn faults_of_tables() {
         ("x,y\n", "line 1: the column `radius` is missing"),
         ("x,y,radius,x\n", "line 1: the column `x` stands in line 1 already"),
         ("x,y,radius\n1,2,0.5\n\n1,zwei,0.5\n", "line 4: y must be a number, but is \"zwei\""),
-        ("x,y,radius\n1,2\n", "line 2: a value of `radius` is missing"),
-        ("x,y,radius\n1,2,0.5,9\n", "line 2: the line must be of 3 columns, but is \"more\""),
+        ("x,y,radius\n1,2\n", "line 2: the number of values must be 3, one for each column, but is \"2\""),
+        (
+            "x,y,radius\n1,2,0.5,9\n",
+            "line 2: the number of values must be 3, one for each column, but is \"4\"",
+        ),
+        ("x,y,radius\n1,2,0.5\n3,2,0.2", "the file ends after line 3, where a line break should follow"),
         ("x,y,radius\n1,2,-0.5\n", "line 2 is no disk: radius must be finite and positive, but is -0.5"),
         (
             "x,y,radius\n1,inf,0.5\n",
@@ -82,6 +91,31 @@ fn faults_of_extended_xyz() {
         assert!(error.starts_with("line 2: "), "{error}");
     }
     told(&format!("0\n{skew}\n"), "line 2: Lattice must be a rectangle, but is \"10 1 0 0 10 1 0 0 1\"");
+    for (key, value) in [("Time", "nan"), ("Gravity", "inf"), ("Gravity", "-inf"), ("Time", "1e999")] {
+        told(
+            &format!("0\n{keys} {key}={value}\n"),
+            &format!("line 2: {key} must be finite, but is {value:?}"),
+        );
+    }
+    for domain in ["-inf 9 0 9", "0 inf 0 9", "0 9 -inf 9", "-1e308 1e308 0 9"] {
+        let text = format!("0\nDomain=\"{domain}\" Properties=pos:R:2:radius:R:1\n");
+        let error = State::from_xyz(text.as_bytes()).unwrap_err().to_string();
+        assert!(error.starts_with("line 2: the box must be from smaller to larger numbers"), "{error}");
+    }
+    let text = "0\nDomain=\"0 9 0 inf\" Properties=pos:R:2:radius:R:1 pbc=\"F T F\"\n";
+    told(text, "line 2: the box must be from smaller to larger numbers, but is \"0 to 9 and 0 to inf\"");
+    told(&format!("0\n{keys} Time=1 Time=2\n"), "line 2: the key `Time` stands in line 2 already");
+    told(
+        &format!("0\n{keys} Title=\"Time=1\n"),
+        "line 2: the value of `Title` must be within two quotes, but is \"\\\"Time=1\"",
+    );
+    let one = "1\nProperties=pos:R:3:radius:R:1:a:R:1\n";
+    for (row, count) in [("7 1 1 0 0.5 9", 6), ("1 1 0 0.5", 4)] {
+        let told_count =
+            format!("line 3: the number of values must be 5, one for each column, but is \"{count}\"");
+        told(&format!("{one}{row}\n"), &told_count);
+    }
+    told(&format!("{one}1 1 0 0.5 3"), "the file ends after line 3, where a line break should follow");
     told(
         "9999999999999999999999\n",
         "line 1: the first line of a frame must be the number of its disks, but is \"9999999999999999999999\"",
@@ -123,6 +157,14 @@ fn faults_of_data_of_lammps() {
         &format!("{head}Atoms\n\n1 1 1 1 2 2 0\n"),
         "the file ends after line 10, where atom 2 of 2 should follow",
     );
+    told(
+        "t\n\n0 atoms\n9 0 xlo xhi\n0 9 ylo yhi\n",
+        "line 5: the box must be from smaller to larger numbers, but is \"9 to 0 and 0 to 9\"",
+    );
+    told(&format!("{head}0 8 xlo xhi\n"), "line 8: `xlo xhi` stands in line 5 already");
+    told(&head.replace("0 9 y", "-inf 9 y"), "line 6: a side of the box must be finite, but is \"-inf\"");
+    let ours = head.replace("t\n\n2", "written by granular-edmd, time = nan\n\n0");
+    told(&ours, "line 1: time must be finite, but is \"nan\"");
     // Words of another program in the title are no time.
     let other = head.replace("t\n\n2 atoms", "runtime = 7\n\n0 atoms");
     assert_eq!(State::from_lammps_data(other.as_bytes()).unwrap().time(), None);
@@ -144,6 +186,78 @@ fn faults_of_data_of_lammps() {
         &format!("{moving}1 0 0 0 0 0 0\n1 0 0 0 0 0 0\n"),
         "line 16: the velocity of atom 1 stands in line 15 already",
     );
+}
+
+/// A line, or a header, that a few bytes can ask for, but no memory can hold.
+#[test]
+fn lines_are_bounded() {
+    let endless = || std::io::repeat(b'1').take(1 << 40);
+    let told = |read: Result<State, ReadError>, place: &str| {
+        let error = report(&read.unwrap_err());
+        assert!(
+            error.starts_with(&format!("{place}: the line must be of fewer than 1048576 bytes")),
+            "{error}"
+        );
+    };
+    let input = |head: &'static str| std::io::BufReader::new(head.as_bytes().chain(endless()));
+    told(State::from_csv(input("")), "line 1");
+    told(State::from_csv(input("x,y,radius\n")), "line 2");
+    told(State::from_xyz(input("1\n")), "line 2");
+    told(State::from_lammps_data(input("title\n\n")), "line 3");
+    for head in ["", "1\n", "1\nTime=1\n", "ITEM: UNITS\n"] {
+        for format in [&ExtendedXyz as &dyn Format, &LammpsDump] {
+            assert!(format.skip_frame(&mut input(head)).is_err(), "{head:?}");
+        }
+    }
+    let columns = format!("1\nProperties=pos:R:2:radius:R:1{}\n", ":a:R:1000".repeat(2000));
+    let error = State::from_xyz(columns.as_bytes()).unwrap_err().to_string();
+    assert!(error.starts_with("line 2: `Properties` must be of at most 1000 columns"), "{error}");
+}
+
+/// Many small disks beside each other, and a giant that makes the other direction the longer one: the time
+/// must not grow with the square of their number. By squares of all disks in one size, this took minutes.
+#[test]
+fn one_giant_does_not_slow_a_reader() {
+    let mut text = String::from("x,y,radius\n1e6,0,5e5\n");
+    for row in 0..100_000 {
+        writeln!(text, "0,{row},0.5").unwrap();
+    }
+    let begun = std::time::Instant::now();
+    assert_eq!(State::from_csv(text.as_bytes()).unwrap().disks().len(), 100_001);
+    assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
+    text.push_str("0.25,99999.5,0.1\n");
+    let told = report(&State::from_csv(text.as_bytes()).unwrap_err());
+    assert!(told.starts_with("line 100003: the disk overlaps that of line 10000"), "{told}");
+}
+
+/// Overlaps among disks of all sizes, in boxes of all sorts, are those that a loop over all pairs finds.
+#[test]
+fn overlaps_are_found() {
+    let mut generator = Xoshiro256PlusPlus::seed_from_u64(5);
+    let mut found = 0;
+    for case in 0..400_u32 {
+        let (sides, ends) = ([false, true][case as usize % 2], [false, true][case as usize / 2 % 2]);
+        let mut domain = Domain::new(-3.0, 7.0, 0.0, 10.0);
+        domain.periodic_sides = sides;
+        domain.periodic_ends = ends;
+        let disks: Vec<(f64, f64, f64)> = (0..generator.random_range(2..12))
+            .map(|_| {
+                let radius = 2.0 * 10_f64.powf(generator.random_range(-4.0..0.0));
+                (generator.random_range(-3.0..7.0), generator.random_range(0.0..10.0), radius)
+            })
+            .collect();
+        let letter = |is_periodic| if is_periodic { 'T' } else { 'F' };
+        let keys = format!("Domain=\"-3 7 0 10\" pbc=\"{} {} F\"", letter(sides), letter(ends));
+        let mut text = format!("{}\n{keys} Properties=pos:R:2:radius:R:1\n", disks.len());
+        disks.iter().for_each(|(x, y, radius)| writeln!(text, "{x:?} {y:?} {radius:?}").unwrap());
+        let place = |disk: &(f64, f64, f64)| DVec2::new(disk.0, disk.1);
+        let overlaps = disks.iter().enumerate().any(|(index, a)| {
+            disks[..index].iter().any(|b| domain.separation(place(a), place(b)).length() < a.2 + b.2)
+        });
+        assert_eq!(State::from_xyz(text.as_bytes()).is_err(), overlaps, "{text}");
+        found += usize::from(overlaps);
+    }
+    assert!((50..350).contains(&found), "{found} of 400");
 }
 
 /// Files with bytes changed, doubled and left out at random: they are read or refused, and nothing panics.

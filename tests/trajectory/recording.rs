@@ -148,6 +148,73 @@ fn a_killed_run_goes_on_in_the_same_file() {
     }
 }
 
+/// The present after pieces of 0.9 is a rounding before a beat, which a clock that begins anew would take for
+/// one on the start of the run.
+#[test]
+fn a_kill_between_two_pieces_loses_no_frame() {
+    let scratch = Scratch::new("pieces");
+    for name in ["a.xyz", "a.pvd"] {
+        let (times, mut run) = (SampleTimes::every(0.25).unwrap(), mixture());
+        let path = scratch.path(name);
+        let is_vtk = name == "a.pvd";
+        let begun = if is_vtk {
+            Recorder::create_vtk(&path, times)
+        } else {
+            Recorder::create(&path, ExtendedXyz, times)
+        };
+        let mut recorder = begun.unwrap();
+        for _ in 0..30 {
+            run.run_until(run.time() + 0.9, &mut recorder).unwrap();
+        }
+        assert_eq!(run.time(), 26.999_999_999_999_986);
+        drop(recorder);
+        let again = if is_vtk {
+            Recorder::append_vtk(&path, times)
+        } else {
+            Recorder::append(&path, ExtendedXyz, times)
+        };
+        let mut recorder = again.unwrap();
+        run.run_until(30.0, &mut recorder).unwrap();
+        let expected: Vec<f64> = (1..=120).map(|beat| 0.25 * f64::from(beat)).collect();
+        assert_eq!(recorder.times(), expected);
+    }
+}
+
+/// A run that goes on from a checkpoint after the last frame would leave frames out.
+#[test]
+fn a_gap_needs_consent() {
+    let scratch = Scratch::new("gap");
+    let path = scratch.path("a.xyz");
+    let mut run = mixture();
+    run.run_until(1.0, &mut create(&path)).unwrap();
+    run.run_until(2.2, &mut ()).unwrap();
+    let mut recorder = append(&path).unwrap();
+    for _ in 0..2 {
+        let error = run.run_until(3.0, &mut recorder).unwrap_err();
+        let told = "a.xyz ends at time 1, so a run from time 2.2 on would leave out the frame at time 1.5; go on from an earlier \
+                    checkpoint, or accept the gap by SampleTimes::starting_at";
+        assert!(report(&error).ends_with(told), "{}", report(&error));
+    }
+    drop(recorder);
+    let mut recorder = Recorder::append(&path, ExtendedXyz, times().starting_at(2.5).unwrap()).unwrap();
+    run.run_until(3.0, &mut recorder).unwrap();
+    assert_eq!(recorder.times(), [0.5, 1.0, 2.5, 3.0]);
+}
+
+/// No frame of a time that cannot be read back gets into a file.
+#[test]
+fn a_frame_needs_a_time() {
+    let scratch = Scratch::new("no-time");
+    let path = scratch.path("a.xyz");
+    for time in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let mut recorder = Recorder::create(&path, ExtendedXyz, times()).unwrap();
+        recorder.record(&snapshot(time)).unwrap_err();
+        assert!(recorder.times().is_empty());
+        drop(recorder);
+        fs::remove_file(&path).unwrap();
+    }
+}
+
 #[test]
 fn a_frame_of_another_run_is_refused() {
     let scratch = Scratch::new("another");

@@ -92,6 +92,18 @@ fn a_run_starts_from_any_frame_as_if_it_had_not_stopped() {
     }
 }
 
+/// Some programs begin a text with a byte order mark.
+#[test]
+fn a_byte_order_mark_is_no_text() {
+    let disk = Disk::new(DVec2::new(1.0, 2.0), 0.5).unwrap();
+    let xyz = "\u{feff}1\nProperties=pos:R:2:radius:R:1\n1 2 0.5\n";
+    assert_eq!(State::from_xyz(xyz.as_bytes()).unwrap().disks(), [disk]);
+    assert_eq!(State::from_csv("\u{feff}x,y,radius\n1,2,0.5\n".as_bytes()).unwrap().disks(), [disk]);
+    let lammps = "\u{feff}\n1 atoms\n0 9 xlo xhi\n0 9 ylo yhi\n\nAtoms\n\n1 1 1 1 1 2 0\n";
+    assert_eq!(State::from_lammps_data(lammps.as_bytes()).unwrap().disks()[0].position(), disk.position());
+    assert!(State::from_csv("x,y,radius\n\u{feff}1,2,0.5\n".as_bytes()).is_err());
+}
+
 #[test]
 fn files_of_others_are_read() {
     let ase = "2\r\nLattice=\"10 0 0 0 5 0 0 0 1\" Origin=\"-1 0 0\" Properties=species:S:1:pos:R:3:forces:R:3:radius:R:1 \

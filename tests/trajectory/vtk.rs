@@ -2,9 +2,12 @@
 
 use std::fs;
 
+use granular_edmd::boundary::{Container, Part, Vessel};
+use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::SampleTimes;
 use granular_edmd::trajectory::{RecordError, Recorder};
+use granular_edmd::{Disk, Simulation};
 
 use crate::report::report;
 use crate::scratch::Scratch;
@@ -89,18 +92,29 @@ fn a_series_that_somebody_has_changed_is_left() {
     }
 }
 
-/// The parts of a vessel are lines beside the edges of the box.
+/// The parts of a vessel are lines beside the edges of the box, as long as the run has them.
 #[test]
-fn the_parts_of_a_vessel_are_lines() {
+fn the_walls_are_those_of_the_run() {
     let scratch = Scratch::new("series-walls");
     let path = scratch.path("run.pvd");
-    let wall = |time: f64| vec![vec![DVec2::new(time, 0.0), DVec2::ONE], vec![DVec2::ZERO; 3]];
-    let mut recorder = Recorder::create_vtk(&path, times()).unwrap().with_walls(wall);
-    mixture().run_until(1.0, &mut recorder).unwrap();
+    let place = |x, y| DVec2::new(x, y);
+    let paddle = Part::polyline([place(2.0, 5.0), place(8.0, 5.0)]).unwrap();
+    let paddle = paddle.with_rotation(place(5.0, 5.0), 0.3).unwrap();
+    let gate = Part::polyline([place(1.0, 9.0), place(4.0, 9.0), place(9.0, 9.0)]).unwrap();
+    let container = Container::closed(10.0, 20.0).unwrap();
+    let mut vessel = Vessel::new(container).with("paddle", paddle).unwrap().with("gate", gate).unwrap();
+    let disk = Disk::new(place(5.0, 15.0), 0.5).unwrap();
+    let mut run = Simulation::builder(Elastic, vessel.clone()).disks([disk]).build().unwrap();
+    let mut recorder = Recorder::create_vtk(&path, times()).unwrap();
+    run.run_until(1.0, &mut recorder).unwrap();
+    vessel.remove("gate").unwrap();
+    run.set_boundary(vessel).unwrap();
+    run.run_until(1.5, &mut recorder).unwrap();
     drop(recorder);
     let edges = |number: u32| fs::read_to_string(scratch.path(&format!("run/box_{number:06}.vtp"))).unwrap();
-    for number in 0..2 {
-        assert!(edges(number).contains("NumberOfPoints=\"9\" NumberOfLines=\"5\""), "{}", edges(number));
+    for (number, head) in [(0, (10, 7)), (1, (10, 7)), (2, (6, 5))] {
+        let head = format!("NumberOfPoints=\"{}\" NumberOfLines=\"{}\"", head.0, head.1);
+        assert!(edges(number).contains(&head), "{}", edges(number));
     }
-    assert!(edges(0) != edges(1));
+    assert!(edges(0) != edges(1), "the paddle turns");
 }

@@ -1,9 +1,11 @@
 //! The keys of a frame of extended XYZ.
 
+use std::collections::HashMap;
+
 use crate::boundary::Domain;
 use crate::trajectory::entry::{Columns, Field};
 use crate::trajectory::errors::ReadError;
-use crate::trajectory::lines::number;
+use crate::trajectory::lines::{checked_box, finite, number};
 
 /// The keys of a frame that the reader needs.
 pub(super) struct Header {
@@ -13,40 +15,60 @@ pub(super) struct Header {
     pub(super) domain: Option<Domain>,
 }
 
+/// Most columns of a disk. A few letters can ask for any number of them.
+const MOST_COLUMNS: usize = 1000;
+
 impl Header {
     /// Reads the keys from their line.
     pub(super) fn parse(keys: &str, line: usize) -> Result<Self, ReadError> {
-        let one = |key| value(keys, key).map(|value| number(key, value, line)).transpose();
-        let properties = value(keys, "Properties").ok_or_else(|| ReadError::missing(line, "`Properties`"))?;
+        let keys = Keys::parse(keys, line)?;
+        let one = |key| keys.value(key).map(|value| finite(key, value, line)).transpose();
+        let properties = keys.value("Properties").ok_or_else(|| ReadError::missing(line, "`Properties`"))?;
         Ok(Self {
             columns: Columns::new(fields(properties, line)?, line)?,
             time: one("Time")?,
             gravity: one("Gravity")?,
-            domain: domain(keys, line)?,
+            domain: domain(&keys, line)?,
         })
     }
 }
 
-/// Returns the value of a key, without its quotes.
-pub(super) fn value<'a>(keys: &'a str, key: &str) -> Option<&'a str> {
-    let mut rest = keys.trim_start();
-    while !rest.is_empty() {
-        let end = rest.find(|letter: char| letter == '=' || letter.is_whitespace()).unwrap_or(rest.len());
-        let (name, after) = rest.split_at(end);
-        let Some(after) = after.strip_prefix('=') else {
+/// The keys of a frame, each once, with their values without quotes.
+struct Keys<'a>(HashMap<&'a str, &'a str>);
+
+impl<'a> Keys<'a> {
+    /// Divides a line into keys and values. Words without a value are ignored.
+    fn parse(text: &'a str, line: usize) -> Result<Self, ReadError> {
+        let (mut keys, mut rest) = (HashMap::new(), text.trim_start());
+        while !rest.is_empty() {
+            let end = rest.find(|letter: char| letter == '=' || letter.is_whitespace()).unwrap_or(rest.len());
+            let (name, after) = rest.split_at(end);
+            let Some(after) = after.strip_prefix('=') else {
+                rest = after.trim_start();
+                continue;
+            };
+            let (value, after) = match after.strip_prefix('"') {
+                Some(quoted) => quoted.split_once('"').ok_or_else(|| {
+                    ReadError::unexpected(line, format!("the value of `{name}`"), "within two quotes", after)
+                })?,
+                None => after.split_at(after.find(char::is_whitespace).unwrap_or(after.len())),
+            };
+            if keys.insert(name, value).is_some() {
+                return Err(ReadError::Doubled { line, first: line, what: format!("the key `{name}`") });
+            }
             rest = after.trim_start();
-            continue;
-        };
-        let (value, after) = match after.strip_prefix('"') {
-            Some(quoted) => quoted.split_once('"').unwrap_or((quoted, "")),
-            None => after.split_at(after.find(char::is_whitespace).unwrap_or(after.len())),
-        };
-        if name == key {
-            return Some(value);
         }
-        rest = after.trim_start();
+        Ok(Self(keys))
     }
-    None
+
+    fn value(&self, key: &str) -> Option<&'a str> {
+        self.0.get(key).copied()
+    }
+}
+
+/// Returns the time among the keys of a frame, if it is there.
+pub(super) fn time(keys: &str) -> Option<f64> {
+    Keys::parse(keys, 0).ok()?.value("Time")?.parse().ok()
 }
 
 /// Returns the fields of each disk, with [`Field::Other`] for columns that are no property of a disk.
@@ -58,7 +80,11 @@ fn fields(properties: &str, line: usize) -> Result<Vec<Field>, ReadError> {
             Err(ReadError::unexpected(line, "each of `Properties`", "a name, a type and a number", found))
         };
         let &[name, _, count] = part else { return wrong(&part.join(":")) };
-        let Ok(count @ 1..=1000) = count.parse::<usize>() else { return wrong(&part.join(":")) };
+        let Ok(count @ 1..=MOST_COLUMNS) = count.parse() else { return wrong(&part.join(":")) };
+        if fields.len() + count > MOST_COLUMNS {
+            let most = format!("of at most {MOST_COLUMNS} columns");
+            return Err(ReadError::unexpected(line, "`Properties`", most, properties));
+        }
         let known = known(name);
         fields.extend((0..count).map(|index| known.get(index).copied().unwrap_or(Field::Other)));
     }
@@ -83,8 +109,8 @@ fn known(name: &str) -> &'static [Field] {
 }
 
 /// Returns the box from the key `Domain`, which this crate writes, or else from the lattice.
-fn domain(keys: &str, line: usize) -> Result<Option<Domain>, ReadError> {
-    let domain = match (value(keys, "Domain"), value(keys, "Lattice")) {
+fn domain(keys: &Keys<'_>, line: usize) -> Result<Option<Domain>, ReadError> {
+    let domain = match (keys.value("Domain"), keys.value("Lattice")) {
         (Some(domain), _) => {
             let [left, right, bottom, top] = numbers("Domain", domain, line)?;
             Domain::new(left, right, bottom, top)
@@ -94,17 +120,12 @@ fn domain(keys: &str, line: usize) -> Result<Option<Domain>, ReadError> {
             if a != 0.0 || b != 0.0 {
                 return Err(ReadError::unexpected(line, "Lattice", "a rectangle", lattice));
             }
-            let [left, bottom, _] = numbers("Origin", value(keys, "Origin").unwrap_or("0 0 0"), line)?;
+            let [left, bottom, _] = numbers("Origin", keys.value("Origin").unwrap_or("0 0 0"), line)?;
             Domain::new(left, left + width, bottom, bottom + height)
         }
         (None, None) => return Ok(None),
     };
-    let Domain { left, right, bottom, top, .. } = domain;
-    if !(left < right && bottom < top) {
-        let found = format!("{left} to {right} and {bottom} to {top}");
-        return Err(ReadError::unexpected(line, "the box", "from smaller to larger numbers", &found));
-    }
-    periodic(domain, value(keys, "pbc"), line).map(Some)
+    checked_box(periodic(domain, keys.value("pbc"), line)?, line).map(Some)
 }
 
 /// Returns the box with the periodic directions of the file.

@@ -43,7 +43,7 @@ impl State {
     pub fn from_lammps_data(input: impl BufRead) -> Result<Self, ReadError> {
         let mut lines = Lines::new(input);
         let (header, mut section) = Header::read(&mut lines)?;
-        let count = header.atoms.ok_or_else(|| ReadError::missing(lines.line(), "the number of atoms"))?;
+        let count = header.atoms(lines.line())?;
         let domain = header.domain(lines.line())?;
         let (mut atoms, mut seen) = (Atoms::new(), Seen::new());
         while let Some(name) = section {

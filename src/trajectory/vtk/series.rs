@@ -9,7 +9,7 @@ use crate::observable::Snapshot;
 use crate::trajectory::errors::RecordError;
 use crate::trajectory::format::no_frame;
 use crate::trajectory::media::{self, Growing};
-use crate::trajectory::store::{Store, Walls};
+use crate::trajectory::store::Store;
 
 /// Beginning and ending of the file of times. The ending follows each frame, so that the file is always
 /// whole.
@@ -25,7 +25,6 @@ pub(in crate::trajectory) struct Series {
     name: String,
     file: Growing<File>,
     times: Vec<f64>,
-    walls: Option<Walls>,
 }
 
 impl Series {
@@ -42,7 +41,7 @@ impl Series {
         });
         let mut file = Growing::new(file?, 0, Vec::new());
         file.push(HEAD.as_bytes(), TAIL.as_bytes()).map_err(RecordError::io("write to", path))?;
-        Ok(Self { path: path.to_owned(), folder, name, file, times: Vec::new(), walls: None })
+        Ok(Self { path: path.to_owned(), folder, name, file, times: Vec::new() })
     }
 
     /// Goes on after the last whole frame of a series.
@@ -58,7 +57,7 @@ impl Series {
             return Err(RecordError::io("go on in", path)(no_frame("an ending", &text[length..])));
         }
         let file = Growing::new(file, length as u64, TAIL.into());
-        Ok(Self { path: path.to_owned(), folder, name, file, times, walls: None })
+        Ok(Self { path: path.to_owned(), folder, name, file, times })
     }
 
     fn file_of(&self, part: &str, number: usize) -> PathBuf {
@@ -90,9 +89,7 @@ impl Store for Series {
 
     fn append(&mut self, snapshot: &Snapshot<'_>, bytes: &[u8]) -> Result<(), RecordError> {
         let mut edges = Vec::new();
-        let walls = self.walls.as_ref().map_or_else(Vec::new, |walls| walls(snapshot.time()));
-        let made = write_box(&mut edges, snapshot, &walls);
-        made.map_err(RecordError::io("make a frame of", &self.path))?;
+        write_box(&mut edges, snapshot).map_err(RecordError::io("make a frame of", &self.path))?;
         self.write("disks", bytes)?;
         self.write("box", &edges)?;
         let entry = entry(&self.name, self.times.len(), snapshot.time());
@@ -105,10 +102,6 @@ impl Store for Series {
     fn has(&mut self, number: usize, bytes: &[u8]) -> Result<bool, RecordError> {
         let path = self.file_of("disks", number);
         Ok(fs::read(&path).map_err(RecordError::io("read", &path))? == bytes)
-    }
-
-    fn set_walls(&mut self, walls: Walls) {
-        self.walls = Some(walls);
     }
 
     fn sync(&mut self) -> Result<(), RecordError> {
