@@ -249,7 +249,9 @@ fn overlaps_are_found() {
         let letter = |is_periodic| if is_periodic { 'T' } else { 'F' };
         let keys = format!("Domain=\"-3 7 0 10\" pbc=\"{} {} F\"", letter(sides), letter(ends));
         let mut text = format!("{}\n{keys} Properties=pos:R:2:radius:R:1\n", disks.len());
-        disks.iter().for_each(|(x, y, radius)| writeln!(text, "{x:?} {y:?} {radius:?}").unwrap());
+        for (x, y, radius) in &disks {
+            writeln!(text, "{x:?} {y:?} {radius:?}").unwrap();
+        }
         let place = |disk: &(f64, f64, f64)| DVec2::new(disk.0, disk.1);
         let overlaps = disks.iter().enumerate().any(|(index, a)| {
             disks[..index].iter().any(|b| domain.separation(place(a), place(b)).length() < a.2 + b.2)
