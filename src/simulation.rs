@@ -136,8 +136,8 @@ pub type BoxedScheduler = Box<dyn EventScheduler + Send + Sync>;
 /// ```
 pub type BoxedSimulation = Simulation<BoxedRule, BoxedBoundary, BoxedScheduler>;
 
-// A simulation can be sent to another thread, and be shared by several. Without these lines, a private field
-// could end that unnoticed.
+// A simulation can be sent to another thread, and be shared by several. Without this check, a new private
+// field could break that unnoticed.
 const _: () = {
     const fn is_sent_and_shared<T: Send + Sync>() {}
     is_sent_and_shared::<Simulation>();

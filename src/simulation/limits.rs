@@ -1,4 +1,4 @@
-//! The limits of a run: its end time, and what may end it earlier.
+//! The limits of a run: its end time, and reasons to stop earlier.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,8 +9,8 @@ use super::state::least_progress;
 use crate::ParameterError;
 use crate::quantity::non_negative;
 
-/// Number of events between two looks at the wall clock and at the flag of another thread. They are few
-/// enough that a limit is noticed at once, and so many that the looks cost next to nothing.
+/// Number of events between two looks at the wall clock and at the flag of another thread. So few that a
+/// limit is noticed at once, and so many that the looks cost next to nothing.
 const EVENTS_BETWEEN_LOOKS: u64 = 1024;
 
 /// The end of a run, and the limits that may end it earlier: a number of collisions, a wall-clock time, a

@@ -69,7 +69,7 @@ fn prefetch_disk(bodies: &Bodies, cells: &Cells, disk: usize) {
 fn prefetch_cells(bodies: &Bodies, cells: &Cells, disk: usize) {
     let forecast = bodies.particles[disk].forecast;
     if !forecast.is_collision() {
-        // To find the cells ahead of a large disk does not pay, since such a disk passes few cells.
+        // It does not pay to find the cells ahead of a large disk, since such a disk passes few cells.
         if !cells.is_large(disk) {
             cells.prefetch_ahead(disk, forecast.exit);
         }

@@ -10,8 +10,8 @@ use crate::collision::CollisionRule;
 use crate::observable::Collision;
 use crate::scheduler::EventScheduler;
 
-/// Largest number of pushes, each twice as strong as the last, that make two partners part. After these, they
-/// are left as they are.
+/// Largest number of pushes, each twice as strong as the last, with which two partners are made to part. If
+/// these fail, the partners are left as they are.
 const MOST_NUDGES: u32 = 24;
 
 /// Closing speed after a collision, relative to the speeds of the disks, above which it is not rounding: the
@@ -49,7 +49,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Makes a disk leave a wall if engine and boundary disagree about its motion.
     ///
-    /// By a rounding of its speed, the disk parts from the wall in the engine's arithmetic, but approaches it
+    /// Because its speed is rounded, a disk can part from the wall in the engine's arithmetic and approach it
     /// in the boundary's. A disk that rests on a wall does not part from it, and is left as it is.
     #[cold]
     #[inline(never)]
@@ -59,8 +59,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             if exit != Exit::Wall || exit_due > self.clock.now || usize::from(next) != wall {
                 return;
             }
-            // The speed relative to the wall is a difference of speeds, so its rounding is that of these
-            // speeds.
+            // The speed relative to the wall is a difference of speeds, so its rounding error is that of
+            // these speeds.
             let fallen = self.bodies.fall(self.clock.now).1.length();
             let scale = f64::EPSILON * (self.bodies.speed(disk) + fallen);
             self.bodies.push(disk, collision.normal * (f64::from(1_u32 << doubling) * scale), self.clock.now);

@@ -92,8 +92,8 @@ impl Best {
     }
 }
 
-/// Returns the shortest distance that is equivalent to `x` where places repeat themselves after a `period`.
-/// The period is 0 where they do not.
+/// Returns the shortest distance that equals `x` up to periods. The period is 0 where the domain is not
+/// periodic.
 #[inline]
 pub(super) fn nearest_image(x: f64, period: f64) -> f64 {
     let half = 0.5 * period;
@@ -102,8 +102,8 @@ pub(super) fn nearest_image(x: f64, period: f64) -> f64 {
     x - back + forth
 }
 
-/// Tells whether two disks close, in exactly the arithmetic of [`earliest_collision`]. Another arithmetic
-/// would round differently, and a pair that seems to part could be found to collide.
+/// Tells whether two disks close, in exactly the arithmetic of [`earliest_collision`]. Other arithmetic would
+/// round differently, and a pair that seems to part here could be predicted to collide.
 #[inline]
 pub(super) fn are_closing(bodies: &Bodies, periods: DVec2, disk: usize, partner: usize, now: f64) -> bool {
     let (mine, other) = (bodies.particles[disk].trajectory.row(), bodies.particles[partner].trajectory.row());
@@ -202,7 +202,7 @@ pub(super) fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64)
         let (wait, down) = vertical_exit(below, above, -velocity.y, -bodies.gravity);
         (wait, !down)
     };
-    // A disk at rest without an edge in sight gives 0/0 or inf/inf, which stands for never.
+    // For a disk at rest that reaches no edge, the result is 0/0 or inf/inf, which means never.
     let sideways = if sideways.is_nan() { f64::INFINITY } else { sideways };
     let level = vertical < sideways;
     let wait = if level { vertical } else { sideways }.max(0.0);
@@ -214,7 +214,7 @@ pub(super) fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64)
 /// that pulls down.
 ///
 /// There are three ways: up to the edge above, up and down again through the edge below, or straight down.
-/// Selections of numbers tell them apart, and not branches. Which way a disk takes is a coin toss, and a
+/// The code selects numbers and does not branch: the way that a disk takes is a coin toss, and a
 /// misprediction would cost more than all three roots. Each root has the form in which nothing cancels: a
 /// distance over a sum of speeds if the disk goes straight to the edge, and a sum of speeds over gravity if
 /// it turns back.

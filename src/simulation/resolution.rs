@@ -17,8 +17,8 @@ use crate::random::{normal, rayleigh};
 const UNIT: f64 = 1e-9;
 
 /// Speed along the normal, relative to the whole relative speed, below which rounding may decide its sign.
-/// The normal comes from a difference of positions, so its rounding is that of 1 times the ratio of the
-/// vessel's size to the disks'.
+/// The normal comes from a difference of positions, so its rounding error is that of 1, times the ratio of
+/// the vessel's size to the disks'.
 const GRAZING: f64 = 1e-6;
 
 /// The change of a disk's motion in a collision.
@@ -40,7 +40,7 @@ impl Kick {
         }
     }
 
-    /// Tells whether the kick leads to a motion with which the engine can go on.
+    /// Tells whether the kick leads to a motion within the engine's bounds.
     pub(super) fn is_possible(&self) -> bool {
         let velocity = self.after.velocity.abs();
         velocity.x <= LARGEST && velocity.y <= LARGEST && self.after.angular_velocity.abs() <= LARGEST
@@ -140,8 +140,8 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
     (collision, kick)
 }
 
-/// Tells whether two disks part so fast after a collision that no rounding can turn this into an approach.
-/// Nearly all do.
+/// Tells whether two disks part so fast after a collision that rounding cannot make them approach. Nearly all
+/// do.
 #[inline]
 pub(super) fn is_parting(normal: DVec2, kicks: &[Kick; 2]) -> bool {
     let velocity = (kicks[0].after.velocity - kicks[1].after.velocity).abs();

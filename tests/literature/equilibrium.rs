@@ -70,6 +70,7 @@ fn equation_of_state(disks: usize, collisions_per_disk: f64, tolerance: f64) -> 
         let slope = |phi: f64| (1.0 + phi * phi / 8.0) / (1.0 - phi).powi(2);
         let expected = expected * slope(measured.bulk) / slope(packing);
         let ideal = 4.0 * measured.bulk / PI * measured.temperature;
+        crate::measured("packing fraction", measured.bulk);
         let name = |road| format!("Z by {road}, {:.4}", measured.bulk);
         assert!(agrees(&name("walls"), measured.walls / ideal, expected, tolerance));
         assert!(agrees(&name("virial"), measured.virial / ideal, expected, tolerance));

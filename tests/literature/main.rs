@@ -33,10 +33,11 @@ use measured::measured;
 /// The result of a test.
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
-/// Returns whether `value` is `expected` up to this relative deviation, and writes it, for the table.
+/// Returns whether `value` is `expected` up to this relative deviation, and writes both, for the table.
 fn agrees(quantity: &str, value: f64, expected: f64, tolerance: f64) -> bool {
     let deviation = value / expected - 1.0;
     measured(quantity, value);
-    println!("  expected {expected:.5}, deviation {deviation:.5} of {tolerance}");
+    measured(&format!("expected {quantity}"), expected);
+    println!("  deviation {deviation:.5} of {tolerance}");
     deviation.abs() < tolerance
 }

@@ -25,7 +25,7 @@ impl CellSize {
     /// time.
     ///
     /// At each bound, runs with either size take equally long. The bounds are far enough apart that no run
-    /// goes back and forth between two sizes.
+    /// alternates between two sizes.
     pub(in crate::simulation) fn suitable(self, cell_crossings: u64, collisions: u64) -> Self {
         let passed = cell_crossings as f64 / collisions as f64;
         match self {

@@ -22,7 +22,7 @@ pub(super) fn edges(start: f64, pitch: f64, count: u32, walls: bool) -> Vec<f64>
 }
 
 /// Returns the edges of the rows. In an open container, the upper half of the rows grows in proportion to the
-/// height. So a disk that flies high does not share its cell with all others that are high.
+/// height. So a disk that flies high does not share its cell with all other high ones.
 pub(super) fn row_edges(domain: &Domain, layout: &Layout) -> Vec<f64> {
     const GROWTH: f64 = 1.1;
     let mut edges = edges(domain.bottom, layout.pitch.y, layout.rows, !domain.periodic_ends);

@@ -37,7 +37,7 @@ pub(in crate::simulation) struct Grid {
     /// Distance beyond its edges up to which a cell keeps its disks, so that fewer of them pass from one cell
     /// to another.
     margin: DVec2,
-    /// Width and height after which the domain repeats itself; 0 where it does not.
+    /// Horizontal and vertical period of the domain; 0 where it is not periodic.
     periods: DVec2,
     /// True if one of the periods is not 0: a flag that is cheap to test.
     is_periodic: bool,
@@ -203,13 +203,13 @@ impl Grid {
         prefetch(&self.column_edges, place.column as usize);
     }
 
-    /// Returns the width and the height after which the domain repeats itself; 0 where it does not.
+    /// Returns the horizontal and the vertical period of the domain; 0 where it is not periodic.
     #[inline]
     pub(in crate::simulation) fn periods(&self) -> DVec2 {
         self.periods
     }
 
-    /// Tells whether the domain repeats itself in some direction.
+    /// Tells whether the domain is periodic in some direction.
     #[inline]
     pub(in crate::simulation) fn is_periodic(&self) -> bool {
         self.is_periodic

@@ -54,7 +54,7 @@ impl LayerLayout {
         let homes = Layout::new(domain, largest, cell_size, most, highest)?;
         let height = domain.height().min(highest - domain.bottom + largest);
         let density = |class: &SizeClass| class.count as f64 / (domain.width() * height);
-        // The mean way from one collision to the next, up to a factor of order 1.
+        // The mean free path, up to a factor of order 1.
         let free_path =
             1.0 / classes.iter().map(|other| density(other) * (largest + other.largest)).sum::<f64>();
         // In a small cell, a disk has few partners, but it leaves the cell often. A cell is no smaller than
@@ -62,8 +62,8 @@ impl LayerLayout {
         let suitable =
             (FREE_PATHS * cell_size.pitch() * free_path).max(cell_size.pitch() * classes[0].largest);
         let mut layout = Self { cells: homes, doublings: 0 };
-        // A cell can only be halved. Of the possible sizes, the one whose ratio to the suitable size is
-        // nearest to 1 is taken.
+        // Cells are halved homes, so only some sizes are possible. The size with a ratio to the suitable one
+        // that is nearest to 1 is taken.
         while layout.cells.pitch.max_element() > SQRT_2 * suitable && layout.can_be_finer() {
             layout = layout.finer(1);
         }
@@ -93,7 +93,7 @@ impl LayerLayout {
         Self { cells, doublings: self.doublings + doublings }
     }
 
-    /// Returns the layout of the homes, if these cells make up whole homes.
+    /// Returns the layout of the homes, if a whole number of these cells makes up a home.
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn homes(&self) -> Option<Layout> {
         let Self { cells: Layout { columns, rows, pitch, cell_size }, doublings } = *self;
@@ -103,8 +103,8 @@ impl LayerLayout {
         whole.then_some(Layout { columns: columns / side, rows: rows / side, pitch, cell_size })
     }
 
-    /// Tells whether the cells are so narrow that their disks meet each other, and disks of the smallest
-    /// class, at only one image.
+    /// Tells whether the cells are so narrow that their disks can meet only one image of each other, and of
+    /// disks of the smallest class.
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn is_narrow_enough(
         &self,

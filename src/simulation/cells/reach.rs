@@ -35,9 +35,9 @@ pub(super) struct Homes<'a> {
 /// The range of distances between the centers of two disks that touch, one of each of two classes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Distances {
-    /// The distance of the centers of the largest disks when they touch.
+    /// The distance of the centers when the largest disks touch.
     pub(super) most: f64,
-    /// The distance of the centers of the smallest disks when they touch.
+    /// The distance of the centers when the smallest disks touch.
     pub(super) least: f64,
 }
 
@@ -48,10 +48,9 @@ pub(super) struct Distances {
 pub(super) struct Reach {
     columns: Vec<[Span; 2]>,
     rows: Vec<[Span; 2]>,
-    /// Number of columns of homes, after which periodic sides begin anew.
+    /// Number of columns of homes in a period.
     period_columns: u32,
-    /// Number of rows of homes, after which periodic ends begin anew. The rows of a span are counted on
-    /// beyond this number.
+    /// Number of rows of homes in a period. The rows of a span are counted beyond this number.
     period_rows: u32,
     stride: usize,
     first: usize,
@@ -116,13 +115,13 @@ impl Reach {
         }
     }
 
-    /// Shifts the rows of another place by a period if periodic ends lie between the places, so that the rows
-    /// of both places are counted from the same end.
+    /// Shifts the rows of another place by a period if the periodic boundary lies between the places, so that
+    /// the rows of both places are counted from the same row.
     fn aligned(&self, rows: Span, place: Place, other: Place) -> Span {
         let first = |place: Place| i64::from(self.rows[place.row as usize - 1][0].first);
         let (ahead, period) = (first(place) - first(other), i64::from(self.period_rows));
         let turns = if 2 * ahead > period { 1 } else { -i64::from(2 * ahead < -period) };
-        // The part of a span before the first row reaches no row of this place.
+        // Rows of the span that come before the first row reach no row of this place.
         let start = i64::from(rows.first) + turns * period;
         Span::between(start.max(0) as u32, (start + i64::from(rows.count)).max(0) as u32)
     }
@@ -137,7 +136,7 @@ impl Reach {
         }
     }
 
-    /// Splits a span into the part up to the last row, and the part that goes on at the other end.
+    /// Splits a span into the rows up to the last one, and those that continue on the opposite side.
     #[inline]
     fn pieces(&self, rows: Span) -> [Span; 2] {
         let last = self.period_rows;
@@ -183,7 +182,7 @@ fn between(edges: &[f64], low: f64, high: f64) -> Span {
     Span { first: first as u32, count: (last - first) as u32 + 1 }
 }
 
-/// Returns the spaces that lie wholly between two numbers, which the first and the last space never do.
+/// Returns the spaces that lie wholly between two numbers. The first and the last space never do.
 fn within(edges: &[f64], low: f64, high: f64) -> Span {
     let inner = &edges[1..edges.len() - 1];
     let first = inner.partition_point(|&edge| edge < low);

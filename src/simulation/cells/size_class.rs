@@ -1,9 +1,9 @@
-//! Classes of disks of similar size, each with cells that suit it.
+//! Classes of disks of similar size, each with cells of a suitable size.
 
 use super::cost::{Group, area, cost};
 
-/// Ratio of the smallest to the largest diameter in a narrow class. It is less if there would be very many
-/// classes otherwise.
+/// Ratio of the smallest to the largest diameter in a narrow class. It is smaller if there would otherwise be
+/// very many classes.
 const WIDTH: f64 = 0.7;
 
 /// Disks of similar size.
@@ -73,7 +73,7 @@ fn changed(bounds: &[bool], first: usize, count: usize) -> Vec<bool> {
 }
 
 /// Returns narrow classes. Each begins with the largest disk that is not in a class yet, and reaches down to
-/// a fixed ratio of its diameter.
+/// a fixed fraction of its diameter.
 fn narrow_classes(diameters: impl Iterator<Item = f64>) -> Vec<SizeClass> {
     let mut diameters: Vec<f64> = diameters.collect();
     diameters.sort_unstable_by(|a, b| b.total_cmp(a));
@@ -92,7 +92,7 @@ fn narrow_classes(diameters: impl Iterator<Item = f64>) -> Vec<SizeClass> {
     classes
 }
 
-/// Returns a ratio with which there are some sixteen classes at most.
+/// Returns a ratio that yields at most about 16 classes.
 fn width(largest: f64, smallest: f64) -> f64 {
     let sixteenth_root = (smallest / largest).sqrt().sqrt().sqrt().sqrt();
     WIDTH.min(sixteenth_root)

@@ -25,12 +25,12 @@ pub struct Resumption<'a, R, B, S = BySize> {
 }
 
 impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
-    /// Starts to build a run that goes on where the checkpoint was taken, with its gravity, random numbers
-    /// and counters.
+    /// Starts to build a run that continues from the checkpoint, with its gravity, random numbers and
+    /// counters.
     ///
-    /// The rule and the boundary are code, so the caller gives them again. The same ones give the same
-    /// future, and others are refused unless they are given on purpose. Only two parts that both have no
-    /// fingerprint (closures, for example) cannot be told apart. [`Checkpoint`] has an example.
+    /// The rule and the boundary are code, so the caller gives them again. The same rule and boundary give
+    /// the same future. Others are refused, unless they are given on purpose. Only two parts that both have
+    /// no fingerprint (closures, for example) cannot be told apart. [`Checkpoint`] has an example.
     pub const fn resume(checkpoint: &Checkpoint, rule: R, boundary: B) -> Resumption<'_, R, B> {
         let scheduler = BySize::new();
         Resumption { checkpoint, rule, boundary, scheduler, another_rule: false, another_boundary: false }
@@ -69,8 +69,8 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
     /// given on purpose.
     pub fn build(self) -> Result<Simulation<R, B, S>, CheckpointError> {
         let saved = &self.checkpoint.0;
-        // A part with a fingerprint never equals one without. Only two parts without fingerprints cannot be
-        // told apart.
+        // A part with a fingerprint never equals one without. Two parts without fingerprints cannot be told
+        // apart.
         if !self.another_rule && saved.rule != self.rule.fingerprint() {
             return Err(CheckpointError::AnotherRule);
         }

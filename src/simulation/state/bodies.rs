@@ -97,7 +97,7 @@ impl Bodies {
         Self { particles, spins, gravity, properties, images, typical_diameter }
     }
 
-    /// Creates bodies that go on from where they were saved. Disks that are all alike have a single model.
+    /// Creates bodies as they were saved. Disks that are all alike have a single model.
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn restored(
         models: &[Disk],
@@ -208,8 +208,8 @@ impl Bodies {
         let trajectory = &mut self.particles[disk].trajectory;
         let before = trajectory.velocity;
         trajectory.velocity += velocity;
-        // The correction of the position uses the change of velocity that is left after rounding. With the
-        // unrounded change, the disk would jump.
+        // The position is corrected with the change of the rounded velocity. With the unrounded change, the
+        // disk would jump.
         trajectory.position -= (trajectory.velocity - before) * offset;
     }
 

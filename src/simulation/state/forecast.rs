@@ -11,7 +11,7 @@ impl Earliest {
     pub(in crate::simulation) const NONE: Self = Self { due: f64::INFINITY, partner: u32::MAX };
 }
 
-/// The way in which a disk's flight in its cell ends.
+/// The end of a disk's flight in its cell: an edge, a wall or a horizon.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) enum Exit {
@@ -19,7 +19,7 @@ pub(in crate::simulation) enum Exit {
     Right,
     Down,
     Up,
-    /// The flight does not end yet: the search for a wall found none up to its horizon.
+    /// No end yet: the search for a wall found none up to its horizon.
     Horizon,
     Wall,
     /// The boundary answered with an impossible touch. The run ends when the turn of this event comes.
@@ -32,7 +32,7 @@ impl Exit {
         [[Self::Left, Self::Right], [Self::Down, Self::Up]];
 
     /// Returns the columns to the right and the rows up. They are computed, since a branch would be a coin
-    /// toss with four sides.
+    /// toss between four ways.
     #[inline]
     pub(in crate::simulation) fn direction(self) -> (i32, i32) {
         let right = i32::from(self == Self::Right) - i32::from(self == Self::Left);
