@@ -183,7 +183,7 @@ mod tests {
     proptest! {
         #![proptest_config(config())]
 
-        /// The test covers all degrees of crowding: cells with room, full ones, crowds of one piece and of
+        /// The test covers all degrees of crowding: cells with room, full ones, crowds of one part and of
         /// many, and empty cells again. The crowds take no more memory than their disks.
         #[test]
         fn cells_hold_the_disks_that_entered_and_did_not_leave(

@@ -2,21 +2,21 @@
 
 use crate::disk::MOST_DISKS;
 
-/// Number of disks in a piece of a crowd. With six, a piece is as large as two blocks.
+/// Number of disks in a part of a crowd. With six, a part is as large as two blocks.
 const SEATS: usize = 6;
 
 /// Number of parts for which there is room from the start.
 const FEW: usize = 16;
 
-/// Number of cells that share the room for one piece.
+/// Number of cells that share the room for one part.
 const CELLS: usize = 1024;
 
-/// No piece: the end of a chain.
+/// No part: the end of a chain.
 const NONE: u32 = u32::MAX;
 
 const _: () = assert!(MOST_DISKS < NONE as usize);
 
-/// A few disks of a crowded cell, filled from the first seat on, and a link to the next piece.
+/// A few disks of a crowded cell, filled from the first seat on, and a link to the next part.
 #[derive(Debug, Clone, Copy)]
 struct Part {
     seats: [u32; SEATS],
@@ -24,9 +24,9 @@ struct Part {
     next: u32,
 }
 
-/// The crowds of all cells, each a chain of pieces from a common pool.
+/// The crowds of all cells, each a chain of parts from a common pool.
 ///
-/// A crowd is identified by the number of its first piece, the only one that may have free seats. The memory
+/// A crowd is identified by the number of its first part, the only one that may have free seats. The memory
 /// grows with the number of disks in crowds, and never shrinks.
 #[derive(Debug, Clone)]
 pub(super) struct Crowds {
