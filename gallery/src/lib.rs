@@ -5,7 +5,9 @@
 pub mod command_line;
 pub mod faces;
 pub mod flow;
+pub mod letters;
 pub mod look;
+pub mod palette;
 pub mod panel;
 pub mod paper;
 pub mod progress;

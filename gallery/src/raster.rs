@@ -1,33 +1,39 @@
-//! Pictures as pixels: a PNG file from an SVG file.
+//! Pictures as pixels: a PNG file of a scene.
 
-use std::sync::Arc;
-
-use base64::Engine;
-use base64::prelude::BASE64_STANDARD;
 use kuva::backend::svg::SvgBackend;
 use kuva::render::render::Scene;
-use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::fontdb::Database;
+use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 
-/// Returns a PNG file of an SVG file, with this many pixels to a unit.
-pub fn png(svg: &str, scale: f32) -> Result<Vec<u8>, String> {
-    let options = Options { fontdb: Arc::new(fonts()?), ..Options::default() };
-    let tree = Tree::from_str(svg, &options).map_err(|error| error.to_string())?;
+use crate::letters::Letters;
+use crate::palette::Palette;
+
+/// Returns a PNG file of a scene, with this many pixels to a unit, on white, in at most 256 colors.
+pub fn png(scene: &Scene, scale: f32) -> Result<Vec<u8>, String> {
+    let scene = Letters::of_kuva()?.outlined(scene)?;
+    let svg = SvgBackend::new().render_scene(&scene);
+    let tree = Tree::from_str(&svg, &Options::default()).map_err(|error| error.to_string())?;
     let size = tree.size().to_int_size().scale_by(scale).ok_or("the picture has no size")?;
     let mut pixels = Pixmap::new(size.width(), size.height()).ok_or("the picture is too large")?;
+    pixels.fill(Color::WHITE);
     resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
-    pixels.encode_png().map_err(|error| error.to_string())
+    // Opaque everywhere, so the colors are as they are.
+    let colors: Vec<_> =
+        pixels.pixels().iter().map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]).collect();
+    file(size.width(), size.height(), &colors).map_err(|error| error.to_string())
 }
 
-/// Returns the fonts that kuva brings, so that letters look the same on all machines, and appear on those
-/// without fonts. kuva gives them away only inside of a picture.
-fn fonts() -> Result<Database, String> {
-    let picture = SvgBackend::new().with_embedded_font(true).render_scene(&Scene::new(1.0, 1.0));
-    let mut fonts = Database::new();
-    for text in picture.split("base64,").skip(1) {
-        let text = text.split('\'').next().unwrap_or_default();
-        fonts.load_font_data(BASE64_STANDARD.decode(text).map_err(|error| error.to_string())?);
-    }
-    Ok(fonts)
+/// Returns a PNG file of these colors with a palette: a third of the bytes that each pixel's own color takes.
+fn file(width: u32, height: u32, colors: &[[u8; 3]]) -> Result<Vec<u8>, png::EncodingError> {
+    let palette = Palette::of(colors);
+    let indices: Vec<u8> = colors.iter().map(|&color| palette.index(color)).collect();
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_palette(palette.bytes());
+    encoder.set_compression(png::Compression::High);
+    encoder.set_filter(png::Filter::NoFilter);
+    encoder.write_header()?.write_image_data(&indices)?;
+    Ok(file)
 }

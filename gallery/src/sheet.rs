@@ -256,7 +256,7 @@ impl Sheet {
     pub fn write(&self, name: &Path) -> io::Result<()> {
         let svg = self.svg();
         fs::write(format!("{}.svg", name.display()), &svg)?;
-        let png = raster::png(&svg, PIXELS).map_err(io::Error::other)?;
+        let png = raster::png(&self.scene, PIXELS).map_err(io::Error::other)?;
         fs::write(format!("{}.png", name.display()), png)
     }
 }
