@@ -12,10 +12,11 @@ use crate::quantity::accept;
 /// \rho_k = \frac{\langle(x_i-\bar x)(x_{i+k}-\bar x)\rangle}{\langle(x_i-\bar x)^2\rangle},
 /// ```
 ///
-/// and its error comes from blocks of the products. If all samples are equal, the result is NaN.
+/// and its error comes from blocks of the products.
 ///
 /// # Errors
-/// If the series has no more than `lags + 1` samples, or one is not finite or above 1e100 in size.
+/// If the series has no more than `lags + 1` samples, one is not finite or above 1e100 in size, or all are
+/// equal: a constant has no correlation.
 ///
 /// ```
 /// use granular_edmd::statistics::autocorrelation;
@@ -35,5 +36,6 @@ pub fn autocorrelation(samples: &[f64], lags: usize) -> Result<Vec<Estimate>, Pa
         pairs.map(|(first, second)| (first - mean) * (second - mean)).collect()
     };
     let variance = covariance(0).mean();
+    accept(variance > 0.0, "variance of the samples", "positive: not all samples equal", variance)?;
     Ok((0..=lags).map(|lag| covariance(lag).estimate().scaled(1.0 / variance)).collect())
 }

@@ -85,16 +85,22 @@ impl BlockedMean {
     pub fn estimate(&self) -> Estimate {
         let whole = self.ungrouped();
         let naive = whole.standard_error();
-        if whole.count() < 2 || naive == 0.0 {
-            return Estimate::blocked(whole.mean(), naive, whole.count(), 1.0, true);
+        if whole.count() < 2 {
+            return Estimate::blocked(whole.mean(), naive, whole.count(), 1.0, false);
+        }
+        if naive == 0.0 {
+            // Equal samples tell no more than one of them.
+            return Estimate::blocked(whole.mean(), 0.0, whole.count(), whole.count() as f64, false);
         }
         let several = self.levels.iter().map(|level| level.blocks).take_while(|blocks| blocks.count() >= 2);
         let errors: Vec<BlockError> = several.map(|blocks| BlockError::of(&blocks)).collect();
         let plateau = plateau(&errors, whole.count());
-        let largest = || errors.iter().map(|level| level.error).fold(naive, f64::max);
-        let error = plateau.unwrap_or_else(largest);
+        let (error, raised) = plateau.unwrap_or_else(|| {
+            let largest = errors.iter().map(|level| level.error).fold(naive, f64::max);
+            (largest, largest)
+        });
         let growth = error / naive;
-        Estimate::blocked(whole.mean(), error, whole.count(), growth * growth, plateau.is_some())
+        Estimate::blocked(whole.mean(), raised, whole.count(), growth * growth, plateau.is_some())
     }
 }
 

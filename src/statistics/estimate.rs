@@ -116,8 +116,9 @@ impl Estimate {
 
     /// Tells whether the error can be trusted.
     ///
-    /// If it cannot, it is only a lower bound: the series is too short for its correlations, or there are
-    /// fewer than two samples.
+    /// If it cannot, it is only a lower bound: the series is too short for its correlations
+    /// ([`block_average`](super::block_average) has the numbers), all samples are equal, or there are fewer
+    /// than two samples.
     pub const fn is_converged(&self) -> bool {
         self.samples >= 2 && !matches!(self.basis, Basis::ShortBlocks)
     }
@@ -150,6 +151,9 @@ impl fmt::Display for Estimate {
         write!(formatter, "{:.digits$} ± {:.digits$}", self.mean, self.standard_error)?;
         match (self.samples, self.basis) {
             (0 | 1, _) => formatter.write_str(" (too few samples for an error)"),
+            (_, Basis::ShortBlocks) if self.standard_error == 0.0 => {
+                formatter.write_str(" (all samples are equal)")
+            }
             (_, Basis::Independent) => formatter.write_str(" (independent samples)"),
             (_, Basis::Blocks) => Ok(()),
             (_, Basis::ShortBlocks) => formatter.write_str(" (not converged: a lower bound)"),
