@@ -32,13 +32,13 @@ const EXCESS: f64 = 60.0;
 /// \epsilon_B^2 = \frac{1}{n_B(n_B-1)}\sum_i (x_i^{(B)}-\bar x)^2,
 /// ```
 ///
-/// grows with the block size $`B$` until blocks are independent. The error is that of the smallest blocks for
+/// grows with the block size $`B`$ until blocks are independent. The error is that of the smallest blocks for
 /// which
-/// 1. `$B^3 > 2n(\epsilon_B/\epsilon_1)^4$`: shorter blocks leave a bias that is larger than the scatter of
-///    `$\epsilon_B$` itself, and longer ones scatter more (Lee et al. 2011, Phys. Rev. E 83, 066706);
-/// 2. `$\epsilon_B$` exceeds the error from blocks of half the size by at most its own uncertainty, and the
+/// 1. $`B^3 > 2n(\epsilon_B/\epsilon_1)^4`$: shorter blocks leave a bias that is larger than the scatter of
+///    $`\epsilon_B`$ itself, and longer ones scatter more (Lee et al. 2011, Phys. Rev. E 83, 066706);
+/// 2. $`\epsilon_B`$ exceeds the error from blocks of half the size by at most its own uncertainty, and the
 ///    error from blocks of a quarter of the size by at most one and a half times its uncertainty;
-/// 3. for no larger blocks does the error exceed `$\epsilon_B`$ by more than twice the uncertainty of that
+/// 3. for no larger blocks does the error exceed $`\epsilon_B`$ by more than twice the uncertainty of that
 ///    error.
 ///
 /// The first condition suffices for a series with one correlation time. The others detect a second, longer

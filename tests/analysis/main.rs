@@ -63,7 +63,9 @@ fn block_error_is_that_of_an_autoregressive_series() -> Outcome {
             };
             let average = block_average(&(0..samples).map(step).collect::<Vec<_>>())?;
             assert!(average.is_converged());
-            assert!((average.standard_error() / exact - 1.0).abs() < 0.35, "{rho}: {average:?}");
+            // For 0.9, with some 860 independent samples, the error is raised by 7 %.
+            let ratio = average.standard_error() / exact;
+            assert!((0.65..1.45).contains(&ratio), "{rho}: {average:?}");
             // The naive error is known far better, so the uncertainty of their ratio is that of the blocked
             // error.
             let growth = average.correlated_samples() * (1.0 - rho) / (1.0 + rho);
