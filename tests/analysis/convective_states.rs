@@ -21,6 +21,8 @@ use granular_edmd::statistics::block_average;
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{Simulation, initial};
 
+use crate::measured::measured;
+
 const DISKS: usize = 1000;
 const PERIOD: f64 = TAU / 10.0;
 
@@ -87,8 +89,10 @@ fn states_are_those_of_the_study() -> Result<(), Box<dyn Error>> {
     ];
     for (friction, regime) in expected {
         for seed in 1..4 {
-            println!("friction {friction}, seed {seed}");
             let found = Measured::of(friction, 6000.0, seed)?.classify()?;
+            let center = found.iter().map(|(_, cluster)| cluster.center()).next().ok_or("no cluster")?;
+            measured(&format!("Ψ1, friction {friction}"), center.x.abs());
+            measured(&format!("Ψ2, friction {friction}"), center.y);
             assert_eq!(found.regime(), regime, "friction {friction}, seed {seed}");
             assert_eq!(found.weight(ConvectiveState::TwoRollsDown), 0.0, "never seen");
         }
@@ -110,7 +114,9 @@ fn one_roll_and_two_coexist_as_in_figure_4() -> Result<(), Box<dyn Error>> {
     let found = StateCriteria::default().classify(&orders, noise, None)?;
     assert_eq!(found.regime(), ConvectiveRegime::Coexistence);
     for (state, cluster) in found.iter() {
-        println!("{state}: weight {:.3} at {:.4}", cluster.weight(), cluster.center());
+        let rolls = state.rolls().unwrap_or(0);
+        measured(&format!("Ψ1, rolls {rolls}"), cluster.center().x.abs());
+        measured(&format!("Ψ2, rolls {rolls}"), cluster.center().y);
         // The study's centers; those of runs of this length scatter by a hundredth.
         let center = DVec2::new(cluster.center().x.abs(), cluster.center().y);
         let expected =

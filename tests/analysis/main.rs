@@ -2,6 +2,8 @@
 
 mod clusters;
 mod convective_states;
+#[path = "../support/measured.rs"]
+mod measured;
 mod states;
 
 use granular_edmd::ParameterError;

@@ -4,5 +4,7 @@
 #[path = "../support/cases.rs"]
 mod cases;
 mod mean_energy_change;
+#[path = "../support/measured.rs"]
+mod measured;
 mod monte_carlo;
 mod paper_energy_loss;

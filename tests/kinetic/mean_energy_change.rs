@@ -92,7 +92,8 @@ fn monte_carlo_and_closed_form_agree_everywhere() {
     let distances = distances(2000, 1 << 18);
     let mean_square = distances.iter().map(|distance| distance * distance).sum::<f64>() / 2000.0;
     let far = distances.iter().filter(|distance| distance.abs() > 4.0).count();
-    println!("mean square distance {mean_square}, {far} beyond 4 standard errors");
+    crate::measured::measured("mean square distance", mean_square);
+    crate::measured::measured("beyond 4 errors", far);
     assert!(far <= 1 && (0.9..1.1).contains(&mean_square));
 }
 
