@@ -218,7 +218,7 @@ pub trait Boundary {
         Vec::new()
     }
 
-    /// Returns the fingerprint of the boundary: its name and everything that decides what it does.
+    /// Returns the fingerprint of the boundary: its name and everything on which its answers depend.
     ///
     /// Checkpoints compare it when a run is resumed. Without one, the boundary is not compared.
     fn fingerprint(&self) -> Option<Fingerprint> {

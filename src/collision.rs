@@ -95,7 +95,7 @@ use crate::Fingerprint;
 ///
 /// The rule guarantees:
 /// 1. The same contact gets the same impulse every time, to the bit; a rule that needs history finds it in
-///    the contact. Otherwise, a run would depend on what was computed before, and a resumed run would differ.
+///    the contact. Otherwise, a run would depend on earlier calls, and a resumed run would differ.
 /// 2. The impulse is finite. Otherwise, the run ends with an error that names the partners and contains the
 ///    text of [`Self::explain`].
 /// 3. The surfaces no longer close after the collision. Otherwise, they collide again at once, until the run

@@ -177,7 +177,7 @@ impl Disk {
     /// Returns the numbers of periods that the disk has passed to the right and up, less those to the left
     /// and down.
     ///
-    /// Each passage counts one, whatever the period was at that time.
+    /// Each passage counts one, also if the period has changed since.
     ///
     /// At periodic sides and ends, [`Domain::unwrapped`](crate::boundary::Domain::unwrapped) turns these
     /// numbers into a position that does not jump.

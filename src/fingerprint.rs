@@ -3,8 +3,8 @@
 /// Identity of a part of a simulation: equal for equal parts, different for parts that act differently.
 ///
 /// A checkpoint keeps the fingerprints of its rule and its boundary, and notices when a run is resumed with
-/// others. A part of your own makes its fingerprint from its name and from all numbers that decide what it
-/// does. A part that cannot do so, such as a closure, gives none, and no two such parts can be told apart.
+/// others. A part of your own makes its fingerprint from its name and from all numbers on which its answers
+/// depend. A part that cannot do so, such as a closure, gives none, and no two such parts can be told apart.
 /// The hash is FNV-1a with 64 bits, over bytes in a fixed order, so it is the same on every platform.
 ///
 /// ```

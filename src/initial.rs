@@ -68,7 +68,7 @@ pub enum PlacementError {
     /// The engine, which moves the disks while they are packed, refuses them or the boundary.
     #[error(transparent)]
     Build(#[from] BuildError),
-    /// The engine could not go on while the disks were packed, since the boundary breaks its contract.
+    /// The engine stopped while it packed the disks, since the boundary breaks its contract.
     #[error("while disks were packed, {reason}")]
     Run {
         /// Message of the engine.

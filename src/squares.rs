@@ -130,7 +130,7 @@ mod tests {
     use rand::SeedableRng;
     use rand_xoshiro::Xoshiro256PlusPlus;
 
-    /// Squares find what a loop over all disks finds, for any mix of radii.
+    /// Squares find the same disks as a loop over all, for any mix of radii.
     #[test]
     fn what_overlaps_is_near() -> Result<(), Box<dyn std::error::Error>> {
         let mut generator = Xoshiro256PlusPlus::seed_from_u64(1);

@@ -101,8 +101,8 @@ impl AccelerationBounds {
 ///
 /// # Motions that break the contract
 /// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion that gives a number
-/// that is not finite at one of the phases that it tries, from 0 on. [`first_touch`] always ends, whatever a
-/// motion answers; its documentation says how. Bounds that are too small, a reach that is too small or a jump
+/// that is not finite at one of the phases that it tries, from 0 on. [`first_touch`] always ends, even with
+/// wrong answers; its documentation says how. Bounds that are too small, a reach that is too small or a jump
 /// toward the disks let disks pass into the wall. Bounds that are too large only cost time.
 ///
 /// ```

@@ -78,7 +78,7 @@ impl<'a, B: Boundary + ?Sized> Rows<'a, B> {
             }
             let site = self.corner + DVec2::new(0.5 * size, self.column.y + 0.5 * size);
             let is_free = self.boundary.overlap(site, radius, 0.0).is_none();
-            // Next to an obstacle, the search goes on in steps of about a radius.
+            // Next to an obstacle, the search advances in steps of about a radius.
             self.column =
                 DVec2::new(self.column.x.max(size), self.column.y + if is_free { size } else { 0.5 * size });
             if is_free {

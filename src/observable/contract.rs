@@ -92,7 +92,7 @@ pub trait Observer {
         let _ = snapshot;
     }
 
-    /// Receives the end of a run, whatever the reason.
+    /// Receives the end of a run, also of one that fails.
     fn on_end(&mut self, moment: &Moment) {
         let _ = moment;
     }

@@ -9,8 +9,8 @@ use crate::statistics::BlockedMean;
 /// each wall.
 ///
 /// Collisions of one run are correlated, since the gas heats and cools. [`BlockedMean::estimate`] gives a
-/// mean whose error accounts for that. At a moving or thermal wall, the energy change is what the disk gains
-/// or loses, including the work of the wall.
+/// mean whose error accounts for that. At a moving or thermal wall, the energy change is that of the disk,
+/// including the work of the wall.
 ///
 /// ```
 /// use granular_edmd::observable::EnergyChange;

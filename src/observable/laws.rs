@@ -1,7 +1,7 @@
 //! Checks of an observer's contract, for observers of your own.
 //!
-//! An observer cannot change a trajectory, whatever it does, since the engine shows it copies. But the
-//! observer is responsible for its clock. A wrong clock can hang a run, or ask for samples that never come.
+//! An observer can never change a trajectory, since the engine shows it copies. But the observer is
+//! responsible for its clock. A wrong clock can hang a run, or ask for samples that never come.
 
 use glam::DVec2;
 use thiserror::Error;

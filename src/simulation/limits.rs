@@ -17,8 +17,8 @@ const EVENTS_BETWEEN_LOOKS: u64 = 1024;
 /// flag that another thread sets.
 ///
 /// [`Simulation::run`](crate::Simulation::run) tells which of them ended the run. In each case, the next run
-/// goes on from there with the bits that the run would have had without the limit. Observers end runs by
-/// their [verdict](crate::observable::Observer::verdict).
+/// continues with the bits that the run would have had without the limit. Observers end runs by their
+/// [verdict](crate::observable::Observer::verdict).
 ///
 /// ```
 /// use std::time::Duration;

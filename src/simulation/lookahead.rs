@@ -21,7 +21,7 @@ pub(super) struct Lookahead {
 }
 
 impl Lookahead {
-    /// Requests from memory what the next events will need. The slice `found` is room for the neighbors of a
+    /// Requests the data of the next events from memory. The slice `found` is room for the neighbors of a
     /// disk.
     ///
     /// The work pays only if the caches do not hold the system, since it takes many instructions.

@@ -17,9 +17,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// The new disks come after all others, in the order given.
     ///
-    /// All events are predicted anew. The run then goes on with the same bits under every scheduler, and also
-    /// if it is resumed from a checkpoint taken before or after. The counters keep counting. The new disks
-    /// have collided with nothing yet, and may be of any size and kind.
+    /// All events are predicted anew. The run then has the same bits under every scheduler, and also if it is
+    /// resumed from a checkpoint taken before or after. The counters keep counting. The new disks have
+    /// collided with nothing yet, and may be of any size and kind.
     ///
     /// # Errors
     /// If a disk is outside, overlaps a wall or overlaps another disk; the error names its index. If there

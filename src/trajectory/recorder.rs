@@ -27,7 +27,7 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 /// file and does not write them twice. If they differ, the file is of another run, and the error says so. If
 /// the process died in the middle of a frame, the next frame overwrites the torn one.
 ///
-/// The recorder goes on with the first beat after the last frame of the file. If the run is later than that
+/// The recorder continues with the first beat after the last frame of the file. If the run is later than that
 /// beat, as from a checkpoint that is newer than the file, the run ends with an error, since frames would be
 /// missing. If you want the gap, give `times` a first time after it ([`SampleTimes::starting_at`]). After
 /// disks are removed, `id` numbers the remaining ones.
@@ -64,7 +64,7 @@ pub struct Recorder {
     failure: Option<RecordError>,
     /// Clock to restore so that the next run retries the failed frame.
     before_failure: Option<SampleTimes>,
-    /// True for a recorder that goes on in a file, until a run does so without a gap.
+    /// True for a recorder that continues a file, until a run continues it without a gap.
     must_follow: bool,
 }
 

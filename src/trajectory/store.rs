@@ -5,7 +5,7 @@ use std::path::Path;
 use super::errors::RecordError;
 use crate::observable::Snapshot;
 
-/// A store for the bytes of frames, one after another. A stored frame stays whole, whatever happens later.
+/// A store for the bytes of frames, one after another. A stored frame stays whole, even if a later one fails.
 pub(super) trait Store {
     /// Returns the times of the frames, which increase.
     fn times(&self) -> &[f64];

@@ -74,9 +74,9 @@ impl Approach {
 /// the wall never enters. The search then follows it from piece to piece, so give it a finite `until`.
 ///
 /// # Walls whose place is unknown
-/// The search always ends, whatever the motion answers, and never lets the surface through unnoticed. In the
-/// following cases, the wall counts as being everywhere within its reach, at every speed. The touch is then
-/// the first time at which the surface is within the reach:
+/// The search always ends, even if the motion answers nonsense, and never lets the surface through unnoticed.
+/// In the following cases, the wall counts as being everywhere within its reach, at every speed. The touch is
+/// then the first time at which the surface is within the reach:
 /// - Floating-point times are too coarse to tell the pieces of the motion apart, or a piece ends before it
 ///   begins.
 /// - The state or the bounds are not finite. A reach that is not finite counts as unlimited.

@@ -47,8 +47,8 @@ impl Brick {
     /// If the disk grows, there is no earlier touch, but there need not be one at that time either.
     ///
     /// The disk can touch only the side of the brick on which its center is. A disk whose center is behind
-    /// the brick goes on until it has come out in front. Only touches beside the brick count. At its ends,
-    /// the next brick or a point takes over.
+    /// the brick flies on until it is in front. Only touches beside the brick count. At its ends, the next
+    /// brick or a point takes over.
     pub(in crate::boundary) fn wait_for_touch(&self, path: &Path, wait: f64) -> Option<f64> {
         let beside = match self.shape {
             Shape::Segment(segment) if segment.is_out_of_reach(path, wait) => return None,

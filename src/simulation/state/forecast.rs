@@ -40,7 +40,7 @@ impl Exit {
         (right, up)
     }
 
-    /// Tells whether the flight goes on in a neighbor cell.
+    /// Tells whether the flight continues in a neighbor cell.
     #[inline]
     pub(in crate::simulation) fn is_passage(self) -> bool {
         matches!(self, Self::Left | Self::Right | Self::Down | Self::Up)
