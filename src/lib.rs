@@ -1,11 +1,11 @@
 //! Event-driven molecular dynamics of shaken granular matter: exact collisions, no time step, no soft
 //! springs.
 //!
-//! Inelastic hard disks rotate and rub (normal and tangential restitution, static and dynamic friction). They
-//! move under gravity in a box whose base vibrates or is a thermal wall; the engine takes them from collision
-//! to collision. The system is that of D. Risso, R. Soto, S. Godoy and P. Cordero, *Friction and convection
-//! in a vertically vibrated granular system*, Phys. Rev. E **72**, 011305 (2005), called “the paper”
-//! throughout. Rules, walls, boundaries, schedulers and observables are traits, for studies beyond it.
+//! The disks are inelastic, rotate and have friction (normal and tangential restitution, static and dynamic
+//! friction). They move under gravity in a box whose base vibrates or is a thermal wall. The engine computes
+//! one collision after the other. The system is that of D. Risso, R. Soto, S. Godoy and P. Cordero, *Friction
+//! and convection in a vertically vibrated granular system*, Phys. Rev. E **72**, 011305 (2005), called “the
+//! paper” throughout. Rules, walls, boundaries, schedulers and observables are traits, for studies beyond it.
 //!
 //! ```
 //! use granular_edmd::prelude::*;

@@ -1,7 +1,7 @@
 //! The names that most programs need, in one line: `use granular_edmd::prelude::*;`.
 //!
-//! The prelude holds everything that a run needs, and everything that a rule, a wall motion, a boundary, a
-//! scheduler, an observable or an observer of your own is made of.
+//! The prelude has everything that a run needs, and all types for a rule, a wall motion, a boundary, a
+//! scheduler, an observable or an observer of your own.
 
 pub use crate::boundary::{
     Boundary, Brick, Container, Domain, Obstacles, Part, Region, Response, Surface, Thermal, Touch, Vessel,
