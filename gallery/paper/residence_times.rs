@@ -1,6 +1,6 @@
 //! How long does a roll keep its sense, and how long do two rolls stay where one is stable, too?
 //!
-//! The example reads the order parameters that `docs/reproduction/long/run` has recorded, a million
+//! The example reads the order parameters that `docs/reproduction/protocols/long` has recorded, a million
 //! oscillations for each value, names the state of each sample, and counts how long states last. It writes
 //! `residence_times` as a table and a picture.
 //!
@@ -9,12 +9,11 @@
 //! ```
 
 use std::error::Error;
-use std::fs::{self, File};
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-use flate2::read::GzDecoder;
 use granular_edmd::statistics::RunningMean;
 use granular_edmd::study::Plan;
 use granular_edmd::study::vibrated_box::VibratedBox;
@@ -23,14 +22,15 @@ use gallery::command_line::{self, Failure};
 use gallery::look::{BLUE, GREEN, Look, Mark, VERMILION};
 use gallery::panel::{self, COLUMN, Margins, Place};
 use gallery::results::Results;
+use gallery::runs;
 use gallery::sheet::Sheet;
 
 /// Residence times of one roll of either sense, and of two rolls, from runs of a million oscillations.
 #[derive(Parser)]
 struct Arguments {
-    /// Folder of the studies.
-    #[arg(long, value_name = "FOLDER", default_value = "docs/reproduction/long")]
-    studies: PathBuf,
+    /// Folder of the studies; the kept ones unless given.
+    #[arg(long, value_name = "FOLDER")]
+    studies: Option<PathBuf>,
     /// Oscillations that two rolls must last so as not to be a fluctuation of one roll, and the other way
     /// around.
     #[arg(long, default_value_t = 2000)]
@@ -157,11 +157,9 @@ fn states(order: impl Iterator<Item = (f64, f64)>, noise: f64) -> Vec<State> {
 }
 
 fn read(arguments: &Arguments) -> Result<Vec<Value>, Box<dyn Error>> {
-    let folder = &arguments.studies;
-    let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let mut studies: Vec<PathBuf> = entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<_>>()?;
-    studies.retain(|study| study.join("order.csv.gz").is_file());
-    studies.sort();
+    let folder = &arguments.studies.clone().unwrap_or_else(|| runs::folder("long"));
+    let mut studies = runs::entries(folder)?;
+    studies.retain(|study| study.join("order.csv").is_file());
     let values: Vec<Vec<Value>> = studies
         .iter()
         .map(|study| read_study(study, arguments).map_err(|error| format!("{}: {error}", study.display())))
@@ -177,8 +175,7 @@ fn read_study(folder: &Path, arguments: &Arguments) -> Result<Vec<Value>, Box<dy
     let (every, samples) = (plan.protocol().every(), plan.protocol().samples() as usize);
     let rows: Vec<Row> =
         csv::Reader::from_path(folder.join("values.csv"))?.deserialize().collect::<Result<_, _>>()?;
-    let order = GzDecoder::new(File::open(folder.join("order.csv.gz"))?);
-    let mut order = csv::ReaderBuilder::new().has_headers(false).from_reader(order);
+    let mut order = csv::ReaderBuilder::new().has_headers(false).from_path(folder.join("order.csv"))?;
     // Ramp, value, and both order parameters in units of 1e-3.
     let order: Vec<(u32, u32, f64, f64)> = order.deserialize().collect::<Result<_, _>>()?;
     let study = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();

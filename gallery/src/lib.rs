@@ -13,6 +13,7 @@ pub mod paper;
 pub mod progress;
 pub mod raster;
 pub mod results;
+pub mod runs;
 pub mod sheet;
 #[cfg(feature = "studies")]
 pub mod studies;

@@ -61,7 +61,7 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 /// large gravity, that $`\Psi_2`$ is a third of $`|\Psi_1|`$. At small gravity, the roll leans further to one
 /// side as the loss grows, until the two are equal: a ratio of 1 would call it two rolls there. A ratio of
 /// 1.5 or 3 instead of 2 hardly matters: it changes the names of three or four of 1682 states in
-/// `docs/reproduction/full-length`.
+/// `docs/reproduction/runs.tar.xz`.
 ///
 /// A collapsed run keeps a weak, slow $`\Psi_2`$, whose mean settles only after thousands of oscillations.
 ///

@@ -2,9 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::error::Error;
-use std::fs::File;
 
-use flate2::read::GzDecoder;
 use granular_edmd::ParameterError;
 use granular_edmd::analysis::StateCriteria;
 use granular_edmd::observable::ConvectionOrder;
@@ -83,10 +81,9 @@ pub(crate) fn print(ramps: &[Ramp], results: &Results) -> Result<(), Box<dyn Err
 type Samples = BTreeMap<u32, Vec<ConvectionOrder>>;
 
 fn samples_of(ramp: &Ramp) -> Result<Samples, Box<dyn Error>> {
-    let path = ramp.folder.join("order.csv.gz");
+    let path = ramp.folder.join("order.csv");
     let read = || -> Result<Samples, Box<dyn Error>> {
-        let rows =
-            csv::ReaderBuilder::new().has_headers(false).from_reader(GzDecoder::new(File::open(&path)?));
+        let rows = csv::ReaderBuilder::new().has_headers(false).from_path(&path)?;
         let mut samples = Samples::new();
         for row in rows.into_deserialize() {
             let (value, one_roll, two_rolls): (u32, f64, f64) = row?;

@@ -25,7 +25,7 @@ mod ramps;
 mod walls;
 
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -37,6 +37,7 @@ use gallery::command_line::{self, Failure};
 use gallery::paper::{Row, TABLE_1};
 use gallery::progress::Progress;
 use gallery::results::Results;
+use gallery::runs;
 use numbers::{Number, average};
 use ramps::{Crossing, Ramp};
 
@@ -46,8 +47,7 @@ struct Arguments {
     /// The question.
     #[arg(value_enum, default_value = "lines")]
     question: Question,
-    /// A study, or a folder of studies; can be repeated. Those of the question in docs/reproduction unless
-    /// given.
+    /// A study, or a folder of studies; can be repeated. The kept ones of the question unless given.
     #[arg(long, value_name = "FOLDER")]
     ramps: Vec<PathBuf>,
     /// Oscillations to settle at a crossing, and as many to measure the losses there.
@@ -80,7 +80,7 @@ impl Question {
             Self::Walls => &["walls", "full-length", "full-length-elastic-walls"],
             Self::Dependences => &["dependences"],
         };
-        names.iter().map(|name| Path::new("docs/reproduction").join(name)).collect()
+        names.iter().map(|name| runs::folder(name)).collect()
     }
 }
 

@@ -117,8 +117,7 @@ impl Crossing {
 /// Reads the ramps of a study, or of all studies in a folder, in the order of their names.
 pub(crate) fn read(folder: &Path) -> Result<Vec<Ramp>, Box<dyn Error>> {
     let is_study = |study: &Path| study.join("values.csv").is_file();
-    let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let mut studies: Vec<_> = entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<_>>()?;
+    let mut studies = gallery::runs::entries(folder)?;
     studies.push(folder.to_owned());
     studies.retain(|study| is_study(study));
     studies.sort();
