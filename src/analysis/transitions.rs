@@ -130,6 +130,8 @@ fn merge(
         |(value, regime)| Ok(Seen { value: finite("control value", value)?, least: regime, most: regime });
     let mut all = observations.into_iter().map(check).collect::<Result<Vec<_>, ParameterError>>()?;
     all.sort_by(|a, b| a.value.total_cmp(&b.value));
+    // By hysteresis, runs at one value may end in different regimes. Its entry keeps the lowest and the highest,
+    // and a line between these two does not count as crossed there.
     all.dedup_by(|next, kept| {
         let same = next.value == kept.value;
         if same {
@@ -150,6 +152,7 @@ fn crossings(line: TransitionLine, seen: &[Seen]) -> Vec<Transition> {
     across
         .map(|pair| Transition {
             line,
+            // Halved before they are added, since the sum of two large values may overflow.
             value: 0.5 * pair[0].0 + 0.5 * pair[1].0,
             error: 0.5 * pair[1].0 - 0.5 * pair[0].0,
             rising: pair[1].1,
