@@ -7,7 +7,10 @@ use granular_edmd::kinetic::{IsoLine, Maxwellian, MonteCarlo, friction_of_larges
 
 /// Returns points over the plane of Fig. 1.
 fn points() -> Vec<Frictional> {
-    let point = |i: u32| Frictional::new(f64::from(i % 100) * 2e-3, f64::from(i / 100) * 0.01).unwrap();
+    let point = |i: u32| {
+        let inelasticity = f64::from(i % 100) * 2e-3;
+        Frictional::from_inelasticity(inelasticity, inelasticity, f64::from(i / 100) * 0.01).unwrap()
+    };
     (0..10_000).map(point).collect()
 }
 
@@ -31,7 +34,7 @@ fn closed_form(criterion: &mut Criterion) {
 }
 
 fn monte_carlo(criterion: &mut Criterion) {
-    let (rule, gas) = (Frictional::new(0.1, 0.3).unwrap(), Maxwellian::new(1.0).unwrap());
+    let (rule, gas) = (Frictional::from_inelasticity(0.1, 0.1, 0.3).unwrap(), Maxwellian::new(1.0).unwrap());
     let samples = 1 << 16;
     let mut group = criterion.benchmark_group("Monte Carlo");
     group.throughput(Throughput::Elements(samples));

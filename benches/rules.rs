@@ -18,7 +18,7 @@ fn contacts() -> Vec<Contact> {
 /// Returns a rule as a user writes it: restitution that falls with the speed of the impact, over the
 /// library's friction.
 fn speed_dependent() -> impl CollisionRule {
-    let friction = Friction::new(0.05, 0.1).expect("valid");
+    let friction = Friction::from_inelasticity(0.05, 0.1).expect("valid");
     from_fn(move |contact: &Contact| -> Impulse {
         let restitution = 1.0 / (1.0 + 0.05 * contact.closing_speed().sqrt());
         friction.impulse(contact, contact.normal_impulse(restitution))
@@ -26,11 +26,11 @@ fn speed_dependent() -> impl CollisionRule {
 }
 
 fn impulses(criterion: &mut Criterion) {
-    let frictional = Frictional::new(0.05, 0.1).expect("valid");
+    let frictional = Frictional::from_inelasticity(0.05, 0.05, 0.1).expect("valid");
     let rules: [(&str, Box<dyn CollisionRule>); 6] = [
         ("elastic", Box::new(Elastic)),
-        ("smooth", Box::new(Smooth::new(0.05).expect("valid"))),
-        ("rough", Box::new(Rough::new(0.05, 0.1).expect("valid"))),
+        ("smooth", Box::new(Smooth::from_inelasticity(0.05).expect("valid"))),
+        ("rough", Box::new(Rough::from_inelasticity(0.05, 0.1).expect("valid"))),
         ("frictional", Box::new(frictional)),
         ("speed_dependent", Box::new(speed_dependent())),
         ("contact_duration", Box::new(ContactDuration::new(frictional, 1e-5).expect("valid"))),

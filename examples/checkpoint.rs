@@ -15,7 +15,7 @@ fn container() -> anyhow::Result<Container> {
 }
 
 fn rule() -> Result<ContactDuration<Frictional>, ParameterError> {
-    ContactDuration::new(Frictional::new(0.01, 0.1)?, 1e-4)
+    ContactDuration::new(Frictional::from_inelasticity(0.01, 0.01, 0.1)?, 1e-4)
 }
 
 fn main() -> anyhow::Result<()> {

@@ -26,7 +26,7 @@ fn main() -> anyhow::Result<()> {
 
     // Grains lose no energy by their inelasticity (0), but rub with the friction coefficient 0.07. Contacts
     // within 1e-4 of the last one lose nothing, so that grains that lie on each other end no run.
-    let rule = ContactDuration::new(Frictional::new(0.0, 0.07)?, 1e-4)?;
+    let rule = ContactDuration::new(Frictional::from_inelasticity(0.0, 0.0, 0.07)?, 1e-4)?;
     let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
 
     // Watch the order parameters of one roll and of two, and the height of the center of mass.

@@ -23,9 +23,9 @@ fn main() -> anyhow::Result<()> {
     let disks = initial::placed_at_random(&container, disks, 40.0, 1)?;
 
     // One rule for every pair that the table does not name.
-    let rules = RulesByKind::new(Frictional::new(0.05, 0.1)?)
-        .with(STEEL, STEEL, Frictional::new(0.02, 0.05)?)
-        .with(STEEL, Kind::WALL, Frictional::new(0.02, 0.05)?);
+    let rules = RulesByKind::new(Frictional::from_inelasticity(0.05, 0.05, 0.1)?)
+        .with(STEEL, STEEL, Frictional::from_inelasticity(0.02, 0.02, 0.05)?)
+        .with(STEEL, Kind::WALL, Frictional::from_inelasticity(0.02, 0.02, 0.05)?);
     let rules = ContactDuration::new(rules, 1e-3)?;
     let mut simulation = Simulation::builder(rules, container).disks(disks).gravity(1.0).build()?;
     simulation.run_until(100.0, &mut ())?;

@@ -50,7 +50,7 @@ fn main() -> anyhow::Result<()> {
     let container = Container::closed(30.0, 60.0)?.with_motion(Wall::Floor, base)?;
     let disks = initial::lattice(&container, 300, 0.5)?;
     let disks = initial::with_maxwellian_velocities(disks, 0.5, 1)?;
-    let rule = ContactDuration::new(Frictional::new(0.01, 0.1)?, 1e-4)?;
+    let rule = ContactDuration::new(Frictional::from_inelasticity(0.01, 0.01, 0.1)?, 1e-4)?;
     let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.05).build()?;
 
     let clock = SampleTimes::every(10.0 * oscillation)?;

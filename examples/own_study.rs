@@ -86,7 +86,10 @@ impl Experiment for Turning {
     type Sample = Flow;
 
     fn rule(&self) -> Result<Viscous, ExperimentError> {
-        Ok(Viscous { loss: non_negative("loss", self.loss)?, friction: Friction::new(0.1, 0.3)? })
+        Ok(Viscous {
+            loss: non_negative("loss", self.loss)?,
+            friction: Friction::from_inelasticity(0.1, 0.3)?,
+        })
     }
     fn boundary(&self) -> Result<Drum, ExperimentError> {
         let (radius, spin) = (8.0, finite("spin", self.spin)?);

@@ -67,7 +67,7 @@ fn main() -> anyhow::Result<()> {
         let disks = initial::random(&container, 100, 0.5, 20.0, 1)?;
         // Grains that come to rest on the base part with a speed of 0.1 at least. A run of hard grains needs
         // that.
-        let rule = LeastRebound::new(Frictional::new(0.05, 0.1)?, 0.1)?;
+        let rule = LeastRebound::new(Frictional::from_inelasticity(0.05, 0.05, 0.1)?, 0.1)?;
         let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(1.0).build()?;
         simulation.run_until(50.0, &mut ())?;
         let mut series = Series::new(CenterOfMass, SampleTimes::every(0.37)?);

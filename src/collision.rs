@@ -39,7 +39,7 @@
 //!     }
 //! }
 //!
-//! let rule = Viscoelastic { loss: 0.3, friction: Friction::new(0.25, 0.5)? };
+//! let rule = Viscoelastic { loss: 0.3, friction: Friction::from_inelasticity(0.25, 0.5)? };
 //! laws::check(&rule, &laws::Promises::new().with_friction(0.5))?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -1,5 +1,6 @@
 //! The error of a parameter that cannot be used.
 
+use std::borrow::Cow;
 use std::fmt;
 
 use glam::DVec2;
@@ -9,19 +10,19 @@ use thiserror::Error;
 ///
 /// ```
 /// use granular_edmd::collision::Smooth;
-/// let error = Smooth::new(0.7).unwrap_err();
+/// let error = Smooth::from_inelasticity(0.7).unwrap_err();
 /// assert_eq!(error.to_string(), "normal inelasticity must be in [0, 0.5], but is 0.7");
 /// assert_eq!(error.value(), 0.7);
 ///
-/// let error = Smooth::new(1e300).unwrap_err();
+/// let error = Smooth::from_inelasticity(1e300).unwrap_err();
 /// assert_eq!(error.to_string(), "normal inelasticity must be in [0, 0.5], but is 1e300");
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq, Error)]
 #[error("{name} must be {requirement}, but is {}", Readable(*.value))]
 #[non_exhaustive]
 pub struct ParameterError {
-    name: &'static str,
-    requirement: &'static str,
+    name: Cow<'static, str>,
+    requirement: Cow<'static, str>,
     value: f64,
 }
 
@@ -63,13 +64,17 @@ impl ParameterError {
     ///
     /// The constructor is meant for rules, walls and observables of your own, so that all parameters fail
     /// alike. The checks of [`quantity`](crate::quantity) create the error for the usual ranges.
-    pub const fn new(name: &'static str, requirement: &'static str, value: f64) -> Self {
-        Self { name, requirement, value }
+    pub fn new(
+        name: impl Into<Cow<'static, str>>,
+        requirement: impl Into<Cow<'static, str>>,
+        value: f64,
+    ) -> Self {
+        Self { name: name.into(), requirement: requirement.into(), value }
     }
 
     /// Returns the parameter's name.
-    pub const fn name(&self) -> &'static str {
-        self.name
+    pub fn name(&self) -> &str {
+        &self.name
     }
 
     /// Returns the value that was refused.
@@ -78,8 +83,8 @@ impl ParameterError {
     }
 
     /// Returns the condition that the value should have met.
-    pub const fn requirement(&self) -> &'static str {
-        self.requirement
+    pub fn requirement(&self) -> &str {
+        &self.requirement
     }
 }
 

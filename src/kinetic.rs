@@ -19,7 +19,7 @@
 //! use granular_edmd::collision::Frictional;
 //! use granular_edmd::kinetic::{Maxwellian, MonteCarlo, effective_inelasticity, mean_energy_change};
 //!
-//! let (rule, gas) = (Frictional::new(0.1, 0.3)?, Maxwellian::new(1.0)?);
+//! let (rule, gas) = (Frictional::from_inelasticity(0.1, 0.1, 0.3)?, Maxwellian::new(1.0)?);
 //! let exact = mean_energy_change(&rule, &gas);
 //! assert!((exact + 0.71851).abs() < 1e-5);
 //!

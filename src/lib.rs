@@ -20,7 +20,7 @@
 //! // with inelasticity 0.01 and friction 0.1.
 //! let disks = initial::lattice(&container, 100, 0.5)?;
 //! let disks = initial::with_maxwellian_velocities(disks, 0.5, 42)?;
-//! let rule = ContactDuration::new(Frictional::new(0.01, 0.1)?, 1e-4)?;
+//! let rule = ContactDuration::new(Frictional::from_inelasticity(0.01, 0.01, 0.1)?, 1e-4)?;
 //! let mut simulation = Simulation::builder(rule, container)
 //!     .disks(disks)
 //!     .gravity(0.015_625)

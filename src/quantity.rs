@@ -23,6 +23,7 @@
 //! # Ok::<(), ParameterError>(())
 //! ```
 
+use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
@@ -32,7 +33,7 @@ use crate::ParameterError;
 ///
 /// # Errors
 /// If it is zero, negative, infinite or NaN.
-pub fn positive(name: &'static str, value: f64) -> Result<f64, ParameterError> {
+pub fn positive(name: impl Into<Cow<'static, str>>, value: f64) -> Result<f64, ParameterError> {
     Range::POSITIVE.check(name, value)
 }
 
@@ -40,7 +41,7 @@ pub fn positive(name: &'static str, value: f64) -> Result<f64, ParameterError> {
 ///
 /// # Errors
 /// If it is negative, infinite or NaN.
-pub fn non_negative(name: &'static str, value: f64) -> Result<f64, ParameterError> {
+pub fn non_negative(name: impl Into<Cow<'static, str>>, value: f64) -> Result<f64, ParameterError> {
     Range::NON_NEGATIVE.check(name, value)
 }
 
@@ -48,7 +49,7 @@ pub fn non_negative(name: &'static str, value: f64) -> Result<f64, ParameterErro
 ///
 /// # Errors
 /// If it is infinite or NaN.
-pub fn finite(name: &'static str, value: f64) -> Result<f64, ParameterError> {
+pub fn finite(name: impl Into<Cow<'static, str>>, value: f64) -> Result<f64, ParameterError> {
     accept(value.is_finite(), name, "finite", value)
 }
 
@@ -65,8 +66,8 @@ pub fn finite(name: &'static str, value: f64) -> Result<f64, ParameterError> {
 /// If `valid` does not hold.
 pub fn accept(
     valid: bool,
-    name: &'static str,
-    requirement: &'static str,
+    name: impl Into<Cow<'static, str>>,
+    requirement: impl Into<Cow<'static, str>>,
     value: f64,
 ) -> Result<f64, ParameterError> {
     if valid { Ok(value) } else { Err(ParameterError::new(name, requirement, value)) }
@@ -89,7 +90,7 @@ impl Range {
         Self { requirement, contains }
     }
 
-    fn check(self, name: &'static str, value: f64) -> Result<f64, ParameterError> {
+    fn check(self, name: impl Into<Cow<'static, str>>, value: f64) -> Result<f64, ParameterError> {
         accept((self.contains)(value), name, self.requirement, value)
     }
 }

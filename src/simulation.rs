@@ -79,8 +79,8 @@ use state::{Bodies, Clock};
 /// let boundary = Container::closed(20.0, 50.0)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?;
 /// let disks = initial::lattice(&boundary, 100, 0.5)?;
 /// let disks = initial::with_maxwellian_velocities(disks, 1.0, 7)?;
-/// let mut simulation =
-///     Simulation::builder(Frictional::new(0.0, 0.05)?, boundary).disks(disks).gravity(0.0156).build()?;
+/// let rule = Frictional::from_inelasticity(0.0, 0.0, 0.05)?;
+/// let mut simulation = Simulation::builder(rule, boundary).disks(disks).gravity(0.0156).build()?;
 /// let mut series = Series::new(OrderParameters, SampleTimes::every(1.0)?);
 /// simulation.run_until(10.0, &mut series)?;
 /// assert_eq!(series.values().len(), 10);

@@ -16,7 +16,7 @@
 //!     #[test]
 //!     # */
 //!     fn my_rule_is_lawful((first, second) in strategies::touching_pair()) {
-//!         let friction = Friction::new(0.5, 0.3).unwrap();
+//!         let friction = Friction::from_inelasticity(0.5, 0.3).unwrap();
 //!         let rule = from_fn(|contact: &Contact| {
 //!             let restitution = 1.0 / (1.0 + contact.closing_speed().sqrt());
 //!             friction.impulse(contact, contact.normal_impulse(restitution))

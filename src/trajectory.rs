@@ -28,7 +28,8 @@
 //! # let path = folder.join("run.xyz");
 //! let container = Container::closed(20.0, 30.0)?;
 //! let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 50, 0.5)?, 0.5, 42)?;
-//! let mut run = Simulation::builder(Frictional::new(0.01, 0.1)?, container.clone()).disks(disks).build()?;
+//! let rule = Frictional::from_inelasticity(0.01, 0.01, 0.1)?;
+//! let mut run = Simulation::builder(rule, container.clone()).disks(disks).build()?;
 //!
 //! // Let `path` be "run.xyz". An existing file is never overwritten.
 //! let mut recorder = Recorder::create(&path, ExtendedXyz, SampleTimes::every(0.5)?)?;
@@ -38,7 +39,7 @@
 //! // The last frame is the state of the disks, to the bit.
 //! let state = read(&path, State::from_xyz)?;
 //! assert_eq!(state.disks(), run.disks());
-//! let again = Simulation::builder(Frictional::new(0.01, 0.1)?, container)
+//! let again = Simulation::builder(Frictional::from_inelasticity(0.01, 0.01, 0.1)?, container)
 //!     .start_time(state.time().unwrap_or(0.0))
 //!     .disks(state.into_disks())
 //!     .build()?;

@@ -42,7 +42,8 @@ fn settled_runs_allocate_nothing() -> Result<(), Box<dyn std::error::Error>> {
         let container =
             Container::closed(30.0, 60.0)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?;
         let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 300, 0.5)?, 0.5, 1)?;
-        let rule = ContactDuration::new(Frictional::new(inelasticity, friction)?, 1e-4)?;
+        let rule =
+            ContactDuration::new(Frictional::from_inelasticity(inelasticity, inelasticity, friction)?, 1e-4)?;
         let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
         let mut energy = EnergyChange::default();
         simulation.run_until(300.0, &mut energy)?;

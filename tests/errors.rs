@@ -31,7 +31,7 @@ fn plan() -> Plan<VibratedBox> {
 }
 
 fn no_parameter() -> ParameterError {
-    Frictional::new(0.7, 0.1).unwrap_err()
+    Frictional::from_inelasticity(0.7, 0.7, 0.1).unwrap_err()
 }
 
 /// Returns one of each variant of a study's errors that has a source.
@@ -65,7 +65,8 @@ fn errors_of_studies_tell_each_thing_once() {
 fn errors_that_happen_tell_each_thing_once() {
     let container = Container::closed(4.0, 4.0).unwrap();
     let disk = Disk::new(DVec2::new(-9.0, 1.0), 0.5).unwrap();
-    let build = Simulation::builder(Frictional::new(0.0, 0.1).unwrap(), container.clone()).disks(vec![disk]);
+    let build = Simulation::builder(Frictional::from_inelasticity(0.0, 0.0, 0.1).unwrap(), container.clone())
+        .disks(vec![disk]);
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("errors-{}", std::process::id()));
     std::fs::write(&file, "a file where a folder should be").unwrap();
     let errors: [Box<dyn Error>; 6] = [

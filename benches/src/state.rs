@@ -44,7 +44,7 @@ pub const DENSE: State = State { gravity: 0.015_625, friction: 0.1, inelasticity
 impl State {
     /// Puts these disks into a box as many times wider than the paper's.
     pub fn run<S: EventScheduler>(&self, disks: Vec<Disk>, boxes: usize, scheduler: S) -> Outcome<Run<S>> {
-        let rule = Frictional::new(self.inelasticity, self.friction)?;
+        let rule = Frictional::from_inelasticity(self.inelasticity, self.inelasticity, self.friction)?;
         let rule = ContactDuration::new(rule, CONTACT_DURATION)?;
         let run = Simulation::builder(rule, container(boxes)?).disks(disks).gravity(self.gravity);
         Ok(run.scheduler(scheduler).build()?)

@@ -107,7 +107,7 @@ fn shaken(arguments: &Arguments, diameter: f64, density: f64) -> Result<Nut, Box
     let container = Container::open(WIDTH)?.with_motion(Wall::Floor, floor)?;
     let start = initial_disks(&container, diameter, density, arguments.seed)?;
     // Grains lie on each other for moments; they need a contact duration.
-    let rule = ContactDuration::new(Frictional::new(0.05, 0.3)?, 1e-3)?;
+    let rule = ContactDuration::new(Frictional::from_inelasticity(0.05, 0.05, 0.3)?, 1e-3)?;
     let mut simulation = Simulation::builder(rule, container).disks(start.clone()).gravity(1.0).build()?;
 
     let heights = (OfKind::new(INTRUDER, CenterOfMass), OfKind::new(Kind::DEFAULT, CenterOfMass));

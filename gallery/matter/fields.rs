@@ -85,7 +85,7 @@ fn measured(arguments: &Arguments) -> Result<(Fields, Fields), Box<dyn Error>> {
     let container = Container::closed(BOX.x, BOX.y)?.with_motion(Wall::Floor, base)?;
     let disks = initial::lattice(&container, 1000, 0.5)?;
     let disks = initial::with_maxwellian_velocities(disks, 0.5, arguments.seed)?;
-    let rule = ContactDuration::new(Frictional::new(0.0, arguments.friction)?, 1e-4)?;
+    let rule = ContactDuration::new(Frictional::from_inelasticity(0.0, 0.0, arguments.friction)?, 1e-4)?;
     let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
     let end = arguments.oscillations() as f64 * oscillation;
     let mut progress = Progress::of("run").until(end);

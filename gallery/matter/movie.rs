@@ -96,7 +96,7 @@ fn frames(arguments: &Arguments) -> Result<Vec<Frame>, Box<dyn Error>> {
         Container::closed(BOX.x, BOX.y)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?;
     let disks = initial::lattice(&container, 1000, 0.5)?;
     let disks = initial::with_maxwellian_velocities(disks, 0.5, arguments.seed)?;
-    let rule = ContactDuration::new(Frictional::new(0.0, arguments.friction)?, 1e-4)?;
+    let rule = ContactDuration::new(Frictional::from_inelasticity(0.0, 0.0, arguments.friction)?, 1e-4)?;
     let mut run = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
     let quick = |value: u64, most: u64| if arguments.quick { value.min(most) } else { value };
     let (settle, count) = (quick(arguments.settle, 20), quick(arguments.frames, 5));

@@ -86,8 +86,9 @@ struct Remedy {
 }
 
 fn remedies() -> Result<Vec<Remedy>, ParameterError> {
-    let constant = Frictional::from_inelasticity(0.1, 0.1)?.with_friction(0.5, 0.5)?;
-    let bizon = SpeedDependent::new(0.8, 1.0)?.with_friction(Friction::new(0.1, 0.5)?);
+    let constant = Frictional::from_inelasticity(0.1, 0.1, 0.5)?;
+    let bizon =
+        SpeedDependent::from_restitution(0.8, 1.0)?.with_friction(Friction::from_inelasticity(0.1, 0.5)?);
     let mut remedies = vec![
         Remedy { name: "none", parameter: 0.0, rule: Box::new(constant) },
         Remedy { name: "SpeedDependent", parameter: 1.0, rule: Box::new(bizon) },

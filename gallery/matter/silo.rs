@@ -133,7 +133,7 @@ fn measured(arguments: &Arguments, outlet: f64) -> Result<Flow, Box<dyn Error>> 
     let mut vessel = silo(outlet)?;
     let disks = initial::lattice(&vessel, GRAINS, 0.5)?;
     let disks = initial::with_maxwellian_velocities(disks, 0.1, arguments.seed)?;
-    let rule = ContactDuration::new(Frictional::new(0.1, 0.4)?, 1e-2)?;
+    let rule = ContactDuration::new(Frictional::from_inelasticity(0.1, 0.1, 0.4)?, 1e-2)?;
     let mut run = Simulation::builder(rule, vessel.clone()).disks(disks).gravity(1.0).build()?;
     let time = if arguments.quick { arguments.time.min(10.0) } else { arguments.time };
     let begin = if arguments.quick { 2.0 } else { BEGIN };

@@ -100,7 +100,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     println!("{:>8} {:>10} {:>10} {:>18} {:>18}", "kappa", "equal T", "T_rot", "run", "T_rot/T");
     let mut points = Vec::new();
     for friction in [0.01, 0.03, 0.05, 0.07, 0.1, 0.3, 1.0] {
-        let rule = Frictional::new(0.0, friction)?;
+        let rule = Frictional::from_inelasticity(0.0, 0.0, friction)?;
         let Measured { profile, parts } = measured(arguments, rule)?;
         let (change, ratio) = (profile.relative_energy_change(), profile.rotational_ratio());
         let [of_change, of_ratio] = parts.map(|part| part.estimate());

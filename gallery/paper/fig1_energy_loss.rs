@@ -120,7 +120,8 @@ impl Panel {
         let maxima: Result<Vec<_>, _> = (0..=100)
             .map(inelasticity)
             .map(|q| {
-                Ok(friction_of_largest_loss(&Frictional::new(q, 0.0)?, gas).map(|friction| (friction, q)))
+                Ok(friction_of_largest_loss(&Frictional::from_inelasticity(q, q, 0.0)?, gas)
+                    .map(|friction| (friction, q)))
             })
             .collect();
         Ok(maxima?.into_iter().flatten().collect())
@@ -151,8 +152,10 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 fn compare(gas: &Maxwellian, monte_carlo: &MonteCarlo) -> Result<(), ParameterError> {
     println!("largest loss:   q   kappa     <dE>      Monte Carlo (standard error of independent samples)");
     for q in [0.0, 0.025, 0.05, 0.1, 0.2] {
-        let Some(friction) = friction_of_largest_loss(&Frictional::new(q, 0.0)?, gas) else { continue };
-        let rule = Frictional::new(q, friction)?;
+        let Some(friction) = friction_of_largest_loss(&Frictional::from_inelasticity(q, q, 0.0)?, gas) else {
+            continue;
+        };
+        let rule = Frictional::from_inelasticity(q, q, friction)?;
         let estimate = monte_carlo.mean_energy_change(&rule, gas);
         let exact = mean_energy_change(&rule, gas);
         println!(

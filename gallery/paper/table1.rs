@@ -84,8 +84,7 @@ fn read(folder: &Path) -> Result<Vec<Point>, Box<dyn Error>> {
         let mut line = line?;
         line.truncate(4);
         let (gravity, transition, friction, inelasticity): Columns = line.deserialize(None)?;
-        let rule =
-            Frictional::from_inelasticity(inelasticity, inelasticity)?.with_friction(friction, friction)?;
+        let rule = Frictional::from_inelasticity(inelasticity, inelasticity, friction)?;
         points.push(Point { gravity, transition, rule });
     }
     Ok(points)

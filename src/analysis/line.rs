@@ -42,7 +42,9 @@ impl LineAverage {
 /// use granular_edmd::collision::Frictional;
 /// use granular_edmd::kinetic::Maxwellian;
 /// // Points on the axes of the first line at the larger gravity, for the paper's energy change.
-/// let line = [Frictional::new(0.0119, 0.0)?, Frictional::new(0.0, 0.0143)?, Frictional::new(0.0, 1.792)?];
+/// let ends = [(0.0119, 0.0), (0.0, 0.0143), (0.0, 1.792)];
+/// let [first, second, third] = ends.map(|(q, friction)| Frictional::from_inelasticity(q, q, friction));
+/// let line = [first?, second?, third?];
 /// let average = line_average(&line, &Maxwellian::new(1.0)?)?;
 /// assert!((average.energy_change().mean() + 0.047).abs() < 5e-4);
 /// assert!((average.effective_inelasticity().mean() - 0.012).abs() < 5e-4);

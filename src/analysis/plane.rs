@@ -94,8 +94,7 @@ mod tests {
 
     /// Returns the regime by the paper's hypothesis: it depends on the mean energy change alone.
     fn regime(friction: f64, inelasticity: f64) -> Result<ConvectiveRegime, ParameterError> {
-        let rule =
-            Frictional::from_inelasticity(inelasticity, inelasticity)?.with_friction(friction, friction)?;
+        let rule = Frictional::from_inelasticity(inelasticity, inelasticity, friction)?;
         let loss = -mean_energy_change(&rule, &Maxwellian::new(1.0)?);
         Ok(match loss {
             loss if loss < 0.047 => ConvectiveRegime::Conductive,

@@ -36,8 +36,8 @@ use crate::{Fingerprint, Flight, Kind, ParameterError};
 /// // Periodic sides, and smooth sides.
 /// let periodic = Container::closed(60.0, 150.0)?.with_periodic_sides();
 /// let smooth_sides = Container::open(60.0)?
-///     .with_rule(Wall::Left, Smooth::new(0.0)?)?
-///     .with_rule(Wall::Right, Smooth::new(0.0)?)?;
+///     .with_rule(Wall::Left, Smooth::from_inelasticity(0.0)?)?
+///     .with_rule(Wall::Right, Smooth::from_inelasticity(0.0)?)?;
 /// assert!(smooth_sides.with_motion(Wall::Lid, BiParabolic::new(0.1, 10.0)?).is_err(), "there is no lid");
 /// assert_eq!((vibrated.wall_count(), vibrated.wall_name(3)), (4, "lid".into()));
 /// assert_eq!((periodic.wall_count(), periodic.wall_name(1)), (2, "lid".into()));

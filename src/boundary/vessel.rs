@@ -56,7 +56,7 @@ const MOST_WALLS: usize = 1 << 16;
 /// // A lattice begins at the floor. The disks below the gate are left out.
 /// let mut disks = initial::lattice(&silo, 200, 0.5)?;
 /// disks.retain(|disk| disk.position().y > 10.0);
-/// let rule = ContactDuration::new(Frictional::new(0.1, 0.3)?, 1e-3)?;
+/// let rule = ContactDuration::new(Frictional::from_inelasticity(0.1, 0.1, 0.3)?, 1e-3)?;
 /// let mut run = Simulation::builder(rule, silo).disks(disks).gravity(1.0).build()?;
 /// run.run_until(0.5, &mut ())?;
 ///

@@ -15,7 +15,7 @@ use crate::{Fingerprint, ParameterError};
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, ContactDuration, Frictional, Regime};
 ///
-/// let rule = ContactDuration::new(Frictional::new(0.1, 0.3)?, 1e-4)?;
+/// let rule = ContactDuration::new(Frictional::from_inelasticity(0.1, 0.1, 0.3)?, 1e-4)?;
 /// let fresh = Contact::new(1.0, 0.5, 0.5, 1.0 / 6.0);
 /// let again = fresh.with_time_since_last_collision(1e-5);
 /// assert!(rule.impulse(&fresh).energy_change(&fresh) < 0.0);

@@ -22,7 +22,7 @@ use crate::{Fingerprint, ParameterError};
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, ElasticBelow, Frictional, Regime};
 ///
-/// let rule = ElasticBelow::new(Frictional::new(0.1, 0.3)?, 0.05)?;
+/// let rule = ElasticBelow::new(Frictional::from_inelasticity(0.1, 0.1, 0.3)?, 0.05)?;
 /// let fast = Contact::new(1.0, 0.5, 0.5, 1.0 / 6.0);
 /// let slow = Contact::new(0.01, 0.5, 0.5, 1.0 / 6.0);
 /// assert!(rule.impulse(&fast).energy_change(&fast) < 0.0);

@@ -33,7 +33,7 @@ use crate::{Fingerprint, ParameterError};
 ///     }
 /// }
 ///
-/// let rule = Viscoelastic { loss: 0.5, friction: Friction::new(0.1, 0.25)? };
+/// let rule = Viscoelastic { loss: 0.5, friction: Friction::from_inelasticity(0.1, 0.25)? };
 /// let impulse = rule.impulse(&Contact::new(4.0, 9.0, 0.5, 0.5 / 3.0));
 /// assert_eq!((impulse.normal(), impulse.tangential()), (3.0, 0.75));
 /// assert_eq!(impulse.regime(), Regime::Sliding);
@@ -42,58 +42,48 @@ use crate::{Fingerprint, ParameterError};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "RawFriction"))]
+#[expect(clippy::struct_field_names, reason = "a coefficient has one name in all rules and files")]
 pub struct Friction {
     tangential_inelasticity: TangentialInelasticity,
-    static_coefficient: f64,
-    dynamic_coefficient: f64,
+    static_friction: f64,
+    dynamic_friction: f64,
 }
 
 impl Friction {
-    /// Creates friction with one coefficient, κ = κ_s = κ_d.
+    /// Creates friction with the inelasticity q_t, in `[0, 1]`, and one coefficient, κ = κ_s = κ_d.
     ///
     /// # Errors
-    /// If `tangential_inelasticity` is not in `[0, 1]`, or `coefficient` is negative or not finite.
-    pub fn new(tangential_inelasticity: f64, coefficient: f64) -> Result<Self, ParameterError> {
-        Self::from_inelasticity(tangential_inelasticity)?.with_coefficients(coefficient, coefficient)
+    /// If the inelasticity is out of its range, or the coefficient is negative or not finite.
+    pub fn from_inelasticity(tangential: f64, friction: f64) -> Result<Self, ParameterError> {
+        Self::with_equal(TangentialInelasticity::new(tangential)?, friction)
     }
 
-    /// Creates a tangential inelasticity q_t in `[0, 1]` without friction; [`Self::with_coefficients`] adds
-    /// it.
+    /// Creates friction with the restitution r_t, in `[-1, 1]`, and one coefficient, κ = κ_s = κ_d.
     ///
     /// # Errors
-    /// If the inelasticity is out of its range.
-    pub fn from_inelasticity(tangential: f64) -> Result<Self, ParameterError> {
-        TangentialInelasticity::new(tangential).map(Self::without_coefficients)
+    /// If the restitution is out of its range, or the coefficient is negative or not finite.
+    pub fn from_restitution(tangential: f64, friction: f64) -> Result<Self, ParameterError> {
+        Self::with_equal(TangentialInelasticity::from_restitution(tangential)?, friction)
     }
 
-    /// Creates a tangential restitution r_t in `[-1, 1]` without friction; [`Self::with_coefficients`] adds
-    /// it.
-    ///
-    /// # Errors
-    /// If the restitution is out of its range.
-    pub fn from_restitution(tangential: f64) -> Result<Self, ParameterError> {
-        TangentialInelasticity::from_restitution(tangential).map(Self::without_coefficients)
-    }
-
-    fn without_coefficients(tangential_inelasticity: TangentialInelasticity) -> Self {
-        Self { tangential_inelasticity, static_coefficient: 0.0, dynamic_coefficient: 0.0 }
-    }
-
-    /// Returns the same inelasticity with the friction coefficients κ_s ≥ κ_d ≥ 0.
-    ///
-    /// # Errors
-    /// If a coefficient is negative or not finite, or the dynamic one exceeds the static one, because sliding
-    /// could then gain energy.
-    pub fn with_coefficients(
-        self,
-        static_coefficient: f64,
-        dynamic_coefficient: f64,
+    fn with_equal(
+        tangential_inelasticity: TangentialInelasticity,
+        friction: f64,
     ) -> Result<Self, ParameterError> {
-        non_negative("static friction", static_coefficient)?;
-        non_negative("dynamic friction", dynamic_coefficient)?;
-        let ordered = dynamic_coefficient <= static_coefficient;
-        accept(ordered, "dynamic friction", "at most the static friction", dynamic_coefficient)?;
-        Ok(Self { static_coefficient, dynamic_coefficient, ..self })
+        let static_friction = non_negative("static friction", friction)?;
+        Ok(Self { tangential_inelasticity, static_friction, dynamic_friction: static_friction })
+    }
+
+    /// Returns the same friction with a smaller dynamic coefficient κ_d.
+    ///
+    /// # Errors
+    /// If it is negative or not finite, or exceeds the static coefficient, because sliding could then gain
+    /// energy.
+    pub fn with_dynamic_friction(self, dynamic_friction: f64) -> Result<Self, ParameterError> {
+        non_negative("dynamic friction", dynamic_friction)?;
+        let ordered = dynamic_friction <= self.static_friction;
+        accept(ordered, "dynamic friction", "at most the static friction", dynamic_friction)?;
+        Ok(Self { dynamic_friction, ..self })
     }
 
     /// Returns the whole impulse of a contact: the `normal` impulse as given, with the tangential impulse
@@ -101,10 +91,10 @@ impl Friction {
     #[inline]
     pub fn impulse(&self, contact: &Contact, normal: f64) -> Impulse {
         let sticking = self.tangential_inelasticity.impulse(contact);
-        let sliding = (self.dynamic_coefficient * normal).copysign(sticking);
+        let sliding = (self.dynamic_friction * normal).copysign(sticking);
         // The code selects and does not branch: contacts stick or slide as if by a coin toss, which no branch
         // predictor learns.
-        let sticks = sticking.abs() < self.static_coefficient * normal;
+        let sticks = sticking.abs() < self.static_friction * normal;
         let tangential = if sticks { sticking } else { sliding };
         Impulse::new(normal, tangential).with_regime(if sticks { Regime::Sticking } else { Regime::Sliding })
     }
@@ -112,7 +102,7 @@ impl Friction {
     /// Returns the fingerprint, which rules with friction include in theirs.
     pub(super) fn fingerprint(&self) -> Fingerprint {
         let inelastic = Fingerprint::of("Friction").number(self.tangential_inelasticity());
-        inelastic.number(self.static_coefficient).number(self.dynamic_coefficient)
+        inelastic.number(self.static_friction).number(self.dynamic_friction)
     }
 
     /// Returns the tangential inelasticity q_t.
@@ -121,13 +111,13 @@ impl Friction {
     }
 
     /// Returns the static friction coefficient κ_s.
-    pub const fn static_coefficient(&self) -> f64 {
-        self.static_coefficient
+    pub const fn static_friction(&self) -> f64 {
+        self.static_friction
     }
 
     /// Returns the dynamic friction coefficient κ_d.
-    pub const fn dynamic_coefficient(&self) -> f64 {
-        self.dynamic_coefficient
+    pub const fn dynamic_friction(&self) -> f64 {
+        self.dynamic_friction
     }
 }
 
@@ -137,8 +127,8 @@ impl Friction {
 #[serde(deny_unknown_fields, rename = "Friction")]
 struct RawFriction {
     tangential_inelasticity: f64,
-    static_coefficient: f64,
-    dynamic_coefficient: f64,
+    static_friction: f64,
+    dynamic_friction: f64,
 }
 
 #[cfg(feature = "serde")]
@@ -146,7 +136,7 @@ impl TryFrom<RawFriction> for Friction {
     type Error = ParameterError;
 
     fn try_from(raw: RawFriction) -> Result<Self, ParameterError> {
-        Self::from_inelasticity(raw.tangential_inelasticity)?
-            .with_coefficients(raw.static_coefficient, raw.dynamic_coefficient)
+        Self::from_inelasticity(raw.tangential_inelasticity, raw.static_friction)?
+            .with_dynamic_friction(raw.dynamic_friction)
     }
 }

@@ -20,65 +20,59 @@ use crate::{Fingerprint, ParameterError};
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Frictional, Regime};
 ///
-/// let rule = Frictional::new(0.1, 0.08)?;
+/// let rule = Frictional::from_inelasticity(0.1, 0.1, 0.08)?;
 /// let contact = Contact::new(1.5, 4.25, 0.5, 0.5 / 3.0);
 /// let impulse = rule.impulse(&contact);
 /// assert_eq!(impulse.regime(), Regime::Sliding);
 /// assert!((impulse.tangential() - 0.108).abs() < 1e-12);
 ///
-/// let rule = Frictional::from_restitution(0.8, 0.6)?.with_friction(0.5, 0.4)?;
+/// let rule = Frictional::from_restitution(0.8, 0.6, 0.5)?.with_dynamic_friction(0.4)?;
 /// assert!((rule.tangential_inelasticity() - 0.2).abs() < 1e-15);
-/// assert!(rule.with_friction(0.4, 0.5).is_err(), "dynamic above static friction could gain energy");
+/// assert!(rule.with_dynamic_friction(0.6).is_err(), "dynamic above static friction could gain energy");
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "Fields", into = "Fields"))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Frictional {
     normal_inelasticity: NormalInelasticity,
     friction: Friction,
 }
 
 impl Frictional {
-    /// Creates a rule with the paper's choice: q = q_n = q_t and κ = κ_s = κ_d.
+    /// Creates a rule from the inelasticities q_n, in `[0, 1/2]`, and q_t, in `[0, 1]`, and one coefficient of
+    /// friction, κ = κ_s = κ_d.
+    ///
+    /// The paper takes q_n = q_t.
     ///
     /// # Errors
-    /// If `inelasticity` is not in `[0, 0.5]`, or `friction` is negative or not finite.
-    pub fn new(inelasticity: f64, friction: f64) -> Result<Self, ParameterError> {
-        Self::from_inelasticity(inelasticity, inelasticity)?.with_friction(friction, friction)
-    }
-
-    /// Creates a rule without friction from the inelasticities q_n, in `[0, 1/2]`, and q_t, in `[0, 1]`;
-    /// [`Self::with_friction`] adds friction.
-    ///
-    /// # Errors
-    /// If an inelasticity is out of its range.
-    pub fn from_inelasticity(normal: f64, tangential: f64) -> Result<Self, ParameterError> {
+    /// If an inelasticity is out of its range, or the friction is negative or not finite.
+    pub fn from_inelasticity(normal: f64, tangential: f64, friction: f64) -> Result<Self, ParameterError> {
         Ok(Self {
             normal_inelasticity: NormalInelasticity::new(normal)?,
-            friction: Friction::from_inelasticity(tangential)?,
+            friction: Friction::from_inelasticity(tangential, friction)?,
         })
     }
 
-    /// Creates a rule without friction from the restitution coefficients r_n, in `[0, 1]`, and r_t, in
-    /// `[-1, 1]` (paper, Eq. (1)); [`Self::with_friction`] adds friction.
+    /// Creates a rule from the restitution coefficients r_n, in `[0, 1]`, and r_t, in `[-1, 1]` (paper,
+    /// Eq. (1)), and one coefficient of friction, κ = κ_s = κ_d.
     ///
     /// # Errors
-    /// If a restitution is out of its range.
-    pub fn from_restitution(normal: f64, tangential: f64) -> Result<Self, ParameterError> {
+    /// If a restitution is out of its range, or the friction is negative or not finite.
+    pub fn from_restitution(normal: f64, tangential: f64, friction: f64) -> Result<Self, ParameterError> {
         Ok(Self {
             normal_inelasticity: NormalInelasticity::from_restitution(normal)?,
-            friction: Friction::from_restitution(tangential)?,
+            friction: Friction::from_restitution(tangential, friction)?,
         })
     }
 
-    /// Returns the same rule with the friction coefficients κ_s ≥ κ_d ≥ 0.
+    /// Returns the same rule with a smaller coefficient of dynamic friction κ_d.
     ///
     /// # Errors
-    /// If a coefficient is negative or not finite, or the dynamic one exceeds the static one, because sliding
-    /// could then gain energy.
-    pub fn with_friction(self, static_friction: f64, dynamic_friction: f64) -> Result<Self, ParameterError> {
-        Ok(Self { friction: self.friction.with_coefficients(static_friction, dynamic_friction)?, ..self })
+    /// If it is negative or not finite, or exceeds that of static friction, because sliding could then gain
+    /// energy.
+    pub fn with_dynamic_friction(self, dynamic_friction: f64) -> Result<Self, ParameterError> {
+        Ok(Self { friction: self.friction.with_dynamic_friction(dynamic_friction)?, ..self })
     }
 
     /// Returns the normal inelasticity q_n.
@@ -93,12 +87,12 @@ impl Frictional {
 
     /// Returns the static friction coefficient κ_s.
     pub const fn static_friction(&self) -> f64 {
-        self.friction.static_coefficient()
+        self.friction.static_friction()
     }
 
     /// Returns the dynamic friction coefficient κ_d.
     pub const fn dynamic_friction(&self) -> f64 {
-        self.friction.dynamic_coefficient()
+        self.friction.dynamic_friction()
     }
 }
 
@@ -112,38 +106,5 @@ impl CollisionRule for Frictional {
         let name = Fingerprint::of("Frictional");
         let inelastic = name.number(self.normal_inelasticity()).number(self.tangential_inelasticity());
         Some(inelastic.number(self.static_friction()).number(self.dynamic_friction()))
-    }
-}
-
-/// Fields of the rule in a file: all numbers side by side.
-#[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Frictional")]
-struct Fields {
-    normal_inelasticity: f64,
-    tangential_inelasticity: f64,
-    static_friction: f64,
-    dynamic_friction: f64,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<Fields> for Frictional {
-    type Error = ParameterError;
-
-    fn try_from(fields: Fields) -> Result<Self, ParameterError> {
-        Self::from_inelasticity(fields.normal_inelasticity, fields.tangential_inelasticity)?
-            .with_friction(fields.static_friction, fields.dynamic_friction)
-    }
-}
-
-#[cfg(feature = "serde")]
-impl From<Frictional> for Fields {
-    fn from(rule: Frictional) -> Self {
-        Self {
-            normal_inelasticity: rule.normal_inelasticity(),
-            tangential_inelasticity: rule.tangential_inelasticity(),
-            static_friction: rule.static_friction(),
-            dynamic_friction: rule.dynamic_friction(),
-        }
     }
 }

@@ -11,7 +11,7 @@
 //! use granular_edmd::collision::laws::{self, Promises, Violation};
 //! use granular_edmd::collision::{Contact, Frictional, Impulse, from_fn};
 //!
-//! laws::check(&Frictional::new(0.1, 0.3)?, &Promises::new().with_friction(0.3))?;
+//! laws::check(&Frictional::from_inelasticity(0.1, 0.1, 0.3)?, &Promises::new().with_friction(0.3))?;
 //!
 //! let glue = from_fn(|_: &Contact| Impulse::new(0.0, 0.0));
 //! assert!(matches!(laws::check(&glue, &Promises::new()), Err(Violation::StillClosing { .. })));

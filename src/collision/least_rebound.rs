@@ -24,7 +24,7 @@ use crate::{Fingerprint, ParameterError};
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Frictional, LeastRebound, laws};
 ///
-/// let rule = LeastRebound::new(Frictional::new(0.1, 0.3)?, 0.01)?;
+/// let rule = LeastRebound::new(Frictional::from_inelasticity(0.1, 0.1, 0.3)?, 0.01)?;
 /// let fast = Contact::new(1.0, 0.5, 0.5, 1.0 / 6.0);
 /// let slow = Contact::new(0.001, 0.0, 0.5, 1.0 / 6.0);
 /// assert_eq!(rule.impulse(&fast), rule.rule().impulse(&fast));

@@ -14,7 +14,7 @@ use crate::{Fingerprint, ParameterError};
 ///
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Rough};
-/// let rule = Rough::new(0.0, 0.0)?;
+/// let rule = Rough::from_inelasticity(0.0, 0.0)?;
 /// let contact = Contact::new(2.0, 7.0, 0.5, 1.0 / 6.0);
 /// assert!(rule.impulse(&contact).energy_change(&contact).abs() < 1e-14);
 /// # Ok::<(), granular_edmd::ParameterError>(())
@@ -32,7 +32,7 @@ impl Rough {
     ///
     /// # Errors
     /// If one is out of range.
-    pub fn new(normal: f64, tangential: f64) -> Result<Self, ParameterError> {
+    pub fn from_inelasticity(normal: f64, tangential: f64) -> Result<Self, ParameterError> {
         Ok(Self {
             normal_inelasticity: NormalInelasticity::new(normal)?,
             tangential_inelasticity: TangentialInelasticity::new(tangential)?,

@@ -18,13 +18,13 @@ use crate::{Fingerprint, Kind};
 ///
 /// const GLASS: Kind = Kind::new(0);
 /// const STEEL: Kind = Kind::new(1);
-/// let rules = RulesByKind::new(Frictional::new(0.05, 0.1)?)
-///     .with(STEEL, STEEL, Frictional::new(0.02, 0.05)?)
-///     .with(STEEL, Kind::WALL, Frictional::new(0.0, 0.3)?);
+/// let rules = RulesByKind::new(Frictional::from_inelasticity(0.05, 0.05, 0.1)?)
+///     .with(STEEL, STEEL, Frictional::from_inelasticity(0.02, 0.02, 0.05)?)
+///     .with(STEEL, Kind::WALL, Frictional::from_inelasticity(0.0, 0.0, 0.3)?);
 ///
 /// let contact = Contact::new(1.0, 0.0, 0.5, 0.5 / 3.0).with_kinds([Kind::WALL, STEEL]);
 /// assert_eq!(rules.impulse(&contact).normal(), 1.0);
-/// assert_eq!(rules.rule(GLASS, STEEL), &Frictional::new(0.05, 0.1)?);
+/// assert_eq!(rules.rule(GLASS, STEEL), &Frictional::from_inelasticity(0.05, 0.05, 0.1)?);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]

@@ -28,7 +28,7 @@ impl Smooth {
     ///
     /// # Errors
     /// If it is out of range.
-    pub fn new(inelasticity: f64) -> Result<Self, ParameterError> {
+    pub fn from_inelasticity(inelasticity: f64) -> Result<Self, ParameterError> {
         Ok(Self { normal_inelasticity: NormalInelasticity::new(inelasticity)? })
     }
 

@@ -1,5 +1,6 @@
 //! Restitution that falls with the speed of the impact.
 
+use super::inelasticity::NormalInelasticity;
 use super::{CollisionRule, Contact, Friction, Impulse};
 use crate::quantity::{Checked, Quantity, Range};
 use crate::{Fingerprint, ParameterError};
@@ -21,7 +22,8 @@ use crate::{Fingerprint, ParameterError};
 /// ```
 /// use granular_edmd::collision::{CollisionRule, Contact, Friction, SpeedDependent};
 ///
-/// let rule = SpeedDependent::new(0.7, 1.0)?.with_friction(Friction::new(0.25, 0.5)?);
+/// let friction = Friction::from_inelasticity(0.25, 0.5)?;
+/// let rule = SpeedDependent::from_restitution(0.7, 1.0)?.with_friction(friction);
 /// assert_eq!(rule.restitution(1.0), 0.7);
 /// assert_eq!(rule.restitution(5.0), 0.7);
 /// assert!((rule.restitution(1.0 / 16.0) - (1.0 - 0.3 / 8.0)).abs() < 1e-15);
@@ -57,9 +59,18 @@ impl SpeedDependent {
     ///
     /// # Errors
     /// If the restitution is not in `[0, 1]`, or the speed is not finite and positive.
-    pub fn new(least_restitution: f64, speed: f64) -> Result<Self, ParameterError> {
+    pub fn from_restitution(least_restitution: f64, speed: f64) -> Result<Self, ParameterError> {
         let (least_restitution, speed) = (Checked::new(least_restitution)?, Checked::new(speed)?);
-        Ok(Self { least_restitution, speed, friction: Friction::from_inelasticity(0.0)? })
+        Ok(Self { least_restitution, speed, friction: Friction::from_inelasticity(0.0, 0.0)? })
+    }
+
+    /// Creates a rule without friction whose inelasticity rises to q_0, at the closing speed v_0.
+    ///
+    /// # Errors
+    /// If the inelasticity is not in `[0, 1/2]`, or the speed is not finite and positive.
+    pub fn from_inelasticity(greatest_inelasticity: f64, speed: f64) -> Result<Self, ParameterError> {
+        let inelasticity = NormalInelasticity::new(greatest_inelasticity)?;
+        Self::from_restitution(1.0 - 2.0 * inelasticity.get(), speed)
     }
 
     /// Returns the same rule with this friction.

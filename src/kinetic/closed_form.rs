@@ -23,7 +23,8 @@ use crate::collision::Frictional;
 /// use granular_edmd::collision::Frictional;
 /// use granular_edmd::kinetic::{Maxwellian, mean_energy_change};
 /// let gas = Maxwellian::new(1.0)?;
-/// assert!((mean_energy_change(&Frictional::new(0.0, 0.3)?, &gas) + 0.34014).abs() < 1e-5);
+/// let rule = Frictional::from_inelasticity(0.0, 0.0, 0.3)?;
+/// assert!((mean_energy_change(&rule, &gas) + 0.34014).abs() < 1e-5);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[inline]
@@ -49,7 +50,8 @@ pub fn mean_energy_change(rule: &Frictional, gas: &Maxwellian) -> f64 {
 /// ```
 /// use granular_edmd::collision::Frictional;
 /// use granular_edmd::kinetic::{Maxwellian, sticking_fraction};
-/// let fraction = sticking_fraction(&Frictional::new(0.05, 0.3)?, &Maxwellian::new(1.0)?);
+/// let rule = Frictional::from_inelasticity(0.05, 0.05, 0.3)?;
+/// let fraction = sticking_fraction(&rule, &Maxwellian::new(1.0)?);
 /// assert!((fraction - 0.4611).abs() < 1e-4);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```

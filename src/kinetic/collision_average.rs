@@ -8,7 +8,7 @@ use crate::statistics::Estimate;
 /// ```
 /// use granular_edmd::collision::Frictional;
 /// use granular_edmd::kinetic::{Maxwellian, MonteCarlo, sticking_fraction};
-/// let rule = Frictional::new(0.1, 0.3)?;
+/// let rule = Frictional::from_inelasticity(0.1, 0.1, 0.3)?;
 /// let average = MonteCarlo::new(7).average(&rule, &Maxwellian::new(1.0)?);
 /// assert!(average.energy_change().assumes_independence());
 /// assert!((average.sticking_fraction() - sticking_fraction(&rule, &Maxwellian::new(1.0)?)).abs() < 2e-3);

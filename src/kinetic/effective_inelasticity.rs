@@ -51,6 +51,6 @@ pub fn effective_inelasticity(mean_energy_change: f64, temperature: f64) -> Resu
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 pub fn frictionless_energy_change(inelasticity: f64, temperature: f64) -> Result<f64, ParameterError> {
-    let inelasticity = Smooth::new(inelasticity)?.normal_inelasticity();
+    let inelasticity = Smooth::from_inelasticity(inelasticity)?.normal_inelasticity();
     Ok(-4.0 * inelasticity * (1.0 - inelasticity) * positive("temperature", temperature)?)
 }

@@ -27,9 +27,9 @@ use crate::collision::Frictional;
 /// use granular_edmd::collision::Frictional;
 /// use granular_edmd::kinetic::{Maxwellian, friction_of_largest_loss};
 /// let gas = Maxwellian::new(1.0)?;
-/// let friction = friction_of_largest_loss(&Frictional::new(0.1, 0.0)?, &gas);
+/// let friction = friction_of_largest_loss(&Frictional::from_inelasticity(0.1, 0.1, 0.0)?, &gas);
 /// assert!((friction.unwrap() - 1.0 / 3.0).abs() < 1e-12);
-/// assert!(friction_of_largest_loss(&Frictional::from_inelasticity(0.1, 0.4)?, &gas).is_none());
+/// assert!(friction_of_largest_loss(&Frictional::from_inelasticity(0.1, 0.4, 0.0)?, &gas).is_none());
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 pub fn friction_of_largest_loss(rule: &Frictional, gas: &Maxwellian) -> Option<f64> {

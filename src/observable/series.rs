@@ -73,7 +73,7 @@ impl<Q: Observable> Series<Q> {
     ///
     /// let container = Container::closed(10.0, 10.0)?;
     /// let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 20, 0.5)?, 1.0, 1)?;
-    /// let mut gas = Simulation::builder(Smooth::new(0.0)?, container).disks(disks).build()?;
+    /// let mut gas = Simulation::builder(Smooth::from_inelasticity(0.0)?, container).disks(disks).build()?;
     /// let mut series = Series::new(CenterOfMass, SampleTimes::every(1.0)?);
     /// gas.run_until(400.0, &mut series)?;
     /// let height = series.mean(|center| center.y)?;

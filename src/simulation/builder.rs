@@ -46,7 +46,8 @@ impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
     /// use granular_edmd::{Disk, Simulation};
     ///
     /// let disks = vec![Disk::new(DVec2::new(2.0, 1.0), 0.5)?, Disk::new(DVec2::new(2.2, 3.0), 0.5)?];
-    /// let mut simulation = Simulation::builder(Frictional::new(0.1, 0.3)?, Container::open(4.0)?)
+    /// let rule = Frictional::from_inelasticity(0.1, 0.1, 0.3)?;
+    /// let mut simulation = Simulation::builder(rule, Container::open(4.0)?)
     ///     .disks(disks)
     ///     .gravity(1.0)
     ///     .build()?;

@@ -186,8 +186,10 @@ mod tests {
             Disk::new(place, 0.3 + growth * f64::from(k))?.with_velocity(velocity)
         };
         let disks = (0..150).map(disk).collect::<Result<Vec<_>, ParameterError>>()?;
-        let mut run =
-            Simulation::builder(Frictional::new(0.02, 0.3)?, container).disks(disks).gravity(0.1).build()?;
+        let mut run = Simulation::builder(Frictional::from_inelasticity(0.02, 0.02, 0.3)?, container)
+            .disks(disks)
+            .gravity(0.1)
+            .build()?;
         run.instructions = instructions;
         run.run_until(100.0, &mut ())?;
         Ok(run.disks())

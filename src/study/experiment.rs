@@ -63,7 +63,7 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
 ///     type Sample = f64;
 ///
 ///     fn rule(&self) -> Result<Smooth, ExperimentError> {
-///         Ok(Smooth::new(self.loss)?)
+///         Ok(Smooth::from_inelasticity(self.loss)?)
 ///     }
 ///     fn boundary(&self) -> Result<Container, ExperimentError> {
 ///         Ok(Container::closed(20.0, 20.0)?)

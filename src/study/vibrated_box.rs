@@ -234,8 +234,8 @@ impl Experiment for VibratedBox {
     fn rule(&self) -> Result<BoxRule, ExperimentError> {
         let tangential = self.tangential_inelasticity.unwrap_or(self.inelasticity);
         let dynamic = self.dynamic_friction.unwrap_or(self.friction);
-        let rule = Frictional::from_inelasticity(self.inelasticity, tangential)?
-            .with_friction(self.friction, dynamic)?;
+        let rule = Frictional::from_inelasticity(self.inelasticity, tangential, self.friction)?
+            .with_dynamic_friction(dynamic)?;
         Ok(match self.contact_duration {
             None => BoxRule::plain(rule),
             Some(duration) => BoxRule::lasting(ContactDuration::new(rule, duration)?),

@@ -40,7 +40,7 @@ impl Measured {
             Container::closed(60.0, 150.0)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?;
         let disks = initial::lattice(&boundary, DISKS, 0.5)?;
         let disks = initial::with_maxwellian_velocities(disks, 1.0, seed)?;
-        let rule = Frictional::new(0.0, friction)?;
+        let rule = Frictional::from_inelasticity(0.0, 0.0, friction)?;
         let mut simulation = Simulation::builder(rule, boundary).disks(disks).gravity(0.015_625).build()?;
         let times = SampleTimes::every(20.0 * PERIOD)?.starting_at(0.5 * oscillations * PERIOD)?;
         let region = Region::new(DVec2::ZERO, DVec2::new(60.0, 60.0));

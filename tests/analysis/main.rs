@@ -172,7 +172,7 @@ fn line_of_equal_loss_has_no_scatter() -> Outcome {
     let mut points = Vec::new();
     for friction in [0.0, 0.01, 0.02, 1.5, 3.0] {
         for inelasticity in line.inelasticities(friction)? {
-            points.push(Frictional::new(inelasticity, friction)?);
+            points.push(Frictional::from_inelasticity(inelasticity, inelasticity, friction)?);
         }
     }
     let average = line_average(&points, &gas)?;
@@ -181,6 +181,9 @@ fn line_of_equal_loss_has_no_scatter() -> Outcome {
     let effective = average.effective_inelasticity();
     assert!((effective.mean() - 0.5 * (1.0 - 0.9_f64.sqrt())).abs() < 1e-12);
     assert!(line_average(&[], &gas).is_err());
-    assert!(line_average(&[Frictional::new(0.2, 0.47)?], &gas).is_err(), "more than smooth disks can lose");
+    assert!(
+        line_average(&[Frictional::from_inelasticity(0.2, 0.2, 0.47)?], &gas).is_err(),
+        "more than smooth disks can lose"
+    );
     Ok(())
 }

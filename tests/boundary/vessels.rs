@@ -233,7 +233,7 @@ fn vessels_come_back_from_files() {
 
     let floor = BiParabolic::new(0.1, 10.0).unwrap();
     let container = Container::open(12.0).unwrap().with_motion(Wall::Floor, floor).unwrap();
-    let container = container.with_rule(Wall::Left, Smooth::new(0.1).unwrap()).unwrap();
+    let container = container.with_rule(Wall::Left, Smooth::from_inelasticity(0.1).unwrap()).unwrap();
     let vessel = Vessel::new(container.shifted(DVec2::new(-1.0, 2.0)).unwrap())
         .with("mixed", mixed().with_motion(DVec2::X, Sinusoidal::new(0.4, 2.0).unwrap()).unwrap())
         .unwrap()
@@ -243,7 +243,7 @@ fn vessels_come_back_from_files() {
                 .with_rotation(DVec2::ONE, 0.1)
                 .and_then(|part| part.starting_at(7.0))
                 .unwrap()
-                .with_rule(Frictional::new(0.1, 0.3).unwrap()),
+                .with_rule(Frictional::from_inelasticity(0.1, 0.1, 0.3).unwrap()),
         )
         .unwrap()
         .with("hot", triangle().with_temperature(Thermal::new(2.0).unwrap()).with_surface_speed(0.3).unwrap())
@@ -254,9 +254,12 @@ fn vessels_come_back_from_files() {
     assert_eq!(back.fingerprint().unwrap(), vessel.fingerprint().unwrap());
 
     let slow = |part: Part, kind: u32| match kind {
-        0 => part.with_rule(ElasticBelow::new(Frictional::new(0.1, 0.3).unwrap(), 0.1).unwrap()),
-        1 => part.with_rule(LeastRebound::new(SpeedDependent::new(0.7, 1.0).unwrap(), 0.1).unwrap()),
-        _ => part.with_rule(SpeedDependent::new(0.7, 1.0).unwrap()),
+        0 => part.with_rule(
+            ElasticBelow::new(Frictional::from_inelasticity(0.1, 0.1, 0.3).unwrap(), 0.1).unwrap(),
+        ),
+        1 => part
+            .with_rule(LeastRebound::new(SpeedDependent::from_restitution(0.7, 1.0).unwrap(), 0.1).unwrap()),
+        _ => part.with_rule(SpeedDependent::from_restitution(0.7, 1.0).unwrap()),
     };
     for kind in 0..3 {
         let text = serde_json::to_string(&slow(triangle(), kind)).unwrap();

@@ -32,14 +32,14 @@ proptest! {
         ratio in 0.0..=1.0,
         duration in decades(-300.0, 300.0),
     ) {
-        let frictional = Frictional::from_inelasticity(normal, tangential)
-            .and_then(|rule| rule.with_friction(friction, ratio * friction))
+        let frictional = Frictional::from_inelasticity(normal, tangential, friction)
+            .and_then(|rule| rule.with_dynamic_friction(ratio * friction))
             .unwrap();
-        let (smooth, rough) = (Smooth::new(normal).unwrap(), Rough::new(normal, tangential).unwrap());
+        let (smooth, rough) = (Smooth::from_inelasticity(normal).unwrap(), Rough::from_inelasticity(normal, tangential).unwrap());
         let unchanged = TangentialResponse::Unchanged;
         prop_assert!(returns(&Elastic) && returns(&smooth) && returns(&rough) && returns(&frictional));
         prop_assert!(returns(&ContactDuration::new(Elastic, duration).unwrap()));
-        let friction = Friction::new(tangential, friction).unwrap();
+        let friction = Friction::from_inelasticity(tangential, friction).unwrap();
         prop_assert!(returns(&friction));
         prop_assert!(returns(&ContactDuration::new(frictional, duration).unwrap()));
         let nested = ContactDuration::new(rough, duration).unwrap().with_tangential_response(unchanged);
@@ -47,26 +47,29 @@ proptest! {
         let below = ElasticBelow::new(frictional, duration).unwrap();
         prop_assert!(returns(&below) && returns(&below.with_tangential_response(unchanged)));
         prop_assert!(returns(&LeastRebound::new(frictional, duration).unwrap()));
-        prop_assert!(returns(&SpeedDependent::new(ratio, duration).unwrap().with_friction(friction)));
+        prop_assert!(returns(&SpeedDependent::from_restitution(ratio, duration).unwrap().with_friction(friction)));
     }
 }
 
 #[test]
 fn the_names_in_a_file_are_stable() {
-    let rule = ContactDuration::new(Frictional::new(0.25, 0.5).unwrap(), 0.125).unwrap();
+    let rule = ContactDuration::new(Frictional::from_inelasticity(0.25, 0.25, 0.5).unwrap(), 0.125).unwrap();
     let text = concat!(
-        r#"{"rule":{"normal_inelasticity":0.25,"tangential_inelasticity":0.25,"static_friction":0.5,"#,
-        r#""dynamic_friction":0.5},"duration":0.125,"tangential_response":"Frictionless"}"#
+        r#"{"rule":{"normal_inelasticity":0.25,"tangential_inelasticity":0.25,"friction":"#,
+        r#"{"tangential_inelasticity":0.25,"static_friction":0.5,"dynamic_friction":0.5}},"duration":0.125,"#,
+        r#""tangential_response":"Frictionless"}"#
     );
     assert_eq!(serde_json::to_string(&rule).unwrap(), text);
-    let friction = r#"{"tangential_inelasticity":0.25,"static_coefficient":0.5,"dynamic_coefficient":0.5}"#;
-    assert_eq!(serde_json::to_string(&Friction::new(0.25, 0.5).unwrap()).unwrap(), friction);
+    let friction = r#"{"tangential_inelasticity":0.25,"static_friction":0.5,"dynamic_friction":0.5}"#;
+    assert_eq!(serde_json::to_string(&Friction::from_inelasticity(0.25, 0.5).unwrap()).unwrap(), friction);
     let below = ElasticBelow::new(Elastic, 0.125).unwrap();
     let text_below = r#"{"rule":null,"speed":0.125,"tangential_response":"Frictionless"}"#;
     assert_eq!(serde_json::to_string(&below).unwrap(), text_below);
     let rebound = LeastRebound::new(Elastic, 0.125).unwrap();
     assert_eq!(serde_json::to_string(&rebound).unwrap(), r#"{"rule":null,"speed":0.125}"#);
-    let bizon = SpeedDependent::new(0.5, 2.0).unwrap().with_friction(Friction::new(0.25, 0.5).unwrap());
+    let bizon = SpeedDependent::from_restitution(0.5, 2.0)
+        .unwrap()
+        .with_friction(Friction::from_inelasticity(0.25, 0.5).unwrap());
     let text_bizon = format!(r#"{{"least_restitution":0.5,"speed":2.0,"friction":{friction}}}"#);
     assert_eq!(serde_json::to_string(&bizon).unwrap(), text_bizon);
     let short = text.replace(r#","tangential_response":"Frictionless""#, "");
@@ -76,13 +79,15 @@ fn the_names_in_a_file_are_stable() {
 #[test]
 fn a_file_passes_the_constructors() {
     let smooth = r#"{"normal_inelasticity":0.7}"#;
-    assert!(refusal::<Smooth>(smooth).contains(&Smooth::new(0.7).unwrap_err().to_string()));
+    assert!(refusal::<Smooth>(smooth).contains(&Smooth::from_inelasticity(0.7).unwrap_err().to_string()));
     let rough = r#"{"normal_inelasticity":0.1,"tangential_inelasticity":-0.5}"#;
-    assert!(refusal::<Rough>(rough).contains(&Rough::new(0.1, -0.5).unwrap_err().to_string()));
-    let frictional = r#"{"normal_inelasticity":0,"tangential_inelasticity":0,"static_friction":0.1,"dynamic_friction":0.2}"#;
-    let error = Frictional::new(0.0, 0.0).and_then(|rule| rule.with_friction(0.1, 0.2)).unwrap_err();
-    assert!(refusal::<Frictional>(frictional).contains(&error.to_string()));
-    let friction = r#"{"tangential_inelasticity":0,"static_coefficient":0.1,"dynamic_coefficient":0.2}"#;
+    assert!(refusal::<Rough>(rough).contains(&Rough::from_inelasticity(0.1, -0.5).unwrap_err().to_string()));
+    let friction = r#"{"tangential_inelasticity":0,"static_friction":0.1,"dynamic_friction":0.2}"#;
+    let error = Friction::from_inelasticity(0.0, 0.1)
+        .and_then(|friction| friction.with_dynamic_friction(0.2))
+        .unwrap_err();
+    let frictional = format!(r#"{{"normal_inelasticity":0,"friction":{friction}}}"#);
+    assert!(refusal::<Frictional>(&frictional).contains(&error.to_string()));
     assert!(refusal::<Friction>(friction).contains(&error.to_string()));
     let model = r#"{"rule":null,"duration":0}"#;
     let error = ContactDuration::new(Elastic, 0.0).unwrap_err();
@@ -111,8 +116,8 @@ fn unknown_missing_and_unreadable_fields_are_refused() {
     assert!(refusal::<Smooth>(r#"{"normal_inelasticity":null}"#).contains("null"));
     assert!(refusal::<Smooth>(r#"{"normal_inelasticity":1e999}"#).contains("out of range"));
     let frictional = concat!(
-        r#"{"normal_inelasticity":0,"tangential_inelasticity":0,"static_friction":0,"dynamic_friction":0,"#,
-        r#""restitution":1}"#
+        r#"{"normal_inelasticity":0,"friction":{"tangential_inelasticity":0,"static_friction":0,"#,
+        r#""dynamic_friction":0},"restitution":1}"#
     );
     assert!(refusal::<Frictional>(frictional).contains("unknown field `restitution`"));
     let model = r#"{"rule":null,"duration":1,"response":0}"#;

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use crate::rules::config;
 
 fn rule() -> Frictional {
-    Frictional::from_inelasticity(0.1, 0.3).and_then(|rule| rule.with_friction(0.5, 0.4)).unwrap()
+    Frictional::from_inelasticity(0.1, 0.3, 0.5).and_then(|rule| rule.with_dynamic_friction(0.4)).unwrap()
 }
 
 /// The rule as one formula, in the order of operations that recorded runs have.
@@ -35,17 +35,15 @@ fn the_rule_made_of_parts_has_the_bits_of_the_formula() {
 
 #[test]
 fn the_parts_are_those_of_the_rule() {
-    let friction =
-        Friction::from_inelasticity(0.3).and_then(|friction| friction.with_coefficients(0.5, 0.4)).unwrap();
+    let friction = Friction::from_inelasticity(0.3, 0.5)
+        .and_then(|friction| friction.with_dynamic_friction(0.4))
+        .unwrap();
     let contact = Contact::new(1.0, 0.5, 0.5, 0.125);
     let impulse = rule().impulse(&contact);
     assert_eq!(friction.impulse(&contact, impulse.normal()), impulse);
     assert_eq!(friction.tangential_inelasticity(), rule().tangential_inelasticity());
-    assert_eq!(friction.static_coefficient(), rule().static_friction());
-    assert_eq!(friction.dynamic_coefficient(), rule().dynamic_friction());
-    let restitution =
-        Friction::from_restitution(0.5).and_then(|friction| friction.with_coefficients(0.5, 0.5));
-    assert_eq!(restitution, Friction::new(0.25, 0.5));
+    assert_eq!(friction.static_friction(), rule().static_friction());
+    assert_eq!(friction.dynamic_friction(), rule().dynamic_friction());
 }
 
 /// A restitution of 0 stops the surfaces, and a restitution of 1 reverses them.
@@ -70,8 +68,8 @@ proptest! {
         coefficient in prop_oneof![Just(0.0), decades(-9.0, 9.0)],
         ratio in 0.0..=1.0,
     ) {
-        let friction = Friction::from_inelasticity(inelasticity)
-            .and_then(|friction| friction.with_coefficients(coefficient, ratio * coefficient))
+        let friction = Friction::from_inelasticity(inelasticity, coefficient)
+            .and_then(|friction| friction.with_dynamic_friction(ratio * coefficient))
             .unwrap();
         let normal = push * contact.normal_mass() * contact.closing_speed();
         let impulse = friction.impulse(&contact, normal);

@@ -52,8 +52,8 @@ fn a_model_passes_the_explanation_on() {
 }
 
 fn frictional(normal: f64, tangential: f64, static_friction: f64, dynamic_friction: f64) -> Frictional {
-    Frictional::from_inelasticity(normal, tangential)
-        .and_then(|rule| rule.with_friction(static_friction, dynamic_friction))
+    Frictional::from_inelasticity(normal, tangential, static_friction)
+        .and_then(|rule| rule.with_dynamic_friction(dynamic_friction))
         .unwrap()
 }
 
@@ -63,10 +63,10 @@ fn different_rules_have_different_fingerprints() {
     let lasting = |rule, duration| ContactDuration::new(rule, duration).unwrap();
     let rules: Vec<Box<dyn CollisionRule>> = vec![
         Box::new(Elastic),
-        Box::new(Smooth::new(0.1).unwrap()),
-        Box::new(Smooth::new(0.2).unwrap()),
-        Box::new(Rough::new(0.1, 0.2).unwrap()),
-        Box::new(Rough::new(0.2, 0.1).unwrap()),
+        Box::new(Smooth::from_inelasticity(0.1).unwrap()),
+        Box::new(Smooth::from_inelasticity(0.2).unwrap()),
+        Box::new(Rough::from_inelasticity(0.1, 0.2).unwrap()),
+        Box::new(Rough::from_inelasticity(0.2, 0.1).unwrap()),
         Box::new(frictional(0.1, 0.2, 0.3, 0.3)),
         Box::new(frictional(0.2, 0.2, 0.3, 0.3)),
         Box::new(frictional(0.1, 0.1, 0.3, 0.3)),
@@ -87,9 +87,13 @@ fn different_rules_have_different_fingerprints() {
         ),
         Box::new(LeastRebound::new(Elastic, 1e-4).unwrap()),
         Box::new(LeastRebound::new(Elastic, 1e-5).unwrap()),
-        Box::new(SpeedDependent::new(0.1, 0.2).unwrap()),
-        Box::new(SpeedDependent::new(0.2, 0.1).unwrap()),
-        Box::new(SpeedDependent::new(0.1, 0.2).unwrap().with_friction(Friction::new(0.0, 0.2).unwrap())),
+        Box::new(SpeedDependent::from_restitution(0.1, 0.2).unwrap()),
+        Box::new(SpeedDependent::from_restitution(0.2, 0.1).unwrap()),
+        Box::new(
+            SpeedDependent::from_restitution(0.1, 0.2)
+                .unwrap()
+                .with_friction(Friction::from_inelasticity(0.0, 0.2).unwrap()),
+        ),
     ];
     let fingerprints: HashSet<_> = rules.iter().map(|rule| rule.fingerprint().unwrap()).collect();
     assert_eq!(fingerprints.len(), rules.len());

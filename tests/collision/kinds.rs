@@ -16,7 +16,7 @@ const GLASS: Kind = Kind::new(3);
 const STEEL: Kind = Kind::new(7);
 
 fn table() -> RulesByKind<Smooth> {
-    let smooth = |inelasticity| Smooth::new(inelasticity).unwrap();
+    let smooth = |inelasticity| Smooth::from_inelasticity(inelasticity).unwrap();
     RulesByKind::new(smooth(0.0)).with(STEEL, GLASS, smooth(0.1)).with(STEEL, Kind::WALL, smooth(0.2))
 }
 
@@ -45,7 +45,7 @@ proptest! {
         let pairs = [([STEEL, GLASS], 0.1), ([GLASS, STEEL], 0.1), ([Kind::WALL, STEEL], 0.2), ([STEEL, STEEL], 0.0)];
         for (kinds, inelasticity) in pairs {
             let contact = contact.with_kinds(kinds);
-            let alone = Smooth::new(inelasticity).unwrap().impulse(&contact);
+            let alone = Smooth::from_inelasticity(inelasticity).unwrap().impulse(&contact);
             prop_assert_eq!(table().impulse(&contact), alone);
         }
     }
@@ -53,15 +53,15 @@ proptest! {
 
 #[test]
 fn the_last_rule_of_a_pair_counts() {
-    let later = table().with(GLASS, STEEL, Smooth::new(0.3).unwrap());
-    assert_eq!(later.rule(STEEL, GLASS), &Smooth::new(0.3).unwrap());
-    assert_eq!(later.rule(STEEL, Kind::WALL), &Smooth::new(0.2).unwrap());
-    assert_eq!(later.rule(GLASS, GLASS), &Smooth::new(0.0).unwrap());
+    let later = table().with(GLASS, STEEL, Smooth::from_inelasticity(0.3).unwrap());
+    assert_eq!(later.rule(STEEL, GLASS), &Smooth::from_inelasticity(0.3).unwrap());
+    assert_eq!(later.rule(STEEL, Kind::WALL), &Smooth::from_inelasticity(0.2).unwrap());
+    assert_eq!(later.rule(GLASS, GLASS), &Smooth::from_inelasticity(0.0).unwrap());
 }
 
 #[test]
 fn a_table_keeps_the_laws_that_its_rules_keep() {
-    let friction = |coefficient| Frictional::new(0.1, coefficient).unwrap();
+    let friction = |coefficient| Frictional::from_inelasticity(0.1, 0.1, coefficient).unwrap();
     let rules = RulesByKind::new(friction(0.3)).with(Kind::DEFAULT, Kind::new(1), friction(0.1));
     laws::check(&rules, &laws::Promises::new().with_friction(0.3)).unwrap();
     let broken = laws::check(&rules, &laws::Promises::new().with_friction(0.1)).unwrap_err();
@@ -88,7 +88,7 @@ fn faults_of_single_pairs_are_found() {
 
 #[test]
 fn tables_that_act_differently_have_different_fingerprints() {
-    let smooth = |inelasticity| Smooth::new(inelasticity).unwrap();
+    let smooth = |inelasticity| Smooth::from_inelasticity(inelasticity).unwrap();
     let plain = RulesByKind::new(smooth(0.0));
     let tables = [
         plain.clone(),
@@ -109,7 +109,7 @@ fn tables_that_act_differently_have_different_fingerprints() {
 #[test]
 fn rules_of_several_types_go_into_one_table() {
     let boxed: BoxedRule = Box::new(Elastic);
-    let rules = RulesByKind::new(boxed).with(STEEL, STEEL, Box::new(Smooth::new(0.5).unwrap()));
+    let rules = RulesByKind::new(boxed).with(STEEL, STEEL, Box::new(Smooth::from_inelasticity(0.5).unwrap()));
     let ball = |x, velocity| {
         Disk::new(DVec2::new(x, 0.0), 0.5).unwrap().with_velocity(velocity).unwrap().with_kind(STEEL)
     };
@@ -123,7 +123,7 @@ fn a_table_returns_from_a_file_and_a_pair_given_twice_does_not() {
     let text = serde_json::to_string(&table()).unwrap();
     assert_eq!(serde_json::from_str::<RulesByKind<Smooth>>(&text).unwrap(), table());
     let only = r#"{"otherwise":{"normal_inelasticity":0.25}}"#;
-    let plain = RulesByKind::new(Smooth::new(0.25).unwrap());
+    let plain = RulesByKind::new(Smooth::from_inelasticity(0.25).unwrap());
     assert_eq!(serde_json::from_str::<RulesByKind<Smooth>>(only).unwrap(), plain);
     let pair = |kinds: &str| format!(r#"{{"kinds":{kinds},"rule":{{"normal_inelasticity":0.1}}}}"#);
     let twice = format!(

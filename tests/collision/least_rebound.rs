@@ -42,7 +42,7 @@ proptest! {
 
 #[test]
 fn it_gives_back_what_it_was_made_of() {
-    let rule = Smooth::new(0.1).unwrap();
+    let rule = Smooth::from_inelasticity(0.1).unwrap();
     let remedy = LeastRebound::new(rule, 1e-2).unwrap();
     assert_eq!((remedy.rule(), remedy.speed()), (&rule, 1e-2));
 }

@@ -30,13 +30,13 @@ fn the_rules_of_the_library_pass() {
     let frictionless = Promises::new().with_friction(0.0);
     check(&Elastic, &frictionless).unwrap();
     for inelasticity in [0.0, 1e-15, 0.1, 0.5] {
-        check(&Smooth::new(inelasticity).unwrap(), &frictionless).unwrap();
+        check(&Smooth::from_inelasticity(inelasticity).unwrap(), &frictionless).unwrap();
         for tangential in [0.0, 0.3, 1.0] {
-            let rough = Rough::new(inelasticity, tangential).unwrap();
+            let rough = Rough::from_inelasticity(inelasticity, tangential).unwrap();
             check(&rough, &Promises::new().with_opposed_slip()).unwrap();
             for (held, slid) in [(0.0, 0.0), (0.3, 0.3), (0.5, 0.1), (1e9, 0.0), (f64::MAX, f64::MAX)] {
-                let rule = Frictional::from_inelasticity(inelasticity, tangential).unwrap();
-                let rule = rule.with_friction(held, slid).unwrap();
+                let rule = Frictional::from_inelasticity(inelasticity, tangential, held).unwrap();
+                let rule = rule.with_dynamic_friction(slid).unwrap();
                 let promises = Promises::new().with_friction(held);
                 check(&rule, &promises).unwrap();
                 let model = ContactDuration::new(rule, 1e-6).unwrap();
@@ -49,9 +49,9 @@ fn the_rules_of_the_library_pass() {
                         .unwrap();
                     let rebound = LeastRebound::new(rule, speed).unwrap();
                     check(&rebound, &promises.with_energy_gain()).unwrap();
-                    let friction = Friction::from_inelasticity(tangential).unwrap();
-                    let friction = friction.with_coefficients(held, slid).unwrap();
-                    let bizon = SpeedDependent::new(1.0 - 2.0 * inelasticity, speed).unwrap();
+                    let friction = Friction::from_inelasticity(tangential, held).unwrap();
+                    let friction = friction.with_dynamic_friction(slid).unwrap();
+                    let bizon = SpeedDependent::from_inelasticity(inelasticity, speed).unwrap();
                     check(&bizon.with_friction(friction), &promises).unwrap();
                 }
             }
@@ -98,9 +98,9 @@ fn a_kick_at_no_closing_speed() {
 #[test]
 fn more_friction_than_promised() {
     let cone = Promises::new().with_friction(0.5);
-    let violation = check(&Rough::new(0.1, 0.0).unwrap(), &cone).unwrap_err();
+    let violation = check(&Rough::from_inelasticity(0.1, 0.0).unwrap(), &cone).unwrap_err();
     assert!(matches!(violation, Violation::OutsideFrictionCone { .. }));
-    let slightly = Friction::new(0.1, 0.5 + 1e-9).unwrap();
+    let slightly = Friction::from_inelasticity(0.1, 0.5 + 1e-9).unwrap();
     let rule = rubbing(move |contact, normal| slightly.impulse(contact, normal).tangential());
     assert!(matches!(caught(rule, cone), Violation::OutsideFrictionCone { .. }));
 }

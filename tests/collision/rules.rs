@@ -48,11 +48,11 @@ impl Law {
         let (normal, tangential) = (self.normal_inelasticity, self.tangential_inelasticity);
         match self.kind {
             Kind::Elastic => self.boxed(Elastic),
-            Kind::Smooth => self.boxed(Smooth::new(normal).unwrap()),
-            Kind::Rough => self.boxed(Rough::new(normal, tangential).unwrap()),
+            Kind::Smooth => self.boxed(Smooth::from_inelasticity(normal).unwrap()),
+            Kind::Rough => self.boxed(Rough::from_inelasticity(normal, tangential).unwrap()),
             Kind::Frictional => self.boxed(
-                Frictional::from_inelasticity(normal, tangential)
-                    .and_then(|rule| rule.with_friction(self.static_friction, self.dynamic_friction))
+                Frictional::from_inelasticity(normal, tangential, self.static_friction)
+                    .and_then(|rule| rule.with_dynamic_friction(self.dynamic_friction))
                     .unwrap(),
             ),
             Kind::Closure => {

@@ -17,7 +17,7 @@ proptest! {
         speed in decades(-6.0, 6.0),
         closing in decades(-12.0, 9.0),
     ) {
-        let rule = SpeedDependent::new(least, speed).unwrap();
+        let rule = SpeedDependent::from_restitution(least, speed).unwrap();
         let factor = (1.0 - least) * speed.powf(-0.75);
         let expected = (1.0 - factor * closing.powf(0.75)).max(least);
         prop_assert!((rule.restitution(closing) - expected).abs() < 8.0 * EPSILON);
@@ -32,8 +32,8 @@ proptest! {
         contact in contact(),
         coefficient in 0.0..2.0f64,
     ) {
-        let friction = Friction::new(0.3, coefficient).unwrap();
-        let impulse = SpeedDependent::new(least, speed).unwrap().with_friction(friction).impulse(&contact);
+        let friction = Friction::from_inelasticity(0.3, coefficient).unwrap();
+        let impulse = SpeedDependent::from_restitution(least, speed).unwrap().with_friction(friction).impulse(&contact);
         prop_assert_eq!(laws::check_impulse(&contact, impulse), Ok(()));
         prop_assert_eq!(laws::check_friction_cone(&contact, impulse, coefficient), Ok(()));
         prop_assert_eq!(laws::check_friction_opposes_slip(&contact, impulse), Ok(()));
@@ -47,10 +47,10 @@ proptest! {
         coefficient in 0.0..2.0f64,
     ) {
         prop_assume!(contact.closing_speed() > 0.0);
-        let rule = SpeedDependent::new(1.0 - 2.0 * inelasticity, 0.5 * contact.closing_speed()).unwrap();
-        let rule = rule.with_friction(Friction::new(0.2, coefficient).unwrap());
-        let constant = Frictional::from_inelasticity(inelasticity, 0.2).unwrap();
-        let expected = constant.with_friction(coefficient, coefficient).unwrap().impulse(&contact);
+        let rule = SpeedDependent::from_inelasticity(inelasticity, 0.5 * contact.closing_speed()).unwrap();
+        let rule = rule.with_friction(Friction::from_inelasticity(0.2, coefficient).unwrap());
+        let constant = Frictional::from_inelasticity(inelasticity, 0.2, coefficient).unwrap();
+        let expected = constant.impulse(&contact);
         let scale = contact.normal_mass() * contact.closing_speed();
         prop_assert!((rule.impulse(&contact).normal() - expected.normal()).abs() <= 4.0 * EPSILON * scale);
     }

@@ -10,8 +10,8 @@ use crate::rules::config;
 const STEP: f64 = 1e-9;
 
 fn rule(normal: f64, tangential: f64, static_friction: f64, dynamic_friction: f64) -> Frictional {
-    Frictional::from_inelasticity(normal, tangential)
-        .and_then(|rule| rule.with_friction(static_friction, dynamic_friction))
+    Frictional::from_inelasticity(normal, tangential, static_friction)
+        .and_then(|rule| rule.with_dynamic_friction(dynamic_friction))
         .unwrap()
 }
 

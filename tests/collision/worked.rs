@@ -22,8 +22,8 @@ fn disk(position: DVec2, radius: f64, mass: f64, velocity: (f64, f64), angular_v
 }
 
 fn rule(normal: f64, tangential: f64, static_friction: f64, dynamic_friction: f64) -> Frictional {
-    Frictional::from_inelasticity(normal, tangential)
-        .and_then(|rule| rule.with_friction(static_friction, dynamic_friction))
+    Frictional::from_inelasticity(normal, tangential, static_friction)
+        .and_then(|rule| rule.with_dynamic_friction(dynamic_friction))
         .unwrap()
 }
 

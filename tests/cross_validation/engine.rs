@@ -32,7 +32,7 @@ pub(crate) fn run(point: Point, seed: u64) -> Result<Means, Box<dyn Error>> {
 fn start(point: Point, base: BiParabolic, seed: u64) -> Result<Run, Box<dyn Error>> {
     let container = Container::closed(WIDTH, HEIGHT)?.with_motion(Wall::Floor, base)?;
     let disks = initial::with_maxwellian_velocities(disks(seed)?, 1.0, seed)?;
-    let rule = Frictional::new(point.inelasticity, point.friction)?;
+    let rule = Frictional::from_inelasticity(point.inelasticity, point.inelasticity, point.friction)?;
     let rule = ContactDuration::new(rule, CONTACT_DURATION)?;
     Ok(Simulation::builder(rule, container).disks(disks).gravity(point.gravity).build()?)
 }

@@ -126,7 +126,7 @@ fn kinetic_answers_are_finite_and_within_their_bounds() {
         let Ok(gas) = Maxwellian::new(temperature) else { continue };
         assert!((1e-30..=1e30).contains(&temperature));
         for friction in SIZES {
-            let Ok(rule) = Frictional::new(0.05, friction) else { continue };
+            let Ok(rule) = Frictional::from_inelasticity(0.05, 0.05, friction) else { continue };
             let change = mean_energy_change(&rule, &gas) / temperature;
             assert!((-4.0..=0.0).contains(&change), "{temperature:e} {friction:e}: {change}");
             assert!((0.0..=1.0).contains(&sticking_fraction(&rule, &gas)), "{temperature:e} {friction:e}");
@@ -158,7 +158,7 @@ fn collisions_of_extreme_disks_have_finite_ends() {
     for (one, other) in SIZES.into_iter().flat_map(|one| SIZES.map(|other| (one, other))) {
         for speed in SIZES {
             let (Ok(first), Ok(second)) = (disk(one, speed, -1.0), disk(other, speed, 1.0)) else { continue };
-            let rule = Frictional::new(0.05, 0.1).unwrap();
+            let rule = Frictional::from_inelasticity(0.05, 0.05, 0.1).unwrap();
             let Encounter { first, second, .. } = collide(&rule, &first, &second);
             assert!(
                 first.velocity().is_finite() && second.velocity().is_finite(),

@@ -76,7 +76,7 @@ pub(crate) const SYSTEMS: [System; 8] = [
     },
     System {
         name: "collapse",
-        rule: || Box::new(Smooth::new(0.4).unwrap()),
+        rule: || Box::new(Smooth::from_inelasticity(0.4).unwrap()),
         container: || box_of(10.0),
         disks: |container| gas(container, 20),
         gravity: 0.0,
@@ -93,7 +93,7 @@ pub(crate) const SYSTEMS: [System; 8] = [
 ];
 
 fn dissipative() -> Rule {
-    Box::new(ContactDuration::new(Frictional::new(0.05, 0.2).unwrap(), 1e-3).unwrap())
+    Box::new(ContactDuration::new(Frictional::from_inelasticity(0.05, 0.05, 0.2).unwrap(), 1e-3).unwrap())
 }
 
 fn box_of(width: f64) -> Container {

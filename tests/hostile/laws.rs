@@ -55,15 +55,15 @@ impl Law {
         let Self { normal, tangential, friction, dynamic_share, .. } = *self;
         match self.kind {
             Kind::Elastic => Arc::new(Elastic),
-            Kind::Smooth => Arc::new(Smooth::new(normal).unwrap()),
-            Kind::Rough => Arc::new(Rough::new(normal, tangential).unwrap()),
+            Kind::Smooth => Arc::new(Smooth::from_inelasticity(normal).unwrap()),
+            Kind::Rough => Arc::new(Rough::from_inelasticity(normal, tangential).unwrap()),
             Kind::Frictional => {
-                let rule = Frictional::from_inelasticity(normal, tangential).unwrap();
-                Arc::new(rule.with_friction(friction, dynamic_share * friction).unwrap())
+                let rule = Frictional::from_inelasticity(normal, tangential, friction).unwrap();
+                Arc::new(rule.with_dynamic_friction(dynamic_share * friction).unwrap())
             }
             Kind::SpeedDependent => {
-                let rule = SpeedDependent::new(1.0 - 2.0 * normal, 0.3).unwrap();
-                Arc::new(rule.with_friction(Friction::new(tangential, friction).unwrap()))
+                let rule = SpeedDependent::from_inelasticity(normal, 0.3).unwrap();
+                Arc::new(rule.with_friction(Friction::from_inelasticity(tangential, friction).unwrap()))
             }
             Kind::Closure => Arc::new(from_fn(move |contact: &Contact| viscous(normal, tangential, contact))),
         }

@@ -26,7 +26,7 @@ pub(crate) const CHECKSUM_AT: usize = 12;
 pub(crate) const CONTENTS_AT: usize = 44;
 
 pub(crate) fn rule() -> Rule {
-    ContactDuration::new(Frictional::new(0.05, 0.2).unwrap(), 1e-3).unwrap()
+    ContactDuration::new(Frictional::from_inelasticity(0.05, 0.05, 0.2).unwrap(), 1e-3).unwrap()
 }
 
 pub(crate) fn container() -> Container {

@@ -78,13 +78,13 @@ fn refuses_intruders<T: DeserializeOwned>(value: &Value) {
 #[test]
 fn parameters_with_a_field_too_many_are_refused() {
     refuses(&Disk::new(DVec2::new(1.0, 2.0), 0.5).unwrap());
-    refuses(&Smooth::new(0.1).unwrap());
-    refuses(&Rough::new(0.1, 0.2).unwrap());
-    refuses(&Frictional::new(0.1, 0.2).unwrap());
-    refuses(&ContactDuration::new(Frictional::new(0.1, 0.2).unwrap(), 1e-3).unwrap());
-    refuses(&ElasticBelow::new(Frictional::new(0.1, 0.2).unwrap(), 1e-3).unwrap());
-    refuses(&LeastRebound::new(Frictional::new(0.1, 0.2).unwrap(), 1e-3).unwrap());
-    refuses(&SpeedDependent::new(0.5, 1.0).unwrap());
+    refuses(&Smooth::from_inelasticity(0.1).unwrap());
+    refuses(&Rough::from_inelasticity(0.1, 0.2).unwrap());
+    refuses(&Frictional::from_inelasticity(0.1, 0.1, 0.2).unwrap());
+    refuses(&ContactDuration::new(Frictional::from_inelasticity(0.1, 0.1, 0.2).unwrap(), 1e-3).unwrap());
+    refuses(&ElasticBelow::new(Frictional::from_inelasticity(0.1, 0.1, 0.2).unwrap(), 1e-3).unwrap());
+    refuses(&LeastRebound::new(Frictional::from_inelasticity(0.1, 0.1, 0.2).unwrap(), 1e-3).unwrap());
+    refuses(&SpeedDependent::from_restitution(0.5, 1.0).unwrap());
     refuses(&BiParabolic::new(0.1, 3.0).unwrap());
     refuses(&Sinusoidal::new(0.1, 3.0).unwrap());
     refuses(&Triangular::new(0.1, 3.0).unwrap());
@@ -107,7 +107,7 @@ fn boundaries_with_a_field_too_many_are_refused() {
     }
     let part = || Part::new(bricks).unwrap();
     let parts = [
-        part().with_rule(Smooth::new(0.1).unwrap()),
+        part().with_rule(Smooth::from_inelasticity(0.1).unwrap()),
         part().with_motion(DVec2::ONE, Sinusoidal::new(0.1, 3.0).unwrap()).unwrap(),
         part().with_rotation(DVec2::ONE, 0.3).unwrap().with_temperature(Thermal::new(2.0).unwrap()),
     ];

@@ -144,7 +144,8 @@ fn nothing_gets_out(plan: &Plan, radius: f64, seed: u64) -> Result<(), TestCaseE
     };
     let fail = |error: &dyn std::error::Error| TestCaseError::fail(error.to_string());
     let disks = initial::with_maxwellian_velocities(disks, 1.0, seed).map_err(|error| fail(&error))?;
-    let rule = Frictional::new(0.02, 0.3).and_then(|rule| ContactDuration::new(rule, 1e-2));
+    let rule =
+        Frictional::from_inelasticity(0.02, 0.02, 0.3).and_then(|rule| ContactDuration::new(rule, 1e-2));
     let rule = rule.map_err(|error| fail(&error))?;
     let mut run = Simulation::builder(rule, vessel.clone()).disks(disks).gravity(0.2).build();
     let run = run.as_mut().map_err(|error| fail(error))?;

@@ -33,9 +33,16 @@ fn magnitude() -> impl Strategy<Value = f64> {
 /// The whole domain of the paper's rule.
 fn rules() -> impl Strategy<Value = Frictional> {
     (0.0..=0.5, 0.0..=1.0, magnitude(), 0.0..=1.0).prop_map(|(normal, tangential, friction, ratio)| {
-        let rule = Frictional::from_inelasticity(normal, tangential).unwrap();
-        rule.with_friction(friction, ratio * friction).unwrap()
+        let rule = Frictional::from_inelasticity(normal, tangential, friction).unwrap();
+        rule.with_dynamic_friction(ratio * friction).unwrap()
     })
+}
+
+/// The same rule with other coefficients of friction.
+fn with_friction(rule: &Frictional, held: f64, slid: f64) -> Frictional {
+    Frictional::from_inelasticity(rule.normal_inelasticity(), rule.tangential_inelasticity(), held)
+        .and_then(|rule| rule.with_dynamic_friction(slid))
+        .unwrap()
 }
 
 fn disk(mass: f64, inertia_factor: f64) -> Disk {
@@ -117,7 +124,7 @@ fn closed_form_is_the_mean_over_colliding_disks() -> Outcome {
     let energy = |disk: &Disk| disk.translational_energy() + disk.rotational_energy();
     let ring = disk(4.0, 1.0).with_position(DVec2::new(0.8, 0.6))?;
     for (partner, rotational) in [(disk(1.0, 0.5).with_position(DVec2::X)?, 1.0), (ring, 0.2)] {
-        let rule = Frictional::from_inelasticity(0.05, 0.2)?.with_friction(0.5, 0.3)?;
+        let rule = Frictional::from_inelasticity(0.05, 0.2, 0.5)?.with_dynamic_friction(0.3)?;
         let gas =
             Maxwellian::new(1.0)?.with_rotational_temperature(rotational)?.with_partners(&ring, &partner);
         let first = ring.with_position(DVec2::ZERO)?;
@@ -165,10 +172,10 @@ fn monte_carlo_averages_the_other_rules() -> Outcome {
     let average = MonteCarlo::new(4).with_samples(1 << 16);
     let elastic = average.mean_energy_change(&Elastic, &gas);
     assert_eq!((elastic.mean(), elastic.standard_error()), (0.0, 0.0));
-    let smooth = average.mean_energy_change(&Smooth::new(0.1)?, &gas);
+    let smooth = average.mean_energy_change(&Smooth::from_inelasticity(0.1)?, &gas);
     assert!(distance(&smooth, frictionless_energy_change(0.1, 2.0)?, &gas).abs() < 4.0);
-    let rough = average.average(&Rough::new(0.1, 0.3)?, &gas);
-    let limit = Frictional::from_inelasticity(0.1, 0.3)?.with_friction(1e300, 1e300)?;
+    let rough = average.average(&Rough::from_inelasticity(0.1, 0.3)?, &gas);
+    let limit = Frictional::from_inelasticity(0.1, 0.3, 1e300)?;
     assert!(distance(&rough.energy_change(), mean_energy_change(&limit, &gas), &gas).abs() < 4.0);
     assert!((rough.sticking_fraction() - 1.0).abs() < 0.02);
     Ok(())
@@ -200,7 +207,7 @@ fn iso_line_keeps_the_corners_of_the_plane() -> Outcome {
 #[test]
 fn without_dynamic_friction_there_is_no_largest_loss() -> Outcome {
     for tangential in [0.0, 0.1, 1.0] {
-        let rule = Frictional::from_inelasticity(0.1, tangential)?.with_friction(1.0, 0.0)?;
+        let rule = Frictional::from_inelasticity(0.1, tangential, 1.0)?.with_dynamic_friction(0.0)?;
         assert_eq!(friction_of_largest_loss(&rule, &Maxwellian::new(1.0)?), None);
     }
     Ok(())
@@ -211,7 +218,7 @@ fn without_dynamic_friction_there_is_no_largest_loss() -> Outcome {
 #[test]
 fn iso_line_finds_both_inelasticities() -> Outcome {
     let gas = Maxwellian::new(1.0)?.with_rotational_temperature(4.0)?;
-    let at = |q: f64| mean_energy_change(&Frictional::new(q, 0.3).unwrap(), &gas);
+    let at = |q: f64| mean_energy_change(&Frictional::from_inelasticity(q, q, 0.3).unwrap(), &gas);
     let lowest = (0..=500).map(|i| at(f64::from(i) * 1e-3)).fold(0.0, f64::min);
     let change = 0.5 * (lowest + at(0.5));
     let found = IsoLine::new(change, &gas)?.inelasticities(0.3)?;
@@ -223,7 +230,8 @@ fn iso_line_finds_both_inelasticities() -> Outcome {
 #[test]
 fn sticking_fraction_is_finite_for_any_friction() -> Outcome {
     let gas = Maxwellian::new(1.0)?;
-    let fraction = |friction| Ok(sticking_fraction(&Frictional::new(0.1, friction)?, &gas));
+    let fraction =
+        |friction| Ok(sticking_fraction(&Frictional::from_inelasticity(0.1, 0.1, friction)?, &gas));
     assert_eq!((fraction(f64::MAX)?, fraction(5e-324)?), (1.0, 1e-323));
     Ok(())
 }
@@ -233,12 +241,12 @@ proptest! {
 
     #[test]
     fn friction_zero_is_equation_8(rule in rules(), gas in gases()) {
-        let smooth = rule.with_friction(0.0, 0.0).unwrap();
+        let smooth = with_friction(&rule, 0.0, 0.0);
         let expected =
             frictionless_energy_change(rule.normal_inelasticity(), gas.translational_temperature()).unwrap();
         let change = mean_energy_change(&smooth, &gas);
         prop_assert!((change - expected).abs() <= 4.0 * f64::EPSILON * expected.abs(), "{change} {expected}");
-        let nearly = mean_energy_change(&rule.with_friction(1e-300, 1e-300).unwrap(), &gas);
+        let nearly = mean_energy_change(&with_friction(&rule, 1e-300, 1e-300), &gas);
         prop_assert!((nearly - expected).abs() <= 4.0 * f64::EPSILON * expected.abs());
     }
 
@@ -268,7 +276,7 @@ proptest! {
         let ratio =
             if rule.static_friction() == 0.0 { 1.0 } else { rule.dynamic_friction() / rule.static_friction() };
         let at = |friction: f64| {
-            mean_energy_change(&rule.with_friction(friction, (ratio * friction).min(friction)).unwrap(), &gas)
+            mean_energy_change(&with_friction(&rule, friction, (ratio * friction).min(friction)), &gas)
         };
         let best = friction_of_largest_loss(&rule, &gas).map_or_else(|| at(1e12), at);
         let tolerance = 1e-12 * (gas.translational_temperature() + gas.rotational_temperature());
@@ -291,7 +299,7 @@ proptest! {
     #[test]
     fn iso_line_finds_all_inelasticities(change in -1.3..0.0, friction in 0.0..3.0, ratio in 0.0..4.0) {
         let gas = Maxwellian::new(1.0).unwrap().with_rotational_temperature(ratio).unwrap();
-        let excess = |q: f64| mean_energy_change(&Frictional::new(q, friction).unwrap(), &gas) - change;
+        let excess = |q: f64| mean_energy_change(&Frictional::from_inelasticity(q, q, friction).unwrap(), &gas) - change;
         let found = IsoLine::new(change, &gas).unwrap().inelasticities(friction).unwrap();
         let grid: Vec<f64> = (0..=2000).map(|i| excess(f64::from(i) * 2.5e-4)).collect();
         let crossings = grid.windows(2).filter(|pair| (pair[0] > 0.0) != (pair[1] > 0.0)).count();

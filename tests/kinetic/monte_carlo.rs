@@ -10,7 +10,7 @@ type Outcome = Result<(), ParameterError>;
 /// A change of these bits must be announced.
 #[test]
 fn average_keeps_its_bits() -> Outcome {
-    let (rule, gas) = (Frictional::new(0.1, 0.3)?, Maxwellian::new(1.0)?);
+    let (rule, gas) = (Frictional::from_inelasticity(0.1, 0.1, 0.3)?, Maxwellian::new(1.0)?);
     let average = MonteCarlo::new(2005).with_samples(100_000).average(&rule, &gas);
     let estimate = average.energy_change();
     let bits = [estimate.mean(), estimate.standard_error(), average.sticking_fraction()].map(f64::to_bits);
@@ -26,7 +26,7 @@ fn average_keeps_its_bits() -> Outcome {
 #[cfg(feature = "rayon")]
 #[test]
 fn average_does_not_depend_on_the_number_of_threads() -> Outcome {
-    let (rule, gas) = (Frictional::new(0.02, 0.5)?, Maxwellian::new(1.0)?);
+    let (rule, gas) = (Frictional::from_inelasticity(0.02, 0.02, 0.5)?, Maxwellian::new(1.0)?);
     let average = MonteCarlo::new(1).with_samples(300_000).with_standard_error(1e-9)?;
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -39,7 +39,7 @@ fn average_does_not_depend_on_the_number_of_threads() -> Outcome {
 
 #[test]
 fn average_stops_at_the_wanted_error_or_the_last_sample() -> Outcome {
-    let (rule, gas) = (Frictional::new(0.1, 0.3)?, Maxwellian::new(1.0)?);
+    let (rule, gas) = (Frictional::from_inelasticity(0.1, 0.1, 0.3)?, Maxwellian::new(1.0)?);
     let average = MonteCarlo::new(1);
     let loose = average.with_standard_error(1e-2)?.mean_energy_change(&rule, &gas);
     assert_eq!(loose.samples(), 1 << 16);
@@ -53,7 +53,7 @@ fn average_stops_at_the_wanted_error_or_the_last_sample() -> Outcome {
 
 #[test]
 fn seeds_differ() -> Outcome {
-    let (rule, gas) = (Frictional::new(0.1, 0.3)?, Maxwellian::new(1.0)?);
+    let (rule, gas) = (Frictional::from_inelasticity(0.1, 0.1, 0.3)?, Maxwellian::new(1.0)?);
     let [one, other] =
         [1, 2].map(|seed| MonteCarlo::new(seed).with_samples(1).mean_energy_change(&rule, &gas));
     assert_ne!(one.mean(), other.mean());

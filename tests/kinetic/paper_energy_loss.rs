@@ -10,7 +10,10 @@ type Outcome = Result<(), ParameterError>;
 
 /// Mean energy change with equal coefficients, unit temperature.
 fn change(friction: f64, inelasticity: f64) -> Result<f64, ParameterError> {
-    Ok(mean_energy_change(&Frictional::new(inelasticity, friction)?, &Maxwellian::new(1.0)?))
+    Ok(mean_energy_change(
+        &Frictional::from_inelasticity(inelasticity, inelasticity, friction)?,
+        &Maxwellian::new(1.0)?,
+    ))
 }
 
 const INELASTICITIES: [f64; 5] = [0.0, 0.025, 0.05, 0.1, 0.2];
@@ -43,7 +46,8 @@ fn loss_is_largest_near_a_friction_of_0_3() -> Outcome {
     let gas = Maxwellian::new(1.0)?;
     for (inelasticity, (friction, loss)) in INELASTICITIES.into_iter().zip(expected) {
         let largest =
-            friction_of_largest_loss(&Frictional::new(inelasticity, 0.0)?, &gas).unwrap_or(f64::NAN);
+            friction_of_largest_loss(&Frictional::from_inelasticity(inelasticity, inelasticity, 0.0)?, &gas)
+                .unwrap_or(f64::NAN);
         assert!((largest - friction).abs() < 5.1e-5, "{inelasticity}: {largest}, not {friction}");
         assert!((change(largest, inelasticity)? - loss).abs() < 5.1e-6);
         let root = (2.0 * (1.0 - inelasticity) / (1.0 - 2.0 * inelasticity)).sqrt() - 1.0;
@@ -58,16 +62,16 @@ fn loss_is_largest_near_a_friction_of_0_3() -> Outcome {
 #[test]
 fn maximum_moves_with_the_other_parameters() -> Outcome {
     let gas = Maxwellian::new(1.0)?;
-    let rule = |tangential| Frictional::from_inelasticity(0.05, tangential);
+    let rule = |tangential| Frictional::from_inelasticity(0.05, tangential, 0.0);
     let largest =
         |rule: Frictional, gas: &Maxwellian| friction_of_largest_loss(&rule, gas).unwrap_or(f64::NAN);
     for (ratio, expected) in [(0.5, 0.2145), (0.25, 0.186), (0.1, 0.166)] {
         let cold = gas.with_rotational_temperature(ratio)?;
-        assert!((largest(Frictional::new(0.0, 0.0)?, &cold) - expected).abs() < 6e-4);
+        assert!((largest(Frictional::from_inelasticity(0.0, 0.0, 0.0)?, &cold) - expected).abs() < 6e-4);
     }
     assert!((largest(rule(0.0)?, &gas) - 0.277).abs() < 6e-4);
     assert!((largest(rule(0.2)?, &gas) - 0.398).abs() < 6e-4);
-    let half = Frictional::new(0.025, 0.0)?.with_friction(1.0, 0.5)?;
+    let half = Frictional::from_inelasticity(0.025, 0.025, 1.0)?.with_dynamic_friction(0.5)?;
     assert!((largest(half, &gas) - 0.386).abs() < 6e-4);
     assert_eq!(friction_of_largest_loss(&rule(0.5)?, &gas), None);
     Ok(())
@@ -141,7 +145,7 @@ fn equation_6(q: f64, contact: &Contact, factor: f64) -> f64 {
 /// Sticking collisions of the rule lose what Eq. (6) says with the 1/3, and not what is printed.
 #[test]
 fn equation_6_needs_a_third() -> Outcome {
-    let rule = Frictional::new(0.1, 2.0)?;
+    let rule = Frictional::from_inelasticity(0.1, 0.1, 2.0)?;
     for slip in [-3.0, -0.4, 0.7, 2.5] {
         let contact = Contact::new(1.0, slip, 0.5, 0.5 / 3.0);
         let impulse = rule.impulse(&contact);
@@ -161,7 +165,7 @@ fn equation_6_needs_a_third() -> Outcome {
 #[test]
 fn energy_change_is_continuous_where_sticking_ends() -> Outcome {
     let (q, friction) = (0.1, 0.3);
-    let rule = Frictional::new(q, friction)?;
+    let rule = Frictional::from_inelasticity(q, q, friction)?;
     let threshold = 3.0 * friction;
     let at = |slip| {
         let contact = Contact::new(1.0, slip, 0.5, 0.5 / 3.0);
@@ -223,7 +227,7 @@ fn transition_lines_meet_the_axis_twice() -> Outcome {
 fn monte_carlo_at_the_coexistence_of_figure_4() -> Outcome {
     let estimate = MonteCarlo::new(4)
         .with_standard_error(2e-5)?
-        .mean_energy_change(&Frictional::new(0.0, 0.0605)?, &Maxwellian::new(1.0)?);
+        .mean_energy_change(&Frictional::from_inelasticity(0.0, 0.0, 0.0605)?, &Maxwellian::new(1.0)?);
     assert!((estimate.mean() + 0.16909).abs() < 4.0 * estimate.standard_error() + 5e-6, "{estimate:?}");
     Ok(())
 }

@@ -127,7 +127,7 @@ fn frictional_cooling(friction: f64, tolerance: f64) -> Outcome {
     let q = 0.05;
     let rates = frictional_rates(q, friction);
     let after = [4.0, 8.0, 12.0];
-    let cooled = cool(Frictional::new(q, friction)?, 1.0, &after, 80)?;
+    let cooled = cool(Frictional::from_inelasticity(q, q, friction)?, 1.0, &after, 80)?;
     for (tau, (_, [temperature, _])) in after.into_iter().zip(cooled) {
         let [expected, _] = integrate(&rates, [1.0, 1.0], tau);
         assert!(agrees(&format!("ln T, {friction}"), temperature.ln(), expected.ln(), tolerance));
@@ -148,7 +148,7 @@ fn rates_of_both_temperatures_add_up_to_the_closed_form() -> Outcome {
     for (q, friction, ratio) in [(0.05, 0.3, 1.0), (0.0, 0.06, 0.1), (0.1, 1.0, 2.0)] {
         let [translational, rotational] = frictional_rates(q, friction)([1.0, ratio]);
         let gas = Maxwellian::new(1.0)?.with_rotational_temperature(ratio)?;
-        let expected = mean_energy_change(&Frictional::new(q, friction)?, &gas);
+        let expected = mean_energy_change(&Frictional::from_inelasticity(q, q, friction)?, &gas);
         assert!((2.0 * translational + rotational - expected).abs() < 1e-12);
     }
     Ok(())

@@ -151,9 +151,9 @@ fn collisions_sample_the_maxwell_averages() -> Outcome {
     // Perfectly rough elastic disks share energy with their spins. The test watches what meets, and asks a
     // law of friction about it.
     let gas = Gas::of(1000, 0.05, 1.0, 4);
-    let mut simulation = gas.simulation(Rough::new(0.0, 0.0)?, 1.0)?;
+    let mut simulation = gas.simulation(Rough::from_inelasticity(0.0, 0.0)?, 1.0)?;
     run_for(&mut simulation, 10.0, &mut ())?;
-    let law = Frictional::new(0.05, 0.3)?;
+    let law = Frictional::from_inelasticity(0.05, 0.05, 0.3)?;
     let threshold = 3.0 * (1.0 - 0.05) * 0.3 / (1.0 - 0.05);
     let [mut normal, mut slip, mut sticking] = [RunningMean::default(); 3];
     let watch = |c: &Collision| {
@@ -182,7 +182,8 @@ fn rough_elastic_disks_share_energy_with_their_spins() -> Outcome {
     // spins at rest. The true spins start far from normal, which slows this by 1-2 %.
     let mut ratios = [RunningMean::default(); 4];
     for seed in 0..5 {
-        let mut simulation = Gas::of(1000, 0.02, 1.0, seed).simulation(Rough::new(0.0, 0.0)?, 0.0)?;
+        let mut simulation =
+            Gas::of(1000, 0.02, 1.0, seed).simulation(Rough::from_inelasticity(0.0, 0.0)?, 0.0)?;
         for ratio in &mut ratios[..3] {
             run_for(&mut simulation, 1.0, &mut ())?;
             let now = simulation.measure(&Temperatures);

@@ -12,7 +12,7 @@ use crate::{Outcome, measured};
 fn height(friction: f64, base: Thermal) -> Result<(f64, f64), Box<dyn std::error::Error>> {
     let container = Container::open(25.0)?.with_temperature(Wall::Floor, base)?;
     let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 500, 0.5)?, 1.0, 1)?;
-    let rule = ContactDuration::new(Frictional::new(0.025, friction)?, 1e-5)?;
+    let rule = ContactDuration::new(Frictional::from_inelasticity(0.025, 0.025, friction)?, 1e-5)?;
     let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.002).seed(1).build()?;
     let mut series = Series::new(CenterOfMass, SampleTimes::every(50.0)?.starting_at(10_000.0)?);
     simulation.run_until(40_000.0, &mut series)?;

@@ -34,7 +34,7 @@ fn time_can_be_reversed() -> Outcome {
     // after four in the literature's gas; the bounds leave a factor of 1000. The way is lost after 12 to 16.
     for (collisions, bound) in [(1.0, 1e-10), (4.0, 1e-6)] {
         let smooth = distance_after(Elastic, collisions)?;
-        let rough = distance_after(Rough::new(0.0, 0.0)?, collisions)?;
+        let rough = distance_after(Rough::from_inelasticity(0.0, 0.0)?, collisions)?;
         measured("smooth", smooth);
         measured("rough", rough);
         assert!(smooth < bound && rough < bound);

@@ -83,7 +83,9 @@ fn a_sheared_gas_drags_its_walls_as_it_is_sheared() -> Outcome {
     let [floor, lid] = [Wall::Floor, Wall::Lid].map(|wall| container.index(wall).unwrap());
     let disks = initial::random(&container, 120, 0.5, 15.0, 1)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
-    let mut run = Simulation::builder(Frictional::new(0.01, 0.3)?, container).disks(disks).build()?;
+    let mut run = Simulation::builder(Frictional::from_inelasticity(0.01, 0.01, 0.3)?, container)
+        .disks(disks)
+        .build()?;
     run.run_until(200.0, &mut ())?;
     let times = SampleTimes::every(5.0)?;
     let walls = WallStress::new(times).with_wall(floor, 30.0)?.with_wall(lid, 30.0)?;

@@ -31,15 +31,15 @@ fn a_superball_between_no_slip_walls_stays_up() -> Outcome {
     // Two touches are a rotation of velocity and spin by 141 degrees, which is an orbit of bounded height
     // (Cox & Feres 2016, Chumley et al. 2018). Nothing here is random. The bounds are those of an independent
     // study, for another start.
-    let (low, high) = range(Rough::new(0.0, 0.0)?, 20_000)?;
+    let (low, high) = range(Rough::from_inelasticity(0.0, 0.0)?, 20_000)?;
     measured("no slip, low", low);
     measured("no slip, high", high);
     assert!(low > -60.0 && high <= 0.0);
-    let (low, high) = range(Frictional::new(0.0, 0.3)?, 20_000)?;
+    let (low, high) = range(Frictional::from_inelasticity(0.0, 0.0, 0.3)?, 20_000)?;
     measured("friction 0.3, low", low);
     measured("friction 0.3, high", high);
     assert!(low > -90.0 && high <= 0.0);
-    let (low, _) = range(Frictional::new(0.0, 0.1)?, 200)?;
+    let (low, _) = range(Frictional::from_inelasticity(0.0, 0.0, 0.1)?, 200)?;
     assert!(low < -1000.0);
     Ok(())
 }

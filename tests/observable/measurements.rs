@@ -70,7 +70,7 @@ fn container() -> Result<Container, Box<dyn std::error::Error>> {
 }
 
 fn rule() -> Result<Rule, ParameterError> {
-    ContactDuration::new(Frictional::new(0.05, 0.2)?, 1e-3)
+    ContactDuration::new(Frictional::from_inelasticity(0.05, 0.05, 0.2)?, 1e-3)
 }
 
 fn simulation() -> Result<Simulation<Rule>, Box<dyn std::error::Error>> {

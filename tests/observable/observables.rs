@@ -79,7 +79,7 @@ fn samples_come_at_multiples_of_their_interval() -> Outcome {
 /// A gas with all regimes, and the records of these observers until `END`.
 fn watched(mut observers: impl Observer) -> Result<Vec<Collision>, Box<dyn std::error::Error>> {
     let container = Container::closed(8.0, 8.0)?.with_rule(Wall::Left, Elastic)?;
-    let rule = ContactDuration::new(Frictional::new(0.05, 0.2)?, 0.05)?;
+    let rule = ContactDuration::new(Frictional::from_inelasticity(0.05, 0.05, 0.2)?, 0.05)?;
     let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 25, 0.5)?, 1.0, 2)?;
     let mut collisions = Vec::new();
     let list = on_collision(|collision: &Collision| collisions.push(*collision));

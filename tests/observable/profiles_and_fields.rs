@@ -217,7 +217,7 @@ fn energy_change_by_height_sums_up_to_that_of_all_collisions() -> Result<(), Box
     use granular_edmd::prelude::*;
     use granular_edmd::statistics::BlockedMean;
 
-    let rule = Frictional::new(0.001, 0.02)?;
+    let rule = Frictional::from_inelasticity(0.001, 0.001, 0.02)?;
     let container =
         Container::closed(100.0, 100.0)?.with_rule(Wall::Floor, Elastic)?.with_rule(Wall::Lid, Elastic)?;
     let container = container.with_rule(Wall::Left, Elastic)?.with_rule(Wall::Right, Elastic)?;

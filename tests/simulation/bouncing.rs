@@ -148,11 +148,13 @@ fn disks_between_walls_collapse_with_an_error() {
         let speed = DVec2::new(0.3 * f64::from(k % 7) - 1.0, 0.0);
         Disk::new(DVec2::new(1.0 + 1.1 * f64::from(k), 1.0), 0.5).unwrap().with_velocity(speed).unwrap()
     });
-    let mut simulation =
-        Simulation::builder(Frictional::new(0.4, 0.1).unwrap(), Container::closed(24.0, 2.0).unwrap())
-            .disks(disks)
-            .build()
-            .unwrap();
+    let mut simulation = Simulation::builder(
+        Frictional::from_inelasticity(0.4, 0.4, 0.1).unwrap(),
+        Container::closed(24.0, 2.0).unwrap(),
+    )
+    .disks(disks)
+    .build()
+    .unwrap();
     let error = simulation.run_until(1e5, &mut ()).unwrap_err();
     assert!(matches!(error, RunError::Stalled { .. }), "{error}");
 }

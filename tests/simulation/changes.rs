@@ -78,7 +78,8 @@ fn gravity_switched_off_lets_disks_fly_straight() {
 
 #[test]
 fn a_rule_counts_from_when_it_is_set() {
-    let rule = |q, kappa| ContactDuration::new(Frictional::new(q, kappa).unwrap(), 1e-4).unwrap();
+    let rule =
+        |q, kappa| ContactDuration::new(Frictional::from_inelasticity(q, q, kappa).unwrap(), 1e-4).unwrap();
     let boundary = Container::closed(20.0, 20.0).unwrap();
     let disks = initial::lattice(&boundary, 100, 0.5).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 4).unwrap();

@@ -106,8 +106,10 @@ fn changes_of_the_cells_are_counted() {
     let dense = Container::closed(10.0, 10.0).unwrap();
     let disks = initial::lattice(&dense, 80, 0.5).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
-    let mut run =
-        Simulation::builder(Frictional::new(0.0, 0.1).unwrap(), dense).disks(disks).build().unwrap();
+    let mut run = Simulation::builder(Frictional::from_inelasticity(0.0, 0.0, 0.1).unwrap(), dense)
+        .disks(disks)
+        .build()
+        .unwrap();
     run.run_until(300.0, &mut ()).unwrap();
     assert!(run.counters().cell_resizes >= 1, "{:?}", run.counters());
     assert_eq!(run.counters().horizons, 0, "{:?}", run.counters());

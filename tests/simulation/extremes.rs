@@ -34,8 +34,11 @@ impl Random {
     fn rule(&mut self) -> Rule {
         match self.0.random_range(0..3) {
             0 => std::sync::Arc::new(Elastic),
-            1 => std::sync::Arc::new(Smooth::new(self.0.random_range(0.0..=0.5)).unwrap()),
-            _ => std::sync::Arc::new(Frictional::new(self.0.random_range(0.0..0.5), 0.3).unwrap()),
+            1 => std::sync::Arc::new(Smooth::from_inelasticity(self.0.random_range(0.0..=0.5)).unwrap()),
+            _ => {
+                let inelasticity = self.0.random_range(0.0..0.5);
+                std::sync::Arc::new(Frictional::from_inelasticity(inelasticity, inelasticity, 0.3).unwrap())
+            }
         }
     }
 

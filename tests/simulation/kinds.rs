@@ -59,7 +59,7 @@ fn every_contact_of_a_run_knows_its_partners() -> Outcome {
 /// A table in which all rules are the same gives the bits of that rule.
 #[test]
 fn kinds_alone_change_nothing() -> Outcome {
-    let rule = Frictional::new(0.1, 0.3)?;
+    let rule = Frictional::from_inelasticity(0.1, 0.1, 0.3)?;
     let table = RulesByKind::new(rule).with(SMALL, LARGE, rule);
     let mut with = Simulation::builder(table, container()?).disks(mixture(0.4)?).build()?;
     let blank = mixture(0.4)?.into_iter().map(|disk| disk.with_kind(Kind::DEFAULT));
@@ -83,8 +83,9 @@ fn observers_by_kind_share_out_the_whole() -> Outcome {
     let between = |first, second| BetweenKinds::new(first, second, EnergyChange::default());
     let mut pairs = vec![between(SMALL, SMALL), between(LARGE, SMALL), between(LARGE, LARGE)];
     let mut floor = between(FELT, LARGE);
-    let mut run =
-        Simulation::builder(Frictional::new(0.05, 0.2)?, container()?).disks(mixture(0.7)?).build()?;
+    let mut run = Simulation::builder(Frictional::from_inelasticity(0.05, 0.05, 0.2)?, container()?)
+        .disks(mixture(0.7)?)
+        .build()?;
     run.run_until(20.0, &mut (&mut all, &mut small, &mut large, &mut pairs, &mut floor))?;
 
     for ((all, small), large) in all.0.values().iter().zip(small.0.values()).zip(large.0.values()) {
@@ -122,8 +123,11 @@ fn a_rule_may_decide_by_radius() -> Outcome {
 #[test]
 fn a_resumed_run_keeps_its_kinds() -> Outcome {
     for large in [0.7, 0.4] {
-        let table =
-            RulesByKind::new(Frictional::new(0.02, 0.3)?).with(LARGE, FELT, Frictional::new(0.0, 0.0)?);
+        let table = RulesByKind::new(Frictional::from_inelasticity(0.02, 0.02, 0.3)?).with(
+            LARGE,
+            FELT,
+            Frictional::from_inelasticity(0.0, 0.0, 0.0)?,
+        );
         let mut first =
             Simulation::builder(table.clone(), container()?).disks(mixture(large)?).gravity(0.1).build()?;
         first.run_until(5.0, &mut ())?;

@@ -117,7 +117,7 @@ fn disks_stay_in_the_box_at_all_times_that_are_allowed() {
             let walls = walls.unwrap();
             let disks = initial::lattice(&walls, 12, 0.5).unwrap();
             let disks = initial::with_maxwellian_velocities(disks, 1.0, 7).unwrap();
-            let rule = Smooth::new(0.05).unwrap();
+            let rule = Smooth::from_inelasticity(0.05).unwrap();
             let builder =
                 Simulation::builder(rule, walls.clone()).disks(disks).gravity(gravity).start_time(start);
             let mut run = match builder.build() {

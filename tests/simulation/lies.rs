@@ -587,10 +587,10 @@ fn no_rule_is_given_a_closing_speed_below_zero() {
     use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
     let rules = || {
         [
-            Frictional::new(0.0, 0.2),
-            Frictional::new(0.1, 0.0),
-            Frictional::new(0.3, 0.5),
-            Frictional::new(0.5, 0.1),
+            Frictional::from_inelasticity(0.0, 0.0, 0.2),
+            Frictional::from_inelasticity(0.1, 0.1, 0.0),
+            Frictional::from_inelasticity(0.3, 0.3, 0.5),
+            Frictional::from_inelasticity(0.5, 0.5, 0.1),
         ]
         .map(Result::unwrap)
     };

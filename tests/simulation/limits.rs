@@ -118,7 +118,10 @@ fn the_first_limit_ends_the_run() {
 fn samples_without_events_end_at_a_limit() {
     let disk = Disk::new(DVec2::splat(2.0), 0.5).unwrap();
     let container = Container::open(4.0).unwrap();
-    let mut run = Simulation::builder(Smooth::new(0.1).unwrap(), container).disks([disk]).build().unwrap();
+    let mut run = Simulation::builder(Smooth::from_inelasticity(0.1).unwrap(), container)
+        .disks([disk])
+        .build()
+        .unwrap();
     let times = granular_edmd::observable::SampleTimes::every(1e-6).unwrap();
     let mut samples = granular_edmd::observable::on_sample(times, |_: &_| ());
     let limits = Limits::until(1e6).with_wall_clock(Duration::from_millis(5));

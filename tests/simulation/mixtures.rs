@@ -112,7 +112,7 @@ proptest! {
         seed in any::<u64>(),
     ) {
         let (container, disks) = mixture(&radii(120, ratio, two_sizes, seed), sides, 0.3, seed);
-        let rule = Frictional::new(0.02, 0.1).unwrap();
+        let rule = Frictional::from_inelasticity(0.02, 0.02, 0.1).unwrap();
         let builder = || Simulation::builder(rule, container.clone()).disks(disks.clone());
         let mut tree = builder().scheduler(TournamentTree::new()).build().unwrap();
         let mut queue = builder().scheduler(BucketQueue::new()).build().unwrap();
@@ -156,7 +156,7 @@ fn a_resumed_mixture_has_the_same_bits() {
     for (seed, ratio) in [(1, 2.0), (2, 10.0), (3, 50.0), (4, 1000.0)] {
         for sides in 0..3 {
             let (container, disks) = mixture(&radii(120, ratio, seed % 2 == 0, seed), sides, 0.2, seed);
-            let rule = Frictional::new(0.02, 0.1).unwrap();
+            let rule = Frictional::from_inelasticity(0.02, 0.02, 0.1).unwrap();
             let builder = Simulation::builder(rule, container.clone()).disks(disks).gravity(0.02);
             let mut run = builder.build().unwrap();
             let step = 20.0;

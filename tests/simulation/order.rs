@@ -30,7 +30,7 @@ type Told = (u64, [usize; 2], u64);
 
 /// Returns every collision by the first names of the disks, and the disks after it in their first order.
 fn history(disks: &[Disk], order: &[usize], end: f64) -> (Vec<Told>, Vec<Disk>) {
-    let rule = ContactDuration::new(Frictional::new(0.05, 0.2).unwrap(), 1e-5).unwrap();
+    let rule = ContactDuration::new(Frictional::from_inelasticity(0.05, 0.05, 0.2).unwrap(), 1e-5).unwrap();
     let listed = order.iter().map(|&disk| disks[disk]);
     let builder = Simulation::builder(rule, container()).disks(listed).gravity(0.1);
     let mut run = builder.build().unwrap();

@@ -43,7 +43,9 @@ fn momentum_is_kept_and_the_middle_moves_along() -> Outcome {
     let drift = DVec2::new(0.4, -0.7);
     let shifted = |disk: Disk| disk.with_velocity(disk.velocity() + drift);
     let disks = gas(&container, 80, 3)?.into_iter().map(shifted).collect::<Result<Vec<_>, _>>()?;
-    let mut run = Simulation::builder(Frictional::new(0.02, 0.3)?, container).disks(disks).build()?;
+    let mut run = Simulation::builder(Frictional::from_inelasticity(0.02, 0.02, 0.3)?, container)
+        .disks(disks)
+        .build()?;
     let middle = |run: &Simulation<Frictional>| {
         let domain = run.boundary().domain();
         run.disks().iter().map(|disk| domain.unwrapped(disk)).sum::<DVec2>() / 80.0
@@ -91,8 +93,10 @@ fn a_pipe_has_walls_on_its_sides_only() -> Outcome {
     assert_eq!((pipe.wall_count(), pipe.index(Wall::Left), pipe.index(Wall::Floor)), (2, Some(0), None));
     assert_eq!(laws::check(&mut pipe.clone(), 0.5, 1.0, 7), Ok(()));
     let disks = gas(&pipe, 60, 5)?;
-    let mut run =
-        Simulation::builder(Frictional::new(0.01, 0.5)?, pipe).disks(disks).gravity(0.05).build()?;
+    let mut run = Simulation::builder(Frictional::from_inelasticity(0.01, 0.01, 0.5)?, pipe)
+        .disks(disks)
+        .gravity(0.05)
+        .build()?;
     run.run_until(400.0, &mut ())?;
     let flow =
         |run: &Simulation<Frictional>| run.disks().iter().map(|disk| disk.velocity().y).sum::<f64>() / 60.0;

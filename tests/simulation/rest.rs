@@ -87,9 +87,9 @@ fn a_heap_of_fifty() {
     let walls = Container::open(20.0).unwrap();
     let disks = initial::lattice(&walls, 50, 0.5).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
-    let found = stall(Frictional::new(0.1, 0.3).unwrap(), walls.clone(), &disks);
+    let found = stall(Frictional::from_inelasticity(0.1, 0.1, 0.3).unwrap(), walls.clone(), &disks);
     assert!(found.partner.is_some() && found.remedy == Remedy::ElasticWhenSlow, "{}", found.text);
-    goes_on(Frictional::new(0.1, 0.3).unwrap(), walls, &disks);
+    goes_on(Frictional::from_inelasticity(0.1, 0.1, 0.3).unwrap(), walls, &disks);
 }
 
 #[test]
@@ -108,10 +108,10 @@ fn a_disk_in_a_notch_between_two_obstacles() {
     let pegs = [disk(1.4, 0.6), disk(2.7, 0.5)];
     let walls = Obstacles::new(Container::open(4.0).unwrap(), pegs);
     let balls = [disk(2.0, 3.0)];
-    let found = stall(Frictional::new(0.2, 0.4).unwrap(), walls.clone(), &balls);
+    let found = stall(Frictional::from_inelasticity(0.2, 0.2, 0.4).unwrap(), walls.clone(), &balls);
     assert!(matches!(found.partner, Some(Partner::Wall(1..))), "{}", found.text);
     assert!(found.text.contains("obstacle"), "{}", found.text);
-    goes_on(Frictional::new(0.2, 0.4).unwrap(), walls, &balls);
+    goes_on(Frictional::from_inelasticity(0.2, 0.2, 0.4).unwrap(), walls, &balls);
 }
 
 #[test]
@@ -120,9 +120,9 @@ fn a_disk_on_a_floor_that_accelerates_upward() {
     for floor in floors {
         let walls = Container::open(4.0).unwrap().with_motion(Wall::Floor, floor).unwrap();
         let spinning = disk(2.0, 2.5).with_angular_velocity(3.0).unwrap();
-        let found = stall(Frictional::new(0.4, 0.5).unwrap(), walls.clone(), &[spinning]);
+        let found = stall(Frictional::from_inelasticity(0.4, 0.4, 0.5).unwrap(), walls.clone(), &[spinning]);
         assert_eq!((found.partner, found.remedy), (Some(FLOOR), Remedy::ElasticWhenSlow));
-        goes_on(Frictional::new(0.4, 0.5).unwrap(), walls, &[spinning]);
+        goes_on(Frictional::from_inelasticity(0.4, 0.4, 0.5).unwrap(), walls, &[spinning]);
     }
 }
 
@@ -130,7 +130,7 @@ fn a_disk_on_a_floor_that_accelerates_upward() {
 fn a_disk_under_a_lid_that_comes_down() {
     let lid = Triangular::new(0.5, 1.0).unwrap();
     let walls = Container::closed(4.0, 2.0).unwrap().with_motion(Wall::Lid, lid).unwrap();
-    let found = stall(Frictional::new(0.4, 0.5).unwrap(), walls, &[disk(2.0, 0.9)]);
+    let found = stall(Frictional::from_inelasticity(0.4, 0.4, 0.5).unwrap(), walls, &[disk(2.0, 0.9)]);
     assert_eq!(found.disk, 0);
 }
 
@@ -198,7 +198,7 @@ fn under_a_least_rebound_a_column_has_at_most_the_collisions_of_its_weight() {
 /// Bizon's restitution delays the rest of a ball and does not prevent it, as its speeds say.
 #[test]
 fn a_ball_of_speed_dependent_restitution_bounces_as_iterated_and_stalls_in_the_end() {
-    let rule = SpeedDependent::new(0.7, 1.0).unwrap();
+    let rule = SpeedDependent::from_restitution(0.7, 1.0).unwrap();
     let mut run = Simulation::builder(rule, Container::open(4.0).unwrap())
         .disks([disk(2.0, 1.5)])
         .gravity(1.0)
@@ -223,7 +223,7 @@ fn a_heap_that_only_has_slow_collisions_keeps_its_energy() {
     let walls = Container::closed(8.0, 20.0).unwrap().with_periodic_sides();
     let disks = initial::lattice(&walls, 30, 0.5).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1e-4, 2).unwrap();
-    let rule = ElasticBelow::new(Frictional::new(0.1, 0.3).unwrap(), 100.0).unwrap();
+    let rule = ElasticBelow::new(Frictional::from_inelasticity(0.1, 0.1, 0.3).unwrap(), 100.0).unwrap();
     let mut run = Simulation::builder(rule, walls).disks(disks).gravity(1.0).build().unwrap();
     let before = run.measure(&Energies).total();
     run.run_until(50.0, &mut ()).unwrap();
@@ -249,7 +249,7 @@ fn emptied(slope: f64) -> (usize, f64, f64) {
         .and_then(|vessel| vessel.with("gate", Part::block(gate)?))
         .unwrap();
     let grains = initial::random(&vessel, 1000, 0.5, 80.0, 1).unwrap();
-    let rule = LeastRebound::new(Frictional::new(0.1, 0.4).unwrap(), 0.1).unwrap();
+    let rule = LeastRebound::new(Frictional::from_inelasticity(0.1, 0.1, 0.4).unwrap(), 0.1).unwrap();
     let builder = Simulation::builder(rule, vessel.clone()).disks(grains);
     let mut run = builder.gravity(1.0).build().unwrap();
     let started = std::time::Instant::now();

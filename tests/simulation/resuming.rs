@@ -16,7 +16,7 @@ fn walls() -> Container {
 }
 
 fn rule() -> Frictional {
-    Frictional::new(0.05, 0.2).unwrap()
+    Frictional::from_inelasticity(0.05, 0.05, 0.2).unwrap()
 }
 
 fn run<R: CollisionRule>(rule: R) -> Simulation<R> {
@@ -95,7 +95,7 @@ fn damage_within_other_formats_is_told() {
 #[test]
 fn another_rule_or_boundary_is_taken_on_purpose_only() {
     let state = run(rule()).checkpoint();
-    let other = || Frictional::new(0.05, 0.21).unwrap();
+    let other = || Frictional::from_inelasticity(0.05, 0.05, 0.21).unwrap();
     let error = Simulation::resume(&state, other(), walls()).build().map(|_| ()).unwrap_err();
     assert!(matches!(error, CheckpointError::AnotherRule), "{error}");
     let error =

@@ -87,7 +87,11 @@ impl Setup {
     }
 
     pub(crate) fn rule(&self) -> Rule {
-        ContactDuration::new(Frictional::new(self.inelasticity, self.friction).unwrap(), 1e-5).unwrap()
+        ContactDuration::new(
+            Frictional::from_inelasticity(self.inelasticity, self.inelasticity, self.friction).unwrap(),
+            1e-5,
+        )
+        .unwrap()
     }
 
     pub(crate) fn builder(&self) -> SimulationBuilder<Rule, Container> {
@@ -148,6 +152,6 @@ pub(crate) fn shaken_and_heated() -> SimulationBuilder<Frictional, Container> {
     let walls = walls.unwrap().with_temperature(Wall::Lid, Thermal::new(0.7).unwrap()).unwrap();
     let disks = initial::lattice(&walls, 25, 0.5).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 3).unwrap();
-    let rule = Frictional::new(0.02, 0.2).unwrap();
+    let rule = Frictional::from_inelasticity(0.02, 0.02, 0.2).unwrap();
     Simulation::builder(rule, walls).disks(disks).gravity(0.05).seed(5)
 }

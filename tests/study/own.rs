@@ -237,7 +237,7 @@ impl Experiment for Fall {
 
     fn rule(&self) -> Result<Smooth, ExperimentError> {
         let added = if self.count == 3 { ADDED.load(Ordering::Relaxed) } else { 0 };
-        Ok(Smooth::new(self.loss + 0.01 * f64::from(added))?)
+        Ok(Smooth::from_inelasticity(self.loss + 0.01 * f64::from(added))?)
     }
 
     fn boundary(&self) -> Result<Container, ExperimentError> {

@@ -52,7 +52,7 @@ fn a_value_is_the_engine_s_run() -> Result<(), AnyError> {
         granular_edmd::wall::BiParabolic::new(0.1, 10.0)?,
     )?;
     let rule = granular_edmd::collision::ContactDuration::new(
-        granular_edmd::collision::Frictional::new(0.05, 0.0)?,
+        granular_edmd::collision::Frictional::from_inelasticity(0.05, 0.05, 0.0)?,
         1e-4,
     )?;
     let scheduler = granular_edmd::scheduler::TournamentTree::default();

@@ -24,7 +24,7 @@ pub(crate) fn mixture() -> Simulation<Frictional> {
         let small = Disk::new(place, 0.3).unwrap().with_velocity(disk.velocity()).unwrap();
         small.with_mass(0.1).unwrap().with_inertia_factor(1.0).unwrap().with_kind(Kind::new(7))
     });
-    let rule = Frictional::new(0.02, 0.2).unwrap();
+    let rule = Frictional::from_inelasticity(0.02, 0.02, 0.2).unwrap();
     Simulation::builder(rule, container).disks(disks).gravity(0.3).build().unwrap()
 }
 

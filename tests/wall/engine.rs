@@ -45,7 +45,7 @@ impl WallMotion for Late {
 fn outcome(motion: Late) -> (Result<RunEnd, RunError>, f64) {
     let container = Container::closed(8.0, 9.0).unwrap().with_motion(Wall::Floor, motion).unwrap();
     let disks = [1.0, 3.0, 6.0].map(|x| Disk::new(DVec2::new(x, 2.0), 0.5).unwrap());
-    let rule = Smooth::new(0.0).unwrap();
+    let rule = Smooth::from_inelasticity(0.0).unwrap();
     let mut run = Simulation::builder(rule, container).disks(disks).gravity(1.0).build().unwrap();
     let outcome = run.run_until(40.0, &mut ());
     let lowest = run.disks().iter().map(|disk| disk.position().y).fold(f64::INFINITY, f64::min);

@@ -98,7 +98,7 @@ fn settled(state: &State, oscillations: u32) -> Outcome<Run> {
     let base = Sinusoidal::new(AMPLITUDE, ANGULAR_FREQUENCY)?;
     let container = Container::closed(WIDTH, HEIGHT)?.with_motion(Wall::Floor, base)?;
     let disks = initial::with_maxwellian_velocities(initial::lattice(&container, DISKS, 0.5)?, 1.0, 1)?;
-    let rule = Frictional::new(state.inelasticity, state.friction)?;
+    let rule = Frictional::from_inelasticity(state.inelasticity, state.inelasticity, state.friction)?;
     let rule = ContactDuration::new(rule, CONTACT_DURATION)?;
     let mut run = Simulation::builder(rule, container).disks(disks).gravity(state.gravity).build()?;
     run.run_until((f64::from(oscillations) + 0.75) * OSCILLATION, &mut ())?;

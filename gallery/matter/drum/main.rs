@@ -121,8 +121,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Turns a drum, and measures it after a while.
 fn turned(arguments: &Arguments, rate: f64) -> Result<Turned, Box<dyn Error>> {
-    let rule =
-        Frictional::from_inelasticity(0.1, 0.1)?.with_friction(arguments.friction, arguments.friction)?;
+    let rule = Frictional::from_inelasticity(0.1, 0.1, arguments.friction)?;
     // Slow contacts hold the surfaces of the grains together. Without that, they would slide.
     let rule =
         ElasticBelow::new(rule, arguments.speed)?.with_tangential_response(TangentialResponse::Reversing);

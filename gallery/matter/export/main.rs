@@ -88,7 +88,7 @@ fn start(arguments: &Arguments) -> Result<Run, Box<dyn Error>> {
             .with_mass(0.49)?
             .with_kind(SMALL);
     }
-    let rule = ContactDuration::new(Frictional::new(0.01, 0.1)?, 1e-4)?;
+    let rule = ContactDuration::new(Frictional::from_inelasticity(0.01, 0.01, 0.1)?, 1e-4)?;
     Ok(Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?)
 }
 

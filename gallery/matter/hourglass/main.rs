@@ -88,7 +88,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn friction() -> Result<Frictional, ParameterError> {
-    Frictional::new(0.1, 0.3)
+    Frictional::from_inelasticity(0.1, 0.1, 0.3)
 }
 
 /// The shape of an hourglass about the origin: two funnels at 60°, below a shoulder each.
@@ -264,7 +264,8 @@ fn compare(arguments: &Arguments, glass: &Glass) -> Result<(), Box<dyn Error>> {
 
 fn remedies() -> Result<Vec<(String, BoxedRule)>, Box<dyn Error>> {
     let rule = friction()?;
-    let bizon = SpeedDependent::new(0.8, 1.0)?.with_friction(Friction::new(0.1, 0.3)?);
+    let bizon =
+        SpeedDependent::from_restitution(0.8, 1.0)?.with_friction(Friction::from_inelasticity(0.1, 0.3)?);
     let mut remedies: Vec<(String, BoxedRule)> =
         vec![("no remedy".into(), Box::new(rule)), ("SpeedDependent".into(), Box::new(bizon))];
     for response in [Frictionless, Reversing, Unchanged] {

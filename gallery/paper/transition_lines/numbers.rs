@@ -39,8 +39,7 @@ impl Number {
     /// Returns the number at a crossing; NaN for what is measured in layers, if it was not measured.
     pub(crate) fn at(self, crossing: &Crossing) -> Result<f64, ParameterError> {
         let q = crossing.inelasticity;
-        let rule =
-            Frictional::from_inelasticity(q, q)?.with_friction(crossing.friction, crossing.friction)?;
+        let rule = Frictional::from_inelasticity(q, q, crossing.friction)?;
         let gas = Maxwellian::new(1.0)?;
         let at_ratio = |ratio| Ok(mean_energy_change(&rule, &gas.with_rotational_temperature(ratio)?));
         match (self, crossing.local) {

@@ -83,10 +83,11 @@ fn rule(arguments: &Arguments) -> Result<BoxedRule, ParameterError> {
     let Arguments { inelasticity, friction, wall_inelasticity, wall_friction, .. } = *arguments;
     let tangential = arguments.tangential_inelasticity.unwrap_or(inelasticity);
     let dynamic = arguments.dynamic_friction.unwrap_or(friction);
-    let disks = Frictional::from_inelasticity(inelasticity, tangential)?.with_friction(friction, dynamic)?;
+    let disks =
+        Frictional::from_inelasticity(inelasticity, tangential, friction)?.with_dynamic_friction(dynamic)?;
     let [normal, along] = [inelasticity, tangential].map(|disks| wall_inelasticity.unwrap_or(disks));
     let [at_rest, sliding] = [friction, dynamic].map(|disks| wall_friction.unwrap_or(disks));
-    let walls = Frictional::from_inelasticity(normal, along)?.with_friction(at_rest, sliding)?;
+    let walls = Frictional::from_inelasticity(normal, along, at_rest)?.with_dynamic_friction(sliding)?;
     let rules = RulesByKind::new(disks).with(Kind::DEFAULT, Kind::WALL, walls);
     let duration = arguments.contact_duration();
     Ok(if duration > 0.0 { Box::new(ContactDuration::new(rules, duration)?) } else { Box::new(rules) })

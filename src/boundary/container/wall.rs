@@ -48,7 +48,7 @@ impl fmt::Display for Wall {
 /// assert_eq!(error.to_string(), "the container has no wall \"lid\"");
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum WallError {
     /// The container has no such wall, because it is open above or periodic there.

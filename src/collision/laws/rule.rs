@@ -14,8 +14,8 @@ use crate::collision::{CollisionRule, Contact, Impulse};
 /// use granular_edmd::collision::laws::{Promises, check};
 /// use granular_edmd::collision::{Rough, Smooth};
 ///
-/// check(&Smooth::new(0.2)?, &Promises::new().with_friction(0.0))?;
-/// check(&Rough::new(0.2, 0.1)?, &Promises::new().with_opposed_slip())?;
+/// check(&Smooth::from_inelasticity(0.2)?, &Promises::new().with_friction(0.0))?;
+/// check(&Rough::from_inelasticity(0.2, 0.1)?, &Promises::new().with_opposed_slip())?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]

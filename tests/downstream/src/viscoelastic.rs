@@ -12,7 +12,7 @@ pub struct Viscoelastic {
 
 impl Viscoelastic {
     pub fn new(loss: f64, friction: f64) -> Result<Self, ParameterError> {
-        Ok(Self { loss: quantity::non_negative("loss", loss)?, friction: Friction::new(0.5, friction)? })
+        Ok(Self { loss: quantity::non_negative("loss", loss)?, friction: Friction::from_inelasticity(0.5, friction)? })
     }
 }
 
@@ -23,6 +23,6 @@ impl CollisionRule for Viscoelastic {
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
-        Some(Fingerprint::of("Viscoelastic").number(self.loss).number(self.friction.static_coefficient()))
+        Some(Fingerprint::of("Viscoelastic").number(self.loss).number(self.friction.static_friction()))
     }
 }

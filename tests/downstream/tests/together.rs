@@ -94,7 +94,7 @@ fn observers_keep_their_contract() {
 fn rule_and_boundary_can_be_changed_underway() {
     let mut simulation = boxed();
     simulation.run_until(5.0, &mut ()).unwrap();
-    simulation.set_rule(Box::new(Smooth::new(0.0).unwrap()));
+    simulation.set_rule(Box::new(Smooth::from_inelasticity(0.0).unwrap()));
     simulation.set_boundary(Box::new(Drum::new(9.0).unwrap())).unwrap();
     let before = simulation.measure(&Energies).total();
     simulation.run_until(200.0, &mut ()).unwrap();

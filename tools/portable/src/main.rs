@@ -41,7 +41,7 @@ fn shaken_box() -> Outcome<String> {
             .with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?
             .with_motion(Wall::Left, Sinusoidal::new(0.2, 7.0)?)?
             .with_motion(Wall::Lid, Triangular::new(0.3, 3.0)?)?
-            .with_rule(Wall::Right, Rough::new(0.05, 0.4)?)?)
+            .with_rule(Wall::Right, Rough::from_inelasticity(0.05, 0.4)?)?)
     };
     run(&container, 0.05, 0.0, 60.0)
 }
@@ -106,7 +106,7 @@ fn run(
 }
 
 fn rule(inelasticity: f64, friction: f64) -> Outcome<Rule> {
-    Ok(ContactDuration::new(Frictional::new(inelasticity, friction)?, 1e-3)?)
+    Ok(ContactDuration::new(Frictional::from_inelasticity(inelasticity, inelasticity, friction)?, 1e-3)?)
 }
 
 /// Returns disks of three sizes, with various masses and inertias, on a lattice.
