@@ -55,7 +55,7 @@ proptest! {
 fn the_names_in_a_file_are_stable() {
     let rule = ContactDuration::new(Frictional::from_inelasticity(0.25, 0.25, 0.5).unwrap(), 0.125).unwrap();
     let text = concat!(
-        r#"{"rule":{"normal_inelasticity":0.25,"tangential_inelasticity":0.25,"friction":"#,
+        r#"{"rule":{"normal_inelasticity":0.25,"friction":"#,
         r#"{"tangential_inelasticity":0.25,"static_friction":0.5,"dynamic_friction":0.5}},"duration":0.125,"#,
         r#""tangential_response":"Frictionless"}"#
     );

@@ -34,7 +34,10 @@ impl Setting {
     pub(crate) fn rule(&self) -> Result<Rule, ParameterError> {
         self.base()?;
         let speed = self.amplitude * self.angular_frequency;
-        ContactDuration::new(Frictional::from_inelasticity(self.inelasticity, self.inelasticity, self.friction)?, 1e-4 / speed)
+        ContactDuration::new(
+            Frictional::from_inelasticity(self.inelasticity, self.inelasticity, self.friction)?,
+            1e-4 / speed,
+        )
     }
 
     /// Returns the temperature of the first velocities.

@@ -12,7 +12,10 @@ pub struct Viscoelastic {
 
 impl Viscoelastic {
     pub fn new(loss: f64, friction: f64) -> Result<Self, ParameterError> {
-        Ok(Self { loss: quantity::non_negative("loss", loss)?, friction: Friction::from_inelasticity(0.5, friction)? })
+        Ok(Self {
+            loss: quantity::non_negative("loss", loss)?,
+            friction: Friction::from_inelasticity(0.5, friction)?,
+        })
     }
 }
 
