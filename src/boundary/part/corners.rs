@@ -21,6 +21,9 @@ struct Joint {
 impl Joint {
     /// Tells whether a disk can touch the corner.
     fn is_exposed(&self) -> bool {
+        // Disks are on the left of a brick, so a turn to the left is one toward them. A free end, or a place where
+        // more than two bricks meet, counts as exposed: a point too many costs a little time, but one too few
+        // would let disks through.
         match (self.coming.as_slice(), self.going.as_slice()) {
             ([coming], [going]) if !self.is_thin => coming.perp_dot(*going) <= CLEARLY,
             _ => true,
@@ -37,6 +40,8 @@ pub(super) fn corners(bricks: &[Brick]) -> Vec<Brick> {
         let [start, end] = brick.ends();
         for (end, is_start) in [(start, true), (end, false)] {
             let Some((place, direction)) = end else { continue };
+            // Ends meet if their coordinates are equal. Ends that are only close get a point each, and these
+            // points close the gap.
             // The sum turns a negative zero into a positive one: the two are equal, but their bits differ.
             let key = [(place.x + 0.0).to_bits(), (place.y + 0.0).to_bits()];
             if !joints.contains_key(&key) {

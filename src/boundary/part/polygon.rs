@@ -29,6 +29,7 @@ pub(super) fn sides(mut points: Vec<DVec2>, inside: bool) -> Result<Vec<Brick>, 
         return Err(VesselError::Crossing { first, second });
     }
     // Each side keeps its number, so that the names of walls follow the list of points.
+    // A brick has the disks on its left, so with the disks inside, the sides lead counterclockwise.
     let is_turned = (area > 0.0) != inside;
     let side = |(from, to)| if is_turned { Brick::segment(to, from) } else { Brick::segment(from, to) };
     pairs(&points).map(side).collect()
@@ -41,6 +42,7 @@ fn pairs(points: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> {
 
 /// Returns twice the area, positive if the points go around counterclockwise.
 fn doubled_area(points: &[DVec2]) -> f64 {
+    // Relative to one of the points, so that a polygon far from the origin loses no digits.
     let first = points[0];
     pairs(points).map(|(from, to)| (from - first).perp_dot(to - first)).sum()
 }
@@ -69,6 +71,8 @@ fn crossing(points: &[DVec2]) -> Option<(usize, usize)> {
 
 /// Tells whether two sides have a point in common that they do not share as neighbors.
 fn cross(one: (DVec2, DVec2), other: (DVec2, DVec2), are_neighbors: bool) -> bool {
+    // Two sides cross if each has its ends on both sides of the other. Signs decide, since the place of the
+    // crossing would need a division, and its rounding.
     let side = |(from, to): (DVec2, DVec2), place: DVec2| (to - from).perp_dot(place - from);
     let within = |(from, to): (DVec2, DVec2), place: DVec2| {
         let (low, high) = (from.min(to), from.max(to));
@@ -86,6 +90,7 @@ fn cross(one: (DVec2, DVec2), other: (DVec2, DVec2), are_neighbors: bool) -> boo
     }
     let (a, b) = (side(one, other.0), side(one, other.1));
     let (c, d) = (side(other, one.0), side(other, one.1));
+    // An end that lies on the other side makes a product 0, and the signs do not show that the two touch.
     let lies_on = (a == 0.0 && within(one, other.0))
         || (b == 0.0 && within(one, other.1))
         || (c == 0.0 && within(other, one.0))

@@ -108,6 +108,7 @@ impl Vessel {
     fn cells_to_look_at(&self, placed: &Placed) -> Vec<usize> {
         let (low, high) = placed.part.bounds();
         let is_bounded = low.is_finite() && high.is_finite() && self.domain().periods() == DVec2::ZERO;
+        // Far enough outside to stay there after rounding, for a part of any size.
         let outside = low - (high - low) - DVec2::ONE;
         let is_free_outside = is_bounded && placed.part.signed_distance(outside) > 0.0;
         if is_free_outside { self.index.cells(low, high).collect() } else { (0..self.index.len()).collect() }
