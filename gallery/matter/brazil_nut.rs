@@ -95,7 +95,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             return Err(Failure::usage(message));
         }
         let nut = shaken(arguments, diameter, density).map_err(Failure::run)?;
-        println!("{nut}");
+        gallery::say!("{nut}");
         nuts.push(nut);
     }
     write(arguments, &nuts).map_err(Failure::run)

@@ -74,7 +74,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.results.make_folder()?;
     let start = Instant::now();
     let (fine, coarse) = measured(arguments).map_err(Failure::run)?;
-    println!("{} samples in {:.1} s", fine.samples(), start.elapsed().as_secs_f64());
+    gallery::say!("{} samples in {:.1} s", fine.samples(), start.elapsed().as_secs_f64());
     write(arguments, &fine, &coarse).map_err(Failure::run)
 }
 

@@ -24,7 +24,7 @@ use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
 use gallery::command_line::{self, Failure, non_negative, positive, whole};
 use gallery::progress::Progress;
-use gallery::results::Results;
+use gallery::results::{Results, named};
 
 /// A movie of disks in a vibrated box.
 #[derive(Parser)]
@@ -76,7 +76,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let frames = frames(arguments).map_err(Failure::run)?;
     write(&path, &frames).map_err(Failure::run)?;
     let size = path.metadata().map_err(Failure::run)?.len();
-    println!("wrote {}: {} frames, {} kB", path.display(), frames.len(), size / 1000);
+    gallery::say!("wrote {}: {} frames, {} kB", path.display(), frames.len(), size / 1000);
     let numbers =
         |frame: &Frame| serde_json::json!({ "time": frame.time, "heights_of_layers": frame.heights });
     arguments.results.write_json(&frames.iter().map(numbers).collect()).map_err(Failure::run)
@@ -197,7 +197,7 @@ fn palette() -> Vec<u8> {
 /// Writes the movie, at twelve frames per second, without an end.
 fn write(path: &Path, frames: &[Frame]) -> Result<(), Box<dyn Error>> {
     let first = &frames.first().ok_or("there are no frames")?.canvas;
-    let file = BufWriter::new(File::create(path)?);
+    let file = BufWriter::new(named(path, File::create(path))?);
     let mut encoder = Encoder::new(file, first.width as u32, first.height as u32);
     encoder.set_color(ColorType::Indexed);
     encoder.set_depth(BitDepth::Eight);

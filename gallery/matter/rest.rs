@@ -13,7 +13,7 @@
 
 use std::error::Error;
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use clap::Parser;
 use granular_edmd::boundary::Obstacles;
@@ -24,7 +24,7 @@ use kuva::prelude::Layout;
 
 use gallery::command_line::{self, Failure, positive};
 use gallery::faces::{GAP, faces};
-use gallery::look::{INK, Look, QUIET, SKY};
+use gallery::look::{INK, Look, Mark, QUIET, SKY};
 use gallery::panel::{self, Margins, Place, SMALL};
 use gallery::progress::Progress;
 use gallery::results::Results;
@@ -36,13 +36,13 @@ struct Arguments {
     /// End of each run, in the time in which a grain falls half a diameter.
     #[arg(long, default_value_t = 200.0, value_parser = positive)]
     end: f64,
-    /// Longest wall-clock time of each run, in seconds.
-    #[arg(long, default_value_t = 20.0, value_parser = positive)]
-    seconds: f64,
+    /// Most collisions of a run, in millions; the same run ends there on any machine.
+    #[arg(long, default_value_t = 6.0, value_parser = positive)]
+    collisions: f64,
     /// Takes a flat floor, with no grains glued to it.
     #[arg(long)]
     flat: bool,
-    /// Runs to time 40 at most, for 2 seconds at most.
+    /// Runs to time 40 at most, for a million collisions at most.
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
@@ -67,12 +67,14 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.results.make_folder()?;
-    println!("| remedy | parameter | time | events per grain and time | height | heat | creep | ended by |");
-    println!("|---|---|---|---|---|---|---|---|");
+    gallery::say!(
+        "| remedy | parameter | time | events per grain and time | height | heat | creep | ended by |"
+    );
+    gallery::say!("|---|---|---|---|---|---|---|---|");
     let mut heaps = Vec::new();
     for remedy in remedies().map_err(Failure::run)? {
         let heap = settled(arguments, remedy).map_err(Failure::run)?;
-        println!("{heap}");
+        gallery::say!("{heap}");
         heaps.push(heap);
     }
     write(arguments, &heaps).map_err(Failure::run)
@@ -110,6 +112,12 @@ fn remedies() -> Result<Vec<Remedy>, ParameterError> {
     Ok(remedies)
 }
 
+impl Heap {
+    fn is_cut(&self) -> bool {
+        self.ended == "Collisions"
+    }
+}
+
 /// The grains under a remedy, and what it costs.
 struct Heap {
     name: &'static str,
@@ -123,8 +131,9 @@ struct Heap {
     events: f64,
     /// Height of the highest grain's top.
     height: f64,
-    /// Mean kinetic energy of a grain's motion, over the time in which the heap is measured.
-    heat: f64,
+    /// Mean kinetic energy of a grain's motion, over the time in which the heap is measured; `None` for a run
+    /// that ended before.
+    heat: Option<f64>,
     /// Mean distance that a grain creeps in that time, per time.
     creep: f64,
     disks: Vec<Disk>,
@@ -133,16 +142,14 @@ struct Heap {
 
 fn settled(arguments: &Arguments, remedy: Remedy) -> Result<Heap, Box<dyn Error>> {
     let quick = |value: f64, most: f64| if arguments.quick { value.min(most) } else { value };
-    let (end, seconds) = (quick(arguments.end, 40.0), quick(arguments.seconds, 2.0));
+    let end = quick(arguments.end, 40.0);
+    let most = (1e6 * quick(arguments.collisions, 1.0)) as u64;
     let mut simulation =
         Simulation::builder(remedy.rule, floor(arguments.flat)?).disks(column()?).gravity(1.0).build()?;
     let started = Instant::now();
-    let limits = |end: f64| {
-        let left = Duration::from_secs_f64(seconds).saturating_sub(started.elapsed());
-        Limits::until(end).with_wall_clock(left)
-    };
+    let limits = |end: f64, done: u64| Limits::until(end).with_most_collisions(most.saturating_sub(done));
     let mut progress = Progress::of(format!("{} {}", remedy.name, remedy.parameter)).until(end);
-    let mut ended = simulation.run(&limits(SETTLED * end), &mut progress);
+    let mut ended = simulation.run(&limits(SETTLED * end, 0), &mut progress);
     let (mut before, mut since, start) = (*simulation.counters(), simulation.time(), simulation.disks());
     let (mut heat, mut samples) = (0.0, 0.0);
     if matches!(ended, Ok(RunEnd::Time)) {
@@ -150,7 +157,8 @@ fn settled(arguments: &Arguments, remedy: Remedy) -> Result<Heap, Box<dyn Error>
             heat += snapshot.disks().iter().map(Disk::translational_energy).sum::<f64>() / GRAINS as f64;
             samples += 1.0;
         });
-        ended = simulation.run(&limits(end), &mut (&mut watch, &mut progress));
+        let done = before.disk_collisions + before.wall_collisions;
+        ended = simulation.run(&limits(end, done), &mut (&mut watch, &mut progress));
     } else {
         (before, since) = (Counters::default(), 0.0);
     }
@@ -165,7 +173,7 @@ fn settled(arguments: &Arguments, remedy: Remedy) -> Result<Heap, Box<dyn Error>
         seconds: started.elapsed().as_secs_f64(),
         events: events / (GRAINS as f64 * (time - since)),
         height: disks.iter().map(|disk| disk.position().y + disk.radius()).fold(0.0, f64::max),
-        heat: heat / samples,
+        heat: (samples > 0.0).then(|| heat / samples),
         creep: way.sum::<f64>() / (GRAINS as f64 * (time - since)),
         disks,
         glued: simulation.boundary().obstacles().to_vec(),
@@ -197,9 +205,10 @@ fn column() -> Result<Vec<Disk>, Box<dyn Error>> {
 impl std::fmt::Display for Heap {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { name, parameter, ended, time, seconds, events, height, heat, creep, .. } = self;
+        let heat = heat.map_or("–".to_owned(), |heat| format!("{heat:.1e}"));
         write!(
             formatter,
-            "| {name} | {parameter} | {time:.1} | {events:.0} | {height:.2} | {heat:.1e} | {creep:.1e} | {ended}, \
+            "| {name} | {parameter} | {time:.1} | {events:.0} | {height:.2} | {heat} | {creep:.1e} | {ended}, \
              {seconds:.1} s |"
         )
     }
@@ -248,29 +257,46 @@ fn draw(heaps: &[Heap]) -> Sheet {
     for (k, heap) in drawn.enumerate() {
         let (x, y) = ((k % 2) as f64 * frame[0], HEADER + (k / 2) as f64 * frame[1]);
         let layout = panel::axes((0.0, WIDTH), (0.0, SHOWN)).with_y_tick_step(2.0);
-        let layout = layout.with_x_label("x, in diameters").with_y_label("height");
+        let layout = layout.with_x_label("x, in diameters").with_y_label("height, in diameters");
         let place = Place { x, y, width: frame[0], height: frame[1] };
         let plots = vec![
             faces(heap.glued.iter(), UNIT, GAP, |_| QUIET),
             faces(heap.disks.iter(), UNIT, GAP, |_| SKY),
         ];
         sheet.panel(place, MARGINS, plots, layout);
-        let title = format!("{}, {}: at time {:.0}", heap.name, heap.parameter, heap.time);
+        let title = format!("{} {}, at time {:.0}", in_words(heap.name), heap.parameter, heap.time);
         sheet.text(x + MARGINS[0], y + 26.0, SMALL, INK, &title);
     }
     let below = HEADER + 2.0 * frame[1];
-    let panels: [(&str, Quantity); 2] =
-        [("events per grain and time", |heap| heap.events), ("heat per grain", |heap| heap.heat)];
+    let panels: [(&str, Quantity); 2] = [
+        ("events per grain and √(d/g)", |heap| heap.events),
+        ("heat per grain, in mgd", |heap| heap.heat.unwrap_or(f64::NAN)),
+    ];
     for (k, (label, value)) in panels.into_iter().enumerate() {
         let place = Place { x: k as f64 * frame[0], y: below + 20.0, width: frame[0], height: 330.0 };
         let layout = panel::axes((1e-2, 1.0), range(heaps, value)).with_log_scale();
-        let layout = layout.with_x_label("duration, or speed, of the remedy").with_y_label(label);
+        let layout = layout.with_x_label("duration in √(d/g), or speed in √(gd)").with_y_label(label);
         draw_curves(&mut sheet, place, layout, heaps, value);
     }
-    let names = FAMILIES.into_iter().enumerate().map(|(k, name)| (Look::number(k), name));
-    sheet.legend_in_row((MARGINS[0], below + 28.0), &names.collect::<Vec<_>>());
+    let names = FAMILIES.into_iter().enumerate().map(|(k, name)| (Look::number(k), in_words(name)));
+    let cut = heaps.iter().any(Heap::is_cut).then_some((CUT, "ended before its time"));
+    sheet.legend_in_row((MARGINS[0], below + 28.0), &names.chain(cut).collect::<Vec<_>>());
     sheet
 }
+
+/// Returns the name of a remedy in the words of the field.
+fn in_words(name: &str) -> &str {
+    match name {
+        "ContactDuration" => "contact duration",
+        "ElasticBelow" => "elastic below a speed",
+        "ElasticBelow, reversing" => "the same, slip reversed",
+        "LeastRebound" => "least rebound speed",
+        other => other,
+    }
+}
+
+/// The look of a run that its limit ended.
+const CUT: Look = Look::marks(INK, Mark::Disk).open();
 
 /// A number of a heap.
 type Quantity = fn(&Heap) -> f64;
@@ -283,12 +309,14 @@ fn range(heaps: &[Heap], value: Quantity) -> (f64, f64) {
 }
 
 fn draw_curves(sheet: &mut Sheet, place: Place, layout: Layout, heaps: &[Heap], value: Quantity) {
-    let points = |name: &str| -> Vec<(f64, f64)> {
-        let family = heaps.iter().filter(|heap| heap.name == name);
-        family.map(|heap| (heap.parameter, value(heap))).filter(|(_, value)| *value > 0.0).collect()
+    let points = |heaps: &mut dyn Iterator<Item = &Heap>| -> Vec<(f64, f64)> {
+        heaps.map(|heap| (heap.parameter, value(heap))).filter(|(_, value)| *value > 0.0).collect()
     };
-    let families = || FAMILIES.into_iter().enumerate().map(|(k, name)| (Look::number(k), points(name)));
+    let of = |name: &'static str| points(&mut heaps.iter().filter(|heap| heap.name == name));
+    let families = || FAMILIES.into_iter().enumerate().map(|(k, name)| (Look::number(k), of(name)));
     let curves = families().map(|(look, points)| look.curve(points)).collect();
     let panel = sheet.panel(place, MARGINS, curves, layout);
     families().for_each(|(look, points)| sheet.marks(&panel, look, points));
+    let drawn = heaps.iter().filter(|heap| FAMILIES.contains(&heap.name));
+    sheet.marks(&panel, CUT, points(&mut drawn.filter(|heap| heap.is_cut())));
 }

@@ -75,7 +75,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     let path = arguments.common.results.path("contact_duration");
     draw(&panels).write(&path)?;
-    println!("wrote {0}.svg and {0}.png", path.display());
+    gallery::say!("wrote {0}.svg and {0}.png", path.display());
     arguments.common.results.write_tables_as_json(&tables)
 }
 
@@ -96,14 +96,14 @@ fn plan(
 /// Prints a row for each contact duration: the places of the transitions, and the share of collisions that
 /// the model has changed.
 fn print(parameter: &str, records: &[Record]) -> Result<(), Box<dyn Error>> {
-    println!(
+    gallery::say!(
         "transitions along {parameter}; ± is the standard error over independent ramps, and over a step"
     );
-    println!(
+    gallery::say!(
         "| t_c | {} | changed, first | last value | stalled |",
         TransitionLine::ALL.map(|line| line.to_string()).join(" | ")
     );
-    println!("|---|---|---|---|---|---|---|---|");
+    gallery::say!("|---|---|---|---|---|---|---|---|");
     let values = records.len() / (DURATIONS.len() * RUNS);
     for (duration, group) in DURATIONS.iter().zip(records.chunks(values * RUNS)) {
         let ramps: Vec<&[Record]> = group.chunks(values).collect();
@@ -111,7 +111,7 @@ fn print(parameter: &str, records: &[Record]) -> Result<(), Box<dyn Error>> {
         let places = TransitionLine::ALL.map(|line| told(crossing(line, &found).as_ref())).join(" | ");
         let changed = [0, values - 1].map(|value| share_changed(ramps.iter().map(|ramp| &ramp[value])));
         let stalled = group.iter().filter(|record| matches!(record.outcome(), Outcome::Stalled { .. }));
-        println!(
+        gallery::say!(
             "| {duration:e} | {places} | {:.1e} | {:.1e} | {} |",
             changed[0],
             changed[1],

@@ -91,13 +91,15 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     arguments.results.make_folder()?;
     let mut table = arguments.results.table("energy_loss_in_run", &COLUMNS)?;
-    println!("N = 1000, 60 x 150, g = 0.015625, A = 0.1, omega = 10, q = 0");
-    println!(
+    gallery::say!("N = 1000, 60 x 150, g = 0.015625, A = 0.1, omega = 10, q = 0");
+    gallery::say!(
         "<dE>/T over disk-disk collisions: Maxwellian gas with all temperatures equal, with the rotational"
     );
-    println!("temperature of the run, and the run itself, each collision over the temperature of its layer;");
-    println!("± is the standard error from blocks of the run, * a lower bound of it");
-    println!("{:>8} {:>10} {:>10} {:>18} {:>18}", "kappa", "equal T", "T_rot", "run", "T_rot/T");
+    gallery::say!(
+        "temperature of the run, and the run itself, each collision over the temperature of its layer;"
+    );
+    gallery::say!("± is the standard error from blocks of the run, * a lower bound of it");
+    gallery::say!("{:>8} {:>10} {:>10} {:>18} {:>18}", "kappa", "equal T", "T_rot", "run", "T_rot/T");
     let mut points = Vec::new();
     for friction in [0.01, 0.03, 0.05, 0.07, 0.1, 0.3, 1.0] {
         let rule = Frictional::from_inelasticity(0.0, 0.0, friction)?;
@@ -108,7 +110,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         let equal = mean_energy_change(&rule, &gas);
         let of_run = mean_energy_change(&rule, &gas.with_rotational_temperature(ratio.unwrap_or(1.0))?);
         let shown = [with_error(change, &of_change), with_error(ratio, &of_ratio)];
-        println!("{friction:8} {equal:10.4} {of_run:10.4} {:>18} {:>18}", shown[0], shown[1]);
+        gallery::say!("{friction:8} {equal:10.4} {of_run:10.4} {:>18} {:>18}", shown[0], shown[1]);
         let errors = [of_change, of_ratio].map(|error| (error.standard_error(), error.is_converged()));
         table.serialize((friction, equal, of_run, change, errors[0], ratio, errors[1]))?;
         let run = change.unwrap_or(f64::NAN);

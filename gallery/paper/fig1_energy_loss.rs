@@ -135,7 +135,7 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     arguments.results.make_folder()?;
     let gas = Maxwellian::new(1.0)?.with_rotational_temperature(arguments.rotational_temperature)?;
-    println!(
+    gallery::say!(
         "Maxwellian gas, T = 1, T_rot = {}; q = q_n = q_t, kappa = kappa_s = kappa_d",
         gas.rotational_temperature()
     );
@@ -144,13 +144,15 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let panels = [Panel::whole(), Panel::detail()];
     let picture = arguments.results.path("fig1_energy_loss");
     draw(&panels, &gas)?.write(&picture)?;
-    println!("wrote {0}.svg and {0}.png", picture.display());
+    gallery::say!("wrote {0}.svg and {0}.png", picture.display());
     tabulate(&panels, &gas, &arguments.results)
 }
 
 /// Compares closed form and Monte Carlo at the largest loss of a few inelasticities.
 fn compare(gas: &Maxwellian, monte_carlo: &MonteCarlo) -> Result<(), ParameterError> {
-    println!("largest loss:   q   kappa     <dE>      Monte Carlo (standard error of independent samples)");
+    gallery::say!(
+        "largest loss:   q   kappa     <dE>      Monte Carlo (standard error of independent samples)"
+    );
     for q in [0.0, 0.025, 0.05, 0.1, 0.2] {
         let Some(friction) = friction_of_largest_loss(&Frictional::from_inelasticity(q, q, 0.0)?, gas) else {
             continue;
@@ -158,7 +160,7 @@ fn compare(gas: &Maxwellian, monte_carlo: &MonteCarlo) -> Result<(), ParameterEr
         let rule = Frictional::from_inelasticity(q, q, friction)?;
         let estimate = monte_carlo.mean_energy_change(&rule, gas);
         let exact = mean_energy_change(&rule, gas);
-        println!(
+        gallery::say!(
             "            {q:5.3}  {friction:.4}  {exact:.6}  {:.6} ({:.6})",
             estimate.mean(),
             estimate.standard_error()
@@ -186,7 +188,7 @@ fn tabulate(panels: &[Panel], gas: &Maxwellian, results: &Results) -> Result<(),
     maxima.flush()?;
     let tables = names.map(|name| (name, results.path(name).with_extension("csv")));
     for (_, path) in &tables {
-        println!("wrote {}", path.display());
+        gallery::say!("wrote {}", path.display());
     }
     results.write_tables_as_json(&tables)
 }

@@ -82,12 +82,12 @@ fn points(study: &Study<VibratedBox>) -> Result<Vec<Point>, Box<dyn Error>> {
 }
 
 fn print(points: &[Point]) {
-    println!("friction   Y_cm ± standard error of correlated samples");
+    gallery::say!("friction   Y_cm ± standard error of correlated samples");
     for Point { friction, height } in points {
-        println!("{friction:8}  {height:.2}");
+        gallery::say!("{friction:8}  {height:.2}");
     }
     if let Some(lowest) = points.iter().min_by(|a, b| a.height.mean().total_cmp(&b.height.mean())) {
-        println!("lowest at friction {}: {:.2}", lowest.friction, lowest.height.mean());
+        gallery::say!("lowest at friction {}: {:.2}", lowest.friction, lowest.height.mean());
     }
 }
 

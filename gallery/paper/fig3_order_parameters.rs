@@ -67,13 +67,13 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 
 /// Prints means over the second half of each value, as in the paper.
 fn print(records: &[Record]) {
-    println!("friction    Psi1   |Psi1|    Psi2   (noise at rest)");
+    gallery::say!("friction    Psi1   |Psi1|    Psi2   (noise at rest)");
     for record in records {
         let second_half = &record.samples()[record.samples().len() / 2..];
         let mean = |quantity: fn(&Sample) -> f64| {
             second_half.iter().map(quantity).sum::<f64>() / second_half.len() as f64
         };
-        println!(
+        gallery::say!(
             "{:8.3}  {:6.3}   {:6.3}  {:6.3}   ({:.3})",
             friction(record),
             mean(|sample| sample.one_roll),

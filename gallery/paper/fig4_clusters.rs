@@ -27,6 +27,7 @@ use kuva::prelude::Plot;
 use gallery::command_line::{non_negative, whole};
 use gallery::look::{BLUE, GREEN, INK, Look, Mark, QUIET, VERMILION};
 use gallery::panel::{self, COLUMN, Margins, Panel, Place};
+use gallery::results;
 use gallery::sheet::Sheet;
 
 /// Clusters of the order parameters where one roll and two coexist (paper, Fig. 4).
@@ -82,14 +83,14 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let runs: Vec<Run> = study.records().map(|record| Run::of(record?)).collect::<Result<_, _>>()?;
     runs.iter().for_each(print);
     let three = runs.iter().filter(|run| run.clusters() == 3).count();
-    println!("{three} of {} runs show three clusters", runs.len());
+    gallery::say!("{three} of {} runs show three clusters", runs.len());
     print_weights(&runs);
     write_clusters(&runs, study.folder())?;
     // The first of the runs with most clusters is shown.
     let Some(shown) = runs.iter().rev().max_by_key(|run| run.clusters()) else { return Ok(()) };
     let path = study.folder().join("fig4_clusters");
     draw(arguments, &study, shown).write(&path)?;
-    println!(
+    gallery::say!(
         "wrote {0}.svg and {0}.png; the tables beside them are clusters.csv, values.csv and samples.csv",
         path.display()
     );
@@ -98,10 +99,10 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 }
 
 fn print(run: &Run) {
-    println!("run {}, seed {}:", run.record.ramp_index() + 1, run.record.seed());
+    gallery::say!("run {}, seed {}:", run.record.ramp_index() + 1, run.record.seed());
     for (state, cluster) in run.found.iter() {
         let DVec2 { x, y } = cluster.center();
-        println!("    {:3.0} %  Psi1 = {x:6.3}  Psi2 = {y:6.3}  {state}", 100.0 * cluster.weight());
+        gallery::say!("    {:3.0} %  Psi1 = {x:6.3}  Psi2 = {y:6.3}  {state}", 100.0 * cluster.weight());
     }
 }
 
@@ -112,12 +113,12 @@ fn print_weights(runs: &[Run]) {
     {
         let weights: RunningMean = runs.iter().map(|run| run.found.weight(state)).collect();
         let (mean, error) = (100.0 * weights.mean(), 100.0 * weights.standard_error());
-        println!("    {state}: {mean:.1} ± {error:.1} % of the time");
+        gallery::say!("    {state}: {mean:.1} ± {error:.1} % of the time");
     }
 }
 
 fn write_clusters(runs: &[Run], folder: &Path) -> Result<(), Box<dyn Error>> {
-    let mut table = csv::Writer::from_path(folder.join("clusters.csv"))?;
+    let mut table = results::table(&folder.join("clusters.csv"))?;
     table.write_record([
         "run",
         "state",

@@ -244,14 +244,14 @@ fn print(value: &Value, shares: [f64; 3], stays: &[Option<Residence>]) {
     let Row { leg, friction, inelasticity, .. } = &value.row;
     let at = friction.map(|at| format!("κ = {at}")).or(inelasticity.map(|at| format!("q = {at}")));
     let [clockwise, counterclockwise, two] = shares.map(|share| format!("{:.0}", 100.0 * share));
-    println!(
+    gallery::say!(
         "{} {leg} {}: {clockwise} % clockwise, {counterclockwise} % counterclockwise, {two} % two rolls",
         value.study,
         at.unwrap_or_default()
     );
     for (Stay { name, .. }, stay) in STAYS.iter().zip(stays) {
         if let Some(Residence { mean, error }) = stay {
-            println!("    {name}: {mean:.0} ± {error:.0} oscillations");
+            gallery::say!("    {name}: {mean:.0} ± {error:.0} oscillations");
         }
     }
 }

@@ -127,10 +127,10 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         points.extend(read(folder)?);
     }
     let mut table = arguments.results.table("table1", &COLUMNS)?;
-    println!(
+    gallery::say!(
         "g         transition   <dE>              q_eff             printed         verdict   (T_0 = 1)"
     );
-    println!("±: the scatter along a line of transitions, not the error of its mean");
+    gallery::say!("±: the scatter along a line of transitions, not the error of its mean");
     for row in &TABLE_1 {
         print(row)?;
         let measured = measured(row, &points)?;
@@ -154,7 +154,7 @@ fn print(row: &Row) -> Result<(), ParameterError> {
     let (effective, error, verdict) = (effective(row)?, error(row)?, verdict(row)?);
     let (gravity, transition) = (row.gravity, row.line.to_string());
     let ((change, spread), (printed, printed_error)) = (row.change, row.effective);
-    println!(
+    gallery::say!(
         "{gravity:<8}  {transition:<10}  {change:.3} ± {spread:.3}   {effective:.4} ± {error:.4}   {printed:.3} ± {printed_error:.3}   {verdict}"
     );
     Ok(())
@@ -166,7 +166,7 @@ fn print_measured(average: &LineAverage) {
     };
     let (change, effective) = (average.energy_change(), average.effective_inelasticity());
     let points = format!("{} points", change.count());
-    println!("{:>20}  {}   {}", points, text(change, 3), text(effective, 4));
+    gallery::say!("{:>20}  {}   {}", points, text(change, 3), text(effective, 4));
 }
 
 /// Returns the last columns: the number of points, and mean and standard deviation of both quantities.

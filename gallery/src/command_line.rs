@@ -10,6 +10,8 @@ use clap::Parser;
 use granular_edmd::ParameterError;
 use granular_edmd::simulation::RunError;
 
+use crate::output;
+
 /// The reason why an example ends early.
 #[derive(Debug)]
 pub enum Failure {
@@ -32,7 +34,7 @@ impl Failure {
 
     /// Reports the failure in one line on standard error, and returns the exit code.
     pub fn report(&self) -> ExitCode {
-        eprintln!("error: {self}");
+        output::complain(format_args!("error: {self}"));
         ExitCode::from(if matches!(self, Self::Usage(_)) { 2 } else { 1 })
     }
 }
@@ -68,9 +70,9 @@ impl From<Box<dyn Error>> for Failure {
 
 /// Parses the command line, runs an example and reports its failure, if any.
 pub fn main<A: Parser, E: Into<Failure>>(run: impl FnOnce(&A) -> Result<(), E>) -> ExitCode {
-    match run(&parse()) {
+    match run(&parse()).map_err(Into::into).and_then(|()| output::end()) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.into().report(),
+        Err(failure) => failure.report(),
     }
 }
 
@@ -87,16 +89,22 @@ fn parse<A: Parser>() -> A {
         if !error.use_stderr() {
             error.exit();
         }
-        eprintln!("{}", in_one_line(&error.to_string()));
+        output::complain(format_args!("{}", in_one_line(&error.to_string())));
         exit(2);
     })
 }
+
+const NO_WHOLE_NUMBER: &str = "must be a whole number, not below 0";
 
 /// Returns a message of clap's without the usage that follows it.
 fn in_one_line(message: &str) -> String {
     let told = message.lines().map(str::trim);
     let told = told.take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
-    told.filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+    let told = told.filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ");
+    // What the standard library says of a text that is no whole number.
+    let told = told.replace("invalid digit found in string", NO_WHOLE_NUMBER);
+    let told = told.replace("cannot parse integer from empty string", NO_WHOLE_NUMBER);
+    told.replace("number too large to fit in target type", "the number is too large")
 }
 
 /// Parses a number that is finite and above zero.

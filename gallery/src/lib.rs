@@ -7,6 +7,7 @@ pub mod faces;
 pub mod flow;
 pub mod letters;
 pub mod look;
+pub mod output;
 pub mod palette;
 pub mod panel;
 pub mod paper;

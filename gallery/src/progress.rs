@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 use granular_edmd::observable::{Collision, Observer};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::output;
+
 /// Time between two lines where there is no terminal.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
 
@@ -51,7 +53,8 @@ impl Progress {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         if told.elapsed() >= BETWEEN_LINES {
             *told = Instant::now();
-            eprintln!("{}: {percent:.1} % after {:.0} s", self.name, self.start.elapsed().as_secs_f64());
+            let seconds = self.start.elapsed().as_secs_f64();
+            output::complain(format_args!("{}: {percent:.1} % after {seconds:.0} s", self.name));
         }
     }
 

@@ -9,6 +9,7 @@ use clap::Args;
 use serde_json::{Map, Value};
 
 use crate::command_line::{Failure, make_folder};
+use crate::output;
 use crate::sheet::Sheet;
 
 /// The places of the results.
@@ -17,7 +18,7 @@ pub struct Results {
     /// Folder for the results.
     #[arg(long, value_name = "FOLDER", default_value = "out")]
     out: PathBuf,
-    /// File for the numbers as JSON.
+    /// File for the numbers as JSON; - is standard output, and the rest goes to standard error.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
@@ -26,11 +27,18 @@ impl Results {
     /// Makes the folder, if there is none, and checks before a long run that there is one for the JSON.
     pub fn make_folder(&self) -> Result<(), Failure> {
         make_folder(&self.out)?;
+        if self.json_is_printed() {
+            output::leave_to_json();
+        }
         let parent = self.json.as_ref().and_then(|path| path.parent());
         if let Some(folder) = parent.filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
             return Err(Failure::run(format_args!("--json: there is no folder {}", folder.display())));
         }
         Ok(())
+    }
+
+    fn json_is_printed(&self) -> bool {
+        self.json.as_ref().is_some_and(|path| path == "-")
     }
 
     /// Returns the place of a result of this name.
@@ -40,7 +48,7 @@ impl Results {
 
     /// Begins the table of this name, with these columns.
     pub fn table(&self, name: &str, columns: &[&str]) -> Result<csv::Writer<File>, Box<dyn Error>> {
-        let mut table = csv::Writer::from_path(self.out.join(name).with_extension("csv"))?;
+        let mut table = table(&self.out.join(name).with_extension("csv"))?;
         table.write_record(columns)?;
         Ok(table)
     }
@@ -53,7 +61,7 @@ impl Results {
         picture: &Sheet,
         numbers: &Value,
     ) -> Result<(), Box<dyn Error>> {
-        table.flush()?;
+        named(&self.out.join(name).with_extension("csv"), table.flush())?;
         self.finish_picture(name, picture, numbers)
     }
 
@@ -65,14 +73,15 @@ impl Results {
         picture: &Sheet,
         numbers: &Value,
     ) -> Result<(), Box<dyn Error>> {
-        table(&mut File::create(self.out.join(name).with_extension("csv"))?)?;
+        let path = self.out.join(name).with_extension("csv");
+        named(&path, File::create(&path).and_then(|mut file| table(&mut file)))?;
         self.finish_picture(name, picture, numbers)
     }
 
     fn finish_picture(&self, name: &str, picture: &Sheet, numbers: &Value) -> Result<(), Box<dyn Error>> {
         let path = self.out.join(name);
         picture.write(&path)?;
-        println!("wrote {0}.svg, {0}.png and {0}.csv", path.display());
+        crate::say!("wrote {0}.svg, {0}.png and {0}.csv", path.display());
         self.write_json(numbers)
     }
 
@@ -80,8 +89,12 @@ impl Results {
     pub fn write_json(&self, numbers: &Value) -> Result<(), Box<dyn Error>> {
         let Some(path) = &self.json else { return Ok(()) };
         let text = serde_json::to_string_pretty(numbers)?;
+        if self.json_is_printed() {
+            output::json(&text).map_err(|error| format!("--json -: {error}"))?;
+            return Ok(());
+        }
         fs::write(path, text).map_err(|error| format!("--json {}: {error}", path.display()))?;
-        println!("wrote {}", path.display());
+        crate::say!("wrote {}", path.display());
         Ok(())
     }
 
@@ -92,13 +105,14 @@ impl Results {
         mut table: csv::Writer<File>,
         picture: Option<&Sheet>,
     ) -> Result<(), Box<dyn Error>> {
-        table.flush()?;
-        let table = self.path(name).with_extension("csv");
+        let path = self.path(name).with_extension("csv");
+        named(&path, table.flush())?;
+        let table = path;
         if let Some(picture) = picture {
             picture.write(&self.path(name))?;
-            println!("wrote {0}.svg and {0}.png", self.path(name).display());
+            crate::say!("wrote {0}.svg and {0}.png", self.path(name).display());
         }
-        println!("wrote {}", table.display());
+        crate::say!("wrote {}", table.display());
         self.write_tables_as_json(&[(name, table)])
     }
 
@@ -110,6 +124,16 @@ impl Results {
         let named = tables.iter().map(|(name, table)| Ok(((*name).to_owned(), rows(table)?)));
         self.write_json(&Value::Object(named.collect::<Result<_, Box<dyn Error>>>()?))
     }
+}
+
+/// Begins a table.
+pub fn table(path: &Path) -> io::Result<csv::Writer<File>> {
+    Ok(csv::Writer::from_writer(named(path, File::create(path))?))
+}
+
+/// Names the file in an error about it.
+pub fn named<T>(path: &Path, result: io::Result<T>) -> io::Result<T> {
+    result.map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", path.display())))
 }
 
 /// Returns the rows of a table as objects. An empty cell is `null`.

@@ -1,6 +1,6 @@
 //! A sheet with panels, marks, legends and text: a picture, as SVG and as PNG.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 use kuva::backend::svg::SvgBackend;
@@ -10,6 +10,7 @@ use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
 use crate::look::{INK, Look, QUIET};
 use crate::panel::{self, LARGE, MEDIUM, Margins, Panel, Place, SMALL};
 use crate::raster;
+use crate::results::named;
 
 /// Pixels of the PNG file to a unit of the sheet.
 const PIXELS: f32 = 2.0;
@@ -254,10 +255,13 @@ impl Sheet {
 
     /// Writes the picture as NAME.svg and NAME.png; a name may have dots in it.
     pub fn write(&self, name: &Path) -> io::Result<()> {
-        let svg = self.svg();
-        fs::write(format!("{}.svg", name.display()), &svg)?;
+        let write = |ending: &str, bytes: &[u8]| {
+            let path = PathBuf::from(format!("{}.{ending}", name.display()));
+            named(&path, fs::write(&path, bytes))
+        };
+        write("svg", self.svg().as_bytes())?;
         let png = raster::png(&self.scene, PIXELS).map_err(io::Error::other)?;
-        fs::write(format!("{}.png", name.display()), png)
+        write("png", &png)
     }
 }
 

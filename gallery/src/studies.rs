@@ -52,7 +52,7 @@ impl Common {
     ) -> Result<(), Box<dyn Error>> {
         let path = study.folder().join(name);
         picture.write(&path)?;
-        println!("wrote {0}.svg and {0}.png; the tables are beside them", path.display());
+        crate::say!("wrote {0}.svg and {0}.png; the tables are beside them", path.display());
         self.results.write_tables_as_json(&[("values", study.folder().join("values.csv"))])
     }
 }
@@ -73,21 +73,22 @@ pub fn complete<E: Experiment>(
     plan: &Plan<E>,
     ramp: Option<usize>,
 ) -> Result<Option<Study<E>>, Box<dyn Error>> {
-    println!("study in {}:\n\n{plan}", folder.display());
+    crate::say!("study in {}:\n\n{plan}", folder.display());
     let study = Study::open_or_create(folder, plan)?;
     let summary = watched(|control| match ramp {
         Some(ramp) => study.run_ramp(ramp, control),
         None => study.run(control),
     })?;
     for file in &summary.redone {
-        println!("{} was damaged and has been done again", file.display());
+        crate::say!("{} was damaged and has been done again", file.display());
     }
     if (0..plan.ramp_count()).all(|ramp| matches!(study.status(ramp), Ok(RampStatus::Done))) {
         return Ok(Some(study));
     }
-    println!(
+    crate::say!(
         "{} of {} values are finished; this command goes on, and draws once all ramps are done",
-        summary.finished, summary.total
+        summary.finished,
+        summary.total
     );
     Ok(None)
 }

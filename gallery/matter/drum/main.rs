@@ -113,7 +113,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     for &rate in arguments.rates.iter().skip(skipped) {
         let since = Instant::now();
         let drum = turned(arguments, rate).map_err(Failure::run)?;
-        println!("{drum}; {:.1} s", since.elapsed().as_secs_f64());
+        gallery::say!("{drum}; {:.1} s", since.elapsed().as_secs_f64());
         drums.push(drum);
     }
     write(arguments, &drums).map_err(Failure::run)

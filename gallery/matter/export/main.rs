@@ -27,7 +27,9 @@ use granular_edmd::trajectory::{ExtendedXyz, LammpsDump, RecordError, Recorder, 
 use serde_json::{Value, json};
 
 use gallery::command_line::{self, Failure, whole};
+use gallery::output;
 use gallery::progress::Progress;
+use gallery::results::named;
 
 /// A run in files that other programs open.
 #[derive(Parser)]
@@ -50,9 +52,16 @@ struct Arguments {
     /// Folder for the results.
     #[arg(long, value_name = "FOLDER", default_value = "out/export")]
     out: PathBuf,
-    /// File for everything that the frames hold as JSON, to compare with what a reader finds.
+    /// File for everything that the frames hold as JSON, to compare with what a reader finds; - is standard
+    /// output.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+}
+
+impl Arguments {
+    fn json_is_printed(&self) -> bool {
+        self.json.as_ref().is_some_and(|path| path == Path::new("-"))
+    }
 }
 
 /// The kind of the small disks.
@@ -66,8 +75,11 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     command_line::make_folder(&arguments.out)?;
+    if arguments.json_is_printed() {
+        output::leave_to_json();
+    }
     write_all(arguments)?;
-    println!(
+    gallery::say!(
         "wrote run.xyz, run.dump, run.pvd, end.csv, end.data, series.csv and series.jsonl in {}",
         arguments.out.display()
     );
@@ -113,6 +125,11 @@ fn recorders(folder: &Path, times: SampleTimes) -> Result<Vec<Recorder>, RecordE
     Ok(recorders)
 }
 
+/// Begins a file that was not there.
+fn new(path: &Path) -> std::io::Result<File> {
+    named(path, File::create_new(path))
+}
+
 fn write_all(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let (out, (interval, end)) = (&arguments.out, times(arguments));
     let clock = SampleTimes::every(interval)?;
@@ -127,11 +144,13 @@ fn write_all(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let mut progress = Progress::of("run").until(end);
     run.run_until(end, &mut ((&mut recorders, &mut progress), &mut series, &mut expected))?;
     let state = State::of(&run.snapshot());
-    state.write_csv(File::create_new(out.join("end.csv"))?)?;
-    state.write_lammps_data(File::create_new(out.join("end.data"))?)?;
-    series.write_csv(File::create_new(out.join("series.csv"))?)?;
-    series.write_json_lines(File::create_new(out.join("series.jsonl"))?)?;
-    if let Some(path) = &arguments.json {
+    state.write_csv(new(&out.join("end.csv"))?)?;
+    state.write_lammps_data(new(&out.join("end.data"))?)?;
+    series.write_csv(new(&out.join("series.csv"))?)?;
+    series.write_json_lines(new(&out.join("series.jsonl"))?)?;
+    if arguments.json_is_printed() {
+        output::json(&serde_json::to_string(&frames)?).map_err(|error| format!("--json -: {error}"))?;
+    } else if let Some(path) = &arguments.json {
         let file = File::create_new(path).map_err(|error| format!("--json {}: {error}", path.display()))?;
         serde_json::to_writer(file, &frames)?;
     }

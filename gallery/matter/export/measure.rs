@@ -21,7 +21,7 @@ pub(crate) fn print(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let began = Instant::now();
     run.run_until(100.0 * interval, &mut ())?;
     let plain = began.elapsed() / 100;
-    println!("an oscillation without frames: {:.0} µs", microseconds(plain));
+    gallery::say!("an oscillation without frames: {:.0} µs", microseconds(plain));
     for mut recorder in recorders(&folder, SampleTimes::every(interval)?)? {
         let snapshot = run.snapshot();
         let began = Instant::now();
@@ -31,7 +31,7 @@ pub(crate) fn print(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             recorder.record(&snapshot)?;
         }
         let each = began.elapsed() / FRAMES;
-        println!(
+        gallery::say!(
             "{recorder:?}: {:.0} µs and {:.0} frames per second",
             microseconds(each),
             1e6 / microseconds(each)
@@ -39,7 +39,7 @@ pub(crate) fn print(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     }
     for entry in fs::read_dir(&folder)? {
         let path = entry?.path();
-        println!("{}: {} bytes per frame", path.display(), size(&path)? / u64::from(FRAMES));
+        gallery::say!("{}: {} bytes per frame", path.display(), size(&path)? / u64::from(FRAMES));
     }
     Ok(())
 }

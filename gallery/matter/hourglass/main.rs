@@ -7,8 +7,8 @@
 //! What is seen: the flow does not depend on how many grains are left above, unlike that of a liquid. That is
 //! why hourglasses measure time.
 //!
-//! Grains that lie on each other would collide ever faster. `ElasticBelow` stops that: collisions slower than
-//! 0.1 lose nothing, so a heap keeps a little heat. `--compare` shows what other remedies do.
+//! Grains that lie on each other would collide ever faster. `LeastRebound` stops that: no surfaces part more
+//! slowly than 0.05, so a heap trembles a little. `--compare` shows what other remedies do.
 //!
 //! ```text
 //! cargo run --release -p gallery --bin hourglass
@@ -22,7 +22,7 @@ mod picture;
 
 use std::error::Error;
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use clap::Parser;
 use granular_edmd::boundary::VesselError;
@@ -46,9 +46,9 @@ struct Arguments {
     /// Seed of places and velocities.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Longest wall-clock time for each way of the grains, in seconds.
-    #[arg(long, default_value_t = 60.0, value_parser = positive)]
-    seconds: f64,
+    /// Most collisions for each way of the grains, in millions.
+    #[arg(long, default_value_t = 100.0, value_parser = positive)]
+    collisions: f64,
     /// Runs the glass under each remedy for rest, too, and prints what it costs.
     #[arg(long)]
     compare: bool,
@@ -78,14 +78,16 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.compare {
         compare(arguments, &glass).map_err(Failure::run)?;
     }
-    let rule = ElasticBelow::new(friction().map_err(Failure::run)?, 0.1).map_err(Failure::run)?;
-    let rule = rule.with_tangential_response(Reversing);
+    let rule = friction().and_then(|rule| LeastRebound::new(rule, LEAST)).map_err(Failure::run)?;
     let ways = both_ways(arguments, &glass, Box::new(rule)).map_err(Failure::run)?;
     for (name, way) in ["first", "turned over"].into_iter().zip(&ways) {
-        println!("{name}: {way}");
+        gallery::say!("{name}: {way}");
     }
     write(arguments, &glass, &ways).map_err(Failure::run)
 }
+
+/// Least speed at which surfaces part: far below that of the flow, so that it does not depend on it.
+const LEAST: f64 = 0.05;
 
 fn friction() -> Result<Frictional, ParameterError> {
     Frictional::from_inelasticity(0.1, 0.1, 0.3)
@@ -172,7 +174,9 @@ fn settled(arguments: &Arguments, glass: &Glass, rule: BoxedRule) -> Result<Run,
     let mut run = Simulation::builder(rule, shut).disks(disks).gravity(1.0).build()?;
     let mut progress = Progress::of("grains that come to rest").until(SETTLING);
     if run.run(&limits(arguments, SETTLING), &mut progress)? != RunEnd::Time {
-        return Err(format!("the grains are not at rest after {} s", arguments.seconds).into());
+        return Err(
+            format!("the grains are not at rest after {} million collisions", arguments.collisions).into()
+        );
     }
     let mut open = run.boundary().clone();
     open.remove("gate")?;
@@ -181,7 +185,7 @@ fn settled(arguments: &Arguments, glass: &Glass, rule: BoxedRule) -> Result<Run,
 }
 
 fn limits(arguments: &Arguments, end: f64) -> Limits {
-    Limits::until(end).with_wall_clock(Duration::from_secs_f64(arguments.seconds))
+    Limits::until(end).with_most_collisions((1e6 * arguments.collisions) as u64)
 }
 
 /// Runs until no grain is above the neck.
@@ -255,8 +259,8 @@ fn write(arguments: &Arguments, glass: &Glass, ways: &[Way; 2]) -> Result<(), Bo
 fn compare(arguments: &Arguments, glass: &Glass) -> Result<(), Box<dyn Error>> {
     for (name, rule) in remedies()? {
         match both_ways(arguments, glass, rule) {
-            Ok([way, _]) => println!("{name}: {way}"),
-            Err(error) => println!("{name}: {error}"),
+            Ok([way, _]) => gallery::say!("{name}: {way}"),
+            Err(error) => gallery::say!("{name}: {error}"),
         }
     }
     Ok(())
@@ -274,5 +278,6 @@ fn remedies() -> Result<Vec<(String, BoxedRule)>, Box<dyn Error>> {
         let lasting = ContactDuration::new(rule, 0.01)?.with_tangential_response(response);
         remedies.push((format!("ContactDuration 0.01, {response:?}"), Box::new(lasting)));
     }
+    remedies.push((format!("LeastRebound {LEAST}"), Box::new(LeastRebound::new(rule, LEAST)?)));
     Ok(remedies)
 }

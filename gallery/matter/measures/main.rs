@@ -71,8 +71,8 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     arguments.results.make_folder()?;
     let gas = Gas { packing: arguments.packing_fraction, seed: arguments.seed };
     let intervals = if arguments.quick { 100 } else { 1000 };
-    println!("{DISKS} disks, packing fraction {}, {intervals} mean free times", gas.packing);
-    println!("{:44} {:>24} {:>9}", "", "measured", "theory");
+    gallery::say!("{DISKS} disks, packing fraction {}, {intervals} mean free times", gas.packing);
+    gallery::say!("{:44} {:>24} {:>9}", "", "measured", "theory");
     let mut rows = Rows::default();
     let bulk = in_the_bulk(&gas, intervals, &mut rows)?;
     between_walls(&gas, intervals, &mut rows)?;
@@ -89,12 +89,12 @@ struct Rows(Vec<(String, f64, Option<f64>, f64)>);
 
 impl Rows {
     fn add(&mut self, what: &str, measured: f64, theory: f64) {
-        println!("{what:44} {measured:24.4} {theory:9.4}");
+        gallery::say!("{what:44} {measured:24.4} {theory:9.4}");
         self.0.push((what.to_owned(), measured, None, theory));
     }
 
     fn add_estimate(&mut self, what: &str, measured: Estimate, theory: f64) {
-        println!("{what:44} {measured:>24} {theory:9.4}");
+        gallery::say!("{what:44} {measured:>24} {theory:9.4}");
         self.0.push((what.to_owned(), measured.mean(), Some(measured.standard_error()), theory));
     }
 }

@@ -94,8 +94,8 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let title = format!("Convective states at g = {gravity}");
     let diagram = Diagram { gravity, title: &title, notes: &caption, states: &drawn, crossings: &crossings };
     picture::draw(&diagram)?.write(&folder.join("fig5_phase_diagram"))?;
-    println!("{caption}");
-    println!(
+    gallery::say!("{caption}");
+    gallery::say!(
         "wrote fig5_phase_diagram.svg, fig5_phase_diagram.png, points.csv and transitions.csv to {}",
         folder.display()
     );

@@ -9,6 +9,7 @@ use granular_edmd::study::vibrated_box::VibratedBox;
 use granular_edmd::study::{Leg, Record, Study};
 
 use crate::picture::{Crossing, State};
+use gallery::results;
 
 /// The state seen at a point of the plane, on the way up or down.
 pub(crate) struct Point {
@@ -91,7 +92,7 @@ pub(crate) fn crossings(lines: &[PlaneTransition]) -> Vec<Crossing> {
 
 /// Writes `points.csv`.
 pub(crate) fn write_points(points: &[Point], gravity: f64, folder: &Path) -> Result<(), Box<dyn Error>> {
-    let mut table = csv::Writer::from_path(folder.join("points.csv"))?;
+    let mut table = results::table(&folder.join("points.csv"))?;
     table.write_record([
         "gravity",
         "friction",
@@ -128,7 +129,7 @@ pub(crate) fn write_lines(
     gravity: f64,
     folder: &Path,
 ) -> Result<(), Box<dyn Error>> {
-    let mut table = csv::Writer::from_path(folder.join("transitions.csv"))?;
+    let mut table = results::table(&folder.join("transitions.csv"))?;
     table.write_record([
         "gravity",
         "line",

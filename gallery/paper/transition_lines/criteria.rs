@@ -52,14 +52,14 @@ pub(crate) fn print(ramps: &[Ramp], results: &Results) -> Result<(), Box<dyn Err
         for (ramp, samples) in renamed.iter_mut().zip(&samples) {
             others += rename(ramp, samples, &criteria)?;
         }
-        println!("\n{name}: {others} states have another name");
+        gallery::say!("\n{name}: {others} states have another name");
         let crossings = crossings(&renamed)?;
         for Row { gravity, line, .. } in TABLE_1 {
             let of_line: Vec<_> =
                 crossings.iter().filter(|(ramp, at)| is_of(ramp, at, gravity, line)).collect();
             for number in NUMBERS {
                 let found = average(number, &of_line)?;
-                println!("  {gravity:<9} {line:12} {:34}{found}", number.name());
+                gallery::say!("  {gravity:<9} {line:12} {:34}{found}", number.name());
                 let (mean, deviation) = (found.along.mean(), found.along.standard_deviation());
                 let line = line.to_string();
                 table.serialize((

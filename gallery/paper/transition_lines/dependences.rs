@@ -34,14 +34,14 @@ pub(crate) fn print(ramps: &[Ramp], results: &Results) -> Result<(), Box<dyn Err
         }
     }
     let stated = found.get("as-stated").copied().unwrap_or_default();
-    println!("{:30}{:34}{:34}collapse from κ", "study", "first two rolls at κ", "last roll alone at κ");
+    gallery::say!("{:30}{:34}{:34}collapse from κ", "study", "first two rolls at κ", "last roll alone at κ");
     let mut table = results.table(NAME, &["study", "line", "ramps", "friction", "standard_error"])?;
     for (study, means) in &found {
         for (line, mean) in LINES.iter().zip(means) {
             table.serialize((study, line.to_string(), mean.count(), mean.mean(), mean.standard_error()))?;
         }
         let told: Vec<String> = means.iter().zip(&stated).map(|(mean, stated)| shift(mean, stated)).collect();
-        println!("{study:30}{:34}{:34}{}", told[0], told[1], told[2]);
+        gallery::say!("{study:30}{:34}{:34}{}", told[0], told[1], told[2]);
     }
     results.finish_table(NAME, table, None)
 }

@@ -138,7 +138,7 @@ fn lines(ramps: &[Ramp], arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     })?;
     drop(progress);
     for Row { gravity, line, change: (mean, deviation), .. } in TABLE_1 {
-        println!("\ng = {gravity}, {line}: paper {mean:.3} ± {deviation:.3}");
+        gallery::say!("\ng = {gravity}, {line}: paper {mean:.3} ± {deviation:.3}");
         for choice in &CHOICES {
             let is_of =
                 |ramp: &Ramp, at: &Crossing| is_of(ramp, at, gravity, line) && (choice.takes)(ramp, at);
@@ -146,9 +146,9 @@ fn lines(ramps: &[Ramp], arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             if of_line.is_empty() {
                 continue;
             }
-            println!("  {}", choice.name);
+            gallery::say!("  {}", choice.name);
             for number in GOVERNING {
-                println!("    {:34}{}", number.name(), average(number, &of_line)?);
+                gallery::say!("    {:34}{}", number.name(), average(number, &of_line)?);
             }
         }
     }

@@ -27,7 +27,7 @@ pub(crate) fn print(ramps: &[Ramp], results: &Results) -> Result<(), Box<dyn Err
     }
     for (name, crossings) in &accounts {
         for number in [Number::EqualTemperatures, Number::AsPrinted] {
-            println!("\n{name}, {}", number.name());
+            gallery::say!("\n{name}, {}", number.name());
             for (gravity, line, Average { along, .. }) in print_account(crossings, number)? {
                 let (mean, deviation) = (along.mean(), along.standard_deviation());
                 table.serialize((name, number.name(), gravity, line, along.count(), mean, deviation))?;
@@ -59,12 +59,12 @@ fn print_account(crossings: &[(&Ramp, Crossing)], number: Number) -> Result<Vec<
         squares += ((found.along.mean() - mean) / deviation).powi(2);
         let effective = effective_inelasticity(found.along.mean(), 1.0)?;
         let line = line.to_string();
-        println!(
+        gallery::say!(
             "  {gravity:<9} {line:12} paper {mean:.3} ± {deviation:.3}  here {found}  q_eff {effective:.4}"
         );
         rows.push((gravity, line, found));
     }
     let distance = (squares / rows.len() as f64).sqrt();
-    println!("  rms deviation {distance:.2} of the paper's standard deviations");
+    gallery::say!("  rms deviation {distance:.2} of the paper's standard deviations");
     Ok(rows)
 }

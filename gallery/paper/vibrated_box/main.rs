@@ -22,9 +22,10 @@ fn main() -> ExitCode {
         arguments.check()?;
         arguments.results.make_folder()?;
         let outcome = experiment::run(arguments)?;
-        report::print(&outcome);
         let (picture, numbers) = (picture::draw(arguments, &outcome), report::json(&outcome));
         let table = |out: &mut dyn Write| outcome.series.write_csv(out);
-        arguments.results.finish_with("vibrated_box", table, &picture, &numbers).map_err(Failure::run)
+        let written = arguments.results.finish_with("vibrated_box", table, &picture, &numbers);
+        report::print(&outcome);
+        written.map_err(Failure::run)
     })
 }

@@ -1,5 +1,6 @@
 //! The results as numbers: a summary for people, JSON for programs.
 
+use granular_edmd::statistics::Estimate;
 use serde_json::{Value, json};
 
 use crate::experiment::{Outcome, Sample};
@@ -18,14 +19,18 @@ pub(crate) const QUANTITIES: [Quantity; 5] = [
 
 /// Prints the summary.
 pub(crate) fn print(outcome: &Outcome) {
-    let line = |name: &str, value: &dyn std::fmt::Display| println!("{name:25} {value}");
+    let line = |name: &str, value: &dyn std::fmt::Display| gallery::say!("{name:25} {value}");
     let counters = outcome.simulation.counters();
     line("flow", &outcome.flow);
-    for Quantity(_, name, of) in QUANTITIES {
-        line(name, &outcome.mean(of));
+    let energy_change = ("energy change, collision", outcome.energy_change.disks().estimate());
+    let means = QUANTITIES.map(|Quantity(_, name, of)| (name, outcome.mean(of)));
+    let means: Vec<_> = means.into_iter().chain([energy_change]).collect();
+    // Errors of a series too short to know them are marked, and the mark is explained once.
+    for (name, mean) in &means {
+        let mark = if mean.is_converged() { "" } else { " *" };
+        line(name, &format!("{}{mark}", short(mean)));
     }
     line("noise of a gas at rest", &format!("{:.4}", outcome.noise));
-    line("energy change, collision", &outcome.energy_change.disks().estimate());
     line(
         "disk–disk collisions",
         &format!("{}, {:.2e} per second", counters.disk_collisions, outcome.speed()),
@@ -35,6 +40,15 @@ pub(crate) fn print(outcome: &Outcome) {
     line("largest overlap", &format!("{:.1e}", counters.max_overlap));
     line("run", &format!("{:.2} s", outcome.seconds));
     line("final state", &outcome.hash());
+    if means.iter().any(|(_, mean)| !mean.is_converged()) {
+        gallery::say!("* not converged: the error is a lower bound; a longer run has more --oscillations");
+    }
+}
+
+/// Formats a mean and its error, with two digits of the error.
+fn short(mean: &Estimate) -> String {
+    let text = mean.to_string();
+    text.split(" (").next().unwrap_or_default().to_owned()
 }
 
 /// Returns the results, and the flags that were given.

@@ -1,0 +1,63 @@
+//! Standard output, which a reader may close at any time.
+//!
+//! `println!` panics if nobody reads on, and then a program's files are not written. Here, a closed pipe ends
+//! what is printed and nothing else, and any other failure ends the program with an error, after its work.
+
+use std::fmt::Arguments;
+use std::io::{self, ErrorKind, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use crate::command_line::Failure;
+
+/// Why nothing is printed any more.
+static FAILED: Mutex<Option<io::Error>> = Mutex::new(None);
+
+/// Whether standard output belongs to the numbers as JSON, and all else goes to standard error.
+static FOR_JSON: AtomicBool = AtomicBool::new(false);
+
+/// Prints a line, as `println!` does.
+#[macro_export]
+macro_rules! say {
+    ($($text:tt)*) => { $crate::output::line(format_args!($($text)*)) };
+}
+
+/// Prints a line.
+pub fn line(text: Arguments<'_>) {
+    let mut failed = FAILED.lock().unwrap_or_else(PoisonError::into_inner);
+    if failed.is_none() {
+        let written = if FOR_JSON.load(Ordering::Relaxed) {
+            writeln!(io::stderr(), "{text}")
+        } else {
+            writeln!(io::stdout(), "{text}")
+        };
+        *failed = written.err();
+    }
+}
+
+/// Prints a line on standard error. If nobody listens there, nothing is left to tell it to.
+pub fn complain(text: Arguments<'_>) {
+    let _ = writeln!(io::stderr(), "{text}");
+}
+
+/// Leaves standard output to the numbers as JSON.
+pub fn leave_to_json() {
+    FOR_JSON.store(true, Ordering::Relaxed);
+}
+
+/// Prints the numbers as JSON.
+pub fn json(text: &str) -> io::Result<()> {
+    let written = writeln!(io::stdout(), "{text}").and_then(|()| io::stdout().flush());
+    written.or_else(|error| if error.kind() == ErrorKind::BrokenPipe { Ok(()) } else { Err(error) })
+}
+
+/// Returns the failure to print something, if any; a closed pipe is none.
+pub fn end() -> Result<(), Failure> {
+    let failed = FAILED.lock().unwrap_or_else(PoisonError::into_inner).take();
+    match failed.or_else(|| io::stdout().flush().err()) {
+        Some(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::run(format_args!("standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
