@@ -27,7 +27,7 @@ use granular_edmd::study::Study;
 use granular_edmd::study::vibrated_box::VibratedBox;
 
 use gallery::results::Results;
-use picture::Diagram;
+use picture::{Crossing, Diagram, State};
 use plan::{Gravity, Part, Size};
 
 /// Convective states in the plane of friction and inelasticity (paper, Fig. 5).
@@ -45,6 +45,9 @@ struct Arguments {
     /// Draw what is there, and do no more: also while another process does.
     #[arg(long)]
     draw: bool,
+    /// Draws the points of a table, such as docs/reproduction has, and computes nothing.
+    #[arg(long, value_name = "FILE", conflicts_with = "draw")]
+    points: Option<PathBuf>,
     /// Seed of all random numbers.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -71,6 +74,12 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     arguments.results.make_folder()?;
     let folder = arguments.folder();
     let parts = plan::parts(arguments.size(), arguments.gravity, arguments.seed)?;
+    if let Some(table) = &arguments.points {
+        let drawn = states::read(table)?;
+        let (crossings, caption) =
+            (states::crossings(&states::lines(&drawn)?), caption(arguments, &parts, drawn.len()));
+        return draw(arguments, &caption, &drawn, &crossings);
+    }
     if !arguments.draw {
         for part in &parts {
             if gallery::studies::complete(&folder.join(part.folder), &part.plan, None)?.is_none() {
@@ -85,22 +94,33 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         return Err(format!("--draw: there is no study in {}", folder.display()).into());
     }
     let points = states::points(&studies)?;
-    let lines = states::lines(&points)?;
+    let drawn = states::drawn(&points);
+    let lines = states::lines(&drawn)?;
     let gravity = arguments.gravity.value();
     states::write_points(&points, gravity, &folder)?;
     states::write_lines(&lines, gravity, &folder)?;
     let caption = caption(arguments, &parts, points.len());
-    let (drawn, crossings) = (states::drawn(&points), states::crossings(&lines));
-    let title = format!("Convective states at g = {gravity}");
-    let diagram = Diagram { gravity, title: &title, notes: &caption, states: &drawn, crossings: &crossings };
-    picture::draw(&diagram)?.write(&folder.join("fig5_phase_diagram"))?;
-    gallery::say!("{caption}");
-    gallery::say!(
-        "wrote fig5_phase_diagram.svg, fig5_phase_diagram.png, points.csv and transitions.csv to {}",
-        folder.display()
-    );
+    draw(arguments, &caption, &drawn, &states::crossings(&lines))?;
+    gallery::say!("wrote points.csv and transitions.csv to {}", folder.display());
     let tables = ["points", "transitions"].map(|name| (name, folder.join(name).with_extension("csv")));
     arguments.results.write_tables_as_json(&tables)
+}
+
+fn draw(
+    arguments: &Arguments,
+    caption: &str,
+    states: &[State],
+    crossings: &[Crossing],
+) -> Result<(), Box<dyn Error>> {
+    let gravity = arguments.gravity.value();
+    let title = format!("Convective states at g = {gravity}");
+    let folder = arguments.folder();
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    picture::draw(&Diagram { gravity, title: &title, notes: caption, states, crossings })?
+        .write(&folder.join("fig5_phase_diagram"))?;
+    gallery::say!("{caption}");
+    gallery::say!("wrote fig5_phase_diagram.svg and fig5_phase_diagram.png to {}", folder.display());
+    Ok(())
 }
 
 fn caption(arguments: &Arguments, parts: &[Part], finished: usize) -> String {

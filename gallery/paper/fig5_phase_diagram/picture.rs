@@ -8,7 +8,7 @@ use granular_edmd::kinetic::{IsoLine, Maxwellian, Piece};
 use kuva::prelude::{Layout, Plot, TickFormat};
 
 use gallery::look::{BLUE, INK, Look, Mark, PURPLE, QUIET, VERMILION};
-use gallery::panel::{self, COLUMN, Margins, Panel, Place, SMALL};
+use gallery::panel::{self, Margins, Panel, Place};
 use gallery::paper::TABLE_1;
 use gallery::sheet::{Sheet, wrapped};
 
@@ -65,42 +65,54 @@ const FRICTIONS: (f64, f64) = (0.0043, 3.5);
 /// Factor between neighboring frictions of a line that has left the plane between them.
 const GAP: f64 = 20.0;
 
-/// Half the width of a mark: neighbors among the frictions from 0.05 to 0.07 do not touch.
+/// Half the width of a mark on the way up, and of the open one around it on the way down: neighbors among the
+/// frictions from 0.05 to 0.07 do not touch.
 const SIZE: f64 = 2.2;
-
-/// Distance of the marks of both ways.
-const APART: f64 = 5.5;
+const AROUND: f64 = 4.4;
 
 const MARGINS: Margins = [74.0, 14.0, 10.0, 60.0];
-const HEIGHT: f64 = 410.0;
-const LEGEND: f64 = 166.0;
+
+/// Width of the whole picture and of its panel; the legend is beside it.
+const WIDTH: f64 = 850.0;
+const PANEL: f64 = 600.0;
+const HEIGHT: f64 = 430.0;
+
+/// Bars are pale, so that nobody takes them for the lines.
+const BAR: Look = Look::line("#b4b9bf", "");
 
 /// Draws the picture.
 pub(crate) fn draw(diagram: &Diagram) -> Result<Sheet, ParameterError> {
-    let notes = wrapped(diagram.notes, COLUMN - MARGINS[0]);
-    let top = 34.0 + 22.0 * notes.len() as f64;
-    let mut sheet = Sheet::new(COLUMN, top + LEGEND + HEIGHT);
+    let notes = wrapped(diagram.notes, WIDTH - MARGINS[0]);
+    let top = 44.0 + 22.0 * notes.len() as f64;
+    let mut sheet = Sheet::new(WIDTH, top + HEIGHT);
     sheet.header(MARGINS[0], diagram.title, &[diagram.notes]);
     write_legend(&mut sheet, top + 30.0, diagram.states.iter().any(|state| state.down));
-    let mut plots = iso_lines(diagram.gravity)?;
-    plots.extend(lines(diagram.crossings));
-    let place = Place { x: 0.0, y: top + LEGEND, width: COLUMN, height: HEIGHT };
-    let panel = sheet.panel(place, MARGINS, plots, layout(diagram.gravity));
+    let place = Place { x: 0.0, y: top, width: PANEL, height: HEIGHT };
+    // Twice: the bars lie below the lines.
+    let panel = sheet.panel(place, MARGINS, Vec::new(), layout(diagram.gravity));
     add_bars(&mut sheet, &panel, diagram.crossings);
+    let mut plots = iso_lines(diagram.gravity)?;
+    let islands: Vec<_> = diagram.states.iter().filter(|state| is_island(state, diagram.states)).collect();
+    plots.extend(lines(diagram.crossings.iter().filter(|at| !islands.iter().any(|state| at.borders(state)))));
+    sheet.panel(place, MARGINS, plots, layout(diagram.gravity));
     add_states(&mut sheet, &panel, diagram.states);
     Ok(sheet)
 }
 
 fn write_legend(sheet: &mut Sheet, top: f64, down: bool) {
-    let (left, right) = (16.0, 236.0);
+    let left = PANEL + 6.0;
     let states = REGIMES.map(|(_, look, name)| (look.with_size(4.0), name));
     sheet.legend((left, top), &states);
+    if down {
+        let ways = [(Look::marks(INK, Mark::Disk).with_size(SIZE), "full: way up")];
+        sheet.legend((left, top + 134.0), &ways);
+        let ways = [(Look::marks(INK, Mark::Disk).with_size(AROUND).open(), "open: way down")];
+        sheet.legend((left, top + 158.0), &ways);
+    }
     let names = LINES.map(|(line, look)| (look, format!("transition {line}")));
-    sheet.legend((right, top), &names.each_ref().map(|(look, name)| (*look, name.as_str())));
+    sheet.legend((left, top + 196.0), &names.each_ref().map(|(look, name)| (*look, name.as_str())));
     let thin = Look::line(QUIET, "").with_width(0.8);
-    sheet.legend((right, top + 96.0), &[(thin, "⟨dE⟩ of Table I")]);
-    let ways = if down { "full: way up; open: way down; " } else { "" };
-    sheet.text(left, top + 122.0, SMALL, QUIET, &format!("{ways}bars: between neighbors"));
+    sheet.legend((left, top + 292.0), &[(thin, "⟨dE⟩ of Table I"), (BAR, "between neighbors")]);
 }
 
 /// Returns the largest inelasticity of the picture. At the smaller gravity, everything needs more loss.
@@ -137,22 +149,59 @@ fn iso_lines(gravity: f64) -> Result<Vec<Plot>, ParameterError> {
     Ok(plots)
 }
 
-/// Draws a full mark for a state on the way up, and an open one below it for a state on the way down.
+/// Draws a full mark for a state on the way up, and an open one around it for a state on the way down: both
+/// where they belong.
 fn add_states(sheet: &mut Sheet, panel: &Panel, states: &[State]) {
-    for (regime, look, _) in REGIMES {
-        for state in states.iter().filter(|state| state.regime == regime) {
-            let (x, y) = panel.at((state.friction, state.inelasticity));
-            let look = look.with_size(SIZE);
-            if state.down { sheet.mark((x, y + APART), look.open()) } else { sheet.mark((x, y), look) }
+    for down in [true, false] {
+        for state in states.iter().filter(|state| state.down == down) {
+            let Some((_, look, _)) = REGIMES.iter().find(|(regime, ..)| *regime == state.regime) else {
+                continue;
+            };
+            let look = if down { look.with_size(AROUND).open() } else { look.with_size(SIZE) };
+            sheet.mark(panel.at((state.friction, state.inelasticity)), look);
         }
+    }
+}
+
+/// Tells whether all next states in friction lie on one side of this one in the order of regimes, and all in
+/// inelasticity as well. It is drawn as it is, but no line goes around a single run.
+fn is_island(state: &State, states: &[State]) -> bool {
+    let place = |state: &State| (state.friction, state.inelasticity);
+    let turned = |state: &State| (state.inelasticity, state.friction);
+    one_sided(state, states, place) && one_sided(state, states, turned)
+}
+
+/// Tells whether the next states on either side along the first of two coordinates have regimes that are all
+/// above, or all below, this one's.
+fn one_sided(state: &State, states: &[State], place: impl Fn(&State) -> (f64, f64)) -> bool {
+    let (along, across) = place(state);
+    let others = || states.iter().filter(|other| place(other).1 == across);
+    let nearest = |sign: f64| {
+        let distance = |other: &State| sign * (place(other).0 - along);
+        let least = others().map(distance).filter(|way| *way > 0.0).fold(f64::INFINITY, f64::min);
+        others().filter(move |other| distance(other) == least).map(|other| other.regime).collect::<Vec<_>>()
+    };
+    let (before, after) = (nearest(-1.0), nearest(1.0));
+    let all = || before.iter().chain(&after);
+    let sided = all().all(|regime| *regime > state.regime) || all().all(|regime| *regime < state.regime);
+    !before.is_empty() && !after.is_empty() && sided
+}
+
+impl Crossing {
+    /// Tells whether the state is one of the two between which this transition lies.
+    fn borders(&self, state: &State) -> bool {
+        // The neighbors were computed from their middle.
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-6 * b.abs();
+        self.between.iter().any(|end| near(end.0, state.friction) && near(end.1, state.inelasticity))
     }
 }
 
 /// Draws each line through its points. Low and high frictions are apart if the line leaves the plane between
 /// them.
-fn lines(crossings: &[Crossing]) -> Vec<Plot> {
+fn lines<'a>(crossings: impl Iterator<Item = &'a Crossing>) -> Vec<Plot> {
+    let crossings: Vec<_> = crossings.collect();
     let curves = LINES.iter().flat_map(|(line, look)| {
-        let of: Vec<&Crossing> = crossings.iter().filter(|at| at.line == *line).collect();
+        let of: Vec<&Crossing> = crossings.iter().copied().filter(|at| at.line == *line).collect();
         branches(&of).into_iter().map(|branch| look.curve(branch)).collect::<Vec<_>>()
     });
     curves.collect()
@@ -181,8 +230,5 @@ fn means(mut points: Piece) -> Piece {
 
 /// Draws bars between the neighbors between which the points of the lines lie.
 fn add_bars(sheet: &mut Sheet, panel: &Panel, crossings: &[Crossing]) {
-    for (line, look) in LINES {
-        let bars = crossings.iter().filter(|at| at.line == line).map(|at| at.between);
-        sheet.bars(panel, look, bars);
-    }
+    sheet.bars(panel, BAR, crossings.iter().map(|at| at.between));
 }

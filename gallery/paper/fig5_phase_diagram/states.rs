@@ -62,8 +62,22 @@ pub(crate) fn points(studies: &[Study<VibratedBox>]) -> Result<Vec<Point>, Box<d
 }
 
 /// Returns the points of the transition lines.
-pub(crate) fn lines(points: &[Point]) -> Result<Vec<PlaneTransition>, ParameterError> {
-    plane_transitions(points.iter().map(|point| (point.friction, point.inelasticity, point.regime)))
+pub(crate) fn lines(states: &[State]) -> Result<Vec<PlaneTransition>, ParameterError> {
+    plane_transitions(states.iter().map(|state| (state.friction, state.inelasticity, state.regime)))
+}
+
+/// Reads the states of a table that [`write_points`] has written.
+pub(crate) fn read(table: &Path) -> Result<Vec<State>, Box<dyn Error>> {
+    let read = || -> Result<Vec<State>, Box<dyn Error>> {
+        let rows = csv::Reader::from_path(table)?.into_deserialize().map(|row| {
+            let (_, friction, inelasticity, leg, name): (f64, f64, f64, String, String) = row?;
+            let regime = ConvectiveRegime::ALL.iter().copied().find(|regime| regime.to_string() == name);
+            let regime = regime.ok_or_else(|| format!("there is no state “{name}”"))?;
+            Ok(State { friction, inelasticity, regime, down: leg == Leg::Down.to_string() })
+        });
+        rows.collect()
+    };
+    read().map_err(|error| format!("{}: {error}", table.display()).into())
 }
 
 /// Returns the points as the picture takes them.
