@@ -9,7 +9,7 @@ use gallery::sheet::Sheet;
 
 const MARGINS: Margins = [72.0, 18.0, 12.0, 60.0];
 const HEADER: f64 = 90.0;
-const FILM: f64 = 340.0;
+const FILM: f64 = 308.0;
 const GAP: f64 = 16.0;
 
 /// Draws the film above the numbers over time.
