@@ -59,6 +59,9 @@ const INTRUDER: Kind = Kind::new(1);
 const GRAINS: usize = 600;
 const WIDTH: f64 = 30.0;
 
+/// Amplitude of the base.
+const AMPLITUDE: f64 = 1.0;
+
 /// Diameter of the largest intruder.
 const LARGEST: f64 = 16.0;
 
@@ -103,7 +106,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Shakes an intruder among the grains, and returns its way.
 fn shaken(arguments: &Arguments, diameter: f64, density: f64) -> Result<Nut, Box<dyn Error>> {
-    let floor = Sinusoidal::new(1.0, 2.0)?;
+    let floor = Sinusoidal::new(AMPLITUDE, 2.0)?;
     let container = Container::open(WIDTH)?.with_motion(Wall::Floor, floor)?;
     let start = initial_disks(&container, diameter, density, arguments.seed)?;
     // Grains lie on each other for moments; they need a contact duration.
@@ -182,33 +185,40 @@ const MARGINS: Margins = [62.0, 16.0, 28.0, 58.0];
 const HEADER: f64 = 66.0;
 const HEIGHT: f64 = 440.0;
 
-/// Height of the part of the box that is shown.
+const BELOW: f64 = 330.0;
+
+/// Height of the part of the box that is shown, and its levels, with the base at its lowest.
 const SHOWN: f64 = 32.0;
+const LEVELS: (f64, f64) = (-2.0, SHOWN);
+
+/// The highest and the lowest place of the base.
+const BASE: Look = Look::line(QUIET, "2 3").with_width(1.0);
 
 /// The mean height of the grains.
 const GRAIN: Look = Look::line(QUIET, "4 3").with_width(1.4);
 
 /// Draws an intruder at first and at its highest, and all heights over time.
 fn draw(nuts: &[Nut]) -> Result<Sheet, Box<dyn Error>> {
-    let unit = (HEIGHT - MARGINS[2] - MARGINS[3]) / SHOWN;
+    let unit = (HEIGHT - MARGINS[2] - MARGINS[3]) / (LEVELS.1 - LEVELS.0);
     let frame = WIDTH * unit + MARGINS[0] + MARGINS[1];
-    let mut sheet = Sheet::new(2.0 * frame + 568.0, HEADER + HEIGHT);
-    let about = "600 grains of diameter 1, A = 1, ω = 2, g = 1, q = 0.05, κ = 0.3, rough walls";
+    let mut sheet = Sheet::new(2.0 * frame, HEADER + HEIGHT + BELOW);
+    let about = "600 grains of diameter d, A = d, ω = 2 √(g/d), q = 0.05, κ = 0.3, rough walls; dotted: the base goes up and down between these";
     sheet.header(MARGINS[0], "A large disk among small ones, in a shaken box", &[about]);
     let Some(shown) = nuts.get(nuts.len() / 3) else { return Err("no intruder to draw".into()) };
     let (time, highest) = &shown.highest;
     let later = format!("highest, after {time:.0} oscillations");
     for (k, (disks, when)) in [(&shown.start, "at first"), (highest, &later)].into_iter().enumerate() {
         let place = Place { x: k as f64 * frame, y: HEADER, width: frame, height: HEIGHT };
-        let layout = panel::axes((0.0, WIDTH), (0.0, SHOWN)).with_x_label("x, in diameters");
+        let layout = panel::axes((0.0, WIDTH), LEVELS).with_x_label("x, in diameters");
         let layout = if k == 0 { layout.with_y_label("height, in diameters") } else { layout };
         let color = |disk: &Disk| if disk.kind() == INTRUDER { VERMILION } else { "#a4abb3" };
-        let disks = vec![faces(disks.iter(), unit, GAP, color)];
-        sheet.panel(place, MARGINS, disks, layout.with_x_tick_step(10.0));
+        let base = |level: f64| BASE.curve([(0.0, level), (WIDTH, level)]);
+        let plots = vec![base(-AMPLITUDE), base(AMPLITUDE), faces(disks.iter(), unit, GAP, color)];
+        sheet.panel(place, MARGINS, plots, layout.with_x_tick_step(10.0));
         let words = format!("diameter {}, {when}", shown.diameter);
         sheet.text(place.x + MARGINS[0], HEADER + 20.0, SMALL, INK, &words);
     }
-    let place = Place { x: 2.0 * frame, y: HEADER, width: 560.0, height: HEIGHT };
+    let place = Place { x: 0.0, y: HEADER + HEIGHT, width: 2.0 * frame, height: BELOW };
     sheet.panel(place, MARGINS, lines(nuts), heights(nuts));
     add_legend(&mut sheet, (place.x + MARGINS[0] + 12.0, HEADER + MARGINS[2] + 20.0), nuts);
     Ok(sheet)

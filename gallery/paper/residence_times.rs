@@ -117,7 +117,7 @@ impl Value {
     /// seen. The stays are independent, and their number has the error of a count.
     fn residence(&self, samples: usize, ends: usize) -> Option<Residence> {
         let mean = (samples as u64 * self.every) as f64 / ends as f64;
-        (ends > 0).then(|| Residence { mean, error: mean / (ends as f64).sqrt() })
+        (ends > 0).then(|| Residence { mean, error: mean / (ends as f64).sqrt(), ends })
     }
 }
 
@@ -126,6 +126,23 @@ impl Value {
 struct Residence {
     mean: f64,
     error: f64,
+    /// Number of stays whose end was seen.
+    ends: usize,
+}
+
+impl Residence {
+    /// Returns whether too few stays have ended to bound their mean from above.
+    const fn is_bound(&self) -> bool {
+        self.ends <= 2
+    }
+
+    /// Returns the means for which so many ends are as usual as one standard deviation of a count. Without a
+    /// bound from above, the bar goes on to the edge of the picture.
+    fn interval(&self) -> [f64; 2] {
+        let (ends, deviation) = (self.ends as f64, (self.ends as f64).sqrt());
+        let above = if self.is_bound() { f64::INFINITY } else { self.mean * ends / (ends - deviation) };
+        [self.mean * ends / (ends + deviation), above]
+    }
 }
 
 /// Returns a series of two values in which stays shorter than this many samples belong to the stay before.
@@ -199,9 +216,21 @@ struct Stay {
 }
 
 const STAYS: [Stay; 3] = [
-    Stay { name: "a roll of one sense", of: Value::sense, look: Look::marks(BLUE, Mark::Disk) },
-    Stay { name: "one roll", of: |value| value.rolls(false), look: Look::marks(GREEN, Mark::Triangle) },
-    Stay { name: "two rolls", of: |value| value.rolls(true), look: Look::marks(VERMILION, Mark::Square) },
+    Stay {
+        name: "one roll, until it turns the other way",
+        of: Value::sense,
+        look: Look::marks(BLUE, Mark::Disk),
+    },
+    Stay {
+        name: "one roll, until there are two",
+        of: |value| value.rolls(false),
+        look: Look::marks(GREEN, Mark::Triangle),
+    },
+    Stay {
+        name: "two rolls, until there is one",
+        of: |value| value.rolls(true),
+        look: Look::marks(VERMILION, Mark::Square),
+    },
 ];
 
 const COLUMNS: [&str; 14] = [
@@ -250,24 +279,24 @@ fn print(value: &Value, shares: [f64; 3], stays: &[Option<Residence>]) {
         at.unwrap_or_default()
     );
     for (Stay { name, .. }, stay) in STAYS.iter().zip(stays) {
-        if let Some(Residence { mean, error }) = stay {
+        if let Some(Residence { mean, error, .. }) = stay {
             gallery::say!("    {name}: {mean:.0} ± {error:.0} oscillations");
         }
     }
 }
 
 const MARGINS: Margins = [74.0, 26.0, 16.0, 60.0];
-const HEADER: f64 = 190.0;
+const HEADER: f64 = 234.0;
 const SIZE: (f64, f64) = (COLUMN, 360.0);
 
 /// Ranges of friction and of residence times.
-const RANGES: [(f64, f64); 2] = [(0.0, 0.07), (1e3, 1e6)];
+const RANGES: [(f64, f64); 2] = [(0.0, 0.07), (1e3, 2e6)];
 
 /// Draws the residence times at the larger gravity over friction.
 fn draw(values: &[Value]) -> Sheet {
     let mut sheet = Sheet::new(SIZE.0, HEADER + SIZE.1);
-    let notes = "N = 1000, g = 0.015625, q = 0, A = 0.1, ω = 10; a million oscillations for each friction. From κ = 0.025 to \
-                 0.055 no roll changed";
+    let notes = "N = 1000, g = 0.015625, q = 0, A = 0.1, ω = 10; a million oscillations for each friction. Open: one or \
+                 two changes, no bound from above. From κ = 0.025 to 0.055 no roll changed; below 0.0175, noise passes for rolls";
     sheet.header(MARGINS[0], "How long states last", &[notes]);
     sheet.legend((MARGINS[0], HEADER - 66.0), &STAYS.map(|stay| (stay.look, stay.name)));
     let layout = panel::axes(RANGES[0], RANGES[1])
@@ -277,11 +306,14 @@ fn draw(values: &[Value]) -> Sheet {
     let place = Place { x: 0.0, y: HEADER, width: SIZE.0, height: SIZE.1 };
     let panel = sheet.panel(place, MARGINS, Vec::new(), layout);
     for stay in &STAYS {
-        let ends = |(at, Residence { mean, error }): (f64, Residence)| {
-            [mean - error, mean + error].map(|end| (at, end.clamp(RANGES[1].0, RANGES[1].1)))
+        let ends = |(at, time): (f64, Residence)| {
+            time.interval().map(|end| (at, end.clamp(RANGES[1].0, RANGES[1].1)))
         };
         sheet.bars(&panel, stay.look, times(stay, values).map(ends));
-        sheet.marks(&panel, stay.look, times(stay, values).map(|(at, time)| (at, time.mean)));
+        for (at, time) in times(stay, values) {
+            let look = if time.is_bound() { stay.look.open() } else { stay.look };
+            sheet.marks(&panel, look, [(at, time.mean)]);
+        }
     }
     sheet
 }

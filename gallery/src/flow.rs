@@ -42,6 +42,16 @@ impl Arrows {
         Self { cells, fastest, longest }
     }
 
+    /// Returns the largest speed of these flows, for arrows of one scale.
+    pub fn fastest<'a>(flows: impl IntoIterator<Item = &'a Self>) -> f64 {
+        flows.into_iter().map(|arrows| arrows.fastest).fold(0.0, f64::max)
+    }
+
+    /// Returns the arrows in the scale in which this speed has the longest arrow.
+    pub fn in_scale_of(self, fastest: f64) -> Self {
+        Self { fastest, ..self }
+    }
+
     /// Returns the arrows with shafts of this width.
     pub fn plot(&self, width: f64) -> Plot {
         let scale = self.longest / self.fastest.max(f64::MIN_POSITIVE);

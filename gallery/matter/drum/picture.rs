@@ -8,13 +8,13 @@ use kuva::prelude::{LinePlot, Plot, ScatterPlot};
 use crate::{Arguments, PIN, Turned};
 use gallery::faces::{GAP, faces};
 use gallery::flow::Arrows;
-use gallery::look::{INK, Look, ORANGE, QUIET};
+use gallery::look::{BLUE, INK, Look, QUIET};
 use gallery::panel::{self, Margins, Place, SMALL};
 use gallery::sheet::Sheet;
 
 const MARGINS: Margins = [78.0, 18.0, 12.0, 60.0];
 const HEADER: f64 = 88.0;
-const SIDE: f64 = 300.0;
+const SIDE: f64 = 268.0;
 const BELOW: f64 = 330.0;
 
 /// Grains that turn as one body with the drum.
@@ -28,12 +28,14 @@ pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Sheet {
     let Arguments { pins, friction, speed, .. } = arguments;
     let grains = drums.first().map_or(0, |drum| drum.disks.len());
     let words = format!(
-        "{grains} grains, {pins} pins, g = 1, q = 0.1, κ = {friction}, elastic below {speed}; arrows: mean flow, dashed: mean surface"
+        "{grains} grains, {pins} pins, q = 0.1, κ = {friction}, elastic below {speed} √(gd); arrows: mean flow, dashed: mean surface"
     );
     sheet.header(MARGINS[0], "A drum, half full, that turns counterclockwise", &[&words]);
-    for (k, drum) in drums.iter().enumerate() {
+    let arrows = || drums.iter().map(|drum| Arrows::of(&drum.flow, 0.15, 2.0));
+    let fastest = Arrows::fastest(&arrows().collect::<Vec<_>>());
+    for (k, (drum, arrows)) in drums.iter().zip(arrows()).enumerate() {
         let place = Place { x: k as f64 * frame, y: HEADER + 24.0, width: frame, height: tall };
-        draw_drum(&mut sheet, place, arguments, drum);
+        draw_drum(&mut sheet, place, arguments, drum, &arrows.in_scale_of(fastest));
     }
     let place = Place { x: 0.0, y: HEADER + tall + 40.0, width: 0.5 * width, height: BELOW };
     draw_angles(&mut sheet, place, drums);
@@ -41,31 +43,31 @@ pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Sheet {
     sheet
 }
 
-fn draw_drum(sheet: &mut Sheet, place: Place, arguments: &Arguments, drum: &Turned) {
+fn draw_drum(sheet: &mut Sheet, place: Place, arguments: &Arguments, drum: &Turned, arrows: &Arrows) {
     let edge = 1.02 * arguments.radius;
     let layout = panel::axes((-edge, edge), (-edge, edge))
         .with_x_label("x, in diameters")
         .with_y_label("y, in diameters");
-    let (unit, arrows) = (0.5 * SIDE / edge, Arrows::of(&drum.flow, 0.15, 2.0));
-    sheet.panel(place, MARGINS, inside(arguments, drum, unit, &arrows), layout);
+    let unit = 0.5 * SIDE / edge;
+    sheet.panel(place, MARGINS, inside(arguments, drum, unit, arrows), layout);
     let (angle, error) = (drum.angle.mean(), drum.angle.standard_error());
-    let words = format!("{}: {angle:.1}° ± {error:.1}°, Ω²R/g = {:.3}", name(drum), drum.froude);
+    let words = format!("{}: {angle:.1}° ± {error:.1}°", name(drum));
     sheet.text(place.x + MARGINS[0], place.y + 4.0, SMALL, INK, &words);
     // An arrow of this length in the corner is this fast.
     if let Some((speed, length)) = arrows.scale() {
         let corner = (place.x + MARGINS[0] + 8.0, place.y + MARGINS[2] + SIDE - 8.0);
-        sheet.arrow(corner, unit * length, &speed.to_string());
+        sheet.arrow(corner, unit * length, &format!("{speed} √(gd)"));
     }
 }
 
 fn draw_angles(sheet: &mut Sheet, place: Place, drums: &[Turned]) {
     let turns = drums.iter().filter_map(|drum| drum.surfaces.last()).map(|(turns, _)| *turns);
-    let layout = panel::axes((0.5, turns.fold(0.6, f64::max)), (0.0, 60.0));
+    let layout = panel::axes((0.5, turns.fold(0.6, f64::max)), (0.0, 80.0));
     let layout = layout.with_x_label("turns").with_y_label("angle of the surface, in degrees");
     let panel = sheet.panel(place, MARGINS, angles(drums), layout);
-    let names: Vec<String> = drums.iter().map(name).collect();
+    let names: Vec<String> = drums.iter().map(|drum| format!("Ω²R/g = {:.3}", drum.froude)).collect();
     let names = names.iter().enumerate().map(|(k, name)| (look(k), name.as_str()));
-    sheet.legend_in_row((panel.place.x + 14.0, panel.place.y + 26.0), &names.collect::<Vec<_>>());
+    sheet.legend((panel.place.x + 14.0, panel.place.y + 26.0), &names.collect::<Vec<_>>());
 }
 
 fn draw_flows(sheet: &mut Sheet, place: Place, arguments: &Arguments, drums: &[Turned]) {
@@ -84,7 +86,7 @@ const fn look(k: usize) -> Look {
 }
 
 fn name(drum: &Turned) -> String {
-    format!("Ω = {}", drum.rate)
+    format!("Ω = {} √(g/d)", drum.rate)
 }
 
 /// Returns rim, pins, grains, mean flow and mean surface.
@@ -97,8 +99,7 @@ fn inside(arguments: &Arguments, drum: &Turned, unit: f64, arrows: &Arrows) -> V
     let middle =
         drum.surfaces.iter().map(|(_, surface)| surface.middle).sum::<f64>() / drum.surfaces.len() as f64;
     let ends = [-end, end].map(|along| (along * angle.cos(), middle + along * angle.sin()));
-    let line =
-        LinePlot::new().with_data(ends.to_vec()).with_color(ORANGE).with_stroke_width(1.6).with_dashed();
+    let line = LinePlot::new().with_data(ends.to_vec()).with_color(BLUE).with_stroke_width(2.2).with_dashed();
     let pins = (0..arguments.pins).map(|k| TAU * f64::from(k) / f64::from(arguments.pins));
     let pins =
         pins.map(|angle| (radius - PIN) * DVec2::from_angle(angle + TAU * drum.turns)).map(|p| (p.x, p.y));

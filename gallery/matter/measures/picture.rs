@@ -44,8 +44,8 @@ fn draw_pairs(sheet: &mut Sheet, place: Place, gas: &Gas, bulk: &Bulk) {
     let axes = axes.with_x_label("distance r, in diameters").with_y_label("pair correlation g(r)");
     let panel = sheet.panel(place, MARGINS, vec![MEASURED.curve(points)], axes);
     sheet.marks(&panel, CONTACT, [(1.0, gas.contact_value())]);
-    let names = [(MEASURED, "measured"), (CONTACT, "contact, Henderson")];
-    sheet.legend((panel.place.x + 200.0, panel.place.y + 30.0), &names);
+    let names = [(MEASURED, "measured"), (CONTACT, "Henderson")];
+    sheet.legend((panel.place.x + 190.0, panel.place.y + 30.0), &names);
 }
 
 /// Draws the distributions of speeds over the Maxwellian one, of the elastic gas and of the one that cools.
