@@ -232,8 +232,8 @@ fn check_overlaps<B: Boundary + ?Sized>(
     let mut found = vec![0; cells.room()];
     for first in 0..disks.len() {
         let count = cells.around(first, &mut found);
-        // The search of a large disk leaves out its own inside, so a small disk there must find the large
-        // one.
+        // A large disk does not search the cells inside itself, so a small disk that lies there must find the
+        // large one.
         let is_asked = |second: usize| second < first || (second > first && cells.is_large(second));
         for &second in found[..count].iter().filter(|&&second| is_asked(second as usize)) {
             let (a, b) = (&disks[second as usize], &disks[first]);

@@ -159,8 +159,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Tells whether a disk is slow enough for this epoch after a kick. Nearly all disks are.
     #[inline]
     fn is_tame(&self, kick: &Kick) -> bool {
-        // The answer is no for a velocity that is not a number. Rotation cannot go wrong alone, since its
-        // impulse moves the disk, too.
+        // The answer is no for a velocity that is not a number. Spins need no test: an impulse that makes the
+        // spin NaN makes the velocity NaN, too.
         self.bodies.keeps_pace(kick.after.velocity, self.clock.epoch_length)
     }
 

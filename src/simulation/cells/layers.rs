@@ -84,9 +84,8 @@ impl Layers {
         let mut larger: Vec<Layer> = layouts.iter().map(|&layout| Layer::empty(domain, layout)).collect();
         let distances = |a: usize, b: usize| Distances {
             most: 0.5 * LEAST_PITCH * (classes[a].largest + classes[b].largest),
-            // The distance is less than that of a touch, by more than the depth to which rounding can press
-            // disks into each other. Within a class there is no hole, since no home is so small that it fits
-            // into a disk.
+            // The least distance is smaller than that of a touch, with room for overlaps by rounding. Within
+            // a class there is no hole, since a home is too large to fit inside a disk.
             least: if a == b { 0.0 } else { 0.5 / LEAST_PITCH * (classes[a].smallest + classes[b].smallest) },
         };
         let homes = |class: usize| match class {

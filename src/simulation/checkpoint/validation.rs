@@ -33,7 +33,7 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     let count = saved.trajectories.len();
     let lengths = [saved.spins.len(), saved.forecasts.len(), saved.places.len()];
     check(lengths.iter().all(|&length| length == count), "its parts differ in length")?;
-    check([0, count].contains(&saved.images.len()), "its images are of other disks")?;
+    check([0, count].contains(&saved.images.len()), "the number of images is not the number of disks")?;
     check([1, count].contains(&saved.models.len()), "its disks have too many models, or none")?;
     let times = [saved.origin, saved.now, saved.epoch_length, saved.gravity];
     check(times.iter().all(|time| time.is_finite()), "a time is not finite")?;
@@ -41,7 +41,7 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     check(is_epoch_length(saved.epoch_length) && saved.now >= 0.0, "its epoch is out of order")?;
     check(saved.trajectories.iter().all(is_trajectory), "a trajectory is beyond all bounds")?;
     check(saved.spins.iter().all(|spin| is_spin(spin, saved.now)), "a rotation is beyond all bounds")?;
-    check(are_forecasts(saved, walls), "an event is of nobody, or in the past")?;
+    check(are_forecasts(saved, walls), "an event names no disk or wall, or is overdue")?;
     check(are_counted(&saved.counters) && is_guard(&saved.guard), "its counters are beyond all counting")?;
     let Counters { cell_crossings, disk_collisions, .. } = saved.counters;
     let forward = saved.tally.cell_crossings <= cell_crossings && saved.tally.collisions <= disk_collisions;
@@ -59,7 +59,7 @@ pub(super) fn check_places(saved: &Saved, grids: &Grids, bodies: &Bodies) -> Res
     check(has_room(saved, grids, bodies), "the disks of a cell overlap")?;
     let ends =
         |(disk, (forecast, &place))| ends_where_it_can(saved, grids.of(disk), bodies, disk, forecast, place);
-    check(disks().all(ends), "a disk leaves its neighbor cell where it is not")?;
+    check(disks().all(ends), "a cell exit is not at the edge of the cell of its disk")?;
     let meets = |(disk, (forecast, _))| meets_its_partner(saved, bodies, disk, forecast);
     check(disks().all(meets), "a disk collides with one that it does not touch")
 }
