@@ -1,4 +1,4 @@
-"""Reads the files of `export` by OVITO, VTK and LAMMPS, and compares every number with what the run had."""
+"""Reads the files of `export` by OVITO, VTK, LAMMPS and GSD, and compares every number with what the run had."""
 
 import csv
 import gzip
@@ -50,6 +50,7 @@ def read_by_ovito():
             data = pipeline.compute(number)
             particles = data.particles
             of_ovito(f"{name}, frame {number}", data, particles, frame, is_xyz="xyz" in name)
+    gsd_by_ovito()
     render_by_ovito(pipeline)
 
 
@@ -85,6 +86,66 @@ def of_ovito(place, data, particles, frame, is_xyz):
     same(f"{place}: corner of the box", cell[:2, 3], np.array([frame["left"], frame["bottom"]]), roundings=1)
     same(f"{place}: width of the box", cell[0, 0], frame["right"] - frame["left"])
     same(f"{place}: periodic directions", list(data.cell.pbc)[:2], frame["periodic"])
+
+
+def in_single(numbers):
+    return np.asarray(numbers, dtype=np.float32)
+
+
+def of_schema(place, frame):
+    """Returns what a file of GSD has for a frame: positions from its center, in single precision."""
+    disks = len(frame["disks"])
+    center = np.array([0.5 * (frame["left"] + frame["right"]), frame["bottom"]])
+    radius, mass, half = column(frame, "radius"), column(frame, "mass"), 0.5 * column(frame, "angle")
+    inertia = np.zeros((disks, 3))
+    inertia[:, 2] = column(frame, "inertia_factor") * mass * radius**2
+    turned = np.zeros((disks, 4))
+    turned[:, 0], turned[:, 3] = np.cos(half), np.sin(half)
+    return center, in_single(in_space(column(frame, "position") - center)), in_single(inertia), in_single(turned)
+
+
+def read_by_gsd():
+    import gsd.hoomd
+
+    with gsd.hoomd.open(str(folder / "run.gsd"), "r") as trajectory:
+        same("number of frames of run.gsd", len(trajectory), len(frames))
+        # From the last to the first: any frame is read without those before it.
+        for number in reversed(range(len(frames))):
+            read, frame, place = trajectory[number], frames[number], f"run.gsd, frame {number}"
+            read.validate()
+            particles, (center, positions, inertia, turned) = read.particles, of_schema(place, frame)
+            same(f"{place}: step", read.configuration.step, number)
+            same(f"{place}: dimensions", read.configuration.dimensions, 2)
+            same(f"{place}: width", read.configuration.box[0], in_single(frame["right"] - frame["left"]))
+            same(f"{place}: time", read.log["time"], np.array([frame["time"]]))
+            same(f"{place}: gravity", read.log["gravity"], np.array([frame["gravity"]]))
+            same(f"{place}: center", read.log["center"], center.reshape(1, 2))
+            same(f"{place}: kinds", particles.typeid, column(frame, "kind"))
+            same(f"{place}: names", [int(name) for name in particles.types], list(range(len(particles.types))))
+            same(f"{place}: positions", particles.position, positions)
+            same(f"{place}: velocities", particles.velocity, in_single(in_space(column(frame, "velocity"))))
+            same(f"{place}: diameters", particles.diameter, in_single(2 * column(frame, "radius")))
+            same(f"{place}: masses", particles.mass, in_single(column(frame, "mass")))
+            same(f"{place}: images", particles.image[:, :2], column(frame, "image"))
+            same(f"{place}: moments of inertia", particles.moment_inertia, inertia, roundings=1)
+            # The cosine of NumPy may differ by a rounding, which a small number shows much enlarged.
+            close = np.allclose(particles.orientation, turned, rtol=0, atol=1e-7)
+            momentum = 2 * turned * np.column_stack([column(frame, "angular_velocity") * inertia[:, 2]] * 4)
+            momentum = np.column_stack([-momentum[:, 3], momentum[:, 1:3], momentum[:, 0]])
+            same(f"{place}: turned", close and np.allclose(particles.angmom, momentum, rtol=0, atol=1e-6), True)
+
+
+def gsd_by_ovito():
+    from ovito.io import import_file
+
+    pipeline = import_file(str(folder / "run.gsd"))
+    same("number of frames of run.gsd", pipeline.source.num_frames, len(frames))
+    for number, frame in enumerate(frames):
+        data, place = pipeline.compute(number), f"run.gsd by OVITO, frame {number}"
+        _, positions, _, _ = of_schema(place, frame)
+        same(f"{place}: positions", in_single(data.particles["Position"][...]), positions)
+        same(f"{place}: radii", in_single(data.particles["Radius"][...]), in_single(column(frame, "radius")))
+        same(f"{place}: time", data.attributes["log/time"], frame["time"])
 
 
 def render_by_ovito(pipeline):
@@ -230,5 +291,5 @@ def read_by_python():
 
 read_by_python()
 for reader in sys.argv[2:]:
-    {"ovito": read_by_ovito, "vtk": read_by_vtk, "lammps": read_by_lammps}[reader]()
+    {"ovito": read_by_ovito, "vtk": read_by_vtk, "lammps": read_by_lammps, "gsd": read_by_gsd}[reader]()
     print(f"{reader}: as the run had it, {checked} numbers so far")

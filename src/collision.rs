@@ -17,6 +17,7 @@
 //! | [`ElasticBelow`] | an adaptor: slow contacts lose nothing | a cutoff in many codes |
 //! | [`LeastRebound`] | an adaptor: surfaces never part too slowly, which can add energy | |
 //! | [`RulesByKind`] | a table: one rule for each pair of kinds | |
+//! | [`KnownRule`] | any of the above, as one type that files can hold | |
 //! | [`from_fn`] | yours, as a closure | |
 //!
 //! # A rule of your own
@@ -55,6 +56,7 @@ mod frictional;
 mod from_fn;
 mod impulse;
 mod inelasticity;
+mod known;
 pub mod laws;
 mod least_rebound;
 mod rough;
@@ -73,6 +75,7 @@ pub use friction::Friction;
 pub use frictional::Frictional;
 pub use from_fn::{FromFn, from_fn};
 pub use impulse::{Impulse, Regime};
+pub use known::KnownRule;
 pub use least_rebound::LeastRebound;
 pub use rough::Rough;
 pub use rules_by_kind::RulesByKind;
@@ -80,7 +83,10 @@ pub use smooth::Smooth;
 pub use speed_dependent::SpeedDependent;
 pub use tangential_response::TangentialResponse;
 
+use std::sync::Arc;
+
 use crate::Fingerprint;
+use crate::forward::forward;
 
 /// The law of a collision: from a contact to an impulse.
 ///
@@ -128,40 +134,18 @@ pub trait CollisionRule {
     fn fingerprint(&self) -> Option<Fingerprint> {
         None
     }
-}
 
-impl<T: CollisionRule + ?Sized> CollisionRule for &T {
-    fn impulse(&self, contact: &Contact) -> Impulse {
-        (**self).impulse(contact)
-    }
-    fn explain(&self, contact: &Contact) -> Option<String> {
-        (**self).explain(contact)
-    }
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        (**self).fingerprint()
+    /// Returns the rule as data, if it is a rule of this crate, or a remedy or a table of such rules.
+    ///
+    /// Files of walls hold their rules in this form. A rule of your own has none.
+    fn known(&self) -> Option<KnownRule> {
+        None
     }
 }
 
-impl<T: CollisionRule + ?Sized> CollisionRule for Box<T> {
-    fn impulse(&self, contact: &Contact) -> Impulse {
-        (**self).impulse(contact)
-    }
-    fn explain(&self, contact: &Contact) -> Option<String> {
-        (**self).explain(contact)
-    }
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        (**self).fingerprint()
-    }
-}
-
-impl<T: CollisionRule + ?Sized> CollisionRule for std::sync::Arc<T> {
-    fn impulse(&self, contact: &Contact) -> Impulse {
-        (**self).impulse(contact)
-    }
-    fn explain(&self, contact: &Contact) -> Option<String> {
-        (**self).explain(contact)
-    }
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        (**self).fingerprint()
-    }
-}
+forward! { CollisionRule for [&T, Box<T>, Arc<T>] {
+    fn impulse(&self, contact: &Contact) -> Impulse;
+    fn explain(&self, contact: &Contact) -> Option<String>;
+    fn fingerprint(&self) -> Option<Fingerprint>;
+    fn known(&self) -> Option<KnownRule>;
+}}

@@ -82,6 +82,7 @@ mod error;
 mod file;
 mod fingerprint;
 mod flight;
+mod forward;
 pub mod guide;
 pub mod initial;
 mod instructions;

@@ -26,6 +26,8 @@ pub(crate) use by_size::LARGE_SYSTEM;
 pub use linear_scan::LinearScan;
 pub use tournament_tree::TournamentTree;
 
+use crate::forward::forward;
+
 /// The answer of a scheduler without disks.
 ///
 /// No disk has this index, and the time is later than any run lasts. The engine compares the time of each
@@ -112,40 +114,10 @@ pub trait EventScheduler {
     }
 }
 
-impl<T: EventScheduler + ?Sized> EventScheduler for &mut T {
-    #[inline]
-    fn reset(&mut self, due: &[f64]) {
-        (**self).reset(due);
-    }
-    #[inline]
-    fn set(&mut self, disk: usize, due: f64) {
-        (**self).set(disk, due);
-    }
-    #[inline]
-    fn earliest(&self) -> (usize, f64) {
-        (**self).earliest()
-    }
-    #[inline]
-    fn upcoming(&mut self, disks: &mut Vec<usize>) {
-        (**self).upcoming(disks);
-    }
-}
-
-impl<T: EventScheduler + ?Sized> EventScheduler for Box<T> {
-    #[inline]
-    fn reset(&mut self, due: &[f64]) {
-        (**self).reset(due);
-    }
-    #[inline]
-    fn set(&mut self, disk: usize, due: f64) {
-        (**self).set(disk, due);
-    }
-    #[inline]
-    fn earliest(&self) -> (usize, f64) {
-        (**self).earliest()
-    }
-    #[inline]
-    fn upcoming(&mut self, disks: &mut Vec<usize>) {
-        (**self).upcoming(disks);
-    }
-}
+forward! { EventScheduler for [&mut T, Box<T>] {
+    fn earliest(&self) -> (usize, f64);
+    mut
+    fn reset(&mut self, due: &[f64]);
+    fn set(&mut self, disk: usize, due: f64);
+    fn upcoming(&mut self, disks: &mut Vec<usize>);
+}}

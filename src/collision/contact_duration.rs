@@ -1,6 +1,6 @@
 //! The contact-duration model: a remedy for inelastic collapse.
 
-use super::{CollisionRule, Contact, Impulse, Regime, TangentialResponse};
+use super::{CollisionRule, Contact, Impulse, KnownRule, Regime, TangentialResponse};
 use crate::quantity::{Checked, Quantity, Range};
 use crate::{Fingerprint, ParameterError};
 
@@ -57,8 +57,7 @@ impl<R> ContactDuration<R> {
     }
 
     /// Returns the same model over another rule.
-    #[cfg(feature = "serde")]
-    pub(crate) const fn around<Q: Copy>(&self, rule: Q) -> ContactDuration<Q> {
+    fn around<Q>(&self, rule: Q) -> ContactDuration<Q> {
         ContactDuration { rule, duration: self.duration, tangential_response: self.tangential_response }
     }
 
@@ -91,5 +90,9 @@ impl<R: CollisionRule> CollisionRule for ContactDuration<R> {
     fn fingerprint(&self) -> Option<Fingerprint> {
         let (rule, response) = (self.rule.fingerprint()?, self.tangential_response.name());
         Some(Fingerprint::of("ContactDuration").part(rule).number(self.duration.get()).text(response))
+    }
+
+    fn known(&self) -> Option<KnownRule> {
+        Some(Box::new(self.around(self.rule.known()?)).into())
     }
 }

@@ -1,6 +1,6 @@
 //! The rule that loses nothing.
 
-use super::{CollisionRule, Contact, Impulse};
+use super::{CollisionRule, Contact, Impulse, KnownRule};
 use crate::Fingerprint;
 
 /// Smooth elastic collisions: the closing speed is reversed, and the slip stays as it is.
@@ -22,5 +22,9 @@ impl CollisionRule for Elastic {
 
     fn fingerprint(&self) -> Option<Fingerprint> {
         Some(Fingerprint::of("Elastic"))
+    }
+
+    fn known(&self) -> Option<KnownRule> {
+        Some((*self).into())
     }
 }

@@ -1,6 +1,6 @@
 //! Slow collisions without loss: a remedy for matter at rest.
 
-use super::{CollisionRule, Contact, Impulse, Regime, TangentialResponse};
+use super::{CollisionRule, Contact, Impulse, KnownRule, Regime, TangentialResponse};
 use crate::quantity::{Checked, Quantity, Range};
 use crate::{Fingerprint, ParameterError};
 
@@ -63,8 +63,7 @@ impl<R> ElasticBelow<R> {
     }
 
     /// Returns the same remedy around another rule.
-    #[cfg(feature = "serde")]
-    pub(crate) const fn around<Q: Copy>(&self, rule: Q) -> ElasticBelow<Q> {
+    fn around<Q>(&self, rule: Q) -> ElasticBelow<Q> {
         ElasticBelow { rule, speed: self.speed, tangential_response: self.tangential_response }
     }
 
@@ -96,5 +95,9 @@ impl<R: CollisionRule> CollisionRule for ElasticBelow<R> {
     fn fingerprint(&self) -> Option<Fingerprint> {
         let (rule, response) = (self.rule.fingerprint()?, self.tangential_response.name());
         Some(Fingerprint::of("ElasticBelow").part(rule).number(self.speed.get()).text(response))
+    }
+
+    fn known(&self) -> Option<KnownRule> {
+        Some(Box::new(self.around(self.rule.known()?)).into())
     }
 }

@@ -1,7 +1,7 @@
 //! The paper's rule: inelastic, rotating disks with static and dynamic friction.
 
 use super::inelasticity::NormalInelasticity;
-use super::{CollisionRule, Contact, Friction, Impulse};
+use super::{CollisionRule, Contact, Friction, Impulse, KnownRule};
 use crate::{Fingerprint, ParameterError};
 
 /// Inelastic collisions with Coulomb friction (paper, Eqs. (1)–(5); Jenkins & Zhang 2002), for any two
@@ -106,5 +106,9 @@ impl CollisionRule for Frictional {
         let name = Fingerprint::of("Frictional");
         let inelastic = name.number(self.normal_inelasticity()).number(self.tangential_inelasticity());
         Some(inelastic.number(self.static_friction()).number(self.dynamic_friction()))
+    }
+
+    fn known(&self) -> Option<KnownRule> {
+        Some((*self).into())
     }
 }

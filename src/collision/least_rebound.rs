@@ -1,6 +1,6 @@
 //! A least speed at which surfaces part: a remedy for matter at rest that keeps friction.
 
-use super::{CollisionRule, Contact, Impulse};
+use super::{CollisionRule, Contact, Impulse, KnownRule};
 use crate::quantity::{Checked, Quantity, Range};
 use crate::{Fingerprint, ParameterError};
 
@@ -57,8 +57,7 @@ impl<R> LeastRebound<R> {
     }
 
     /// Returns the same remedy around another rule.
-    #[cfg(feature = "serde")]
-    pub(crate) const fn around<Q: Copy>(&self, rule: Q) -> LeastRebound<Q> {
+    fn around<Q>(&self, rule: Q) -> LeastRebound<Q> {
         LeastRebound { rule, speed: self.speed }
     }
 
@@ -86,5 +85,9 @@ impl<R: CollisionRule> CollisionRule for LeastRebound<R> {
     /// Returns `None` if the rule inside has no fingerprint: two such remedies could not be told apart.
     fn fingerprint(&self) -> Option<Fingerprint> {
         Some(Fingerprint::of("LeastRebound").part(self.rule.fingerprint()?).number(self.speed.get()))
+    }
+
+    fn known(&self) -> Option<KnownRule> {
+        Some(Box::new(self.around(self.rule.known()?)).into())
     }
 }

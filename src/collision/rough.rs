@@ -1,7 +1,7 @@
 //! Rough disks: the surfaces never slide.
 
 use super::inelasticity::{NormalInelasticity, TangentialInelasticity};
-use super::{CollisionRule, Contact, Impulse, Regime};
+use super::{CollisionRule, Contact, Impulse, KnownRule, Regime};
 use crate::{Fingerprint, ParameterError};
 
 /// Rough inelastic collisions without a Coulomb limit, in which every collision sticks.
@@ -72,5 +72,9 @@ impl CollisionRule for Rough {
     fn fingerprint(&self) -> Option<Fingerprint> {
         let name = Fingerprint::of("Rough");
         Some(name.number(self.normal_inelasticity()).number(self.tangential_inelasticity()))
+    }
+
+    fn known(&self) -> Option<KnownRule> {
+        Some((*self).into())
     }
 }

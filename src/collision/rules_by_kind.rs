@@ -1,6 +1,6 @@
 //! A table of rules by the kinds of both partners.
 
-use super::{CollisionRule, Contact, Impulse};
+use super::{CollisionRule, Contact, Impulse, KnownRule};
 use crate::{Fingerprint, Kind};
 
 /// A table of rules for pairs of kinds, with one rule for all other pairs.
@@ -10,7 +10,7 @@ use crate::{Fingerprint, Kind};
 /// The order of the partners does not matter. Walls are partners, too. Their kind is [`Kind::WALL`], unless
 /// they were given another one ([`Container::with_kind`](crate::boundary::Container::with_kind)). The table
 /// does not apply to collisions with a wall that has its own rule. Rules of several types go into the table
-/// as [`BoxedRule`](crate::simulation::BoxedRule), or as an enum of your own, which can also be serialized.
+/// as [`KnownRule`], which files can hold, or as [`BoxedRule`](crate::simulation::BoxedRule).
 ///
 /// ```
 /// use granular_edmd::Kind;
@@ -100,6 +100,12 @@ impl<R: CollisionRule> CollisionRule for RulesByKind<R> {
             let [first, second] = kinds.map(|kind| f64::from(kind.number()));
             Some(table.number(first).number(second).part(rule.fingerprint()?))
         })
+    }
+
+    fn known(&self) -> Option<KnownRule> {
+        let known = |pair: &PairRule<R>| Some(PairRule { kinds: pair.kinds, rule: pair.rule.known()? });
+        let pairs = self.pairs.iter().map(known).collect::<Option<_>>()?;
+        Some(Box::new(RulesByKind { otherwise: self.otherwise.known()?, pairs }).into())
     }
 }
 

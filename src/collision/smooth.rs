@@ -1,7 +1,7 @@
 //! Inelastic disks without any tangential force.
 
 use super::inelasticity::NormalInelasticity;
-use super::{CollisionRule, Contact, Impulse};
+use super::{CollisionRule, Contact, Impulse, KnownRule};
 use crate::{Fingerprint, ParameterError};
 
 /// Smooth inelastic collisions: a normal impulse (paper, Eq. (3)) and no tangential one.
@@ -54,5 +54,9 @@ impl CollisionRule for Smooth {
 
     fn fingerprint(&self) -> Option<Fingerprint> {
         Some(Fingerprint::of("Smooth").number(self.normal_inelasticity()))
+    }
+
+    fn known(&self) -> Option<KnownRule> {
+        Some((*self).into())
     }
 }

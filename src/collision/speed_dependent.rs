@@ -1,7 +1,7 @@
 //! Restitution that falls with the speed of the impact.
 
 use super::inelasticity::NormalInelasticity;
-use super::{CollisionRule, Contact, Friction, Impulse};
+use super::{CollisionRule, Contact, Friction, Impulse, KnownRule};
 use crate::quantity::{Checked, Quantity, Range};
 use crate::{Fingerprint, ParameterError};
 
@@ -112,5 +112,9 @@ impl CollisionRule for SpeedDependent {
     fn fingerprint(&self) -> Option<Fingerprint> {
         let normal = Fingerprint::of("SpeedDependent").number(self.least_restitution()).number(self.speed());
         Some(normal.part(self.friction.fingerprint()))
+    }
+
+    fn known(&self) -> Option<KnownRule> {
+        Some((*self).into())
     }
 }

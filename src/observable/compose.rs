@@ -7,55 +7,20 @@
 use std::ops::ControlFlow;
 
 use super::{Collision, Heading, Moment, Observable, Observer, Snapshot, Tabular, Verdict};
+use crate::forward::forward;
 
 /// The observer that does nothing and costs nothing.
 impl Observer for () {}
 
-impl<T: Observer + ?Sized> Observer for &mut T {
-    fn on_start(&mut self, moment: &Moment) {
-        (**self).on_start(moment);
-    }
-    #[inline]
-    fn on_collision(&mut self, collision: &Collision) {
-        (**self).on_collision(collision);
-    }
-    fn next_sample(&self) -> f64 {
-        (**self).next_sample()
-    }
-    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-        (**self).on_sample(snapshot);
-    }
-    fn on_end(&mut self, moment: &Moment) {
-        (**self).on_end(moment);
-    }
-    #[inline]
-    fn verdict(&mut self) -> Verdict {
-        (**self).verdict()
-    }
-}
-
-impl<T: Observer + ?Sized> Observer for Box<T> {
-    fn on_start(&mut self, moment: &Moment) {
-        (**self).on_start(moment);
-    }
-    #[inline]
-    fn on_collision(&mut self, collision: &Collision) {
-        (**self).on_collision(collision);
-    }
-    fn next_sample(&self) -> f64 {
-        (**self).next_sample()
-    }
-    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-        (**self).on_sample(snapshot);
-    }
-    fn on_end(&mut self, moment: &Moment) {
-        (**self).on_end(moment);
-    }
-    #[inline]
-    fn verdict(&mut self) -> Verdict {
-        (**self).verdict()
-    }
-}
+forward! { Observer for [&mut T, Box<T>] {
+    fn next_sample(&self) -> f64;
+    mut
+    fn on_start(&mut self, moment: &Moment);
+    fn on_collision(&mut self, collision: &Collision);
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>);
+    fn on_end(&mut self, moment: &Moment);
+    fn verdict(&mut self) -> Verdict;
+}}
 
 impl<T: Observer> Observer for [T] {
     fn on_start(&mut self, moment: &Moment) {
@@ -209,34 +174,12 @@ compose_tuple!(A 0, B 1, C 2, D 3);
 compose_tuple!(A 0, B 1, C 2, D 3, E 4);
 compose_tuple!(A 0, B 1, C 2, D 3, E 4, F 5);
 
-impl<T: Observable + ?Sized> Observable for &T {
-    type Value = T::Value;
-    fn measure(&self, snapshot: &Snapshot<'_>) -> T::Value {
-        (**self).measure(snapshot)
-    }
-}
+forward! { Observable for [&T, Box<T>] {
+    type Value;
+    fn measure(&self, snapshot: &Snapshot<'_>) -> T::Value;
+}}
 
-impl<T: Observable + ?Sized> Observable for Box<T> {
-    type Value = T::Value;
-    fn measure(&self, snapshot: &Snapshot<'_>) -> T::Value {
-        (**self).measure(snapshot)
-    }
-}
-
-impl<T: Tabular + ?Sized> Tabular for &T {
-    fn headings(&self) -> Vec<Heading> {
-        (**self).headings()
-    }
-    fn add_numbers(&self, value: &T::Value, row: &mut Vec<f64>) {
-        (**self).add_numbers(value, row);
-    }
-}
-
-impl<T: Tabular + ?Sized> Tabular for Box<T> {
-    fn headings(&self) -> Vec<Heading> {
-        (**self).headings()
-    }
-    fn add_numbers(&self, value: &T::Value, row: &mut Vec<f64>) {
-        (**self).add_numbers(value, row);
-    }
-}
+forward! { Tabular for [&T, Box<T>] {
+    fn headings(&self) -> Vec<Heading>;
+    fn add_numbers(&self, value: &T::Value, row: &mut Vec<f64>);
+}}

@@ -64,6 +64,12 @@ impl<M: Medium> Growing<M> {
         Ok(())
     }
 
+    /// Writes into the pieces that are there already.
+    pub(super) fn overwrite(&mut self, place: u64, bytes: &[u8]) -> io::Result<()> {
+        self.medium.seek(SeekFrom::Start(place))?;
+        self.medium.write_all(bytes)
+    }
+
     /// Writes after the last whole piece, and cuts off what may follow.
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.medium.seek(SeekFrom::Start(self.length))?;

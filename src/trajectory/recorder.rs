@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::errors::RecordError;
 use super::format::{Format, Frame};
+use super::gsd::{HoomdSchema, Indexed};
 use super::one_file::OneFile;
 use super::store::Store;
 use super::vtk::{PolyData, Series};
@@ -99,6 +100,37 @@ impl Recorder {
     ) -> Result<Self, RecordError> {
         let store = OneFile::reopen(path.as_ref(), &format)?;
         Ok(Self::new(format, store, times).going_on())
+    }
+
+    /// Creates a recorder that begins a binary file of GSD, with the schema of HOOMD-blue.
+    ///
+    /// Readers go to any frame at once. A frame has a third of the bytes of [`ExtendedXyz`](super::ExtendedXyz),
+    /// with numbers in single precision, so it is for analysis: a run cannot start from it as if it had not
+    /// stopped.
+    ///
+    /// | chunk | |
+    /// |---|---|
+    /// | `particles/typeid`, `types` | number of the [`Kind`](crate::Kind); its name is the number |
+    /// | `particles/position` | from the center of the box; of an open box, from the middle of its bottom |
+    /// | `particles/velocity`, `mass`, `image` | as in [`Disk`](crate::Disk) |
+    /// | `particles/diameter` | twice the radius |
+    /// | `particles/orientation`, `angmom`, `moment_inertia` | rotation about the third axis |
+    /// | `configuration/step`, `box` | number of the frame; width, height and depth |
+    /// | `log/time`, `gravity`, `center` | in double precision; the place in the box from which positions count |
+    ///
+    /// # Errors
+    /// If a file of this name exists, or the file cannot be created.
+    pub fn create_gsd(path: impl AsRef<Path>, times: SampleTimes) -> Result<Self, RecordError> {
+        Ok(Self::new(HoomdSchema, Indexed::create(path.as_ref())?, times))
+    }
+
+    /// Creates a recorder that continues a file that [`create_gsd`](Self::create_gsd) began.
+    ///
+    /// # Errors
+    /// If the file cannot be opened, another recorder writes to it, it is not of this kind, or it has no whole
+    /// frame. The file is then left as it is.
+    pub fn append_gsd(path: impl AsRef<Path>, times: SampleTimes) -> Result<Self, RecordError> {
+        Ok(Self::new(HoomdSchema, Indexed::reopen(path.as_ref())?, times).going_on())
     }
 
     /// Creates a recorder that begins a series of files for ParaView.

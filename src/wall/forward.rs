@@ -4,57 +4,12 @@ use std::sync::Arc;
 
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::Fingerprint;
+use crate::forward::forward;
 
-impl<T: WallMotion + ?Sized> WallMotion for &T {
-    fn state(&self, phase: f64) -> WallState {
-        (**self).state(phase)
-    }
-    fn acceleration(&self, phase: f64) -> AccelerationBounds {
-        (**self).acceleration(phase)
-    }
-    fn reach(&self) -> (f64, f64) {
-        (**self).reach()
-    }
-    fn period(&self) -> Option<f64> {
-        (**self).period()
-    }
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        (**self).fingerprint()
-    }
-}
-
-impl<T: WallMotion + ?Sized> WallMotion for Box<T> {
-    fn state(&self, phase: f64) -> WallState {
-        (**self).state(phase)
-    }
-    fn acceleration(&self, phase: f64) -> AccelerationBounds {
-        (**self).acceleration(phase)
-    }
-    fn reach(&self) -> (f64, f64) {
-        (**self).reach()
-    }
-    fn period(&self) -> Option<f64> {
-        (**self).period()
-    }
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        (**self).fingerprint()
-    }
-}
-
-impl<T: WallMotion + ?Sized> WallMotion for Arc<T> {
-    fn state(&self, phase: f64) -> WallState {
-        (**self).state(phase)
-    }
-    fn acceleration(&self, phase: f64) -> AccelerationBounds {
-        (**self).acceleration(phase)
-    }
-    fn reach(&self) -> (f64, f64) {
-        (**self).reach()
-    }
-    fn period(&self) -> Option<f64> {
-        (**self).period()
-    }
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        (**self).fingerprint()
-    }
-}
+forward! { WallMotion for [&T, Box<T>, Arc<T>] {
+    fn state(&self, phase: f64) -> WallState;
+    fn acceleration(&self, phase: f64) -> AccelerationBounds;
+    fn reach(&self) -> (f64, f64);
+    fn period(&self) -> Option<f64>;
+    fn fingerprint(&self) -> Option<Fingerprint>;
+}}

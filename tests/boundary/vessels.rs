@@ -269,7 +269,7 @@ fn vessels_come_back_from_files() {
 
     let own = triangle().with_rule(from_fn(|contact| Elastic.impulse(contact)));
     let error = serde_json::to_string(&own).unwrap_err().to_string();
-    assert_eq!(error, "only the rules of granular-edmd can be serialized, alone or in one remedy for rest");
+    assert_eq!(error, "only the rules of granular-edmd, and remedies and tables of these, can be serialized");
 }
 
 /// Numbers of every kind are refused with the value named, or make a part that answers.

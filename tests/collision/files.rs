@@ -1,8 +1,10 @@
 //! Rules in files: what is written can be read, and what a constructor refuses a file cannot bring in.
 
+use granular_edmd::Kind;
+use granular_edmd::boundary::{Boundary, Container, Wall};
 use granular_edmd::collision::{
-    ContactDuration, Elastic, ElasticBelow, Friction, Frictional, LeastRebound, Rough, Smooth,
-    SpeedDependent, TangentialResponse,
+    CollisionRule, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, KnownRule, LeastRebound,
+    Rough, RulesByKind, Smooth, SpeedDependent, TangentialResponse,
 };
 use granular_edmd::strategies::decades;
 use proptest::prelude::*;
@@ -49,6 +51,75 @@ proptest! {
         prop_assert!(returns(&LeastRebound::new(frictional, duration).unwrap()));
         prop_assert!(returns(&SpeedDependent::from_restitution(ratio, duration).unwrap().with_friction(friction)));
     }
+}
+
+/// Checks that a wall with this rule comes back from a file with a rule of the same name and numbers.
+fn walls_return(rule: impl CollisionRule + Send + Sync + 'static) -> &'static str {
+    let name = std::any::type_name_of_val(&rule);
+    let wall = Container::closed(9.0, 9.0).unwrap().with_rule(Wall::Left, rule).unwrap();
+    let text = serde_json::to_string(&wall).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let back: Container = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{text}: {error}"));
+    assert_eq!(serde_json::to_string(&back).unwrap(), text);
+    assert!(back.fingerprint().is_some());
+    assert_eq!(back.fingerprint(), wall.fingerprint(), "{text}");
+    let bytes = postcard::to_allocvec(&wall).unwrap();
+    let back: Container = postcard::from_bytes(&bytes).unwrap();
+    assert_eq!(back.fingerprint(), wall.fingerprint(), "{text}");
+    name
+}
+
+/// Every rule in the folder of rules goes to a file and back, alone, boxed, and within remedies and tables in
+/// any order.
+#[test]
+fn every_rule_of_the_crate_returns_on_a_wall() {
+    let frictional = Frictional::from_restitution(0.9, 0.2, 0.5).unwrap().with_dynamic_friction(0.1).unwrap();
+    let bizon = SpeedDependent::from_restitution(0.7, 2.0).unwrap();
+    let lasting = ContactDuration::new(frictional, 1e-3).unwrap();
+    let below = ElasticBelow::new(lasting, 0.1).unwrap();
+    let table = RulesByKind::new(below).with(Kind::new(1), Kind::WALL, below);
+    let boxed: Box<dyn CollisionRule + Send + Sync> = Box::new(bizon);
+    let mixed = RulesByKind::new(KnownRule::from(Elastic)).with(Kind::WALL, Kind::WALL, bizon.into());
+    let returned = [
+        walls_return(Elastic),
+        walls_return(Smooth::from_restitution(0.9).unwrap()),
+        walls_return(Rough::from_restitution(0.9, 0.3).unwrap()),
+        walls_return(frictional),
+        walls_return(bizon.with_friction(Friction::from_restitution(0.5, 0.3).unwrap())),
+        walls_return(lasting.with_tangential_response(TangentialResponse::Reversing)),
+        walls_return(below),
+        walls_return(LeastRebound::new(table.clone(), 0.2).unwrap()),
+        walls_return(table),
+        walls_return(ContactDuration::new(boxed, 1.0).unwrap()),
+        walls_return(mixed.known().unwrap()),
+        walls_return(mixed),
+    ];
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/collision");
+    for file in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+        let text = if file.is_file() { std::fs::read_to_string(&file).unwrap() } else { String::new() };
+        let rules = text.lines().filter(|line| line.starts_with("impl"));
+        for (_, rule) in rules.filter_map(|line| line.split_once("CollisionRule for ")) {
+            let name = rule.split(|letter: char| !letter.is_alphanumeric()).next().unwrap();
+            let is_known = returned.iter().any(|returned| {
+                returned.split('<').next().is_some_and(|path| path.ends_with(&format!("::{name}")))
+            });
+            assert!(is_known || name == "FromFn", "{name} is not in the list of src/collision/known.rs");
+        }
+    }
+}
+
+/// A file cannot fill the stack with rules within rules.
+#[test]
+fn rules_within_rules_are_bounded() {
+    let mut bytes = vec![5_u8; 1_000_000];
+    bytes.push(0);
+    let error = postcard::from_bytes::<KnownRule>(&bytes).unwrap_err();
+    assert_eq!(error, postcard::Error::SerdeDeCustom);
+    let nested = |depth: usize| {
+        let rule = r#"{"least_rebound":{"rule":"#.repeat(depth) + r#"{"elastic":null}"#;
+        serde_json::from_str::<KnownRule>(&(rule + &r#","speed":1}}"#.repeat(depth)))
+    };
+    assert!(nested(15).unwrap().fingerprint().is_some());
+    assert!(nested(16).unwrap_err().to_string().contains("more than 16 rules within each other"));
 }
 
 #[test]

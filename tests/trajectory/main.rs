@@ -5,6 +5,7 @@
 mod report;
 
 mod faults;
+mod gsd;
 mod recording;
 mod round_trips;
 mod scratch;

@@ -66,6 +66,7 @@ fn a_recorder_keeps_the_contract_of_observers() {
     let scratch = Scratch::new("contract");
     laws::check(&mut create(&scratch.path("laws.xyz"))).unwrap();
     laws::check(&mut Recorder::create_vtk(scratch.path("laws.pvd"), times()).unwrap()).unwrap();
+    laws::check(&mut Recorder::create_gsd(scratch.path("laws.gsd"), times()).unwrap()).unwrap();
 }
 
 #[test]

@@ -8,8 +8,9 @@
 //! cargo run --release -p gallery --features gzip --bin export -- --quick --measure --out export
 //! ```
 //!
-//! The example writes `run.xyz`, `run.dump`, `run.pvd` with its folder, `end.csv`, `end.data`, `series.csv`,
-//! `series.jsonl`, and with the feature `gzip` `run.xyz.gz` and `run.dump.gz`. Nothing is overwritten.
+//! The example writes `run.xyz`, `run.dump`, `run.gsd`, `run.pvd` with its folder, `end.csv`, `end.data`,
+//! `series.csv`, `series.jsonl`, and with the feature `gzip` `run.xyz.gz` and `run.dump.gz`. Nothing is
+//! overwritten.
 
 mod measure;
 
@@ -80,7 +81,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     write_all(arguments)?;
     gallery::say!(
-        "wrote run.xyz, run.dump, run.pvd, end.csv, end.data, series.csv and series.jsonl in {}",
+        "wrote run.xyz, run.dump, run.gsd, run.pvd, end.csv, end.data, series.csv and series.jsonl in {}",
         arguments.out.display()
     );
     if arguments.measure { measure::print(arguments).map_err(Failure::run) } else { Ok(()) }
@@ -116,6 +117,7 @@ fn recorders(folder: &Path, times: SampleTimes) -> Result<Vec<Recorder>, RecordE
     let mut recorders = vec![
         Recorder::create(folder.join("run.xyz"), ExtendedXyz, times)?,
         Recorder::create(folder.join("run.dump"), LammpsDump, times)?,
+        Recorder::create_gsd(folder.join("run.gsd"), times)?,
         Recorder::create_vtk(folder.join("run.pvd"), times)?,
     ];
     if cfg!(feature = "gzip") {

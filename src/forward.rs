@@ -1,0 +1,30 @@
+//! Forwarding: a box of a part, or a reference to one, is such a part, too.
+
+/// Implements a trait for pointers to its implementers. Each call goes to the part behind the pointer.
+///
+/// The list has all methods of the trait, first those of `&self`, then `mut` and those of `&mut self`. A
+/// provided method that is missing here would silently answer for the pointer and not for the part.
+macro_rules! forward {
+    ($trait:ident for [$($pointer:ty),+] $methods:tt) => {
+        $(crate::forward::forward!(@ $trait, $pointer, $methods);)+
+    };
+    (@ $trait:ident, $pointer:ty, {
+        $(type $output:ident;)?
+        $(fn $shared:ident(&self $(, $a:ident: $at:ty)*) $(-> $ar:ty)?;)*
+        $(mut $(fn $own:ident(&mut self $(, $b:ident: $bt:ty)*) $(-> $br:ty)?;)+)?
+    }) => {
+        impl<T: $trait + ?Sized> $trait for $pointer {
+            $(type $output = T::$output;)?
+            $(#[inline]
+            fn $shared(&self $(, $a: $at)*) $(-> $ar)? {
+                (**self).$shared($($a),*)
+            })*
+            $($(#[inline]
+            fn $own(&mut self $(, $b: $bt)*) $(-> $br)? {
+                (**self).$own($($b),*)
+            })+)?
+        }
+    };
+}
+
+pub(crate) use forward;

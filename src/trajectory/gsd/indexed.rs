@@ -1,0 +1,258 @@
+//! A file of GSD: a header, an index of chunks, their names, and the chunks.
+
+use std::fs::{self, File};
+use std::io::{self, Read, Seek, SeekFrom};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use super::{CHUNKS, F64, I8, Shape, U8, U64};
+use crate::observable::Snapshot;
+use crate::trajectory::errors::RecordError;
+use crate::trajectory::format::no_frame;
+use crate::trajectory::media::{self, Growing};
+use crate::trajectory::store::Store;
+
+/// Bytes of the header, and of an entry of the index.
+const HEADER: usize = 256;
+const ENTRY: usize = 32;
+
+/// Entries for which the first index has room. An index that is full is followed by one of twice its size.
+const ROOM: usize = 1024;
+
+/// A store of frames in a file of GSD.
+///
+/// A frame counts once the first of its entries is in the index. So the chunks are written first, then the
+/// other entries, and the first entry at last: a process that dies meanwhile leaves bytes that nobody sees.
+pub(in crate::trajectory) struct Indexed {
+    path: PathBuf,
+    /// All but the entries of the present index, which are written in place.
+    file: Growing<File>,
+    index: Index,
+    times: Vec<f64>,
+    /// The chunks of each frame.
+    places: Vec<Range<u64>>,
+}
+
+/// The index: its place and the number of entries for which it has room, and the entries.
+struct Index {
+    location: u64,
+    room: usize,
+    entries: Vec<u8>,
+}
+
+impl Indexed {
+    /// Begins a new file.
+    pub(in crate::trajectory) fn create(path: &Path) -> Result<Self, RecordError> {
+        let mut file = Growing::new(media::create(path)?, 0, Vec::new());
+        let index = Index { location: HEADER as u64, room: ROOM, entries: Vec::new() };
+        let head = [index.header(), vec![0; ROOM * ENTRY], names()].concat();
+        file.push(&head, &[]).map_err(|error| {
+            // The file is new, and has nothing that could be lost.
+            let _ = fs::remove_file(path);
+            RecordError::io("write to", path)(error)
+        })?;
+        Ok(Self { path: path.to_owned(), file, index, times: Vec::new(), places: Vec::new() })
+    }
+
+    /// Goes on after the last whole frame of a file.
+    pub(in crate::trajectory) fn reopen(path: &Path) -> Result<Self, RecordError> {
+        let mut medium = media::reopen(path)?;
+        let found = Found::read(&mut medium).map_err(RecordError::io("go on in", path))?;
+        if found.times.is_empty() {
+            return Err(RecordError::NoFrame { path: path.to_owned() });
+        }
+        let Found { index, times, places, length } = found;
+        let file = Growing::new(medium, length, Vec::new());
+        Ok(Self { path: path.to_owned(), file, index, times, places })
+    }
+
+    fn push(&mut self, shape: Shape, bytes: &[u8]) -> io::Result<()> {
+        if self.index.entries.len() / ENTRY + CHUNKS.len() > self.index.room {
+            self.enlarge_index()?;
+        }
+        let start = self.file.length();
+        self.file.push(bytes, &[])?;
+        let entries = entries(shape, start).concat();
+        let place = self.index.location + self.index.entries.len() as u64;
+        // A frame that was not finished may have left more entries than this one has.
+        let mut others = entries[ENTRY..].to_vec();
+        others.resize((CHUNKS.len() - 1) * ENTRY, 0);
+        self.file.overwrite(place + ENTRY as u64, &others)?;
+        self.file.overwrite(place, &entries[..ENTRY])?;
+        self.index.entries.extend(entries);
+        self.places.push(start..start + bytes.len() as u64);
+        Ok(())
+    }
+
+    /// Writes the index again after the chunks, with twice the room. The header then points to it.
+    fn enlarge_index(&mut self) -> io::Result<()> {
+        let (location, room) = (self.file.length(), 2 * self.index.room);
+        let entries = self.index.entries.clone();
+        let zeros = vec![0; room * ENTRY - entries.len()];
+        self.file.push(&[entries.as_slice(), &zeros].concat(), &[])?;
+        let larger = Index { location, room, entries };
+        self.file.overwrite(0, &larger.header())?;
+        self.index = larger;
+        Ok(())
+    }
+}
+
+impl Store for Indexed {
+    fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    fn append(&mut self, snapshot: &Snapshot<'_>, bytes: &[u8]) -> Result<(), RecordError> {
+        let shape = Shape::of(self.times.len(), snapshot.disks());
+        self.push(shape, bytes).map_err(RecordError::io("write to", &self.path))?;
+        self.times.push(snapshot.time());
+        Ok(())
+    }
+
+    fn has(&mut self, number: usize, bytes: &[u8]) -> Result<bool, RecordError> {
+        let place = self.places[number].clone();
+        let there = read_at(&mut self.file.medium(), place.start, place.end - place.start);
+        Ok(there.map_err(RecordError::io("read", &self.path))? == bytes)
+    }
+
+    fn sync(&mut self) -> Result<(), RecordError> {
+        self.file.medium().sync_all().map_err(RecordError::io("write to", &self.path))
+    }
+
+    fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Index {
+    fn header(&self) -> Vec<u8> {
+        let numbers = [
+            0x65DF_65DF_65DF_65DF,
+            self.location,
+            self.room as u64,
+            (HEADER + ROOM * ENTRY) as u64,
+            (names().len() / 64) as u64,
+            // Version 1.4 of the schema, and 2.0 of the file.
+            1 << 16 | 4 | 2 << 48,
+        ];
+        let mut header: Vec<u8> = numbers.iter().flat_map(|number: &u64| number.to_le_bytes()).collect();
+        for (text, end) in [("granular-edmd", 112), ("hoomd", HEADER)] {
+            header.extend(text.as_bytes());
+            header.resize(end, 0);
+        }
+        header
+    }
+}
+
+/// What a file has.
+struct Found {
+    index: Index,
+    times: Vec<f64>,
+    places: Vec<Range<u64>>,
+    /// Bytes that the next frame must not overwrite.
+    length: u64,
+}
+
+impl Found {
+    fn read(file: &mut File) -> io::Result<Self> {
+        let size = file.metadata()?.len();
+        let head = read_at(&mut &*file, 0, HEADER as u64)?;
+        let (location, room) = (number(&head, 8), number(&head, 16));
+        let index = Index { location, room: usize::try_from(room).unwrap_or(0), entries: Vec::new() };
+        let end = room.checked_mul(ENTRY as u64).and_then(|bytes| bytes.checked_add(location));
+        let Some(end) = end.filter(|&end| end <= size && head == index.header()) else {
+            return Err(no_frame("a file of GSD by granular-edmd", "another"));
+        };
+        let entries = read_at(&mut &*file, location, end - location)?;
+        let least = (HEADER + ROOM * ENTRY + names().len()) as u64;
+        let mut found = Self { index, times: Vec::new(), places: Vec::new(), length: end.max(least) };
+        loop {
+            let rest = &entries[found.index.entries.len()..];
+            // The first entry of a frame is written last, so a frame that has it was whole once.
+            if rest.len() < ENTRY || number(rest, 16) == 0 {
+                return Ok(found);
+            }
+            let start = number(rest, 16);
+            let shape = shape_at(rest, found.times.len());
+            let known = shape
+                .map(|shape| (self::entries(shape, start).concat(), start.saturating_add(length(shape))));
+            let Some((known, end)) = known.filter(|(known, end)| rest.starts_with(known) && *end <= size)
+            else {
+                return Err(no_frame("a whole frame", "a damaged one"));
+            };
+            // The time is the first of four numbers at the end of a frame.
+            let time = f64::from_bits(number(&read_at(&mut &*file, end - 32, 8)?, 0));
+            if !time.is_finite() || found.times.last().is_some_and(|&last| last >= time) {
+                return Err(no_frame("a frame after the one before", &format!("time {time:?}")));
+            }
+            found.index.entries.extend(known);
+            found.times.push(time);
+            found.places.push(start..end);
+            found.length = found.length.max(end);
+        }
+    }
+}
+
+/// Returns the shape of the frame whose entries come next, if they can be those of a frame.
+fn shape_at(entries: &[u8], number: usize) -> Option<Shape> {
+    let rows = |index: usize| {
+        let entry = entries.get(index * ENTRY..(index + 1) * ENTRY)?;
+        let rows = u32::try_from(self::number(entry, 8)).ok()?;
+        (usize::from(u16::from_le_bytes([entry[28], entry[29]])) == index).then_some(rows as usize)
+    };
+    Some(Shape { number, disks: rows(5).unwrap_or(0), kinds: rows(4)? })
+}
+
+/// Returns the entries of a frame whose chunks begin at this place. Chunks without rows have none.
+fn entries(shape: Shape, start: u64) -> Vec<[u8; ENTRY]> {
+    let (mut entries, mut location) = (Vec::new(), start);
+    for (id, &(_, kind, columns, rows)) in CHUNKS.iter().enumerate() {
+        let rows = shape.rows(rows);
+        if rows > 0 {
+            let mut entry = [0; ENTRY];
+            for (at, number) in [(0, shape.number as u64), (8, rows), (16, location), (24, columns.into())] {
+                entry[at..at + 8].copy_from_slice(&number.to_le_bytes());
+            }
+            entry[28..30].copy_from_slice(&(id as u16).to_le_bytes());
+            entry[30] = kind;
+            entries.push(entry);
+        }
+        location += rows * u64::from(columns) * width(kind);
+    }
+    entries
+}
+
+/// Returns the bytes of all chunks of a frame.
+fn length(shape: Shape) -> u64 {
+    let sizes = CHUNKS.iter().map(|chunk| shape.rows(chunk.3) * u64::from(chunk.2) * width(chunk.1));
+    sizes.sum()
+}
+
+/// Returns the bytes of a number of this type.
+const fn width(kind: u8) -> u64 {
+    match kind {
+        U8 | I8 => 1,
+        U64 | F64 => 8,
+        _ => 4,
+    }
+}
+
+/// Returns the list of names, each followed by a zero, in whole pieces of 64 bytes.
+fn names() -> Vec<u8> {
+    let mut names: Vec<u8> = CHUNKS.iter().flat_map(|chunk| chunk.0.bytes().chain([0])).collect();
+    names.resize((names.len() + 1).next_multiple_of(64), 0);
+    names
+}
+
+fn number(bytes: &[u8], at: usize) -> u64 {
+    let mut number = [0; 8];
+    number.copy_from_slice(&bytes[at..at + 8]);
+    u64::from_le_bytes(number)
+}
+
+fn read_at(file: &mut &File, start: u64, length: u64) -> io::Result<Vec<u8>> {
+    file.seek(SeekFrom::Start(start))?;
+    let mut bytes = Vec::new();
+    file.take(length).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 == length { Ok(bytes) } else { Err(io::ErrorKind::UnexpectedEof.into()) }
+}
