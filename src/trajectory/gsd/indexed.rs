@@ -72,7 +72,7 @@ impl Indexed {
         }
         let start = self.file.length();
         self.file.push(bytes, &[])?;
-        let entries = entries(shape, start).concat();
+        let (entries, end) = entries(shape, start);
         let place = self.index.location + self.index.entries.len() as u64;
         // A frame that was not finished may have left more entries than this one has.
         let mut others = entries[ENTRY..].to_vec();
@@ -80,7 +80,7 @@ impl Indexed {
         self.file.overwrite(place + ENTRY as u64, &others)?;
         self.file.overwrite(place, &entries[..ENTRY])?;
         self.index.entries.extend(entries);
-        self.places.push(start..start + bytes.len() as u64);
+        self.places.push(start..end);
         Ok(())
     }
 
@@ -174,8 +174,7 @@ impl Found {
             }
             let start = number(rest, 16);
             let shape = shape_at(rest, found.times.len());
-            let known = shape
-                .map(|shape| (self::entries(shape, start).concat(), start.saturating_add(length(shape))));
+            let known = shape.map(|shape| self::entries(shape, start));
             let Some((known, end)) = known.filter(|(known, end)| rest.starts_with(known) && *end <= size)
             else {
                 return Err(no_frame("a whole frame", "a damaged one"));
@@ -203,29 +202,22 @@ fn shape_at(entries: &[u8], number: usize) -> Option<Shape> {
     Some(Shape { number, disks: rows(5).unwrap_or(0), kinds: rows(4)? })
 }
 
-/// Returns the entries of a frame whose chunks begin at this place. Chunks without rows have none.
-fn entries(shape: Shape, start: u64) -> Vec<[u8; ENTRY]> {
+/// Returns the entries of a frame whose chunks begin at this place, and the place after the chunks. Chunks
+/// without rows have no entry.
+fn entries(shape: Shape, start: u64) -> (Vec<u8>, u64) {
     let (mut entries, mut location) = (Vec::new(), start);
-    for (id, &(_, kind, columns, rows)) in CHUNKS.iter().enumerate() {
+    for (id, &(_, kind, columns, rows)) in (0_u16..).zip(&CHUNKS) {
         let rows = shape.rows(rows);
         if rows > 0 {
-            let mut entry = [0; ENTRY];
-            for (at, number) in [(0, shape.number as u64), (8, rows), (16, location), (24, columns.into())] {
-                entry[at..at + 8].copy_from_slice(&number.to_le_bytes());
-            }
-            entry[28..30].copy_from_slice(&(id as u16).to_le_bytes());
-            entry[30] = kind;
-            entries.push(entry);
+            let numbers = [shape.number as u64, rows, location];
+            entries.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+            entries.extend(columns.to_le_bytes());
+            entries.extend(id.to_le_bytes());
+            entries.extend([kind, 0]);
         }
-        location += rows * u64::from(columns) * width(kind);
+        location = location.saturating_add(rows * u64::from(columns) * width(kind));
     }
-    entries
-}
-
-/// Returns the bytes of all chunks of a frame.
-fn length(shape: Shape) -> u64 {
-    let sizes = CHUNKS.iter().map(|chunk| shape.rows(chunk.3) * u64::from(chunk.2) * width(chunk.1));
-    sizes.sum()
+    (entries, location)
 }
 
 /// Returns the bytes of a number of this type.
