@@ -145,7 +145,7 @@ def gsd_by_ovito():
         _, positions, _, _ = of_schema(place, frame)
         same(f"{place}: positions", in_single(data.particles["Position"][...]), positions)
         same(f"{place}: radii", in_single(data.particles["Radius"][...]), in_single(column(frame, "radius")))
-        same(f"{place}: time", data.attributes["log/time"], frame["time"])
+        same(f"{place}: time", data.attributes["time"], frame["time"])
 
 
 def render_by_ovito(pipeline):

@@ -104,7 +104,7 @@ impl Recorder {
 
     /// Creates a recorder that begins a binary file of GSD, with the schema of HOOMD-blue.
     ///
-    /// Readers go to any frame at once. A frame has a third of the bytes of [`ExtendedXyz`](super::ExtendedXyz),
+    /// Readers go to any frame at once. A frame has half of the bytes of [`ExtendedXyz`](super::ExtendedXyz),
     /// with numbers in single precision, so it is for analysis: a run cannot start from it as if it had not
     /// stopped.
     ///
