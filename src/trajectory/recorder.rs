@@ -119,7 +119,7 @@ impl Recorder {
     /// | `log/time`, `gravity`, `center` | in double precision; the place in the box from which positions count |
     ///
     /// # Errors
-    /// If a file of this name exists, or the file cannot be created.
+    /// If a file of this name exists, the file cannot be created, or its name ends in `.gz`.
     pub fn create_gsd(path: impl AsRef<Path>, times: SampleTimes) -> Result<Self, RecordError> {
         Ok(Self::new(HoomdSchema, Indexed::create(path.as_ref())?, times))
     }

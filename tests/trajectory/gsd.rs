@@ -79,6 +79,9 @@ fn what_is_no_file_of_ours_is_left() {
     let path = scratch.path("run.gsd");
     let whole = recorded(&path);
     assert!(matches!(Recorder::create_gsd(&path, times()), Err(RecordError::Exists { .. })));
+    let packed = scratch.path("run.gsd.gz");
+    let error = Recorder::create_gsd(&packed, times()).unwrap_err();
+    assert!(report(&error).ends_with("its name must not end in .gz") && !packed.exists());
     let other = |place: usize, byte: u8| {
         let mut bytes = whole.clone();
         bytes[place] = byte;

@@ -10,6 +10,7 @@ use crate::observable::Snapshot;
 use crate::trajectory::errors::RecordError;
 use crate::trajectory::format::no_frame;
 use crate::trajectory::media::{self, Growing};
+use crate::trajectory::open::is_gzip;
 use crate::trajectory::store::Store;
 
 /// Bytes of the header, and of an entry of the index.
@@ -41,8 +42,13 @@ struct Index {
 }
 
 impl Indexed {
-    /// Begins a new file.
+    /// Begins a new file. A name that asks for compression is an error, since an index needs plain bytes.
     pub(in crate::trajectory) fn create(path: &Path) -> Result<Self, RecordError> {
+        if is_gzip(path) {
+            let reason = "a file of GSD is not compressed, so its name must not end in .gz";
+            let error = io::Error::new(io::ErrorKind::InvalidInput, reason);
+            return Err(RecordError::io("use", path)(error));
+        }
         let mut file = Growing::new(media::create(path)?, 0, Vec::new());
         let index = Index { location: HEADER as u64, room: ROOM, entries: Vec::new() };
         let head = [index.header(), vec![0; ROOM * ENTRY], names()].concat();
