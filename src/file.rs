@@ -1,7 +1,13 @@
-//! Files: contents under a seal that shows damage, and writes that leave a file whole or as it was.
+//! Files: contents under a seal that shows damage, writes that leave a file whole or as it was, and locks.
 
+mod locked;
+#[cfg(feature = "serde")]
 mod seal;
+#[cfg(feature = "serde")]
 mod whole;
 
+pub(crate) use locked::Locked;
+#[cfg(feature = "serde")]
 pub(crate) use seal::{Broken, Seal};
-pub(crate) use whole::{is_temporary, unique_name, write_whole};
+#[cfg(feature = "serde")]
+pub(crate) use whole::{Draft, is_temporary, unique_name, write_whole};

@@ -1,5 +1,7 @@
 //! Fingerprints: the identity of a rule, a wall motion or a boundary, as a number that a checkpoint keeps.
 
+use std::fmt;
+
 /// Identity of a part of a simulation: equal for equal parts, different for parts that act differently.
 ///
 /// A checkpoint keeps the fingerprints of its rule and its boundary, and notices when a run is resumed with
@@ -55,6 +57,13 @@ impl Fingerprint {
             rest = others;
         }
         Self(hash)
+    }
+}
+
+/// Writes the number in hexadecimal digits, sixteen of them.
+impl fmt::Display for Fingerprint {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{:016x}", self.0)
     }
 }
 

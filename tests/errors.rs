@@ -27,7 +27,7 @@ fn tells_each_thing_once(error: &(dyn Error + 'static)) {
 
 fn plan() -> Plan<VibratedBox> {
     let base = Base::Thermal { temperature: 1.0, slip: false };
-    Plan::new(VibratedBox::new(3, 4.0, base).with_height(3.0), Protocol::new(1, 1, 1), 1).unwrap()
+    Plan::new(VibratedBox::new(3, 4.0, base).with_height(3.0), Protocol::new(1, 1, 1).unwrap(), 1).unwrap()
 }
 
 fn no_parameter() -> ParameterError {

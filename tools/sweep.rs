@@ -85,8 +85,8 @@ fn plan(cycles: u64) -> Result<Plan<VibratedBox>, PlanError> {
         .with_inelasticity(DILUTE.inelasticity)
         .with_contact_duration(CONTACT_DURATION);
     let frictions = (0..RUNS).map(|run| DILUTE.friction + 1e-9 * f64::from(run));
-    let protocol = Protocol::new(cycles / 2, cycles / 20, 10);
-    Plan::new(experiment, protocol, 1)?.with_axis(Axis::new("friction", frictions))
+    let protocol = Protocol::new(cycles / 2, cycles / 20, 10)?;
+    Plan::new(experiment, protocol, 1)?.with_axis(Axis::new("friction", frictions)?)
 }
 
 /// Returns the seconds for the whole study, including its files.

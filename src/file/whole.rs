@@ -3,7 +3,7 @@
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::hash::{BuildHasher, Hasher, RandomState};
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -20,22 +20,64 @@ const NAMES: usize = 8;
 /// threads, processes and hosts may write the same file at a time: each has its own temporary file, and the
 /// last one to rename it wins.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    if path.file_name().is_none() {
-        return Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
-            "the path does not end in the name of a file",
-        ));
+    let mut draft = Draft::of(path)?;
+    // One call instead of a buffer: the bytes are all there.
+    draft.file.get_mut().write_all(bytes)?;
+    draft.finish()
+}
+
+/// A file that is written piece by piece, and takes its name when it is whole. A draft that is dropped leaves
+/// nothing.
+#[derive(Debug)]
+pub(crate) struct Draft {
+    path: PathBuf,
+    temporary: PathBuf,
+    file: BufWriter<File>,
+}
+
+impl Draft {
+    /// Begins a file beside its place.
+    pub(crate) fn of(path: &Path) -> io::Result<Self> {
+        if path.file_name().is_none() {
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidInput,
+                "the path does not end in the name of a file",
+            ));
+        }
+        let (temporary, file) = create_temporary(path)?;
+        Ok(Self { path: path.to_owned(), temporary, file: BufWriter::new(file) })
     }
-    let (temporary, file) = create_temporary(path)?;
-    let written = write_synced(file, bytes).and_then(|()| fs::rename(&temporary, path));
-    if written.is_err() {
+
+    /// Puts the file in its place.
+    pub(crate) fn finish(mut self) -> io::Result<()> {
+        self.file.flush()?;
+        self.file.get_ref().sync_all()?;
+        fs::rename(&self.temporary, &self.path)?;
+        sync_folder(&self.path);
+        // Nothing is left to remove.
+        self.temporary.clear();
+        Ok(())
+    }
+}
+
+impl Write for Draft {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Drop for Draft {
+    fn drop(&mut self) {
         // The temporary file is of no use any more. A failure to remove it is ignored, since the first error
         // is the one to report.
-        let _ = fs::remove_file(&temporary);
-        return written;
+        if !self.temporary.as_os_str().is_empty() {
+            let _ = fs::remove_file(&self.temporary);
+        }
     }
-    sync_folder(path);
-    Ok(())
 }
 
 /// Tells whether a name is that of a temporary file of [`write_whole`]. Every part of the name must match.
@@ -78,11 +120,6 @@ pub(crate) fn unique_name() -> String {
     // The standard library seeds its hash tables from the system: a random number that needs no dependency.
     let random = RandomState::new().build_hasher().finish();
     format!("{}{}-{count}-{random:016x}{}", TEMPORARY.0, std::process::id(), TEMPORARY.1)
-}
-
-fn write_synced(mut file: File, bytes: &[u8]) -> io::Result<()> {
-    file.write_all(bytes)?;
-    file.sync_all()
 }
 
 /// Asks the system to keep the new name through a loss of power, too.

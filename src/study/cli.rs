@@ -1,4 +1,4 @@
-//! The command line of a study: `new`, `check`, `prepare`, `run`, `status` and `tables`, for any experiment.
+//! The command line of a study: `new`, `check`, `run`, `status`, `tables` and `accept`, for any experiment.
 //!
 //! In a program of your own, `main` is one call of [`main`]. The binary `granular-edmd` is such a program for
 //! the paper's box.
@@ -9,13 +9,13 @@
 //!
 //! fn main() -> std::process::ExitCode {
 //!     let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
-//!     cli::main(|| Plan::new(VibratedBox::new(100, 20.0, base), Protocol::new(100, 100, 10), 1))
+//!     cli::main(|| Plan::new(VibratedBox::new(100, 20.0, base), Protocol::new(100, 100, 10)?, 1))
 //! }
 //! ```
 //!
-//! `status --json` prints one object: the number of ramps, and the indices of those that are done, running,
-//! begun and waiting. Tables are CSV files whose first line has the names of the columns; `columns.csv` has
-//! the units of all columns.
+//! `status --json` prints one object: the number of ramps, the indices of those that are done, running, begun
+//! and waiting, and whether there are tables of all of them. Tables are CSV files whose first line has the
+//! names of the columns; `columns.csv` has the units of all columns.
 //!
 //! | exit code | meaning |
 //! |---|---|
@@ -23,27 +23,33 @@
 //! | 1 | the command failed; standard error says why |
 //! | 2 | the command line or the plan cannot be used |
 //! | 3 | other processes do the rest (`--no-wait`); from `status`: not all ramps are done |
+//! | 4 | from `status`: all ramps are done, but there are no tables of them |
 //! | 130 | stopped by Ctrl-C or SIGTERM with all work saved; the same command goes on |
 
 mod template;
 mod watch;
-mod workflow;
 
 use std::error::Error;
 use std::fs;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use super::{Control, Experiment, Plan, PlanError, RampStatus, Study, StudyError};
+use super::errors::{PlanError, StudyError};
+use super::execution::control::{Control, Progress};
+use super::experiment::Experiment;
+use super::json::Object;
+use super::opening::Study;
+use super::plan::Plan;
+use super::reading::RampStatus;
 use watch::Watch;
 
 /// Plans, runs and reads studies: many runs of one experiment, in any number of processes.
 ///
-/// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 others do the rest, 130 stopped with all
-/// saved.
+/// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 others do the rest, 4 no tables yet, 130
+/// stopped with all saved.
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Arguments {
@@ -60,20 +66,12 @@ enum Command {
     },
     /// Checks a plan, and prints how many ramps and values it has.
     Check {
-        /// The plan, in TOML.
+        /// The plan, in TOML; `-` for standard input.
         plan: PathBuf,
-    },
-    /// Makes a study a workspace of `row`: a folder for each ramp, and `workflow.toml`. No run needs this.
-    Prepare {
-        /// The plan, in TOML.
-        plan: PathBuf,
-        /// Folder of the study: empty, or one with this plan.
-        #[arg(long)]
-        out: PathBuf,
     },
     /// Does the values of a plan that are not finished, alone or beside other processes that do the same.
     Run {
-        /// The plan, in TOML.
+        /// The plan, in TOML; `-` for standard input.
         plan: PathBuf,
         /// Folder of the study: empty, or one with this plan.
         #[arg(long)]
@@ -82,11 +80,10 @@ enum Command {
         #[arg(long)]
         ramp: Option<usize>,
         /// Number of threads; one for each processor if not given.
-        #[arg(long)]
-        threads: Option<usize>,
-        /// Ends as soon as other processes do all that is left.
-        #[arg(long)]
-        no_wait: bool,
+        #[arg(long, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+        threads: Option<u16>,
+        #[command(flatten)]
+        manner: Manner,
     },
     /// Prints the progress of a study.
     Status {
@@ -100,15 +97,51 @@ enum Command {
     Tables {
         /// Folder of the study.
         folder: PathBuf,
+        /// Folder for the tables; that of the study if not given. Existing tables there are not overwritten.
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
+    /// Lets a study that other code began go on by this program. Records keep the mark of the code that made them.
+    Accept {
+        /// Folder of the study.
+        folder: PathBuf,
     },
 }
 
-/// The way in which a command ended.
+/// Most threads of a run: more than any machine has, and few enough to start them at once.
+const MOST_THREADS: i64 = 4096;
+
+#[derive(Debug, clap::Args)]
+struct Manner {
+    /// Ends as soon as other processes do all that is left.
+    #[arg(long)]
+    no_wait: bool,
+    /// Writes no tables when all ramps are done; `tables` does so later.
+    #[arg(long)]
+    no_tables: bool,
+    /// Reads the records of ramps that are done, too, and does damaged or lost ones again.
+    #[arg(long)]
+    verify: bool,
+}
+
+impl Manner {
+    /// Returns a control with these wishes.
+    fn of<'a>(&self, control: Control<'a>) -> Control<'a> {
+        let control = if self.no_wait { control.without_waiting() } else { control };
+        let control = if self.no_tables { control.without_tables() } else { control };
+        if self.verify { control.with_verification() } else { control }
+    }
+}
+
+/// The way in which a command ended, with its exit code.
+#[derive(Clone, Copy)]
 enum End {
-    Done,
+    Done = 0,
     /// Other processes do the rest.
-    Elsewhere,
-    Interrupted,
+    Elsewhere = 3,
+    /// All is done but the tables.
+    NoTables = 4,
+    Interrupted = 130,
 }
 
 /// The reason why a command failed.
@@ -139,15 +172,13 @@ pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>)
     let ended = match Arguments::parse().command {
         Command::New { file } => new(example, file.as_deref()),
         Command::Check { plan } => check::<E>(&plan),
-        Command::Prepare { plan, out } => prepare::<E>(&plan, &out),
-        Command::Run { plan, out, ramp, threads, no_wait } => run::<E>(&plan, &out, ramp, threads, no_wait),
+        Command::Run { plan, out, ramp, threads, manner } => run::<E>(&plan, &out, ramp, threads, &manner),
         Command::Status { folder, json } => status::<E>(&folder, json),
-        Command::Tables { folder } => tables::<E>(&folder),
+        Command::Tables { folder, out } => tables::<E>(&folder, out.as_deref()),
+        Command::Accept { folder } => accept::<E>(&folder),
     };
     match ended {
-        Ok(End::Done) => ExitCode::SUCCESS,
-        Ok(End::Elsewhere) => ExitCode::from(3),
-        Ok(End::Interrupted) => ExitCode::from(130),
+        Ok(end) => ExitCode::from(end as u8),
         Err(Failure::Plan(error)) => report(error.as_ref(), 2),
         Err(Failure::Run(error)) => report(error.as_ref(), 1),
     }
@@ -161,9 +192,15 @@ fn report(error: &dyn Error, code: u8) -> ExitCode {
     ExitCode::from(code)
 }
 
-/// Prints a line. A reader that is gone is no error.
-fn say(line: &str) {
-    let _ = writeln!(std::io::stdout(), "{line}");
+/// Prints a line. A reader that is gone has seen enough, so it is no error; a full disk is one.
+fn say(line: &str) -> Result<(), Failure> {
+    let mut out = io::stdout();
+    match writeln!(out, "{line}").and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(StudyError::io("write", Path::new("standard output"))(error).into())
+        }
+        _ => Ok(()),
+    }
 }
 
 fn new<E: Experiment>(
@@ -172,7 +209,7 @@ fn new<E: Experiment>(
 ) -> Result<End, Failure> {
     let text = template::commented(&example()?)?;
     let Some(path) = file else {
-        say(text.trim_end());
+        say(text.trim_end())?;
         return Ok(End::Done);
     };
     let written = fs::File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
@@ -180,8 +217,11 @@ fn new<E: Experiment>(
     Ok(End::Done)
 }
 
+/// Reads a file, or standard input for the name `-`.
 fn read(path: &Path) -> Result<String, Failure> {
-    Ok(fs::read_to_string(path).map_err(StudyError::io("read", path))?)
+    let text =
+        if path == Path::new("-") { io::read_to_string(io::stdin()) } else { fs::read_to_string(path) };
+    Ok(text.map_err(StudyError::io("read", path))?)
 }
 
 /// Returns the error of a plan in a file, which names the file.
@@ -205,15 +245,7 @@ fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
         1 => String::new(),
         repeats => format!(", {repeats} repeats among them"),
     };
-    say(&format!("{ramps} ramps of {values} values of {cycles} cycles{repeats}"));
-    Ok(End::Done)
-}
-
-fn prepare<E: Experiment>(path: &Path, out: &Path) -> Result<End, Failure> {
-    let study = study::<E>(path, out)?;
-    study.prepare()?;
-    workflow::write(out)?;
-    say(&format!("{} ramps are prepared in {}", study.plan().ramp_count(), out.display()));
+    say(&format!("{ramps} ramps of {values} values of {cycles} cycles{repeats}"))?;
     Ok(End::Done)
 }
 
@@ -221,28 +253,27 @@ fn run<E: Experiment>(
     path: &Path,
     out: &Path,
     ramp: Option<usize>,
-    threads: Option<usize>,
-    no_wait: bool,
+    threads: Option<u16>,
+    manner: &Manner,
 ) -> Result<End, Failure> {
     let study = study::<E>(path, out)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from)).build();
     let pool = pool.map_err(|error| Failure::Run(error.into()))?;
     let watch = Watch::new().map_err(Failure::Run)?;
-    let show = |progress: &super::Progress| watch.show(progress);
-    let control = Control::default().with_progress(&show).with_interrupt(watch::stop());
-    let control = if no_wait { control.without_waiting() } else { control };
+    let show = |progress: &Progress| watch.show(progress);
+    let control = manner.of(Control::default().with_progress(&show).with_interrupt(watch::stop()));
     let summary = pool.install(|| match ramp {
         Some(ramp) => study.run_ramp(ramp, &control),
         None => study.run(&control),
     })?;
     watch.end();
     for file in &summary.redone {
-        say(&format!("{} was damaged and has been done again", file.display()));
+        say(&format!("{} was damaged and has been done again", file.display()))?;
     }
-    say(&format!("{} of {} values are finished in {}", summary.finished, summary.total, out.display()));
+    say(&format!("{} of {} values are finished in {}", summary.finished, summary.total, out.display()))?;
     if summary.failed > 0 {
-        let log = out.join("log.jsonl");
-        say(&format!("{} of them stalled or failed; {} says why", summary.failed, log.display()));
+        let logs = out.join("ramps/*/log.jsonl");
+        say(&format!("{} of them stalled or failed; {} say why", summary.failed, logs.display()))?;
     }
     Ok(match (summary.is_complete(), summary.elsewhere.is_empty()) {
         (true, _) => End::Done,
@@ -253,8 +284,8 @@ fn run<E: Experiment>(
 
 fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
     let study = Study::<E>::open(folder)?;
-    let ramps = study.plan().ramp_count();
-    let all: Vec<RampStatus> = (0..ramps).map(|ramp| study.status(ramp)).collect::<Result<_, _>>()?;
+    let (all, has_tables) = (study.all_status()?, study.has_tables());
+    let ramps = all.len();
     let of = |wanted| (0..ramps).filter(|&ramp| all[ramp] == wanted).collect::<Vec<usize>>();
     let found = [
         ("done", of(RampStatus::Done)),
@@ -263,18 +294,38 @@ fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
         ("waiting", of(RampStatus::Waiting)),
     ];
     if json {
-        let lists = found.each_ref().map(|(name, ramps)| format!(r#""{name}":{ramps:?}"#));
-        say(&format!(r#"{{"ramps":{ramps},{}}}"#, lists.join(",")));
+        let object = Object::default().with("ramps", ramps);
+        let object =
+            found.iter().fold(object, |object, (name, of)| object.with(name, format_args!("{of:?}")));
+        say(&object.with("tables", has_tables).line())?;
     } else {
-        let counts = found.each_ref().map(|(name, ramps)| format!("{} {name}", ramps.len()));
-        say(&format!("{ramps} ramps: {}", counts.join(", ")));
+        let counts = found.each_ref().map(|(name, of)| format!("{} {name}", of.len()));
+        let tables = if has_tables { "tables of all" } else { "no tables of all" };
+        say(&format!("{ramps} ramps: {}; {tables}", counts.join(", ")))?;
     }
-    Ok(if found[0].1.len() == ramps { End::Done } else { End::Elsewhere })
+    Ok(match (found[0].1.len() == ramps, has_tables) {
+        (true, true) => End::Done,
+        (true, false) => End::NoTables,
+        (false, _) => End::Elsewhere,
+    })
 }
 
-fn tables<E: Experiment>(folder: &Path) -> Result<End, Failure> {
+fn tables<E: Experiment>(folder: &Path, out: Option<&Path>) -> Result<End, Failure> {
     let study = Study::<E>::open(folder)?;
-    let finished = study.write_tables()?;
-    say(&format!("tables of {finished} values are in {}", folder.display()));
+    let finished = out.map_or_else(|| study.write_tables(), |out| study.write_tables_to(out))?;
+    say(&format!("tables of {finished} values are in {}", out.unwrap_or(folder).display()))?;
+    Ok(End::Done)
+}
+
+fn accept<E: Experiment>(folder: &Path) -> Result<End, Failure> {
+    let differences = Study::<E>::accept_changes(folder)?;
+    for difference in &differences {
+        say(&difference.to_string())?;
+    }
+    say(if differences.is_empty() {
+        "the study is of this code: there is nothing to accept"
+    } else {
+        "from here on, records are of this code: the column made_by of values.csv tells them from those before"
+    })?;
     Ok(End::Done)
 }

@@ -1,15 +1,17 @@
 //! The errors of a study, its plan and its files.
 
+use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::experiment::ExperimentError;
-use super::parameters::Difference;
 use crate::ParameterError;
 use crate::error::Readable;
 use crate::simulation::CheckpointError;
+
+/// A reason why an experiment cannot be built or changed: any error of its parts.
+pub type ExperimentError = Box<dyn std::error::Error + Send + Sync>;
 
 /// An error in a plan, which therefore cannot be carried out.
 ///
@@ -172,6 +174,12 @@ pub enum StudyError {
         /// The answer of the system.
         source: io::Error,
     },
+    /// A table would take the place of another file.
+    #[error("{} exists already; choose another folder for tables", path.display())]
+    Taken {
+        /// The file.
+        path: PathBuf,
+    },
     /// The folder holds a study already.
     #[error("{} holds a study already", path.display())]
     Exists {
@@ -193,7 +201,7 @@ pub enum StudyError {
         differences: Vec<Difference>,
     },
     /// A file was cut or changed, or belongs elsewhere.
-    #[error("{} is damaged: {reason}; run the study again to redo it", path.display())]
+    #[error("{} is damaged: {reason}; run the study with a check of its records to redo it", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
@@ -206,7 +214,8 @@ pub enum StudyError {
         /// The file.
         path: PathBuf,
     },
-    /// A record was made with another rule or other walls than the experiment gives now: its code changed.
+    /// A record was made with another rule, other walls or another revision than those of the experiment now: its
+    /// code changed.
     #[error(
         "{} was made with another {part} than the experiment has now at these parameters; take a new folder for changed code",
         path.display()
@@ -217,15 +226,16 @@ pub enum StudyError {
         /// The part that differs.
         part: &'static str,
     },
-    /// A file was made by another version of this crate, whose results may differ.
-    #[error("{} was made by version {found}, but this is version {known}; take a new folder", path.display())]
-    Version {
-        /// The file.
+    /// The study was begun by code with other results, or with another revision of the experiment.
+    #[error(
+        "{} holds a study of other code: {}; take a new folder, or accept the change if its values can be compared",
+        path.display(), told(differences)
+    )]
+    Code {
+        /// The folder.
         path: PathBuf,
-        /// The version that made it.
-        found: String,
-        /// This version.
-        known: &'static str,
+        /// The numbers that differ: `results` of this crate, `revision` of the experiment, `columns`.
+        differences: Vec<Difference>,
     },
     /// A value cannot be started.
     #[error("value {value} of ramp {ramp} cannot start")]
@@ -257,10 +267,48 @@ pub enum StudyError {
     },
 }
 
+impl PlanError {
+    /// Returns the error of a text that is not TOML, or not that of a plan.
+    pub(super) fn toml(error: &impl fmt::Display) -> Self {
+        Self::Toml(shortened(&error.to_string()))
+    }
+}
+
+/// Returns a message with the beginnings of its lines, since it repeats a line of the text, of any length.
+pub(super) fn shortened(message: &str) -> String {
+    const LONGEST: usize = 160;
+    let short = |line: &str| match line.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{} …", &line[..end]),
+        None => line.to_owned(),
+    };
+    message.trim().lines().map(short).collect::<Vec<_>>().join("\n")
+}
+
 impl StudyError {
     /// Returns a function that turns an error of the system into one that names the action and the file.
     pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::Io { action, path: path.to_owned(), source }
+    }
+}
+
+/// A field in which two plans differ.
+///
+/// The value of an absent field is `None`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Difference {
+    /// The name of the field, after the names of the groups that contain it.
+    pub field: String,
+    /// The value in the plan of the folder.
+    pub old: Option<String>,
+    /// The value in the plan that was given.
+    pub new: Option<String>,
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let told = |value: &Option<String>| value.clone().unwrap_or_else(|| "absent".to_owned());
+        write!(formatter, "{} is {} there and {} here", self.field, told(&self.old), told(&self.new))
     }
 }
 

@@ -1,19 +1,22 @@
-//! The trait of experiments: systems that can be studied.
+//! The trait of experiments, systems that can be studied, and the types that its methods name: the records of
+//! an experiment, and the columns of its tables.
+
+pub(super) mod columns;
+pub(super) mod record;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::plan::derived_seed;
-use super::{Column, Record, Table};
+use super::errors::ExperimentError;
+use super::seed::derived_seed;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::observable::{Observer, Snapshot};
 use crate::quantity::{finite, positive};
 use crate::simulation::Checkpoint;
-use crate::{Disk, Simulation};
-
-/// A reason why an experiment cannot be built or changed: any error of its parts.
-pub type ExperimentError = Box<dyn std::error::Error + Send + Sync>;
+use crate::{Disk, Fingerprint, Simulation};
+use columns::{Column, Table};
+use record::Record;
 
 /// The simulation of an experiment.
 pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundary>;
@@ -45,7 +48,7 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
 /// use granular_edmd::collision::Smooth;
 /// use granular_edmd::observable::{CollisionCounts, Snapshot};
 /// use granular_edmd::study::{Axis, Column, Control, Experiment, ExperimentError, Plan, Protocol, Study};
-/// use granular_edmd::{Disk, initial};
+/// use granular_edmd::{Disk, Fingerprint, initial};
 /// use serde::{Deserialize, Serialize};
 ///
 /// /// A gas that cools, in a closed box.
@@ -62,6 +65,9 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
 ///     type Observer = ();
 ///     type Sample = f64;
 ///
+///     fn revision() -> Fingerprint {
+///         Fingerprint::of("Cooling 1")
+///     }
 ///     fn rule(&self) -> Result<Smooth, ExperimentError> {
 ///         Ok(Smooth::from_inelasticity(self.loss)?)
 ///     }
@@ -83,8 +89,8 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
 ///     }
 /// }
 ///
-/// let plan = Plan::new(Cooling { disks: 50, loss: 0.0 }, Protocol::new(0, 5, 1), 1)?;
-/// let plan = plan.with_axis(Axis::new("loss", [0.0, 0.1]))?;
+/// let plan = Plan::new(Cooling { disks: 50, loss: 0.0 }, Protocol::new(0, 5, 1)?, 1)?;
+/// let plan = plan.with_axis(Axis::new("loss", [0.0, 0.1])?)?;
 /// # let folder = std::env::temp_dir().join(format!("granular-edmd-experiment-{}", std::process::id()));
 /// let study = Study::open_or_create(&folder, &plan)?;
 /// study.run(&Control::default())?;
@@ -107,6 +113,17 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     type Observer: Observer + Serialize + DeserializeOwned;
     /// Type of the data that a sample keeps: numbers, lists, anything that can be serialized.
     type Sample: Serialize + DeserializeOwned;
+
+    /// Returns the revision of the code of this type, which a study keeps and compares.
+    ///
+    /// Values that different code has made must not be mixed, so a study is refused once its revision has
+    /// changed. `Fingerprint::of(include_str!("main.rs"))`, with the name of the file that has the experiment,
+    /// changes by itself with every edit of that file, also of a comment. `Fingerprint::of("Cooling 2")`
+    /// changes when you raise the number: do so whenever rule, walls, disks, observer or sample give other
+    /// numbers than before. Code in other files, and in other crates, is covered only if you add it with
+    /// [`Fingerprint::text`]. A study adds the names and units of all columns by itself, and the
+    /// [`RESULTS`](crate::RESULTS) of this crate.
+    fn revision() -> Fingerprint;
 
     /// Returns the collision rule of these parameters.
     ///
@@ -213,7 +230,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Checks that the contents of a file can belong to these parameters.
     ///
-    /// The study has already checked the checksum, the place and the time.
+    /// The study has already checked the checksum, the place and the time. Many records keep no state.
     ///
     /// # Errors
     /// The reason why they cannot, if there is one.
@@ -221,9 +238,9 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         &self,
         samples: &[Self::Sample],
         observer: &Self::Observer,
-        checkpoint: &Checkpoint,
+        state: Option<&Checkpoint>,
     ) -> Result<(), ExperimentError> {
-        let _ = (samples, observer, checkpoint);
+        let _ = (samples, observer, state);
         Ok(())
     }
 

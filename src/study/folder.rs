@@ -3,42 +3,47 @@
 //! A process that writes into the folder of a study or of a ramp holds the lock of that folder. So the next
 //! holder of the lock knows that the writer of a temporary file there is dead.
 
+mod lock;
+pub(super) mod sealed;
+
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use super::errors::StudyError;
-use super::file;
-use super::lock::{self, Lock};
-use super::log;
-use crate::file::is_temporary;
+use super::provenance::Provenance;
+use crate::file::{Draft, is_temporary};
+pub(super) use lock::Lock;
 
 /// Text of the README in the folder of a study, for somebody who comes across it.
 const ABOUT: &str = "\
 A study by granular-edmd (event-driven molecular dynamics of frictional, inelastic, rotating disks).
 
 plan.toml             what is simulated: experiment, protocol, ramp, sweep, repeats, seed
+provenance.json       what began it: program, versions, target, revision of the experiment
 values.csv            a row for each value: parameters, means, standard errors, counts
 samples.csv           a row for each sample
 points.csv            a row for each value, all repeats of it together
 transitions.csv       a row for each transition that a refined ramp brackets
 columns.csv           the names and units of all columns of all tables
-ramps/R/V.record      value V of ramp R (0000/0000.record is the first): samples, counts and last state, with a checksum
+ramps/R/V.record      value V of ramp R (0000/0000.record is the first): samples and counts, with a checksum
 ramps/R/V.partial     a value half done
-ramps/R/value.json    the swept parameters of ramp R, if the study was prepared for an engine that goes by folders
-ramps/R/done          there once all values of ramp R have a record
-ramps/R/lock          locked while a process does ramp R
-done                  there once all ramps are done and in the tables
-log.jsonl             when values were finished, and the seconds that they took; not a result
+ramps/R/log.jsonl     when values were finished, and the seconds that they took; not a result. It is locked while
+                      a process does ramp R
+done/R                there once all values of ramp R have a record; names the values that stalled or failed
+complete              there once all ramps are done and in the tables
 lock                  locked while a process makes the plan or the tables
 
 Tables are written when all ramps are done, or on demand. Lost or damaged files come back, the same bytes, when the study is
-run again by the same version. Any number of processes may run it at the same time.
+run again with --verify. Any number of processes may run it at the same time.
 ";
 
 const PLAN: &str = "plan.toml";
+const PROVENANCE: &str = "provenance.json";
 const README: &str = "README.txt";
 const RAMPS: &str = "ramps";
+const DONE: &str = "done";
+const LOCK: &str = "lock";
 
 /// The folder of a study.
 #[derive(Debug, Clone)]
@@ -71,33 +76,69 @@ impl Folder {
         self.ramp(ramp).join(format!("{value:04}.partial"))
     }
 
+    /// Returns the log of a ramp, whose lock is that of the ramp.
+    pub(super) fn log(&self, ramp: usize) -> PathBuf {
+        self.ramp(ramp).join("log.jsonl")
+    }
+
     fn done(&self, ramp: usize) -> PathBuf {
-        self.ramp(ramp).join("done")
+        self.root.join(DONE).join(format!("{ramp:04}"))
     }
 
     /// Returns whether the folder holds a study. A plan alone is not a study: somebody may keep plans there,
     /// among other files. A study has a lock beside its plan from the first moment, soon a README, and then
     /// ramps. A copy of a study may lack some of these.
     pub(super) fn holds_study(&self) -> bool {
-        let has_lock = self.root.join(lock::NAME).metadata().is_ok_and(|lock| is_lock(&lock));
+        let has_lock = self.root.join(LOCK).metadata().is_ok_and(|lock| is_lock(&lock));
         let has_others = || [README, RAMPS].iter().any(|name| self.root.join(name).exists());
         self.plan().exists() && (has_lock || has_others())
     }
 
     /// Puts a plan into the folder, which it creates if needed; returns false if there is a plan already.
-    pub(super) fn create(&self, plan: &str) -> Result<bool, StudyError> {
+    pub(super) fn create(&self, plan: &str, provenance: &Provenance) -> Result<bool, StudyError> {
         self.check_free()?;
         fs::create_dir_all(&self.root).map_err(StudyError::io("create", &self.root))?;
-        let _lock = Lock::take(&self.root)?;
-        file::remove_temporaries(&self.root)?;
-        let is_new = file::publish(&self.plan(), plan.as_bytes())?;
+        let _lock = Lock::take(&self.root.join(LOCK))?;
+        sealed::remove_temporaries(&self.root)?;
+        let is_new = sealed::publish(&self.plan(), plan.as_bytes())?;
+        // A process that was killed here leaves a plan without a provenance, and no ramps. A folder with ramps
+        // was made by a version that did not tell its provenance, and nobody may do so in its place.
+        if !self.root.join(RAMPS).exists() {
+            sealed::publish(&self.root.join(PROVENANCE), provenance.text().as_bytes())?;
+        }
         self.write_about()?;
         Ok(is_new)
     }
 
-    /// Writes the README of the folder, if it is not there.
+    /// Returns whether the file of the provenance is missing.
+    pub(super) fn lacks_provenance(&self) -> bool {
+        !self.root.join(PROVENANCE).exists()
+    }
+
+    /// Returns the provenance of the study; an empty one if the file is missing.
+    pub(super) fn provenance(&self) -> Result<Provenance, StudyError> {
+        let path = self.root.join(PROVENANCE);
+        match fs::read_to_string(&path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Provenance::of_text(String::new())),
+            read => read.map(Provenance::of_text).map_err(StudyError::io("read", &path)),
+        }
+    }
+
+    /// Puts another provenance in the place of the one that is there.
+    pub(super) fn replace_provenance(&self, provenance: &Provenance) -> Result<(), StudyError> {
+        let _lock = Lock::take(&self.root.join(LOCK))?;
+        sealed::write(&self.root.join(PROVENANCE), provenance.text().as_bytes())
+    }
+
+    /// Writes the README of the folder, if it is not there or was cut. One that somebody has edited stays.
     fn write_about(&self) -> Result<(), StudyError> {
-        file::publish(&self.root.join(README), ABOUT.as_bytes()).map(drop)
+        let path = self.root.join(README);
+        match fs::read(&path) {
+            Ok(found) if found.len() < ABOUT.len() && ABOUT.as_bytes().starts_with(&found) => {
+                sealed::write(&path, ABOUT.as_bytes())
+            }
+            _ => sealed::publish(&path, ABOUT.as_bytes()).map(drop),
+        }
     }
 
     /// Checks that the folder has a plan, or nothing but a lock and temporary files, which come before a
@@ -123,7 +164,7 @@ impl Folder {
         for entry in entries {
             let entry = entry.map_err(cannot_read())?;
             let name = entry.file_name();
-            let is_lock = name == lock::NAME && entry.metadata().is_ok_and(|lock| is_lock(&lock));
+            let is_lock = name == LOCK && entry.metadata().is_ok_and(|lock| is_lock(&lock));
             if !is_lock && !is_temporary(&name) {
                 return Ok(Some(name.to_string_lossy().into_owned()));
             }
@@ -135,40 +176,70 @@ impl Folder {
         fs::read_to_string(self.plan()).map_err(StudyError::io("read", &self.plan()))
     }
 
-    /// Takes the lock of a ramp, in its folder; returns `None` if somebody does the ramp.
-    pub(super) fn take(&self, ramp: usize) -> Result<Option<Lock>, StudyError> {
+    /// Takes the lock of a ramp; returns `None` if somebody does the ramp. The flag tells whether nothing was
+    /// ever done there.
+    pub(super) fn take(&self, ramp: usize) -> Result<Option<(Lock, bool)>, StudyError> {
         let folder = self.ramp(ramp);
-        fs::create_dir_all(&folder).map_err(StudyError::io("create", &folder))?;
-        let lock = Lock::try_take(&folder)?;
-        if lock.is_some() {
-            file::remove_temporaries(&folder)?;
+        let is_new = create(&folder)?;
+        let Some(lock) = Lock::try_take(&self.log(ramp))? else { return Ok(None) };
+        // Somebody else may have done the ramp since this process made its folder.
+        let is_fresh = is_new && lock.is_fresh();
+        if !is_fresh {
+            sealed::remove_temporaries(&folder)?;
         }
-        Ok(lock)
+        Ok(Some((lock, is_fresh)))
     }
 
     pub(super) fn is_taken(&self, ramp: usize) -> bool {
-        Lock::is_taken(&self.ramp(ramp))
+        Lock::is_taken(&self.log(ramp))
     }
 
-    /// Returns whether a process has ever begun a ramp. The folder alone does not say so, since it may have
-    /// been prepared.
+    /// Returns whether a process has ever begun a ramp.
     pub(super) fn is_begun(&self, ramp: usize) -> bool {
-        self.ramp(ramp).join(lock::NAME).exists()
+        self.log(ramp).exists()
     }
 
     pub(super) fn is_done(&self, ramp: usize) -> bool {
         self.done(ramp).exists()
     }
 
-    /// Marks a ramp as done.
-    pub(super) fn mark_done(&self, ramp: usize) -> Result<(), StudyError> {
+    /// Returns for each of so many ramps whether it is done. One call of the system tells of hundreds of them.
+    pub(super) fn all_done(&self, ramps: usize) -> Result<Vec<bool>, StudyError> {
+        let mut all = vec![false; ramps];
+        let folder = self.root.join(DONE);
+        let entries = match fs::read_dir(&folder) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(all),
+            entries => entries.map_err(StudyError::io("read", &folder))?,
+        };
+        for entry in entries {
+            let name = entry.map_err(StudyError::io("read", &folder))?.file_name();
+            let ramp = name.to_str().and_then(|name| name.parse::<usize>().ok());
+            if let Some(done) = ramp.and_then(|ramp| all.get_mut(ramp)) {
+                *done = true;
+            }
+        }
+        Ok(all)
+    }
+
+    /// Marks a ramp as done, with the values that stalled or failed.
+    ///
+    /// The mark need not outlast a loss of power, so it costs no sync: a ramp that lost it is looked at again.
+    pub(super) fn mark_done(&self, ramp: usize, failed: &[usize]) -> Result<(), StudyError> {
         let path = self.done(ramp);
-        if path.exists() { Ok(()) } else { file::write(&path, b"") }
+        let text: String = failed.iter().map(|value| format!("{value:04}\n")).collect();
+        if let Err(error) = fs::write(&path, &text) {
+            if error.kind() != io::ErrorKind::NotFound {
+                return Err(StudyError::io("write", &path)(error));
+            }
+            create(&self.root.join(DONE))?;
+            fs::write(&path, text).map_err(StudyError::io("write", &path))?;
+        }
+        Ok(())
     }
 
     /// Removes the mark that a ramp is done.
     pub(super) fn mark_undone(&self, ramp: usize) -> Result<(), StudyError> {
-        file::remove(&self.done(ramp))
+        sealed::remove(&self.done(ramp))
     }
 
     /// Returns whether all ramps are done and in the tables.
@@ -176,39 +247,49 @@ impl Folder {
         self.complete().exists()
     }
 
-    /// Marks that all ramps are in the tables.
-    pub(super) fn mark_complete(&self) -> Result<(), StudyError> {
-        let _lock = Lock::take(&self.root)?;
-        if self.is_complete() { Ok(()) } else { file::write(&self.complete(), b"") }
-    }
-
     /// Removes the mark that the study is complete, before a value comes that may not be in the tables.
     pub(super) fn mark_incomplete(&self) -> Result<(), StudyError> {
-        file::remove(&self.complete())
+        sealed::remove(&self.complete())
+    }
+
+    /// Marks that all ramps are in the tables. The caller holds the lock of the study.
+    pub(super) fn mark_complete(&self) -> Result<(), StudyError> {
+        sealed::write(&self.complete(), b"")
     }
 
     fn complete(&self) -> PathBuf {
-        self.root.join("done")
+        self.root.join("complete")
     }
 
-    /// Writes tables, each to a file of its name.
-    pub(super) fn write_tables<'a>(
-        &self,
-        tables: impl IntoIterator<Item = (&'a str, &'a str)>,
-    ) -> Result<(), StudyError> {
-        let _lock = Lock::take(&self.root)?;
-        file::remove_temporaries(&self.root)?;
+    /// Waits for the lock of the whole study, and takes it to write tables.
+    pub(super) fn lock(&self) -> Result<Lock, StudyError> {
+        let lock = Lock::take(&self.root.join(LOCK))?;
+        sealed::remove_temporaries(&self.root)?;
         // The process that put the plan here may have been killed before it wrote the README.
         self.write_about()?;
-        tables
-            .into_iter()
-            .try_for_each(|(name, text)| file::write(&self.root.join(format!("{name}.csv")), text.as_bytes()))
+        Ok(lock)
     }
+}
 
-    /// Adds a line to the log.
-    pub(super) fn log(&self, line: &str) -> Result<(), StudyError> {
-        let path = self.root.join("log.jsonl");
-        log::append(&path, line).map_err(StudyError::io("write", &path))
+/// Returns the file of the table of this name in a folder.
+pub(super) fn table(folder: &Path, name: &str) -> PathBuf {
+    folder.join(format!("{name}.csv"))
+}
+
+/// Begins the file of a table.
+pub(super) fn draft(path: &Path) -> Result<Draft, StudyError> {
+    Draft::of(path).map_err(StudyError::io("write", path))
+}
+
+/// Creates a folder, and those that contain it; returns whether it is new.
+pub(super) fn create(folder: &Path) -> Result<bool, StudyError> {
+    let made = match fs::create_dir(folder) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => fs::create_dir_all(folder),
+        made => made,
+    };
+    match made {
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(false),
+        made => made.map(|()| true).map_err(StudyError::io("create", folder)),
     }
 }
 

@@ -4,17 +4,17 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
-use super::Scalar;
-use super::errors::PlanError;
+use super::errors::{Difference, PlanError, shortened};
+use super::scalar::Scalar;
 
 /// Returns the parameters of an experiment as a tree of names.
 pub(super) fn tree(experiment: &impl Serialize) -> Result<Table, PlanError> {
-    Table::try_from(experiment).map_err(|error| PlanError::Toml(error.to_string()))
+    Table::try_from(experiment).map_err(|error| PlanError::toml(&error))
 }
 
 /// Creates an experiment from a tree of names.
 pub(super) fn experiment<E: DeserializeOwned>(tree: Table) -> Result<E, String> {
-    E::deserialize(Value::Table(tree)).map_err(|error| error.to_string().trim().to_owned())
+    E::deserialize(Value::Table(tree)).map_err(|error| shortened(&error.to_string()))
 }
 
 /// Returns the whole names of all parameters, in which a dot separates a group and its parts.
@@ -84,7 +84,7 @@ pub(super) fn probe<E: Serialize + DeserializeOwned>(
     to: &Scalar,
 ) -> Result<Scalar, PlanError> {
     let known = get(base, name);
-    let to = known.map_or_else(|| to.clone(), |known| to.clone().like(known));
+    let to = known.and_then(Scalar::of_toml).map_or_else(|| to.clone(), |known| to.clone().like(&known));
     let mut changed = base.clone();
     let unknown = |reason: String| PlanError::UnknownParameter {
         parameter: parameter.to_owned(),
@@ -107,27 +107,6 @@ pub(super) fn probe<E: Serialize + DeserializeOwned>(
 pub(super) fn place(varied: &[(&str, &Scalar)]) -> String {
     let varied: Vec<String> = varied.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     if varied.is_empty() { String::new() } else { format!(" at {}", varied.join(", ")) }
-}
-
-/// A field in which two plans differ.
-///
-/// The value of an absent field is `None`.
-#[derive(Debug, Clone, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Difference {
-    /// The name of the field, after the names of the groups that contain it.
-    pub field: String,
-    /// The value in the plan of the folder.
-    pub old: Option<String>,
-    /// The value in the plan that was given.
-    pub new: Option<String>,
-}
-
-impl std::fmt::Display for Difference {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let told = |value: &Option<String>| value.clone().unwrap_or_else(|| "absent".to_owned());
-        write!(formatter, "{} is {} there and {} here", self.field, told(&self.old), told(&self.new))
-    }
 }
 
 /// Returns the fields in which two trees differ.

@@ -1,16 +1,28 @@
 //! Plans: studies as data.
 
+pub(super) mod axis;
+pub(super) mod protocol;
+pub(super) mod ramp;
+pub(super) mod refinement;
+pub(super) mod steps;
 mod text;
 mod validation;
+mod values;
 
 use serde::Serialize;
 use toml::Table;
 
-use super::errors::PlanError;
+use super::errors::{ExperimentError, PlanError};
+use super::experiment::Experiment;
+use super::leg::Leg;
 use super::parameters::{self, place};
-use super::refinement::{Seen, Step};
-use super::{Axis, Experiment, Leg, Protocol, Ramp, Scalar};
+use super::scalar::Scalar;
+use super::seed::derived_seed;
 use crate::quantity::accept;
+use axis::Axis;
+use protocol::Protocol;
+use ramp::Ramp;
+use refinement::{Seen, Step};
 
 /// The plan of a study as data: an experiment, its sampling, its ramp, its sweep, and its number of repeats.
 ///
@@ -53,6 +65,8 @@ pub struct Plan<E> {
     seed: u64,
     #[serde(skip_serializing_if = "is_one")]
     repeats: usize,
+    #[serde(skip_serializing_if = "is_false")]
+    end_states: bool,
     pub(super) experiment: E,
     protocol: Protocol,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -65,6 +79,9 @@ pub struct Plan<E> {
     /// The whole names of the parameters that vary: of the axes in their order, then of the ramp.
     #[serde(skip)]
     varied: Vec<String>,
+    /// The first value of each parameter that varies, as the experiment reads it: it shows the kind of number.
+    #[serde(skip)]
+    kinds: Vec<Scalar>,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
@@ -72,15 +89,26 @@ const fn is_one(count: &usize) -> bool {
     *count == 1
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+const fn is_false(flag: &bool) -> bool {
+    !*flag
+}
+
 impl<E: Experiment> Plan<E> {
+    /// Returns the plan of one value before its checks.
+    fn bare(experiment: E, protocol: Protocol, seed: u64) -> Self {
+        let (ramp, sweep, tree) = (None, Vec::new(), Table::new());
+        let (varied, kinds) = (Vec::new(), Vec::new());
+        Self { seed, repeats: 1, end_states: false, experiment, protocol, ramp, sweep, tree, varied, kinds }
+    }
+
     /// Creates the plan of one value.
     ///
     /// # Errors
     /// If the experiment refuses its parameters, the protocol is out of range, or the seed is not below
     /// $`2^{63}`$.
     pub fn new(experiment: E, protocol: Protocol, seed: u64) -> Result<Self, PlanError> {
-        let (ramp, sweep, tree, varied) = (None, Vec::new(), Table::new(), Vec::new());
-        Self { seed, repeats: 1, experiment, protocol, ramp, sweep, tree, varied }.checked()
+        Self::bare(experiment, protocol, seed).checked()
     }
 
     /// Returns the same plan with a ramp at each point.
@@ -111,6 +139,20 @@ impl<E: Experiment> Plan<E> {
         Self { repeats, ..self }.checked()
     }
 
+    /// Returns the same plan, whose records all keep the state at their end
+    /// ([`Record::checkpoint`](super::Record::checkpoint)).
+    ///
+    /// Otherwise only those keep it from which another value starts. States are most of a record's bytes.
+    pub fn with_end_states(self) -> Self {
+        Self { end_states: true, ..self }
+    }
+
+    /// Returns whether the record of a value keeps the state at its end. Any value of a refined ramp may be
+    /// the start of a bisection.
+    pub(super) fn keeps_state(&self, value: usize) -> bool {
+        self.end_states || self.is_refined() || value + 1 < self.value_count()
+    }
+
     /// Returns the protocol by which values are sampled.
     pub const fn protocol(&self) -> &Protocol {
         &self.protocol
@@ -133,7 +175,7 @@ impl<E: Experiment> Plan<E> {
 
     /// Returns the number of points of the grid.
     pub fn point_count(&self) -> usize {
-        self.sweep.iter().map(|axis| axis.values().len()).product()
+        self.sweep.iter().map(|axis| axis.len()).product()
     }
 
     /// Returns the number of values of each ramp, without those that a refinement adds.
@@ -169,9 +211,10 @@ impl<E: Experiment> Plan<E> {
     pub(super) fn parameters_at(&self, ramp: usize, at: Option<f64>) -> Vec<(&str, Scalar)> {
         let mut rest = ramp / self.repeats;
         let mut found: Vec<(&str, Scalar)> = Vec::with_capacity(self.varied.len());
-        for axis in self.sweep.iter().rev() {
-            found.push((axis.parameter(), axis.values()[rest % axis.values().len()].clone()));
-            rest /= axis.values().len();
+        for (axis, kind) in self.sweep.iter().zip(&self.kinds).rev() {
+            let value = axis.value(rest % axis.len());
+            found.extend(value.map(|value| (axis.parameter(), value.like(kind))));
+            rest /= axis.len();
         }
         found.reverse();
         let ramped = self.ramp.as_ref().zip(at);
@@ -215,7 +258,8 @@ impl<E: Experiment> Plan<E> {
     fn experiment_of(&self, varied: &[(&str, Scalar)]) -> Result<E, PlanError> {
         let mut tree = self.tree.clone();
         for (name, (_, to)) in self.varied.iter().zip(varied) {
-            let to = parameters::get(&tree, name).map_or_else(|| to.clone(), |known| to.clone().like(known));
+            let known = parameters::get(&tree, name).and_then(Scalar::of_toml);
+            let to = known.map_or_else(|| to.clone(), |known| to.clone().like(&known));
             // The names were tried when the plan was made, so this succeeds.
             let _ = parameters::set(&mut tree, name, &to);
         }
@@ -223,7 +267,7 @@ impl<E: Experiment> Plan<E> {
         parameters::experiment(tree).map_err(refused)
     }
 
-    fn refused(varied: &[(&str, Scalar)], source: super::ExperimentError) -> PlanError {
+    fn refused(varied: &[(&str, Scalar)], source: ExperimentError) -> PlanError {
         let varied: Vec<(&str, &Scalar)> = varied.iter().map(|(name, value)| (*name, value)).collect();
         PlanError::Experiment { place: place(&varied), source }
     }
@@ -231,13 +275,4 @@ impl<E: Experiment> Plan<E> {
     pub(super) fn step(&self, value: usize) -> Option<(Leg, f64)> {
         self.ramp.as_ref().and_then(|ramp| ramp.at(value))
     }
-}
-
-/// Returns the seed of this index that follows from another seed.
-pub(super) fn derived_seed(seed: u64, index: u64) -> u64 {
-    let bytes = [seed.to_le_bytes(), index.to_le_bytes()].concat();
-    let hash = blake3::hash(&bytes);
-    let mut first = [0; 8];
-    first.copy_from_slice(&hash.as_bytes()[..8]);
-    u64::from_le_bytes(first)
 }

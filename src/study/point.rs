@@ -1,6 +1,8 @@
 //! Points: values with all their repeats.
 
-use super::{Experiment, Leg, Record};
+use super::experiment::Experiment;
+use super::experiment::record::Record;
+use super::leg::Leg;
 use crate::statistics::Estimate;
 
 /// A value at a point of the grid, with the records of its repeats, which have the same parameters and
@@ -10,7 +12,7 @@ use crate::statistics::Estimate;
 /// # use granular_edmd::study::vibrated_box::{Base, VibratedBox};
 /// # use granular_edmd::study::{Control, Plan, Protocol, Study};
 /// # let base = Base::Thermal { temperature: 1.0, slip: false };
-/// # let plan = Plan::new(VibratedBox::new(10, 10.0, base).with_gravity(0.1), Protocol::new(10, 20, 1), 1)?;
+/// # let plan = Plan::new(VibratedBox::new(10, 10.0, base).with_gravity(0.1), Protocol::new(10, 20, 1)?, 1)?;
 /// # let plan = plan.with_repeats(3)?;
 /// # let folder = std::env::temp_dir().join(format!("granular-edmd-point-{}", std::process::id()));
 /// # let study = Study::create(&folder, &plan)?;

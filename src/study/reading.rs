@@ -1,28 +1,49 @@
-//! The results of a study: records, points and transitions, and tables of all of them.
+//! The results of a study: records, points, transitions and progress, and tables of the records.
+
+use std::path::{Path, PathBuf};
 
 use super::errors::StudyError;
-use super::record::{Contents, Record};
-use super::refinement::{Bracket, Seen};
-use super::tables::Tables;
-use super::{Experiment, Point, Study, file};
+use super::experiment::Experiment;
+use super::experiment::record::{Contents, Outcome, Record, check, check_state};
+use super::folder::{self, sealed};
+use super::opening::Study;
+use super::plan::Plan;
+use super::plan::refinement::{Bracket, Seen};
+use super::point::Point;
+use super::tables::{self, Tables};
+
+/// Progress of a ramp.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RampStatus {
+    /// All values of the ramp have a record.
+    Done,
+    /// A process is doing the ramp.
+    Running,
+    /// A process has begun the ramp, and none is doing it now.
+    Begun,
+    /// No process has begun the ramp.
+    Waiting,
+}
 
 impl<E: Experiment> Study<E> {
     /// Returns the record of a value; `None` if it is not finished.
     ///
     /// # Errors
-    /// If there is no such ramp, or the file is damaged, of another study, or cannot be read.
+    /// If there is no such ramp, or the file is damaged, of another study, of other code, or cannot be read.
     pub fn record(&self, ramp: usize, value: usize) -> Result<Option<Record<E>>, StudyError> {
         self.check_ramp(ramp)?;
         let path = self.folder.record(ramp, value);
-        let Some(contents) = file::read_sealed::<Contents<_, _>>(&path)? else { return Ok(None) };
+        let Some(contents) = sealed::read_sealed::<Contents<_, _>>(&path)? else { return Ok(None) };
         self.check_origin(&contents.origin, ramp, value, &path)?;
         let spans = |at| self.plan.ramp().is_some_and(|ramp| ramp.spans(at));
         if contents.at.is_some_and(|at| !spans(at)) {
-            return Err(file::damaged(&path, "it is outside the ramp"));
+            return Err(sealed::damaged(&path, "it is outside the ramp"));
         }
         let record = Record { experiment: self.plan.experiment_at(ramp, contents.at)?, contents };
-        record.check(&self.plan).map_err(|reason| file::damaged(&path, reason))?;
-        match record.changed_part() {
+        check_record(&record, &self.plan).map_err(|reason| sealed::damaged(&path, reason))?;
+        // Code that somebody accepted differs from this program on purpose.
+        match record.changed_part().filter(|_| self.is_ours(&record.contents.origin)) {
             Some(part) => Err(StudyError::Changed { path, part }),
             None => Ok(Some(record)),
         }
@@ -78,8 +99,10 @@ impl<E: Experiment> Study<E> {
     /// # Errors
     /// If there is no such ramp, or a record is damaged, of another study, or cannot be read.
     pub fn transitions(&self, ramp: usize) -> Result<Vec<Bracket>, StudyError> {
-        let seen: Vec<Seen> =
-            self.ramp_records(ramp).map(|record| Ok(record?.seen())).collect::<Result<_, StudyError>>()?;
+        let seen: Vec<Seen> = self
+            .ramp_records(ramp)
+            .map(|record| Ok(Seen::of(&record?)))
+            .collect::<Result<_, StudyError>>()?;
         Ok(self.brackets(&seen))
     }
 
@@ -87,27 +110,121 @@ impl<E: Experiment> Study<E> {
         self.plan.ramp().map_or_else(Vec::new, |ramp| ramp.brackets(seen))
     }
 
-    /// Writes the tables of all finished records, and returns the number of these records.
-    ///
-    /// A run does this when all ramps are done. Call it earlier to look at what is there.
+    /// Returns the progress of a ramp.
     ///
     /// # Errors
-    /// If a record is damaged, or a file cannot be read or written.
+    /// If there is no such ramp.
+    pub fn status(&self, ramp: usize) -> Result<RampStatus, StudyError> {
+        self.check_ramp(ramp)?;
+        Ok(if self.folder.is_done(ramp) { RampStatus::Done } else { self.status_of_undone(ramp) })
+    }
+
+    /// Returns the progress of all ramps.
+    ///
+    /// It is much faster than [`Self::status`] of each of them.
+    ///
+    /// # Errors
+    /// If the folder cannot be read.
+    pub fn all_status(&self) -> Result<Vec<RampStatus>, StudyError> {
+        let done = self.folder.all_done(self.plan.ramp_count())?.into_iter().enumerate();
+        let of = |(ramp, done)| if done { RampStatus::Done } else { self.status_of_undone(ramp) };
+        Ok(done.map(of).collect())
+    }
+
+    fn status_of_undone(&self, ramp: usize) -> RampStatus {
+        if self.folder.is_taken(ramp) {
+            RampStatus::Running
+        } else if self.folder.is_begun(ramp) {
+            RampStatus::Begun
+        } else {
+            RampStatus::Waiting
+        }
+    }
+
+    /// Returns whether the folder has tables of all values.
+    pub fn has_tables(&self) -> bool {
+        let names = tables::names::<E>(&self.plan);
+        self.folder.is_complete() && names.iter().all(|name| folder::table(self.folder(), name).exists())
+    }
+
+    /// Writes the tables of all finished records into the folder of the study, and returns the number of
+    /// these records.
+    ///
+    /// A run does this when all ramps are done. Call it earlier to look at what is there. Tables are written
+    /// row by row, so they may be larger than memory.
+    ///
+    /// # Errors
+    /// If a record is damaged or missing, or a file cannot be read or written.
     pub fn write_tables(&self) -> Result<usize, StudyError> {
-        let mut tables = Tables::new(&self.plan);
+        let _lock = self.folder.lock()?;
+        self.tables(self.folder())
+    }
+
+    /// Writes the tables of all finished records into another folder, and returns the number of these
+    /// records.
+    ///
+    /// # Errors
+    /// The same as for [`Self::write_tables`], and if the folder has a table of one of these names.
+    pub fn write_tables_to(&self, folder: impl AsRef<Path>) -> Result<usize, StudyError> {
+        let folder = folder.as_ref();
+        folder::create(folder)?;
+        let table = |name: &String| folder::table(folder, name);
+        if let Some(path) =
+            tables::names::<E>(&self.plan).iter().map(table).find(|path: &PathBuf| path.exists())
+        {
+            return Err(StudyError::Taken { path });
+        }
+        self.tables(folder)
+    }
+
+    /// Writes tables, and returns the number of records in them.
+    pub(super) fn tables(&self, folder: &Path) -> Result<usize, StudyError> {
+        let done = self.folder.all_done(self.plan.ramp_count())?;
+        let mut tables = Tables::new(&self.plan, folder)?;
         let mut finished = 0;
-        for ramp in 0..self.plan.ramp_count() {
+        for (ramp, is_done) in done.into_iter().enumerate() {
             let mut seen = Vec::new();
             for record in self.ramp_records(ramp) {
                 let record = record?;
-                tables.add(&record);
-                seen.push(record.seen());
+                tables.add(&record)?;
+                seen.push(Seen::of(&record));
                 finished += 1;
             }
-            tables.end_ramp(ramp, &self.brackets(&seen));
+            // A table that lacks a row must not look complete.
+            if is_done && seen.len() < self.plan.value_count() {
+                let path = self.folder.record(ramp, seen.len());
+                return Err(sealed::damaged(&path, "a record of a ramp that is done is missing"));
+            }
+            tables.end_ramp(ramp, &self.brackets(&seen))?;
         }
-        let tables = tables.finish();
-        self.folder.write_tables(tables.iter().map(|(name, text)| (name.as_str(), text.as_str())))?;
+        tables.finish()?;
         Ok(finished)
     }
+}
+
+/// Checks that a record can belong to its place in a study. The error says why it cannot.
+fn check_record<E: Experiment>(record: &Record<E>, plan: &Plan<E>) -> Result<(), String> {
+    let Contents { origin, leg, at, outcome, end, measured, state, .. } = &record.contents;
+    let protocol = plan.protocol();
+    let most = protocol.cycles().saturating_mul(origin.value as u64 + 1);
+    check(end.count <= most, "it is longer than the protocol")?;
+    let samples = measured.samples.len() as u64;
+    let is_short = *outcome != Outcome::Completed && samples < protocol.samples();
+    check(samples == protocol.samples() || is_short, "its samples are not as many as in the protocol")?;
+    let is_placed = match plan.step(origin.value) {
+        Some((way, value)) => *leg == Some(way) && *at == Some(value),
+        None => plan.is_refined() || at.is_none(),
+    };
+    check(is_placed, "its place in the ramp is not the plan's")?;
+    check(
+        state.is_some() == plan.keeps_state(origin.value),
+        "it keeps a state that it should not, or lacks one",
+    )?;
+    if let Some(state) = state {
+        let time = end.time(0.0, record.experiment.cycle());
+        check_state(state, time..=time)?;
+        let [rule, boundary] = &record.contents.parts;
+        check(state.parts() == (rule.as_ref(), boundary.as_ref()), "its state is of other parts")?;
+    }
+    measured.check(&record.experiment, state.as_ref())
 }

@@ -12,6 +12,7 @@ use std::fmt;
 /// ```
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(untagged)]
+#[non_exhaustive]
 pub enum Scalar {
     /// Yes or no.
     Flag(bool),
@@ -55,16 +56,14 @@ impl Scalar {
 
     /// Returns the same value as the kind of number that `other` is, if nothing is lost: 1.0 becomes the
     /// integer 1, for example.
-    pub(super) fn like(self, other: &toml::Value) -> Self {
+    pub(super) fn like(self, other: &Self) -> Self {
         /// Up to this size, all whole numbers are doubles.
         const EXACT: f64 = 9_007_199_254_740_992.0;
         match (other, self) {
-            (toml::Value::Integer(_), Self::Number(number))
-                if number.abs() <= EXACT && number.trunc() == number =>
-            {
+            (Self::Integer(_), Self::Number(number)) if number.abs() <= EXACT && number.trunc() == number => {
                 Self::Integer(number as i64)
             }
-            (toml::Value::Float(_), Self::Integer(number)) => Self::Number(number as f64),
+            (Self::Number(_), Self::Integer(number)) => Self::Number(number as f64),
             (_, same) => same,
         }
     }

@@ -1,174 +1,191 @@
-//! Records as tables: header and rows from the same columns.
+//! Records as tables, row by row: header and rows from the same columns.
 
-mod headers;
+mod leading;
 mod points;
+mod rows;
 
-use std::fmt::{Display, Write};
+use std::path::Path;
 
-use super::column::{Column, Kind};
-use super::{Bracket, Experiment, Plan, Record, Scalar, Table};
-use crate::statistics::Estimate;
+use super::errors::StudyError;
+use super::experiment::Experiment;
+use super::experiment::columns::{Column, Kind, Table, error_names};
+use super::experiment::record::Record;
+use super::plan::Plan;
+use super::plan::refinement::Bracket;
+use super::scalar::Scalar;
+use crate::observable::Heading;
+use leading::{Place, leading};
 use points::{Repeat, Repeats};
+use rows::{Row, Rows, not_converged};
 
-/// The tables of a study, as they grow.
+/// The tables of a study, as they grow. A table takes its place in the folder when all of them are whole.
 pub(super) struct Tables<'a, E: Experiment> {
     plan: &'a Plan<E>,
     columns: Vec<Column<E>>,
-    more: Vec<(Table<E>, String)>,
-    values: String,
-    samples: String,
-    transitions: String,
-    points: String,
+    values: Rows,
+    samples: Rows,
+    points: Rows,
+    transitions: Option<Rows>,
+    more: Vec<(Table<E>, Rows)>,
+    described: Rows,
     repeats: Repeats,
 }
 
+/// Returns the names of all tables of a plan.
+pub(super) fn names<E: Experiment>(plan: &Plan<E>) -> Vec<String> {
+    let refined = plan.is_refined().then_some("transitions");
+    let names = ["values", "samples", "points", "columns"].into_iter().chain(refined);
+    names.map(str::to_owned).chain(E::tables().iter().map(|table| table.name().to_owned())).collect()
+}
+
 impl<'a, E: Experiment> Tables<'a, E> {
-    /// Makes tables with a first line and no rows.
-    pub(super) fn new(plan: &'a Plan<E>) -> Self {
+    /// Begins tables with a first line and no rows.
+    pub(super) fn new(plan: &'a Plan<E>, folder: &Path) -> Result<Self, StudyError> {
         let columns = E::columns();
-        let more = E::tables().into_iter().map(|table| {
-            let header = headers::line(&headers::of_own(plan, &table));
-            (table, header)
+        let mut described = Rows::begin(folder, "columns")?;
+        described.push(Row::of(["table", "column", "unit"]))?;
+        let mut begin = |name: &str, place: Place, own: Vec<Heading>| -> Result<Rows, StudyError> {
+            let leading = leading(plan, place).into_iter().map(|(name, _)| Heading::new(name, ""));
+            let headings: Vec<Heading> = leading.chain(own).collect();
+            for heading in &headings {
+                described.push(Row::of([name, heading.name(), heading.unit()]))?;
+            }
+            let mut rows = Rows::begin(folder, name)?;
+            rows.push(Row::of(headings.iter().map(Heading::name)))?;
+            Ok(rows)
+        };
+        let first = Place::first(plan);
+        let values = begin("values", first, of_values(&columns))?;
+        let samples = begin("samples", first, of_samples(&columns))?;
+        let points = begin("points", first.of_point(), of_points(&columns))?;
+        let refined = plan.ramp().filter(|_| plan.is_refined());
+        let transitions = refined.map(|ramp| {
+            let near = ["near", "far"].map(|side| format!("{}_{side}", ramp.parameter()));
+            let own = near.into_iter().chain(["from_state", "to_state"].map(str::to_owned));
+            begin("transitions", first.of_transition(), own.map(|name| Heading::new(name, "")).collect())
         });
-        Self {
-            plan,
-            more: more.collect(),
-            values: headers::line(&headers::of_values(plan, &columns)),
-            samples: headers::line(&headers::of_samples(plan, &columns)),
-            transitions: headers::line(&headers::of_transitions(plan)),
-            points: headers::line(&headers::of_points(plan, &columns)),
-            repeats: Repeats::default(),
-            columns,
-        }
+        let transitions = transitions.transpose()?;
+        let more = E::tables().into_iter().map(|table| {
+            let rows = begin(table.name(), first, table.columns().to_vec())?;
+            Ok((table, rows))
+        });
+        let more = more.collect::<Result<_, StudyError>>()?;
+        let repeats = Repeats::default();
+        Ok(Self { plan, columns, values, samples, points, transitions, more, described, repeats })
     }
 
     /// Adds the rows of a record; records come in their order.
-    pub(super) fn add(&mut self, record: &Record<E>) {
-        let place = self.place(record);
-        self.add_value(record, &place);
-        self.add_samples(record, &place);
-        for (table, text) in &mut self.more {
+    pub(super) fn add(&mut self, record: &Record<E>) -> Result<(), StudyError> {
+        let place = Place::of(record);
+        let row = Row::of(leading(self.plan, place).into_iter().map(|(_, cell)| cell));
+        self.add_value(record, row.clone())?;
+        self.add_samples(record, &row)?;
+        for (table, rows) in &mut self.more {
             for cells in table.rows(record) {
-                text.push_str(&place);
-                let cells = cells.into_iter().chain(std::iter::repeat(f64::NAN));
-                cells.take(table.columns().len()).for_each(|cell| append(text, &Scalar::from(cell)));
-                text.push('\n');
+                // Missing numbers are empty cells.
+                let cells = cells.into_iter().chain(std::iter::repeat(f64::NAN)).take(table.columns().len());
+                rows.push(cells.fold(row.clone(), |row, cell| row.with(&cell.into())))?;
             }
         }
-    }
-
-    /// Returns the tables, by their names.
-    pub(super) fn finish(self) -> Vec<(String, String)> {
-        let described = headers::table(self.plan, &self.columns, self.more.iter().map(|(table, _)| table));
-        let is_refined = self.plan.is_refined();
-        let mut tables = vec![("values".to_owned(), self.values), ("samples".to_owned(), self.samples)];
-        if self.plan.repeats() > 1 {
-            tables.push(("points".to_owned(), self.points));
-        }
-        if is_refined {
-            tables.push(("transitions".to_owned(), self.transitions));
-        }
-        tables.extend(self.more.into_iter().map(|(table, text)| (table.name().to_owned(), text)));
-        tables.push(("columns".to_owned(), described));
-        tables
+        Ok(())
     }
 
     /// Adds what is known once all records of a ramp have come.
-    pub(super) fn end_ramp(&mut self, ramp: usize, brackets: &[Bracket]) {
-        self.add_transitions(ramp, brackets);
-        if (ramp + 1).is_multiple_of(self.plan.repeats()) {
-            let repeats = std::mem::take(&mut self.repeats);
-            repeats.write(self.plan, ramp / self.plan.repeats(), &mut self.points);
-        }
-    }
-
-    fn add_transitions(&mut self, ramp: usize, brackets: &[Bracket]) {
+    pub(super) fn end_ramp(&mut self, ramp: usize, brackets: &[Bracket]) -> Result<(), StudyError> {
         for Bracket { leg, near, far, from, to } in brackets {
-            let mut line = format!("{ramp},");
-            if let Some(leg) = leg {
-                line.push_str(&leg.to_string());
-            }
-            if self.plan.repeats() > 1 {
-                append(&mut line, &(ramp % self.plan.repeats()));
-            }
-            for (_, value) in self.plan.parameters_at(ramp, None) {
-                append(&mut line, &value);
-            }
-            for cell in [Scalar::from(*near), (*far).into(), from.as_str().into(), to.as_str().into()] {
-                append(&mut line, &cell);
-            }
-            self.transitions.push_str(&line);
-            self.transitions.push('\n');
+            let Some(rows) = &mut self.transitions else { break };
+            let place = Place { ramp, leg: *leg, ..Place::first(self.plan) }.of_transition();
+            let row = Row::of(leading(self.plan, place).into_iter().map(|(_, cell)| cell));
+            let cells = [Scalar::from(*near), (*far).into(), from.as_str().into(), to.as_str().into()];
+            rows.push(cells.iter().fold(row, Row::with))?;
         }
+        if (ramp + 1).is_multiple_of(self.plan.repeats()) {
+            std::mem::take(&mut self.repeats).write(self.plan, ramp, &mut self.points)?;
+        }
+        Ok(())
     }
 
-    /// Returns the first columns of all rows of a record.
-    fn place(&self, record: &Record<E>) -> String {
-        let mut place = format!("{},{},", record.ramp_index(), record.value_index());
-        if let Some(leg) = record.leg() {
-            place.push_str(&leg.to_string());
-        }
-        if self.plan.repeats() > 1 {
-            append(&mut place, &(record.ramp_index() % self.plan.repeats()));
-        }
-        let parameters = self.plan.parameters_at(record.ramp_index(), record.ramped_value());
-        for (_, value) in &parameters {
-            append(&mut place, value);
-        }
-        place
+    /// Puts the tables in their places.
+    pub(super) fn finish(self) -> Result<(), StudyError> {
+        let own = self.more.into_iter().map(|(_, rows)| rows);
+        let all = [self.values, self.samples, self.points, self.described].into_iter();
+        all.chain(self.transitions).chain(own).try_for_each(Rows::finish)
     }
 
-    fn add_value(&mut self, record: &Record<E>, place: &str) {
-        let (outcome, samples) = (record.outcome().name(), record.samples().len());
-        let mut line = format!("{place},{},{outcome},{samples}", record.seed());
+    fn add_value(&mut self, record: &Record<E>, row: Row) -> Result<(), StudyError> {
+        // A number of 64 bits is no double: with a letter before it, it is a text for every reader of tables.
+        let row = row.with(&format!("x{:016x}", record.seed()).into());
+        let row = row.with(&record.contents.origin.maker.to_string().into());
+        let mut row = row.with(&record.outcome().name().into()).with(&record.samples().len().into());
         let mut estimates = Vec::new();
         for column in self.columns.iter().filter(|column| column.is_in_values()) {
             if let Some(estimate) = column.estimate(record) {
-                append_estimate(&mut line, &estimate);
+                row = row.with_estimate(&estimate);
                 estimates.push((column.name().to_owned(), estimate));
             } else if let Kind::Record(value) = column.kind() {
-                append(&mut line, &value(record));
+                row = row.with(&value(record));
             }
         }
-        append(&mut line, &not_converged(&estimates));
-        self.values.push_str(&line);
-        self.values.push('\n');
+        self.values.push(row.with(&not_converged(&estimates).into()))?;
         // A refinement has different values in each repeat.
         if record.value_index() < self.plan.value_count() {
             let is_failed = record.outcome().reason().is_some();
             self.repeats.add(record.value_index(), Repeat { estimates, is_failed });
         }
+        Ok(())
     }
 
-    fn add_samples(&mut self, record: &Record<E>, place: &str) {
+    fn add_samples(&mut self, record: &Record<E>, row: &Row) -> Result<(), StudyError> {
         for (time, sample) in record.times().iter().zip(record.samples()) {
-            self.samples.push_str(place);
-            append(&mut self.samples, &Scalar::from(*time));
+            let mut row = row.clone().with(&(*time).into());
             for column in self.columns.iter().filter(|column| column.is_in_samples()) {
                 if let Kind::Sample(value) = column.kind() {
-                    append(&mut self.samples, &value(sample));
+                    row = row.with(&value(sample));
                 }
             }
-            self.samples.push('\n');
+            self.samples.push(row)?;
         }
+        Ok(())
     }
 }
 
-/// Adds a mean, its error, and the number of independent samples that they rest on.
-fn append_estimate(line: &mut String, estimate: &Estimate) {
-    append(line, &Scalar::from(estimate.mean()));
-    append(line, &Scalar::from(estimate.standard_error()));
-    append(line, &Scalar::from(estimate.independent_samples()));
+/// Describes the columns of the table of values after the leading ones. The last one names the columns whose
+/// error is only a lower bound, separated by spaces: they have too few samples for their correlations.
+fn of_values<E: Experiment>(columns: &[Column<E>]) -> Vec<Heading> {
+    let mut all = plain(["seed", "made_by", "outcome", "samples"]);
+    for column in columns.iter().filter(|column| column.is_in_values()) {
+        if column.has_error() {
+            all.extend(of_estimate(column));
+        } else {
+            all.push(column.heading().clone());
+        }
+    }
+    all.extend(plain(["not_converged"]));
+    all
 }
 
-/// Returns the names of the estimates whose error is only a lower bound, separated by spaces.
-fn not_converged(estimates: &[(String, Estimate)]) -> String {
-    let names =
-        estimates.iter().filter(|(_, estimate)| !estimate.is_converged()).map(|(name, _)| name.as_str());
-    names.collect::<Vec<_>>().join(" ")
+fn of_samples<E: Experiment>(columns: &[Column<E>]) -> Vec<Heading> {
+    let sampled = columns.iter().filter(|column| column.is_in_samples());
+    let sampled = sampled.map(|column| column.heading().clone());
+    std::iter::once(Heading::new("time", "time")).chain(sampled).collect()
 }
 
-fn append(line: &mut String, cell: &impl Display) {
-    // Writing to a string does not fail.
-    let _ = write!(line, ",{cell}");
+/// Describes the columns of the table of points: the repeats of each value together.
+fn of_points<E: Experiment>(columns: &[Column<E>]) -> Vec<Heading> {
+    let mut all = plain(["repeats", "failed"]);
+    let estimated = columns.iter().filter(|column| column.is_in_values() && column.has_error());
+    all.extend(estimated.flat_map(of_estimate));
+    all.extend(plain(["not_converged"]));
+    all
+}
+
+fn plain<const N: usize>(names: [&str; N]) -> Vec<Heading> {
+    names.map(|name| Heading::new(name, "")).into()
+}
+
+/// Describes a mean, its error, and the number of independent samples that they rest on.
+fn of_estimate<E: Experiment>(column: &Column<E>) -> [Heading; 3] {
+    let (name, unit) = (column.name(), column.unit());
+    let [error, independent] = error_names(name);
+    [column.heading().clone(), Heading::new(error, unit), Heading::new(independent, "")]
 }

@@ -1,27 +1,21 @@
 //! Files that grow by whole pieces.
 
-use std::fs::{File, TryLockError};
+use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use super::errors::RecordError;
+use crate::file::Locked;
 
 /// Bytes that can be appended and cut off: a file, or its stand-in for tests.
 pub(super) trait Medium: Write + Seek {
     /// Cuts the bytes to this length.
     fn cut(&mut self, length: u64) -> io::Result<()>;
-
-    /// Gives back the lock of a file.
-    fn unlock(&self) {}
 }
 
-impl Medium for File {
+impl Medium for Locked {
     fn cut(&mut self, length: u64) -> io::Result<()> {
-        self.set_len(length)
-    }
-
-    fn unlock(&self) {
-        let _ = Self::unlock(self);
+        self.file().set_len(length)
     }
 }
 
@@ -78,16 +72,8 @@ impl<M: Medium> Growing<M> {
     }
 }
 
-impl<M: Medium> Drop for Growing<M> {
-    fn drop(&mut self) {
-        // A process that was forked meanwhile, to start another program, may have the file open, too.
-        // Closing the file here would then not release the lock.
-        self.medium.unlock();
-    }
-}
-
 /// Creates a new file, locked for one recorder.
-pub(super) fn create(path: &Path) -> Result<File, RecordError> {
+pub(super) fn create(path: &Path) -> Result<Locked, RecordError> {
     let made = File::options().read(true).write(true).create_new(true).open(path);
     let file = made.map_err(|error| match error.kind() {
         io::ErrorKind::AlreadyExists => RecordError::Exists { path: path.to_owned() },
@@ -97,18 +83,14 @@ pub(super) fn create(path: &Path) -> Result<File, RecordError> {
 }
 
 /// Opens a file, locked for one recorder.
-pub(super) fn reopen(path: &Path) -> Result<File, RecordError> {
+pub(super) fn reopen(path: &Path) -> Result<Locked, RecordError> {
     let file = File::options().read(true).write(true).open(path);
     locked(file.map_err(RecordError::io("open", path))?, path)
 }
 
-/// Locks a file until it is unlocked or the process ends. The file stays unlocked where there are no locks,
-/// and outside Unix, where a lock could keep other programs from reading.
-fn locked(file: File, path: &Path) -> Result<File, RecordError> {
-    match if cfg!(unix) { file.try_lock() } else { Ok(()) } {
-        Err(TryLockError::WouldBlock) => Err(RecordError::Locked { path: path.to_owned() }),
-        Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
-    }
+/// Locks a file; the lock ends with the process at the latest.
+fn locked(file: File, path: &Path) -> Result<Locked, RecordError> {
+    Locked::take_if_possible(file).map_err(|_| RecordError::Locked { path: path.to_owned() })
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! Frames one after another in one file, plain or compressed.
 
-use std::fs::File;
 use std::hash::{DefaultHasher, Hasher};
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -12,13 +11,14 @@ use super::gzip::{self, Member};
 use super::media::{self, Growing};
 use super::open::is_gzip;
 use super::store::Store;
+use crate::file::Locked;
 use crate::observable::Snapshot;
 
 /// Frames in one file.
 #[derive(Debug)]
 pub(super) struct OneFile {
     path: PathBuf,
-    file: Growing<File>,
+    file: Growing<Locked>,
     packing: Packing,
     frames: Frames,
 }
@@ -51,7 +51,7 @@ impl OneFile {
     pub(super) fn reopen(path: &Path, format: &dyn Format) -> Result<Self, RecordError> {
         let mut packing = Packing::of(path)?;
         let file = media::reopen(path)?;
-        let frames = packing.frames(&mut BufReader::new(&file), format);
+        let frames = packing.frames(&mut BufReader::new(file.file()), format);
         let frames = frames.map_err(RecordError::io("go on in", path))?;
         if frames.times.is_empty() {
             return Err(RecordError::NoFrame { path: path.to_owned() });
@@ -90,7 +90,7 @@ impl Store for OneFile {
     }
 
     fn sync(&mut self) -> Result<(), RecordError> {
-        self.file.medium().sync_all().map_err(RecordError::io("write to", &self.path))
+        self.file.medium().file().sync_all().map_err(RecordError::io("write to", &self.path))
     }
 
     fn path(&self) -> &Path {

@@ -28,14 +28,14 @@ const OWN_CHILD: &str = "faults::child_runs_a_study_of_its_own";
 fn plan() -> Plan<VibratedBox> {
     let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
     let experiment = VibratedBox::new(60, 12.0, base).with_height(20.0).with_contact_duration(1e-3);
-    let axis = Axis::new("friction", [0.1, 0.2, 0.3]);
-    Plan::new(experiment, Protocol::new(10, 20, 2), 5).unwrap().with_axis(axis).unwrap()
+    let axis = Axis::new("friction", [0.1, 0.2, 0.3]).unwrap();
+    Plan::new(experiment, Protocol::new(10, 20, 2).unwrap(), 5).unwrap().with_axis(axis).unwrap()
 }
 
 /// The same for a user's experiment.
 fn own_plan() -> Plan<Mixture> {
-    let axis = Axis::new("loss", [0.0, 0.1, 0.2]);
-    Plan::new(mixture(), Protocol::new(10, 80, 2), 5).unwrap().with_axis(axis).unwrap()
+    let axis = Axis::new("loss", [0.0, 0.1, 0.2]).unwrap();
+    Plan::new(mixture(), Protocol::new(10, 80, 2).unwrap(), 5).unwrap().with_axis(axis).unwrap()
 }
 
 /// Returns all files of a study but its log, which contains times.

@@ -95,8 +95,8 @@ fn what_a_forged_record_said_is_done_again() {
 fn files_of_another_plan_are_told_apart() {
     let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
     let experiment = VibratedBox::new(3, 4.0, base).with_height(3.0).with_contact_duration(1e-3);
-    let ramp = Ramp::new("friction", [0.1, 0.2], Course::Up);
-    let other = Plan::new(experiment, Protocol::new(2, 3, 1), 6).unwrap().with_ramp(ramp).unwrap();
+    let ramp = Ramp::new("friction", [0.1, 0.2], Course::Up).unwrap();
+    let other = Plan::new(experiment, Protocol::new(2, 3, 1).unwrap(), 6).unwrap().with_ramp(ramp).unwrap();
     assert_ne!(other, plan());
     let scratch = Scratch::new("other-plan");
     let study = Study::create(&scratch.0, &other).unwrap();

@@ -196,15 +196,15 @@ fn measurements_with_a_field_too_many_are_refused() {
 #[test]
 fn plans_and_records_with_a_field_too_many_are_refused() {
     refuses(&plan());
-    refuses(&Ramp::new("friction", [0.1], Course::Down));
-    refuses(&Axis::new("friction", [0.1]));
+    refuses(&Ramp::new("friction", [0.1], Course::Down).unwrap());
+    refuses(&Axis::new("friction", [0.1]).unwrap());
     for base in [
         Base::BiParabolic { amplitude: 0.1, angular_frequency: 1.0 },
         Base::Sinusoidal { amplitude: 0.1, angular_frequency: 1.0 },
         Base::Thermal { temperature: 1.0, slip: true },
     ] {
         let experiment = VibratedBox::new(3, 4.0, base).with_height(3.0).with_contact_duration(1e-3);
-        refuses(&Plan::new(experiment, Protocol::new(2, 3, 1), 5).unwrap());
+        refuses(&Plan::new(experiment, Protocol::new(2, 3, 1).unwrap(), 5).unwrap());
     }
     let (_scratch, study) = done_study("intruder", &plan());
     let record = study.record(0, 1).unwrap().unwrap();
@@ -240,11 +240,11 @@ fn plans_that_are_too_deep_or_too_long_are_refused_at_once() {
     assert!(Plan::<VibratedBox>::from_toml(&deep).is_err());
     let count = 1_000_001;
     let values: Vec<f64> = (0..count).map(f64::from).collect();
-    let ramp = Ramp::new("gravity", values, Course::Up);
+    let ramp = Ramp::new("gravity", values, Course::Up).unwrap();
     let error = plan().with_ramp(ramp).unwrap_err().to_string();
     assert!(error.contains("1000001"), "{error}");
     let values: Vec<f64> = (0..200_000).map(f64::from).collect();
-    let ramp = Ramp::new("gravity", values, Course::UpAndDown);
+    let ramp = Ramp::new("gravity", values, Course::UpAndDown).unwrap();
     assert_eq!(plan().with_ramp(ramp).unwrap().value_count(), 399_999, "in time that grows with it only");
     let crowd = initial::lattice(&container(), usize::MAX, 0.5).unwrap_err().to_string();
     assert!(crowd.contains("number of disks"), "{crowd}");

@@ -37,7 +37,7 @@ fn folders_that_cannot_be_used_are_named() -> Result<(), AnyError> {
     assert!(matches!(Study::<VibratedBox>::open(&scratch.0), Err(StudyError::Missing { .. })));
     let study = Study::create(&scratch.0, &small_plan())?;
     assert!(matches!(Study::create(&scratch.0, &small_plan()), Err(StudyError::Exists { .. })));
-    let other = Plan::new(small_box(), Protocol::new(1, 1, 1), 1)?;
+    let other = Plan::new(small_box(), Protocol::new(1, 1, 1)?, 1)?;
     assert!(matches!(Study::open_or_create(&scratch.0, &other), Err(StudyError::Different { .. })));
     // A file where a folder should be cannot be written into, not even by the superuser.
     fs::write(scratch.0.join("ramps"), "not a folder")?;
@@ -117,7 +117,7 @@ fn the_empty_path_is_refused() {
 fn a_plan_edited_after_the_start_is_refused_with_what_differs() -> Result<(), AnyError> {
     let scratch = Scratch::new("edited");
     let study = Study::create(&scratch.0, &small_plan())?;
-    let plan = Plan::new(small_box().with_gravity(0.5), Protocol::new(25, 7, 10), 7)?;
+    let plan = Plan::new(small_box().with_gravity(0.5), Protocol::new(25, 7, 10)?, 7)?;
     let error = Study::open_or_create(&scratch.0, &plan).unwrap_err();
     let told = error.to_string();
     assert!(told.contains("experiment.gravity is 0.015625 there and 0.5 here"), "{told}");

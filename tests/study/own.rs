@@ -19,10 +19,10 @@ use crate::support::{AnyError, Scratch, assert_same, contents, run_with_interrup
 
 /// Coupled parameters: the weight is ramped, the loss and the mixture differ between ramps.
 fn plan() -> Plan<Mixture> {
-    Plan::new(mixture(), Protocol::new(4, 5, 2).with_phase(0.5), 3)
-        .and_then(|plan| plan.with_axis(Axis::new("loss", [0.0, 0.2])))
-        .and_then(|plan| plan.with_axis(Axis::new("disks.large", [2.0, 4.0])))
-        .and_then(|plan| plan.with_ramp(Ramp::new("weight", [0.1, 0.2], Course::UpAndDown)))
+    Plan::new(mixture(), Protocol::new(4, 5, 2).unwrap().with_phase(0.5).unwrap(), 3)
+        .and_then(|plan| plan.with_axis(Axis::new("loss", [0.0, 0.2]).unwrap()))
+        .and_then(|plan| plan.with_axis(Axis::new("disks.large", [2.0, 4.0]).unwrap()))
+        .and_then(|plan| plan.with_ramp(Ramp::new("weight", [0.1, 0.2], Course::UpAndDown).unwrap()))
         .unwrap()
 }
 
@@ -83,7 +83,7 @@ fn a_damaged_record_of_one_s_own_is_done_again() -> Result<(), AnyError> {
 
 #[test]
 fn unknown_parameters_are_refused_with_those_that_there_are() {
-    let refused = |name: &str| report(&plan().with_axis(Axis::new(name, [1.0])).unwrap_err());
+    let refused = |name: &str| report(&plan().with_axis(Axis::new(name, [1.0]).unwrap()).unwrap_err());
     let error = refused("wieght");
     assert!(
         error.contains("no parameter `wieght`") && error.contains("disks.large, disks.small, loss, weight"),
@@ -92,28 +92,29 @@ fn unknown_parameters_are_refused_with_those_that_there_are() {
     assert!(refused("loss.small").contains("no parameter `loss.small`"));
     assert!(refused("disks.medium").contains("unknown field `medium`"));
     assert!(refused("large").contains("varies twice"), "the last part of a name is enough");
-    let note =
-        Plan::new(mixture(), Protocol::new(1, 1, 1), 1).unwrap().with_axis(Axis::new("note", ["a", "b"]));
+    let note = Plan::new(mixture(), Protocol::new(1, 1, 1).unwrap(), 1)
+        .unwrap()
+        .with_axis(Axis::new("note", ["a", "b"]).unwrap());
     assert_eq!(
         note.unwrap().experiment(1, 0).unwrap().note.as_deref(),
         Some("b"),
         "a parameter without a value is one"
     );
-    let error = report(&plan().with_axis(Axis::new("small", [1.5])).unwrap_err());
+    let error = report(&plan().with_axis(Axis::new("small", [1.5]).unwrap()).unwrap_err());
     assert!(error.contains("the experiment cannot be at small = 1.5"), "{error}");
 }
 
 #[test]
 fn parameters_that_are_refused_are_named_when_the_plan_is_made() {
-    let error = Plan::new(mixture(), Protocol::new(1, 1, 1), 1)
-        .and_then(|plan| plan.with_axis(Axis::new("loss", [0.1, -0.5])))
+    let error = Plan::new(mixture(), Protocol::new(1, 1, 1).unwrap(), 1)
+        .and_then(|plan| plan.with_axis(Axis::new("loss", [0.1, -0.5]).unwrap()))
         .unwrap_err();
     assert_eq!(
         report(&error),
         "the experiment cannot be at loss = -0.5: loss must be finite and not negative, but is -0.5"
     );
-    let crowd = Plan::new(mixture(), Protocol::new(1, 1, 1), 1)
-        .and_then(|plan| plan.with_axis(Axis::new("large", [4, 100_000])))
+    let crowd = Plan::new(mixture(), Protocol::new(1, 1, 1).unwrap(), 1)
+        .and_then(|plan| plan.with_axis(Axis::new("large", [4, 100_000]).unwrap()))
         .unwrap_err();
     assert!(
         matches!(&crowd, PlanError::Experiment { place, .. } if place == " at large = 100000"),
@@ -184,15 +185,15 @@ impl Experiment for Careless {
 
 #[test]
 fn a_parameter_that_the_experiment_ignores_is_none() {
-    let plan = Plan::new(Careless { loss: 0.0 }, Protocol::new(1, 1, 1), 1).unwrap();
-    let error = report(&plan.with_axis(Axis::new("los", [0.0])).unwrap_err());
+    let plan = Plan::new(Careless { loss: 0.0 }, Protocol::new(1, 1, 1).unwrap(), 1).unwrap();
+    let error = report(&plan.with_axis(Axis::new("los", [0.0]).unwrap()).unwrap_err());
     assert!(error.contains("no parameter `los` (the experiment ignores it); there are loss"), "{error}");
 }
 
 #[test]
 fn samples_that_do_not_read_back_are_an_error_and_no_record() -> Result<(), AnyError> {
     let scratch = Scratch::new("own-careless");
-    let study = Study::create(&scratch.0, &Plan::new(Careless { loss: 0.0 }, Protocol::new(1, 2, 1), 1)?)?;
+    let study = Study::create(&scratch.0, &Plan::new(Careless { loss: 0.0 }, Protocol::new(1, 2, 1)?, 1)?)?;
     let error = study.run(&Control::default()).unwrap_err();
     assert!(matches!(error, StudyError::Encode { .. }), "{error}");
     assert!(report(&error).contains("skip_serializing_if"), "{error}");
@@ -202,8 +203,8 @@ fn samples_that_do_not_read_back_are_an_error_and_no_record() -> Result<(), AnyE
 
 #[test]
 fn an_observer_ends_a_value_and_the_ramp_goes_on_from_there() -> Result<(), AnyError> {
-    let plan = Plan::new(Careless { loss: 0.1 }, Protocol::new(0, 50, 1), 1)?;
-    let plan = plan.with_ramp(Ramp::new("loss", [0.1, 0.2], Course::Up))?;
+    let plan = Plan::new(Careless { loss: 0.1 }, Protocol::new(0, 50, 1)?, 1)?;
+    let plan = plan.with_ramp(Ramp::new("loss", [0.1, 0.2], Course::Up)?)?;
     let scratch = Scratch::new("own-stopped");
     let study = Study::create(&scratch.0, &plan)?;
     assert!(study.run(&Control::default())?.is_complete());
@@ -268,16 +269,16 @@ impl Experiment for Fall {
 
 #[test]
 fn a_parameter_of_the_first_disks_alone_cannot_be_ramped() -> Result<(), AnyError> {
-    let plan = Plan::new(Fall { count: 4, loss: 0.0 }, Protocol::new(0, 2, 1), 1)?;
-    plan.clone().with_ramp(Ramp::new("loss", [0.0, 0.1], Course::Up))?;
-    let error = plan.with_ramp(Ramp::new("count", [4.0, 8.0], Course::Up)).unwrap_err();
+    let plan = Plan::new(Fall { count: 4, loss: 0.0 }, Protocol::new(0, 2, 1)?, 1)?;
+    plan.clone().with_ramp(Ramp::new("loss", [0.0, 0.1], Course::Up)?)?;
+    let error = plan.with_ramp(Ramp::new("count", [4.0, 8.0], Course::Up)?).unwrap_err();
     assert_eq!(report(&error), "count cannot be ramped with the disks in place; sweep it instead");
     Ok(())
 }
 
 #[test]
 fn values_that_stall_are_counted_and_say_why() -> Result<(), AnyError> {
-    let plan = Plan::new(Fall { count: 12, loss: 0.4 }, Protocol::new(0, 200, 1), 1)?.with_repeats(3)?;
+    let plan = Plan::new(Fall { count: 12, loss: 0.4 }, Protocol::new(0, 200, 1)?, 1)?.with_repeats(3)?;
     let scratch = Scratch::new("failed");
     let study = Study::create(&scratch.0, &plan)?;
     for summary in [study.run(&Control::default())?, study.run(&Control::default())?] {
@@ -293,7 +294,7 @@ fn values_that_stall_are_counted_and_say_why() -> Result<(), AnyError> {
 
 #[test]
 fn records_of_changed_code_are_refused() -> Result<(), AnyError> {
-    let plan = Plan::new(Fall { count: 3, loss: 0.0 }, Protocol::new(0, 2, 1), 1)?;
+    let plan = Plan::new(Fall { count: 3, loss: 0.0 }, Protocol::new(0, 2, 1)?, 1)?;
     let scratch = Scratch::new("changed");
     let study = Study::create(&scratch.0, &plan)?;
     study.run(&Control::default())?;

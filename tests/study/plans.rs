@@ -38,11 +38,11 @@ fn a_plan_is_read_as_it_is_written() -> Result<(), AnyError> {
     let plan = Plan::<VibratedBox>::from_toml(PLAN)?;
     let by_hand = Plan::new(
         VibratedBox::new(30, 10.0, BASE).with_height(30.0).with_gravity(0.015_625).with_friction(0.01),
-        Protocol::new(100, 10, 10),
+        Protocol::new(100, 10, 10)?,
         1,
     )?
-    .with_ramp(Ramp::new("friction", vec![0.01, 0.02], Course::Up))?
-    .with_axis(Axis::new("inelasticity", [0.0, 0.01, 0.02]))?;
+    .with_ramp(Ramp::new("friction", vec![0.01, 0.02], Course::Up)?)?
+    .with_axis(Axis::new("inelasticity", [0.0, 0.01, 0.02])?)?;
     assert_eq!(plan, by_hand);
     assert_eq!(Plan::<VibratedBox>::from_toml(&plan.to_string())?, plan);
     assert_eq!((plan.ramp_count(), plan.value_count()), (3, 2));
@@ -119,10 +119,10 @@ proptest! {
         let values: Vec<f64> = friction.into_iter().map(|bits| bits as f64 / 7e15).collect();
         let plan = Plan::new(
             small_box().with_gravity(gravity),
-            Protocol::new(3, 5, every).with_phase(phase),
+            Protocol::new(3, 5, every).unwrap().with_phase(phase).unwrap(),
             seed,
         )?
-        .with_ramp(Ramp::new("friction", values, course))?;
+        .with_ramp(Ramp::new("friction", values, course).unwrap())?;
         prop_assert_eq!(Plan::<VibratedBox>::from_toml(&plan.to_toml()?)?, plan);
     }
 }

@@ -14,8 +14,8 @@ use crate::support::{AnyError, RAMP, SEED, Scratch, assert_same, contents, done,
 
 /// Six ramps of one value.
 pub(crate) fn plan(seed: u64) -> Plan<VibratedBox> {
-    Plan::new(small_box(), Protocol::new(25, 6, 10), seed)
-        .and_then(|plan| plan.with_axis(Axis::new("friction", [0.0, 0.1, 0.2])))
+    Plan::new(small_box(), Protocol::new(25, 6, 10).unwrap(), seed)
+        .and_then(|plan| plan.with_axis(Axis::new("friction", [0.0, 0.1, 0.2]).unwrap()))
         .and_then(|plan| plan.with_repeats(2))
         .unwrap()
 }

@@ -16,9 +16,11 @@ const WIDTH: f64 = 0.002;
 /// Up and down over a transition at 0.137, for two losses.
 fn plan() -> Plan<Mixture> {
     let ramp = Ramp::new("weight", [0.1, 0.15, 0.2, 0.25], Course::UpAndDown)
-        .with_refinement(Width::Absolute(WIDTH));
-    Plan::new(mixture(), Protocol::new(2, 3, 1), 3)
-        .and_then(|plan| plan.with_axis(Axis::new("loss", [0.0, 0.2])))
+        .unwrap()
+        .with_refinement(Width::Absolute(WIDTH))
+        .unwrap();
+    Plan::new(mixture(), Protocol::new(2, 3, 1).unwrap(), 3)
+        .and_then(|plan| plan.with_axis(Axis::new("loss", [0.0, 0.2]).unwrap()))
         .and_then(|plan| plan.with_ramp(ramp))
         .unwrap()
 }
@@ -92,7 +94,7 @@ fn a_damaged_value_of_a_refinement_is_done_again() -> Result<(), AnyError> {
 #[test]
 fn the_states_of_the_box_are_its_convective_regimes() -> Result<(), AnyError> {
     let scratch = Scratch::new("refined-box");
-    let plan = Plan::new(small_box(), Protocol::new(5, 10, 2), 1)?;
+    let plan = Plan::new(small_box(), Protocol::new(5, 10, 2)?, 1)?;
     let study = Study::<VibratedBox>::create(&scratch.0, &plan)?;
     study.run(&Control::default())?;
     let record = study.record(0, 0)?.ok_or("no record")?;
@@ -106,11 +108,14 @@ fn the_states_of_the_box_are_its_convective_regimes() -> Result<(), AnyError> {
 fn a_width_that_cannot_be_is_refused() {
     let numbers = [0.0, -1.0, f64::NAN];
     for width in numbers.map(Width::Absolute).into_iter().chain(numbers.map(Width::Relative)) {
-        let ramp = Ramp::new("weight", [0.1, 0.2], Course::Up).with_refinement(width);
-        let error = Plan::new(mixture(), Protocol::new(1, 1, 1), 1).and_then(|plan| plan.with_ramp(ramp));
+        let ramp = Ramp::new("weight", [0.1, 0.2], Course::Up).unwrap().with_refinement(width).unwrap();
+        let error =
+            Plan::new(mixture(), Protocol::new(1, 1, 1).unwrap(), 1).and_then(|plan| plan.with_ramp(ramp));
         assert!(report(&error.unwrap_err()).contains("width of a transition must be finite and positive"));
     }
-    let ramp = Ramp::new("weight", [0.0, 0.2], Course::Up).with_refinement(Width::Relative(0.01));
-    let error = Plan::new(mixture(), Protocol::new(1, 1, 1), 1).and_then(|plan| plan.with_ramp(ramp));
+    let ramp =
+        Ramp::new("weight", [0.0, 0.2], Course::Up).unwrap().with_refinement(Width::Relative(0.01)).unwrap();
+    let error =
+        Plan::new(mixture(), Protocol::new(1, 1, 1).unwrap(), 1).and_then(|plan| plan.with_ramp(ramp));
     assert!(report(&error.unwrap_err()).contains("value of a ramp with a relative width must be"));
 }

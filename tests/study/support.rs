@@ -24,10 +24,10 @@ pub(crate) fn small_box() -> VibratedBox {
 
 /// Two ramps of five values.
 pub(crate) fn small_plan() -> Plan<VibratedBox> {
-    let ramp = Ramp::new("friction", vec![0.01, 0.1, 0.3], Course::UpAndDown);
-    Plan::new(small_box(), Protocol::new(25, 6, 10), 7)
+    let ramp = Ramp::new("friction", vec![0.01, 0.1, 0.3], Course::UpAndDown).unwrap();
+    Plan::new(small_box(), Protocol::new(25, 6, 10).unwrap(), 7)
         .and_then(|study| study.with_ramp(ramp))
-        .and_then(|study| study.with_axis(Axis::new("inelasticity", vec![0.0, 0.02])))
+        .and_then(|study| study.with_axis(Axis::new("inelasticity", vec![0.0, 0.02]).unwrap()))
         .unwrap()
 }
 

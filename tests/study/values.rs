@@ -37,10 +37,10 @@ fn a_study_records_what_it_was_asked_for() {
 #[test]
 fn a_value_is_the_engine_s_run() -> Result<(), AnyError> {
     use granular_edmd::observable::{OrderParameters, SampleTimes, Series};
-    let plan = Plan::new(small_box(), Protocol::new(25, 6, 10), 7)?;
+    let plan = Plan::new(small_box(), Protocol::new(25, 6, 10)?, 7)?;
     let (_scratch, study) = done(&plan, "engine");
     let record = study.record(0, 0)?.ok_or("no record")?;
-    let long = Plan::new(small_box(), Protocol::new(0, 85, 1), 7)?;
+    let long = Plan::new(small_box(), Protocol::new(0, 85, 1)?, 7)?;
     let (_scratch, study) = done(&long, "engine-every");
     let every = study.record(0, 0)?.ok_or("no record")?;
     let thinned: Vec<_> = every.samples().iter().skip(34).step_by(10).map(|sample| sample.one_roll).collect();
@@ -77,8 +77,8 @@ fn other_parameters_ramp_and_other_bases_run() -> Result<(), AnyError> {
         (thermal, "temperature", vec![1.0, 2.0]),
     ];
     for (system, parameter, values) in ramps {
-        let ramp = Ramp::new(parameter, values.clone(), Course::Down);
-        let plan = Plan::new(system, Protocol::new(5, 3, 5), 1)?.with_ramp(ramp)?;
+        let ramp = Ramp::new(parameter, values.clone(), Course::Down)?;
+        let plan = Plan::new(system, Protocol::new(5, 3, 5)?, 1)?.with_ramp(ramp)?;
         let (_scratch, study) = done(&plan, &format!("other-{parameter}"));
         let last = study.record(0, 1)?.ok_or("no record")?;
         assert_eq!(last.parameter(parameter), Some(values[0].into()));
@@ -92,8 +92,8 @@ fn other_parameters_ramp_and_other_bases_run() -> Result<(), AnyError> {
 #[test]
 fn a_stalled_value_does_not_stop_the_study() -> Result<(), AnyError> {
     let system = VibratedBox::new(30, 10.0, BASE).with_height(30.0).with_gravity(0.5);
-    let ramp = Ramp::new("inelasticity", vec![0.0, 0.45], Course::UpAndDown);
-    let plan = Plan::new(system, Protocol::new(50, 5, 10), 1)?.with_ramp(ramp)?;
+    let ramp = Ramp::new("inelasticity", vec![0.0, 0.45], Course::UpAndDown)?;
+    let plan = Plan::new(system, Protocol::new(50, 5, 10)?, 1)?.with_ramp(ramp)?;
     let (_scratch, study) = done(&plan, "stalled");
     let outcomes: Vec<_> =
         study.records().map(|record| record.map(|r| r.outcome().name())).collect::<Result<_, _>>()?;

@@ -88,13 +88,13 @@ impl Experiment for Watched {
 
 fn plan() -> Result<Plan<Watched>, PlanError> {
     let watched = Watched { top: 6.0, weight: 0.1 };
-    let ramp = Ramp::new("weight", [0.1, 1.0], Course::Up).with_refinement(Width::Absolute(0.5));
-    Plan::new(watched, Protocol::new(1, 3, 1), 1)?.with_ramp(ramp)
+    let ramp = Ramp::new("weight", [0.1, 1.0], Course::Up)?.with_refinement(Width::Absolute(0.5))?;
+    Plan::new(watched, Protocol::new(1, 3, 1)?, 1)?.with_ramp(ramp)
 }
 
 #[test]
 fn an_observer_that_cannot_be_built_refuses_the_plan() -> Result<(), AnyError> {
-    let error = report(&plan()?.with_axis(Axis::new("top", [6.0, -1.0])).unwrap_err());
+    let error = report(&plan()?.with_axis(Axis::new("top", [6.0, -1.0])?).unwrap_err());
     assert!(error.contains("top = -1"), "{error}");
     Ok(())
 }

@@ -6,7 +6,7 @@ use granular_edmd::collision::{CollisionRule, Contact, Impulse};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{CollisionCounts, Snapshot};
 use granular_edmd::study::{Column, Experiment, ExperimentError, Record, Table};
-use granular_edmd::{Disk, initial, quantity};
+use granular_edmd::{Disk, Fingerprint, initial, quantity};
 use serde::{Deserialize, Serialize};
 
 /// A rule that loses more at higher speeds. It has no fingerprint, like a closure.
@@ -69,6 +69,10 @@ impl Experiment for Mixture {
         Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
     }
 
+    fn revision() -> Fingerprint {
+        Fingerprint::of("Mixture")
+    }
+
     fn gravity(&self) -> f64 {
         self.weight
     }
@@ -96,7 +100,7 @@ impl Experiment for Mixture {
             Column::sampled("angular_momentum", "mass diameter velocity", |sample: &Risen| {
                 sample.angular_momentum
             }),
-            Column::sampled("collisions", "1", |sample: &Risen| sample.collisions).in_samples_only(),
+            Column::of_sample("collisions", "1", |sample: &Risen| sample.collisions),
             Column::of_record("overlap", "diameter", |record| record.counters().max_overlap),
         ]
     }

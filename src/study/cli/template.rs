@@ -2,7 +2,11 @@
 
 use std::collections::HashSet;
 
-use crate::study::{Experiment, Plan, PlanError, parameters};
+use crate::study::errors::PlanError;
+use crate::study::experiment::Experiment;
+use crate::study::experiment::columns::Column;
+use crate::study::parameters;
+use crate::study::plan::Plan;
 
 /// Explanations of lines of a plan, by the beginning of the line.
 const NOTES: [(&str, &str); 6] = [
@@ -42,8 +46,7 @@ pub(super) fn commented<E: Experiment>(plan: &Plan<E>) -> Result<String, PlanErr
     let columns = E::columns();
     // A column of the values and one of the samples may have the same name.
     let mut known = HashSet::new();
-    let columns: Vec<_> =
-        columns.iter().map(crate::study::Column::name).filter(|name| known.insert(*name)).collect();
+    let columns: Vec<_> = columns.iter().map(Column::name).filter(|name| known.insert(*name)).collect();
     lines.push(format!("\n# Parameters: {names}."));
     lines.push("# Those without a value are not named here.".to_owned());
     lines.push(format!("# Measured: {}.\n", columns.join(", ")));

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::study::Progress;
+use crate::study::execution::control::Progress;
 
 /// True once Ctrl-C or SIGTERM has come.
 static STOP: AtomicBool = AtomicBool::new(false);

@@ -3,10 +3,13 @@
 use std::fmt;
 
 use serde::{Deserialize, Deserializer};
-use toml::Table;
 
 use super::Plan;
-use crate::study::{Axis, Experiment, PlanError, Protocol, Ramp};
+use super::axis::Axis;
+use super::protocol::Protocol;
+use super::ramp::Ramp;
+use crate::study::errors::PlanError;
+use crate::study::experiment::Experiment;
 
 impl<E: Experiment> Plan<E> {
     /// Reads a plan in TOML.
@@ -20,8 +23,7 @@ impl<E: Experiment> Plan<E> {
     /// Reads a plan without a check of the experiment of each value, which takes seconds for large plans and
     /// is needed only once.
     pub(in crate::study) fn from_toml_unproven(text: &str) -> Result<Self, PlanError> {
-        let raw: Raw<E> =
-            toml::from_str(text).map_err(|error| PlanError::Toml(error.to_string().trim_end().to_owned()))?;
+        let raw: Raw<E> = toml::from_str(text).map_err(|error| PlanError::toml(&error))?;
         raw.plan().consistent()
     }
 
@@ -30,7 +32,7 @@ impl<E: Experiment> Plan<E> {
     /// # Errors
     /// If the plan cannot be written as TOML.
     pub fn to_toml(&self) -> Result<String, PlanError> {
-        toml::to_string(self).map_err(|error| PlanError::Toml(error.to_string()))
+        toml::to_string(self).map_err(|error| PlanError::toml(&error))
     }
 }
 
@@ -47,6 +49,8 @@ struct Raw<E> {
     seed: u64,
     #[serde(default = "one")]
     repeats: usize,
+    #[serde(default)]
+    end_states: bool,
     experiment: E,
     protocol: Protocol,
     ramp: Option<Ramp>,
@@ -60,8 +64,8 @@ const fn one() -> usize {
 
 impl<E: Experiment> Raw<E> {
     fn plan(self) -> Plan<E> {
-        let Self { seed, repeats, experiment, protocol, ramp, sweep } = self;
-        Plan { seed, repeats, experiment, protocol, ramp, sweep, tree: Table::new(), varied: Vec::new() }
+        let Self { seed, repeats, end_states, experiment, protocol, ramp, sweep } = self;
+        Plan { repeats, end_states, ramp, sweep, ..Plan::bare(experiment, protocol, seed) }
     }
 }
 

@@ -4,8 +4,9 @@ use super::Plan;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::quantity::accept;
+use crate::study::errors::PlanError;
+use crate::study::experiment::{Experiment, columns};
 use crate::study::parameters::{self, probe, whole_name};
-use crate::study::{Axis, Experiment, PlanError, Ramp, column};
 
 /// Largest number of values of a study, in all ramps together.
 const MOST_VALUES: usize = 1_000_000;
@@ -21,6 +22,7 @@ impl<E: Experiment> Plan<E> {
 
     /// Returns the plan, if the experiment takes the parameters of each value.
     pub(in crate::study) fn proven(self) -> Result<Self, PlanError> {
+        self.try_values()?;
         self.check_experiments()?;
         Ok(self)
     }
@@ -29,11 +31,8 @@ impl<E: Experiment> Plan<E> {
     pub(super) fn consistent(mut self) -> Result<Self, PlanError> {
         accept(self.seed <= LARGEST_SEED, "seed", "below 2^63", self.seed as f64)?;
         accept(self.repeats > 0, "number of repeats", "at least 1", self.repeats as f64)?;
-        self.protocol.check()?;
-        column::check_names::<E>(&self.varied().collect::<Vec<_>>())?;
+        columns::check_names::<E>(&self.varied().collect::<Vec<_>>())?;
         self.tree = parameters::tree(&self.experiment)?;
-        self.ramp.iter().try_for_each(Ramp::check)?;
-        self.sweep.iter().try_for_each(Axis::check)?;
         self.check_count()?;
         self.varied = self.varied().map(|name| whole_name(&self.tree, name)).collect::<Result<_, _>>()?;
         self.check_varied()?;
@@ -55,13 +54,15 @@ impl<E: Experiment> Plan<E> {
         }
     }
 
-    /// Sets each parameter that varies, one by one, to check that it exists and to take its values as the
-    /// experiment reads them.
+    /// Sets each parameter that varies to its first value, to check that it exists and to see the kind of its
+    /// values as the experiment reads them.
     fn try_names(&mut self) -> Result<(), PlanError> {
+        self.kinds.clear();
         for (axis, name) in self.sweep.iter_mut().zip(&self.varied) {
-            let tried = axis.values().iter().map(|to| probe::<E>(&self.tree, axis.parameter(), name, to));
-            let values = tried.collect::<Result<_, _>>()?;
-            axis.set_values(values);
+            let Some(first) = axis.value(0) else { continue };
+            let kind = probe::<E>(&self.tree, axis.parameter(), name, &first)?;
+            axis.set_kind(&kind);
+            self.kinds.push(kind);
         }
         if let (Some(ramp), Some(name)) = (&self.ramp, self.varied.last())
             && let Some((_, at)) = ramp.at(0)
@@ -71,9 +72,17 @@ impl<E: Experiment> Plan<E> {
         Ok(())
     }
 
+    /// Sets each parameter of the sweep to each of its values, to check that the experiment reads them.
+    fn try_values(&self) -> Result<(), PlanError> {
+        for (axis, name) in self.sweep.iter().zip(&self.varied) {
+            let mut values = (0..axis.len()).filter_map(|index| axis.value(index));
+            values.try_for_each(|to| probe::<E>(&self.tree, axis.parameter(), name, &to).map(drop))?;
+        }
+        Ok(())
+    }
+
     fn check_count(&self) -> Result<(), PlanError> {
-        let lengths =
-            self.sweep.iter().map(|axis| axis.values().len()).chain([self.value_count(), self.repeats]);
+        let lengths = self.sweep.iter().map(super::axis::Axis::len).chain([self.value_count(), self.repeats]);
         let count = lengths.map(|length| length as u128).fold(1_u128, u128::saturating_mul);
         if count > MOST_VALUES as u128 {
             return Err(PlanError::TooMany { count, most: MOST_VALUES });
@@ -120,8 +129,8 @@ impl<E: Experiment> Plan<E> {
         let mut stride = self.ramp_count();
         let mut ramps = vec![0];
         for axis in &self.sweep {
-            stride /= axis.values().len();
-            ramps.extend((1..axis.values().len()).map(|index| index * stride));
+            stride /= axis.len();
+            ramps.extend((1..axis.len()).map(|index| index * stride));
         }
         for ramp in ramps {
             let varied = self.parameters(ramp, 0);

@@ -1,8 +1,11 @@
 //! The table of points: the repeats of each value together.
 
-use super::{append, append_estimate, not_converged};
+use super::leading::{Place, leading};
+use super::rows::{Row, Rows, not_converged};
 use crate::statistics::Estimate;
-use crate::study::{Experiment, Plan};
+use crate::study::errors::StudyError;
+use crate::study::experiment::Experiment;
+use crate::study::plan::Plan;
 
 /// The repeats of one point: a list for each value.
 #[derive(Default)]
@@ -25,32 +28,30 @@ impl Repeats {
     }
 
     /// Writes a row for each value of which a repeat is finished.
-    pub(super) fn write<E: Experiment>(self, plan: &Plan<E>, point: usize, table: &mut String) {
+    pub(super) fn write<E: Experiment>(
+        self,
+        plan: &Plan<E>,
+        ramp: usize,
+        table: &mut Rows,
+    ) -> Result<(), StudyError> {
         let done = self.0.iter().enumerate().filter(|(_, repeats)| !repeats.is_empty());
         for (value, repeats) in done {
-            table.push_str(&row(plan, point, value, repeats));
-            table.push('\n');
+            let (leg, at) = plan.step(value).unzip();
+            let place = Place { ramp, value, leg, at, ..Place::first(plan) }.of_point();
+            let row = Row::of(leading(plan, place).into_iter().map(|(_, cell)| cell));
+            table.push(with_repeats(row, repeats))?;
         }
+        Ok(())
     }
 }
 
-fn row<E: Experiment>(plan: &Plan<E>, point: usize, value: usize, repeats: &[Repeat]) -> String {
-    let mut line = format!("{point},{value},");
-    if let Some(leg) = plan.leg(value) {
-        line.push_str(&leg.to_string());
-    }
-    for (_, parameter) in plan.parameters(point * plan.repeats(), value) {
-        append(&mut line, &parameter);
-    }
-    append(&mut line, &repeats.len());
-    append(&mut line, &repeats.iter().filter(|repeat| repeat.is_failed).count());
+fn with_repeats(row: Row, repeats: &[Repeat]) -> Row {
+    let failed = repeats.iter().filter(|repeat| repeat.is_failed).count();
+    let row = row.with(&repeats.len().into()).with(&failed.into());
     let of_column = |column: usize| repeats.iter().map(move |repeat| repeat.estimates[column].1);
     let names = repeats[0].estimates.iter().map(|(name, _)| name.clone()).enumerate();
     let together: Vec<(String, Estimate)> =
         names.map(|(column, name)| (name, Estimate::over_repeats(of_column(column)))).collect();
-    for (_, estimate) in &together {
-        append_estimate(&mut line, estimate);
-    }
-    append(&mut line, &not_converged(&together));
-    line
+    let row = together.iter().fold(row, |row, (_, estimate)| row.with_estimate(estimate));
+    row.with(&not_converged(&together).into())
 }

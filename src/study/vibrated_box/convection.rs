@@ -4,7 +4,9 @@ use super::{Sample, VibratedBox};
 use crate::analysis::thermal_noise;
 use crate::observable::{ConvectionOrder, DenseLayer};
 use crate::statistics::Estimate;
-use crate::study::{Column, Experiment, Record, Table};
+use crate::study::experiment::Experiment;
+use crate::study::experiment::columns::{Column, Table};
+use crate::study::experiment::record::Record;
 
 /// Convection, layers and energy loss in a record of the box.
 ///
@@ -61,14 +63,14 @@ pub(super) fn columns() -> Vec<Column<VibratedBox>> {
     vec![
         Column::of_record("state", "", |record| VibratedBox::state(record).unwrap_or_default()),
         Column::sampled("one_roll", "1", |s: &Sample| s.one_roll),
-        Column::sampled("one_roll_magnitude", "1", |s: &Sample| s.one_roll.abs()).in_values_only(),
+        Column::averaged("one_roll_magnitude", "1", |s: &Sample| s.one_roll.abs()),
         Column::sampled("two_rolls", "1", |s: &Sample| s.two_rolls),
         Column::sampled("height", "diameter", |s: &Sample| s.height),
         Column::sampled("translational_energy", "energy", |s: &Sample| s.translational_energy),
         Column::sampled("rotational_energy", "energy", |s: &Sample| s.rotational_energy),
         Column::sampled("vertical_temperature", "energy", |s: &Sample| s.vertical_temperature),
-        Column::sampled("collisions", "1", |s: &Sample| s.collisions).in_samples_only(),
-        Column::sampled("energy_change", "energy", |s: &Sample| s.energy_change).in_samples_only(),
+        Column::of_sample("collisions", "1", |s: &Sample| s.collisions),
+        Column::of_sample("energy_change", "energy", |s: &Sample| s.energy_change),
         Column::estimated("energy_change", "energy", Record::energy_change),
         Column::of_record("thermal_noise", "1", Record::thermal_noise),
         Column::of_record("densest_packing", "1", |record| {

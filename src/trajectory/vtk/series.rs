@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::write_box;
+use crate::file::Locked;
 use crate::observable::Snapshot;
 use crate::trajectory::errors::RecordError;
 use crate::trajectory::format::no_frame;
@@ -23,7 +24,7 @@ pub(in crate::trajectory) struct Series {
     folder: PathBuf,
     /// Name of the folder, as it stands in the file of times.
     name: String,
-    file: Growing<File>,
+    file: Growing<Locked>,
     times: Vec<f64>,
 }
 
@@ -48,7 +49,7 @@ impl Series {
     pub(in crate::trajectory) fn reopen(path: &Path) -> Result<Self, RecordError> {
         let (folder, name) = place(path)?;
         let file = media::reopen(path)?;
-        let text = io::read_to_string(&file).map_err(RecordError::io("read", path))?;
+        let text = io::read_to_string(file.file()).map_err(RecordError::io("read", path))?;
         let (times, length) = times(&text, &name);
         if times.is_empty() {
             return Err(RecordError::NoFrame { path: path.to_owned() });
@@ -105,7 +106,7 @@ impl Store for Series {
     }
 
     fn sync(&mut self) -> Result<(), RecordError> {
-        self.file.medium().sync_all().map_err(RecordError::io("write to", &self.path))
+        self.file.medium().file().sync_all().map_err(RecordError::io("write to", &self.path))
     }
 
     fn path(&self) -> &Path {

@@ -2,10 +2,12 @@
 
 use std::fmt;
 
-use super::errors::PlanError;
-use super::{Experiment, Record, Scalar};
+use super::Experiment;
+use super::record::Record;
 use crate::observable::Heading;
 use crate::statistics::Estimate;
+use crate::study::errors::PlanError;
+use crate::study::scalar::Scalar;
 
 type OfSample<E> = Box<dyn Fn(&<E as Experiment>::Sample) -> Scalar + Send + Sync>;
 type OfRecord<E, T> = Box<dyn Fn(&Record<E>) -> T + Send + Sync>;
@@ -29,7 +31,7 @@ pub struct Column<E: Experiment> {
     in_values: bool,
 }
 
-pub(super) enum Kind<E: Experiment> {
+pub(in crate::study) enum Kind<E: Experiment> {
     Sample(OfSample<E>),
     Record(OfRecord<E, Scalar>),
     Estimate(OfRecord<E, Estimate>),
@@ -39,7 +41,7 @@ impl<E: Experiment> Column<E> {
     /// Creates a column from a quantity of each sample.
     ///
     /// The table of samples has its values. The table of values has its mean, with the error and the number
-    /// of independent samples.
+    /// of independent samples. [`Self::of_sample`] and [`Self::averaged`] are for one of these tables alone.
     pub fn sampled<T: Into<Scalar>>(
         name: impl Into<String>,
         unit: impl Into<String>,
@@ -47,6 +49,24 @@ impl<E: Experiment> Column<E> {
     ) -> Self {
         let kind = Kind::Sample(Box::new(move |sample| value(sample).into()));
         Self { heading: Heading::new(name, unit), kind, in_samples: true, in_values: true }
+    }
+
+    /// Creates a column of the table of samples from a quantity of each sample.
+    pub fn of_sample<T: Into<Scalar>>(
+        name: impl Into<String>,
+        unit: impl Into<String>,
+        value: impl Fn(&E::Sample) -> T + Send + Sync + 'static,
+    ) -> Self {
+        Self { in_values: false, ..Self::sampled(name, unit, value) }
+    }
+
+    /// Creates a column of the table of values from the mean of a quantity of each sample, with its error.
+    pub fn averaged<T: Into<Scalar>>(
+        name: impl Into<String>,
+        unit: impl Into<String>,
+        value: impl Fn(&E::Sample) -> T + Send + Sync + 'static,
+    ) -> Self {
+        Self { in_samples: false, ..Self::sampled(name, unit, value) }
     }
 
     /// Creates a column of the table of values from a quantity of each record.
@@ -69,16 +89,6 @@ impl<E: Experiment> Column<E> {
         Self { heading, kind, in_samples: false, in_values: true }
     }
 
-    /// Returns the same column for the table of samples alone.
-    pub fn in_samples_only(self) -> Self {
-        Self { in_values: false, ..self }
-    }
-
-    /// Returns the same column for the table of values alone.
-    pub fn in_values_only(self) -> Self {
-        Self { in_samples: false, ..self }
-    }
-
     /// Returns the name of the column.
     pub fn name(&self) -> &str {
         self.heading.name()
@@ -89,29 +99,29 @@ impl<E: Experiment> Column<E> {
         self.heading.unit()
     }
 
-    pub(super) const fn heading(&self) -> &Heading {
+    pub(in crate::study) const fn heading(&self) -> &Heading {
         &self.heading
     }
 
-    pub(super) const fn kind(&self) -> &Kind<E> {
+    pub(in crate::study) const fn kind(&self) -> &Kind<E> {
         &self.kind
     }
 
-    pub(super) const fn is_in_samples(&self) -> bool {
+    pub(in crate::study) const fn is_in_samples(&self) -> bool {
         self.in_samples
     }
 
-    pub(super) const fn is_in_values(&self) -> bool {
+    pub(in crate::study) const fn is_in_values(&self) -> bool {
         self.in_values
     }
 
     /// Returns whether the values of the column have an error.
-    pub(super) const fn has_error(&self) -> bool {
+    pub(in crate::study) const fn has_error(&self) -> bool {
         !matches!(self.kind, Kind::Record(_))
     }
 
     /// Returns the estimate for a record; `None` for a column that has no error.
-    pub(super) fn estimate(&self, record: &Record<E>) -> Option<Estimate> {
+    pub(in crate::study) fn estimate(&self, record: &Record<E>) -> Option<Estimate> {
         match &self.kind {
             Kind::Sample(value) => Some(record.mean(|sample| value(sample).number().unwrap_or(f64::NAN))),
             Kind::Estimate(value) => Some(value(record)),
@@ -167,7 +177,7 @@ impl<E: Experiment> Table<E> {
         &self.columns
     }
 
-    pub(super) fn rows(&self, record: &Record<E>) -> Vec<Vec<f64>> {
+    pub(in crate::study) fn rows(&self, record: &Record<E>) -> Vec<Vec<f64>> {
         (self.rows)(record)
     }
 }
@@ -181,7 +191,7 @@ impl<E: Experiment> fmt::Debug for Table<E> {
 
 /// Names that are taken: those of the tables of every study, and those of the columns of every table.
 const TABLES: [&str; 5] = ["values", "samples", "points", "transitions", "columns"];
-const PLACE: [&str; 11] = [
+const PLACE: [&str; 12] = [
     "ramp",
     "point",
     "value",
@@ -190,6 +200,7 @@ const PLACE: [&str; 11] = [
     "repeats",
     "failed",
     "seed",
+    "made_by",
     "outcome",
     "samples",
     "not_converged",
@@ -197,12 +208,12 @@ const PLACE: [&str; 11] = [
 
 /// Returns the names of the two columns that follow a column of means: the error, and the number of
 /// independent samples.
-pub(super) fn error_names(name: &str) -> [String; 2] {
+pub(in crate::study) fn error_names(name: &str) -> [String; 2] {
     ["error", "independent_samples"].map(|ending| format!("{name}_{ending}"))
 }
 
 /// Checks that the names of an experiment's columns and tables are valid and all different.
-pub(super) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanError> {
+pub(in crate::study) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanError> {
     let (columns, tables) = (E::columns(), E::tables());
     let taken = [PLACE.as_slice(), varied].concat();
     let of = |is_in: fn(&Column<E>) -> bool| -> Vec<&str> {

@@ -7,14 +7,14 @@ use std::path::Path;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::errors::StudyError;
 use crate::file::{Broken, Seal, is_temporary, unique_name, write_whole};
+use crate::study::errors::StudyError;
 
 /// Mark of a record, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal { magic: *b"GRANSTUD", version: 3 };
+const SEAL: Seal = Seal { magic: *b"GRANSTUD", version: 4 };
 
 /// Writes a file, whole or not at all.
-pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
+pub(in crate::study) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     write_whole(path, bytes).map_err(StudyError::io("write", path))
 }
 
@@ -22,7 +22,7 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
 ///
 /// A link, unlike a rename, never takes the place of another file: one of two writers wins, also on a network
 /// file system.
-pub(super) fn publish(path: &Path, bytes: &[u8]) -> Result<bool, StudyError> {
+pub(in crate::study) fn publish(path: &Path, bytes: &[u8]) -> Result<bool, StudyError> {
     let draft = path.with_file_name(unique_name());
     write(&draft, bytes)?;
     let published = match fs::hard_link(&draft, path) {
@@ -35,22 +35,8 @@ pub(super) fn publish(path: &Path, bytes: &[u8]) -> Result<bool, StudyError> {
     published
 }
 
-/// Writes a file by way of another folder, whose lock the caller holds, so that nobody removes the file half
-/// written.
-///
-/// The file may be lost with a loss of power, since nothing asks the system to store it at once. A caller
-/// that needs it compares it and writes it again.
-pub(super) fn move_in(by: &Path, path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
-    let draft = by.join(unique_name());
-    let written = fs::write(&draft, bytes).and_then(|()| fs::rename(&draft, path));
-    if written.is_err() {
-        let _ = fs::remove_file(&draft);
-    }
-    written.map_err(StudyError::io("write", path))
-}
-
 /// Writes data with a magic number, a version and a checksum. The data must read back as they were written.
-pub(super) fn write_sealed<T: DeserializeOwned + Serialize>(
+pub(in crate::study) fn write_sealed<T: DeserializeOwned + Serialize>(
     path: &Path,
     data: &impl Serialize,
 ) -> Result<(), StudyError> {
@@ -68,7 +54,7 @@ pub(super) fn write_sealed<T: DeserializeOwned + Serialize>(
 }
 
 /// Reads data that [`write_sealed`] has written; `None` if there is no such file.
-pub(super) fn read_sealed<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, StudyError> {
+pub(in crate::study) fn read_sealed<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, StudyError> {
     let bytes = match fs::read(path) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -77,7 +63,7 @@ pub(super) fn read_sealed<T: DeserializeOwned>(path: &Path) -> Result<Option<T>,
     unseal(&bytes).map(Some).map_err(|reason| damaged(path, reason))
 }
 
-pub(super) fn damaged(path: &Path, reason: impl Into<String>) -> StudyError {
+pub(in crate::study) fn damaged(path: &Path, reason: impl Into<String>) -> StudyError {
     StudyError::Damaged { path: path.to_owned(), reason: reason.into() }
 }
 
@@ -96,7 +82,7 @@ fn unseal<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, &'static str> {
 }
 
 /// Removes a file, if it is there.
-pub(super) fn remove(path: &Path) -> Result<(), StudyError> {
+pub(in crate::study) fn remove(path: &Path) -> Result<(), StudyError> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(StudyError::io("remove", path)(error)),
         _ => Ok(()),
@@ -105,7 +91,7 @@ pub(super) fn remove(path: &Path) -> Result<(), StudyError> {
 
 /// Removes the temporary files that a killed process has left in a folder, and nothing else. The folder must
 /// be locked.
-pub(super) fn remove_temporaries(folder: &Path) -> Result<(), StudyError> {
+pub(in crate::study) fn remove_temporaries(folder: &Path) -> Result<(), StudyError> {
     let cannot_read = || StudyError::io("read", folder);
     for entry in fs::read_dir(folder).map_err(cannot_read())? {
         let entry = entry.map_err(cannot_read())?;

@@ -14,12 +14,24 @@ const MOST: u64 = 1 << 40;
 /// ```
 /// use granular_edmd::study::Protocol;
 /// // The paper: 100 000 oscillations for each value, sampled every 100, the first 500 samples discarded.
-/// let protocol = Protocol::new(50_000, 500, 100);
+/// let protocol = Protocol::new(50_000, 500, 100)?;
 /// assert_eq!((protocol.every(), protocol.cycles()), (100, 100_000));
+/// assert!(Protocol::new(50_000, 0, 100).is_err());
+/// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, try_from = "Raw")]
 pub struct Protocol {
+    settle: u64,
+    samples: u64,
+    every: u64,
+    phase: f64,
+}
+
+/// A protocol before its checks.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "Protocol")]
+struct Raw {
     settle: u64,
     samples: u64,
     every: u64,
@@ -31,17 +43,40 @@ const fn end() -> f64 {
     1.0
 }
 
+impl TryFrom<Raw> for Protocol {
+    type Error = ParameterError;
+
+    fn try_from(Raw { settle, samples, every, phase }: Raw) -> Result<Self, ParameterError> {
+        Self::new(settle, samples, every)?.with_phase(phase)
+    }
+}
+
 impl Protocol {
     /// Creates the protocol that settles for `settle` cycles, then takes `samples` samples, one at the end of
     /// each interval of `every` cycles.
-    pub const fn new(settle: u64, samples: u64, every: u64) -> Self {
-        Self { settle, samples, every, phase: 1.0 }
+    ///
+    /// # Errors
+    /// If there are no samples, the interval is 0, or the whole lasts more than 2^40 cycles.
+    pub fn new(settle: u64, samples: u64, every: u64) -> Result<Self, ParameterError> {
+        let count = |range: std::ops::RangeInclusive<u64>, name, requirement, value: u64| {
+            accept(range.contains(&value), name, requirement, value as f64)
+        };
+        count(0..=MOST, "settling time in cycles", "at most 2^40", settle)?;
+        count(1..=MOST, "number of samples", "in 1..=2^40", samples)?;
+        count(1..=MOST, "sampling interval in cycles", "in 1..=2^40", every)?;
+        let total = u128::from(settle) + u128::from(samples) * u128::from(every);
+        accept(total <= u128::from(MOST), "length of a value in cycles", "at most 2^40", total as f64)?;
+        Ok(Self { settle, samples, every, phase: 1.0 })
     }
 
     /// Returns the same protocol with samples at this phase of their cycle, in `(0, 1]`; the default is 1,
     /// the end of the cycle.
-    pub const fn with_phase(self, phase: f64) -> Self {
-        Self { phase, ..self }
+    ///
+    /// # Errors
+    /// If the phase is not in this range.
+    pub fn with_phase(self, phase: f64) -> Result<Self, ParameterError> {
+        accept(phase > 0.0 && phase <= 1.0, "phase of the samples", "in (0, 1]", phase)?;
+        Ok(Self { phase, ..self })
     }
 
     /// Returns the number of cycles that a value settles before its samples.
@@ -70,7 +105,7 @@ impl Protocol {
     }
 
     /// Returns the number of steps of a value: some without a sample, to settle, then one for each sample.
-    pub(super) const fn steps(&self) -> u64 {
+    pub(in crate::study) const fn steps(&self) -> u64 {
         self.settling_steps() + self.samples
     }
 
@@ -79,7 +114,7 @@ impl Protocol {
     }
 
     /// Returns the cycles from the start of a value to the end of this step; steps are counted from 0.
-    pub(super) fn end_of(&self, step: u64) -> u64 {
+    pub(in crate::study) fn end_of(&self, step: u64) -> u64 {
         let settling = self.settling_steps();
         if step < settling {
             ((step + 1) * self.every).min(self.settle)
@@ -89,36 +124,23 @@ impl Protocol {
     }
 
     /// Returns the cycles that this many steps take.
-    pub(super) fn cycles_of(&self, steps: u64) -> u64 {
+    pub(in crate::study) fn cycles_of(&self, steps: u64) -> u64 {
         steps.checked_sub(1).map_or(0, |last| self.end_of(last))
     }
 
     /// Returns the number of samples in this many steps.
-    pub(super) const fn samples_of(&self, steps: u64) -> u64 {
+    pub(in crate::study) const fn samples_of(&self, steps: u64) -> u64 {
         steps.saturating_sub(self.settling_steps())
     }
 
     /// Returns whether a step ends with a sample.
-    pub(super) const fn is_sampled(&self, step: u64) -> bool {
+    pub(in crate::study) const fn is_sampled(&self, step: u64) -> bool {
         step >= self.settling_steps()
     }
 
     /// Returns the time from a sample to the end of its step, in cycles.
-    pub(super) const fn lead(&self) -> f64 {
+    pub(in crate::study) const fn lead(&self) -> f64 {
         1.0 - self.phase
-    }
-
-    pub(super) fn check(&self) -> Result<(), ParameterError> {
-        let count = |range: std::ops::RangeInclusive<u64>, name, requirement, value: u64| {
-            accept(range.contains(&value), name, requirement, value as f64)
-        };
-        count(0..=MOST, "settling time in cycles", "at most 2^40", self.settle)?;
-        count(1..=MOST, "number of samples", "in 1..=2^40", self.samples)?;
-        count(1..=MOST, "sampling interval in cycles", "in 1..=2^40", self.every)?;
-        let total = u128::from(self.settle) + u128::from(self.samples) * u128::from(self.every);
-        accept(total <= u128::from(MOST), "length of a value in cycles", "at most 2^40", total as f64)?;
-        accept(self.phase > 0.0 && self.phase <= 1.0, "phase of the samples", "in (0, 1]", self.phase)?;
-        Ok(())
     }
 }
 
@@ -128,7 +150,7 @@ mod tests {
 
     #[test]
     fn steps_tile_a_value() {
-        let protocol = Protocol::new(25, 3, 10);
+        let protocol = Protocol::new(25, 3, 10).unwrap();
         let ends: Vec<u64> = (0..protocol.steps()).map(|step| protocol.end_of(step)).collect();
         assert_eq!(ends, [10, 20, 25, 35, 45, 55]);
         assert_eq!(ends.last(), Some(&protocol.cycles()));

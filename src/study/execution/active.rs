@@ -1,13 +1,19 @@
 //! One value of a ramp, from its start to its record, as a pure function of the plan, the index and the
 //! record from which it starts.
 
-use super::errors::StudyError;
-use super::experiment::{Experiment, ExperimentError, Run};
-use super::record::{Contents, Cycles, Measured, Origin, Outcome, Record, check, check_state};
-use super::refinement::Step;
-use super::{Plan, Protocol};
+use std::time::Duration;
+
+use super::sliced;
 use crate::Simulation;
 use crate::simulation::{Checkpoint, CheckpointError, Counters, RunEnd, RunError};
+use crate::study::errors::{ExperimentError, StudyError};
+use crate::study::experiment::record::{
+    Contents, Cycles, Measured, Origin, Outcome, Record, check, check_state,
+};
+use crate::study::experiment::{Experiment, Run};
+use crate::study::plan::Plan;
+use crate::study::plan::protocol::Protocol;
+use crate::study::plan::refinement::Step;
 
 /// A value that is to be done.
 pub(super) struct Value<'a, E: Experiment> {
@@ -30,6 +36,8 @@ pub(super) struct Work<S, O> {
     /// The start of the value.
     start: Cycles,
     steps: u64,
+    /// True if the observer has heard of the start of a run whose end is yet to come.
+    is_under_way: bool,
     /// Counters at the start of the value.
     counters: Counters,
     measured: Measured<S, O>,
@@ -49,16 +57,19 @@ impl<'a, E: Experiment> Value<'a, E> {
         let (start, counters) = (self.start(), *run.counters());
         let observer = self.experiment.observer().map_err(|source| self.cannot_start(source))?;
         let measured = Measured { times: Vec::new(), samples: Vec::new(), observer };
-        Ok(Active { value: self, work: Work { start, steps: 0, counters, measured }, run })
+        let work = Work { start, steps: 0, is_under_way: false, counters, measured };
+        Ok(Active { value: self, work, run })
     }
 
     /// Goes on with the value where it was saved. The error says why that is impossible.
     pub(super) fn go_on(&'a self, (_, work, state): Partial<E>) -> Result<Active<'a, E>, String> {
-        work.check(self.plan.protocol())?;
+        let protocol = self.plan.protocol();
+        work.check(protocol)?;
         check(work.start == self.start(), "it starts elsewhere")?;
-        let passed = self.plan.protocol().cycles_of(work.steps) as f64;
-        check_state(&state, work.start.time(passed, self.experiment.cycle()))?;
-        work.measured.check(&self.experiment, &state)?;
+        let [from, to] = [work.steps, protocol.steps().min(work.steps + 1)]
+            .map(|steps| work.start.time(protocol.cycles_of(steps) as f64, self.experiment.cycle()));
+        check_state(&state, from..=to)?;
+        work.measured.check(&self.experiment, Some(&state))?;
         let run = Self::resume(&state, &self.experiment).map_err(|_| "its state cannot go on")?;
         check(run.gravity() == self.experiment.gravity(), "its state has another gravity")?;
         Ok(Active { value: self, work, run })
@@ -77,7 +88,9 @@ impl<'a, E: Experiment> Value<'a, E> {
         let Some(before) = self.before else {
             return self.experiment.build(self.origin.seed).map_err(|source| self.cannot_start(source));
         };
-        let resumed = Self::resume(before.checkpoint(), &before.experiment);
+        let state =
+            before.checkpoint().ok_or_else(|| self.cannot_start("the value before keeps no state".into()))?;
+        let resumed = Self::resume(state, &before.experiment);
         let mut run = resumed.map_err(|error| match error {
             Unresumed::Experiment(source) => self.cannot_start(source),
             Unresumed::Checkpoint(source) => {
@@ -116,17 +129,24 @@ impl<E: Experiment> Active<'_, E> {
         self.work.steps >= self.value.plan.protocol().steps()
     }
 
-    /// Does the next step, which settles or takes a sample. The observer may end the value during the step.
-    pub(super) fn step(&mut self) -> Result<RunEnd, RunError> {
+    /// Returns the ramp and the index of the value.
+    pub(super) const fn place(&self) -> (usize, usize) {
+        (self.value.origin.ramp, self.value.origin.value)
+    }
+
+    /// Goes on with the next step, which settles or takes a sample, for this wall-clock time at most. The
+    /// observer may end the value during the step. A step that takes longer goes on with the next call, to
+    /// the same bits.
+    pub(super) fn step(&mut self, slice: Duration) -> Result<RunEnd, RunError> {
         let protocol = self.value.plan.protocol();
         let (step, cycle) = (self.work.steps, self.value.experiment.cycle());
         let end = protocol.end_of(step) as f64;
         let at = |cycles: f64| self.work.start.time(cycles, cycle);
+        let (sample, end) = (at(end - protocol.lead()), at(end));
         let ended = if protocol.is_sampled(step) {
-            let (sample, end) = (at(end - protocol.lead()), at(end));
-            self.sample(sample, end)?
+            self.sample(sample, end, slice)?
         } else {
-            self.run.run_until(at(end), &mut ())?
+            sliced::run(&mut self.run, end, slice, &mut (), &mut self.work.is_under_way)?
         };
         if ended == RunEnd::Time {
             self.work.steps += 1;
@@ -134,16 +154,20 @@ impl<E: Experiment> Active<'_, E> {
         Ok(ended)
     }
 
-    fn sample(&mut self, time: f64, end: f64) -> Result<RunEnd, RunError> {
-        let Measured { times, samples, observer } = &mut self.work.measured;
-        let ended = self.run.run_until(time, observer)?;
-        if ended != RunEnd::Time {
-            return Ok(ended);
+    fn sample(&mut self, time: f64, end: f64, slice: Duration) -> Result<RunEnd, RunError> {
+        let Work { measured, is_under_way, steps, .. } = &mut self.work;
+        let Measured { times, samples, observer } = measured;
+        // A slice may have ended between the sample and the end of the step.
+        if samples.len() as u64 == self.value.plan.protocol().samples_of(*steps) {
+            let ended = sliced::run(&mut self.run, time, slice, observer, is_under_way)?;
+            if ended != RunEnd::Time {
+                return Ok(ended);
+            }
+            let snapshot = self.run.snapshot();
+            times.push(snapshot.time());
+            samples.push(self.value.experiment.sample(&snapshot, observer));
         }
-        let snapshot = self.run.snapshot();
-        times.push(snapshot.time());
-        samples.push(self.value.experiment.sample(&snapshot, observer));
-        self.run.run_until(end, observer)
+        sliced::run(&mut self.run, end, slice, observer, is_under_way)
     }
 
     /// Returns the unfinished value as data, to go on with it later.
@@ -179,6 +203,9 @@ impl<E: Experiment> Active<'_, E> {
 
     fn into_record(self, outcome: Outcome, end: Cycles, state: Checkpoint) -> Record<E> {
         let Self { value, work, run } = self;
+        let parts = state.parts();
+        let parts = [parts.0, parts.1].map(Option::<&_>::copied);
+        let state = value.plan.keeps_state(value.origin.value).then_some(state);
         let contents = Contents {
             origin: value.origin.clone(),
             leg: value.step.leg,
@@ -187,6 +214,7 @@ impl<E: Experiment> Active<'_, E> {
             end,
             measured: work.measured,
             counters: run.counters().since(&work.counters),
+            parts,
             state,
         };
         Record { experiment: value.experiment.clone(), contents }
@@ -197,8 +225,11 @@ impl<S, O> Work<S, O> {
     /// Checks that a value can have come this far under the protocol.
     fn check(&self, protocol: &Protocol) -> Result<(), &'static str> {
         check(self.steps <= protocol.steps(), "it is longer than the protocol")?;
-        let samples = protocol.samples_of(self.steps);
-        check(samples == self.measured.samples.len() as u64, "its samples are not as many as its steps")
+        let (samples, next) = (protocol.samples_of(self.steps), protocol.samples_of(self.steps + 1));
+        let found = self.measured.samples.len() as u64;
+        // The sample of a step that is under way may be taken.
+        let is_taken = found == next && self.steps < protocol.steps();
+        check(found == samples || is_taken, "its samples are not as many as its steps")
     }
 }
 

@@ -2,22 +2,32 @@
 
 use std::ops::Range;
 
-use super::{Leg, Ramp, Width};
+use super::ramp::{Ramp, Width};
+use crate::study::experiment::Experiment;
+use crate::study::experiment::record::Record;
+use crate::study::leg::Leg;
 
 /// The parts of a finished value on which the path depends.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Seen {
-    pub(super) leg: Option<Leg>,
-    pub(super) at: Option<f64>,
-    pub(super) state: Option<String>,
+pub(in crate::study) struct Seen {
+    pub(in crate::study) leg: Option<Leg>,
+    pub(in crate::study) at: Option<f64>,
+    pub(in crate::study) state: Option<String>,
+}
+
+impl Seen {
+    /// Returns the parts of a record on which the path depends.
+    pub(in crate::study) fn of<E: Experiment>(record: &Record<E>) -> Self {
+        Self { leg: record.leg(), at: record.ramped_value(), state: E::state(record) }
+    }
 }
 
 /// The next value on a path, and the index of the value from which it starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Step {
-    pub(super) leg: Option<Leg>,
-    pub(super) at: Option<f64>,
-    pub(super) before: Option<usize>,
+pub(in crate::study) struct Step {
+    pub(in crate::study) leg: Option<Leg>,
+    pub(in crate::study) at: Option<f64>,
+    pub(in crate::study) before: Option<usize>,
 }
 
 /// Two values of a ramped parameter between which the state changes.
@@ -38,12 +48,12 @@ pub struct Bracket {
 
 impl Ramp {
     /// Returns the next value after those that are done; `None` if there is none.
-    pub(super) fn next(&self, seen: &[Seen]) -> Option<Step> {
+    pub(in crate::study) fn next(&self, seen: &[Seen]) -> Option<Step> {
         self.search(seen).err()
     }
 
     /// Returns the brackets of all transitions; empty before all of them have the wanted width.
-    pub(super) fn brackets(&self, seen: &[Seen]) -> Vec<Bracket> {
+    pub(in crate::study) fn brackets(&self, seen: &[Seen]) -> Vec<Bracket> {
         self.search(seen).unwrap_or_default()
     }
 
@@ -108,7 +118,10 @@ impl Search<'_> {
     /// Returns the middle between two values; `None` if they are close enough.
     fn middle(&self, near: usize, far: usize) -> Option<f64> {
         let [near, far] = [near, far].map(|index| self.seen[index].at.unwrap_or(f64::NAN));
-        let at = near + 0.5 * (far - near);
+        let width = far - near;
+        // The sum of the halves would round otherwise where both are possible, so it is for widths beyond all
+        // numbers alone.
+        let at = if width.is_finite() { near + 0.5 * width } else { 0.5 * near + 0.5 * far };
         // There is no number between two neighboring doubles.
         let is_between = (near < at && at < far) || (far < at && at < near);
         (is_between && !self.width.holds(near, far)).then_some(at)
@@ -142,7 +155,11 @@ impl Width {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::Course;
+    use crate::study::plan::ramp::Course;
+
+    fn refined<const N: usize>(values: [f64; N], course: Course, width: Width) -> Ramp {
+        Ramp::new("x", values, course).unwrap().with_refinement(width).unwrap()
+    }
 
     /// Walks a ramp through states that are a function of the value and the direction.
     fn walk_through<'a>(
@@ -172,7 +189,7 @@ mod tests {
 
     #[test]
     fn a_transition_is_bracketed_to_the_wanted_width() {
-        let ramp = Ramp::new("x", [0.0, 1.0, 2.0, 3.0], Course::Up).with_refinement(Width::Absolute(0.01));
+        let ramp = refined([0.0, 1.0, 2.0, 3.0], Course::Up, Width::Absolute(0.01));
         let (seen, before) = walk(&ramp, 1.3, 1.3);
         let [bracket] = &ramp.brackets(&seen)[..] else { panic!("{seen:?}") };
         assert!(
@@ -193,7 +210,7 @@ mod tests {
             (Course::Up, [("a", "b"), ("b", "c"), ("c", "d")]),
             (Course::Down, [("d", "c"), ("c", "b"), ("b", "a")]),
         ] {
-            let ramp = Ramp::new("x", [0.0, 1.0], course).with_refinement(Width::Absolute(0.002));
+            let ramp = refined([0.0, 1.0], course, Width::Absolute(0.002));
             let (seen, _) = walk_through(&ramp, states);
             let brackets = ramp.brackets(&seen);
             assert_eq!(told(&brackets), expected);
@@ -204,7 +221,7 @@ mod tests {
 
     #[test]
     fn a_relative_width_is_finer_at_smaller_values() {
-        let ramp = Ramp::new("x", [0.01, 0.1, 1.0, 10.0], Course::Up).with_refinement(Width::Relative(0.01));
+        let ramp = refined([0.01, 0.1, 1.0, 10.0], Course::Up, Width::Relative(0.01));
         let states =
             |at: f64, _| Some(["a", "b", "c"][[0.033, 4.4].iter().filter(|place| at > **place).count()]);
         let brackets = ramp.brackets(&walk_through(&ramp, states).0);
@@ -221,7 +238,7 @@ mod tests {
     /// beyond it.
     #[test]
     fn a_value_without_a_state_ends_a_search() {
-        let ramp = Ramp::new("x", [0.0, 1.0, 2.0], Course::Up).with_refinement(Width::Absolute(0.1));
+        let ramp = refined([0.0, 1.0, 2.0], Course::Up, Width::Absolute(0.1));
         let states = |at: f64, _| (!(0.4..0.9).contains(&at)).then_some(if at < 0.4 { "a" } else { "b" });
         assert_eq!(told(&ramp.brackets(&walk_through(&ramp, states).0)), [("a", "")]);
         let (seen, _) = walk_through(&ramp, |at, _| (at != 1.0).then_some(if at < 1.0 { "a" } else { "b" }));
@@ -229,9 +246,16 @@ mod tests {
     }
 
     #[test]
+    fn the_widest_ramp_has_a_middle() {
+        let ramp = refined([-1.7e308, 1.7e308], Course::Up, Width::Absolute(1e307));
+        let (seen, _) = walk(&ramp, 1e308, 1e308);
+        let [bracket] = &ramp.brackets(&seen)[..] else { panic!("{seen:?}") };
+        assert!(bracket.near < 1e308 && bracket.far >= 1e308 && bracket.far - bracket.near <= 1e307);
+    }
+
+    #[test]
     fn hysteresis_is_bracketed_from_both_sides() {
-        let ramp =
-            Ramp::new("x", [0.0, 1.0, 2.0, 3.0], Course::UpAndDown).with_refinement(Width::Absolute(0.05));
+        let ramp = refined([0.0, 1.0, 2.0, 3.0], Course::UpAndDown, Width::Absolute(0.05));
         let (seen, _) = walk(&ramp, 1.3, 0.7);
         let [up, down] = &ramp.brackets(&seen)[..] else { panic!("{seen:?}") };
         assert!((up.near..=up.far).contains(&1.3) && up.leg == Some(Leg::Up));
@@ -241,12 +265,11 @@ mod tests {
 
     #[test]
     fn without_states_or_refinement_a_ramp_is_its_own_values() {
-        let ramp = Ramp::new("x", [0.0, 1.0], Course::Up);
+        let ramp = Ramp::new("x", [0.0, 1.0], Course::Up).unwrap();
         assert_eq!(walk(&ramp, 0.5, 0.5).0.len(), 2);
-        let refined = ramp.with_refinement(Width::Absolute(0.1));
-        assert_eq!(walk(&refined, 9.0, 9.0).0.len(), 2);
-        let narrow =
-            Ramp::new("x", [1.0, 1.0 + f64::EPSILON], Course::Up).with_refinement(Width::Absolute(1e-300));
+        let ramp = ramp.with_refinement(Width::Absolute(0.1)).unwrap();
+        assert_eq!(walk(&ramp, 9.0, 9.0).0.len(), 2);
+        let narrow = refined([1.0, 1.0 + f64::EPSILON], Course::Up, Width::Absolute(1e-300));
         assert_eq!(walk(&narrow, 1.0 + f64::EPSILON, 0.0).0.len(), 2);
     }
 }

@@ -36,13 +36,16 @@ pub struct Control<'a> {
     interrupt: Option<&'a AtomicBool>,
     save_interval: Duration,
     waits: bool,
+    tables: bool,
+    verifies: bool,
 }
 
 impl Default for Control<'_> {
     /// Creates the control of a study that nobody watches or stops. The study saves unfinished values every
     /// minute, and waits for ramps that other processes do.
     fn default() -> Self {
-        Self { progress: None, interrupt: None, save_interval: Duration::from_secs(60), waits: true }
+        let save_interval = Duration::from_secs(60);
+        Self { progress: None, interrupt: None, save_interval, waits: true, tables: true, verifies: false }
     }
 }
 
@@ -52,7 +55,10 @@ impl<'a> Control<'a> {
         Self { progress: Some(progress), ..self }
     }
 
-    /// Returns the same control, which saves all work and stops soon after `interrupt` becomes true.
+    /// Returns the same control, which saves all work and stops within a second after `interrupt` becomes true,
+    /// however long a sampling interval takes.
+    ///
+    /// A very large system takes longer to be saved, and nothing stops it while it is set up.
     pub fn with_interrupt(self, interrupt: &'a AtomicBool) -> Self {
         Self { interrupt: Some(interrupt), ..self }
     }
@@ -71,6 +77,27 @@ impl<'a> Control<'a> {
     /// processes may yet be killed.
     pub fn without_waiting(self) -> Self {
         Self { waits: false, ..self }
+    }
+
+    /// Returns the same control, which writes no tables when all ramps are done.
+    ///
+    /// [`Study::write_tables`](crate::study::Study::write_tables) writes them later.
+    pub fn without_tables(self) -> Self {
+        Self { tables: false, ..self }
+    }
+
+    /// Returns the same control, which reads the records of ramps that are done, too, and does damaged or lost
+    /// ones again. It reads the whole study.
+    pub fn with_verification(self) -> Self {
+        Self { verifies: true, ..self }
+    }
+
+    pub(super) const fn writes_tables(&self) -> bool {
+        self.tables
+    }
+
+    pub(super) const fn verifies(&self) -> bool {
+        self.verifies
     }
 
     pub(super) const fn waits(&self) -> bool {
@@ -100,8 +127,10 @@ impl fmt::Debug for Control<'_> {
 pub struct Summary {
     /// Number of values that have a record now.
     pub finished: usize,
-    /// Number of these values that the engine could not finish, stalled or failed. They have fewer samples or
-    /// none; [`Outcome::reason`](super::Outcome::reason) and `log.jsonl` say why.
+    /// Number of values of the ramps that this run has looked at which the engine could not finish: they stalled
+    /// or failed. They have fewer samples or none; [`Outcome::reason`](crate::study::Outcome::reason) and the
+    /// `log.jsonl` of their ramp say why. Ramps that were done before are looked at only with
+    /// [`Control::with_verification`].
     pub failed: usize,
     /// Number of values of the study, or of the ramps that were to be run.
     pub total: usize,
@@ -133,6 +162,11 @@ impl<'a> Meter<'a> {
     /// Adds further steps that are to be done.
     pub(super) fn extend(&self, steps: u64) {
         self.total.fetch_add(steps, Ordering::Relaxed);
+    }
+
+    /// Adds steps that other processes have done.
+    pub(super) fn skip(&self, steps: u64) {
+        self.done.fetch_add(steps, Ordering::Relaxed);
     }
 
     /// Adds steps that are done, and reports the progress.

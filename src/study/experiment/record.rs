@@ -2,12 +2,16 @@
 
 use std::fmt;
 
-use super::refinement::Seen;
-use super::{Experiment, Leg, Plan, Scalar, parameters};
+use super::Experiment;
+use crate::Fingerprint;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::simulation::{Checkpoint, Counters};
 use crate::statistics::{BlockedMean, Estimate};
+use crate::study::leg::Leg;
+use crate::study::maker::Maker;
+use crate::study::parameters;
+use crate::study::scalar::Scalar;
 
 /// Relative rounding of the time at which a run ended.
 const TIME_ROUNDING: f64 = 1e-12;
@@ -67,88 +71,71 @@ impl Outcome {
     }
 }
 
-/// A finished value: its parameters, samples, counts and last state.
+/// A finished value: its parameters, samples, counts, and its last state if that is kept.
 ///
 /// Samples, observer and times are those of the measured part, after the value has settled.
 #[doc(alias("checkpoint", "restart"))]
 pub struct Record<E: Experiment> {
-    pub(super) experiment: E,
-    pub(super) contents: Contents<E::Sample, E::Observer>,
+    pub(in crate::study) experiment: E,
+    pub(in crate::study) contents: Contents<E::Sample, E::Observer>,
 }
 
 /// A record as it is in its file, without the experiment, which follows from the plan.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub(super) struct Contents<S, O> {
-    pub(super) origin: Origin,
-    pub(super) leg: Option<Leg>,
+pub(in crate::study) struct Contents<S, O> {
+    pub(in crate::study) origin: Origin,
+    pub(in crate::study) leg: Option<Leg>,
     /// Value of the ramped parameter.
-    pub(super) at: Option<f64>,
-    pub(super) outcome: Outcome,
-    pub(super) end: Cycles,
-    pub(super) measured: Measured<S, O>,
-    pub(super) counters: Counters,
-    pub(super) state: Checkpoint,
+    pub(in crate::study) at: Option<f64>,
+    pub(in crate::study) outcome: Outcome,
+    pub(in crate::study) end: Cycles,
+    pub(in crate::study) measured: Measured<S, O>,
+    pub(in crate::study) counters: Counters,
+    /// Fingerprints of the rule and the walls that made the value.
+    pub(in crate::study) parts: [Option<Fingerprint>; 2],
+    /// State at the end, if it is kept.
+    pub(in crate::study) state: Option<Checkpoint>,
 }
 
 /// The measurements of a value.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub(super) struct Measured<S, O> {
-    pub(super) times: Vec<f64>,
-    pub(super) samples: Vec<S>,
-    pub(super) observer: O,
+pub(in crate::study) struct Measured<S, O> {
+    pub(in crate::study) times: Vec<f64>,
+    pub(in crate::study) samples: Vec<S>,
+    pub(in crate::study) observer: O,
 }
 
 /// The study and the place in it that a file belongs to.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Origin {
+pub(in crate::study) struct Origin {
     /// Hash of the plan.
-    pub(super) study: [u8; 32],
-    /// Version of this crate.
-    pub(super) version: String,
-    pub(super) ramp: usize,
-    pub(super) value: usize,
-    pub(super) seed: u64,
+    pub(in crate::study) study: [u8; 32],
+    pub(in crate::study) maker: Maker,
+    pub(in crate::study) ramp: usize,
+    pub(in crate::study) value: usize,
+    pub(in crate::study) seed: u64,
 }
 
 /// A time, as a number of whole cycles since some absolute time. The product of a cycle and a whole number
 /// does not drift as a sum of cycles does.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub(super) struct Cycles {
+pub(in crate::study) struct Cycles {
     /// Absolute time from which cycles are counted.
-    pub(super) since: f64,
-    pub(super) count: u64,
+    pub(in crate::study) since: f64,
+    pub(in crate::study) count: u64,
 }
 
 impl Cycles {
-    pub(super) const START: Self = Self { since: 0.0, count: 0 };
+    pub(in crate::study) const START: Self = Self { since: 0.0, count: 0 };
 
     /// Returns the absolute time after this many more cycles of this length.
-    pub(super) fn time(&self, more: f64, cycle: f64) -> f64 {
+    pub(in crate::study) fn time(&self, more: f64, cycle: f64) -> f64 {
         self.since + (self.count as f64 + more) * cycle
     }
 }
 
 impl<E: Experiment> Record<E> {
-    /// Checks that the record can belong to its place in this study. The error says why it cannot.
-    pub(super) fn check(&self, plan: &Plan<E>) -> Result<(), String> {
-        let Contents { origin, leg, at, outcome, end, measured, state, .. } = &self.contents;
-        let protocol = plan.protocol();
-        let (most, samples) =
-            (protocol.cycles().saturating_mul(origin.value as u64 + 1), measured.samples.len());
-        let is_short = *outcome != Outcome::Completed && protocol.samples() > samples as u64;
-        check(end.count <= most, "it is longer than the protocol")?;
-        let is_full = protocol.samples() == samples as u64;
-        check(is_full || is_short, "its samples are not as many as in the protocol")?;
-        let is_placed = match plan.step(origin.value) {
-            Some((way, value)) => *leg == Some(way) && *at == Some(value),
-            None => plan.is_refined() || at.is_none(),
-        };
-        check(is_placed, "it is on another way through the ramp")?;
-        check_state(state, end.time(0.0, self.experiment.cycle()))?;
-        measured.check(&self.experiment, state)
-    }
-
     /// Returns the index of the ramp.
     pub const fn ramp_index(&self) -> usize {
         self.contents.origin.ramp
@@ -166,7 +153,7 @@ impl<E: Experiment> Record<E> {
 
     /// Returns the version of this crate that made the record.
     pub fn version(&self) -> &str {
-        &self.contents.origin.version
+        &self.contents.origin.maker.version
     }
 
     /// Returns the direction from which the ramp came to the value; `None` without a ramp.
@@ -177,11 +164,6 @@ impl<E: Experiment> Record<E> {
     /// Returns the value of the ramped parameter; `None` without a ramp.
     pub const fn ramped_value(&self) -> Option<f64> {
         self.contents.at
-    }
-
-    /// Returns the parts of the record on which the path of the ramp depends.
-    pub(super) fn seen(&self) -> Seen {
-        Seen { leg: self.leg(), at: self.ramped_value(), state: E::state(self) }
     }
 
     /// Returns the experiment, with the parameters of this value.
@@ -224,18 +206,19 @@ impl<E: Experiment> Record<E> {
         &self.contents.counters
     }
 
-    /// Returns the state at the end of the value.
-    pub const fn checkpoint(&self) -> &Checkpoint {
-        &self.contents.state
+    /// Returns the state at the end of the value; `None` if the record does not keep it
+    /// ([`Plan::with_end_states`](crate::study::Plan::with_end_states)).
+    pub const fn checkpoint(&self) -> Option<&Checkpoint> {
+        self.contents.state.as_ref()
     }
 
     /// Returns the part of the simulation that the experiment now makes differently than when the value was
     /// done, if there is one. Parts without fingerprints cannot be told apart.
-    pub(super) fn changed_part(&self) -> Option<&'static str> {
-        let (rule, boundary) = self.contents.state.parts();
-        if self.experiment.rule().is_ok_and(|now| now.fingerprint().as_ref() != rule) {
+    pub(in crate::study) fn changed_part(&self) -> Option<&'static str> {
+        let [rule, boundary] = self.contents.parts;
+        if self.experiment.rule().is_ok_and(|now| now.fingerprint() != rule) {
             Some("rule")
-        } else if self.experiment.boundary().is_ok_and(|now| now.fingerprint().as_ref() != boundary) {
+        } else if self.experiment.boundary().is_ok_and(|now| now.fingerprint() != boundary) {
             Some("boundary")
         } else {
             None
@@ -287,7 +270,7 @@ impl<E: Experiment> fmt::Debug for Record<E> {
 
 impl<S, O> Measured<S, O> {
     /// Checks that the times, the samples and the observer can have been measured.
-    pub(super) fn check<E>(&self, experiment: &E, state: &Checkpoint) -> Result<(), String>
+    pub(in crate::study) fn check<E>(&self, experiment: &E, state: Option<&Checkpoint>) -> Result<(), String>
     where
         E: Experiment<Sample = S, Observer = O>,
     {
@@ -298,11 +281,16 @@ impl<S, O> Measured<S, O> {
     }
 }
 
-pub(super) fn check(valid: bool, reason: &'static str) -> Result<(), &'static str> {
+pub(in crate::study) fn check(valid: bool, reason: &'static str) -> Result<(), &'static str> {
     if valid { Ok(()) } else { Err(reason) }
 }
 
-/// Checks that a state is that of this time.
-pub(super) fn check_state(state: &Checkpoint, time: f64) -> Result<(), &'static str> {
-    check((state.time() - time).abs() <= TIME_ROUNDING * time, "its state is of another time")
+/// Checks that a state is of a time in this range, up to rounding.
+pub(in crate::study) fn check_state(
+    state: &Checkpoint,
+    range: std::ops::RangeInclusive<f64>,
+) -> Result<(), &'static str> {
+    let rounding = TIME_ROUNDING * range.end();
+    let is_in = state.time() >= range.start() - rounding && state.time() <= range.end() + rounding;
+    check(is_in, "its state is of another time")
 }

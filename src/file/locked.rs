@@ -1,0 +1,67 @@
+//! Files under a lock.
+
+use std::fs::{File, TryLockError};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+
+/// A file whose lock this process holds; dropping it gives the lock back.
+#[derive(Debug)]
+pub(crate) struct Locked(File);
+
+impl Locked {
+    #[cfg(feature = "serde")]
+    /// Waits until nobody else has the lock of a file, and takes it.
+    pub(crate) fn wait(file: File) -> io::Result<Self> {
+        file.lock()?;
+        Ok(Self(file))
+    }
+
+    #[cfg(feature = "serde")]
+    /// Takes the lock of a file, unless somebody has it.
+    pub(crate) fn take(file: File) -> Result<Self, TryLockError> {
+        file.try_lock()?;
+        Ok(Self(file))
+    }
+
+    /// Takes the lock of a file, unless somebody has it. Goes on without a lock where the system has none, and
+    /// outside Unix, where a lock could keep other programs from reading.
+    pub(crate) fn take_if_possible(file: File) -> io::Result<Self> {
+        match if cfg!(unix) { file.try_lock() } else { Ok(()) } {
+            Err(TryLockError::WouldBlock) => Err(io::ErrorKind::WouldBlock.into()),
+            Ok(()) | Err(TryLockError::Error(_)) => Ok(Self(file)),
+        }
+    }
+
+    pub(crate) const fn file(&self) -> &File {
+        &self.0
+    }
+}
+
+impl Read for Locked {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        self.0.read(bytes)
+    }
+}
+
+impl Write for Locked {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+impl Seek for Locked {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.0.seek(to)
+    }
+}
+
+impl Drop for Locked {
+    fn drop(&mut self) {
+        // A process that was forked meanwhile, to start another program, may have the file open, too. Closing
+        // the file here would then not release the lock.
+        let _ = self.0.unlock();
+    }
+}

@@ -1,0 +1,147 @@
+//! Runs of a study, which do the values that are missing.
+
+mod active;
+pub(super) mod control;
+mod queue;
+mod ramp;
+mod shift;
+mod sliced;
+mod value;
+
+use std::time::Duration;
+
+use super::errors::StudyError;
+use super::experiment::Experiment;
+use super::opening::Study;
+use control::{Control, Summary};
+use queue::Queue;
+use shift::Shift;
+
+/// Shortest and longest time between two looks at ramps that other processes do. It doubles from look to look:
+/// a process that waits must not burden a file system that others need.
+const PATIENCE: [Duration; 2] = [Duration::from_millis(50), Duration::from_secs(5)];
+
+/// Most ramps of other processes that one look tries to take over.
+const TRIED: usize = 8;
+
+impl<E: Experiment> Study<E> {
+    /// Does all values that have no record yet, and writes the tables.
+    ///
+    /// Any number of processes may call this and [`Self::run_ramp`] at the same time; one of them does each
+    /// ramp. A run waits for ramps that other processes do, and takes over the ramps of a process that was
+    /// killed. With the feature `rayon`, it does ramps in parallel, in the thread pool from which it is
+    /// called. A run that is interrupted returns with all work saved. The next run goes on from there, with
+    /// the same result.
+    ///
+    /// # Errors
+    /// If plan or code of the study have changed, files cannot be read or written, or a value cannot be
+    /// started.
+    pub fn run(&self, control: &Control<'_>) -> Result<Summary, StudyError> {
+        self.run_ramps((0..self.plan().ramp_count()).collect(), control)
+    }
+
+    /// Does the values of one ramp that have no record yet, and writes the tables if all other ramps are
+    /// done.
+    ///
+    /// # Errors
+    /// The same as for [`Self::run`], and if there is no such ramp.
+    pub fn run_ramp(&self, ramp: usize, control: &Control<'_>) -> Result<Summary, StudyError> {
+        self.check_ramp(ramp)?;
+        self.run_ramps(vec![ramp], control)
+    }
+
+    fn run_ramps(&self, ramps: Vec<usize>, control: &Control<'_>) -> Result<Summary, StudyError> {
+        self.check_unchanged()?;
+        let last = ramps.last().copied().unwrap_or(0);
+        let is_whole = ramps.len() == self.plan().ramp_count();
+        let shift = Shift::new(self, control, ramps.len());
+        let elsewhere = all(&shift, ramps)?;
+        let summary = shift.summary(elsewhere);
+        let is_done = summary.is_complete() && (is_whole || self.is_done(last)?);
+        if is_done && control.writes_tables() {
+            self.write_tables_once(is_whole)?;
+        }
+        Ok(summary)
+    }
+
+    /// Returns whether all ramps are done. Ramps here and there come first, since a list of all of them takes
+    /// as many calls of the system as there are hundreds of ramps, and each of many tasks asks.
+    fn is_done(&self, ramp: usize) -> Result<bool, StudyError> {
+        const PROBES: usize = 64;
+        let ramps = self.plan().ramp_count();
+        let stride = (ramps / PROBES).max(1);
+        let mut probed = (0..PROBES.min(ramps)).map(|probe| (ramp + 1 + probe * stride) % ramps);
+        Ok(probed.all(|ramp| self.folder.is_done(ramp))
+            && self.folder.all_done(ramps)?.into_iter().all(|done| done))
+    }
+
+    /// Writes the tables, unless another process has done so meanwhile. A run of the whole study also writes
+    /// lost tables again. One of many tasks that finds everything done leaves the tables as they are.
+    fn write_tables_once(&self, is_whole: bool) -> Result<(), StudyError> {
+        let is_there = || if is_whole { self.has_tables() } else { self.folder.is_complete() };
+        if is_there() {
+            return Ok(());
+        }
+        let _lock = self.folder.lock()?;
+        if is_there() {
+            return Ok(());
+        }
+        self.tables(self.folder())?;
+        self.folder.mark_complete()
+    }
+}
+
+/// Does ramps until each of them is done, here or elsewhere. If it need not wait, it returns the ramps that
+/// other processes do.
+fn all<E: Experiment>(shift: &Shift<'_, E>, ramps: Vec<usize>) -> Result<Vec<usize>, StudyError> {
+    let queue = Queue::new(shift.without_done(ramps)?);
+    work_in_parallel(shift, &queue)?;
+    let mut patience = PATIENCE[0];
+    loop {
+        let elsewhere = shift.without_done(queue.elsewhere())?;
+        if elsewhere.is_empty() || !shift.control.waits() || shift.must_stop() {
+            return Ok(elsewhere);
+        }
+        shift.sleep(patience);
+        patience = PATIENCE[1].min(2 * patience);
+        // Their process may have been killed.
+        queue.refill(elsewhere, TRIED);
+        work_in_parallel(shift, &queue)?;
+    }
+}
+
+#[cfg(feature = "rayon")]
+fn work_in_parallel<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Result<(), StudyError> {
+    use std::sync::{Mutex, PoisonError};
+    let failed = Mutex::new(None);
+    rayon::scope(|scope| {
+        for _ in 0..queue.len().min(rayon::current_num_threads()) {
+            scope.spawn(|_| {
+                if let Err(error) = work(shift, queue) {
+                    failed.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+                }
+            });
+        }
+    });
+    failed.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+}
+
+#[cfg(not(feature = "rayon"))]
+fn work_in_parallel<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Result<(), StudyError> {
+    work(shift, queue)
+}
+
+/// Does ramps of the queue until it is empty.
+fn work<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Result<(), StudyError> {
+    while !shift.must_stop()
+        && let Some(ramp) = queue.next()
+    {
+        if ramp::attempt(shift, ramp).inspect_err(|_| shift.break_off())? {
+            continue;
+        }
+        queue.leave(ramp);
+        // Other processes are at work around here.
+        queue.put_back(shift.without_done(queue.rest())?);
+    }
+    Ok(())
+}

@@ -1,0 +1,129 @@
+//! Data that all threads of a running study share.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use super::control::{Control, Meter, Summary};
+use crate::study::errors::StudyError;
+use crate::study::experiment::Experiment;
+use crate::study::opening::Study;
+
+/// Longest time until a thread looks whether it must stop.
+pub(super) const LOOK: Duration = Duration::from_millis(200);
+
+/// Number of ramps up to which each is asked for alone whether it is done. A list of all ramps costs more.
+const FEW: usize = 16;
+
+/// A run of a study.
+pub(super) struct Shift<'a, E: Experiment> {
+    pub(super) study: &'a Study<E>,
+    pub(super) control: &'a Control<'a>,
+    pub(super) meter: Meter<'a>,
+    /// Number of values that are to have a record.
+    total: AtomicUsize,
+    finished: AtomicUsize,
+    /// Number of values that the engine could not finish.
+    failed: AtomicUsize,
+    redone: Mutex<Vec<PathBuf>>,
+    /// True once a thread has met an error.
+    ///
+    /// The others then stop as if interrupted.
+    broken: AtomicBool,
+    /// True once this run has removed the mark that the study is complete.
+    is_opened: AtomicBool,
+}
+
+impl<'a, E: Experiment> Shift<'a, E> {
+    pub(super) fn new(study: &'a Study<E>, control: &'a Control<'a>, ramps: usize) -> Self {
+        let values = ramps * study.plan().value_count();
+        Self {
+            study,
+            control,
+            meter: Meter::new(control, values as u64 * study.plan().protocol().steps()),
+            total: AtomicUsize::new(values),
+            finished: AtomicUsize::new(0),
+            failed: AtomicUsize::new(0),
+            redone: Mutex::default(),
+            broken: AtomicBool::new(false),
+            is_opened: AtomicBool::new(false),
+        }
+    }
+
+    /// Returns those of these ramps that are not done, and counts the others as finished.
+    pub(super) fn without_done(&self, ramps: Vec<usize>) -> Result<Vec<usize>, StudyError> {
+        if self.control.verifies() || ramps.is_empty() {
+            return Ok(ramps);
+        }
+        let (folder, before) = (&self.study.folder, ramps.len());
+        let left: Vec<usize> = if before <= FEW {
+            ramps.into_iter().filter(|&ramp| !folder.is_done(ramp)).collect()
+        } else {
+            let done = folder.all_done(self.study.plan().ramp_count())?;
+            ramps.into_iter().filter(|&ramp| !done[ramp]).collect()
+        };
+        self.count_done(before - left.len());
+        Ok(left)
+    }
+
+    /// Counts ramps that were done elsewhere.
+    pub(super) fn count_done(&self, ramps: usize) {
+        let plan = self.study.plan();
+        let values = ramps * plan.value_count();
+        self.finished.fetch_add(values, Ordering::Relaxed);
+        self.meter.skip(values as u64 * plan.protocol().steps());
+    }
+
+    /// Counts a value that a refinement adds.
+    pub(super) fn count_more(&self) {
+        self.total.fetch_add(1, Ordering::Relaxed);
+        self.meter.extend(self.study.plan().protocol().steps());
+    }
+
+    /// Counts a value that has a record now.
+    pub(super) fn count_finished(&self, is_failed: bool) {
+        self.finished.fetch_add(1, Ordering::Relaxed);
+        self.failed.fetch_add(usize::from(is_failed), Ordering::Relaxed);
+    }
+
+    /// Notes a file that was damaged.
+    pub(super) fn note_damaged(&self, path: PathBuf) {
+        self.redone.lock().unwrap_or_else(PoisonError::into_inner).push(path);
+    }
+
+    /// Removes the mark that the study is complete, once in a run, before the first value that may not be in
+    /// the tables.
+    pub(super) fn open_study(&self) -> Result<(), StudyError> {
+        if self.is_opened.swap(true, Ordering::Relaxed) {
+            return Ok(());
+        }
+        self.study.folder.mark_incomplete()
+    }
+
+    /// Lets all threads stop, since one has met an error.
+    pub(super) fn break_off(&self) {
+        self.broken.store(true, Ordering::Relaxed);
+    }
+
+    pub(super) fn must_stop(&self) -> bool {
+        self.control.is_interrupted() || self.broken.load(Ordering::Relaxed)
+    }
+
+    /// Sleeps for this time, or until the run must stop.
+    pub(super) fn sleep(&self, time: Duration) {
+        let start = Instant::now();
+        while start.elapsed() < time && !self.must_stop() {
+            std::thread::sleep(LOOK.min(time.saturating_sub(start.elapsed())));
+        }
+    }
+
+    /// Returns the summary of the run.
+    pub(super) fn summary(self, mut elsewhere: Vec<usize>) -> Summary {
+        let mut redone = self.redone.into_inner().unwrap_or_else(PoisonError::into_inner);
+        redone.sort();
+        elsewhere.sort_unstable();
+        let [finished, failed, total] = [self.finished, self.failed, self.total].map(AtomicUsize::into_inner);
+        Summary { finished, failed, total, elsewhere, redone }
+    }
+}

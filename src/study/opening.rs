@@ -1,0 +1,200 @@
+//! A study in its folder: how it is created and opened, and what is checked then.
+
+use std::path::Path;
+
+use super::errors::{Difference, PlanError, StudyError};
+use super::experiment::Experiment;
+use super::experiment::record::Origin;
+use super::folder::{Folder, sealed};
+use super::maker::Maker;
+use super::parameters;
+use super::plan::Plan;
+use super::provenance::{self, Provenance};
+
+/// A [`Plan`] in a folder, with the records of its finished values.
+///
+/// See [the module](crate::study) for an example and the promises.
+#[doc(alias("parameter scan", "ensemble", "campaign"))]
+#[derive(Debug, Clone)]
+pub struct Study<E> {
+    pub(super) folder: Folder,
+    pub(super) plan: Plan<E>,
+    /// The plan as it is in its file.
+    text: String,
+    /// Hash of the plan, which ties a record to its study.
+    hash: [u8; 32],
+    /// The makers whose records the study takes.
+    provenance: Provenance,
+    /// The maker that this program is.
+    maker: Maker,
+}
+
+impl<E: Experiment> Study<E> {
+    /// Creates a new study in a folder, which must be empty if it exists.
+    ///
+    /// # Errors
+    /// If the folder holds a study or anything else, or cannot be written.
+    pub fn create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
+        let folder = Folder::new(folder.as_ref())?;
+        if folder.holds_study() || !folder.create(&plan.to_toml()?, &Provenance::here::<E>(""))? {
+            return Err(StudyError::Exists { path: folder.root().to_owned() });
+        }
+        Self::in_folder(folder, plan.clone())
+    }
+
+    /// Opens the study in a folder.
+    ///
+    /// # Errors
+    /// If the folder holds no study, its plan is not one of this experiment, it was made by other code
+    /// ([`StudyError::Code`]), or it cannot be read.
+    pub fn open(folder: impl AsRef<Path>) -> Result<Self, StudyError> {
+        let folder = Folder::new(folder.as_ref())?;
+        if !folder.holds_study() {
+            return Err(StudyError::Missing { path: folder.root().to_owned() });
+        }
+        let unreadable = |source| StudyError::Unreadable { path: folder.plan(), source };
+        // The experiments were tried when the plan was put there.
+        let plan = Plan::from_toml_unproven(&folder.read_plan()?).map_err(unreadable)?;
+        Self::in_folder(folder, plan)
+    }
+
+    /// Opens the study in a folder, or creates a new one.
+    ///
+    /// So the same command starts a study and goes on with it, also in several processes at the same time.
+    ///
+    /// # Errors
+    /// If the folder holds a study with another plan or by other code ([`StudyError::Code`]), or other files
+    /// and no study, or cannot be read or written.
+    pub fn open_or_create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
+        let folder = Folder::new(folder.as_ref())?;
+        if !folder.holds_study() || folder.lacks_provenance() {
+            folder.create(&plan.to_toml()?, &Provenance::here::<E>(""))?;
+        }
+        let study = Self::in_folder(folder, plan.clone())?;
+        study.check_plan()?;
+        Ok(study)
+    }
+
+    /// Opens or creates the study of a plan whose experiments have not been tried yet. It tries them, unless
+    /// the folder holds the same plan: then they were tried when that plan was put there. To try them takes
+    /// seconds in large studies, and each of many processes would do it again.
+    #[cfg(feature = "cli")]
+    pub(super) fn open_or_create_unproven(folder: &Path, plan: Plan<E>) -> Result<Self, StudyError> {
+        let known = Folder::new(folder)?;
+        if known.holds_study() && !known.lacks_provenance() {
+            let study = Self::in_folder(known, plan)?;
+            if study.folder.read_plan()? == study.text {
+                return Ok(study);
+            }
+            return Self::open_or_create(folder, &study.plan.proven()?);
+        }
+        Self::open_or_create(folder, &plan.proven()?)
+    }
+
+    /// Lets a study that other code made go on by this program, and returns what differs; nothing, if it may
+    /// go on anyway.
+    ///
+    /// Its finished values stay as they are. Each record keeps the mark of the code that made it, which the
+    /// column `made_by` of `values.csv` shows: values on both sides of the change can be told apart, and it is
+    /// yours to judge whether they can be compared.
+    ///
+    /// # Errors
+    /// If the folder holds no study, or cannot be read or written.
+    pub fn accept_changes(folder: impl AsRef<Path>) -> Result<Vec<Difference>, StudyError> {
+        let folder = Folder::new(folder.as_ref())?;
+        if !folder.holds_study() {
+            return Err(StudyError::Missing { path: folder.root().to_owned() });
+        }
+        let before = folder.provenance()?;
+        let differences = before.differences::<E>();
+        if !differences.is_empty() {
+            folder.replace_provenance(&Provenance::here::<E>(&before.keys()))?;
+        }
+        Ok(differences)
+    }
+
+    fn in_folder(folder: Folder, plan: Plan<E>) -> Result<Self, StudyError> {
+        let text = plan.to_toml()?;
+        let hash = *blake3::hash(text.as_bytes()).as_bytes();
+        let provenance = checked::<E>(&folder)?;
+        Ok(Self { folder, plan, text, hash, provenance, maker: provenance::maker::<E>() })
+    }
+
+    /// Checks that plan and code of the folder are still these, since somebody may have changed them.
+    pub(super) fn check_unchanged(&self) -> Result<(), StudyError> {
+        checked::<E>(&self.folder)?;
+        self.check_plan()
+    }
+
+    fn check_plan(&self) -> Result<(), StudyError> {
+        let (found, ours) = (self.folder.read_plan()?, &self.text);
+        if found == *ours {
+            return Ok(());
+        }
+        let tree = |text: &str| text.parse::<toml::Table>().map_err(|error| PlanError::toml(&error));
+        let unreadable = |source| StudyError::Unreadable { path: self.folder.plan(), source };
+        let differences = parameters::differences(&tree(&found).map_err(unreadable)?, &tree(ours)?);
+        if differences.is_empty()
+            || Plan::<E>::from_toml(&found).and_then(|plan| plan.to_toml()).is_ok_and(|text| text == *ours)
+        {
+            return Ok(());
+        }
+        Err(StudyError::Different { path: self.folder.root().to_owned(), differences })
+    }
+
+    /// Returns the folder of the study.
+    pub fn folder(&self) -> &Path {
+        self.folder.root()
+    }
+
+    /// Returns the plan of the study.
+    pub const fn plan(&self) -> &Plan<E> {
+        &self.plan
+    }
+
+    /// Checks that there is a ramp of this index.
+    pub(super) fn check_ramp(&self, ramp: usize) -> Result<(), StudyError> {
+        let ramps = self.plan.ramp_count();
+        if ramp < ramps { Ok(()) } else { Err(StudyError::NoSuchRamp { ramp, ramps }) }
+    }
+
+    pub(super) fn origin(&self, ramp: usize, value: usize) -> Origin {
+        let seed = self.plan.ramp_seed(ramp);
+        Origin { study: self.hash, maker: self.maker.clone(), ramp, value, seed }
+    }
+
+    /// Checks that a file belongs to this study and this place in it, and that the study takes it.
+    pub(super) fn check_origin(
+        &self,
+        found: &Origin,
+        ramp: usize,
+        value: usize,
+        path: &Path,
+    ) -> Result<(), StudyError> {
+        if found.study != self.hash {
+            return Err(StudyError::Foreign { path: path.to_owned() });
+        }
+        if (Origin { maker: found.maker.clone(), ..self.origin(ramp, value) }) != *found {
+            return Err(sealed::damaged(path, "it is of another value"));
+        }
+        if self.is_ours(found) || self.provenance.takes(&found.maker) {
+            return Ok(());
+        }
+        Err(StudyError::Changed { path: path.to_owned(), part: "revision" })
+    }
+
+    /// Returns whether code with the same results as this program made a file.
+    pub(super) fn is_ours(&self, found: &Origin) -> bool {
+        found.maker.key() == self.maker.key()
+    }
+}
+
+/// Returns the provenance of a study, if this program may go on with it.
+fn checked<E: Experiment>(folder: &Folder) -> Result<Provenance, StudyError> {
+    let provenance = folder.provenance()?;
+    let differences = provenance.differences::<E>();
+    if differences.is_empty() {
+        return Ok(provenance);
+    }
+    Err(StudyError::Code { path: folder.root().to_owned(), differences })
+}

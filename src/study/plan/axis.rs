@@ -1,0 +1,94 @@
+//! Axes: the values that a parameter takes side by side.
+
+use serde::{Deserialize, Serialize};
+
+use super::steps::Steps;
+use super::values::Values;
+use crate::study::errors::PlanError;
+use crate::study::scalar::Scalar;
+
+/// A parameter that differs between ramps, so that each of its values starts afresh, independent of all
+/// others.
+///
+/// ```
+/// use granular_edmd::study::Axis;
+/// assert_eq!(Axis::new("inelasticity", [0.0, 0.01])?.len(), 2);
+/// assert_eq!(Axis::new("sides", ["hard", "periodic"])?.parameter(), "sides");
+/// # Ok::<(), granular_edmd::study::PlanError>(())
+/// ```
+#[doc(alias("sweep", "parameter scan"))]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Raw")]
+pub struct Axis {
+    parameter: String,
+    values: Values<Scalar>,
+}
+
+/// An axis before its checks.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename = "Axis")]
+struct Raw {
+    parameter: String,
+    values: Values<Scalar>,
+}
+
+impl TryFrom<Raw> for Axis {
+    type Error = PlanError;
+
+    fn try_from(Raw { parameter, values }: Raw) -> Result<Self, PlanError> {
+        Self { parameter, values }.checked()
+    }
+}
+
+#[expect(clippy::len_without_is_empty, reason = "an axis has at least one value")]
+impl Axis {
+    /// Creates an axis of the parameter of this name with these values, in any order.
+    ///
+    /// # Errors
+    /// If there are no values, one is not finite, or one comes twice.
+    pub fn new(
+        parameter: impl Into<String>,
+        values: impl IntoIterator<Item: Into<Scalar>>,
+    ) -> Result<Self, PlanError> {
+        let values = Values::List(values.into_iter().map(Into::into).collect());
+        Self { parameter: parameter.into(), values }.checked()
+    }
+
+    /// Creates an axis of the parameter of this name with values by a rule.
+    pub fn by_rule(parameter: impl Into<String>, steps: Steps) -> Self {
+        Self { parameter: parameter.into(), values: Values::Rule(steps) }
+    }
+
+    fn checked(self) -> Result<Self, PlanError> {
+        self.values.check(&self.parameter)?;
+        match self.values.twice() {
+            Some(value) => {
+                Err(PlanError::Twice { parameter: self.parameter.clone(), value: value.to_string() })
+            }
+            None => Ok(self),
+        }
+    }
+
+    /// Returns the name of the parameter.
+    pub fn parameter(&self) -> &str {
+        &self.parameter
+    }
+
+    /// Returns the number of values.
+    pub const fn len(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Returns the value of this index; `None` beyond the last one.
+    pub fn value(&self, index: usize) -> Option<Scalar> {
+        (index < self.len()).then(|| self.values.at(index))
+    }
+
+    /// Turns the values of a list into the kind of number that the parameter is, so that equal plans have
+    /// equal files.
+    pub(super) fn set_kind(&mut self, kind: &Scalar) {
+        if let Values::List(list) = &mut self.values {
+            list.iter_mut().for_each(|value| *value = value.clone().like(kind));
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! Values by a rule, which cost no memory however many they are.
+
+use crate::ParameterError;
+use crate::quantity::{accept, finite, positive};
+
+/// Most values of a rule: numbers beyond this size are not counted exactly.
+const MOST: f64 = 9_007_199_254_740_992.0;
+
+/// Share of a step by which the last one may miss the end. It is some rounding of decimal fractions, since
+/// neither 0.1 nor 1/3 is a double.
+const ROUNDING: f64 = 1e-9;
+
+/// Increasing values by a rule, as a plan has them instead of a list: `{ from = 0.0, to = 1.0, step = 0.1 }`
+/// for equal steps, `{ from = 1e-3, to = 1.0, log = 31 }` for 31 values in equal ratios.
+///
+/// ```
+/// use granular_edmd::study::{Axis, Steps};
+/// let axis = Axis::by_rule("friction", Steps::linear(0.0, 0.5, 0.1)?);
+/// assert_eq!((axis.len(), axis.value(2)), (6, Some(0.2.into())));
+/// assert_eq!(Steps::logarithmic(0.1, 10.0, 3)?.values().nth(1), Some(1.0));
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(try_from = "Raw", into = "Raw")]
+pub struct Steps {
+    from: f64,
+    to: f64,
+    spacing: Spacing,
+    count: usize,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Spacing {
+    /// The difference of neighbors.
+    Step(f64),
+    /// Equal ratios.
+    Log,
+}
+
+/// Values by a rule before their checks.
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields, rename = "Steps")]
+struct Raw {
+    from: f64,
+    to: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    step: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    log: Option<usize>,
+}
+
+impl TryFrom<Raw> for Steps {
+    type Error = ParameterError;
+
+    fn try_from(raw: Raw) -> Result<Self, ParameterError> {
+        match (raw.step, raw.log) {
+            (Some(step), None) => Self::linear(raw.from, raw.to, step),
+            (None, Some(count)) => Self::logarithmic(raw.from, raw.to, count),
+            (step, _) => {
+                let given = if step.is_some() { 2.0 } else { 0.0 };
+                Err(ParameterError::new("number of `step` and `log` beside `from` and `to`", "1", given))
+            }
+        }
+    }
+}
+
+impl From<Steps> for Raw {
+    fn from(Steps { from, to, spacing, count }: Steps) -> Self {
+        match spacing {
+            Spacing::Step(step) => Self { from, to, step: Some(step), log: None },
+            Spacing::Log => Self { from, to, step: None, log: Some(count) },
+        }
+    }
+}
+
+impl Steps {
+    /// Creates values in equal steps from `from` on, up to `to` if a whole number of steps leads there.
+    ///
+    /// # Errors
+    /// If a number is not finite, the step is not positive, or `to` is below `from`.
+    pub fn linear(from: f64, to: f64, step: f64) -> Result<Self, ParameterError> {
+        finite("first value", from)?;
+        finite("last value", to)?;
+        positive("step", step)?;
+        accept(to >= from, "last value", "at least the first one", to)?;
+        let steps = libm::floor((to - from) / step + ROUNDING);
+        accept(steps < MOST, "number of steps", "below 2^53", steps)?;
+        Ok(Self { from, to, spacing: Spacing::Step(step), count: steps as usize + 1 })
+    }
+
+    /// Creates this many values in equal ratios, the first and the last included.
+    ///
+    /// # Errors
+    /// If the first value is not positive, the last one is not finite or not above the first, or there are
+    /// fewer than two.
+    pub fn logarithmic(from: f64, to: f64, count: usize) -> Result<Self, ParameterError> {
+        positive("first value", from)?;
+        positive("last value", to)?;
+        accept(to > from, "last value", "above the first one", to)?;
+        accept(count >= 2, "number of values", "at least 2", count as f64)?;
+        Ok(Self { from, to, spacing: Spacing::Log, count })
+    }
+
+    /// Returns the number of values.
+    pub(super) const fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Returns the value of an index below the number of values.
+    ///
+    /// Each value follows from its index, not from the one before, so errors do not add up.
+    pub(super) fn value(&self, index: usize) -> f64 {
+        match self.spacing {
+            Spacing::Step(step) => self.from + index as f64 * step,
+            Spacing::Log if index + 1 == self.count => self.to,
+            Spacing::Log => {
+                let share = index as f64 / (self.count - 1) as f64;
+                self.from * libm::exp(share * libm::log(self.to / self.from))
+            }
+        }
+    }
+
+    /// Iterates over the values.
+    pub fn values(&self) -> impl Iterator<Item = f64> {
+        let steps = *self;
+        (0..self.count).map(move |index| steps.value(index))
+    }
+}

@@ -1,0 +1,79 @@
+//! The code by which a study goes on, in a readable file.
+
+use super::errors::Difference;
+use super::experiment::Experiment;
+use super::json::{self, Object};
+use super::maker::Maker;
+use crate::{Fingerprint, RESULTS};
+
+/// Returns the maker that this program is.
+pub(super) fn maker<E: Experiment>() -> Maker {
+    let version = env!("CARGO_PKG_VERSION").to_owned();
+    Maker { version, results: RESULTS, revision: E::revision(), columns: columns::<E>() }
+}
+
+/// Returns a fingerprint of the names and units in all tables.
+fn columns<E: Experiment>() -> Fingerprint {
+    let heading = |hash: Fingerprint, name: &str, unit: &str| hash.text(name).text(unit);
+    let columns = E::columns().iter().fold(Fingerprint::of("columns"), |hash, column| {
+        let tables = f64::from(u8::from(column.is_in_samples()) + 2 * u8::from(column.is_in_values()));
+        heading(hash, column.name(), column.unit()).number(tables)
+    });
+    E::tables().iter().fold(columns, |hash, table| {
+        let hash = hash.text(table.name());
+        table.columns().iter().fold(hash, |hash, column| heading(hash, column.name(), column.unit()))
+    })
+}
+
+/// The file `provenance.json`: the code by which a study may go on, and the program that began it.
+#[derive(Debug, Clone)]
+pub(super) struct Provenance(String);
+
+/// Name of the field with the makers before the present one, which somebody accepted.
+const ACCEPTED: &str = "accepted";
+
+impl Provenance {
+    /// Describes this program as the maker, after those that were accepted before.
+    pub(super) fn here<E: Experiment>(accepted: &str) -> Self {
+        let maker = maker::<E>();
+        let program = std::env::current_exe().ok();
+        let program = program.as_deref().and_then(|path| path.file_stem()).unwrap_or_default();
+        let page = Object::default().with("results", maker.results);
+        let page = page.text("revision", &maker.revision.to_string());
+        let page = page.text("columns", &maker.columns.to_string()).text("version", &maker.version);
+        let page = page.text("program", &program.to_string_lossy());
+        let page = page.text("target", &format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS));
+        Self(page.text(ACCEPTED, accepted).page())
+    }
+
+    /// Takes the text of the file as it is.
+    pub(super) const fn of_text(text: String) -> Self {
+        Self(text)
+    }
+
+    pub(super) fn text(&self) -> &str {
+        &self.0
+    }
+
+    /// Returns the fields that decide, where this program differs.
+    pub(super) fn differences<E: Experiment>(&self) -> Vec<Difference> {
+        let ours = maker::<E>().deciding().into_iter();
+        let theirs = ours.map(|(name, ours)| (name, json::field(&self.0, name).map(str::to_owned), ours));
+        theirs
+            .filter(|(_, old, new)| old.as_ref() != Some(new))
+            .map(|(name, old, new)| Difference { field: name.to_owned(), old, new: Some(new) })
+            .collect()
+    }
+
+    /// Returns the present maker and all that were accepted before, as keys separated by blanks.
+    pub(super) fn keys(&self) -> String {
+        let of = |name| json::field(&self.0, name).unwrap_or_default();
+        let present = format!("{}:{}:{}", of("results"), of("revision"), of("columns"));
+        format!("{} {present}", of(ACCEPTED)).trim_start().to_owned()
+    }
+
+    /// Returns whether the study takes records of this maker.
+    pub(super) fn takes(&self, maker: &Maker) -> bool {
+        self.keys().split(' ').any(|key| key == maker.key())
+    }
+}
