@@ -36,6 +36,10 @@ impl CollisionRule for Viscous {
         let restitution = 1.0 / (1.0 + self.loss * contact.closing_speed());
         self.friction.impulse(contact, contact.normal_impulse(restitution))
     }
+    // With this number and that of the drum, a study notices by itself that rule or walls have changed.
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        Some(Fingerprint::of("Viscous").number(self.loss))
+    }
 }
 
 /// A round drum about the origin, hot and turning, without gravity.
@@ -69,6 +73,9 @@ impl Boundary for Drum {
         let depth = radius - self.rim.signed_distance(position);
         (depth > 0.0).then_some((0, depth))
     }
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        Some(Fingerprint::of("Drum").number(self.radius).number(self.spin))
+    }
 }
 
 /// The numbers that are kept of each sample.
@@ -84,6 +91,11 @@ impl Experiment for Turning {
     type Boundary = Drum;
     type Observer = CollisionCounts;
     type Sample = Flow;
+
+    // Any edit of this file makes another study, so values of different code are never mixed.
+    fn revision() -> Fingerprint {
+        Fingerprint::of(include_str!("own_study.rs"))
+    }
 
     fn rule(&self) -> Result<Viscous, ExperimentError> {
         Ok(Viscous {
@@ -117,9 +129,9 @@ impl Experiment for Turning {
 }
 
 fn plan() -> Result<Plan<Turning>, PlanError> {
-    Plan::new(Turning { disks: 60, loss: 0.1, spin: 0.1 }, Protocol::new(50, 1000, 1), 1)?
-        .with_axis(Axis::new("loss", [0.0, 0.1, 0.3]))?
-        .with_axis(Axis::new("spin", [0.05, 0.1, 0.2]))?
+    Plan::new(Turning { disks: 60, loss: 0.1, spin: 0.1 }, Protocol::new(50, 1000, 1)?, 1)?
+        .with_axis(Axis::new("loss", [0.0, 0.1, 0.3])?)?
+        .with_axis(Axis::new("spin", [0.05, 0.1, 0.2])?)?
         .with_repeats(3)
 }
 

@@ -110,12 +110,12 @@ fn ramps_in_many_processes_are_a_study() {
     let status = scratch.runs(&["status", "many"]);
     assert_eq!(
         (code(&status), said(&status).as_str()),
-        (Some(3), "4 ramps: 3 done, 0 running, 0 begun, 1 waiting\n")
+        (Some(3), "4 ramps: 3 done, 0 running, 0 begun, 1 waiting; no tables of all\n")
     );
     let json: serde_json::Value =
         serde_json::from_slice(&scratch.runs(&["status", "many", "--json"]).stdout).unwrap();
     let expected = serde_json::json!({
-        "ramps": 4, "done": [0, 1, 2], "running": [], "begun": [], "waiting": [3]
+        "ramps": 4, "done": [0, 1, 2], "running": [], "begun": [], "waiting": [3], "tables": false
     });
     assert_eq!(json, expected);
     assert!(!scratch.0.join("many/values.csv").exists());
@@ -133,31 +133,133 @@ fn ramps_in_many_processes_are_a_study() {
     assert_eq!((code(&outside), said(&outside).lines().count()), (Some(1), 1));
 }
 
+/// Each row of the table of exit codes, but 130, which the next test has.
 #[test]
-fn a_prepared_folder_has_a_workflow_that_is_left_as_it_was_edited() {
-    let scratch = Scratch::new("prepared");
+fn exit_codes_say_how_a_command_ended() {
+    let scratch = Scratch::new("codes");
     scratch.small_plan();
-    let arguments = ["prepare", "plan.toml", "--out", "study"];
-    assert_eq!(said(&scratch.runs(&arguments)), "4 ramps are prepared in study\n");
-    let path = scratch.0.join("study/workflow.toml");
-    let text = fs::read_to_string(&path).unwrap();
+    let of = |arguments: &[&str]| code(&scratch.runs(arguments));
+    assert_eq!(of(&["run", "plan.toml", "--out", "study", "--ramp", "0"]), Some(0), "0: done");
+    assert_eq!(of(&["run", "plan.toml", "--out", "study", "--ramp", "7"]), Some(1), "1: failed");
+    assert_eq!(of(&["run", "plan.toml"]), Some(2), "2: wrong command line");
+    assert_eq!(of(&["check", "study/provenance.json"]), Some(2), "2: no plan");
+    assert_eq!(of(&["status", "study"]), Some(3), "3: not all done");
+    assert_eq!(of(&["run", "plan.toml", "--out", "study", "--no-tables"]), Some(0));
+    assert!(!scratch.0.join("study/values.csv").exists());
+    assert_eq!(of(&["status", "study"]), Some(4), "4: no tables");
+    assert_eq!(of(&["run", "plan.toml", "--out", "study"]), Some(0));
+    assert_eq!(of(&["status", "study"]), Some(0));
+    assert_eq!(of(&["tables", "study", "--out", "elsewhere"]), Some(0));
+    let [here, there] =
+        ["study", "elsewhere"].map(|folder| fs::read(scratch.0.join(folder).join("points.csv")).unwrap());
+    assert!(here == there);
+    let again = scratch.runs(&["tables", "study", "--out", "elsewhere"]);
     assert!(
-        text.contains(&format!("'{}' run plan.toml --out . ", env!("CARGO_BIN_EXE_granular-edmd"))),
-        "{text}"
+        code(&again) == Some(1) && said(&again).contains("elsewhere/values.csv exists already"),
+        "{}",
+        said(&again)
     );
-    fs::write(&path, "edited").unwrap();
-    assert_eq!(code(&scratch.runs(&arguments)), Some(0));
-    assert_eq!(fs::read_to_string(&path).unwrap(), "edited");
-    assert!(scratch.0.join("study/ramps/0003/value.json").exists());
-    let inside = scratch
-        .command(&["run", "plan.toml", "--out", ".", "--ramp", "0003"])
-        .current_dir(scratch.0.join("study"))
-        .output();
-    assert_eq!(code(&inside.unwrap()), Some(0));
+}
+
+/// Another process does the ramp, so a process that need not wait ends with code 3.
+#[test]
+#[cfg(unix)]
+fn a_process_that_need_not_wait_leaves_the_rest_to_others() {
+    let scratch = Scratch::new("rest");
+    fs::write(scratch.0.join("plan.toml"), SMALL.replace("samples = 5", "samples = 20000")).unwrap();
+    let arguments = ["run", "plan.toml", "--out", "study", "--ramp", "0"];
+    let mut child = scratch.command(&arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    while !said(&scratch.runs(&["status", "study"])).contains("1 running") {
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    let other = scratch.runs(&[arguments.as_slice(), &["--no-wait"]].concat());
+    assert_eq!(code(&other), Some(3), "{}", said(&other));
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
+/// SIGTERM stops a value in the middle of one sampling interval that lasts longer than any test, and the value
+/// is saved. The next process goes on from there.
+#[test]
+#[cfg(unix)]
+fn a_signal_acts_within_a_second_whatever_the_sampling_interval_is() {
+    let scratch = Scratch::new("bounded");
+    fs::write(scratch.0.join("plan.toml"), SMALL.replace("every = 2", "every = 10000000")).unwrap();
+    let arguments = ["run", "plan.toml", "--out", "study", "--ramp", "0", "--threads", "1"];
+    let partial = scratch.0.join("study/ramps/0000/0000.partial");
+    let mut lengths = Vec::new();
+    for _ in 0..2 {
+        let mut child = scratch.command(&arguments).stdout(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(800));
+        let asked = std::time::Instant::now();
+        assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
+        assert_eq!(child.wait().unwrap().code(), Some(130));
+        // Half a second more than is promised, since other tests run beside this one.
+        assert!(asked.elapsed().as_secs_f64() < 1.5, "{:?}", asked.elapsed());
+        lengths.push(fs::read(&partial).unwrap());
+    }
+    assert!(lengths[0] != lengths[1], "the second process has gone on");
+}
+
+#[test]
+fn a_plan_may_come_from_standard_input() {
+    let scratch = Scratch::new("standard");
+    scratch.small_plan();
+    let plan = fs::File::open(scratch.0.join("plan.toml")).unwrap();
+    let output = scratch.command(&["check", "-"]).stdin(plan).output().unwrap();
+    assert_eq!(
+        (code(&output), said(&output).as_str()),
+        (Some(0), "4 ramps of 1 values of 20 cycles, 2 repeats among them\n")
+    );
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn output_that_cannot_be_written_is_an_error_and_a_closed_pipe_is_none() {
+    let scratch = Scratch::new("output");
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = scratch.command(&["new"]).stdout(full).output().unwrap();
+    assert_eq!(code(&output), Some(1));
+    assert!(said(&output).contains("cannot write standard output: No space left"), "{}", said(&output));
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let output = scratch.command(&["new"]).stdout(writer).output().unwrap();
+    assert_eq!((code(&output), said(&output).as_str()), (Some(0), ""));
+}
+
+#[test]
+fn a_number_of_threads_that_no_machine_has_is_refused() {
+    let scratch = Scratch::new("threads");
+    scratch.small_plan();
+    let output = scratch.runs(&["run", "plan.toml", "--out", "study", "--threads", "100000"]);
+    assert_eq!(code(&output), Some(2));
+    assert!(said(&output).contains("100000 is not in 1..=4096"), "{}", said(&output));
+}
+
+/// An error shows the beginning of the line that it is about, however long that line is.
+#[test]
+fn a_long_line_is_not_repeated() {
+    let scratch = Scratch::new("long");
+    let long = format!("values = [{}]", "0.1, ".repeat(40_000));
+    fs::write(
+        scratch.0.join("plan.toml"),
+        SMALL.replace("values = [0.0, 0.1]", &long).replace("seed = 1", "sede = 1"),
+    )
+    .unwrap();
+    let output = scratch.runs(&["check", "plan.toml"]);
+    assert_eq!(code(&output), Some(2));
     assert!(
-        said(&scratch.runs(&["status", "study"]))
-            .starts_with("4 ramps: 1 done, 0 running, 0 begun, 3 waiting")
+        said(&output).len() < 1000 && said(&output).contains("unknown field `sede`"),
+        "{}",
+        said(&output)
     );
+    fs::write(
+        scratch.0.join("plan.toml"),
+        SMALL.replace("values = [0.0, 0.1]", &long.replace("0.1, ]", "0.1, x]")),
+    )
+    .unwrap();
+    let output = scratch.runs(&["check", "plan.toml"]);
+    assert!(said(&output).len() < 1000 && said(&output).contains("line 18, column"), "{}", said(&output));
 }
 
 /// A signal stops a study with everything saved, and the same command goes on.

@@ -86,10 +86,10 @@ fn plan(
     friction: f64,
 ) -> Result<Plan<VibratedBox>, PlanError> {
     let experiment = gallery::studies::vibrated_box(0.015_625).with_friction(friction);
-    let protocol = if common.quick { Protocol::new(100, 10, 10) } else { Protocol::new(500, 100, 10) };
+    let protocol = if common.quick { Protocol::new(100, 10, 10) } else { Protocol::new(500, 100, 10) }?;
     Plan::new(experiment, protocol, common.seed)?
-        .with_ramp(Ramp::new(parameter, values, Course::Up))?
-        .with_axis(Axis::new("contact_duration", DURATIONS))?
+        .with_ramp(Ramp::new(parameter, values, Course::Up)?)?
+        .with_axis(Axis::new("contact_duration", DURATIONS)?)?
         .with_repeats(RUNS)
 }
 

@@ -47,11 +47,11 @@ impl Arguments {
             .with_inelasticity(0.025)
             .with_contact_duration(1e-5);
         let (protocol, frictions) = if self.common.quick {
-            (Protocol::new(10_000, 200, 50), FEW_FRICTIONS.to_vec())
+            (Protocol::new(10_000, 200, 50)?, FEW_FRICTIONS.to_vec())
         } else {
-            (Protocol::new(20_000, 1_000, 100), FRICTIONS.to_vec())
+            (Protocol::new(20_000, 1_000, 100)?, FRICTIONS.to_vec())
         };
-        Plan::new(experiment, protocol, self.common.seed)?.with_axis(Axis::new("friction", frictions))
+        Plan::new(experiment, protocol, self.common.seed)?.with_axis(Axis::new("friction", frictions)?)
     }
 }
 

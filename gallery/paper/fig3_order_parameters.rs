@@ -45,10 +45,10 @@ impl Arguments {
         // The paper keeps each value for 100 000 oscillations, and draws all samples, those of the transient
         // included.
         let protocol =
-            if self.common.quick { Protocol::new(0, 200, 50) } else { Protocol::new(0, 1000, 100) };
+            if self.common.quick { Protocol::new(0, 200, 50) } else { Protocol::new(0, 1000, 100) }?;
         let frictions: Vec<f64> = (1..=15).map(|step| f64::from(step) * STEP).collect();
         let course = if self.down { Course::UpAndDown } else { Course::Up };
-        let ramp = Ramp::new("friction", frictions, course);
+        let ramp = Ramp::new("friction", frictions, course)?;
         Plan::new(experiment, protocol, self.common.seed)?.with_ramp(ramp)
     }
 }

@@ -48,7 +48,7 @@ impl Arguments {
         let experiment = gallery::studies::vibrated_box(0.015_625).with_friction(self.friction);
         // The paper does 100 000 oscillations, samples every 100, and discards the first half.
         let protocol =
-            if self.common.quick { Protocol::new(4_000, 400, 20) } else { Protocol::new(50_000, 500, 100) };
+            if self.common.quick { Protocol::new(4_000, 400, 20) } else { Protocol::new(50_000, 500, 100) }?;
         Plan::new(experiment, protocol, self.common.seed)?.with_repeats(self.runs as usize)
     }
 }

@@ -104,20 +104,19 @@ impl Folder {
         // A process that was killed here leaves a plan without a provenance, and no ramps. A folder with ramps
         // was made by a version that did not tell its provenance, and nobody may do so in its place.
         if !self.root.join(RAMPS).exists() {
-            sealed::publish(&self.root.join(PROVENANCE), provenance.text().as_bytes())?;
+            sealed::publish(&self.provenance_file(), provenance.text().as_bytes())?;
         }
         self.write_about()?;
         Ok(is_new)
     }
 
-    /// Returns whether the file of the provenance is missing.
-    pub(super) fn lacks_provenance(&self) -> bool {
-        !self.root.join(PROVENANCE).exists()
+    pub(super) fn provenance_file(&self) -> PathBuf {
+        self.root.join(PROVENANCE)
     }
 
     /// Returns the provenance of the study; an empty one if the file is missing.
     pub(super) fn provenance(&self) -> Result<Provenance, StudyError> {
-        let path = self.root.join(PROVENANCE);
+        let path = self.provenance_file();
         match fs::read_to_string(&path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Provenance::of_text(String::new())),
             read => read.map(Provenance::of_text).map_err(StudyError::io("read", &path)),
@@ -127,7 +126,7 @@ impl Folder {
     /// Puts another provenance in the place of the one that is there.
     pub(super) fn replace_provenance(&self, provenance: &Provenance) -> Result<(), StudyError> {
         let _lock = Lock::take(&self.root.join(LOCK))?;
-        sealed::write(&self.root.join(PROVENANCE), provenance.text().as_bytes())
+        sealed::write(&self.provenance_file(), provenance.text().as_bytes())
     }
 
     /// Writes the README of the folder, if it is not there or was cut. One that somebody has edited stays.

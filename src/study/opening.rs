@@ -22,7 +22,7 @@ pub struct Study<E> {
     /// The plan as it is in its file.
     text: String,
     /// Hash of the plan, which ties a record to its study.
-    hash: [u8; 32],
+    hash: blake3::Hash,
     /// The makers whose records the study takes.
     provenance: Provenance,
     /// The maker that this program is.
@@ -35,27 +35,20 @@ impl<E: Experiment> Study<E> {
     /// # Errors
     /// If the folder holds a study or anything else, or cannot be written.
     pub fn create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
-        let folder = Folder::new(folder.as_ref())?;
-        if folder.holds_study() || !folder.create(&plan.to_toml()?, &Provenance::here::<E>(""))? {
-            return Err(StudyError::Exists { path: folder.root().to_owned() });
+        let study = Self::in_folder(Folder::new(folder.as_ref())?, plan.clone())?;
+        if study.folder.holds_study() || !study.put_plan()? {
+            return Err(StudyError::Exists { path: study.folder.root().to_owned() });
         }
-        Self::in_folder(folder, plan.clone())
+        study.checked()
     }
 
     /// Opens the study in a folder.
     ///
     /// # Errors
-    /// If the folder holds no study, its plan is not one of this experiment, it was made by other code
-    /// ([`StudyError::Code`]), or it cannot be read.
+    /// If the folder holds no study, its plan is not one of this experiment or was changed, it was made by
+    /// other code ([`StudyError::Code`]), or it cannot be read.
     pub fn open(folder: impl AsRef<Path>) -> Result<Self, StudyError> {
-        let folder = Folder::new(folder.as_ref())?;
-        if !folder.holds_study() {
-            return Err(StudyError::Missing { path: folder.root().to_owned() });
-        }
-        let unreadable = |source| StudyError::Unreadable { path: folder.plan(), source };
-        // The experiments were tried when the plan was put there.
-        let plan = Plan::from_toml_unproven(&folder.read_plan()?).map_err(unreadable)?;
-        Self::in_folder(folder, plan)
+        Self::found_in(folder.as_ref())?.checked()
     }
 
     /// Opens the study in a folder, or creates a new one.
@@ -66,13 +59,12 @@ impl<E: Experiment> Study<E> {
     /// If the folder holds a study with another plan or by other code ([`StudyError::Code`]), or other files
     /// and no study, or cannot be read or written.
     pub fn open_or_create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
-        let folder = Folder::new(folder.as_ref())?;
-        if !folder.holds_study() || folder.lacks_provenance() {
-            folder.create(&plan.to_toml()?, &Provenance::here::<E>(""))?;
+        let study = Self::in_folder(Folder::new(folder.as_ref())?, plan.clone())?;
+        if !study.is_begun() {
+            study.put_plan()?;
         }
-        let study = Self::in_folder(folder, plan.clone())?;
         study.check_plan()?;
-        Ok(study)
+        study.checked()
     }
 
     /// Opens or creates the study of a plan whose experiments have not been tried yet. It tries them, unless
@@ -80,15 +72,11 @@ impl<E: Experiment> Study<E> {
     /// seconds in large studies, and each of many processes would do it again.
     #[cfg(feature = "cli")]
     pub(super) fn open_or_create_unproven(folder: &Path, plan: Plan<E>) -> Result<Self, StudyError> {
-        let known = Folder::new(folder)?;
-        if known.holds_study() && !known.lacks_provenance() {
-            let study = Self::in_folder(known, plan)?;
-            if study.folder.read_plan()? == study.text {
-                return Ok(study);
-            }
-            return Self::open_or_create(folder, &study.plan.proven()?);
+        let study = Self::in_folder(Folder::new(folder)?, plan)?;
+        if study.is_begun() && study.folder.read_plan()? == study.text {
+            return study.checked();
         }
-        Self::open_or_create(folder, &plan.proven()?)
+        Self::open_or_create(folder, &study.plan.proven()?)
     }
 
     /// Lets a study that other code made go on by this program, and returns what differs; nothing, if it may
@@ -101,29 +89,68 @@ impl<E: Experiment> Study<E> {
     /// # Errors
     /// If the folder holds no study, or cannot be read or written.
     pub fn accept_changes(folder: impl AsRef<Path>) -> Result<Vec<Difference>, StudyError> {
-        let folder = Folder::new(folder.as_ref())?;
-        if !folder.holds_study() {
-            return Err(StudyError::Missing { path: folder.root().to_owned() });
-        }
-        let before = folder.provenance()?;
-        let differences = before.differences::<E>();
+        let study = Self::found_in(folder.as_ref())?;
+        let before = study.folder.provenance()?;
+        let differences = before.differences(&study.plan);
         if !differences.is_empty() {
-            folder.replace_provenance(&Provenance::here::<E>(&before.keys()))?;
+            let now = Provenance::here(&study.plan, &study.hash, &before.keys());
+            study.folder.replace_provenance(&now)?;
         }
         Ok(differences)
     }
 
+    fn found_in(folder: &Path) -> Result<Self, StudyError> {
+        let folder = Folder::new(folder)?;
+        if !folder.holds_study() {
+            return Err(StudyError::Missing { path: folder.root().to_owned() });
+        }
+        let unreadable = |source| StudyError::Unreadable { path: folder.plan(), source };
+        // The experiments were tried when the plan was put there.
+        let plan = Plan::from_toml_unproven(&folder.read_plan()?).map_err(unreadable)?;
+        let study = Self::in_folder(folder, plan)?;
+        let provenance = study.folder.provenance()?;
+        if provenance.is_there() && !provenance.is_of(&study.hash) {
+            return Err(StudyError::Foreign { path: study.folder.provenance_file() });
+        }
+        Ok(study)
+    }
+
     fn in_folder(folder: Folder, plan: Plan<E>) -> Result<Self, StudyError> {
         let text = plan.to_toml()?;
-        let hash = *blake3::hash(text.as_bytes()).as_bytes();
-        let provenance = checked::<E>(&folder)?;
-        Ok(Self { folder, plan, text, hash, provenance, maker: provenance::maker::<E>() })
+        let hash = blake3::hash(text.as_bytes());
+        let (provenance, maker) = (Provenance::of_text(String::new()), provenance::maker::<E>());
+        Ok(Self { folder, plan, text, hash, provenance, maker })
+    }
+
+    /// Returns whether plan and provenance are in the folder.
+    fn is_begun(&self) -> bool {
+        self.folder.holds_study() && self.folder.provenance_file().exists()
+    }
+
+    /// Puts the plan into the folder; returns false if there is one.
+    fn put_plan(&self) -> Result<bool, StudyError> {
+        self.folder.create(&self.text, &Provenance::here(&self.plan, &self.hash, ""))
+    }
+
+    /// Returns the study, if this program may go on with it.
+    fn checked(mut self) -> Result<Self, StudyError> {
+        self.provenance = self.check_code()?;
+        Ok(self)
+    }
+
+    fn check_code(&self) -> Result<Provenance, StudyError> {
+        let provenance = self.folder.provenance()?;
+        let differences = provenance.differences(&self.plan);
+        if differences.is_empty() {
+            return Ok(provenance);
+        }
+        Err(StudyError::Code { path: self.folder.root().to_owned(), differences })
     }
 
     /// Checks that plan and code of the folder are still these, since somebody may have changed them.
     pub(super) fn check_unchanged(&self) -> Result<(), StudyError> {
-        checked::<E>(&self.folder)?;
-        self.check_plan()
+        self.check_plan()?;
+        self.check_code().map(drop)
     }
 
     fn check_plan(&self) -> Result<(), StudyError> {
@@ -160,7 +187,7 @@ impl<E: Experiment> Study<E> {
 
     pub(super) fn origin(&self, ramp: usize, value: usize) -> Origin {
         let seed = self.plan.ramp_seed(ramp);
-        Origin { study: self.hash, maker: self.maker.clone(), ramp, value, seed }
+        Origin { study: *self.hash.as_bytes(), maker: self.maker.clone(), ramp, value, seed }
     }
 
     /// Checks that a file belongs to this study and this place in it, and that the study takes it.
@@ -171,7 +198,7 @@ impl<E: Experiment> Study<E> {
         value: usize,
         path: &Path,
     ) -> Result<(), StudyError> {
-        if found.study != self.hash {
+        if found.study != *self.hash.as_bytes() {
             return Err(StudyError::Foreign { path: path.to_owned() });
         }
         if (Origin { maker: found.maker.clone(), ..self.origin(ramp, value) }) != *found {
@@ -187,14 +214,4 @@ impl<E: Experiment> Study<E> {
     pub(super) fn is_ours(&self, found: &Origin) -> bool {
         found.maker.key() == self.maker.key()
     }
-}
-
-/// Returns the provenance of a study, if this program may go on with it.
-fn checked<E: Experiment>(folder: &Folder) -> Result<Provenance, StudyError> {
-    let provenance = folder.provenance()?;
-    let differences = provenance.differences::<E>();
-    if differences.is_empty() {
-        return Ok(provenance);
-    }
-    Err(StudyError::Code { path: folder.root().to_owned(), differences })
 }

@@ -4,6 +4,9 @@ use super::errors::Difference;
 use super::experiment::Experiment;
 use super::json::{self, Object};
 use super::maker::Maker;
+use super::plan::Plan;
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
 use crate::{Fingerprint, RESULTS};
 
 /// Returns the maker that this program is.
@@ -32,18 +35,20 @@ pub(super) struct Provenance(String);
 /// Name of the field with the makers before the present one, which somebody accepted.
 const ACCEPTED: &str = "accepted";
 
+/// Name of the field with the hash of the plan.
+const PLAN: &str = "plan";
+
 impl Provenance {
-    /// Describes this program as the maker, after those that were accepted before.
-    pub(super) fn here<E: Experiment>(accepted: &str) -> Self {
-        let maker = maker::<E>();
+    /// Describes this program as the maker of the study of a plan, after those that were accepted before.
+    pub(super) fn here<E: Experiment>(plan: &Plan<E>, hash: &blake3::Hash, accepted: &str) -> Self {
         let program = std::env::current_exe().ok();
         let program = program.as_deref().and_then(|path| path.file_stem()).unwrap_or_default();
-        let page = Object::default().with("results", maker.results);
-        let page = page.text("revision", &maker.revision.to_string());
-        let page = page.text("columns", &maker.columns.to_string()).text("version", &maker.version);
+        let deciding = deciding(plan).into_iter();
+        let page = deciding.fold(Object::default(), |page, (name, value)| page.text(name, &value));
+        let page = page.text("version", env!("CARGO_PKG_VERSION"));
         let page = page.text("program", &program.to_string_lossy());
         let page = page.text("target", &format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS));
-        Self(page.text(ACCEPTED, accepted).page())
+        Self(page.text(PLAN, hash.to_hex().as_str()).text(ACCEPTED, accepted).page())
     }
 
     /// Takes the text of the file as it is.
@@ -55,12 +60,21 @@ impl Provenance {
         &self.0
     }
 
+    /// Returns whether the file is there.
+    pub(super) fn is_there(&self) -> bool {
+        !self.0.is_empty()
+    }
+
+    /// Returns whether the study was begun with the plan of this hash.
+    pub(super) fn is_of(&self, hash: &blake3::Hash) -> bool {
+        json::field(&self.0, PLAN) == Some(hash.to_hex().as_str())
+    }
+
     /// Returns the fields that decide, where this program differs.
-    pub(super) fn differences<E: Experiment>(&self) -> Vec<Difference> {
-        let ours = maker::<E>().deciding().into_iter();
-        let theirs = ours.map(|(name, ours)| (name, json::field(&self.0, name).map(str::to_owned), ours));
-        theirs
-            .filter(|(_, old, new)| old.as_ref() != Some(new))
+    pub(super) fn differences<E: Experiment>(&self, plan: &Plan<E>) -> Vec<Difference> {
+        let ours = deciding(plan).into_iter();
+        let both = ours.map(|(name, ours)| (name, json::field(&self.0, name).map(str::to_owned), ours));
+        both.filter(|(_, old, new)| old.as_ref() != Some(new))
             .map(|(name, old, new)| Difference { field: name.to_owned(), old, new: Some(new) })
             .collect()
     }
@@ -76,4 +90,14 @@ impl Provenance {
     pub(super) fn takes(&self, maker: &Maker) -> bool {
         self.keys().split(' ').any(|key| key == maker.key())
     }
+}
+
+/// Returns the fields that decide whether a program may go on with the study of a plan: those of its maker, and
+/// the fingerprints of rule and walls at the parameters of the plan.
+fn deciding<E: Experiment>(plan: &Plan<E>) -> Vec<(&'static str, String)> {
+    let rule = plan.experiment.rule().ok().and_then(|rule| rule.fingerprint());
+    let boundary = plan.experiment.boundary().ok().and_then(|boundary| boundary.fingerprint());
+    let told = |part: Option<Fingerprint>| part.map_or_else(|| "unknown".to_owned(), |part| part.to_string());
+    let parts = [("rule", told(rule)), ("boundary", told(boundary))];
+    maker::<E>().deciding().into_iter().chain(parts).collect()
 }

@@ -68,7 +68,7 @@ fn a_record_with_impossible_numbers_is_damaged() {
         record.assert_damaged("a sample is not finite");
     }
     fs::write(&record.path, &record.file).unwrap();
-    let time = record.study.record(0, 1).unwrap().unwrap().checkpoint().time();
+    let time = record.study.record(0, 1).unwrap().unwrap().checkpoint().unwrap().time();
     for bad in [0.0, 2.0 * time, 1e300] {
         // The state has its own checksum.
         record.put(bad, time);
@@ -86,7 +86,7 @@ fn what_a_forged_record_said_is_done_again() {
     let record = Specimen::record("again");
     let sample = record.study.record(0, 1).unwrap().unwrap().samples()[0];
     record.put(f64::NAN, sample.height);
-    let summary = record.study.run(&Control::default()).unwrap();
+    let summary = record.study.run(&Control::default().with_verification()).unwrap();
     assert_eq!(summary.redone, std::slice::from_ref(&record.path));
     assert!(fs::read(&record.path).unwrap() == record.file);
 }
@@ -106,7 +106,7 @@ fn files_of_another_plan_are_told_apart() {
         let place = scratch.0.join("ramps/0000").join(name);
         let _ = fs::remove_file(scratch.0.join("ramps/0000/0001.record"));
         fs::write(&place, &specimen.file).unwrap();
-        let error = study.run(&Control::default()).unwrap_err();
+        let error = study.run(&Control::default().with_verification()).unwrap_err();
         assert!(matches!(&error, StudyError::Foreign { path } if *path == place), "{error}");
         fs::remove_file(&place).unwrap();
     }
@@ -126,7 +126,7 @@ fn a_value_half_done_that_cannot_be_is_started_again() {
     ];
     for forged in forgeries {
         fs::write(&partial.path, sealed(&partial.file, &forged)).unwrap();
-        let summary = partial.study.run(&Control::default()).unwrap();
+        let summary = partial.study.run(&Control::default().with_verification()).unwrap();
         assert_eq!(summary.redone, std::slice::from_ref(&partial.path));
         assert!(fs::read(&finished).unwrap() == expected.file);
         fs::remove_file(&finished).unwrap();
@@ -147,7 +147,7 @@ fn a_value_half_done_at_another_step_is_started_again() {
     let steps = partial.file[CONTENTS_AT..].windows(2).position(|window| window == [5, 3]).unwrap() + 1;
     for bad in [0, 2, 4, 5, 100] {
         partial.forge(|contents| contents[steps] = bad);
-        let summary = partial.study.run(&Control::default()).unwrap();
+        let summary = partial.study.run(&Control::default().with_verification()).unwrap();
         assert_eq!(summary.redone, std::slice::from_ref(&partial.path), "{bad}");
         assert!(fs::read(&finished).unwrap() == expected.file);
         fs::remove_file(&finished).unwrap();

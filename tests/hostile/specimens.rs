@@ -58,13 +58,21 @@ pub(crate) fn plan() -> Plan<VibratedBox> {
     let base = Base::BiParabolic { amplitude: 0.1, angular_frequency: 10.0 };
     let experiment = VibratedBox::new(3, 4.0, base).with_height(3.0).with_contact_duration(1e-3);
     let ramp = Ramp::new("friction", [0.1, 0.2], Course::Up).unwrap();
-    Plan::new(experiment, Protocol::new(2, 3, 1).unwrap(), 5).unwrap().with_ramp(ramp).unwrap()
+    Plan::new(experiment, Protocol::new(2, 3, 1).unwrap(), 5)
+        .unwrap()
+        .with_ramp(ramp)
+        .unwrap()
+        .with_end_states()
 }
 
 /// The same for a user's experiment.
 pub(crate) fn own_plan() -> Plan<Mixture> {
     let ramp = Ramp::new("weight", [0.1, 0.2], Course::Up).unwrap();
-    Plan::new(mixture(), Protocol::new(2, 3, 1).unwrap(), 5).unwrap().with_ramp(ramp).unwrap()
+    Plan::new(mixture(), Protocol::new(2, 3, 1).unwrap(), 5)
+        .unwrap()
+        .with_ramp(ramp)
+        .unwrap()
+        .with_end_states()
 }
 
 /// A folder for one test, removed with it.

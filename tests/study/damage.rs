@@ -28,12 +28,12 @@ fn damage_is_noticed_named_and_repaired() -> Result<(), AnyError> {
         let error = study.record(1, 2).unwrap_err();
         assert!(matches!(&error, StudyError::Damaged { path: named, .. } if *named == path), "{error}");
         assert!(study.records().any(|record| record.is_err()));
-        let summary = study.run(&Control::default())?;
+        let summary = study.run(&Control::default().with_verification())?;
         assert!(summary.is_complete());
         assert_eq!(summary.redone, std::slice::from_ref(&path));
         assert!(contents(&scratch.0) == expected);
     }
-    let log = fs::read_to_string(scratch.0.join("log.jsonl"))?;
+    let log = fs::read_to_string(scratch.0.join("ramps/0001/log.jsonl"))?;
     assert!(log.contains(r#"{"damaged":"0001/0002.record","reason":"its checksum does not match"}"#));
     for line in log.lines() {
         serde_json::from_str::<serde_json::Value>(line)?;
@@ -68,10 +68,9 @@ fn a_changed_plan_takes_no_old_records() -> Result<(), AnyError> {
     let before = contents(&scratch.0);
     let path = scratch.0.join("plan.toml");
     fs::write(&path, fs::read_to_string(&path)?.replace("seed = 7", "seed = 8"))?;
-    let study = Study::<VibratedBox>::open(&scratch.0)?;
-    let error = study.run(&Control::default()).unwrap_err();
+    let error = Study::<VibratedBox>::open(&scratch.0).unwrap_err();
     assert!(matches!(error, StudyError::Foreign { .. }), "{error}");
-    assert!(error.to_string().contains(".record is of another plan"), "{error}");
+    assert!(error.to_string().contains("provenance.json is of another plan"), "{error}");
     fs::write(&path, &before[Path::new("plan.toml")])?;
     assert!(contents(&scratch.0) == before, "nothing was lost");
     Ok(())

@@ -6,6 +6,7 @@
 mod cases;
 mod damage;
 mod folders;
+mod identity;
 mod interruption;
 #[path = "../support/mixture.rs"]
 mod mixture;

@@ -10,7 +10,7 @@ use granular_edmd::study::{
     Axis, Column, Control, Course, Experiment, ExperimentError, Plan, PlanError, Protocol, Ramp, Record,
     Scalar, Study, StudyError,
 };
-use granular_edmd::{Disk, initial};
+use granular_edmd::{Disk, Fingerprint, initial};
 use serde::{Deserialize, Serialize};
 
 use crate::mixture::{Mixture, Sticky, mixture};
@@ -44,7 +44,7 @@ fn an_own_experiment_is_swept_ramped_and_recorded() -> Result<(), AnyError> {
         "numbers of the field's kind"
     );
     assert_eq!(records[3].experiment().disks.large, 4);
-    assert_eq!(records[3].checkpoint().disk_count(), 16);
+    assert_eq!(records[3].checkpoint().ok_or("no state")?.disk_count(), 16);
     // The cycle changes along the ramp, and the next value starts at the end of the previous one.
     let cycles = [1.0 / 1.1, 1.0 / 1.2];
     let expected = 14.0 * cycles[0] + (4.0 + 1.5) * cycles[1];
@@ -75,7 +75,7 @@ fn a_damaged_record_of_one_s_own_is_done_again() -> Result<(), AnyError> {
     for cut in [0, 20, sound.len() / 2, sound.len() - 1] {
         fs::write(&path, &sound[..cut])?;
         assert!(matches!(study.record(2, 1), Err(StudyError::Damaged { .. })));
-        assert_eq!(study.run(&Control::default())?.redone, std::slice::from_ref(&path));
+        assert_eq!(study.run(&Control::default().with_verification())?.redone, std::slice::from_ref(&path));
         assert!(contents(&scratch.0) == before);
     }
     Ok(())
@@ -156,6 +156,10 @@ impl Experiment for Careless {
     type Observer = Patience;
     type Sample = Gap;
 
+    fn revision() -> Fingerprint {
+        Fingerprint::of("Careless")
+    }
+
     fn rule(&self) -> Result<Sticky, ExperimentError> {
         Ok(Sticky { loss: self.loss })
     }
@@ -213,8 +217,8 @@ fn an_observer_ends_a_value_and_the_ramp_goes_on_from_there() -> Result<(), AnyE
     assert!(!first.samples().is_empty() && first.samples().len() < 50);
     assert_eq!(first.observer().0, 40);
     assert!(
-        second.times()[0] > first.checkpoint().time()
-            && second.times()[0] <= first.checkpoint().time() + 1.0 + 1e-9
+        second.times()[0] > first.checkpoint().unwrap().time()
+            && second.times()[0] <= first.checkpoint().unwrap().time() + 1.0 + 1e-9
     );
     Ok(())
 }
@@ -235,6 +239,10 @@ impl Experiment for Fall {
     type Boundary = Container;
     type Observer = ();
     type Sample = f64;
+
+    fn revision() -> Fingerprint {
+        Fingerprint::of("Fall")
+    }
 
     fn rule(&self) -> Result<Smooth, ExperimentError> {
         let added = if self.count == 3 { ADDED.load(Ordering::Relaxed) } else { 0 };
@@ -281,10 +289,10 @@ fn values_that_stall_are_counted_and_say_why() -> Result<(), AnyError> {
     let plan = Plan::new(Fall { count: 12, loss: 0.4 }, Protocol::new(0, 200, 1)?, 1)?.with_repeats(3)?;
     let scratch = Scratch::new("failed");
     let study = Study::create(&scratch.0, &plan)?;
-    for summary in [study.run(&Control::default())?, study.run(&Control::default())?] {
+    for summary in [study.run(&Control::default())?, study.run(&Control::default().with_verification())?] {
         assert_eq!((summary.finished, summary.failed), (3, 3));
     }
-    let log = fs::read_to_string(scratch.0.join("log.jsonl"))?;
+    let log = fs::read_to_string(scratch.0.join("ramps/0000/log.jsonl"))?;
     assert!(log.contains(r#""outcome":"stalled","reason":"#), "{log}");
     let points = fs::read_to_string(scratch.0.join("points.csv"))?;
     assert!(points.starts_with("point,value,leg,repeats,failed,height,"), "{points}");
@@ -301,10 +309,9 @@ fn records_of_changed_code_are_refused() -> Result<(), AnyError> {
     ADDED.store(1, Ordering::Relaxed);
     let refused = [study.record(0, 0).map(drop), study.run(&Control::default()).map(drop)];
     ADDED.store(0, Ordering::Relaxed);
-    for result in refused {
-        let error = result.unwrap_err();
-        assert!(matches!(&error, StudyError::Changed { part: "rule", .. }), "{error}");
-    }
+    let [record, run] = refused.map(Result::unwrap_err);
+    assert!(matches!(&record, StudyError::Changed { part: "rule", .. }), "{record}");
+    assert!(matches!(&run, StudyError::Code { .. }) && run.to_string().contains("rule is"), "{run}");
     assert!(study.record(0, 0)?.is_some(), "nothing was touched");
     Ok(())
 }

@@ -103,6 +103,62 @@ fn plans_with_errors_are_refused_by_name() {
     }
 }
 
+/// A rule stands for a list, and the file keeps the rule.
+#[test]
+fn values_by_rule_are_values() -> Result<(), AnyError> {
+    let (head, _) = PLAN.split_once("[ramp]").ok_or("no ramp")?;
+    let rules = r#"
+        [ramp]
+        parameter = "friction"
+        values = { from = 0.1, to = 0.4, step = 0.1 }
+        [[sweep]]
+        parameter = "gravity"
+        values = { from = 0.01, to = 1.0, log = 3 }
+        [[sweep]]
+        parameter = "disks"
+        values = { from = 10, to = 30, step = 10 }
+    "#;
+    let plan = Plan::<VibratedBox>::from_toml(&format!("{head}{rules}"))?;
+    assert_eq!((plan.point_count(), plan.value_count()), (9, 4));
+    assert_eq!(
+        plan.parameters(4, 1),
+        [("gravity", 0.1.into()), ("disks", 20.into()), ("friction", 0.2.into())]
+    );
+    assert_eq!((plan.experiment(8, 3)?.gravity, plan.experiment(8, 3)?.disks), (1.0, 30));
+    assert_eq!(Plan::from_toml(&plan.to_toml()?)?, plan);
+    assert!(plan.to_toml()?.contains("log = 3"), "{plan}");
+    for (from, to, expected) in [
+        ("to = 0.4", "to = -0.4", "last value must be at least the first one, but is -0.4"),
+        ("step = 0.1", "step = 0.0", "step must be finite and positive, but is 0"),
+        ("log = 3", "log = 1", "number of values must be at least 2, but is 1"),
+        (
+            "log = 3",
+            "log = 3, step = 1",
+            "number of `step` and `log` beside `from` and `to` must be 1, but is 2",
+        ),
+    ] {
+        let text = format!("{head}{}", rules.replace(from, to));
+        let error = report(&Plan::<VibratedBox>::from_toml(&text).unwrap_err());
+        assert!(error.contains(expected), "{to}: {error}");
+    }
+    Ok(())
+}
+
+/// Loading takes a time in proportion to a list, which a list with the longest possible axis shows.
+#[test]
+fn the_longest_list_is_loaded_at_once() -> Result<(), AnyError> {
+    let (head, _) = PLAN.split_once("[ramp]").ok_or("no ramp")?;
+    let values: Vec<String> = (0..300_000).map(|value| format!("{}", f64::from(value) * 1e-3)).collect();
+    let text = format!("{head}[[sweep]]\nparameter = \"lid\"\nvalues = [{}]\n", values.join(","));
+    let start = std::time::Instant::now();
+    // The name is found to be wrong after the list has been read and compared with itself.
+    let error = report(&Plan::<VibratedBox>::from_toml(&text).unwrap_err());
+    assert!(error.contains("no parameter `lid`"), "{error}");
+    // A quadratic comparison takes minutes.
+    assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(config(64))]
 

@@ -57,12 +57,14 @@ fn numbers(seed: u64) -> impl FnMut(u64) -> u64 {
 
 /// Returns the number of times that each value was finished, from the log.
 fn finished(folder: &Path) -> BTreeMap<(u64, u64), usize> {
-    let log = fs::read_to_string(folder.join("log.jsonl")).unwrap();
     let mut counts = BTreeMap::new();
-    for line in log.lines() {
-        let line: serde_json::Value = serde_json::from_str(line).unwrap();
-        let place = (line["ramp"].as_u64().unwrap(), line["value"].as_u64().unwrap());
-        *counts.entry(place).or_default() += 1;
+    for ramp in fs::read_dir(folder.join("ramps")).unwrap() {
+        let log = fs::read_to_string(ramp.unwrap().path().join("log.jsonl")).unwrap();
+        for line in log.lines() {
+            let line: serde_json::Value = serde_json::from_str(line).unwrap();
+            let place = (line["ramp"].as_u64().unwrap(), line["value"].as_u64().unwrap());
+            *counts.entry(place).or_default() += 1;
+        }
     }
     counts
 }
@@ -173,24 +175,6 @@ fn ramps_one_by_one_make_the_study_and_the_last_one_writes_the_tables() -> Resul
     Ok(())
 }
 
-/// A study whose folders are made beforehand, for engines that go by folders, is like any other.
-#[test]
-fn a_prepared_study_waits_and_its_folders_say_what_they_are() -> Result<(), AnyError> {
-    let (expected, _) = done(&plan(1), "prepared-not");
-    let scratch = Scratch::new("prepared");
-    let study = Study::create(&scratch.0, &plan(1))?;
-    for _ in 0..2 {
-        study.prepare()?;
-        assert!((0..6).all(|ramp| matches!(study.status(ramp), Ok(RampStatus::Waiting))));
-    }
-    let value = fs::read_to_string(scratch.0.join("ramps/0003/value.json"))?;
-    assert_eq!(value, "{\"ramp\": 3, \"repeat\": 1, \"friction\": 0.1}\n");
-    assert!(study.run(&Control::default())?.is_complete());
-    (0..6).try_for_each(|ramp| fs::remove_file(scratch.0.join(format!("ramps/{ramp:04}/value.json"))))?;
-    assert_same(&scratch.0, &expected.0);
-    Ok(())
-}
-
 /// One of many tasks leaves the tables alone if it has done nothing; a run of the whole study writes them
 /// again.
 #[test]
@@ -201,7 +185,13 @@ fn tables_that_tell_of_all_are_written_again_by_whole_runs_and_after_new_values(
     assert!(study.run_ramp(2, &Control::default())?.is_complete());
     assert!(!path.exists());
     fs::remove_file(scratch.0.join("ramps/0002/0000.record"))?;
-    assert!(study.run_ramp(2, &Control::default())?.is_complete());
+    // A table without a row must not look complete.
+    let error = study.write_tables().unwrap_err().to_string();
+    assert!(
+        error.contains("0002/0000.record is damaged: a record of a ramp that is done is missing"),
+        "{error}"
+    );
+    assert!(study.run_ramp(2, &Control::default().with_verification())?.is_complete());
     assert!(path.exists());
     fs::remove_file(&path)?;
     assert!(study.run(&Control::default())?.is_complete());

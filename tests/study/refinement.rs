@@ -52,12 +52,16 @@ fn a_transition_is_bracketed_from_below_and_from_above() -> Result<(), AnyError>
         let records: Vec<Record<Mixture>> = study.ramp_records(ramp).collect::<Result<_, _>>()?;
         let (near, half) = (&records[0], &records[7]);
         assert!(
-            half.times()[0] > near.checkpoint().time() && half.times()[0] < records[1].checkpoint().time()
+            half.times()[0] > near.checkpoint().ok_or("no state")?.time()
+                && half.times()[0] < records[1].checkpoint().ok_or("no state")?.time()
         );
         assert_eq!(half.ramped_value(), Some(0.125));
     }
     let table = fs::read_to_string(scratch.0.join("transitions.csv"))?;
-    assert!(table.starts_with("ramp,leg,loss,near,far,from_state,to_state\n0,up,0.0,0.13"), "{table}");
+    assert!(
+        table.starts_with("ramp,leg,loss,weight_near,weight_far,from_state,to_state\n0,up,0.0,0.13"),
+        "{table}"
+    );
     assert_eq!(table.lines().count(), 5);
     Ok(())
 }
@@ -80,13 +84,13 @@ fn a_damaged_value_of_a_refinement_is_done_again() -> Result<(), AnyError> {
         let path = scratch.0.join(format!("ramps/0001/{value:04}.record"));
         fs::write(&path, "cut")?;
         assert!(matches!(study.record(1, value), Err(StudyError::Damaged { .. })));
-        assert_eq!(study.run(&Control::default())?.redone, [path]);
+        assert_eq!(study.run(&Control::default().with_verification())?.redone, [path]);
         assert!(contents(&scratch.0) == before);
     }
     // The place in the record of another half shows that it is another one.
     let [first, second] = ["0007", "0008"].map(|value| scratch.0.join(format!("ramps/0000/{value}.record")));
     fs::copy(&first, &second)?;
-    assert_eq!(study.run(&Control::default())?.redone, [second]);
+    assert_eq!(study.run(&Control::default().with_verification())?.redone, [second]);
     assert!(contents(&scratch.0) == before);
     Ok(())
 }
@@ -108,14 +112,11 @@ fn the_states_of_the_box_are_its_convective_regimes() -> Result<(), AnyError> {
 fn a_width_that_cannot_be_is_refused() {
     let numbers = [0.0, -1.0, f64::NAN];
     for width in numbers.map(Width::Absolute).into_iter().chain(numbers.map(Width::Relative)) {
-        let ramp = Ramp::new("weight", [0.1, 0.2], Course::Up).unwrap().with_refinement(width).unwrap();
-        let error =
-            Plan::new(mixture(), Protocol::new(1, 1, 1).unwrap(), 1).and_then(|plan| plan.with_ramp(ramp));
-        assert!(report(&error.unwrap_err()).contains("width of a transition must be finite and positive"));
+        let ramp = Ramp::new("weight", [0.1, 0.2], Course::Up).unwrap();
+        let error = report(&ramp.with_refinement(width).unwrap_err());
+        assert!(error.contains("width of a transition must be finite and positive"), "{error}");
     }
-    let ramp =
-        Ramp::new("weight", [0.0, 0.2], Course::Up).unwrap().with_refinement(Width::Relative(0.01)).unwrap();
-    let error =
-        Plan::new(mixture(), Protocol::new(1, 1, 1).unwrap(), 1).and_then(|plan| plan.with_ramp(ramp));
-    assert!(report(&error.unwrap_err()).contains("value of a ramp with a relative width must be"));
+    let ramp = Ramp::new("weight", [0.0, 0.2], Course::Up).unwrap();
+    let error = report(&ramp.with_refinement(Width::Relative(0.01)).unwrap_err());
+    assert!(error.contains("value of a ramp with a relative width must be"), "{error}");
 }

@@ -1,7 +1,7 @@
 //! Values: their records, their length, and their ends.
 
 use granular_edmd::study::vibrated_box::{Base, VibratedBox};
-use granular_edmd::study::{Course, Experiment, Leg, Outcome, Plan, Protocol, Ramp};
+use granular_edmd::study::{Course, Experiment, Leg, Outcome, Plan, Protocol, Ramp, Record};
 
 use crate::support::{AnyError, BASE, done, small_box, small_plan};
 
@@ -37,15 +37,17 @@ fn a_study_records_what_it_was_asked_for() {
 #[test]
 fn a_value_is_the_engine_s_run() -> Result<(), AnyError> {
     use granular_edmd::observable::{OrderParameters, SampleTimes, Series};
-    let plan = Plan::new(small_box(), Protocol::new(25, 6, 10)?, 7)?;
+    let plan = Plan::new(small_box(), Protocol::new(25, 6, 10)?, 7)?.with_end_states();
     let (_scratch, study) = done(&plan, "engine");
     let record = study.record(0, 0)?.ok_or("no record")?;
-    let long = Plan::new(small_box(), Protocol::new(0, 85, 1)?, 7)?;
+    let long = Plan::new(small_box(), Protocol::new(0, 85, 1)?, 7)?.with_end_states();
     let (_scratch, study) = done(&long, "engine-every");
     let every = study.record(0, 0)?.ok_or("no record")?;
     let thinned: Vec<_> = every.samples().iter().skip(34).step_by(10).map(|sample| sample.one_roll).collect();
     assert_eq!(record.samples().iter().map(|sample| sample.one_roll).collect::<Vec<_>>(), thinned);
-    assert_eq!(record.checkpoint().to_bytes()?, every.checkpoint().to_bytes()?);
+    let [state, same] = [&record, &every].map(Record::checkpoint);
+    let (state, same) = (state.ok_or("no state")?, same.ok_or("no state")?);
+    assert_eq!(state.to_bytes()?, same.to_bytes()?);
     // From its last state, it goes on like any other run.
     let container = granular_edmd::boundary::Container::closed(10.0, 30.0)?.with_motion(
         granular_edmd::boundary::Wall::Floor,
@@ -56,7 +58,7 @@ fn a_value_is_the_engine_s_run() -> Result<(), AnyError> {
         1e-4,
     )?;
     let scheduler = granular_edmd::scheduler::TournamentTree::default();
-    let resumption = granular_edmd::Simulation::resume(record.checkpoint(), rule, container);
+    let resumption = granular_edmd::Simulation::resume(state, rule, container);
     let mut run = resumption.with_another_rule().scheduler(scheduler).build()?;
     let period = std::f64::consts::TAU / 10.0;
     let times = SampleTimes::every(10.0 * period)?.starting_at(95.0 * period)?;
@@ -93,14 +95,14 @@ fn other_parameters_ramp_and_other_bases_run() -> Result<(), AnyError> {
 fn a_stalled_value_does_not_stop_the_study() -> Result<(), AnyError> {
     let system = VibratedBox::new(30, 10.0, BASE).with_height(30.0).with_gravity(0.5);
     let ramp = Ramp::new("inelasticity", vec![0.0, 0.45], Course::UpAndDown)?;
-    let plan = Plan::new(system, Protocol::new(50, 5, 10)?, 1)?.with_ramp(ramp)?;
+    let plan = Plan::new(system, Protocol::new(50, 5, 10)?, 1)?.with_ramp(ramp)?.with_end_states();
     let (_scratch, study) = done(&plan, "stalled");
     let outcomes: Vec<_> =
         study.records().map(|record| record.map(|r| r.outcome().name())).collect::<Result<_, _>>()?;
     assert_eq!(outcomes, ["completed", "stalled", "completed"]);
     let (before, stalled, after) = (study.record(0, 0)?, study.record(0, 1)?, study.record(0, 2)?);
     let time = |record: &Option<granular_edmd::study::Record<VibratedBox>>| {
-        record.as_ref().map(|r| r.checkpoint().time())
+        record.as_ref().and_then(|r| r.checkpoint()).map(granular_edmd::simulation::Checkpoint::time)
     };
     assert_eq!(time(&before), time(&stalled), "the next value starts where this one did");
     assert!(time(&after) > time(&stalled));

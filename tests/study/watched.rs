@@ -12,7 +12,7 @@ use granular_edmd::study::{
     Axis, Column, Control, Course, Experiment, ExperimentError, Plan, PlanError, Protocol, Ramp, RampStatus,
     Record, Study, StudyError, Table, Width,
 };
-use granular_edmd::{Disk, initial};
+use granular_edmd::{Disk, Fingerprint, initial};
 use serde::{Deserialize, Serialize};
 
 use crate::report::report;
@@ -33,6 +33,10 @@ impl Experiment for Watched {
     type Boundary = Container;
     type Observer = HeightProfile;
     type Sample = Vec<f64>;
+
+    fn revision() -> Fingerprint {
+        Fingerprint::of("Watched")
+    }
 
     fn rule(&self) -> Result<Elastic, ExperimentError> {
         Ok(Elastic)
@@ -75,7 +79,7 @@ impl Experiment for Watched {
         &self,
         _: &[Vec<f64>],
         _: &HeightProfile,
-        _: &Checkpoint,
+        _: Option<&Checkpoint>,
     ) -> Result<(), ExperimentError> {
         let refused = REFUSED.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1));
         refused.map_or(Ok(()), |_| Err("a \"bad\"\nfile of C:\\data".into()))
@@ -106,7 +110,7 @@ fn names_of_columns_may_be_made_when_the_program_runs() -> Result<(), AnyError> 
     assert!(study.run(&Control::default())?.is_complete());
     let values = fs::read_to_string(scratch.0.join("values.csv"))?;
     assert!(
-        values.starts_with("ramp,value,leg,weight,seed,outcome,samples,layer_0,layer_0_error,"),
+        values.starts_with("ramp,value,leg,weight,seed,made_by,outcome,samples,layer_0,layer_0_error,"),
         "{values}"
     );
     assert!(values.contains(",layer_1,layer_1_error,layer_1_independent_samples,"), "{values}");
@@ -120,11 +124,11 @@ fn names_of_columns_may_be_made_when_the_program_runs() -> Result<(), AnyError> 
     );
     // A file that the experiment refuses, for whatever reason, is logged in a line of JSON, and done again.
     REFUSED.store(1, Ordering::Relaxed);
-    fs::remove_file(scratch.0.join("ramps/0000/done"))?;
+    fs::remove_file(scratch.0.join("done/0000"))?;
     assert_eq!(study.run(&Control::default())?.redone.len(), 1);
-    let log = fs::read_to_string(scratch.0.join("log.jsonl"))?;
+    let log = fs::read_to_string(scratch.0.join("ramps/0000/log.jsonl"))?;
     let lines: Vec<serde_json::Value> = log.lines().map(serde_json::from_str).collect::<Result<_, _>>()?;
-    assert!(lines.iter().any(|line| line["reason"] == "a 'bad' file of C:'data"), "{log}");
+    assert!(lines.iter().any(|line| line["reason"] == "a \"bad\"\nfile of C:\\data"), "{log}");
     Ok(())
 }
 

@@ -1,6 +1,7 @@
 //! The simulated runs: ramps of friction, up and down, side by side for each inelasticity.
 
 use clap::ValueEnum;
+use granular_edmd::ParameterError;
 use granular_edmd::study::vibrated_box::VibratedBox;
 use granular_edmd::study::{Axis, Course, Plan, PlanError, Protocol, Ramp};
 
@@ -88,13 +89,13 @@ fn plan(
 ) -> Result<Plan<VibratedBox>, PlanError> {
     let experiment = gallery::studies::vibrated_box(gravity.value());
     let frictions = if size == Size::Quick { FEW_FRICTIONS.to_vec() } else { FRICTIONS.to_vec() };
-    Plan::new(experiment, protocol(size), seed)?
-        .with_ramp(Ramp::new("friction", frictions, course))?
-        .with_axis(Axis::new("inelasticity", inelasticities))
+    Plan::new(experiment, protocol(size)?, seed)?
+        .with_ramp(Ramp::new("friction", frictions, course)?)?
+        .with_axis(Axis::new("inelasticity", inelasticities)?)
 }
 
 /// Returns the protocol, which discards the first half.
-const fn protocol(size: Size) -> Protocol {
+fn protocol(size: Size) -> Result<Protocol, ParameterError> {
     match size {
         Size::Quick => Protocol::new(750, 150, 5),
         Size::Coarse => Protocol::new(3_000, 300, 10),

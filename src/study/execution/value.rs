@@ -90,7 +90,8 @@ pub(super) fn done<E: Experiment>(
     let origin = study.origin(ramp, value);
     let work = Value { plan: &study.plan, origin, experiment, step, before };
     let saved = if is_fresh { None } else { if_sound(shift, lock, ramp, saved(shift, &work))? };
-    let mut has_partial = saved.is_some();
+    // A damaged one is still there.
+    let mut has_partial = !is_fresh;
     let mut active = saved.map_or_else(|| work.begin(), Ok)?;
     shift.meter.advance(ramp, value, active.steps());
     let record = match steps(shift, &mut active, &mut has_partial)? {
