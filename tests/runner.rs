@@ -259,7 +259,7 @@ fn a_long_line_is_not_repeated() {
     )
     .unwrap();
     let output = scratch.runs(&["check", "plan.toml"]);
-    assert!(said(&output).len() < 1000 && said(&output).contains("line 18, column"), "{}", said(&output));
+    assert!(said(&output).len() < 1000 && said(&output).contains("line 17, column"), "{}", said(&output));
 }
 
 /// A signal stops a study with everything saved, and the same command goes on.

@@ -267,15 +267,13 @@ fn plans_of_any_numbers_are_taken_or_refused() {
     let more = ["angular_frequency", "temperature", "contact_duration", "width", "height"];
     for (name, value) in names.into_iter().chain(more).flat_map(|name| NUMBERS.map(|value| (name, value))) {
         let plan = Plan::new(VibratedBox::new(2, 9.0, base), Protocol::new(1, 1, 1).unwrap(), 1).unwrap();
-        let Ok(plan) = plan.with_axis(Axis::new(name, [value]).unwrap()) else { continue };
+        let Ok(plan) = Axis::new(name, [value]).and_then(|axis| plan.with_axis(axis)) else { continue };
         assert_eq!(Plan::from_toml(&plan.to_toml().unwrap()).unwrap(), plan, "{name} {value}");
     }
     for [settle, samples, every] in
         [[0, 0, 0], [1, 1, 0], [0, 1, 1], [u64::MAX; 3], [1, u64::MAX, 1], [0, 1, u64::MAX]]
     {
-        let protocol = Protocol::new(settle, samples, every).unwrap();
-        let plan = Plan::new(VibratedBox::new(2, 9.0, base), protocol, 1);
-        assert_eq!(plan.is_ok(), (settle, samples, every) == (0, 1, 1), "{protocol:?}");
-        assert!(protocol.cycles() >= settle);
+        let protocol = Protocol::new(settle, samples, every);
+        assert_eq!(protocol.is_ok(), (settle, samples, every) == (0, 1, 1), "{protocol:?}");
     }
 }

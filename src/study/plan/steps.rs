@@ -115,7 +115,7 @@ impl Steps {
             Spacing::Log if index + 1 == self.count => self.to,
             Spacing::Log => {
                 let share = index as f64 / (self.count - 1) as f64;
-                self.from * libm::exp(share * libm::log(self.to / self.from))
+                self.from * libm::pow(self.to / self.from, share)
             }
         }
     }
