@@ -225,7 +225,7 @@ impl Folder {
     /// The mark need not outlast a loss of power, so it costs no sync: a ramp that lost it is looked at again.
     pub(super) fn mark_done(&self, ramp: usize, failed: &[usize]) -> Result<(), StudyError> {
         let path = self.done(ramp);
-        let text: String = failed.iter().map(|value| format!("{value:04}\n")).collect();
+        let text = failed.iter().map(|value| format!("{value:04}\n")).collect::<Vec<_>>().concat();
         if let Err(error) = fs::write(&path, &text) {
             if error.kind() != io::ErrorKind::NotFound {
                 return Err(StudyError::io("write", &path)(error));

@@ -175,7 +175,7 @@ impl<E: Experiment> Plan<E> {
 
     /// Returns the number of points of the grid.
     pub fn point_count(&self) -> usize {
-        self.sweep.iter().map(|axis| axis.len()).product()
+        self.sweep.iter().map(Axis::len).product()
     }
 
     /// Returns the number of values of each ramp, without those that a refinement adds.

@@ -198,12 +198,11 @@ const GOLDEN: (u32, [&str; 3]) =
     (1, ["box 11134 83f9f03456d5f1cc", "column 38908 b46e13751eadf686", "packing 160 8b7f3f4dbb3c143d"]);
 
 #[test]
-fn the_number_of_results_belongs_to_the_golden_hashes() -> Result<(), AnyError> {
+fn the_number_of_results_belongs_to_the_golden_hashes() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/portable/recorded.txt");
     // The published package has no tools.
-    let Ok(text) = fs::read_to_string(path) else { return Ok(()) };
+    let Ok(text) = fs::read_to_string(path) else { return };
     let found: Vec<String> =
         text.lines().map(|line| line.split(' ').take(3).collect::<Vec<_>>().join(" ")).collect();
     assert_eq!((granular_edmd::RESULTS, found.as_slice()), (GOLDEN.0, GOLDEN.1.map(String::from).as_slice()));
-    Ok(())
 }

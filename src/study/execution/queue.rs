@@ -54,7 +54,9 @@ impl Queue {
         let mut ramps = from_anywhere(ramps);
         let others = ramps.split_off(tried.min(ramps.len()));
         self.left().extend(ramps);
-        others.into_iter().for_each(|ramp| self.leave(ramp));
+        for ramp in others {
+            self.leave(ramp);
+        }
     }
 
     fn left(&self) -> MutexGuard<'_, VecDeque<usize>> {

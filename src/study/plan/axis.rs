@@ -88,7 +88,9 @@ impl Axis {
     /// equal files.
     pub(super) fn set_kind(&mut self, kind: &Scalar) {
         if let Values::List(list) = &mut self.values {
-            list.iter_mut().for_each(|value| *value = value.clone().like(kind));
+            for value in list {
+                *value = value.clone().like(kind);
+            }
         }
     }
 }
