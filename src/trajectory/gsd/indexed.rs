@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::{CHUNKS, F64, I8, Shape, U8, U64};
+use crate::file::Locked;
 use crate::observable::Snapshot;
 use crate::trajectory::errors::RecordError;
 use crate::trajectory::format::no_frame;
@@ -27,7 +28,7 @@ const ROOM: usize = 1024;
 pub(in crate::trajectory) struct Indexed {
     path: PathBuf,
     /// All but the entries of the present index, which are written in place.
-    file: Growing<File>,
+    file: Growing<Locked>,
     index: Index,
     times: Vec<f64>,
     /// The chunks of each frame.
@@ -62,8 +63,8 @@ impl Indexed {
 
     /// Goes on after the last whole frame of a file.
     pub(in crate::trajectory) fn reopen(path: &Path) -> Result<Self, RecordError> {
-        let mut medium = media::reopen(path)?;
-        let found = Found::read(&mut medium).map_err(RecordError::io("go on in", path))?;
+        let medium = media::reopen(path)?;
+        let found = Found::read(medium.file()).map_err(RecordError::io("go on in", path))?;
         if found.times.is_empty() {
             return Err(RecordError::NoFrame { path: path.to_owned() });
         }
@@ -117,12 +118,12 @@ impl Store for Indexed {
 
     fn has(&mut self, number: usize, bytes: &[u8]) -> Result<bool, RecordError> {
         let place = self.places[number].clone();
-        let there = read_at(&mut self.file.medium(), place.start, place.end - place.start);
+        let there = read_at(self.file.medium().file(), place.start, place.end - place.start);
         Ok(there.map_err(RecordError::io("read", &self.path))? == bytes)
     }
 
     fn sync(&mut self) -> Result<(), RecordError> {
-        self.file.medium().sync_all().map_err(RecordError::io("write to", &self.path))
+        self.file.medium().file().sync_all().map_err(RecordError::io("write to", &self.path))
     }
 
     fn path(&self) -> &Path {
@@ -160,16 +161,16 @@ struct Found {
 }
 
 impl Found {
-    fn read(file: &mut File) -> io::Result<Self> {
+    fn read(file: &File) -> io::Result<Self> {
         let size = file.metadata()?.len();
-        let head = read_at(&mut &*file, 0, HEADER as u64)?;
+        let head = read_at(file, 0, HEADER as u64)?;
         let (location, room) = (number(&head, 8), number(&head, 16));
         let index = Index { location, room: usize::try_from(room).unwrap_or(0), entries: Vec::new() };
         let end = room.checked_mul(ENTRY as u64).and_then(|bytes| bytes.checked_add(location));
         let Some(end) = end.filter(|&end| end <= size && head == index.header()) else {
             return Err(no_frame("a file of GSD by granular-edmd", "another"));
         };
-        let entries = read_at(&mut &*file, location, end - location)?;
+        let entries = read_at(file, location, end - location)?;
         let least = (HEADER + ROOM * ENTRY + names().len()) as u64;
         let mut found = Self { index, times: Vec::new(), places: Vec::new(), length: end.max(least) };
         loop {
@@ -186,7 +187,7 @@ impl Found {
                 return Err(no_frame("a whole frame", "a damaged one"));
             };
             // The time is the first of four numbers at the end of a frame.
-            let time = f64::from_bits(number(&read_at(&mut &*file, end - 32, 8)?, 0));
+            let time = f64::from_bits(number(&read_at(file, end - 32, 8)?, 0));
             if !time.is_finite() || found.times.last().is_some_and(|&last| last >= time) {
                 return Err(no_frame("a frame after the one before", &format!("time {time:?}")));
             }
@@ -248,7 +249,7 @@ fn number(bytes: &[u8], at: usize) -> u64 {
     u64::from_le_bytes(number)
 }
 
-fn read_at(file: &mut &File, start: u64, length: u64) -> io::Result<Vec<u8>> {
+fn read_at(mut file: &File, start: u64, length: u64) -> io::Result<Vec<u8>> {
     file.seek(SeekFrom::Start(start))?;
     let mut bytes = Vec::new();
     file.take(length).read_to_end(&mut bytes)?;
