@@ -5,8 +5,6 @@
 //! | clusters of points in a plane | [`KMeans`], [`distinct_clusters`] | paper, Fig. 4 |
 //! | which convective states a run shows | [`StateCriteria::classify`] | paper, section III |
 //! | where a ramp changes state, and its hysteresis | [`transitions`] | paper, Fig. 5 |
-//! | lines of transitions in friction and inelasticity | [`plane_transitions`] | paper, Fig. 5 |
-//! | energy loss along a line of transitions | [`line_average`] | paper, Table I |
 //!
 //! Errors of means over correlated series come from [`statistics`](crate::statistics).
 //!
@@ -30,8 +28,6 @@ mod classification;
 mod clusters;
 mod distinct;
 mod k_means;
-mod line;
-mod plane;
 mod state;
 mod transitions;
 
@@ -39,7 +35,5 @@ pub use classification::{Classification, StateCriteria, thermal_noise};
 pub use clusters::{Cluster, Clusters};
 pub use distinct::distinct_clusters;
 pub use k_means::KMeans;
-pub use line::{LineAverage, line_average};
-pub use plane::{PlaneTransition, plane_transitions};
 pub use state::{ConvectiveRegime, ConvectiveState};
 pub use transitions::{Transition, TransitionLine, transitions};

@@ -6,6 +6,10 @@
 //! observables compose as tuples and in a `Box`, observers also in a slice, a `Vec` or an `Option`. Watching
 //! never changes a trajectory.
 //!
+//! An [`Accumulator`] adds up snapshots, whoever gives them: a [`Sampled`] around it in a run, or a program with
+//! snapshots of its own. [`Stress`], [`WallStress`], [`MeanSquaredDisplacement`] and [`TimeCorrelation`] have a
+//! clock of their own, since its interval is a part of what they measure.
+//!
 //! | observable | value |
 //! |---|---|
 //! | [`OrderParameters`] | Ψ1 and Ψ2 of the convection rolls (paper, Eqs. (10), (11)) |
@@ -17,27 +21,31 @@
 //! | [`OfKind`] | any of these, for the disks of one kind |
 //! | [`from_fn`] | the result of a closure |
 //!
+//! | accumulator, observer when [`Sampled`] | keeps |
+//! |---|---|
+//! | [`HeightProfile`] | packing fraction by height |
+//! | [`Fields`] | density, flow and temperatures on a grid |
+//! | [`PairCorrelation`] | pair correlation function |
+//! | [`VelocityDistribution`] | histograms, cumulants and kurtosis of velocities |
+//! | [`EnergyChangeProfile`] | mean energy change per disk–disk collision and temperatures, by height |
+//!
 //! | observer | keeps |
 //! |---|---|
 //! | [`Series`] | the values of an observable at set times |
 //! | [`EnergyChange`] | mean energy change per collision, by partner |
-//! | [`EnergyChangeProfile`] | mean energy change per disk–disk collision and temperatures, by height |
 //! | [`CollisionCounts`] | counts by partner and regime, and rates |
-//! | [`HeightProfile`] | packing fraction by height |
-//! | [`Fields`] | density, flow and temperatures on a grid |
-//! | [`PairCorrelation`] | pair correlation function |
 //! | [`MeanSquaredDisplacement`] | mean squared displacement by time, coefficient of self-diffusion |
 //! | [`TimeCorrelation`] | correlation function of an observable in time, of velocities for example |
 //! | [`Stress`] | stress tensor of the disks, kinetic and collisional |
 //! | [`WallStress`] | pressure and shear stress on walls |
 //! | [`CollisionHistograms`] | histograms of obliqueness, closing speed and impulse |
-//! | [`VelocityDistribution`] | histograms, cumulants and kurtosis of velocities |
 //! | [`OfKind`], [`BetweenKinds`] | what another observer keeps, for one kind or for collisions of two |
 //! | [`on_collision`], [`on_sample`] | whatever a closure keeps |
 //! | [`stop_when`], [`stop_when_sampled`] | nothing: they stop the run when a closure says so |
 //!
 //! # An observer of your own
-//! [`SampleTimes`] is the clock of all observers here, and can serve yours. In a plain test, [`laws::check`]
+//! An observer that only needs snapshots is an [`Accumulator`] in a [`Sampled`]. For others, [`SampleTimes`] is a
+//! clock. In a plain test, [`laws::check`]
 //! checks the contract of an observer.
 //!
 //! ```
@@ -76,10 +84,9 @@
 //!
 //! # Measurements in files
 //! With the feature `serde`, you can write the observers of this module, except for closures, to a file
-//! beside the checkpoint of the run. Read back and lent to the resumed run, they have the same bits in the
-//! end as in a run without interruption. JSON keeps the bits if its reader rounds correctly (serde_json's
-//! `float_roundtrip`). JSON has no NaN, which some observables return without disks. For those, take a binary
-//! format such as postcard.
+//! together with the checkpoint of the run: `Checkpoint::write_with` keeps every bit. Read back and lent to the
+//! resumed run, they have the same bits in the end as in a run without interruption. Text formats may lose
+//! bits: JSON has no NaN, and its reader must round correctly (serde_json's `float_roundtrip`).
 
 mod by_kind;
 mod center_of_mass;
@@ -102,6 +109,7 @@ mod moment;
 mod order_parameters;
 mod pair_correlation;
 mod sample_times;
+mod sampled;
 mod series;
 mod snapshot;
 mod stop;
@@ -144,6 +152,7 @@ pub use order_parameters::{ConvectionOrder, OrderParameters};
 #[doc(alias("pair correlation", "radial distribution", "RDF", "structure"))]
 pub use pair_correlation::PairCorrelation;
 pub use sample_times::SampleTimes;
+pub use sampled::{Accumulator, Sampled};
 pub use series::Series;
 pub use snapshot::Snapshot;
 pub use stop::{StopWhen, StopWhenSampled, stop_when, stop_when_sampled};

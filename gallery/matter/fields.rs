@@ -79,7 +79,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Returns the fields in the second half of a run, on both grids.
-fn measured(arguments: &Arguments) -> Result<(Fields, Fields), Box<dyn Error>> {
+fn measured(arguments: &Arguments) -> Result<(Sampled<Fields>, Sampled<Fields>), Box<dyn Error>> {
     let base = BiParabolic::new(0.1, 10.0)?;
     let oscillation = TAU / base.angular_frequency();
     let container = Container::closed(BOX.x, BOX.y)?.with_motion(Wall::Floor, base)?;
@@ -93,8 +93,8 @@ fn measured(arguments: &Arguments) -> Result<(Fields, Fields), Box<dyn Error>> {
     let times = SampleTimes::every(INTERVAL * oscillation)?.starting_at(0.5 * end)?;
     let region = Region::new(DVec2::ZERO, BOX);
     let mut fields = (
-        Fields::new(Grid::new(region, FINE.0, FINE.1)?, times),
-        Fields::new(Grid::new(region, COARSE.0, COARSE.1)?, times),
+        Sampled::new(Fields::new(Grid::new(region, FINE.0, FINE.1)?), times),
+        Sampled::new(Fields::new(Grid::new(region, COARSE.0, COARSE.1)?), times),
     );
     simulation.run_until(end, &mut (&mut fields, &mut progress))?;
     Ok(fields)

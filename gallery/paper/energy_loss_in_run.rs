@@ -49,7 +49,7 @@ const PARTS: u32 = 80;
 
 /// Energy changes and temperatures by height.
 struct Measured {
-    profile: EnergyChangeProfile,
+    profile: Sampled<EnergyChangeProfile>,
     /// Relative energy change and ratio of temperatures in each part.
     parts: [BlockedMean; 2],
 }
@@ -134,7 +134,7 @@ fn measured(arguments: &Arguments, rule: Frictional) -> Result<Measured, Box<dyn
     simulation.run_until(settled, &mut progress)?;
     let from = |start, every: f64| {
         let times = SampleTimes::every(every * oscillation)?.starting_at(start)?;
-        EnergyChangeProfile::new(0.0, 150.0, 75, times)
+        EnergyChangeProfile::new(0.0, 150.0, 75).map(|profile| Sampled::new(profile, times))
     };
     let mut measured = Measured { profile: from(settled, 10.0)?, parts: Default::default() };
     for part in 0..PARTS {

@@ -16,9 +16,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::ParameterError;
-use granular_edmd::analysis::{LineAverage, line_average};
 use granular_edmd::collision::Frictional;
-use granular_edmd::kinetic::{Maxwellian, effective_inelasticity};
+use granular_edmd::kinetic::{Maxwellian, effective_inelasticity, mean_energy_change};
 use granular_edmd::statistics::RunningMean;
 
 use gallery::command_line;
@@ -90,13 +89,33 @@ fn read(folder: &Path) -> Result<Vec<Point>, Box<dyn Error>> {
     Ok(points)
 }
 
+/// The energy change per collision and the effective inelasticity over the points of a line.
+///
+/// The table's "±" is the standard deviation of the points, not the error of their mean: the scatter along the
+/// line tests the paper's hypothesis.
+struct LineAverage {
+    energy_change: RunningMean,
+    effective_inelasticity: RunningMean,
+}
+
+impl LineAverage {
+    /// Averages over the rules at which the transition was seen, each in a Maxwellian gas.
+    fn of(line: &[Frictional]) -> Result<Self, ParameterError> {
+        let gas = Maxwellian::new(1.0)?;
+        let energy_change: RunningMean = line.iter().map(|rule| mean_energy_change(rule, &gas)).collect();
+        let effective = |rule| effective_inelasticity(mean_energy_change(rule, &gas), 1.0);
+        let effective_inelasticity = line.iter().map(effective).collect::<Result<_, _>>()?;
+        Ok(Self { energy_change, effective_inelasticity })
+    }
+}
+
 /// Returns the average over the points of a line, or `None` if there are none.
 fn measured(row: &Row, points: &[Point]) -> Result<Option<LineAverage>, ParameterError> {
     let of = points
         .iter()
         .filter(|point| point.gravity == row.gravity && point.transition == row.line.to_string());
     let line: Vec<Frictional> = of.map(|point| point.rule).collect();
-    if line.is_empty() { Ok(None) } else { line_average(&line, &Maxwellian::new(1.0)?).map(Some) }
+    if line.is_empty() { Ok(None) } else { LineAverage::of(&line).map(Some) }
 }
 
 const COLUMNS: [&str; 14] = [
@@ -164,7 +183,7 @@ fn print_measured(average: &LineAverage) {
     let text = |mean: &RunningMean, digits| {
         format!("{:.digits$} ± {:.digits$}", mean.mean(), mean.standard_deviation())
     };
-    let (change, effective) = (average.energy_change(), average.effective_inelasticity());
+    let (change, effective) = (&average.energy_change, &average.effective_inelasticity);
     let points = format!("{} points", change.count());
     gallery::say!("{:>20}  {}   {}", points, text(change, 3), text(effective, 4));
 }
@@ -172,7 +191,7 @@ fn print_measured(average: &LineAverage) {
 /// Returns the last columns: the number of points, and mean and standard deviation of both quantities.
 fn cells(average: Option<&LineAverage>) -> (Option<u64>, [Option<f64>; 4]) {
     let Some(average) = average else { return (None, [None; 4]) };
-    let (change, effective) = (average.energy_change(), average.effective_inelasticity());
+    let (change, effective) = (&average.energy_change, &average.effective_inelasticity);
     let both = [change, effective].map(|mean| [mean.mean(), mean.standard_deviation()]);
     (Some(change.count()), [both[0][0], both[0][1], both[1][0], both[1][1]].map(Some))
 }

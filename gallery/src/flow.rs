@@ -3,7 +3,7 @@
 use granular_edmd::ParameterError;
 use granular_edmd::boundary::Region;
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{FieldCell, Fields, Grid, SampleTimes};
+use granular_edmd::observable::{FieldCell, Fields, Grid, SampleTimes, Sampled};
 use kuva::plot::quiver::QuiverPivot;
 use kuva::prelude::{Plot, QuiverPlot};
 
@@ -15,11 +15,11 @@ pub fn on_squares(
     max: DVec2,
     columns: usize,
     times: SampleTimes,
-) -> Result<Fields, ParameterError> {
+) -> Result<Sampled<Fields>, ParameterError> {
     let side = (max.x - min.x) / columns as f64;
     let rows = ((max.y - min.y) / side).ceil();
     let region = Region::new(min, DVec2::new(max.x, min.y + rows * side));
-    Ok(Fields::new(Grid::new(region, columns, rows as usize)?, times))
+    Ok(Sampled::new(Fields::new(Grid::new(region, columns, rows as usize)?), times))
 }
 
 /// The arrows of a mean flow, one in each cell that is full enough.

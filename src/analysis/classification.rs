@@ -45,7 +45,7 @@ pub fn thermal_noise(vertical_temperature: f64, mass: f64, disks: usize) -> Resu
 /// 1. A run as a whole is **collapsed** if two conditions hold. Its height profile has a compact layer, of
 ///    packing fraction above 0.60, on a gas of less than half of that. And its two-roll flow has died,
 ///    $`|\langle\Psi_2\rangle| < 0.03`$.
-/// 2. A cluster is **conductive** if its center is at most $`3\sigma`$ from the origin. It is collapsed
+/// 2. A cluster shows **no roll** if its center is at most $`3\sigma`$ from the origin. It is collapsed
 ///    instead if the height profile has such a layer: near this transition, two rolls come and go over the
 ///    layer.
 /// 3. A cluster shows **two rolls** if $`|\Psi_2| > 2|\Psi_1|`$: up in the middle for a positive $`\Psi_2`$,
@@ -177,7 +177,7 @@ impl StateCriteria {
             samples.iter().map(|order| DVec2::new(order.one_roll, order.two_rolls)).collect();
         let clusters = distinct_clusters(&points, noise, self.seed)?;
         let compact = layer.is_some_and(|layer| self.is_compact(layer));
-        let without_flow = if compact { ConvectiveState::Collapsed } else { ConvectiveState::Conductive };
+        let without_flow = if compact { ConvectiveState::Collapsed } else { ConvectiveState::NoRoll };
         let has_died = compact && mean_of_two_rolls(&clusters).abs() < self.collapsed_order;
         let flow = |cluster| if has_died { None } else { self.flow(cluster, noise) };
         let name = |cluster| flow(cluster).unwrap_or(without_flow);
@@ -235,7 +235,7 @@ impl Classification {
     /// If several states have it, the state of the first cluster wins.
     pub fn state(&self) -> ConvectiveState {
         let weights = self.states.iter().map(|&state| (state, self.weight(state)));
-        let start = (ConvectiveState::Conductive, 0.0);
+        let start = (ConvectiveState::NoRoll, 0.0);
         weights.fold(start, |best, next| if next.1 > best.1 { next } else { best }).0
     }
 
@@ -265,7 +265,7 @@ impl Classification {
         if self.state() == ConvectiveState::Collapsed {
             ConvectiveRegime::Collapsed
         } else if none >= one.max(two) {
-            ConvectiveRegime::Conductive
+            ConvectiveRegime::NoRoll
         } else if least(one.min(two)) && !least(none + collapsed) {
             ConvectiveRegime::Coexistence
         } else if one > two {

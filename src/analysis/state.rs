@@ -14,7 +14,8 @@ use std::fmt;
 #[non_exhaustive]
 pub enum ConvectiveState {
     /// A state without flow, in which heat is conducted.
-    Conductive,
+    #[cfg_attr(feature = "serde", serde(alias = "Conductive"))]
+    NoRoll,
     /// A single roll, up on the left: Ψ₁ > 0.
     ClockwiseRoll,
     /// A single roll, up on the right: Ψ₁ < 0.
@@ -31,7 +32,7 @@ impl ConvectiveState {
     /// Returns the number of rolls, or `None` for the collapsed state.
     pub const fn rolls(self) -> Option<usize> {
         match self {
-            Self::Conductive => Some(0),
+            Self::NoRoll => Some(0),
             Self::ClockwiseRoll | Self::CounterclockwiseRoll => Some(1),
             Self::TwoRollsUp | Self::TwoRollsDown => Some(2),
             Self::Collapsed => None,
@@ -42,7 +43,7 @@ impl ConvectiveState {
 impl fmt::Display for ConvectiveState {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.pad(match self {
-            Self::Conductive => "conductive",
+            Self::NoRoll => "no roll",
             Self::ClockwiseRoll => "one roll, clockwise",
             Self::CounterclockwiseRoll => "one roll, counterclockwise",
             Self::TwoRollsUp => "two rolls, up in the middle",
@@ -63,7 +64,8 @@ impl fmt::Display for ConvectiveState {
 #[non_exhaustive]
 pub enum ConvectiveRegime {
     /// Region "0": no rolls.
-    Conductive,
+    #[cfg_attr(feature = "serde", serde(alias = "Conductive"))]
+    NoRoll,
     /// Region "1": one roll of either sense.
     OneRoll,
     /// The region between the lines 1–2 (a) and (b), where one roll and two rolls take turns.
@@ -77,13 +79,13 @@ pub enum ConvectiveRegime {
 impl ConvectiveRegime {
     /// All regimes, in the order of growing energy loss.
     pub const ALL: &'static [Self] =
-        &[Self::Conductive, Self::OneRoll, Self::Coexistence, Self::TwoRolls, Self::Collapsed];
+        &[Self::NoRoll, Self::OneRoll, Self::Coexistence, Self::TwoRolls, Self::Collapsed];
 }
 
 impl fmt::Display for ConvectiveRegime {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.pad(match self {
-            Self::Conductive => "conductive",
+            Self::NoRoll => "no roll",
             Self::OneRoll => "one roll",
             Self::Coexistence => "coexistence of one roll and two",
             Self::TwoRolls => "two rolls",

@@ -1,6 +1,7 @@
 //! Histograms over collisions: angles, speeds and impulses.
 
-use super::{Collision, Observer, Partner};
+use super::wall_stress::check_wall;
+use super::{Collision, Moment, Observer, Partner, Verdict, contract};
 use crate::ParameterError;
 use crate::statistics::Histogram;
 
@@ -36,6 +37,9 @@ pub struct CollisionHistograms {
     obliqueness: Histogram,
     closing_speed: Histogram,
     impulse: Histogram,
+    /// The reason why nothing can be measured in this run.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    fault: Option<ParameterError>,
 }
 
 impl CollisionHistograms {
@@ -50,10 +54,13 @@ impl CollisionHistograms {
             obliqueness: Histogram::new(-1.0, 1.0, bins)?,
             closing_speed: Histogram::new(0.0, speed, bins)?,
             impulse: Histogram::new(0.0, impulse, bins)?,
+            fault: None,
         })
     }
 
     /// Returns the same histograms for the collisions with the wall of this index.
+    ///
+    /// A run ends with an error if there is no such wall.
     pub fn with_wall(self, wall: usize) -> Self {
         Self { wall: Some(wall), ..self }
     }
@@ -82,6 +89,10 @@ impl CollisionHistograms {
 }
 
 impl Observer for CollisionHistograms {
+    fn on_start(&mut self, moment: &Moment) {
+        self.fault = self.wall.and_then(|wall| check_wall(wall, moment).err());
+    }
+
     fn on_collision(&mut self, collision: &Collision) {
         let counts = match collision.partner {
             Partner::Disk(_) => self.wall.is_none(),
@@ -95,5 +106,10 @@ impl Observer for CollisionHistograms {
         self.obliqueness.push(slip / (closing * closing + slip * slip).sqrt());
         self.closing_speed.push(closing);
         self.impulse.push(collision.impulse.normal());
+    }
+
+    #[inline]
+    fn verdict(&mut self) -> Verdict {
+        contract::verdict(&mut self.fault)
     }
 }

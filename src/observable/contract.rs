@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::{Collision, Moment, Snapshot};
+use crate::ParameterError;
 
 /// A quantity that a snapshot determines.
 ///
@@ -69,6 +70,7 @@ pub type Verdict = Result<ControlFlow<()>, ObserverError>;
     note = "wrap a closure that takes a `&Collision` in `observable::on_collision`",
     note = "wrap a closure that takes a `&Snapshot` in `observable::on_sample`",
     note = "an observable is sampled by `Series::new(observable, times)`",
+    note = "an accumulator, such as `HeightProfile`, is sampled by `Sampled::new(accumulator, times)`",
     note = "lend an observer to a run as `&mut observer`, two as `&mut (&mut first, &mut second)`, none as `&mut ()`"
 )]
 pub trait Observer {
@@ -105,4 +107,14 @@ pub trait Observer {
     fn verdict(&mut self) -> Verdict {
         Ok(ControlFlow::Continue(()))
     }
+}
+
+/// Returns the verdict of an observer that may have noticed at the start of a run that it cannot measure.
+#[inline]
+pub(super) fn verdict(fault: &mut Option<ParameterError>) -> Verdict {
+    // The engine asks after each collision, so the usual answer comes first and writes nothing.
+    if fault.is_none() {
+        return Ok(ControlFlow::Continue(()));
+    }
+    fault.take().map_or(Ok(ControlFlow::Continue(())), |fault| Err(fault.into()))
 }

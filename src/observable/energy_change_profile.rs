@@ -1,6 +1,6 @@
 //! The energy change per collision, beside the temperature at the same height.
 
-use super::{Collision, Moment, Observer, Partner, SampleTimes, Snapshot};
+use super::{Accumulator, Collision, Partner, Snapshot};
 use crate::ParameterError;
 use crate::statistics::{Bins, BlockedMean};
 
@@ -32,13 +32,13 @@ impl EnergyChangeLayer {
     }
 }
 
-/// An observer of the energy change per disk–disk collision by height, with the temperatures there.
+/// The energy change per disk–disk collision by height, with the temperatures there.
 ///
 /// It allows a comparison with the kinetic theory of a gas of one temperature, layer by layer and on average.
 ///
 /// ```
-/// use granular_edmd::observable::{EnergyChangeProfile, SampleTimes};
-/// let profile = EnergyChangeProfile::new(0.0, 150.0, 30, SampleTimes::every(1.0)?)?;
+/// use granular_edmd::observable::EnergyChangeProfile;
+/// let profile = EnergyChangeProfile::new(0.0, 150.0, 30)?;
 /// assert_eq!(profile.layers().len(), 30);
 /// assert_eq!(profile.relative_energy_change(), None);
 /// # Ok::<(), granular_edmd::ParameterError>(())
@@ -48,22 +48,21 @@ impl EnergyChangeLayer {
 #[cfg_attr(feature = "serde", serde(try_from = "RawEnergyChangeProfile"))]
 pub struct EnergyChangeProfile {
     bins: Bins,
-    sample_times: SampleTimes,
     layers: Vec<EnergyChangeLayer>,
 }
 
 impl EnergyChangeProfile {
-    /// Creates a profile of `layers` layers from the height `bottom` to `top`, with temperatures sampled
-    /// at these times.
+    /// Creates a profile of `layers` layers from the height `bottom` to `top`, with temperatures of the
+    /// snapshots.
     ///
     /// Collisions and disks outside are left out.
     ///
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of layers is not in `1..=2^20`.
-    pub fn new(bottom: f64, top: f64, layers: usize, times: SampleTimes) -> Result<Self, ParameterError> {
+    pub fn new(bottom: f64, top: f64, layers: usize) -> Result<Self, ParameterError> {
         let bins = Bins::new(bottom, top, layers)?;
         let layer = |bin| EnergyChangeLayer { height: bins.middle(bin), ..EnergyChangeLayer::default() };
-        Ok(Self { bins, sample_times: times, layers: (0..layers).map(layer).collect() })
+        Ok(Self { bins, layers: (0..layers).map(layer).collect() })
     }
 
     /// Returns the layers, from the bottom up.
@@ -97,29 +96,20 @@ impl EnergyChangeProfile {
     }
 }
 
-impl Observer for EnergyChangeProfile {
+impl Accumulator for EnergyChangeProfile {
     fn on_collision(&mut self, collision: &Collision) {
         if let (Partner::Disk(_), Some(bin)) = (collision.partner, self.bins.find(collision.position.y)) {
             self.layers[bin].energy_change.push(collision.energy_change);
         }
     }
 
-    fn on_start(&mut self, moment: &Moment) {
-        self.sample_times.start_at(moment.time());
-    }
-
-    fn next_sample(&self) -> f64 {
-        self.sample_times.upcoming()
-    }
-
-    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+    fn add(&mut self, snapshot: &Snapshot<'_>) {
         for disk in snapshot.disks() {
             if let Some(bin) = self.bins.find(disk.position().y) {
                 self.layers[bin].translational_temperature.push(disk.translational_energy());
                 self.layers[bin].rotational_temperature.push(2.0 * disk.rotational_energy());
             }
         }
-        self.sample_times.advance_past(snapshot.time());
     }
 }
 
@@ -128,7 +118,6 @@ impl Observer for EnergyChangeProfile {
 #[serde(deny_unknown_fields, rename = "EnergyChangeProfile")]
 struct RawEnergyChangeProfile {
     bins: Bins,
-    sample_times: SampleTimes,
     layers: Vec<EnergyChangeLayer>,
 }
 
@@ -137,12 +126,12 @@ impl TryFrom<RawEnergyChangeProfile> for EnergyChangeProfile {
     type Error = ParameterError;
 
     fn try_from(raw: RawEnergyChangeProfile) -> Result<Self, ParameterError> {
-        let RawEnergyChangeProfile { bins, sample_times, layers } = raw;
+        let RawEnergyChangeProfile { bins, layers } = raw;
         bins.check_count(layers.len())?;
         for (bin, layer) in layers.iter().enumerate() {
             let is_there = layer.height == bins.middle(bin);
             crate::quantity::accept(is_there, "height of a layer", "the middle of its bin", layer.height)?;
         }
-        Ok(Self { bins, sample_times, layers })
+        Ok(Self { bins, layers })
     }
 }

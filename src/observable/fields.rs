@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::grid::CellSums;
-use super::{Grid, Moment, Observer, SampleTimes, Snapshot};
+use super::{Accumulator, Grid, Snapshot};
 
 /// The fields in one cell of a grid, averaged over all samples; made by [`Fields`].
 ///
@@ -32,8 +32,7 @@ pub struct FieldCell {
     pub rotational_temperature: f64,
 }
 
-/// An observer that averages density, flow and temperatures on a grid over samples, to show convection rolls,
-/// for example.
+/// Density, flow and temperatures on a grid, averaged over samples: for example, to show convection rolls.
 ///
 /// A disk counts in the cell of its center. Temperatures are taken about the mean velocity *of the cell*,
 /// over all samples. A flow that changes between samples, such as a roll that reverses, counts as
@@ -43,15 +42,15 @@ pub struct FieldCell {
 /// ```
 /// use granular_edmd::boundary::{Domain, Region};
 /// use granular_edmd::glam::DVec2;
-/// use granular_edmd::observable::{Fields, Grid, Observer, SampleTimes, Snapshot};
+/// use granular_edmd::observable::{Accumulator, Fields, Grid, Snapshot};
 /// use granular_edmd::Disk;
 ///
 /// let region = Region::new(DVec2::ZERO, DVec2::new(4.0, 2.0));
-/// let mut fields = Fields::new(Grid::new(region, 2, 1)?, SampleTimes::every(1.0)?);
+/// let mut fields = Fields::new(Grid::new(region, 2, 1)?);
 /// let disk = |x, vx| Disk::new(DVec2::new(x, 1.0), 0.4)?.with_velocity(DVec2::new(vx, 0.0));
 /// let disks = [disk(0.5, 1.0)?, disk(1.5, 3.0)?];
 /// let domain = Domain::new(0.0, 4.0, 0.0, 2.0);
-/// fields.on_sample(&Snapshot::new(1.0, &disks, domain, 0.0));
+/// fields.add(&Snapshot::new(1.0, &disks, domain, 0.0));
 /// let left = fields.cell(0, 0).unwrap();
 /// assert_eq!((left.number_density, left.velocity.x, left.translational_temperature), (0.5, 2.0, 0.5));
 /// assert_eq!(fields.cell(1, 0).unwrap().count, 0);
@@ -62,7 +61,6 @@ pub struct FieldCell {
 #[cfg_attr(feature = "serde", serde(try_from = "RawFields"))]
 pub struct Fields {
     grid: Grid,
-    sample_times: SampleTimes,
     sums: Vec<CellSums>,
     samples: u64,
 }
@@ -71,8 +69,8 @@ impl Fields {
     /// Creates fields over the cells of a grid.
     ///
     /// Disks outside are left out.
-    pub fn new(grid: Grid, times: SampleTimes) -> Self {
-        Self { grid, sample_times: times, sums: vec![CellSums::default(); grid.count()], samples: 0 }
+    pub fn new(grid: Grid) -> Self {
+        Self { grid, sums: vec![CellSums::default(); grid.count()], samples: 0 }
     }
 
     /// Returns the number of samples that were taken.
@@ -125,23 +123,14 @@ impl Fields {
     }
 }
 
-impl Observer for Fields {
-    fn on_start(&mut self, moment: &Moment) {
-        self.sample_times.start_at(moment.time());
-    }
-
-    fn next_sample(&self) -> f64 {
-        self.sample_times.upcoming()
-    }
-
-    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+impl Accumulator for Fields {
+    fn add(&mut self, snapshot: &Snapshot<'_>) {
         for disk in snapshot.disks() {
             if let Some(cell) = self.grid.find(disk.position()) {
                 self.sums[cell].add(disk);
             }
         }
         self.samples += 1;
-        self.sample_times.advance_past(snapshot.time());
     }
 }
 
@@ -150,7 +139,6 @@ impl Observer for Fields {
 #[serde(deny_unknown_fields, rename = "Fields")]
 struct RawFields {
     grid: Grid,
-    sample_times: SampleTimes,
     sums: Vec<CellSums>,
     samples: u64,
 }
@@ -160,11 +148,11 @@ impl TryFrom<RawFields> for Fields {
     type Error = crate::ParameterError;
 
     fn try_from(raw: RawFields) -> Result<Self, Self::Error> {
-        let RawFields { grid, sample_times, sums, samples } = raw;
+        let RawFields { grid, sums, samples } = raw;
         let given = sums.len();
         let requirement = "that of the cells";
         crate::quantity::accept(grid.count() == given, "number of sums", requirement, given as f64)?;
         sums.iter().try_for_each(CellSums::check)?;
-        Ok(Self { grid, sample_times, sums, samples })
+        Ok(Self { grid, sums, samples })
     }
 }

@@ -1,6 +1,6 @@
 //! Closures as observables and observers.
 
-use super::{Collision, Moment, Named, Observable, Observer, SampleTimes, Snapshot};
+use super::{Accumulator, Collision, Named, Observable, Observer, SampleTimes, Sampled, Snapshot};
 
 /// A closure that measures a snapshot; made by [`from_fn`].
 #[derive(Debug, Clone, Copy)]
@@ -82,10 +82,7 @@ impl<F: FnMut(&Collision)> Observer for OnCollision<F> {
 
 /// A closure that receives samples; made by [`on_sample`].
 #[derive(Debug, Clone)]
-pub struct OnSample<F> {
-    times: SampleTimes,
-    watch: F,
-}
+pub struct OnSample<F>(F);
 
 /// Makes an observer from a closure that receives a snapshot at each of these times.
 ///
@@ -95,21 +92,12 @@ pub struct OnSample<F> {
 /// assert_eq!(observer.next_sample(), 0.5);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
-pub const fn on_sample<F: FnMut(&Snapshot<'_>)>(times: SampleTimes, watch: F) -> OnSample<F> {
-    OnSample { times, watch }
+pub const fn on_sample<F: FnMut(&Snapshot<'_>)>(times: SampleTimes, watch: F) -> Sampled<OnSample<F>> {
+    Sampled::new(OnSample(watch), times)
 }
 
-impl<F: FnMut(&Snapshot<'_>)> Observer for OnSample<F> {
-    fn on_start(&mut self, moment: &Moment) {
-        self.times.start_at(moment.time());
-    }
-
-    fn next_sample(&self) -> f64 {
-        self.times.upcoming()
-    }
-
-    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-        (self.watch)(snapshot);
-        self.times.advance_past(snapshot.time());
+impl<F: FnMut(&Snapshot<'_>)> Accumulator for OnSample<F> {
+    fn add(&mut self, snapshot: &Snapshot<'_>) {
+        (self.0)(snapshot);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Moment, Observer, SampleTimes, Snapshot};
+use super::{Accumulator, Snapshot};
 use crate::statistics::Bins;
 use crate::{Disk, ParameterError};
 
@@ -47,7 +47,7 @@ impl DenseLayer {
     }
 }
 
-/// An observer that averages the packing fraction by height over samples.
+/// The packing fraction by height, averaged over samples.
 ///
 /// The packing fraction $`\phi(y)`$ is the area of the disks between two heights, divided by the area of the
 /// box there,
@@ -62,13 +62,13 @@ impl DenseLayer {
 /// ```
 /// use granular_edmd::boundary::Domain;
 /// use granular_edmd::glam::DVec2;
-/// use granular_edmd::observable::{HeightProfile, Observer, SampleTimes, Snapshot};
+/// use granular_edmd::observable::{Accumulator, HeightProfile, Snapshot};
 /// use granular_edmd::Disk;
 ///
-/// let mut profile = HeightProfile::new(0.0, 4.0, 4, SampleTimes::every(1.0)?)?;
+/// let mut profile = HeightProfile::new(0.0, 4.0, 4)?;
 /// let disks = [Disk::new(DVec2::new(1.0, 1.5), 0.5)?, Disk::new(DVec2::new(3.0, 2.0), 0.5)?];
 /// let domain = Domain::new(0.0, 4.0, 0.0, 6.0);
-/// profile.on_sample(&Snapshot::new(1.0, &disks, domain, 0.0));
+/// profile.add(&Snapshot::new(1.0, &disks, domain, 0.0));
 /// let disk = std::f64::consts::PI / 4.0;
 /// let expected = [0.0, 1.5 * disk / 4.0, 0.5 * disk / 4.0, 0.0];
 /// assert!(profile.iter().zip(expected).all(|((_, packing), expected)| (packing - expected).abs() < 1e-15));
@@ -79,7 +79,6 @@ impl DenseLayer {
 #[cfg_attr(feature = "serde", serde(try_from = "RawHeightProfile"))]
 pub struct HeightProfile {
     bins: Bins,
-    sample_times: SampleTimes,
     /// Packing fractions, summed over the samples.
     sums: Vec<f64>,
     samples: u64,
@@ -92,9 +91,9 @@ impl HeightProfile {
     ///
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of bins is not in `1..=2^20`.
-    pub fn new(bottom: f64, top: f64, bins: usize, times: SampleTimes) -> Result<Self, ParameterError> {
+    pub fn new(bottom: f64, top: f64, bins: usize) -> Result<Self, ParameterError> {
         let bins = Bins::new(bottom, top, bins)?;
-        Ok(Self { bins, sample_times: times, sums: vec![0.0; bins.count()], samples: 0 })
+        Ok(Self { bins, sums: vec![0.0; bins.count()], samples: 0 })
     }
 
     /// Returns the number of samples that were taken.
@@ -121,7 +120,7 @@ impl HeightProfile {
         self.samples = 0;
     }
 
-    fn add(&mut self, disk: &Disk, width: f64) {
+    fn add_disk(&mut self, disk: &Disk, width: f64) {
         let (height, radius) = (disk.position().y, disk.radius());
         // A disk outside the profile counts in the first or the last bin, to which it adds no area.
         let first = self.bins.at_or_above(height - radius);
@@ -141,20 +140,11 @@ fn area_below(height: f64, radius: f64) -> f64 {
     radius * radius * (0.5 * PI + libm::asin(sine) + sine * (1.0 - sine * sine).sqrt())
 }
 
-impl Observer for HeightProfile {
-    fn on_start(&mut self, moment: &Moment) {
-        self.sample_times.start_at(moment.time());
-    }
-
-    fn next_sample(&self) -> f64 {
-        self.sample_times.upcoming()
-    }
-
-    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+impl Accumulator for HeightProfile {
+    fn add(&mut self, snapshot: &Snapshot<'_>) {
         let width = snapshot.domain().width();
-        snapshot.disks().iter().for_each(|disk| self.add(disk, width));
+        snapshot.disks().iter().for_each(|disk| self.add_disk(disk, width));
         self.samples += 1;
-        self.sample_times.advance_past(snapshot.time());
     }
 }
 
@@ -163,7 +153,6 @@ impl Observer for HeightProfile {
 #[serde(deny_unknown_fields, rename = "HeightProfile")]
 struct RawHeightProfile {
     bins: Bins,
-    sample_times: SampleTimes,
     sums: Vec<f64>,
     samples: u64,
 }
@@ -173,10 +162,10 @@ impl TryFrom<RawHeightProfile> for HeightProfile {
     type Error = ParameterError;
 
     fn try_from(raw: RawHeightProfile) -> Result<Self, ParameterError> {
-        let RawHeightProfile { bins, sample_times, sums, samples } = raw;
+        let RawHeightProfile { bins, sums, samples } = raw;
         bins.check_count(sums.len())?;
         sums.iter()
             .try_for_each(|&sum| crate::quantity::finite("sum of packing fractions", sum).map(|_| ()))?;
-        Ok(Self { bins, sample_times, sums, samples })
+        Ok(Self { bins, sums, samples })
     }
 }

@@ -1,19 +1,18 @@
 //! The pair correlation function.
 
 use std::f64::consts::PI;
-use std::ops::ControlFlow;
 
 use glam::DVec2;
 
 use super::grid::{checked_region, inside};
-use super::{Moment, Observer, SampleTimes, Snapshot, Verdict};
+use super::{Accumulator, Moment, Snapshot};
 use crate::boundary::{Domain, Region};
 use crate::quantity::{accept, positive};
 use crate::squares::Squares;
 use crate::statistics::{Bins, BlockedMean, Estimate, RunningMean};
 use crate::{Disk, Kind, ParameterError};
 
-/// An observer of the pair correlation function g(r), also called radial distribution function.
+/// The pair correlation function g(r), also called radial distribution function.
 ///
 /// It is the number of disks at a distance $`r`$ from a disk, divided by that number in a gas without
 /// correlations,
@@ -41,13 +40,13 @@ use crate::{Disk, Kind, ParameterError};
 /// ```
 /// use granular_edmd::boundary::Container;
 /// use granular_edmd::collision::Elastic;
-/// use granular_edmd::observable::{PairCorrelation, SampleTimes};
+/// use granular_edmd::observable::{PairCorrelation, SampleTimes, Sampled};
 /// use granular_edmd::{Simulation, initial};
 ///
 /// let container = Container::periodic(30.0, 30.0)?;
 /// let disks = initial::random(&container, 200, 0.5, 30.0, 1)?;
 /// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
-/// let mut correlation = PairCorrelation::new(3.0, 30, SampleTimes::every(1.0)?)?;
+/// let mut correlation = Sampled::new(PairCorrelation::new(3.0, 30)?, SampleTimes::every(1.0)?);
 /// Simulation::builder(Elastic, container).disks(disks).build()?.run_until(50.0, &mut correlation)?;
 /// let values: Vec<f64> = correlation.iter().map(|(_, value)| value.mean()).collect();
 /// // Disks of diameter 1 do not overlap; at contact there are more than in a gas without correlations.
@@ -60,7 +59,6 @@ use crate::{Disk, Kind, ParameterError};
 #[cfg_attr(feature = "serde", serde(try_from = "RawPairCorrelation"))]
 pub struct PairCorrelation {
     bins: Bins,
-    sample_times: SampleTimes,
     kinds: Option<[Kind; 2]>,
     region: Option<Region>,
     /// Numbers of pairs over the area of the shell, for each bin.
@@ -69,9 +67,6 @@ pub struct PairCorrelation {
     centers: RunningMean,
     /// Number of partners in the region, over its area.
     partner_density: RunningMean,
-    /// The reason why nothing can be measured in this run.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    fault: Option<ParameterError>,
 }
 
 impl PairCorrelation {
@@ -80,17 +75,15 @@ impl PairCorrelation {
     ///
     /// # Errors
     /// If the range is not finite and positive, or the number of bins is not in `1..=2^20`.
-    pub fn new(range: f64, bins: usize, times: SampleTimes) -> Result<Self, ParameterError> {
+    pub fn new(range: f64, bins: usize) -> Result<Self, ParameterError> {
         positive("range of the correlation", range)?;
         Ok(Self {
             bins: Bins::new(0.0, range, bins)?,
-            sample_times: times,
             kinds: None,
             region: None,
             pairs: vec![BlockedMean::new(); bins],
             centers: RunningMean::default(),
             partner_density: RunningMean::default(),
-            fault: None,
         })
     }
 
@@ -189,18 +182,12 @@ impl PairCorrelation {
     }
 }
 
-impl Observer for PairCorrelation {
-    fn on_start(&mut self, moment: &Moment) {
-        self.fault = self.counted(&moment.domain()).err();
-        self.sample_times.start_at(moment.time());
+impl Accumulator for PairCorrelation {
+    fn check(&self, moment: &Moment) -> Result<(), ParameterError> {
+        self.counted(&moment.domain()).map(|_| ())
     }
 
-    fn next_sample(&self) -> f64 {
-        self.sample_times.upcoming()
-    }
-
-    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-        self.sample_times.advance_past(snapshot.time());
+    fn add(&mut self, snapshot: &Snapshot<'_>) {
         let (disks, domain) = (snapshot.disks(), snapshot.domain());
         let Ok(region) = self.counted(&domain) else { return };
         let count = |which, is_counted: &dyn Fn(&Disk) -> bool| {
@@ -218,10 +205,6 @@ impl Observer for PairCorrelation {
             self.pairs[bin].push(count as f64 / (PI * (high - low) * (high + low)));
         }
     }
-
-    fn verdict(&mut self) -> Verdict {
-        self.fault.take().map_or(Ok(ControlFlow::Continue(())), |fault| Err(fault.into()))
-    }
 }
 
 #[cfg(feature = "serde")]
@@ -229,7 +212,6 @@ impl Observer for PairCorrelation {
 #[serde(deny_unknown_fields, rename = "PairCorrelation")]
 struct RawPairCorrelation {
     bins: Bins,
-    sample_times: SampleTimes,
     kinds: Option<[Kind; 2]>,
     #[serde(deserialize_with = "super::grid::region_from_file")]
     region: Option<Region>,
@@ -243,7 +225,7 @@ impl TryFrom<RawPairCorrelation> for PairCorrelation {
     type Error = ParameterError;
 
     fn try_from(raw: RawPairCorrelation) -> Result<Self, ParameterError> {
-        let RawPairCorrelation { bins, sample_times, kinds, region, pairs, centers, partner_density } = raw;
+        let RawPairCorrelation { bins, kinds, region, pairs, centers, partner_density } = raw;
         bins.check_count(pairs.len())?;
         let starts_at_zero = bins.edge(0) == 0.0;
         accept(starts_at_zero, "least distance of the correlation", "0", bins.edge(0))?;
@@ -252,6 +234,6 @@ impl TryFrom<RawPairCorrelation> for PairCorrelation {
             let fits = count == centers.count();
             accept(fits, "number of samples of a bin", "that of the correlation", count as f64)?;
         }
-        Ok(Self { bins, sample_times, kinds, region, pairs, centers, partner_density, fault: None })
+        Ok(Self { bins, kinds, region, pairs, centers, partner_density })
     }
 }

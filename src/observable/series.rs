@@ -1,10 +1,15 @@
 //! Series of the values of an observable at set times.
 
-use super::{Moment, Observable, Observer, SampleTimes, Snapshot};
+use super::{Moment, Observable, Observer, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
+use crate::quantity::accept;
 use crate::statistics::{Estimate, block_average};
 
 /// An observer that keeps the values of an observable at set times.
+///
+/// The times increase. A run that starts before the last sample ends at once with an error: it is another run,
+/// for which the series must be [cleared](Self::clear), or the checkpoint from which it was resumed is older
+/// than the series.
 ///
 /// With the feature `serde`, a series can be written to a file and read back if its observable and its values
 /// can.
@@ -32,12 +37,15 @@ pub struct Series<Q: Observable> {
     sample_times: SampleTimes,
     times: Vec<f64>,
     values: Vec<Q::Value>,
+    /// The reason why this run cannot be added.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    fault: Option<ParameterError>,
 }
 
 impl<Q: Observable> Series<Q> {
     /// Creates a series of `observable` at these times.
     pub const fn new(observable: Q, times: SampleTimes) -> Self {
-        Self { observable, sample_times: times, times: Vec::new(), values: Vec::new() }
+        Self { observable, sample_times: times, times: Vec::new(), values: Vec::new(), fault: None }
     }
 
     /// Returns the observable.
@@ -93,7 +101,11 @@ impl<Q: Observable> Series<Q> {
 
 impl<Q: Observable> Observer for Series<Q> {
     fn on_start(&mut self, moment: &Moment) {
-        self.sample_times.start_at(moment.time());
+        let time = moment.time();
+        let goes_on = self.times.last().is_none_or(|&last| time >= last);
+        let requirement = "not before the last sample of the series; clear it for another run";
+        self.fault = accept(goes_on, "start of the run", requirement, time).err();
+        self.sample_times.start_at(time);
     }
 
     fn next_sample(&self) -> f64 {
@@ -104,6 +116,11 @@ impl<Q: Observable> Observer for Series<Q> {
         self.times.push(snapshot.time());
         self.values.push(self.observable.measure(snapshot));
         self.sample_times.advance_past(snapshot.time());
+    }
+
+    #[inline]
+    fn verdict(&mut self) -> Verdict {
+        contract::verdict(&mut self.fault)
     }
 }
 
@@ -130,7 +147,7 @@ mod serial {
             let count = values.len() as f64;
             accept(values.len() == times.len(), "number of values", "that of the times", count)?;
             times.iter().try_for_each(|&time| finite("time of a sample", time).map(|_| ()))?;
-            Ok(Self { observable, sample_times, times, values })
+            Ok(Self { observable, sample_times, times, values, fault: None })
         }
     }
 }

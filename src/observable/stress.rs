@@ -1,12 +1,10 @@
 //! The stress in a gas, from the momentum that disks carry and the momentum that collisions transfer.
 
-use std::ops::ControlFlow;
-
 use glam::DVec2;
 
 use super::grid::{checked_region, inside};
 use super::stretch::Stretch;
-use super::{Collision, Moment, Observer, SampleTimes, Snapshot, Verdict};
+use super::{Collision, Moment, Observer, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
 use crate::boundary::{Domain, Region};
 use crate::quantity::accept;
@@ -225,7 +223,7 @@ impl Observer for Stress {
     }
 
     fn verdict(&mut self) -> Verdict {
-        self.fault.take().map_or(Ok(ControlFlow::Continue(())), |fault| Err(fault.into()))
+        contract::verdict(&mut self.fault)
     }
 }
 

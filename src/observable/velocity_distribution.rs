@@ -3,11 +3,11 @@
 use glam::DVec2;
 
 use super::grid::CellSums;
-use super::{Grid, Moment, Observer, SampleTimes, Snapshot};
+use super::{Accumulator, Grid, Snapshot};
 use crate::statistics::{BlockedMean, Estimate, Histogram};
 use crate::{Disk, ParameterError};
 
-/// An observer of the distribution of velocities: histograms of both components and of the speed, cumulants
+/// The distribution of velocities: histograms of both components and of the speed, cumulants
 /// and kurtosis.
 ///
 /// Velocities are in units of the thermal speed of their sample, $`\vec c = \vec v/\sqrt{2T/m}`$, so that the
@@ -29,13 +29,14 @@ use crate::{Disk, ParameterError};
 /// ```
 /// use granular_edmd::boundary::Container;
 /// use granular_edmd::collision::Elastic;
-/// use granular_edmd::observable::{SampleTimes, VelocityDistribution};
+/// use granular_edmd::observable::{SampleTimes, Sampled, VelocityDistribution};
 /// use granular_edmd::{Simulation, initial};
 ///
 /// let container = Container::periodic(20.0, 20.0)?;
 /// let disks = initial::random(&container, 100, 0.5, 20.0, 1)?;
 /// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
-/// let mut velocities = VelocityDistribution::new(4.0, 20, SampleTimes::every(2.0)?)?.about_mean();
+/// let velocities = VelocityDistribution::new(4.0, 20)?.about_mean();
+/// let mut velocities = Sampled::new(velocities, SampleTimes::every(2.0)?);
 /// Simulation::builder(Elastic, container).disks(disks).build()?.run_until(400.0, &mut velocities)?;
 /// assert!(velocities.second_cumulant().mean().abs() < 0.05);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -43,7 +44,6 @@ use crate::{Disk, ParameterError};
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct VelocityDistribution {
-    sample_times: SampleTimes,
     frame: Frame,
     components: [Histogram; 2],
     speed: Histogram,
@@ -66,11 +66,10 @@ impl VelocityDistribution {
     ///
     /// # Errors
     /// If `largest` is not finite and positive, or the number of bins is not in `1..=2^20`.
-    pub fn new(largest: f64, bins: usize, times: SampleTimes) -> Result<Self, ParameterError> {
+    pub fn new(largest: f64, bins: usize) -> Result<Self, ParameterError> {
         let speed = Histogram::new(0.0, largest, bins)?;
         let component = Histogram::new(-largest, largest, bins)?;
         Ok(Self {
-            sample_times: times,
             frame: Frame::Container,
             components: [component.clone(), component],
             speed,
@@ -184,17 +183,8 @@ fn relative_moment(moment: f64, squares: f64, order: i32, shares: f64, freedom: 
     moment / powers(squares, 0.0) * powers(freedom, 2.0) / (normal * shares)
 }
 
-impl Observer for VelocityDistribution {
-    fn on_start(&mut self, moment: &Moment) {
-        self.sample_times.start_at(moment.time());
-    }
-
-    fn next_sample(&self) -> f64 {
-        self.sample_times.upcoming()
-    }
-
-    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-        self.sample_times.advance_past(snapshot.time());
+impl Accumulator for VelocityDistribution {
+    fn add(&mut self, snapshot: &Snapshot<'_>) {
         let (peculiar, freedom) = self.frame.peculiar(snapshot.disks());
         let sum = |term: &dyn Fn(DVec2, f64) -> f64| peculiar.iter().map(|&(v, left)| term(v, left)).sum();
         let squares: f64 = sum(&|v, _| v.length_squared());

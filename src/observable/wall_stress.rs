@@ -1,10 +1,9 @@
 //! The stress on walls.
 
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
 
 use super::stretch::Stretch;
-use super::{Collision, Moment, Observer, Partner, SampleTimes, Snapshot, Verdict};
+use super::{Collision, Moment, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
 use crate::quantity::{Checked, Quantity, Range, accept};
 use crate::statistics::{BlockedMean, Estimate};
@@ -105,12 +104,15 @@ impl WallStress {
     }
 }
 
+/// Checks that the boundary of a run has the wall of this index.
+pub(super) fn check_wall(wall: usize, moment: &Moment) -> Result<f64, ParameterError> {
+    let is_there = wall < moment.wall_count();
+    accept(is_there, "index of a wall", "less than the number of walls", wall as f64)
+}
+
 impl Observer for WallStress {
     fn on_start(&mut self, moment: &Moment) {
-        let last = self.walls.keys().last().copied().unwrap_or(0);
-        let is_there = self.walls.is_empty() || last < moment.wall_count();
-        let requirement = "less than the number of walls";
-        self.fault = accept(is_there, "index of a wall", requirement, last as f64).err();
+        self.fault = self.walls.keys().find_map(|&wall| check_wall(wall, moment).err());
         if self.stretch.begin(moment.time()) {
             self.walls.values_mut().for_each(|received| received.impulse = [0.0; 2]);
         }
@@ -144,6 +146,6 @@ impl Observer for WallStress {
     }
 
     fn verdict(&mut self) -> Verdict {
-        self.fault.take().map_or(Ok(ControlFlow::Continue(())), |fault| Err(fault.into()))
+        contract::verdict(&mut self.fault)
     }
 }

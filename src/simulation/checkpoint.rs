@@ -4,6 +4,7 @@
 //! `resumption.rs` turns them into a run.
 
 mod resumption;
+mod together;
 mod validation;
 
 use std::fmt;
@@ -183,14 +184,7 @@ impl Checkpoint {
     /// # Errors
     /// If the bytes are not a checkpoint, are of another version, or were cut or changed.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
-        let sealed = SEAL.open(bytes).map_err(|broken| match broken {
-            Broken::Foreign => CheckpointError::NotACheckpoint,
-            Broken::Version(found) => CheckpointError::Version { found, known: SEAL.version },
-            Broken::Cut | Broken::Changed => CheckpointError::Damaged,
-        })?;
-        let (saved, rest) = postcard::take_from_bytes(sealed).map_err(contents)?;
-        validation::check(rest.is_empty(), "something follows it")?;
-        Ok(Self(saved))
+        decoded(opened(SEAL, bytes)?).map(Self)
     }
 
     /// Writes the checkpoint to a file, whole or not at all.
@@ -208,10 +202,29 @@ impl Checkpoint {
     /// # Errors
     /// If the file cannot be read, or [`Self::from_bytes`] refuses its contents. The error names the file.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, CheckpointError> {
-        let path = path.as_ref();
-        let unusable = |source| CheckpointError::File { path: path.to_owned(), source: Box::new(source) };
-        Self::from_bytes(&std::fs::read(path).map_err(failed("read", path))?).map_err(unusable)
+        read(path.as_ref(), Self::from_bytes)
     }
+}
+
+/// Reads a file, and names it in each error.
+fn read<T>(path: &Path, parse: impl Fn(&[u8]) -> Result<T, CheckpointError>) -> Result<T, CheckpointError> {
+    let unusable = |source| CheckpointError::File { path: path.to_owned(), source: Box::new(source) };
+    parse(&std::fs::read(path).map_err(failed("read", path))?).map_err(unusable)
+}
+
+/// Returns the contents behind a seal.
+fn opened(seal: Seal, bytes: &[u8]) -> Result<&[u8], CheckpointError> {
+    seal.open(bytes).map_err(|broken| match broken {
+        Broken::Foreign => CheckpointError::NotACheckpoint,
+        Broken::Version(found) => CheckpointError::Version { found, known: seal.version },
+        Broken::Cut | Broken::Changed => CheckpointError::Damaged,
+    })
+}
+
+fn decoded<T: de::DeserializeOwned>(bytes: &[u8]) -> Result<T, CheckpointError> {
+    let (value, rest) = postcard::take_from_bytes(bytes).map_err(contents)?;
+    validation::check(rest.is_empty(), "something follows it")?;
+    Ok(value)
 }
 
 fn failed(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> CheckpointError {

@@ -7,11 +7,9 @@ mod measured;
 mod states;
 
 use granular_edmd::ParameterError;
-use granular_edmd::analysis::ConvectiveRegime::{Coexistence, Collapsed, Conductive, OneRoll, TwoRolls};
-use granular_edmd::analysis::{TransitionLine, line_average, transitions};
-use granular_edmd::collision::Frictional;
+use granular_edmd::analysis::ConvectiveRegime::{Coexistence, Collapsed, NoRoll, OneRoll, TwoRolls};
+use granular_edmd::analysis::{TransitionLine, transitions};
 use granular_edmd::glam::DVec2;
-use granular_edmd::kinetic::{IsoLine, Maxwellian};
 use granular_edmd::statistics::{RunningMean, block_average};
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -116,7 +114,7 @@ fn re_entrance_is_found_both_ways() -> Outcome {
     use TransitionLine::{OneTwoBeginning, OneTwoEnd, TwoCollapse, ZeroOne};
     // The states at q = 0, g = 1/64.
     let ramp = [
-        (0.01, Conductive),
+        (0.01, NoRoll),
         (0.02, OneRoll),
         (0.0575, OneRoll),
         (0.059, Coexistence),
@@ -158,32 +156,9 @@ fn hysteresis_is_the_difference_of_ramps() -> Outcome {
     let both = transitions(ramp(12.5).chain(ramp(7.5)))?;
     assert_eq!(both.iter().map(|point| point.value).collect::<Vec<_>>(), [7.5, 12.5]);
     // The other lines have no hysteresis. What remains open is part of the error.
-    let disagree = [(1.0, Conductive), (2.0, Conductive), (2.0, OneRoll), (3.0, OneRoll)];
+    let disagree = [(1.0, NoRoll), (2.0, NoRoll), (2.0, OneRoll), (3.0, OneRoll)];
     let found = transitions(disagree)?;
     assert_eq!((found.len(), found[0].value, found[0].error), (1, 2.0, 1.0));
     assert!(transitions([])?.is_empty() && transitions([(f64::NAN, OneRoll)]).is_err());
-    Ok(())
-}
-
-#[test]
-fn line_of_equal_loss_has_no_scatter() -> Outcome {
-    let gas = Maxwellian::new(2.0)?;
-    let line = IsoLine::new(-0.2, &gas)?;
-    let mut points = Vec::new();
-    for friction in [0.0, 0.01, 0.02, 1.5, 3.0] {
-        for inelasticity in line.inelasticities(friction)? {
-            points.push(Frictional::from_inelasticity(inelasticity, inelasticity, friction)?);
-        }
-    }
-    let average = line_average(&points, &gas)?;
-    assert!((average.energy_change().mean() + 0.2).abs() < 1e-12);
-    assert!(average.energy_change().standard_deviation() < 1e-12);
-    let effective = average.effective_inelasticity();
-    assert!((effective.mean() - 0.5 * (1.0 - 0.9_f64.sqrt())).abs() < 1e-12);
-    assert!(line_average(&[], &gas).is_err());
-    assert!(
-        line_average(&[Frictional::from_inelasticity(0.2, 0.2, 0.47)?], &gas).is_err(),
-        "more than smooth disks can lose"
-    );
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! The names of states, from clusters and layers.
 
 use granular_edmd::ParameterError;
-use granular_edmd::analysis::ConvectiveRegime::{Coexistence, Collapsed, Conductive, OneRoll, TwoRolls};
+use granular_edmd::analysis::ConvectiveRegime::{Coexistence, Collapsed, NoRoll, OneRoll, TwoRolls};
 use granular_edmd::analysis::{
     ConvectiveRegime, ConvectiveState, StateCriteria, TransitionLine, thermal_noise,
 };
@@ -64,7 +64,7 @@ fn a_lean_on_the_way_to_the_collapse_is_no_coexistence() -> Outcome {
 }
 
 #[test]
-fn correlated_noise_of_a_gas_at_rest_is_conductive() -> Outcome {
+fn correlated_noise_of_a_gas_at_rest_is_no_roll() -> Outcome {
     for seed in 0..5 {
         let mut random = Random::new(seed);
         // Twenty samples tell as much as one, so there are 25 independent ones in all.
@@ -77,7 +77,7 @@ fn correlated_noise_of_a_gas_at_rest_is_conductive() -> Outcome {
             })
             .collect();
         let found = StateCriteria::default().classify(&orders(&points), NOISE, None)?;
-        assert_eq!((found.regime(), found.clusters().len()), (Conductive, 1), "seed {seed}");
+        assert_eq!((found.regime(), found.clusters().len()), (NoRoll, 1), "seed {seed}");
     }
     Ok(())
 }
@@ -91,7 +91,7 @@ fn names_follow_the_mirror() -> Outcome {
     assert_eq!(name(-0.118, 0.045)?, ConvectiveState::CounterclockwiseRoll);
     assert_eq!(name(0.01, 0.122)?, ConvectiveState::TwoRollsUp);
     assert_eq!(name(0.01, -0.122)?, ConvectiveState::TwoRollsDown);
-    assert_eq!(name(2.9 * NOISE, 0.0)?, ConvectiveState::Conductive);
+    assert_eq!(name(2.9 * NOISE, 0.0)?, ConvectiveState::NoRoll);
     assert_eq!(name(3.1 * NOISE, 0.0)?, ConvectiveState::ClockwiseRoll);
     assert_eq!(name(0.1, -0.19)?, ConvectiveState::ClockwiseRoll, "one roll leans to a side");
     assert_eq!(name(0.1, -0.21)?, ConvectiveState::TwoRollsDown);
@@ -103,7 +103,7 @@ fn states_regimes_and_lines_have_the_names_of_the_paper() {
     assert_eq!(ConvectiveState::TwoRollsUp.to_string(), "two rolls, up in the middle");
     assert_eq!(Coexistence.to_string(), "coexistence of one roll and two");
     assert_eq!(TransitionLine::OneTwoBeginning.to_string(), "1-2(a)");
-    let rolls = [ConvectiveState::Conductive, ConvectiveState::TwoRollsDown, ConvectiveState::Collapsed];
+    let rolls = [ConvectiveState::NoRoll, ConvectiveState::TwoRollsDown, ConvectiveState::Collapsed];
     assert_eq!(rolls.map(ConvectiveState::rolls), [Some(0), Some(2), None]);
 }
 
@@ -115,12 +115,12 @@ fn collapse_needs_a_compact_layer_on_a_gas_without_rolls() -> Outcome {
         Ok(StateCriteria::default().classify(&samples, 0.0067, layer)?.regime())
     };
     assert_eq!(regime(0.02, Some(layer(0.67, 0.13)))?, Collapsed);
-    assert_eq!(regime(0.02, None)?, Conductive);
+    assert_eq!(regime(0.02, None)?, NoRoll);
     assert_eq!(regime(0.105, Some(layer(0.67, 0.13)))?, TwoRolls, "rolls are alive");
-    assert_eq!(regime(0.02, Some(layer(0.45, 0.13)))?, Conductive, "not compact");
-    assert_eq!(regime(0.0, Some(layer(0.84, 0.84)))?, Conductive, "a sediment on the floor");
-    assert_eq!(regime(0.0, Some(layer(0.8, 0.4)))?, Conductive, "on no less than half of its density");
-    assert_eq!(regime(0.0, Some(layer(0.60, 0.13)))?, Conductive, "no more than compact");
+    assert_eq!(regime(0.02, Some(layer(0.45, 0.13)))?, NoRoll, "not compact");
+    assert_eq!(regime(0.0, Some(layer(0.84, 0.84)))?, NoRoll, "a sediment on the floor");
+    assert_eq!(regime(0.0, Some(layer(0.8, 0.4)))?, NoRoll, "on no less than half of its density");
+    assert_eq!(regime(0.0, Some(layer(0.60, 0.13)))?, NoRoll, "no more than compact");
     assert_eq!(regime(0.03, Some(layer(0.67, 0.13)))?, TwoRolls, "rolls no less than dead");
     // Near the transition: in most samples there is no flow, in some there are two rolls.
     let turns = [0.0, 0.0, 0.0, 0.14].map(|two_rolls| ConvectionOrder::new(0.0, two_rolls));
@@ -141,7 +141,7 @@ fn equal_weights_have_a_name_all_the_same() -> Outcome {
         criteria.classify(&orders(&points), 0.0, None)
     };
     assert_eq!(found(&[one, back])?.state(), ConvectiveState::CounterclockwiseRoll, "the first cluster");
-    assert_eq!(found(&[none, one])?.regime(), Conductive);
+    assert_eq!(found(&[none, one])?.regime(), NoRoll);
     assert_eq!(found(&[one, two])?.regime(), Coexistence);
     assert_eq!(found(&[one, one, two, two, none])?.regime(), TwoRolls, "each has less than the least weight");
     assert_eq!(found(&[one, one, back, two])?.regime(), OneRoll);

@@ -121,14 +121,14 @@ fn watching() -> Vec<Case> {
     vec![
         ("sampling interval", |value| told(SampleTimes::every(value)), positive),
         ("first sampling time", |value| told(times().starting_at(value)), f64::is_finite),
-        ("upper end of the bins", |value| told(HeightProfile::new(0.0, value, 1, times())), positive),
+        ("upper end of the bins", |value| told(HeightProfile::new(0.0, value, 1)), positive),
         (
             "lower end of the bins",
-            |value| told(HeightProfile::new(value, 2.0, 1, times())),
+            |value| told(HeightProfile::new(value, 2.0, 1)),
             |value| value.is_finite() && value < 2.0,
         ),
-        ("upper end of the bins", |value| told(EnergyChangeProfile::new(0.0, value, 1, times())), positive),
-        ("range of the correlation", |value| told(PairCorrelation::new(value, 1, times())), positive),
+        ("upper end of the bins", |value| told(EnergyChangeProfile::new(0.0, value, 1)), positive),
+        ("range of the correlation", |value| told(PairCorrelation::new(value, 1)), positive),
         ("length of a wall", |value| told(WallStress::new(times()).with_wall(0, value)), positive),
         ("upper end of the bins", |value| told(Histogram::new(0.0, value, 1)), positive),
         ("edge of the region", |value| told(grid(value)), |value| value > 1.0 && value.is_finite()),

@@ -2,8 +2,7 @@
 //! answer or an error, at once.
 
 use granular_edmd::analysis::{
-    ConvectiveRegime, KMeans, StateCriteria, distinct_clusters, line_average, plane_transitions,
-    thermal_noise, transitions,
+    ConvectiveRegime, KMeans, StateCriteria, distinct_clusters, thermal_noise, transitions,
 };
 use granular_edmd::boundary::{Boundary, Container, Region, Wall};
 use granular_edmd::collision::{Elastic, Encounter, Frictional, collide};
@@ -14,7 +13,7 @@ use granular_edmd::kinetic::{
 };
 use granular_edmd::observable::{
     CenterOfMass, ConvectionOrder, DenseLayer, Energies, EnergyChangeProfile, Fields, Grid, HeightProfile,
-    OrderParameters, SampleTimes, Temperatures,
+    OrderParameters, SampleTimes, Sampled, Temperatures,
 };
 use granular_edmd::statistics::block_average;
 use granular_edmd::wall::BiParabolic;
@@ -40,8 +39,10 @@ fn a_run_of_none_one_or_two_is_measured_under_each_scheduler() {
         let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
         let builder = Simulation::builder(Elastic, container.clone()).disks(disks).scheduler(scheduler());
         let mut run = builder.build().unwrap();
-        let mut watched =
-            (HeightProfile::new(0.0, 5.0, 5, times()).unwrap(), Fields::new(grid(2, 2).unwrap(), times()));
+        let mut watched = (
+            Sampled::new(HeightProfile::new(0.0, 5.0, 5).unwrap(), times()),
+            Sampled::new(Fields::new(grid(2, 2).unwrap()), times()),
+        );
         run.run_until(20.0, &mut watched).unwrap();
         let (order, height) = (run.measure(&OrderParameters), run.measure(&CenterOfMass).y);
         let (energy, temperature) = (run.measure(&Energies), run.measure(&Temperatures));
@@ -60,8 +61,8 @@ fn grid(columns: usize, rows: usize) -> Result<Grid, granular_edmd::ParameterErr
 fn grids_and_profiles_have_a_number_of_cells_that_fits_into_memory() {
     for count in COUNTS {
         let possible = (1..100).contains(&count);
-        assert_eq!(HeightProfile::new(0.0, 1.0, count, times()).is_ok(), possible, "{count}");
-        assert_eq!(EnergyChangeProfile::new(0.0, 1.0, count, times()).is_ok(), possible, "{count}");
+        assert_eq!(HeightProfile::new(0.0, 1.0, count).is_ok(), possible, "{count}");
+        assert_eq!(EnergyChangeProfile::new(0.0, 1.0, count).is_ok(), possible, "{count}");
         assert_eq!(grid(count, 1).is_ok(), possible, "{count}");
         assert_eq!(grid(count, count).is_ok(), possible, "{count}");
     }
@@ -98,8 +99,6 @@ fn analysis_of_none_one_or_two_is_an_answer_or_an_error() {
         assert_eq!(StateCriteria::default().classify(&order, 0.1, None).is_ok(), count > 0);
         let seen = samples.iter().map(|&x| (x, ConvectiveRegime::OneRoll));
         assert!(transitions(seen).unwrap().is_empty());
-        let seen = samples.iter().map(|&x| (1.0 + x, 0.0, ConvectiveRegime::OneRoll));
-        assert!(plane_transitions(seen).unwrap().is_empty());
     }
     for clusters in COUNTS {
         assert_eq!(
@@ -107,14 +106,10 @@ fn analysis_of_none_one_or_two_is_an_answer_or_an_error() {
             (1..=2).contains(&clusters)
         );
     }
-    let gas = Maxwellian::new(1.0).unwrap();
-    assert!(line_average(&[], &gas).is_err());
     assert!(thermal_noise(1.0, 1.0, 0).is_err());
     assert!(DenseLayer::among([]).is_none());
     for bad in [f64::NAN, f64::INFINITY] {
         assert!(transitions([(bad, ConvectiveRegime::OneRoll)]).is_err());
-        assert!(plane_transitions([(1.0, bad, ConvectiveRegime::OneRoll)]).is_err());
-        assert!(plane_transitions([(bad, 0.0, ConvectiveRegime::OneRoll)]).is_err());
         assert!(block_average(&[bad, 1.0]).is_err());
         assert!(distinct_clusters(&[DVec2::splat(bad)], 0.1, 1).is_err());
     }

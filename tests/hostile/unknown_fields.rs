@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use granular_edmd::analysis::{PlaneTransition, Transition};
+use granular_edmd::analysis::Transition;
 use granular_edmd::boundary::{Boundary, Brick, Container, Part, Thermal, Vessel, Wall};
 use granular_edmd::collision::{
     ContactDuration, ElasticBelow, Frictional, LeastRebound, Rough, Smooth, SpeedDependent,
@@ -12,8 +12,8 @@ use granular_edmd::kinetic::Maxwellian;
 use granular_edmd::observable::{
     CenterOfMass, CollisionCounts, CollisionHistograms, Energies, EnergyChange, EnergyChangeProfile, Fields,
     Grid, HeightProfile, MeanSquaredDisplacement, Observer, OrderParameters, PairCorrelation, SampleTimes,
-    Series, Stress, Temperatures, TemperaturesAboutFlow, TimeCorrelation, Velocities, VelocityDistribution,
-    WallStress,
+    Sampled, Series, Stress, Temperatures, TemperaturesAboutFlow, TimeCorrelation, Velocities,
+    VelocityDistribution, WallStress,
 };
 use granular_edmd::simulation::Checkpoint;
 use granular_edmd::statistics::BlockedMean;
@@ -130,14 +130,11 @@ fn what_was_measured_with_a_field_too_many_is_refused() {
     refuses(&run.measure(&Energies));
     refuses(&run.measure(&Temperatures));
     let region = granular_edmd::boundary::Region::new(DVec2::ZERO, DVec2::ONE);
-    let fields = Fields::new(Grid::new(region, 1, 1).unwrap(), SampleTimes::every(1.0).unwrap());
+    let fields =
+        Sampled::new(Fields::new(Grid::new(region, 1, 1).unwrap()), SampleTimes::every(1.0).unwrap());
     refuses(&fields.cell(0, 0).unwrap());
     let transition = json!({ "line": "ZeroOne", "value": 0.1, "error": 0.01, "rising": true });
     refuses(&serde_json::from_value::<Transition>(transition).unwrap());
-    let transition = json!({
-        "line": "ZeroOne", "friction": 0.1, "inelasticity": 0.0, "between": [[0.1, 0.0], [0.2, 0.0]], "rising": true
-    });
-    refuses(&serde_json::from_value::<PlaneTransition>(transition).unwrap());
 }
 
 #[test]
@@ -151,16 +148,17 @@ fn measurements_with_a_field_too_many_are_refused() {
     let mut series = Series::new((CenterOfMass, Energies), times);
     let mut change = EnergyChange::default();
     let mut counts = CollisionCounts::default();
-    let mut layers = EnergyChangeProfile::new(0.0, 10.0, 1, times.starting_at(0.3).unwrap()).unwrap();
-    let mut heights = HeightProfile::new(0.0, 10.0, 2, times).unwrap();
-    let mut fields = Fields::new(Grid::new(region, 1, 1).unwrap(), times);
+    let mut layers =
+        Sampled::new(EnergyChangeProfile::new(0.0, 10.0, 1).unwrap(), times.starting_at(0.3).unwrap());
+    let mut heights = Sampled::new(HeightProfile::new(0.0, 10.0, 2).unwrap(), times);
+    let mut fields = Sampled::new(Fields::new(Grid::new(region, 1, 1).unwrap()), times);
     let grid = Grid::new(region, 2, 1).unwrap();
-    let mut pairs = PairCorrelation::new(1.0, 2, times).unwrap().within(region).unwrap();
+    let mut pairs = Sampled::new(PairCorrelation::new(1.0, 2).unwrap().within(region).unwrap(), times);
     let mut displacement = MeanSquaredDisplacement::new(2, times).unwrap();
     let mut memory = TimeCorrelation::new(Velocities, 2, times).unwrap();
     let mut stress = Stress::new(times).within(region).unwrap();
     let mut walls = WallStress::new(times).with_wall(0, 10.0).unwrap();
-    let mut velocities = VelocityDistribution::new(3.0, 2, times).unwrap().about_flow(grid);
+    let mut velocities = Sampled::new(VelocityDistribution::new(3.0, 2).unwrap().about_flow(grid), times);
     let mut histograms = CollisionHistograms::new(3.0, 3.0, 2).unwrap();
     let end = run.time() + 5.0;
     let mut structure = (&mut pairs, &mut displacement, &mut memory, &mut velocities, &mut histograms);

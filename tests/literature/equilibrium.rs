@@ -6,7 +6,8 @@ use granular_edmd::Disk;
 use granular_edmd::collision::{Elastic, Frictional, Rough};
 use granular_edmd::kinetic::{Maxwellian, sticking_fraction};
 use granular_edmd::observable::{
-    Collision, Energies, HeightProfile, Partner, SampleTimes, Snapshot, Temperatures, on_collision, on_sample,
+    Collision, Energies, HeightProfile, Partner, SampleTimes, Sampled, Snapshot, Temperatures, on_collision,
+    on_sample,
 };
 use granular_edmd::statistics::RunningMean;
 
@@ -37,7 +38,7 @@ fn pressures(gas: &Gas, duration: f64) -> Result<Pressures, Box<dyn std::error::
     let (mut wall, mut pairs, mut vertical) = (0.0, 0.0, RunningMean::default());
     let times = SampleTimes::every(0.2)?.starting_at(start)?;
     let edge = 6.0_f64.min(0.3 * gas.height);
-    let mut profile = HeightProfile::new(edge, gas.height - edge, 1, times)?;
+    let mut profile = Sampled::new(HeightProfile::new(edge, gas.height - edge, 1)?, times);
     let watch = |c: &Collision| match c.partner {
         Partner::Wall(_) => wall += c.impulse.normal(),
         Partner::Disk(_) => pairs += c.impulse.normal() * c.distance * c.normal.y * c.normal.y,
@@ -100,7 +101,8 @@ fn collision_rate_is_that_of_enskog() -> Outcome {
         run_for(&mut simulation, 20.0, &mut ())?;
         let (start, duration) = (simulation.time(), 400.0 / enskog_rate(gas.density(), *packing, *z));
         let (bottom, top) = (0.25 * gas.height, 0.75 * gas.height);
-        let mut profile = HeightProfile::new(bottom, top, 1, SampleTimes::every(0.1)?.starting_at(start)?)?;
+        let mut profile =
+            Sampled::new(HeightProfile::new(bottom, top, 1)?, SampleTimes::every(0.1)?.starting_at(start)?);
         let mut inside = 0_u32;
         let watch = |c: &Collision| {
             let middle = c.position.y - 0.5 * c.normal.y;

@@ -3,7 +3,7 @@
 use granular_edmd::boundary::Region;
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{PairCorrelation, SampleTimes};
+use granular_edmd::observable::{PairCorrelation, SampleTimes, Sampled};
 
 use crate::gas::{collision_rate, contact_value, periodic_gas, run_for};
 use crate::mixtures::{LARGE, Mixture, SMALL, Species};
@@ -32,7 +32,7 @@ fn the_pair_correlation_at_contact_is_that_of_the_pressure() -> Outcome {
     for packing in [0.1, 0.3] {
         let mut gas = periodic_gas(1000, packing, Elastic, 1)?;
         let interval = 1.0 / collision_rate(packing);
-        let mut correlation = PairCorrelation::new(2.0, 100, SampleTimes::every(interval)?)?;
+        let mut correlation = Sampled::new(PairCorrelation::new(2.0, 100)?, SampleTimes::every(interval)?);
         gas.run_until(gas.time() + 400.5 * interval, &mut correlation)?;
         assert!(correlation.iter().take(50).all(|(_, value)| value.mean() == 0.0), "disks overlap");
         // Each bin holds 6000 pairs or more: 1.3 %. The constant of a parabola through 20 of them has three
@@ -47,7 +47,7 @@ fn the_pair_correlation_at_contact_is_that_of_the_pressure() -> Outcome {
 fn far_pairs_are_not_correlated() -> Outcome {
     let mut gas = periodic_gas(1000, 0.1, Elastic, 2)?;
     let times = SampleTimes::every(1.0 / collision_rate(0.1))?;
-    let mut correlation = PairCorrelation::new(10.0, 20, times)?;
+    let mut correlation = Sampled::new(PairCorrelation::new(10.0, 20)?, times);
     gas.run_until(gas.time() + 400.0 * times.interval(), &mut correlation)?;
     // Beyond 5 diameters, g - 1 is below 1e-3 at this density, in a box of fixed number up to 1/N.
     for (distance, value) in correlation.iter().filter(|(distance, _)| *distance > 5.0) {
@@ -63,8 +63,8 @@ fn a_part_of_the_box_has_the_correlation_of_the_whole() -> Outcome {
     let mut gas = periodic_gas(1000, 0.3, Elastic, 3)?;
     let times = SampleTimes::every(1.0 / collision_rate(0.3))?;
     let part = Region::new(DVec2::splat(10.0), DVec2::splat(14.0));
-    let mut whole = PairCorrelation::new(3.0, 6, times)?;
-    let mut around = PairCorrelation::new(3.0, 6, times)?.within(part)?;
+    let mut whole = Sampled::new(PairCorrelation::new(3.0, 6)?, times);
+    let mut around = Sampled::new(PairCorrelation::new(3.0, 6)?.within(part)?, times);
     gas.run_until(gas.time() + 4000.0 * times.interval(), &mut (&mut whole, &mut around))?;
     // The part holds 6 disks on average, so each bin has some 1e5 pairs; blocks of correlated samples and the
     // scatter of the number of disks leave 1 %.
@@ -83,7 +83,8 @@ fn a_mixture_has_three_pair_correlations() -> Outcome {
     let mut run = mixture.simulation(Elastic, 1)?;
     run_for(&mut run, 20.0, &mut ())?;
     let times = SampleTimes::every(1.0)?;
-    let correlation = |first, second| Ok(PairCorrelation::new(3.0, 120, times)?.between(first, second));
+    let correlation =
+        |first, second| Ok(Sampled::new(PairCorrelation::new(3.0, 120)?.between(first, second), times));
     let correlations: Result<Vec<_>, granular_edmd::ParameterError> =
         [(SMALL, SMALL), (SMALL, LARGE), (LARGE, LARGE)]
             .map(|(i, j)| correlation(i, j))

@@ -1,13 +1,13 @@
 //! Velocity distributions and their cumulants.
 
 use granular_edmd::collision::{Elastic, Smooth};
-use granular_edmd::observable::{Observer, SampleTimes, VelocityDistribution};
+use granular_edmd::observable::{Observer, SampleTimes, Sampled, VelocityDistribution};
 
 use crate::gas::{periodic_gas, run_for};
 use crate::{Outcome, measured};
 
-fn distribution() -> Result<VelocityDistribution, Box<dyn std::error::Error>> {
-    Ok(VelocityDistribution::new(3.0, 30, SampleTimes::every(1.0)?)?.about_mean())
+fn distribution() -> Result<Sampled<VelocityDistribution>, Box<dyn std::error::Error>> {
+    Ok(Sampled::new(VelocityDistribution::new(3.0, 30)?.about_mean(), SampleTimes::every(1.0)?))
 }
 
 #[test]

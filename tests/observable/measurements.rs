@@ -6,9 +6,10 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
     CenterOfMass, CollisionCounts, CollisionHistograms, Energies, EnergyChange, EnergyChangeProfile, Fields,
     Grid, HeightProfile, MeanSquaredDisplacement, Moment, Observer, OrderParameters, PairCorrelation,
-    SampleTimes, Series, Stress, Temperatures, TemperaturesAboutFlow, TimeCorrelation, Velocities,
+    SampleTimes, Sampled, Series, Stress, Temperatures, TemperaturesAboutFlow, TimeCorrelation, Velocities,
     VelocityDistribution, WallStress,
 };
+use granular_edmd::simulation::Checkpoint;
 use granular_edmd::statistics::{BlockedMean, Estimate, Histogram, RunningMean};
 use granular_edmd::wall::BiParabolic;
 use granular_edmd::{ParameterError, Simulation, initial};
@@ -24,9 +25,9 @@ type Rule = ContactDuration<Frictional>;
 type Watchers = (
     Series<((OrderParameters, CenterOfMass), (Energies, Temperatures))>,
     (EnergyChange, CollisionCounts),
-    EnergyChangeProfile,
-    (HeightProfile, Fields, VelocityDistribution, CollisionHistograms),
-    (PairCorrelation, MeanSquaredDisplacement, TimeCorrelation<Velocities>),
+    Sampled<EnergyChangeProfile>,
+    (Sampled<HeightProfile>, Sampled<Fields>, Sampled<VelocityDistribution>, CollisionHistograms),
+    (Sampled<PairCorrelation>, MeanSquaredDisplacement, TimeCorrelation<Velocities>),
     (Stress, WallStress, Series<TemperaturesAboutFlow>),
 );
 
@@ -41,15 +42,15 @@ fn watchers() -> Result<Watchers, ParameterError> {
     Ok((
         Series::new(observables, times),
         (EnergyChange::default(), CollisionCounts::default()),
-        EnergyChangeProfile::new(0.0, 20.0, 5, times.starting_at(0.7)?)?,
+        Sampled::new(EnergyChangeProfile::new(0.0, 20.0, 5)?, times.starting_at(0.7)?),
         (
-            HeightProfile::new(0.0, 20.0, 7, times)?,
-            Fields::new(Grid::new(region, 3, 4)?, times),
-            VelocityDistribution::new(3.0, 6, times)?.about_flow(grid),
+            Sampled::new(HeightProfile::new(0.0, 20.0, 7)?, times),
+            Sampled::new(Fields::new(Grid::new(region, 3, 4)?), times),
+            Sampled::new(VelocityDistribution::new(3.0, 6)?.about_flow(grid), times),
             CollisionHistograms::new(5.0, 5.0, 6)?,
         ),
         (
-            PairCorrelation::new(2.0, 8, times)?.within(region)?,
+            Sampled::new(PairCorrelation::new(2.0, 8)?.within(region)?, times),
             MeanSquaredDisplacement::new(5, times)?,
             TimeCorrelation::new(Velocities, 5, times)?,
         ),
@@ -115,6 +116,41 @@ fn a_measurement_goes_on_with_the_same_bits() -> Outcome {
     run.run_until(END, &mut uncut)?;
     assert_eq!(postcard::to_stdvec(&uncut)?, whole);
     Ok(())
+}
+
+/// State and observers come from one file with every bit, and a file of other observers is refused.
+#[test]
+fn a_checkpoint_keeps_its_observers() -> Outcome {
+    let file = std::env::temp_dir().join(format!("granular-edmd-observers-{}", std::process::id()));
+    let kept = measured(|watchers| {
+        simulation()?.checkpoint().write_with(&watchers, &file)?;
+        Ok(Checkpoint::read_with(&file)?.1)
+    });
+    assert_eq!(kept?, measured(Ok)?);
+    let refused = Checkpoint::read_with::<(u64, f64)>(&file).unwrap_err();
+    assert!(refused.to_string().contains(&file.display().to_string()), "{refused}");
+    assert!(Checkpoint::read(&file).is_err(), "a file of two is not a checkpoint alone");
+    let whole = std::fs::read(&file)?;
+    std::fs::write(&file, &whole[..whole.len() - 1])?;
+    assert!(Checkpoint::read_with::<Watchers>(&file).is_err());
+
+    // An empty box has no center of mass: NaN is kept, as numbers are that a text would round.
+    let numbers = [f64::NAN, f64::INFINITY, -0.0, 0.1 + 0.2, 10.047_299_310_911_127];
+    simulation()?.checkpoint().write_with(&numbers, &file)?;
+    let (checkpoint, read) = Checkpoint::read_with::<[f64; 5]>(&file)?;
+    assert_eq!(read.map(f64::to_bits), numbers.map(f64::to_bits));
+    assert_eq!(checkpoint, simulation()?.checkpoint());
+
+    /// A type that leaves out what is empty, and cannot be read back.
+    #[derive(Serialize, serde::Deserialize)]
+    struct Careless {
+        #[serde(skip_serializing_if = "Option::is_none")]
+        first: Option<u64>,
+        second: u64,
+    }
+    let careless = Careless { first: None, second: 1 };
+    assert!(simulation()?.checkpoint().write_with(&careless, &file).is_err());
+    Ok(std::fs::remove_file(&file)?)
 }
 
 #[test]
@@ -198,7 +234,7 @@ fn forged_measurements_are_refused() -> Outcome {
     assert!(refused::<CollisionCounts>(forged(counts, "/disks", json!(u64::MAX))));
     for (at, number) in [("/layers/1/height", json!(0.5)), ("/bins/count", json!(4)), ("/layers", json!([]))]
     {
-        assert!(refused::<EnergyChangeProfile>(forged(profile, at, number)), "{at}");
+        assert!(refused::<EnergyChangeProfile>(forged(&**profile, at, number)), "{at}");
     }
     for (at, number) in [
         ("/bins/width", json!(-1.0)),
@@ -206,7 +242,7 @@ fn forged_measurements_are_refused() -> Outcome {
         ("/bins/count", json!(0)),
         ("/sums", json!([0.0])),
     ] {
-        assert!(refused::<HeightProfile>(forged(heights, at, number)), "{at}");
+        assert!(refused::<HeightProfile>(forged(&**heights, at, number)), "{at}");
     }
     for (at, number) in [
         ("/grid/columns", json!(4)),
@@ -216,7 +252,7 @@ fn forged_measurements_are_refused() -> Outcome {
         ("/sums/0/area", json!(1.0)),
         ("/sums/0/velocity/1/squares", json!(1.0)),
     ] {
-        assert!(refused::<Fields>(forged(fields, at, number)), "{at}");
+        assert!(refused::<Fields>(forged(&**fields, at, number)), "{at}");
     }
     for (at, number) in [
         ("/bins/low", json!(-1.0)),
@@ -225,7 +261,7 @@ fn forged_measurements_are_refused() -> Outcome {
         ("/pairs/0", json!([{ "blocks": { "count": 1, "mean": 0.0, "squares": 0.0 }, "waiting": 0.0 }])),
         ("/region/max/0", json!(-1.0)),
     ] {
-        assert!(refused::<PairCorrelation>(forged(pairs, at, number)), "{at}");
+        assert!(refused::<PairCorrelation>(forged(&**pairs, at, number)), "{at}");
     }
     for (at, number) in [("/lags/means", json!([])), ("/lags/past", json!([[], [], [], [], [], [], []]))] {
         assert!(refused::<MeanSquaredDisplacement>(forged(displacement, at, number)), "{at}");

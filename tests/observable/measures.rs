@@ -4,8 +4,8 @@ use granular_edmd::boundary::{Container, Region};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    CollisionHistograms, MeanSquaredDisplacement, Observer, PairCorrelation, SampleTimes, Snapshot, Stress,
-    TimeCorrelation, Velocities, VelocityDistribution, WallStress, from_fn,
+    Accumulator, CollisionHistograms, MeanSquaredDisplacement, Observer, PairCorrelation, SampleTimes,
+    Sampled, Snapshot, Stress, TimeCorrelation, Velocities, VelocityDistribution, WallStress, from_fn,
 };
 use granular_edmd::statistics::Estimate;
 use granular_edmd::{Disk, Kind, ParameterError, Simulation, initial};
@@ -31,7 +31,7 @@ fn points_at_random_places_are_not_correlated() -> Outcome {
     let mut chance = Chance::new(1);
     let both = BOX.with_periodic_sides().with_periodic_ends();
     let corner = Region::new(DVec2::ZERO, DVec2::new(15.0, 3.0));
-    let new = || PairCorrelation::new(3.0, 20, times()?);
+    let new = || PairCorrelation::new(3.0, 20);
     let (small, large) = (Kind::new(0), Kind::new(1));
     for (domain, mut correlation) in [
         (both, new()?),
@@ -43,7 +43,7 @@ fn points_at_random_places_are_not_correlated() -> Outcome {
     ] {
         for time in 1..500 {
             let disks = points(100, &mut chance)?;
-            correlation.on_sample(&Snapshot::new(f64::from(time), &disks, domain, 0.0));
+            correlation.add(&Snapshot::new(f64::from(time), &disks, domain, 0.0));
         }
         assert_eq!((correlation.samples(), correlation.range()), (499, 3.0));
         assert!(is_one(correlation.iter()), "{domain:?}: {:?}", correlation.iter().collect::<Vec<_>>());
@@ -57,7 +57,7 @@ fn pairs_are_counted_at_the_nearest_image() -> Outcome {
     let domain = BOX.with_periodic_sides().with_periodic_ends();
     let disks = [19.5, 0.5, 2.5].map(|x| Disk::new(DVec2::new(x, 5.0), 0.1));
     let disks = disks.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let mut correlation = PairCorrelation::new(4.0, 4, times()?)?;
+    let mut correlation = Sampled::new(PairCorrelation::new(4.0, 4)?, times()?);
     correlation.on_sample(&Snapshot::new(1.0, &disks, domain, 0.0));
     // Two ordered pairs in each shell, of six; the box has an area of 200.
     let expected = |low: f64| 2.0 * 200.0 / (6.0 * std::f64::consts::PI * (2.0 * low + 1.0));
@@ -76,15 +76,17 @@ fn runs_in_which_no_pair_can_be_counted_end_with_the_reason() -> Outcome {
         let error = run.run_until(2.0, observer).unwrap_err();
         std::error::Error::source(&error).map_or_else(|| error.to_string(), ToString::to_string)
     };
-    let mut pairs = PairCorrelation::new(7.0, 3, times()?)?;
+    let mut pairs = Sampled::new(PairCorrelation::new(7.0, 3)?, times()?);
     let said = reason(Container::periodic(20.0, 12.0)?, &mut pairs);
     assert!(said.contains("range of the correlation must be at most half of the period, but is 7"), "{said}");
     let said = reason(Container::closed(20.0, 12.0)?, &mut pairs);
     assert!(said.contains("or have a region, but is 7"), "{said}");
     assert!(reason(Container::open(20.0)?, &mut pairs).contains("or have a region, but is 7"));
     let large = Region::new(DVec2::new(-1.0, 0.0), DVec2::new(5.0, 5.0));
-    let said =
-        reason(Container::closed(20.0, 12.0)?, &mut PairCorrelation::new(1.0, 3, times()?)?.within(large)?);
+    let said = reason(
+        Container::closed(20.0, 12.0)?,
+        &mut Sampled::new(PairCorrelation::new(1.0, 3)?.within(large)?, times()?),
+    );
     assert!(said.contains("edge of the region must be inside the domain, but is -1"), "{said}");
     let said = reason(Container::closed(20.0, 12.0)?, &mut Stress::new(times()?).within(large)?);
     assert!(said.contains("edge of the region must be inside the domain, but is -1"), "{said}");
@@ -166,17 +168,17 @@ fn an_observable_of_known_memory_has_its_correlation() -> Outcome {
 fn parameters_that_measure_nothing_are_refused() -> Outcome {
     let times = times()?;
     let nowhere = Region::new(DVec2::ONE, DVec2::ONE);
-    assert!(PairCorrelation::new(0.0, 1, times).is_err());
-    assert!(PairCorrelation::new(f64::INFINITY, 1, times).is_err());
-    assert!(PairCorrelation::new(1.0, 0, times).is_err());
-    assert!(PairCorrelation::new(1.0, 1, times)?.within(nowhere).is_err());
+    assert!(PairCorrelation::new(0.0, 1).is_err());
+    assert!(PairCorrelation::new(f64::INFINITY, 1).is_err());
+    assert!(PairCorrelation::new(1.0, 0).is_err());
+    assert!(PairCorrelation::new(1.0, 1)?.within(nowhere).is_err());
     assert!(Stress::new(times).within(nowhere).is_err());
     assert!(WallStress::new(times).with_wall(0, 0.0).is_err());
     for lags in [0, usize::MAX] {
         assert!(MeanSquaredDisplacement::new(lags, times).is_err());
         assert!(TimeCorrelation::new(Velocities, lags, times).is_err());
     }
-    assert!(VelocityDistribution::new(-1.0, 10, times).is_err());
+    assert!(VelocityDistribution::new(-1.0, 10).is_err());
     assert!(CollisionHistograms::new(1.0, f64::NAN, 10).is_err());
     assert!(granular_edmd::statistics::autocorrelation(&[1.0, 2.0, 4.0], 2).is_err());
     Ok(())

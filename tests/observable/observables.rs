@@ -5,7 +5,8 @@ use granular_edmd::collision::{ContactDuration, Elastic, Frictional, Regime};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
     CenterOfMass, Collision, CollisionCounts, Energies, EnergyChange, EnergyChangeProfile, Observable,
-    Observer, OrderParameters, Partner, SampleTimes, Series, Snapshot, Temperatures, on_collision, on_sample,
+    Observer, OrderParameters, Partner, SampleTimes, Sampled, Series, Snapshot, Temperatures, on_collision,
+    on_sample,
 };
 use granular_edmd::statistics::{BlockedMean, RunningMean};
 use granular_edmd::{Disk, ParameterError, Simulation, initial};
@@ -123,7 +124,7 @@ fn counts_and_energy_changes_are_those_of_the_list() -> Outcome {
 
 #[test]
 fn layers_hold_the_collisions_and_disks_at_their_height() -> Outcome {
-    let mut profile = EnergyChangeProfile::new(1.0, 7.0, 3, SampleTimes::every(1.0)?)?;
+    let mut profile = Sampled::new(EnergyChangeProfile::new(1.0, 7.0, 3)?, SampleTimes::every(1.0)?);
     let (mut seen, times) = (Vec::new(), SampleTimes::every(1.0)?);
     let list =
         watched((&mut profile, on_sample(times, |s: &Snapshot<'_>| seen.extend_from_slice(s.disks()))))?;

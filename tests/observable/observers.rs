@@ -3,16 +3,17 @@
 
 use std::ops::ControlFlow;
 
-use granular_edmd::ParameterError;
 use granular_edmd::boundary::{Boundary, Container, Domain};
-use granular_edmd::collision::{Contact, Impulse};
+use granular_edmd::collision::{Contact, Elastic, Impulse};
 use granular_edmd::observable::laws::{self, Violation};
 use granular_edmd::observable::{
-    CenterOfMass, Collision, CollisionCounts, CollisionHistograms, EnergyChange, EnergyChangeProfile, Fields,
-    Grid, HeightProfile, MeanSquaredDisplacement, Moment, Observable, Observer, PairCorrelation, Partner,
-    SampleTimes, Series, Snapshot, Stress, TimeCorrelation, Velocities, VelocityDistribution, Verdict,
-    WallStress, from_fn, on_collision, on_sample, stop_when, stop_when_sampled,
+    Accumulator, CenterOfMass, Collision, CollisionCounts, CollisionHistograms, EnergyChange,
+    EnergyChangeProfile, Fields, Grid, HeightProfile, MeanSquaredDisplacement, Moment, Observable, Observer,
+    OrderParameters, PairCorrelation, Partner, SampleTimes, Sampled, Series, Snapshot, Stress,
+    TimeCorrelation, Velocities, VelocityDistribution, Verdict, WallStress, from_fn, on_collision, on_sample,
+    stop_when, stop_when_sampled,
 };
+use granular_edmd::{ParameterError, Simulation, initial};
 
 type Outcome = Result<(), ParameterError>;
 
@@ -238,8 +239,11 @@ fn all_observers_keep_their_contract() -> Outcome {
     let mut all = (
         (Series::new(CenterOfMass, times), Series::new(height, times.starting_at(-3.0)?)),
         (EnergyChange::default(), CollisionCounts::default()),
-        (EnergyChangeProfile::new(0.0, 10.0, 5, times)?, HeightProfile::new(0.0, 10.0, 5, times)?),
-        Fields::new(Grid::new(region, 3, 3)?, times),
+        (
+            Sampled::new(EnergyChangeProfile::new(0.0, 10.0, 5)?, times),
+            Sampled::new(HeightProfile::new(0.0, 10.0, 5)?, times),
+        ),
+        Sampled::new(Fields::new(Grid::new(region, 3, 3)?), times),
         on_collision(|_: &Collision| collisions += 1),
         on_sample(times, |_: &Snapshot<'_>| samples += 1),
     );
@@ -249,8 +253,11 @@ fn all_observers_keep_their_contract() -> Outcome {
     drop(all);
     assert!(collisions > 100 && samples > 50);
     let mut measures = (
-        (PairCorrelation::new(2.0, 4, times)?, MeanSquaredDisplacement::new(3, times)?),
-        (TimeCorrelation::new(Velocities, 3, times)?, VelocityDistribution::new(3.0, 4, times)?.about_mean()),
+        (Sampled::new(PairCorrelation::new(2.0, 4)?, times), MeanSquaredDisplacement::new(3, times)?),
+        (
+            TimeCorrelation::new(Velocities, 3, times)?,
+            Sampled::new(VelocityDistribution::new(3.0, 4)?.about_mean(), times),
+        ),
         (Stress::new(times).within(region)?, WallStress::new(times).with_wall(1, 10.0)?),
         CollisionHistograms::new(3.0, 3.0, 4)?,
     );
@@ -326,4 +333,47 @@ fn walls_that_were_never_touched_have_no_collisions() {
         assert_eq!((counts.collisions_with_wall(wall), change.wall(wall).count()), (expected, expected));
     }
     assert!(change.wall(2).mean() == -0.75 && change.wall(7).mean().is_nan());
+}
+
+/// A wall that is not there, and a series of two runs: errors at the start of the run.
+#[test]
+fn what_a_run_cannot_measure_ends_it() -> Result<(), Box<dyn std::error::Error>> {
+    let gas = || -> Result<_, Box<dyn std::error::Error>> {
+        let container = Container::closed(10.0, 10.0)?;
+        let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 20, 0.5)?, 1.0, 1)?;
+        Ok(Simulation::builder(Elastic, container).disks(disks).build()?)
+    };
+    let reason = |error: granular_edmd::simulation::RunError| {
+        std::error::Error::source(&error).map_or_else(|| error.to_string(), ToString::to_string)
+    };
+    let mut histograms = CollisionHistograms::new(5.0, 5.0, 1)?.with_wall(9);
+    let error = gas()?.run_until(5.0, &mut histograms).unwrap_err();
+    assert_eq!(reason(error), "index of a wall must be less than the number of walls, but is 9");
+    gas()?.run_until(5.0, &mut CollisionHistograms::new(5.0, 5.0, 1)?.with_wall(3))?;
+
+    let mut series = Series::new(OrderParameters, SampleTimes::every(1.0)?);
+    let mut first = gas()?;
+    first.run_until(3.0, &mut series)?;
+    first.run_until(5.0, &mut series)?;
+    let error = reason(gas()?.run_until(3.0, &mut series).unwrap_err());
+    assert!(error.contains("start of the run must be not before the last sample of the series"), "{error}");
+    assert_eq!(series.times(), [1.0, 2.0, 3.0, 4.0, 5.0]);
+    series.clear();
+    gas()?.run_until(3.0, &mut series)?;
+    assert_eq!(series.times(), [1.0, 2.0, 3.0]);
+    Ok(())
+}
+
+/// An accumulator adds the same snapshots with and without a clock.
+#[test]
+fn an_accumulator_alone_measures_as_in_a_run() -> Result<(), Box<dyn std::error::Error>> {
+    let container = Container::closed(10.0, 10.0)?;
+    let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 20, 0.5)?, 1.0, 1)?;
+    let new = || HeightProfile::new(0.0, 10.0, 5);
+    let (mut alone, mut sampled) = (new()?, Sampled::new(new()?, SampleTimes::every(0.7)?));
+    let mut by_hand = on_sample(SampleTimes::every(0.7)?, |snapshot: &Snapshot<'_>| alone.add(snapshot));
+    let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
+    run.run_until(20.0, &mut (&mut sampled, &mut by_hand))?;
+    assert_eq!((sampled.samples(), sampled.into_inner()), (28, alone));
+    Ok(())
 }

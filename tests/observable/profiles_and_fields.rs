@@ -4,7 +4,9 @@ use std::f64::consts::PI;
 
 use granular_edmd::boundary::{Container, Domain, Region};
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{DenseLayer, Fields, Grid, HeightProfile, Observer, SampleTimes, Snapshot};
+use granular_edmd::observable::{
+    DenseLayer, Fields, Grid, HeightProfile, Observer, SampleTimes, Sampled, Snapshot,
+};
 use granular_edmd::{Disk, ParameterError, initial};
 
 const DOMAIN: Domain = Domain::new(0.0, 60.0, 0.0, 150.0);
@@ -25,7 +27,7 @@ fn gas() -> Result<Vec<Disk>, Box<dyn std::error::Error>> {
 #[test]
 fn a_profile_holds_the_area_of_all_disks() -> Result<(), Box<dyn std::error::Error>> {
     for bins in [1, 7, 150, 4000] {
-        let mut profile = HeightProfile::new(0.0, 150.0, bins, times()?)?;
+        let mut profile = Sampled::new(HeightProfile::new(0.0, 150.0, bins)?, times()?);
         for time in 1..4 {
             profile.on_sample(&Snapshot::new(f64::from(time), &gas()?, DOMAIN, 0.0));
         }
@@ -38,7 +40,7 @@ fn a_profile_holds_the_area_of_all_disks() -> Result<(), Box<dyn std::error::Err
 
 #[test]
 fn what_is_outside_a_profile_is_left_out() -> Result<(), ParameterError> {
-    let mut profile = HeightProfile::new(10.0, 20.0, 10, times()?)?;
+    let mut profile = Sampled::new(HeightProfile::new(10.0, 20.0, 10)?, times()?);
     let disks = [disk(5.0, 10.0)?, disk(5.0, 20.0)?, disk(5.0, 1e30)?, disk(5.0, -1e30)?, disk(5.0, 9.4)?];
     profile.on_sample(&Snapshot::new(1.0, &disks, DOMAIN, 0.0));
     let values: Vec<f64> = profile.iter().map(|(_, packing)| packing).collect();
@@ -51,7 +53,7 @@ fn what_is_outside_a_profile_is_left_out() -> Result<(), ParameterError> {
 /// Two disks over bins of a quarter of their radius, against their chords.
 #[test]
 fn a_disk_is_cut_at_the_edges_of_bins() -> Result<(), ParameterError> {
-    let mut profile = HeightProfile::new(2.0, 6.0, 32, times()?)?;
+    let mut profile = Sampled::new(HeightProfile::new(2.0, 6.0, 32)?, times()?);
     let disks = [disk(5.0, 4.1)?, disk(7.0, 2.05)?];
     for time in [1.0, 2.0] {
         profile.on_sample(&Snapshot::new(time, &disks, DOMAIN, 0.0));
@@ -77,7 +79,7 @@ fn the_densest_layer_is_the_lowest_of_equals() {
 
 #[test]
 fn a_layer_on_a_gas_is_found() -> Result<(), ParameterError> {
-    let mut profile = HeightProfile::new(0.0, 30.0, 30, times()?)?;
+    let mut profile = Sampled::new(HeightProfile::new(0.0, 30.0, 30)?, times()?);
     assert_eq!(profile.densest_layer(), None);
     let rows = (0..3).flat_map(|row| (0..60).map(move |column| (column, row)));
     let mut disks = rows
@@ -95,7 +97,7 @@ fn a_layer_on_a_gas_is_found() -> Result<(), ParameterError> {
 
 #[test]
 fn a_sediment_has_nothing_below() -> Result<(), ParameterError> {
-    let mut profile = HeightProfile::new(0.0, 30.0, 30, times()?)?;
+    let mut profile = Sampled::new(HeightProfile::new(0.0, 30.0, 30)?, times()?);
     let disks = (0..60).map(|column| disk(f64::from(column) + 0.5, 0.5)).collect::<Result<Vec<_>, _>>()?;
     profile.on_sample(&Snapshot::new(1.0, &disks, DOMAIN, 0.0));
     let layer = profile.densest_layer().unwrap();
@@ -107,7 +109,7 @@ fn a_sediment_has_nothing_below() -> Result<(), ParameterError> {
 fn a_swirl_is_flow_and_not_temperature() -> Result<(), Box<dyn std::error::Error>> {
     // The state is uniform in each cell: two disks with u + c and u - c, spins w + d and w - d.
     let region = Region::new(DVec2::ZERO, DVec2::new(60.0, 150.0));
-    let mut fields = Fields::new(Grid::new(region, 6, 5)?, times()?);
+    let mut fields = Sampled::new(Fields::new(Grid::new(region, 6, 5)?), times()?);
     let flow = |column: i32, row: i32| DVec2::new(f64::from(row) - 2.0, 2.5 - f64::from(column)) * 1e3;
     let mut disks = Vec::new();
     for (column, row) in (0..6).flat_map(|column| (0..5).map(move |row| (column, row))) {
@@ -138,7 +140,7 @@ fn a_swirl_is_flow_and_not_temperature() -> Result<(), Box<dyn std::error::Error
 #[test]
 fn a_mixture_has_the_flow_and_the_temperatures_of_its_masses() -> Result<(), ParameterError> {
     let region = Region::new(DVec2::new(10.0, 20.0), DVec2::new(16.0, 24.0));
-    let mut fields = Fields::new(Grid::new(region, 3, 1)?, times()?);
+    let mut fields = Sampled::new(Fields::new(Grid::new(region, 3, 1)?), times()?);
     let kind = |x: f64, mass: f64, factor: f64, vx: f64, vy: f64, spin: f64| {
         let disk =
             Disk::new(DVec2::new(x, 20.5), 0.25 * mass)?.with_mass(mass)?.with_inertia_factor(factor)?;
@@ -174,7 +176,7 @@ fn a_mixture_has_the_flow_and_the_temperatures_of_its_masses() -> Result<(), Par
 #[test]
 fn a_gas_at_rest_has_its_temperature_and_no_flow() -> Result<(), Box<dyn std::error::Error>> {
     let region = Region::new(DVec2::ZERO, DVec2::new(60.0, 150.0));
-    let mut fields = Fields::new(Grid::new(region, 1, 1)?, times()?);
+    let mut fields = Sampled::new(Fields::new(Grid::new(region, 1, 1)?), times()?);
     let disks = gas()?;
     fields.on_sample(&Snapshot::new(1.0, &disks, DOMAIN, 0.0));
     let cell = fields.cell(0, 0).unwrap();
@@ -189,7 +191,6 @@ fn a_gas_at_rest_has_its_temperature_and_no_flow() -> Result<(), Box<dyn std::er
 #[test]
 fn grids_without_extent_are_refused() -> Result<(), ParameterError> {
     let region = |x: f64, y: f64| Region::new(DVec2::ZERO, DVec2::new(x, y));
-    let times = times()?;
     for (x, y, columns, rows) in [
         (0.0, 1.0, 1, 1),
         (-1.0, -1.0, 1, 1),
@@ -201,10 +202,10 @@ fn grids_without_extent_are_refused() -> Result<(), ParameterError> {
     ] {
         assert!(Grid::new(region(x, y), columns, rows).is_err(), "{x} {y} {columns} {rows}");
     }
-    assert!(HeightProfile::new(1.0, 1.0, 1, times).is_err());
-    assert!(HeightProfile::new(0.0, f64::INFINITY, 1, times).is_err());
-    assert!(HeightProfile::new(0.0, 1.0, 0, times).is_err());
-    assert!(HeightProfile::new(-f64::MAX, f64::MAX, 1, times).is_err());
+    assert!(HeightProfile::new(1.0, 1.0, 1).is_err());
+    assert!(HeightProfile::new(0.0, f64::INFINITY, 1).is_err());
+    assert!(HeightProfile::new(0.0, 1.0, 0).is_err());
+    assert!(HeightProfile::new(-f64::MAX, f64::MAX, 1).is_err());
     Ok(())
 }
 
@@ -225,7 +226,7 @@ fn energy_change_by_height_sums_up_to_that_of_all_collisions() -> Result<(), Box
     let disks = initial::with_maxwellian_velocities(disks, 2.0, 6)?;
     let mut simulation = Simulation::builder(rule, container).disks(disks).build()?;
     let mut all = EnergyChange::default();
-    let mut profile = EnergyChangeProfile::new(0.0, 100.0, 4, SampleTimes::every(0.5)?)?;
+    let mut profile = Sampled::new(EnergyChangeProfile::new(0.0, 100.0, 4)?, SampleTimes::every(0.5)?);
     simulation.run_until(20.0, &mut (&mut all, &mut profile))?;
 
     let layers = profile.layers().iter().map(|layer| &layer.energy_change);

@@ -4,8 +4,8 @@ use granular_edmd::boundary::{Container, Region, Wall};
 use granular_edmd::collision::{Contact, Elastic, Impulse};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    BetweenKinds, Collision, CollisionHistograms, Grid, Moment, Observable, Observer, OfKind,
-    PairCorrelation, Partner, SampleTimes, Snapshot, Stress, Temperatures, TemperaturesAboutFlow,
+    Accumulator, BetweenKinds, Collision, CollisionHistograms, Grid, Moment, Observable, Observer, OfKind,
+    PairCorrelation, Partner, SampleTimes, Sampled, Snapshot, Stress, Temperatures, TemperaturesAboutFlow,
     VelocityDistribution, WallStress,
 };
 use granular_edmd::statistics::Histogram;
@@ -115,7 +115,7 @@ fn flow_is_no_temperature_on_a_grid() -> Outcome {
 fn velocities_about_a_flow_are_those_of_the_gas_in_it() -> Outcome {
     let mut chance = Chance::new(4);
     let grid = Grid::new(Region::new(DVec2::ZERO, DVec2::new(20.0, 10.0)), 10, 5)?;
-    let new = || VelocityDistribution::new(4.0, 20, times()?);
+    let new = || VelocityDistribution::new(4.0, 20);
     let mut distributions = [new()?, new()?.about_mean(), new()?.about_flow(grid)];
     for time in 0..400 {
         let disk = |disk: Disk| {
@@ -129,7 +129,7 @@ fn velocities_about_a_flow_are_those_of_the_gas_in_it() -> Outcome {
         let disks = disks.into_iter().map(disk).collect::<Result<Vec<_>, _>>()?;
         let snapshot = Snapshot::new(time as f64, &disks, BOX, 0.0);
         for distribution in &mut distributions {
-            distribution.on_sample(&snapshot);
+            distribution.add(&snapshot);
         }
     }
     let [all, about_mean, about_flow] = &distributions;
@@ -188,11 +188,14 @@ fn measures_by_kind_are_parts_of_the_whole() -> Outcome {
     let between = pairs.map(|(i, j)| BetweenKinds::new(i, j, Stress::new(SampleTimes::every(0.5).unwrap())));
     let histograms = CollisionHistograms::new(5.0, 5.0, 1)?;
     let met = pairs.map(|(i, j)| BetweenKinds::new(i, j, histograms.clone()));
-    let alike = PairCorrelation::new(2.0, 4, times()?)?;
+    let alike = PairCorrelation::new(2.0, 4)?;
     let mut watched = (
         (Stress::new(SampleTimes::every(0.5)?), Vec::from(between)),
         (histograms.clone(), Vec::from(met)),
-        (OfKind::new(kinds[1], alike.clone()), alike.between(kinds[1], kinds[1])),
+        (
+            OfKind::new(kinds[1], Sampled::new(alike.clone(), times()?)),
+            Sampled::new(alike.between(kinds[1], kinds[1]), times()?),
+        ),
     );
     Simulation::builder(Elastic, container).disks(disks).build()?.run_until(50.0, &mut watched)?;
     let ((whole, stresses), (all, met), (of_kind, between)) = watched;

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::Elastic;
-use granular_edmd::observable::{HeightProfile, SampleTimes, Snapshot};
+use granular_edmd::observable::{HeightProfile, SampleTimes, Sampled, Snapshot};
 use granular_edmd::simulation::Checkpoint;
 use granular_edmd::study::{
     Axis, Column, Control, Course, Experiment, ExperimentError, Plan, PlanError, Protocol, Ramp, RampStatus,
@@ -31,7 +31,7 @@ struct Watched {
 impl Experiment for Watched {
     type Rule = Elastic;
     type Boundary = Container;
-    type Observer = HeightProfile;
+    type Observer = Sampled<HeightProfile>;
     type Sample = Vec<f64>;
 
     fn revision() -> Fingerprint {
@@ -55,11 +55,11 @@ impl Experiment for Watched {
         self.weight
     }
 
-    fn observer(&self) -> Result<HeightProfile, ExperimentError> {
-        Ok(HeightProfile::new(0.0, self.top, 2, SampleTimes::every(0.1)?)?)
+    fn observer(&self) -> Result<Sampled<HeightProfile>, ExperimentError> {
+        Ok(Sampled::new(HeightProfile::new(0.0, self.top, 2)?, SampleTimes::every(0.1)?))
     }
 
-    fn sample(&self, _: &Snapshot<'_>, profile: &mut HeightProfile) -> Vec<f64> {
+    fn sample(&self, _: &Snapshot<'_>, profile: &mut Sampled<HeightProfile>) -> Vec<f64> {
         profile.iter().map(|(_, fraction)| fraction).collect()
     }
 
@@ -78,7 +78,7 @@ impl Experiment for Watched {
     fn check_measured(
         &self,
         _: &[Vec<f64>],
-        _: &HeightProfile,
+        _: &Sampled<HeightProfile>,
         _: Option<&Checkpoint>,
     ) -> Result<(), ExperimentError> {
         let refused = REFUSED.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1));

@@ -3,7 +3,7 @@
 import { fit } from './box.js';
 
 const FRICTIONS = [0.004, 4], LEFT = 44, RIGHT = 10, TOP = 8, BOTTOM = 34, INK = '#22272e', QUIET = '#69727d';
-const AREAS = { conductive: '#e6e9ec', 'one roll': '#b3d1e5', 'coexistence of one roll and two': '#ecccdc', 'two rolls': '#f3ceb0', collapsed: '#c3c6ca' };
+const AREAS = { 'no roll': '#e6e9ec', conductive: '#e6e9ec', 'one roll': '#b3d1e5', 'coexistence of one roll and two': '#ecccdc', 'two rolls': '#f3ceb0', collapsed: '#c3c6ca' };
 const LINES = [['#0072b2', '0–1'], ['#a85585', '1–2 (a)'], ['#d55e00', '1–2 (b)'], ['#222', '2–collapse']];
 
 // Gravities of the recorded runs, and the largest inelasticity of their diagrams.

@@ -5,8 +5,8 @@ use std::collections::VecDeque;
 use granular_edmd::analysis::{StateCriteria, thermal_noise};
 use granular_edmd::boundary::Container;
 use granular_edmd::observable::{
-    Collision, ConvectionOrder, DenseLayer, HeightProfile, Observable, Observer, OrderParameters, Partner,
-    SampleTimes, Temperatures,
+    Accumulator, Collision, ConvectionOrder, DenseLayer, HeightProfile, Observable, Observer, OrderParameters, Partner,
+    Temperatures,
 };
 use granular_edmd::{ParameterError, Simulation};
 
@@ -64,7 +64,7 @@ pub(crate) struct Watch {
 
 impl Watch {
     pub(crate) fn new() -> Result<Self, ParameterError> {
-        let profile = HeightProfile::new(0.0, HEIGHT, HEIGHT as usize, SampleTimes::every(1.0)?)?;
+        let profile = HeightProfile::new(0.0, HEIGHT, HEIGHT as usize)?;
         let (marks, fresh, recent) = (Vec::new(), Vec::new(), VecDeque::new());
         Ok(Self { flow: Flow::new(), marks, fresh, recent, profile, layer: None })
     }
@@ -93,7 +93,7 @@ impl Watch {
         if self.recent.len() > NAMED {
             self.recent.pop_front();
         }
-        self.profile.on_sample(&snapshot);
+        self.profile.add(&snapshot);
         if self.profile.samples() >= FEWEST as u64 {
             self.layer = self.profile.densest_layer();
             self.profile.clear();

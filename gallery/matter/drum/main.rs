@@ -92,7 +92,7 @@ struct Turned {
     /// Standard deviation of the angle over time.
     scatter: f64,
     depths: Depths,
-    flow: Fields,
+    flow: Sampled<Fields>,
     /// The grains at the end, and how many turns the drum has done.
     disks: Vec<Disk>,
     turns: f64,

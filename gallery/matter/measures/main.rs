@@ -145,18 +145,18 @@ fn collide<R: CollisionRule>(run: &mut Simulation<R>, per_disk: u64) -> Result<(
 
 /// What is drawn of the gas in the bulk.
 struct Bulk {
-    pairs: PairCorrelation,
-    velocities: VelocityDistribution,
+    pairs: Sampled<PairCorrelation>,
+    velocities: Sampled<VelocityDistribution>,
 }
 
 fn in_the_bulk(gas: &Gas, intervals: u32, rows: &mut Rows) -> Result<Bulk, Box<dyn Error>> {
     let mut run = gas.settled(Container::periodic(gas.side(), gas.side())?, Elastic)?;
     let times = SampleTimes::every(1.0 / gas.collision_rate())?;
     let often = SampleTimes::every(0.1 / gas.collision_rate())?;
-    let mut pairs = PairCorrelation::new(4.0, 400, times)?;
+    let mut pairs = Sampled::new(PairCorrelation::new(4.0, 400)?, times);
     let mut displacement = MeanSquaredDisplacement::new(40, times)?;
     let mut memory = TimeCorrelation::new(Velocities, 1, often)?;
-    let mut velocities = VelocityDistribution::new(3.0, 30, times)?.about_mean();
+    let mut velocities = Sampled::new(VelocityDistribution::new(3.0, 30)?.about_mean(), times);
     let mut stress = Stress::new(times);
     let mut observers = (&mut pairs, (&mut displacement, &mut memory), &mut velocities, &mut stress);
     run.run_until(run.time() + f64::from(intervals) * times.interval(), &mut observers)?;
@@ -216,9 +216,10 @@ fn while_it_cools(
     arguments: &Arguments,
     gases: u32,
     rows: &mut Rows,
-) -> Result<VelocityDistribution, Box<dyn Error>> {
+) -> Result<Sampled<VelocityDistribution>, Box<dyn Error>> {
     let r = arguments.restitution;
-    let mut velocities = VelocityDistribution::new(3.0, 30, SampleTimes::every(1.0)?)?.about_mean();
+    let mut velocities =
+        Sampled::new(VelocityDistribution::new(3.0, 30)?.about_mean(), SampleTimes::every(1.0)?);
     for seed in 0..u64::from(gases) {
         // So dilute that the box is too small for vortices.
         let gas = Gas { packing: 0.008, seed: arguments.seed + seed };

@@ -16,6 +16,7 @@
 
 mod picture;
 mod plan;
+mod plane;
 mod states;
 
 use std::error::Error;

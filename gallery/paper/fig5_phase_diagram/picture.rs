@@ -44,7 +44,7 @@ pub(crate) struct Diagram<'a> {
 
 /// Looks of the regimes, in their order from little energy loss to much.
 const REGIMES: [(ConvectiveRegime, Look, &str); 5] = [
-    (ConvectiveRegime::Conductive, Look::marks(INK, Mark::Cross), "no roll"),
+    (ConvectiveRegime::NoRoll, Look::marks(INK, Mark::Cross), "no roll"),
     (ConvectiveRegime::OneRoll, Look::marks(BLUE, Mark::Disk), "one roll"),
     (ConvectiveRegime::Coexistence, Look::marks(PURPLE, Mark::Diamond), "one and two in turn"),
     (ConvectiveRegime::TwoRolls, Look::marks(VERMILION, Mark::Triangle), "two rolls"),

@@ -4,11 +4,12 @@ use std::error::Error;
 use std::path::Path;
 
 use granular_edmd::ParameterError;
-use granular_edmd::analysis::{ConvectiveRegime, PlaneTransition, StateCriteria, plane_transitions};
+use granular_edmd::analysis::{ConvectiveRegime, StateCriteria};
 use granular_edmd::study::vibrated_box::VibratedBox;
 use granular_edmd::study::{Leg, Record, Study};
 
 use crate::picture::{Crossing, State};
+use crate::plane::{PlaneTransition, plane_transitions};
 use gallery::results;
 
 /// The state seen at a point of the plane, on the way up or down.
@@ -93,14 +94,9 @@ pub(crate) fn drawn(points: &[Point]) -> Vec<State> {
 
 /// Returns the points of the lines as the picture takes them.
 pub(crate) fn crossings(lines: &[PlaneTransition]) -> Vec<Crossing> {
-    let crossing =
-        |&PlaneTransition { line, friction, inelasticity, between, rising, .. }: &PlaneTransition| Crossing {
-            line,
-            friction,
-            inelasticity,
-            rising,
-            between,
-        };
+    let crossing = |&PlaneTransition { line, friction, inelasticity, between, rising }: &PlaneTransition| {
+        Crossing { line, friction, inelasticity, rising, between }
+    };
     lines.iter().map(crossing).collect()
 }
 

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use granular_edmd::observable::{EnergyChangeProfile, SampleTimes};
+use granular_edmd::observable::{EnergyChangeProfile, SampleTimes, Sampled};
 use granular_edmd::study::Experiment;
 
 use crate::ramps::{Crossing, Ramp};
@@ -26,7 +26,7 @@ pub(crate) fn measure(ramp: &Ramp, at: &Crossing, oscillations: u32) -> Result<L
     let settled = f64::from(oscillations) * experiment.cycle();
     // Samples 10 oscillations apart but for a hundredth: all phases of the base are seen.
     let times = SampleTimes::every(9.99 * experiment.cycle())?.starting_at(settled)?;
-    let mut profile = EnergyChangeProfile::new(0.0, 150.0, 75, times)?;
+    let mut profile = Sampled::new(EnergyChangeProfile::new(0.0, 150.0, 75)?, times);
     let mut simulation = experiment.build(1).map_err(|error| error as Box<dyn Error>)?;
     simulation.run_until(settled, &mut ())?;
     simulation.run_until(2.0 * settled, &mut profile)?;

@@ -168,6 +168,8 @@ fn study_of(folder: &Path) -> Result<Vec<Ramp>, Box<dyn Error>> {
 }
 
 fn regime(name: &str) -> Result<ConvectiveRegime, String> {
+    // Tables of version 0.2 and before say "conductive".
+    let name = if name == "conductive" { "no roll" } else { name };
     let found = ConvectiveRegime::ALL.iter().copied().find(|regime| regime.to_string() == name);
     found.ok_or_else(|| format!("`{name}` is no state"))
 }

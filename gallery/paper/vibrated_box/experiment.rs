@@ -26,7 +26,7 @@ pub(crate) struct Outcome {
     /// Energy changes of collisions in the second half.
     pub(crate) energy_change: EnergyChange,
     /// Mean fields in the second half.
-    pub(crate) fields: Fields,
+    pub(crate) fields: Sampled<Fields>,
     /// Standard deviation of the order parameters in a gas without flow, and the name of the flow.
     pub(crate) noise: f64,
     pub(crate) flow: String,
@@ -39,7 +39,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut simulation = build(arguments).map_err(Failure::usage)?;
     let times = SampleTimes::every(at(arguments.every))?;
     let mut series = Series::new(Quantities::default(), times);
-    let mut profile = HeightProfile::new(0.0, arguments.shown(), arguments.shown().ceil() as usize, times)?;
+    let mut profile =
+        Sampled::new(HeightProfile::new(0.0, arguments.shown(), arguments.shown().ceil() as usize)?, times);
     let (mut energy_change, mut fields) = (EnergyChange::default(), grid(arguments)?);
     let mut progress = Progress::of("run").until(end);
 
@@ -95,7 +96,7 @@ fn rule(arguments: &Arguments) -> Result<BoxedRule, ParameterError> {
 
 /// Returns a grid of about seven diameters a cell: fewer columns if the box is narrow, larger cells if it is
 /// wide.
-fn grid(arguments: &Arguments) -> Result<Fields, ParameterError> {
+fn grid(arguments: &Arguments) -> Result<Sampled<Fields>, ParameterError> {
     let columns = (arguments.width / 7.0).round().clamp(4.0, 24.0);
     let times = SampleTimes::every(arguments.period())?;
     flow::on_squares(DVec2::ZERO, DVec2::new(arguments.width, arguments.shown()), columns as usize, times)

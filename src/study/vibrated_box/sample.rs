@@ -1,8 +1,8 @@
 //! Measurements of the box.
 
 use crate::observable::{
-    CenterOfMass, Collision, Energies, EnergyChange, HeightProfile, Observable, Observer, OrderParameters,
-    SampleTimes, Snapshot, Temperatures,
+    Accumulator, CenterOfMass, Collision, Energies, EnergyChange, HeightProfile, Observable, Observer,
+    OrderParameters, Snapshot, Temperatures,
 };
 
 /// Largest number of bins of a profile: of one diameter each.
@@ -89,12 +89,10 @@ impl Measurement {
 fn profile(snapshot: &Snapshot<'_>) -> Vec<f64> {
     let top = snapshot.domain().top.min(MOST_BINS as f64);
     let bins = if snapshot.domain().top.is_finite() { top.ceil() } else { OPEN_PROFILE };
-    let profile = SampleTimes::every(1.0)
-        .and_then(|times| HeightProfile::new(0.0, bins, bins as usize, times))
-        .map(|mut profile| {
-            profile.on_sample(snapshot);
-            profile.iter().map(|(_, fraction)| fraction).collect()
-        });
+    let profile = HeightProfile::new(0.0, bins, bins as usize).map(|mut profile| {
+        profile.add(snapshot);
+        profile.iter().map(|(_, fraction)| fraction).collect()
+    });
     // A height that is positive makes a profile.
     profile.unwrap_or_default()
 }
