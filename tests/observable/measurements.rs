@@ -118,6 +118,14 @@ fn a_measurement_goes_on_with_the_same_bits() -> Outcome {
     Ok(())
 }
 
+/// A type that leaves out what is empty, and cannot be read back.
+#[derive(Serialize, serde::Deserialize)]
+struct Careless {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    first: Option<u64>,
+    second: u64,
+}
+
 /// State and observers come from one file with every bit, and a file of other observers is refused.
 #[test]
 fn a_checkpoint_keeps_its_observers() -> Outcome {
@@ -141,13 +149,6 @@ fn a_checkpoint_keeps_its_observers() -> Outcome {
     assert_eq!(read.map(f64::to_bits), numbers.map(f64::to_bits));
     assert_eq!(checkpoint, simulation()?.checkpoint());
 
-    /// A type that leaves out what is empty, and cannot be read back.
-    #[derive(Serialize, serde::Deserialize)]
-    struct Careless {
-        #[serde(skip_serializing_if = "Option::is_none")]
-        first: Option<u64>,
-        second: u64,
-    }
     let careless = Careless { first: None, second: 1 };
     assert!(simulation()?.checkpoint().write_with(&careless, &file).is_err());
     Ok(std::fs::remove_file(&file)?)
