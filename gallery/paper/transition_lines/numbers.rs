@@ -85,6 +85,9 @@ impl fmt::Display for Average {
         let (mean, deviation, error) = (along.mean(), along.standard_deviation(), along.standard_error());
         let share = 100.0 * deviation / mean.abs();
         let places = along.count();
+        if places < 2 {
+            return write!(to, "{mean:.3}, one place");
+        }
         write!(to, "{mean:.3} ± {deviation:.3} ({share:.0} %), error {error:.3}, {places} places")?;
         between_seeds.map_or(Ok(()), |seeds| write!(to, ", seeds ± {seeds:.3}"))
     }
