@@ -1,20 +1,21 @@
 //! The wall that moves up and down at constant speed.
 
-use super::oscillation::{Oscillation, is_even, piece};
+use super::oscillation::Oscillation;
 use super::stroke::{steady, stroke};
 use super::{AccelerationBounds, WallMotion, WallState};
 use crate::{Fingerprint, ParameterError};
 
 /// Triangular motion: from −A to A in half a period at constant speed, and back at the same speed.
 ///
-/// The speed is $`2A\omega/\pi`$; at time 0 the wall is at its lowest and starts to rise.
+/// The speed is $`2A\omega/\pi`$. At phase 0 the wall is in its middle and rises, as in all oscillations.
 ///
 /// ```
 /// use granular_edmd::wall::{Triangular, WallMotion};
 /// let base = Triangular::new(0.5, std::f64::consts::TAU)?;
-/// assert_eq!(base.state(0.25).displacement, 0.0);
-/// assert_eq!(base.state(0.25).velocity, 2.0);
-/// assert_eq!(base.state(0.75).velocity, -2.0);
+/// assert_eq!(base.state(0.0).displacement, 0.0);
+/// assert_eq!(base.state(0.125).displacement, 0.25);
+/// assert_eq!(base.state(0.0).velocity, 2.0);
+/// assert_eq!(base.state(0.5).velocity, -2.0);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,10 +47,7 @@ impl Triangular {
 
 impl WallMotion for Triangular {
     fn state(&self, phase: f64) -> WallState {
-        let length = 0.5 * self.oscillation.period();
-        let is_rising = is_even(piece(phase, length).0);
-        let amplitude = self.amplitude();
-        stroke(phase, length, if is_rising { amplitude } else { -amplitude })
+        stroke(phase, 0.5 * self.oscillation.period(), self.amplitude(), true)
     }
 
     fn acceleration(&self, phase: f64) -> AccelerationBounds {

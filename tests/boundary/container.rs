@@ -16,7 +16,7 @@ fn closed() -> Container {
     Container::closed(10.0, 20.0).unwrap()
 }
 
-/// A wall that moves by this amplitude to either side, with period 1, upward from its lowest place at time 0.
+/// A wall that moves by this amplitude to either side, with period 1, upward from its middle at time 0.
 fn moving(wall: Wall, amplitude: f64) -> Container {
     closed().with_motion(wall, Triangular::new(amplitude, TAU).unwrap()).unwrap()
 }
@@ -174,11 +174,11 @@ fn said(mut boundary: impl Boundary, origin: f64) -> String {
     )
 }
 
-/// The floor rises from -0.5 to 0.5 in the first half of its period, and falls back in the other.
+/// The floor rises to 0.5 in the first quarter of its period, falls to -0.5 in half a period, and rises again.
 #[test]
 fn a_moving_floor_is_where_its_motion_is_at_the_absolute_time() {
     let mut container = moving(Wall::Floor, 0.5);
-    container.set_time_origin(1e9 + 0.25);
+    container.set_time_origin(1e9);
     let at = |time| container.overlap(DVec2::new(5.0, 0.5), RADIUS, time);
     assert_eq!((at(0.0), at(0.125), at(0.375)), (None, Some((FLOOR, 0.25)), Some((FLOOR, 0.25))));
     let velocity = |time| container.surface(FLOOR, DVec2::ZERO, time).velocity;

@@ -77,5 +77,5 @@ fn what_rests_on_a_wall_touches_it_and_what_rests_above_it_does_not() {
     assert!(touch(0.05).unwrap() > start + 0.1);
     // A wall that comes exactly as far as the disk touches it.
     let triangular = Triangular::new(0.5, TAU).unwrap();
-    assert_eq!(first_touch(&triangular, &Approach::new(0.0, 0.5, 0.0, 0.0), 10.0), Some(0.5));
+    assert_eq!(first_touch(&triangular, &Approach::new(0.0, 0.5, 0.0, 0.0), 10.0), Some(0.25));
 }

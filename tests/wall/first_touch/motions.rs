@@ -102,9 +102,24 @@ fn walls_of_constant_speed_rise_and_fall_as_they_should() {
     let state = |displacement, velocity| WallState::new(displacement, velocity);
     for period in [-3.0, 0.0, 2.0] {
         let times = [0.0, 0.125, 0.5, 0.75].map(|time| period + time);
-        let folded = [state(-0.5, 2.0), state(-0.25, 2.0), state(0.5, -2.0), state(0.0, -2.0)];
+        let folded = [state(0.0, 2.0), state(0.25, 2.0), state(0.0, -2.0), state(-0.5, 2.0)];
         assert_eq!(times.map(|time| triangular.state(time)), folded);
-        let torn = [-0.5, -0.375, 0.0, 0.25].map(|displacement| state(displacement, 1.0));
+        let torn = [0.0, 0.125, -0.5, -0.25].map(|displacement| state(displacement, 1.0));
         assert_eq!(times.map(|time| sawtooth.state(time)), torn);
+    }
+}
+
+/// All oscillations begin alike, so one can take the place of another at phase 0 without a jump.
+#[test]
+fn all_oscillations_rise_through_their_middle_at_phase_zero() {
+    let motions: [Box<dyn WallMotion>; 4] = [
+        Box::new(BiParabolic::new(0.5, 3.0).unwrap()),
+        Box::new(Sinusoidal::new(0.5, 3.0).unwrap()),
+        Box::new(Triangular::new(0.5, 3.0).unwrap()),
+        Box::new(Sawtooth::new(0.5, 3.0).unwrap()),
+    ];
+    for motion in motions {
+        assert!(motion.state(0.0).displacement == 0.0 && motion.state(0.0).velocity > 0.0);
+        assert!(motion.state(0.1).displacement > 0.0 && motion.state(-0.1).displacement < 0.0);
     }
 }
