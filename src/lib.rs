@@ -95,7 +95,6 @@ mod random;
 pub mod roots;
 pub mod scheduler;
 pub mod simulation;
-mod squares;
 pub mod statistics;
 #[cfg(feature = "proptest")]
 pub mod strategies;

@@ -60,9 +60,11 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 ///
 /// # Schedulers that break the contract
 /// The engine compares each answer with the event that it keeps: a disk that does not exist, or a time other
-/// than the last one set for it, ends the run with an error. The engine does not notice if a scheduler names
-/// a disk although another one is due before it. Events then come out of order, and the trajectory is wrong.
-/// [`laws::check`] finds both kinds of fault.
+/// than the last one set for it, ends the run with an error. An event that was due and never named, since a
+/// scheduler has lost a `set` or prefers a later time, ends the run when its epoch does. It also does so at
+/// the end of a run that had at least as many events as disks. To look at all disks more often would cost
+/// time, so the engine does not notice a lost event in shorter runs and in single steps within an epoch, nor
+/// two events in the wrong order that have both been named by then. [`laws::check`] finds all of these faults.
 ///
 /// # Why the answer is a pair and not an `Option`
 /// The engine asks for the answer at every event. A pair comes back in two registers, and [`NOTHING_DUE`]

@@ -18,10 +18,13 @@
 //!    the caller gives again. It notices if they are different ones, as far as they have fingerprints.
 //! 6. A part (a rule, boundary, scheduler or observer) that gives an impossible answer ends the run with an
 //!    error that names the answer. It never makes the engine go back in time, or name a disk or wall that
-//!    does not exist.
+//!    does not exist. A collision that is carried out is at its wall, and no deeper in it or in a disk than
+//!    rounding. The chapters of [`Boundary`] and [`EventScheduler`] on broken contracts say which faults stay
+//!    unseen.
 
 mod builder;
 mod cells;
+mod checking;
 #[cfg(feature = "serde")]
 mod checkpoint;
 mod epoch;
@@ -38,14 +41,15 @@ mod resolution;
 mod running;
 mod stall;
 mod state;
+mod warnings;
 
 pub use builder::SimulationBuilder;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Resumption};
-pub use errors::{BoundaryFault, BuildError, FailedCollision, RunError};
+pub use errors::{BoundaryFault, BuildError, FailedCollision, Remedy, RunError};
 pub use events::{Counters, Event, RunEnd};
 pub use limits::Limits;
-pub use stall::Remedy;
+pub use warnings::Warning;
 
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -53,7 +57,7 @@ use crate::boundary::{Boundary, Container};
 use crate::collision::{CollisionRule, Frictional};
 use crate::disk::bounded;
 use crate::instructions::Instructions;
-use crate::observable::{Observable, Snapshot};
+use crate::observable::{Observable, Partner, Snapshot};
 use crate::quantity::accept;
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, ParameterError};
@@ -184,6 +188,33 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.bodies.disks(self.clock.now)
     }
 
+    /// Returns the disk or wall into which another disk would reach deepest now, and the depth; `None` if there
+    /// is room for it.
+    ///
+    /// This looks at all disks.
+    ///
+    /// ```
+    /// # use granular_edmd::{Disk, Simulation, boundary::Container, collision::Elastic};
+    /// # use granular_edmd::{glam::DVec2, observable::Partner};
+    /// let disk = |x: f64| Disk::new(DVec2::new(x, 1.0), 0.5);
+    /// let run = Simulation::builder(Elastic, Container::closed(9.0, 2.0)?).disks([disk(2.0)?]).build()?;
+    /// assert_eq!(run.overlap(&disk(2.75)?), Some((Partner::Disk(0), 0.25)));
+    /// assert_eq!(run.overlap(&disk(0.25)?), Some((Partner::Wall(1), 0.25)));
+    /// assert_eq!(run.overlap(&disk(4.0)?), None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn overlap(&self, disk: &Disk) -> Option<(Partner, f64)> {
+        let (position, domain) = (disk.position(), self.boundary.domain());
+        let with_disk = |other: usize| {
+            let apart = domain.separation(position, self.bodies.position(other, self.clock.now)).length();
+            (Partner::Disk(other), disk.radius() + self.bodies.radius(other) - apart)
+        };
+        let wall = self.boundary.overlap(position, disk.radius(), self.clock.now);
+        let wall = wall.map(|(wall, depth)| (Partner::Wall(wall), depth));
+        let all = (0..self.len()).map(with_disk).chain(wall);
+        all.filter(|(_, depth)| *depth > 0.0).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
     /// Returns the present value of an observable.
     pub fn measure<Q: Observable + ?Sized>(&self, observable: &Q) -> Q::Value {
         let disks = self.disks();
@@ -259,12 +290,16 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Sets other walls from now on.
     ///
+    /// Moving walls are where their motions are at the present time. A wall that is thereby elsewhere at once
+    /// is a [`Warning`].
+    ///
     /// # Errors
     /// If the disks do not fit into the new walls, or there are too many walls. The simulation then stays as
     /// it was.
     pub fn set_boundary(&mut self, mut boundary: B) -> Result<(), BuildError> {
         boundary.set_time_origin(self.clock.origin);
         let (wall_count, cells) = fit(&boundary, &self.disks(), self.clock.now)?;
+        self.count_jumps(&boundary);
         (self.boundary, self.wall_count, self.cells) = (boundary, wall_count, cells);
         self.predict_all();
         Ok(())

@@ -9,6 +9,8 @@
 //! | [`Sawtooth`] | constant speed up, instantly back | |
 //! | [`StartingAt`] | any of these, with phase 0 at a later time | |
 //!
+//! All oscillations begin alike: at phase 0 the displacement is 0, and the wall rises.
+//!
 //! [`first_touch`] finds the contact for all of them and for your own motions. Apart from place, velocity and
 //! reach, it needs only bounds of the acceleration on pieces of time. See [`WallMotion`] for an example, and
 //! [`laws`] for a check of your own motion.
@@ -103,7 +105,8 @@ impl AccelerationBounds {
 /// [`Container::with_motion`](crate::boundary::Container::with_motion) refuses a motion that gives a number
 /// that is not finite at one of the phases that it tries, from 0 on. [`first_touch`] always ends, even with
 /// wrong answers; its documentation says how. Bounds that are too small, a reach that is too small or a jump
-/// toward the disks let disks pass into the wall. Bounds that are too large only cost time.
+/// toward the disks let disks pass into the wall, which the engine notices at the next collision with it.
+/// Bounds that are too large only cost time.
 ///
 /// ```
 /// use granular_edmd::wall::{AccelerationBounds, Approach, WallMotion, WallState, first_touch, laws};

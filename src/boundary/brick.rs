@@ -170,7 +170,7 @@ impl Brick {
     }
 
     /// Returns the points that fix the place of the brick.
-    fn landmarks(&self) -> impl Iterator<Item = DVec2> {
+    pub(super) fn landmarks(&self) -> impl Iterator<Item = DVec2> {
         let places = match self.shape {
             Shape::Segment(segment) => [segment.from(), segment.to().unwrap_or(segment.from())],
             Shape::Arc(arc) => [arc.center(), arc.center() + arc.radius()],

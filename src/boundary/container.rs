@@ -305,6 +305,10 @@ impl Boundary for Container {
         self.planes[wall].surface(time)
     }
 
+    fn place(&self, wall: usize, time: f64) -> Option<DVec2> {
+        self.planes.get(wall).map(|plane| plane.place(time))
+    }
+
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
         // Most walls are far away, so their positions need not be computed.
         let near =

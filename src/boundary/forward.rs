@@ -16,6 +16,7 @@ forward! { Boundary for [&mut T, Box<T>] {
     fn may_touch(&self, region: &Region, radius: f64) -> bool;
     fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch>;
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_>;
+    fn place(&self, wall: usize, time: f64) -> Option<DVec2>;
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)>;
     fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>>;
     fn fingerprint(&self) -> Option<Fingerprint>;

@@ -135,6 +135,10 @@ impl<B: Boundary> Boundary for Obstacles<B> {
         self.boundary.wall_lines(time).into_iter().chain(self.obstacles.iter().map(circle)).collect()
     }
 
+    fn place(&self, wall: usize, time: f64) -> Option<DVec2> {
+        self.boundary.place(wall, time)
+    }
+
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
         let depth = |(index, obstacle): (usize, &Disk)| {
             let distance = self.domain().separation(obstacle.position(), position).length();

@@ -152,6 +152,11 @@ impl Plane {
         Surface::new(self.normal, velocity).with_response(self.conduct.response()).with_kind(self.kind)
     }
 
+    /// Returns a point of the wall.
+    pub(super) fn place(&self, time: f64) -> DVec2 {
+        self.normal * (self.place + self.motion.state(time + self.phase).displacement)
+    }
+
     /// Tells whether a disk is so near that it may overlap the wall at some phase of the motion.
     #[inline]
     pub(super) fn is_within_reach(&self, position: DVec2, radius: f64) -> bool {

@@ -320,6 +320,15 @@ impl Boundary for Vessel {
         }
     }
 
+    fn place(&self, wall: usize, time: f64) -> Option<DVec2> {
+        let Some(brick) = wall.checked_sub(self.container.wall_count()) else {
+            return self.container.place(wall, time);
+        };
+        let Wall { part, brick } = self.walls.get(brick)?;
+        let placed = &self.parts[*part];
+        Some(placed.part.travel().pose(time + placed.phase).outward(brick.landmarks().next()?))
+    }
+
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
         let parts = self.overlap_with_parts(position, radius, time);
         let all = self.container.overlap(position, radius, time).into_iter().chain(parts);

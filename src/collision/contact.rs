@@ -139,6 +139,15 @@ impl Contact {
         }
     }
 
+    /// Returns the kinetic energy of the relative motion, ½μ v_n² + ½μ_t v_t².
+    ///
+    /// A collision can lose no more than that.
+    #[inline]
+    pub const fn available_energy(&self) -> f64 {
+        let (closing, slip) = (self.closing_speed, self.slip_speed);
+        0.5 * self.normal_mass * (closing * closing) + 0.5 * self.tangential_mass * (slip * slip)
+    }
+
     /// Returns the normal impulse for a restitution coefficient (paper, Eqs. (1), (3)).
     ///
     /// The impulse is $`\Delta_n = (1 + r_n)\,\mu\,v_n`$. The function does not check the restitution,

@@ -79,6 +79,18 @@ impl Impulse {
         self.regime
     }
 
+    /// Returns the closing speed after the collision, v_n′ = v_n − Δ_n/μ; negative if the surfaces separate.
+    #[inline]
+    pub fn closing_speed_after(&self, contact: &Contact) -> f64 {
+        contact.closing_speed() - self.normal / contact.normal_mass()
+    }
+
+    /// Returns the slip speed after the collision, v_t′ = v_t − Δ_t/μ_t.
+    #[inline]
+    pub fn slip_speed_after(&self, contact: &Contact) -> f64 {
+        contact.slip_speed() - self.tangential / contact.tangential_mass()
+    }
+
     /// Returns the change of kinetic energy in the collision, as seen from the wall if one partner is a wall:
     ///
     /// ```math

@@ -57,7 +57,7 @@ const LEAST: f64 = f64::MIN_POSITIVE;
 pub fn check_impulse(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
     check_separation(contact, impulse)?;
     let energy_change = impulse.energy_change(contact);
-    if energy_change > ROUNDING * available_energy(contact) + LEAST {
+    if energy_change > ROUNDING * contact.available_energy() + LEAST {
         return Err(Violation::EnergyGained { energy_change, contact: *contact, impulse });
     }
     Ok(())
@@ -68,7 +68,7 @@ fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation
     if !(impulse.normal().is_finite() && impulse.tangential().is_finite()) {
         return Err(Violation::NotFinite { contact: *contact, impulse });
     }
-    let closing_speed = closing_speed_after(contact, impulse);
+    let closing_speed = impulse.closing_speed_after(contact);
     if closing_speed > rounding_of(contact.closing_speed(), contact.normal_mass()) {
         return Err(Violation::StillClosing { closing_speed, contact: *contact, impulse });
     }
@@ -90,7 +90,7 @@ fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation
 /// assert!(laws::check_friction_opposes_slip(&contact, Impulse::new(0.8, -0.1)).is_err());
 /// ```
 pub fn check_friction_opposes_slip(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
-    let slip_speed = slip_speed_after(contact, impulse);
+    let slip_speed = impulse.slip_speed_after(contact);
     // The sign is exact, however small the impulse is compared with the slip.
     let opposes = impulse.tangential() == 0.0 || impulse.tangential().signum() * contact.slip_speed() > 0.0;
     let bound = contact.slip_speed().abs() + rounding_of(contact.slip_speed(), contact.tangential_mass());
@@ -129,22 +129,4 @@ pub fn check_friction_cone(
 /// [`LEAST`].
 fn rounding_of(speed: f64, mass: f64) -> f64 {
     ROUNDING * speed.abs() + LEAST / mass
-}
-
-/// Returns the closing speed after the collision, v_n′ = v_n − Δ_n/μ; negative if the surfaces separate.
-pub fn closing_speed_after(contact: &Contact, impulse: Impulse) -> f64 {
-    contact.closing_speed() - impulse.normal() / contact.normal_mass()
-}
-
-/// Returns the slip speed after the collision, v_t′ = v_t − Δ_t/μ_t.
-pub fn slip_speed_after(contact: &Contact, impulse: Impulse) -> f64 {
-    contact.slip_speed() - impulse.tangential() / contact.tangential_mass()
-}
-
-/// Returns the kinetic energy of the relative motion, ½μ v_n² + ½μ_t v_t².
-///
-/// A collision can lose no more than that.
-pub fn available_energy(contact: &Contact) -> f64 {
-    let (closing, slip) = (contact.closing_speed(), contact.slip_speed());
-    0.5 * contact.normal_mass() * (closing * closing) + 0.5 * contact.tangential_mass() * (slip * slip)
 }

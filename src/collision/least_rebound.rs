@@ -28,7 +28,7 @@ use crate::{Fingerprint, ParameterError};
 /// let fast = Contact::new(1.0, 0.5, 0.5, 1.0 / 6.0);
 /// let slow = Contact::new(0.001, 0.0, 0.5, 1.0 / 6.0);
 /// assert_eq!(rule.impulse(&fast), rule.rule().impulse(&fast));
-/// assert!((laws::closing_speed_after(&slow, rule.impulse(&slow)) + 0.01).abs() < 1e-15);
+/// assert!((rule.impulse(&slow).closing_speed_after(&slow) + 0.01).abs() < 1e-15);
 /// laws::check(&rule, &laws::Promises::new().with_friction(0.3).with_energy_gain())?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

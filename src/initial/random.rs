@@ -6,10 +6,10 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::{PlacementError, countable, cut, room};
 use crate::Disk;
+use crate::boundary::Squares;
 use crate::boundary::{Boundary, Domain};
 use crate::quantity::positive;
 use crate::random::uniform;
-use crate::squares::Squares;
 
 /// Number of trials for each disk.
 const TRIALS: usize = 10_000;

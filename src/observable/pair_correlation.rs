@@ -6,9 +6,8 @@ use glam::DVec2;
 
 use super::grid::{checked_region, inside};
 use super::{Accumulator, Moment, Snapshot};
-use crate::boundary::{Domain, Region};
+use crate::boundary::{Domain, Region, Squares};
 use crate::quantity::{accept, positive};
-use crate::squares::Squares;
 use crate::statistics::{Bins, BlockedMean, Estimate, RunningMean};
 use crate::{Disk, Kind, ParameterError};
 

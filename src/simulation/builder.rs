@@ -10,13 +10,16 @@ use super::errors::BuildError;
 use super::events::Counters;
 use super::lookahead::Lookahead;
 use super::state::{Bodies, Clock};
-use crate::Disk;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::disk::{MOST_DISKS, TOUCHING, bounded};
 use crate::instructions::Instructions;
 use crate::quantity::finite;
 use crate::scheduler::{BySize, EventScheduler};
+use crate::{Disk, ParameterError};
+
+/// Smallest speed but 0. The squares of slower disks would vanish, and with them their collisions.
+const SLOWEST: f64 = 1e-100;
 
 /// Largest number of walls of a boundary.
 const MOST_WALLS: usize = 1 << 16;
@@ -106,14 +109,15 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
     /// Builds the simulation.
     ///
     /// # Errors
-    /// If gravity or the start time is not finite, or gravity is above 1e60 in magnitude. If there are too
-    /// many disks or walls, or times at the start are too coarse for such fast disks. If the domain is not
+    /// If gravity or the start time is not finite, or gravity is above 1e60 in magnitude, or a disk moves at
+    /// a speed below 1e-100. If there are too many disks or walls, or times at the start are too coarse for such fast disks. If the domain is not
     /// finite (only its top may be infinite) or is too small for the disks, or a disk is outside, overlaps a
     /// wall or overlaps another disk; the error names the disk.
     pub fn build(self) -> Result<Simulation<R, B, S>, BuildError> {
         bounded("gravity", self.gravity)?;
         finite("start time", self.start_time)?;
         bounded_count(self.disks.len())?;
+        check_speeds(&self.disks)?;
         let mut boundary = self.boundary;
         boundary.set_time_origin(self.start_time);
         let (wall_count, cells) = fit(&boundary, &self.disks, 0.0)?;
@@ -160,6 +164,13 @@ pub(super) fn bounded_count(count: usize) -> Result<(), BuildError> {
     if count > MOST_DISKS { Err(BuildError::TooManyDisks { count, most: MOST_DISKS }) } else { Ok(()) }
 }
 
+/// Checks that no disk is so slow that the square of its speed vanishes.
+pub(super) fn check_speeds(disks: &[Disk]) -> Result<(), ParameterError> {
+    let mut speeds = disks.iter().map(|disk| disk.velocity().abs().max_element());
+    let slow = speeds.find(|&speed| speed > 0.0 && speed < SLOWEST);
+    slow.map_or(Ok(()), |speed| Err(ParameterError::new("speed of a disk", "0 or at least 1e-100", speed)))
+}
+
 /// Checks that times at this offset are not too coarse, so that time cannot stand still.
 pub(super) fn check_epoch(clock: &Clock, offset: f64) -> Result<(), BuildError> {
     match clock.coarseness(offset) {
@@ -183,8 +194,6 @@ pub(super) fn count_walls<B: Boundary + ?Sized>(boundary: &B) -> Result<usize, B
 pub(super) fn cells_around<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -> Result<Cells, BuildError> {
     let diameter = 2.0 * disks.iter().map(Disk::radius).fold(0.0, f64::max);
     let domain = boundary.domain();
-    // Without disks, any cells will do.
-    let diameter = if diameter > 0.0 { diameter } else { 0.125 * domain.width() };
     let is_bounded = domain.width().is_finite() && domain.bottom.is_finite();
     if !is_bounded || (domain.periodic_ends && !domain.height().is_finite()) {
         return Err(BuildError::Domain { domain });

@@ -6,10 +6,12 @@ mod cell_size;
 mod contents;
 mod cost;
 mod crowd;
+mod division;
 mod edges;
 mod grid;
 mod layer;
 mod layers;
+mod layout;
 mod prefetching;
 mod reach;
 mod size_class;
@@ -20,14 +22,16 @@ use super::state::Exit;
 use crate::boundary::{Boundary, Region};
 pub(super) use cell_size::CellSize;
 use contents::Contents;
-#[cfg(feature = "serde")]
-pub(super) use grid::FEWEST;
-pub(super) use grid::{CELLS_PER_DISK, Grid, Layout, Place, SPARE_CELLS};
+use division::classes;
+pub(super) use grid::{Grid, Place};
 #[cfg(feature = "serde")]
 pub(super) use layers::Grids;
 pub(super) use layers::Layouts;
 use layers::{Layers, layouts};
-use size_class::classes;
+#[cfg(feature = "serde")]
+pub(super) use layout::FEWEST;
+pub(super) use layout::{CELLS_PER_DISK, Layout, SPARE_CELLS};
+use size_class::SizeClass;
 
 /// The disks in the cells of a grid.
 ///
@@ -55,8 +59,8 @@ impl Cells {
         let diameters = disks.clone().map(|(_, radius)| 2.0 * radius);
         let highest = disks.clone().map(|(position, _)| position.y).fold(domain.bottom, f64::max);
         let classes = classes(diameters.clone());
-        // Without disks, any cells will do.
-        let largest = classes.last().map_or(0.125 * domain.width(), |class| class.largest);
+        let largest =
+            classes.last().map_or_else(|| SizeClass::of_nobody(&domain).largest, |class| class.largest);
         let most = CELLS_PER_DISK * disks.len() as f64 + SPARE_CELLS;
         let single = Layout::new(&domain, largest, cell_size, most, highest)?;
         // All disks share the cells of the largest if periodic sides or ends are too close for layers.

@@ -28,7 +28,7 @@ use crate::scheduler::EventScheduler;
 use crate::{Disk, Fingerprint};
 
 /// The mark of a checkpoint, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 4 };
+const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 5 };
 
 /// Everything on which the future of a run depends, except its rule and its boundary.
 ///

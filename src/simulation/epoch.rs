@@ -36,6 +36,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline(never)]
     pub(super) fn move_epoch(&mut self, due: f64) -> Outcome<()> {
         self.clock.check_coarseness(due)?;
+        self.check_all(due)?;
         let by = self.clock.whole_epochs(due);
         self.clock.now = due;
         self.shift_epoch(by);

@@ -4,19 +4,17 @@
 //! [`Simulation::advance`] goes to the event. [`Simulation::collide`] lets the rule decide (`resolution.rs`)
 //! and kicks both disks. It then finds what each disk does next, and tells the scheduler (`forecasting.rs`).
 //! The arithmetic of predictions is in `prediction.rs`, and epochs are in `epoch.rs`. If rounding leaves
-//! partners approaching after a collision, `parting.rs` makes them part. None of these files calls back into
-//! the event loop.
+//! partners approaching after a collision, `parting.rs` makes them part. All answers of the parts are checked
+//! in `checking.rs`. None of these files calls back into the event loop.
 
 use super::Simulation;
-use super::errors::{BoundaryFault, Outcome, RunError};
+use super::errors::{BoundaryFault, Outcome};
 use super::events::Event;
-use super::forecasting::HORIZON;
 use super::resolution::{Kick, failed, is_parting, is_possible, resolve_pair, resolve_wall};
-use super::state::{Clock, Earliest, Exit, Forecast};
+use super::state::{Clock, Earliest, Exit};
 use crate::boundary::{Boundary, Response};
-use crate::collision::laws::closing_speed_after;
 use crate::collision::{CollisionRule, Regime};
-use crate::observable::{Collision, Observer};
+use crate::observable::{Collision, Observer, Partner};
 use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
@@ -66,6 +64,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 return self.collide_with_wall(disk, usize::from(forecast.wall), observer).map(Some);
             }
             Exit::Horizon => {
+                self.check_passed(disk)?;
                 self.counters.horizons += 1;
                 self.predict(disk);
             }
@@ -88,14 +87,16 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if !(self.is_tame(&kicks[0]) & self.is_tame(&kicks[1])) {
             self.prepare_for_pair(disk, partner)?;
         }
-        let touching = self.bodies.radius(disk) + self.bodies.radius(partner);
+        let depth = self.bodies.radius(disk) + self.bodies.radius(partner) - collision.distance;
+        if depth > self.counters.max_overlap {
+            self.note_overlap(disk, Partner::Disk(partner), depth)?;
+        }
         self.counters.disk_collisions += 1;
-        self.counters.max_overlap = self.counters.max_overlap.max(touching - collision.distance);
         self.count_regime(&collision);
         self.kick(disk, &kicks[0]);
         self.kick(partner, &kicks[1]);
         if !is_parting(collision.normal, &kicks) {
-            let left = closing_speed_after(&collision.contact, collision.impulse);
+            let left = collision.impulse.closing_speed_after(&collision.contact);
             self.part(disk, partner, collision.normal, left);
         }
         observer.on_collision(&collision);
@@ -126,16 +127,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let (collision, kick) =
             resolve_wall(&self.bodies, &self.rule, &mut self.generator, &surface, &self.clock, disk, wall);
         if !kick.is_possible() {
-            let name = Some(self.boundary.wall_name(wall).into_owned());
+            let name = self.name_of(Partner::Wall(wall));
             let error = match surface.response {
                 Response::Rule(own) => failed(own, &collision, name),
                 _ => failed(&self.rule, &collision, name),
             };
             return Err(error.into());
         }
-        if let Some((_, depth)) = self.boundary.overlap(position, self.bodies.radius(disk), now) {
-            self.counters.max_wall_overlap = self.counters.max_wall_overlap.max(depth);
-        }
+        self.check_touch(disk, wall, position)?;
         if !self.is_tame(&kick) {
             self.begin_epoch_for(&[kick])?;
         }
@@ -249,27 +248,5 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             self.make_room();
             self.lookahead.look(&mut self.scheduler, &self.bodies, &self.cells, &mut self.scratch.found);
         }
-    }
-
-    #[cold]
-    fn scheduler_fault(&self, disk: usize, due: f64) -> RunError {
-        let expected = self.bodies.forecast(disk).map(Forecast::due);
-        RunError::Scheduler { disk, due, expected, time: self.time() }
-    }
-
-    #[cold]
-    fn boundary_fault(&self, disk: usize, fault: BoundaryFault) -> RunError {
-        RunError::Boundary { disk, time: self.time(), fault }
-    }
-
-    /// Asks the boundary again for an impossible touch, in order to report it.
-    #[cold]
-    fn impossible_touch(&self, disk: usize) -> RunError {
-        let (now, forecast) = (self.clock.now, self.forecast(disk));
-        let until = now + HORIZON * self.clock.epoch_length;
-        let touch = self.boundary.first_touch(&self.flight(disk), until);
-        let wall = touch.map_or(usize::from(forecast.wall), |touch| touch.wall);
-        let early_by = now - touch.map_or(now, |touch| touch.time);
-        self.boundary_fault(disk, BoundaryFault::Touch { wall, early_by, walls: self.wall_count })
     }
 }

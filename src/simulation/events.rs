@@ -64,16 +64,22 @@ pub struct Counters {
     pub horizons: u64,
     /// Changes of the size of the neighbor cells. All events are then predicted anew.
     pub cell_resizes: u64,
-    /// Largest overlap of two disks at a collision. It is rounding, unless something is wrong.
+    /// Largest overlap of two disks at a collision. A larger one than rounding ends the run.
     pub max_overlap: f64,
-    /// Largest overlap of a disk and a wall at a collision. It is rounding, unless something is wrong.
+    /// Largest overlap of a disk and a wall at a collision. A larger one than rounding ends the run.
     pub max_wall_overlap: f64,
+    /// Walls that were elsewhere at once when the boundary was set between runs.
+    pub wall_jumps: u64,
+    /// Farthest way of such a wall.
+    pub farthest_jump: f64,
+    /// The wall that jumped so far.
+    pub jumped_wall: u16,
 }
 
 impl Counters {
     /// Returns the counts since `earlier`.
     ///
-    /// The largest overlaps are those of the whole run.
+    /// The largest overlaps and the farthest jump are those of the whole run.
     #[must_use]
     pub const fn since(&self, earlier: &Self) -> Self {
         Self {
@@ -86,8 +92,8 @@ impl Counters {
             repredictions: self.repredictions.saturating_sub(earlier.repredictions),
             horizons: self.horizons.saturating_sub(earlier.horizons),
             cell_resizes: self.cell_resizes.saturating_sub(earlier.cell_resizes),
-            max_overlap: self.max_overlap,
-            max_wall_overlap: self.max_wall_overlap,
+            wall_jumps: self.wall_jumps.saturating_sub(earlier.wall_jumps),
+            ..*self
         }
     }
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::Simulation;
-use super::builder::{bounded_count, cells_around, check_epoch, fit};
+use super::builder::{bounded_count, cells_around, check_epoch, check_speeds, fit};
 use super::errors::BuildError;
 use super::lookahead::Lookahead;
 use super::state::Clock;
@@ -46,6 +46,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let new: Vec<Disk> = disks.into_iter().collect();
         let indices = self.len()..self.len() + new.len();
         bounded_count(indices.end)?;
+        check_speeds(&new)?;
         let mut all = self.disks();
         all.extend_from_slice(&new);
         let (wall_count, cells) = fit(&self.boundary, &all, self.clock.now)?;

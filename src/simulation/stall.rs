@@ -1,13 +1,10 @@
 //! The diagnosis of a run that hardly progresses: the disk, its partner, and a remedy.
 
-use std::fmt;
-
 use super::Simulation;
-use super::errors::RunError;
+use super::errors::{Remedy, RunError};
 use super::resolution::{resolve_pair, resolve_wall};
 use super::state::{Clock, Exit, Forecast, Standstill};
 use crate::boundary::{Boundary, Response};
-use crate::collision::laws::{available_energy, closing_speed_after};
 use crate::collision::{CollisionRule, Contact, Regime};
 use crate::observable::Partner;
 use crate::scheduler::EventScheduler;
@@ -18,70 +15,13 @@ const SLOW: f64 = 1e-9;
 /// Share of the energy, or of the closing speed, that is rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The remedy for a run that stalled, which depends on what the rule does in collisions as slow as the last
-/// ones.
-///
-/// The page `docs/rest.md` of the repository compares the remedies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Remedy {
-    /// Slow collisions lose energy, so disks that come to rest collide ever more often. Make slow or soon
-    /// repeated collisions elastic, or let no surfaces part too slowly.
-    ElasticWhenSlow,
-    /// The contact-duration model is at work, with a duration so short that disks at rest collide too often.
-    LongerContactDuration,
-    /// Slow collisions lose nothing already, but they are too slow: a disk is at rest or squeezed.
-    FasterDisks,
-    /// The rule leaves disks approaching each other.
-    PushApart,
-    /// No collision is in sight: the boundary or the scheduler names events that lead nowhere.
-    OtherParts,
-}
-
-impl fmt::Display for Remedy {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(match self {
-            Self::ElasticWhenSlow => {
-                "matter that comes to rest, an inelastic collapse, or disks that walls squeeze; the rules LeastRebound, \
-                 ElasticBelow and ContactDuration are remedies, or more room"
-            }
-            Self::LongerContactDuration => {
-                "matter at rest under a short contact duration; a longer one helps, or the rule LeastRebound"
-            }
-            Self::FasterDisks => {
-                "a disk at rest or squeezed, whose collisions lose nothing but are too slow; a faster start helps, more \
-                 room, or the rule LeastRebound with a higher speed; for walls of your own see boundary::laws::check"
-            }
-            Self::PushApart => "the rule does not push the disks apart; see collision::laws::check",
-            Self::OtherParts => "no collision is in sight; does the boundary or the scheduler advance?",
-        })
-    }
-}
-
-/// The partner of a disk, in the words of an error.
-pub(super) struct Named<'a>(pub(super) Option<Partner>, pub(super) Option<&'a str>);
-
-impl fmt::Display for Named<'_> {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (self.0, self.1) {
-            (Some(Partner::Disk(other)), _) => write!(formatter, " with disk {other}"),
-            (Some(Partner::Wall(_)), Some(name)) => write!(formatter, " with the wall {name:?}"),
-            (Some(Partner::Wall(wall)), None) => write!(formatter, " with wall {wall}"),
-            (None, _) => Ok(()),
-        }
-    }
-}
-
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the error of a run that stands still before an event of this disk.
     #[cold]
     pub(super) fn stalled(&self, standstill: &Standstill, disk: usize, due: f64) -> RunError {
         let (disk, due) = self.next_collider(disk, due);
         let partner = self.partner_of(disk);
-        let wall = match partner {
-            Some(Partner::Wall(wall)) => Some(self.boundary.wall_name(wall).into_owned()),
-            _ => None,
-        };
+        let wall = partner.and_then(|partner| self.name_of(partner));
         let remedy = partner.map_or(Remedy::OtherParts, |partner| self.remedy(disk, partner, due));
         let Standstill { events, elapsed } = *standstill;
         RunError::Stalled { time: self.time(), disk, partner, wall, events, elapsed, remedy }
@@ -142,9 +82,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             .with_kinds(contact.kinds())
             .with_radii(contact.radii());
         let impulse = rule.impulse(&slow);
-        if closing_speed_after(&slow, impulse) > ROUNDING * closing {
+        if impulse.closing_speed_after(&slow) > ROUNDING * closing {
             Remedy::PushApart
-        } else if impulse.energy_change(&slow) < -ROUNDING * available_energy(&slow) {
+        } else if impulse.energy_change(&slow) < -ROUNDING * slow.available_energy() {
             Remedy::ElasticWhenSlow
         } else if impulse.regime() == Regime::ContactDuration {
             Remedy::LongerContactDuration

@@ -16,3 +16,4 @@ pub(super) use forecast::{Earliest, Exit, Forecast};
 #[cfg(feature = "serde")]
 pub(super) use guard::Guard;
 pub(super) use guard::{Standstill, least_progress};
+pub(super) use pace::FARTHEST;

@@ -31,7 +31,7 @@ proptest! {
     fn the_loss_is_that_of_the_formulas(law in law(), contact in contact()) {
         let change = law.rule().impulse(&contact).energy_change(&contact);
         let expected = expected_change(&law, &contact);
-        let available = laws::available_energy(&contact);
+        let available = contact.available_energy();
         let apart = (change - expected).abs();
         prop_assert!(apart <= 16.0 * EPSILON * available, "{change} != {expected}, of {available}");
     }
@@ -39,7 +39,7 @@ proptest! {
     #[test]
     fn energy_is_never_gained(law in law(), contact in contact()) {
         let impulse = law.rule().impulse(&contact);
-        let (change, available) = (impulse.energy_change(&contact), laws::available_energy(&contact));
+        let (change, available) = (impulse.energy_change(&contact), contact.available_energy());
         prop_assert!(change <= 4.0 * EPSILON * available, "{change} of {available}");
         prop_assert!(change >= -(1.0 + 4.0 * EPSILON) * available, "more than there is: {change} of {available}");
         prop_assert_eq!(laws::check_impulse(&contact, impulse), Ok(()));
@@ -67,7 +67,7 @@ proptest! {
             (law.static_friction, law.dynamic_friction) = (friction, friction);
         }
         let change = law.rule().impulse(&contact).energy_change(&contact);
-        prop_assert!(change.abs() <= 4.0 * EPSILON * laws::available_energy(&contact), "{change}");
+        prop_assert!(change.abs() <= 4.0 * EPSILON * contact.available_energy(), "{change}");
     }
 
     /// The impulse lies in the cone of friction, and on its edge when the surfaces slide.

@@ -1,6 +1,6 @@
 //! Surfaces that never part too slowly, over every rule.
 
-use granular_edmd::collision::{CollisionRule, LeastRebound, Smooth, laws};
+use granular_edmd::collision::{CollisionRule, LeastRebound, Smooth};
 use granular_edmd::strategies::{contact, decades};
 use proptest::prelude::*;
 
@@ -18,9 +18,9 @@ proptest! {
     ) {
         let rule = LeastRebound::new(law.rule(), speed).unwrap();
         let (own, impulse) = (law.rule().impulse(&contact), rule.impulse(&contact));
-        let parting = -laws::closing_speed_after(&contact, own);
+        let parting = -own.closing_speed_after(&contact);
         let rounding = 4.0 * EPSILON * (contact.closing_speed() + speed);
-        let after = -laws::closing_speed_after(&contact, impulse);
+        let after = -impulse.closing_speed_after(&contact);
         prop_assert!((after - parting.max(speed)).abs() <= rounding, "{} {}", after, parting);
         if parting > speed + rounding {
             prop_assert_eq!(impulse, own);
@@ -33,7 +33,7 @@ proptest! {
     fn no_more_is_gained_than_said(law in law(), contact in contact(), speed in decades(-9.0, 3.0)) {
         let impulse = LeastRebound::new(law.rule(), speed).unwrap().impulse(&contact);
         let most = 0.5 * contact.normal_mass() * (speed * speed - contact.closing_speed().powi(2)).max(0.0);
-        let scale = laws::available_energy(&contact) + most;
+        let scale = contact.available_energy() + most;
         prop_assert!(impulse.energy_change(&contact) <= most + 16.0 * EPSILON * scale);
         let cone = law.static_friction * impulse.normal() * (1.0 + 4.0 * EPSILON);
         prop_assert!(impulse.tangential().abs() <= cone);

@@ -1,9 +1,7 @@
 //! The motion of the surfaces after the collision, from the velocities of the disks.
 
 use granular_edmd::Disk;
-use granular_edmd::collision::{
-    Contact, Elastic, Encounter, Impulse, collide, collide_with_wall, from_fn, laws,
-};
+use granular_edmd::collision::{Contact, Elastic, Encounter, Impulse, collide, collide_with_wall, from_fn};
 use granular_edmd::strategies::touching_pair;
 use proptest::prelude::*;
 
@@ -56,9 +54,9 @@ proptest! {
         prop_assert!((closing - expected_closing).abs() <= tolerance, "{closing} != {expected_closing}");
         prop_assert!((slip - expected_slip).abs() <= tolerance, "{slip} != {expected_slip}");
         prop_assert!(closing <= tolerance, "still closing");
-        let apart = laws::closing_speed_after(&contact, impulse) - expected_closing;
+        let apart = impulse.closing_speed_after(&contact) - expected_closing;
         prop_assert!(apart.abs() <= 4.0 * EPSILON * contact.closing_speed());
-        let apart = laws::slip_speed_after(&contact, impulse) - expected_slip;
+        let apart = impulse.slip_speed_after(&contact) - expected_slip;
         prop_assert!(apart.abs() <= 8.0 * EPSILON * contact.slip_speed().abs());
     }
 

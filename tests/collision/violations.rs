@@ -1,8 +1,7 @@
 //! The check for rules of users, which names each broken law, and passes everything that breaks none.
 
 use granular_edmd::collision::laws::{
-    Violation, available_energy, check_friction_cone, check_friction_opposes_slip, check_impulse,
-    closing_speed_after, slip_speed_after,
+    Violation, check_friction_cone, check_friction_opposes_slip, check_impulse,
 };
 use granular_edmd::collision::{Contact, Impulse};
 use granular_edmd::strategies::{contact, decades};
@@ -31,7 +30,7 @@ proptest! {
     #[test]
     fn a_weak_push_leaves_the_surfaces_closing(contact in contact(), normal in -3.0..0.999, tangential in 0.0..2.0) {
         let impulse = impulse(&contact, normal, tangential);
-        let closing_speed = closing_speed_after(&contact, impulse);
+        let closing_speed = impulse.closing_speed_after(&contact);
         prop_assert!(closing_speed > 0.0);
         let violation = Violation::StillClosing { closing_speed, contact, impulse };
         prop_assert_eq!(check_impulse(&contact, impulse), Err(violation));
@@ -41,7 +40,7 @@ proptest! {
     fn a_strong_push_gains_energy(contact in contact(), normal in 2.001..10.0) {
         let impulse = impulse(&contact, normal, 0.0);
         let energy_change = impulse.energy_change(&contact);
-        let available = available_energy(&contact);
+        let available = contact.available_energy();
         prop_assume!(energy_change > 1e-9 * available, "the gain is lost in the rounding of the slip");
         let violation = Violation::EnergyGained { energy_change, contact, impulse };
         prop_assert_eq!(check_impulse(&contact, impulse), Err(violation));
@@ -64,7 +63,7 @@ proptest! {
     fn a_push_along_the_slip_is_not_friction(contact in contact(), share in decades(-30.0, 0.0)) {
         let with = impulse(&contact, 1.0, -share);
         prop_assume!(with.tangential() != 0.0);
-        let slip_speed = slip_speed_after(&contact, with);
+        let slip_speed = with.slip_speed_after(&contact);
         let violation = Violation::SlipSpedUp { slip_speed, contact, impulse: with };
         prop_assert_eq!(check_friction_opposes_slip(&contact, with), Err(violation));
     }
@@ -74,9 +73,9 @@ proptest! {
     fn a_wrong_twist_gains_energy(contact in contact(), twist in prop_oneof![-3.0..-0.001, 2.001..5.0]) {
         let impulse = impulse(&contact, 2.0, twist);
         let energy_change = impulse.energy_change(&contact);
-        let available = available_energy(&contact);
+        let available = contact.available_energy();
         prop_assume!(energy_change > 1e-9 * available, "the gain is lost in the rounding of the approach");
-        prop_assert!(slip_speed_after(&contact, impulse).abs() > contact.slip_speed().abs());
+        prop_assert!(impulse.slip_speed_after(&contact).abs() > contact.slip_speed().abs());
         let violation = Violation::EnergyGained { energy_change, contact, impulse };
         prop_assert_eq!(check_impulse(&contact, impulse), Err(violation));
     }
@@ -133,6 +132,6 @@ fn surfaces_at_rest_may_stay_so() {
 #[test]
 fn the_available_energy_is_what_stopping_loses() {
     let contact = Contact::new(2.0, 3.0, 0.5, 0.25);
-    assert_eq!(available_energy(&contact), 1.0 + 1.125);
+    assert_eq!(contact.available_energy(), 1.0 + 1.125);
     assert_eq!(Impulse::new(1.0, 0.75).energy_change(&contact), -(1.0 + 1.125));
 }

@@ -18,6 +18,7 @@ mod limits;
 mod long_runs;
 mod mixture_oracle;
 mod mixtures;
+mod noticed;
 mod oracle;
 mod order;
 mod parting;

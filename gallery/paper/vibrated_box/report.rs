@@ -38,6 +38,9 @@ pub(crate) fn print(outcome: &Outcome) {
     line("collisions with walls", &counters.wall_collisions);
     line("contact-duration ones", &counters.contact_duration_collisions);
     line("largest overlap", &format!("{:.1e}", counters.max_overlap));
+    for warning in outcome.simulation.warnings() {
+        line("warning", &warning);
+    }
     line("run", &format!("{:.2} s", outcome.seconds));
     line("final state", &outcome.hash());
     if means.iter().any(|(_, mean)| !mean.is_converged()) {

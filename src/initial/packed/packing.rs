@@ -3,11 +3,11 @@
 use glam::DVec2;
 
 use super::Enclosure;
+use crate::boundary::Squares;
 use crate::boundary::{Boundary, Domain};
 use crate::collision::Elastic;
 use crate::initial::{PlacementError, placed_at_random, with_maxwellian_velocities};
 use crate::observable::{Collision, stop_when};
-use crate::squares::Squares;
 use crate::{Disk, ParameterError, Simulation};
 
 /// Area fraction at which the disks begin to grow. It is so low that random places are found fast, for any

@@ -1,5 +1,11 @@
 //! Sizes of neighbor cells.
 
+/// Number of cells of the smallest class that is always allowed.
+pub(super) const SPARE_SMALL_CELLS: f64 = 64.0;
+
+/// Width of a cell in free paths, per unit of [`CellSize::pitch`].
+pub(super) const FREE_PATHS: f64 = 3.0;
+
 /// The size of the cells. Small cells hold fewer neighbors, and large cells are left less often.
 ///
 /// The smallest cells are the best where disks crowd, and the largest cells in a dilute gas.
@@ -27,6 +33,8 @@ impl CellSize {
     /// At each bound, runs with either size take equally long. The bounds are far enough apart that no run
     /// alternates between two sizes.
     pub(in crate::simulation) fn suitable(self, cell_crossings: u64, collisions: u64) -> Self {
+        // Without collisions, this is NaN or infinite. NaN leaves the size as it is, since all comparisons
+        // fail, and infinity means the largest cells, as it should.
         let passed = cell_crossings as f64 / collisions as f64;
         match self {
             Self::Small if passed > 1.2 => Self::Medium,

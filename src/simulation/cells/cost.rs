@@ -1,6 +1,10 @@
 //! The cost of the events of a mixture, for a given division of its disks into classes.
+//!
+//! The cost decides only which layout is taken, never what happens in a run. It needs to rank layouts, so a
+//! factor of two here or there does no harm. It must depend on the radii alone: a resumed run divides its
+//! disks into classes anew, and must find the same ones.
 
-use super::cell_size::CellSize;
+use super::cell_size::{CellSize, FREE_PATHS, SPARE_SMALL_CELLS};
 use super::size_class::SizeClass;
 
 /// Assumed area fraction. Since it is fixed, the classes depend on the disks alone.
@@ -75,11 +79,11 @@ impl Gridded {
         let group = groups[index];
         let SizeClass { largest, count, .. } = group.class;
         let pitch = CellSize::Small.pitch();
-        let most = CELLS_PER_DISK * count as f64 + super::layers::SPARE_SMALL_CELLS;
+        let most = CELLS_PER_DISK * count as f64 + SPARE_SMALL_CELLS;
         let home = (pitch * largest).max((area / most).sqrt());
         let meetings = |other: &Group| other.class.count as f64 * (largest + other.class.largest);
         let free_path = area / groups.iter().map(meetings).sum::<f64>();
-        let suitable = (super::layer::FREE_PATHS * pitch * free_path).max(pitch * groups[0].class.largest);
+        let suitable = (FREE_PATHS * pitch * free_path).max(pitch * groups[0].class.largest);
         let cell = if index == 0 { home } else { suitable.min(home) };
         Self { group, density: count as f64 / area, home, cell }
     }

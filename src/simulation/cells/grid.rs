@@ -2,24 +2,11 @@
 
 use glam::DVec2;
 
-use crate::boundary::{Domain, Region};
-use crate::prefetch::prefetch;
-
 use super::cell_size::CellSize;
 use super::edges::{edges, row_edges, widen};
-
-/// Largest number of cells per disk. More cells would cost memory and save nothing.
-pub(in crate::simulation) const CELLS_PER_DISK: f64 = 8.0;
-
-/// Number of cells that is always allowed.
-pub(in crate::simulation) const SPARE_CELLS: f64 = 4096.0;
-
-/// Smallest size of a cell in diameters. It is above 1 by more than rounding.
-pub(super) const LEAST_PITCH: f64 = 1.000_001;
-
-/// Fewest columns at periodic sides, and rows at periodic ends. With fewer, a disk could meet a neighbor on
-/// both sides.
-pub(in crate::simulation) const FEWEST: f64 = 4.0;
+use super::layout::{Layout, margin};
+use crate::boundary::{Domain, Region};
+use crate::prefetch::prefetch;
 
 /// The columns and rows of cells. A ring of ghosts surrounds them, so that every cell has eight neighbors.
 ///
@@ -51,59 +38,6 @@ pub(in crate::simulation) struct Place {
     pub(in crate::simulation) row: u32,
 }
 
-/// The dimensions of the grid.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(in crate::simulation) struct Layout {
-    pub(in crate::simulation) cell_size: CellSize,
-    pub(in crate::simulation) columns: u32,
-    pub(in crate::simulation) rows: u32,
-    /// Size of a cell. In an open container, the rows grow from some height on.
-    pub(in crate::simulation) pitch: DVec2,
-}
-
-impl Layout {
-    /// Returns the layout of at most `most` cells for disks up to this diameter, or `None` if the domain is
-    /// too small.
-    pub(in crate::simulation) fn new(
-        domain: &Domain,
-        diameter: f64,
-        cell_size: CellSize,
-        most: f64,
-        highest: f64,
-    ) -> Option<Self> {
-        let width = domain.width();
-        let height = if domain.top.is_finite() {
-            domain.height()
-        } else {
-            2.0 * open_height(domain, highest, diameter)
-        };
-        let pitch = (cell_size.pitch() * diameter).max((width * height / most).sqrt());
-        let along = |length: f64, pitch: f64| (length / pitch).floor().max(1.0);
-        let mut columns = along(width, pitch).min(most.floor());
-        if domain.periodic_sides {
-            columns = columns.max(FEWEST);
-        }
-        let mut rows = along(height, pitch).min((most / columns).max(1.0).floor());
-        if domain.periodic_ends {
-            rows = rows.max(FEWEST);
-        }
-        let is_wide =
-            |is_periodic: bool, length: f64| !is_periodic || length >= FEWEST * LEAST_PITCH * diameter;
-        if !(is_wide(domain.periodic_sides, width) && is_wide(domain.periodic_ends, height)) {
-            return None;
-        }
-        let valid = width > 0.0 && height > 0.0 && width.is_finite() && height.is_finite();
-        let pitch = DVec2::new(width / columns, height / rows);
-        valid.then_some(Self { cell_size, columns: columns as u32, rows: rows as u32, pitch })
-    }
-}
-
-/// Returns the height of the even part of the grid of an open container.
-fn open_height(domain: &Domain, highest: f64, diameter: f64) -> f64 {
-    2.0 * (highest - domain.bottom).max(0.0) + 64.0 * diameter
-}
-
 impl Grid {
     /// Creates the grid of this layout.
     pub(in crate::simulation) fn new(domain: &Domain, layout: Layout, diameter: f64) -> Self {
@@ -123,6 +57,9 @@ impl Grid {
     }
 
     /// Creates the grid of this layout with cells that keep no disks beyond their edges.
+    ///
+    /// Layers of larger disks have such grids. Their reaches are computed from the edges, and a margin would
+    /// make every one of them larger.
     pub(in crate::simulation) fn without_margin(domain: &Domain, layout: Layout) -> Self {
         Self::new(domain, layout, f64::INFINITY)
     }
@@ -266,20 +203,4 @@ fn brought_back(line: u32, count: u32) -> (u32, i32) {
         line if line > count => (1, 1),
         line => (line, 0),
     }
-}
-
-/// Returns the largest distance beyond its edges up to which a cell can keep its disks, such that they still
-/// collide only with disks in the cells around it.
-///
-/// A disk that turns back soon, or moves to and fro at an edge, then stays in its cell.
-fn margin(domain: &Domain, layout: &Layout, diameter: f64) -> DVec2 {
-    let mut margin = (0.5 * (layout.pitch - LEAST_PITCH * diameter)).max(DVec2::ZERO);
-    // With so few columns or rows and a margin, neighbors could be more than half a period apart.
-    if domain.periodic_sides && layout.columns < 6 {
-        margin.x = 0.0;
-    }
-    if domain.periodic_ends && layout.rows < 6 {
-        margin.y = 0.0;
-    }
-    margin
 }

@@ -2,15 +2,20 @@
 //!
 //! A large disk has two places. Its *home* is as large as the disk, and other disks look for it there. Its
 //! *cell* is much smaller, and the disk keeps its partners until it leaves the cell. With a home alone, the
-//! disk would have to know all small disks that it can touch from anywhere in its home.
+//! disk would have to know all small disks that it can touch from anywhere in its home. `layers.rs` has a
+//! picture.
+//!
+//! Homes consist of whole cells, a power of two along each side, so that a home follows from a cell by a shift
+//! of bits. A disk that enters another cell is mostly still at home, and then the contents of homes stay as they are.
 
 use std::f64::consts::SQRT_2;
 
 use glam::DVec2;
 
-use super::cell_size::CellSize;
+use super::cell_size::{CellSize, FREE_PATHS};
 use super::contents::Contents;
-use super::grid::{Grid, Layout, Place};
+use super::grid::{Grid, Place};
+use super::layout::{LEAST_PITCH, Layout};
 use super::reach::{Homes, Reach};
 use super::size_class::SizeClass;
 use crate::boundary::{Boundary, Domain, Region};
@@ -20,9 +25,6 @@ const HOMES_PER_DISK: f64 = 4.0;
 
 /// Number of homes that is always allowed.
 const SPARE_HOMES: f64 = 16.0;
-
-/// Width of a cell in free paths, per unit of [`CellSize::pitch`].
-pub(super) const FREE_PATHS: f64 = 3.0;
 
 /// Largest number of doublings by which cells are finer than homes.
 const FINEST: u32 = 10;
@@ -114,7 +116,7 @@ impl LayerLayout {
         diameter: f64,
     ) -> bool {
         let grid = Grid::new(domain, *smallest, smallest_diameter);
-        let widest = super::layers::widest(domain, &grid, smallest_diameter, diameter);
+        let widest = widest(domain, &grid, smallest_diameter, diameter);
         self.cells.pitch.cmple(widest).all()
     }
 
@@ -129,6 +131,21 @@ impl LayerLayout {
         }
         Some(layout)
     }
+}
+
+/// Returns the largest width and height of a cell of a class; infinite in a direction that is not periodic.
+///
+/// Two disks must meet at the image that is nearest now, wherever they move in their cells. Their distance is
+/// at most the sum of their distance at a touch and the widths of both cells. While this sum is less than
+/// half a period, no other image comes nearer.
+pub(super) fn widest(domain: &Domain, grid: &Grid, smallest: f64, diameter: f64) -> DVec2 {
+    // Equal disks are both somewhere in their cells, so each cell may take half of what a touch leaves of half
+    // a period. Beside a small disk, the margin of its cell counts, too: it may be that far outside.
+    let half = 0.5 * domain.periods();
+    let small_cell = grid.layout.pitch + 2.0 * grid.margin();
+    let beside_equal = 0.5 * (half - LEAST_PITCH * diameter);
+    let beside_small = half - 0.5 * LEAST_PITCH * (diameter + smallest) - small_cell;
+    DVec2::select(half.cmpgt(DVec2::ZERO), beside_equal.min(beside_small), DVec2::INFINITY)
 }
 
 /// The disks of a class in their homes, and the homes in which they look for partners.

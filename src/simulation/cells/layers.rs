@@ -1,14 +1,43 @@
-//! Layers of cells for disks of several sizes. The smallest class has the cells of the engine, and each
-//! larger class has a layer of its own above them.
+//! Layers of cells for disks of several sizes.
+//!
+//! The smallest class has the cells of the engine, and each larger class has a layer of its own above them.
+//! The picture shows a large disk over the homes of a smaller class, one character for each home:
+//!
+//! ```text
+//!     . . . . . . . . . . .     c  the cell of the large disk: its center is somewhere in it
+//!     . r r r r r r r r r .     r  the reach of that cell: a small disk that touches the large
+//!     . r r r r r r r r r .        one has its center in one of these homes
+//!     . r r o o o o o r r .     o  the hole in the reach: these homes lie inside the large disk,
+//!     . r r o o o o o r r .        wherever in its cell it is, so no small disk can be there
+//!     . r r o o c o o r r .
+//!     . r r o o o o o r r .     The home of the large disk is not drawn. It is about as large as
+//!     . r r o o o o o r r .     the disk, and consists of a power of two of cells along each side.
+//!     . r r r r r r r r r .     Disks of its own class and of larger ones look for it there.
+//!     . r r r r r r r r r .
+//!     . . . . . . . . . . .
+//! ```
+//!
+//! A disk keeps its partners until it leaves its cell, and others look for it in its home. In the smallest
+//! class, cell and home are the same. A large disk needs both: from anywhere in a home of its own size it
+//! could touch so many small disks that it would have to predict them all, and cells as small as `c` would be
+//! too many to look into.
+//!
+//! A pair must find each other from both sides, whichever of the two is searched for. The large disk looks
+//! into the homes of its reach. The small disk cannot look up: the cells above it that reach its home are too
+//! many. So each home keeps a list of *visitors*, the larger disks in whose reach it lies. When the large
+//! disk enters the next cell, only the rims of the reach and of the hole change. The lists are brought up to
+//! date there, and only the small disks there are new partners.
 
 use glam::DVec2;
 
-use super::cell_size::CellSize;
+use super::cell_size::{CellSize, SPARE_SMALL_CELLS};
 use super::contents::Contents;
-use super::grid::{Grid, LEAST_PITCH, Layout, Place};
-use super::layer::{Layer, LayerLayout};
+use super::division::classes;
+use super::grid::{Grid, Place};
+use super::layer::{Layer, LayerLayout, widest};
+use super::layout::{LEAST_PITCH, Layout};
 use super::reach::{Distances, Homes, Reach};
-use super::size_class::{SizeClass, class_of, classes, together};
+use super::size_class::{SizeClass, class_of, together};
 use crate::boundary::{Boundary, Domain};
 
 /// Returns the largest number of cells for each disk of the smallest class.
@@ -21,9 +50,6 @@ const fn cells_per_small_disk(cell_size: CellSize) -> f64 {
         CellSize::Large => 2.0,
     }
 }
-
-/// Number of cells of the smallest class that is always allowed.
-pub(super) const SPARE_SMALL_CELLS: f64 = 64.0;
 
 /// The layers of all classes but the smallest.
 #[derive(Debug, Clone)]
@@ -55,21 +81,10 @@ pub(super) fn layouts(
         let layout = LayerLayout::new(domain, classes, class, cell_size, highest)?;
         layout.narrower(widest(domain, &grid, diameter, classes[class].largest))
     };
+    // If one class has no room for cells that are narrow enough, no class gets a layer: all disks then share
+    // the cells of the largest, which is slow but right.
     let larger: Option<Vec<LayerLayout>> = (1..classes.len()).map(layout).collect();
     Some(Layouts { smallest, larger: larger? })
-}
-
-/// Returns the largest width and height of a cell of a class; infinite in a direction that is not periodic.
-///
-/// Two disks must meet at the image that is nearest now, wherever they move in their cells. Their distance is
-/// at most the sum of their distance at a touch and the widths of both cells. While this sum is less than
-/// half a period, no other image comes nearer.
-pub(super) fn widest(domain: &Domain, grid: &Grid, smallest: f64, diameter: f64) -> DVec2 {
-    let half = 0.5 * domain.periods();
-    let small_cell = grid.layout.pitch + 2.0 * grid.margin();
-    let beside_equal = 0.5 * (half - LEAST_PITCH * diameter);
-    let beside_small = half - 0.5 * LEAST_PITCH * (diameter + smallest) - small_cell;
-    DVec2::select(half.cmpgt(DVec2::ZERO), beside_equal.min(beside_small), DVec2::INFINITY)
 }
 
 impl Layers {
@@ -144,6 +159,8 @@ impl Layers {
             return;
         };
         layer.cross(disk, from, to);
+        // Homes in both reaches keep the disk. A home at the rim of the hole may leave the reach on one side of
+        // it and enter on the other, so both directions are needed.
         for (visitors, reach) in self.visitors.iter_mut().zip(layer.reaches().0) {
             reach.for_each_run_beyond(from, to, |first, count| visitors.remove_from_run(first, count, disk));
             reach.for_each_run_beyond(to, from, |first, count| visitors.push_to_run(first, count, disk));
@@ -172,6 +189,7 @@ impl Layers {
         found: &mut [u32],
     ) -> usize {
         let class = usize::from(self.classes[disk]);
+        // The layers begin with class 1. For class 0, the index wraps to one that no layer has.
         let Some(layer) = self.larger.get(class.wrapping_sub(1)) else { return 0 };
         let (smaller, own) = layer.reaches();
         let mut count = 0;
@@ -183,11 +201,14 @@ impl Layers {
                 None => reach.for_each_run(place, act),
             }
         }
+        // Disks of its own class are few and near. To tell which of them are new would cost more than to take
+        // them all.
         if let Some(own) = own {
             own.for_each_run(place, |first, homes| {
                 count = layer.contents.gather_run(first, homes, found, count);
             });
         }
+        // Disks of larger classes come to this disk's home as visitors, as large disks do to small ones.
         self.visitors[class].gather_cell(layer.home(place), found, count)
     }
 }
@@ -229,10 +250,7 @@ impl Layouts {
     ) -> Option<Vec<SizeClass>> {
         let classes = classes(diameters);
         if self.larger.is_empty() {
-            // Without disks, any cells will do.
-            let any = 0.125 * domain.width();
-            let nobody = SizeClass { largest: any, smallest: any, count: 0 };
-            return Some(vec![together(&classes).unwrap_or(nobody)]);
+            return Some(vec![together(&classes).unwrap_or_else(|| SizeClass::of_nobody(domain))]);
         }
         (classes.len() == self.larger.len() + 1).then_some(classes)
     }

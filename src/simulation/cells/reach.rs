@@ -1,4 +1,14 @@
 //! The homes of another class of disks that a disk may touch from anywhere in its own cell.
+//!
+//! The picture in `layers.rs` shows a reach and its hole. Both are rectangles, so a reach is given by its
+//! columns and its rows, each with those of the hole. They are tables, one entry for each column and row of
+//! the disk's own grid: the searches of large disks read them all the time, and a table costs one load, where
+//! the edges of uneven rows would have to be searched. Homes of a column lie next to each other in memory, so the reach is walked
+//! through in runs of rows.
+//!
+//! At periodic sides and ends, homes are counted on beyond the last one. Columns are brought back at once. Rows
+//! are kept as they are counted, so that reach, hole and difference of two reaches are plain intervals, and are
+//! brought back only when a run is handed out, then in two pieces.
 
 use super::grid::{Grid, Place};
 
@@ -63,9 +73,13 @@ impl Reach {
         let margin = homes.grid.margin();
         let [from_columns, from_rows] = from.ranges();
         let periods = homes.grid.periods();
-        // Half the width of the square in the circle on which the nearest possible centers lie.
+        // Half the width of the square in the circle on which the nearest possible centers lie. A home in this
+        // square is nearer than a touch even with its corners. The homes between square and circle hold no
+        // disks either, but a rectangle is quicker to walk around than what would be left.
         let hole = distances.least * std::f64::consts::FRAC_1_SQRT_2;
         let spans = |edges: &[f64], range: &(f64, f64), margin: f64, is_periodic: bool| {
+            // A disk is in its home up to a margin beyond the edge, so the reach goes as much further. The
+            // hole is smaller for the same reason.
             let distance = distances.most + margin;
             let (low, high) = (range.0 - distance, range.1 + distance);
             let outer = if is_periodic { around(edges, low, high) } else { between(edges, low, high) };
@@ -105,6 +119,8 @@ impl Reach {
             let beyond = self.rows_of(other, column).map(|rows| self.aligned(rows, place, other));
             for rows in self.rows_of(place, column) {
                 let mut first = rows.first;
+                // What is left of an interval without two others, which lie in order: the pieces before each
+                // of them, and the piece after the last.
                 for inside in beyond.into_iter().filter(|inside| inside.count > 0) {
                     let before = Span::between(first, rows.behind().min(inside.first));
                     self.act_on(column, before, &mut act);
@@ -156,6 +172,7 @@ impl Reach {
     fn rows_of(&self, place: Place, column: u32) -> [Span; 2] {
         let [columns, hole_columns] = self.columns[place.column as usize - 1];
         let [rows, hole_rows] = self.rows[place.row as usize - 1];
+        // The column was brought back by a period if it is counted on beyond the last one.
         let turn = if column < columns.first { self.period_columns } else { 0 };
         if column + turn - columns.first >= columns.count {
             return [Span::EMPTY; 2];
@@ -215,7 +232,8 @@ mod tests {
     use super::{Distances, Homes, Reach, around, between, within};
     use crate::boundary::{Boundary, Container};
     use crate::simulation::cells::cell_size::CellSize;
-    use crate::simulation::cells::grid::{Grid, Layout, Place};
+    use crate::simulation::cells::grid::{Grid, Place};
+    use crate::simulation::cells::layout::Layout;
 
     /// Returns a grid of cells of this size on a square of 60.
     fn grid(container: &Container, pitch: f64) -> Grid {

@@ -135,10 +135,11 @@ fn are_counted(counters: &Counters) -> bool {
     let Counters { disk_collisions, wall_collisions, contact_duration_collisions, .. } = *counters;
     let Counters { cell_crossings, repredictions, horizons, cell_resizes, .. } = *counters;
     let physics = [disk_collisions, wall_collisions, contact_duration_collisions];
-    let bookkeeping = [cell_crossings, repredictions, horizons, cell_resizes];
+    let bookkeeping = [cell_crossings, repredictions, horizons, cell_resizes, counters.wall_jumps];
     physics.iter().chain(&bookkeeping).all(|&count| count <= MOST_COUNTED)
-        && counters.max_overlap >= 0.0
-        && counters.max_wall_overlap >= 0.0
+        && [counters.max_overlap, counters.max_wall_overlap, counters.farthest_jump]
+            .iter()
+            .all(|&way| way >= 0.0)
 }
 
 fn are_forecasts(saved: &Saved, walls: usize) -> bool {
@@ -222,7 +223,7 @@ fn ends_where_it_can(
 /// is made anew when it comes up.
 fn meets_its_partner(saved: &Saved, bodies: &Bodies, disk: usize, forecast: &Forecast) -> bool {
     let Forecast { collision_due, partner, partner_collisions, .. } = *forecast;
-    let is_soon = collision_due - saved.now <= MOST_EPOCHS * saved.epoch_length;
+    let is_soon = collision_due.is_finite() && collision_due - saved.now <= MOST_EPOCHS * saved.epoch_length;
     let partner = partner as usize;
     let is_current = saved.forecasts.get(partner).is_some_and(|other| other.collisions == partner_collisions);
     if !(is_soon && is_current) {

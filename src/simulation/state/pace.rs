@@ -10,6 +10,9 @@ const DIAMETERS: f64 = 64.0;
 /// Factor by which a disk may be faster than a typical one before it decides how often the epoch moves.
 const FASTER: f64 = 16.0;
 
+/// Largest number of typical diameters that any disk goes in an epoch.
+pub(in crate::simulation) const FARTHEST: f64 = FASTER * DIAMETERS;
+
 impl Bodies {
     /// Returns the length of an epoch. A typical disk goes, or falls, some tens of diameters in it, and no
     /// disk goes more than [`FASTER`] times as far.
@@ -33,7 +36,7 @@ impl Bodies {
     /// would be so far away that it would lack digits.
     #[inline]
     pub(in crate::simulation) fn keeps_pace(&self, velocity: DVec2, epoch_length: f64) -> bool {
-        let most = FASTER * DIAMETERS * self.typical_diameter;
+        let most = FARTHEST * self.typical_diameter;
         (velocity * epoch_length).length_squared() <= most * most
     }
 
@@ -53,11 +56,13 @@ impl Bodies {
     }
 }
 
-/// Returns the largest power of two that is not above a positive number. It is kept between 2⁻⁹⁰⁰ and 2⁹⁰⁰,
-/// so that multiples of it stay in the range of floats.
+/// Returns the largest power of two that is not above a positive number. It is kept between 2⁻⁹⁰⁰ and 2¹⁰²⁰.
+///
+/// Searches look two epochs ahead, which must be a finite time. Up to the last finite time, there are then
+/// sixteen epochs at most, however slow the disks are.
 fn power_of_two_below(number: f64) -> f64 {
     const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
-    let number = number.clamp(f64::from_bits((1023 - 900) << 52), f64::from_bits((1023 + 900) << 52));
+    let number = number.clamp(f64::from_bits((1023 - 900) << 52), f64::from_bits((1023 + 1020) << 52));
     // A float without its fraction is its power of two. This is exact, whereas a logarithm would be rounded.
     f64::from_bits(number.to_bits() & EXPONENT)
 }

@@ -85,6 +85,7 @@ pub(super) fn columns() -> Vec<Column<VibratedBox>> {
             record.counters().contact_duration_collisions
         }),
         Column::of_record("max_overlap", "diameter", |record| record.counters().max_overlap),
+        Column::of_record("warnings", "1", |record| record.counters().warnings().len() as f64),
     ]
 }
 

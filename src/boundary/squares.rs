@@ -5,8 +5,8 @@ use std::hash::{BuildHasherDefault, Hasher};
 
 use glam::DVec2;
 
+use super::Domain;
 use crate::Disk;
-use crate::boundary::Domain;
 
 /// Factor by which disks reach further than their radii, so that rounding hides no neighbor.
 const MARGIN: f64 = 1.0 + 1e-9;

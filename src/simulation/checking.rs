@@ -1,0 +1,172 @@
+//! Checks of what the engine is told: collisions happen where surfaces touch, no event is lost, and no disk
+//! leaves the domain.
+//!
+//! All parts may be code of the user's. None of them can make the engine panic, but a wall that is not where
+//! it says, or a scheduler that forgets, would let a run end as if nothing had happened. So the engine looks
+//! where a look costs next to nothing: at each wall collision, at each new largest overlap, at the ends of
+//! searches for a wall, and at all disks whenever the epoch moves or a run ends.
+
+use glam::DVec2;
+
+use super::Simulation;
+use super::errors::{BoundaryFault, Outcome, RunError};
+use super::forecasting::HORIZON;
+use super::state::{FARTHEST, Forecast};
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::observable::Partner;
+use crate::scheduler::EventScheduler;
+
+/// Largest gap at a collision with a wall, relative to the radius. It is a power of two (9e-10), so that the
+/// enlarged radius loses no digits for usual radii.
+const NEAR: f64 = 1.0 / (1_u64 << 30) as f64;
+
+/// Largest overlap at a collision, relative to the radius. Ordinary runs have 1e-13. Disks of speeds of
+/// thousands that bounce a hundred thousand times in a corner that closes have up to 1e-8.
+const DEEP: f64 = 1e-6;
+
+/// Number of times that the search for a wall doubles its reach, in order to tell how far away the wall is.
+const MOST_DOUBLINGS: usize = 100;
+
+/// Number of roundings by which a place may be wrong.
+const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
+    /// Checks that a disk at this position touches a wall, and keeps the largest overlap.
+    ///
+    /// One question serves both. With a radius enlarged by the largest gap, a disk that touches overlaps, and
+    /// the depth less the gap is its own.
+    #[inline]
+    pub(super) fn check_touch(&mut self, disk: usize, wall: usize, position: DVec2) -> Outcome<()> {
+        let radius = self.bodies.radius(disk);
+        let gap = NEAR * radius;
+        match self.boundary.overlap(position, radius + gap, self.clock.now) {
+            Some((_, depth)) if depth - gap <= self.counters.max_wall_overlap => Ok(()),
+            Some((_, depth)) => self.note_overlap(disk, Partner::Wall(wall), depth - gap),
+            None => self.check_gap(disk, wall, position),
+        }
+    }
+
+    /// Keeps an overlap that is larger than all before, if it can be rounding.
+    ///
+    /// A larger overlap is not kept, so that the next one is noticed, too.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn note_overlap(&mut self, disk: usize, partner: Partner, depth: f64) -> Outcome<()> {
+        let radius = match partner {
+            Partner::Disk(other) => self.bodies.radius(disk).min(self.bodies.radius(other)),
+            Partner::Wall(_) => self.bodies.radius(disk),
+        };
+        if depth > DEEP * radius + self.rounding_at(disk, partner) {
+            return Err(self.false_contact(disk, partner, depth).into());
+        }
+        match partner {
+            Partner::Disk(_) => self.counters.max_overlap = depth,
+            Partner::Wall(_) => self.counters.max_wall_overlap = depth,
+        }
+        Ok(())
+    }
+
+    /// Checks that a gap before a wall is rounding.
+    #[cold]
+    fn check_gap(&self, disk: usize, wall: usize, position: DVec2) -> Outcome<()> {
+        let (now, radius) = (self.clock.now, self.bodies.radius(disk));
+        let reach = (1.0 + NEAR) * radius + self.rounding_at(disk, Partner::Wall(wall));
+        // A wall that jumps away from the disks may have done so in the rounding of the time. The engine
+        // never asks about times before the epoch.
+        let before = (now - self.clock.rounding()).max(0.0);
+        if [now, before].iter().any(|&time| self.boundary.overlap(position, reach, time).is_some()) {
+            return Ok(());
+        }
+        let mut gaps = std::iter::successors(Some(NEAR * radius), |gap| Some(2.0 * gap)).take(MOST_DOUBLINGS);
+        let found = |gap: f64| Some(gap - self.boundary.overlap(position, radius + gap, now)?.1);
+        let gap = gaps.find_map(found).unwrap_or(f64::INFINITY);
+        Err(self.false_contact(disk, Partner::Wall(wall), -gap).into())
+    }
+
+    /// Returns the error by which the gap between a disk and its partner may differ from zero.
+    ///
+    /// Places are rounded relative to their distance from the origin, and to the way since the epoch. The
+    /// time of a touch is rounded as absolute times are, since some walls know no others. In this time, the
+    /// disk goes on, and so does the wall.
+    fn rounding_at(&self, disk: usize, partner: Partner) -> f64 {
+        let now = self.clock.now;
+        let position = self.bodies.position(disk, now);
+        let way = self.fastest() * self.clock.epoch_length;
+        let rounding = ROUNDINGS * (position.x.abs() + position.y.abs() + way);
+        let Partner::Wall(wall) = partner else { return rounding };
+        let speed = self.boundary.surface(wall, position, now).velocity.length();
+        rounding + self.clock.rounding() * (speed + self.fastest())
+    }
+
+    /// Returns the speed that no disk exceeds in this epoch.
+    fn fastest(&self) -> f64 {
+        FARTHEST * self.bodies.typical_diameter / self.clock.epoch_length
+    }
+
+    /// Checks a disk that came to the horizon of a search without a touch: a wall that let it pass would find
+    /// no other.
+    pub(super) fn check_passed(&self, disk: usize) -> Outcome<()> {
+        let (position, radius) = (self.bodies.position(disk, self.clock.now), self.bodies.radius(disk));
+        match self.boundary.overlap(position, radius, self.clock.now) {
+            Some((wall, depth)) if depth > DEEP * radius + self.rounding_at(disk, Partner::Wall(wall)) => {
+                Err(self.false_contact(disk, Partner::Wall(wall), depth).into())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Checks that no event before this time offset was lost, and that all disks are in the domain then.
+    pub(super) fn check_all(&self, offset: f64) -> Outcome<()> {
+        let domain = self.boundary.domain();
+        let rounding = self.clock.rounding() * self.fastest();
+        for (disk, particle) in self.bodies.particles.iter().enumerate() {
+            if particle.forecast.due() < offset {
+                let due = self.clock.origin + particle.forecast.due();
+                return Err(RunError::Overdue { disk, due, time: self.time() }.into());
+            }
+            let DVec2 { x, y } = self.bodies.position(disk, offset);
+            let slack = rounding + self.bodies.radius(disk);
+            let is_inside = x >= domain.left - slack
+                && x <= domain.right + slack
+                && y >= domain.bottom - slack
+                && y <= domain.top + slack;
+            if !is_inside {
+                return Err(self.boundary_fault(disk, BoundaryFault::Outside { x, y }).into());
+            }
+        }
+        Ok(())
+    }
+
+    fn false_contact(&self, disk: usize, partner: Partner, depth: f64) -> RunError {
+        RunError::FalseContact { disk, partner, wall: self.name_of(partner), depth, time: self.time() }
+    }
+
+    /// Returns the name of a wall.
+    pub(super) fn name_of(&self, partner: Partner) -> Option<String> {
+        let Partner::Wall(wall) = partner else { return None };
+        Some(self.boundary.wall_name(wall).into_owned())
+    }
+
+    #[cold]
+    pub(super) fn scheduler_fault(&self, disk: usize, due: f64) -> RunError {
+        let expected = self.bodies.forecast(disk).map(Forecast::due);
+        RunError::Scheduler { disk, due, expected, time: self.time() }
+    }
+
+    #[cold]
+    pub(super) fn boundary_fault(&self, disk: usize, fault: BoundaryFault) -> RunError {
+        RunError::Boundary { disk, time: self.time(), fault }
+    }
+
+    /// Asks the boundary again for an impossible touch, in order to report it.
+    #[cold]
+    pub(super) fn impossible_touch(&self, disk: usize) -> RunError {
+        let (now, forecast) = (self.clock.now, self.forecast(disk));
+        let until = now + HORIZON * self.clock.epoch_length;
+        let touch = self.boundary.first_touch(&self.flight(disk), until);
+        let wall = touch.map_or(usize::from(forecast.wall), |touch| touch.wall);
+        let early_by = now - touch.map_or(now, |touch| touch.time);
+        self.boundary_fault(disk, BoundaryFault::Touch { wall, early_by, walls: self.wall_count })
+    }
+}

@@ -1,0 +1,114 @@
+//! Impossible answers of rules and boundaries, in the words of errors.
+
+use std::fmt;
+
+use glam::DVec2;
+use thiserror::Error;
+
+use crate::collision::{Contact, Impulse};
+use crate::error::{Readable, Rounded, RoundedVector};
+use crate::observable::Partner;
+
+/// The partner of a disk, in the words of an error.
+pub(in crate::simulation) struct Named<'a>(
+    pub(in crate::simulation) Option<Partner>,
+    pub(in crate::simulation) Option<&'a str>,
+);
+
+impl fmt::Display for Named<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.0, self.1) {
+            (Some(Partner::Disk(other)), _) => write!(formatter, " with disk {other}"),
+            (Some(Partner::Wall(_)), Some(name)) => write!(formatter, " with the wall {name:?}"),
+            (Some(Partner::Wall(wall)), None) => write!(formatter, " with wall {wall}"),
+            (None, _) => Ok(()),
+        }
+    }
+}
+
+/// A collision whose outcome is a motion with which the engine cannot go on.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FailedCollision {
+    /// The disk.
+    pub disk: usize,
+    /// The partner of the disk.
+    pub partner: Partner,
+    /// Name of the wall, if the partner is one.
+    pub wall: Option<String>,
+    /// The present.
+    pub time: f64,
+    /// The contact about which the engine asked the rule.
+    pub contact: Contact,
+    /// The impulse with which the rule answered.
+    pub impulse: Impulse,
+    /// The reason that the rule gives, if it gives one; see
+    /// [`CollisionRule::explain`](crate::collision::CollisionRule::explain).
+    pub explanation: Option<String>,
+}
+
+impl fmt::Display for FailedCollision {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { disk, time, contact, impulse, .. } = self;
+        match self.partner {
+            Partner::Disk(other) => write!(formatter, "disks {disk} and {other}")?,
+            wall @ Partner::Wall(_) => {
+                write!(formatter, "disk {disk}{}", Named(Some(wall), self.wall.as_deref()))?;
+            }
+        }
+        write!(
+            formatter,
+            " at time {} leads to no finite motion: closing at {} and slipping at {}, the impulse is ({}, {})",
+            Rounded(*time),
+            Rounded(contact.closing_speed()),
+            Rounded(contact.slip_speed()),
+            Rounded(impulse.normal()),
+            Rounded(impulse.tangential())
+        )?;
+        match &self.explanation {
+            Some(explanation) => write!(formatter, "; the rule says: {explanation}"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// An impossible answer of a boundary.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum BoundaryFault {
+    /// A touch before the flight, after the end of the search, or with a wall that does not exist.
+    #[error(
+        "a touch with wall {wall}, of {walls} walls from 0 on, {} after the start of the flight",
+        Rounded(-early_by)
+    )]
+    Touch {
+        /// The wall that the boundary named.
+        wall: usize,
+        /// Number of walls of the boundary.
+        walls: usize,
+        /// Time from the touch to the start of the flight; negative for a touch after the start.
+        early_by: f64,
+    },
+    /// A surface whose normal is not a unit vector, whose velocity is not finite or is above 1e60, or whose
+    /// radius is zero or NaN.
+    #[error(
+        "the surface of wall {wall} has the normal ({}, {}), which must be a unit vector, and the velocity {}",
+        Readable(.normal.x), Readable(.normal.y), RoundedVector(*.velocity)
+    )]
+    Surface {
+        /// The wall.
+        wall: usize,
+        /// The normal of the surface.
+        normal: DVec2,
+        /// The velocity of the surface.
+        velocity: DVec2,
+    },
+    /// A disk outside the domain: the boundary missed its touch with a wall.
+    #[error("no touch, but the disk is at ({}, {}), outside the domain; see boundary::laws::check", Rounded(*.x), Rounded(*.y))]
+    Outside {
+        /// Horizontal position of the disk's center.
+        x: f64,
+        /// Vertical position of the disk's center.
+        y: f64,
+    },
+}

@@ -1,0 +1,43 @@
+//! The remedies for runs that stall.
+
+use std::fmt;
+
+/// The remedy for a run that stalled, which depends on what the rule does in collisions as slow as the last
+/// ones.
+///
+/// The page `docs/rest.md` of the repository compares the remedies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// Slow collisions lose energy, so disks that come to rest collide ever more often. Make slow or soon
+    /// repeated collisions elastic, or let no surfaces part too slowly.
+    ElasticWhenSlow,
+    /// The contact-duration model is at work, with a duration so short that disks at rest collide too often.
+    LongerContactDuration,
+    /// Slow collisions lose nothing already, but they are too slow: a disk is at rest or squeezed.
+    FasterDisks,
+    /// The rule leaves disks approaching each other.
+    PushApart,
+    /// No collision is in sight: the boundary or the scheduler names events that lead nowhere.
+    OtherParts,
+}
+
+impl fmt::Display for Remedy {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::ElasticWhenSlow => {
+                "matter that comes to rest, an inelastic collapse, or disks that walls squeeze; the rules LeastRebound, \
+                 ElasticBelow and ContactDuration are remedies, or more room"
+            }
+            Self::LongerContactDuration => {
+                "matter at rest under a short contact duration; a longer one helps, or the rule LeastRebound"
+            }
+            Self::FasterDisks => {
+                "a disk at rest or squeezed, whose collisions lose nothing but are too slow; a faster start helps, more \
+                 room, or the rule LeastRebound with a higher speed; for walls of your own see boundary::laws::check"
+            }
+            Self::PushApart => "the rule does not push the disks apart; see collision::laws::check",
+            Self::OtherParts => "no collision is in sight; does the boundary or the scheduler advance?",
+        })
+    }
+}

@@ -1,0 +1,174 @@
+//! The errors of a run.
+
+use std::fmt;
+
+use thiserror::Error;
+
+use super::answers::{BoundaryFault, FailedCollision, Named};
+use super::remedy::Remedy;
+use crate::error::{Readable, Rounded};
+use crate::observable::{ObserverError, Partner};
+
+/// The result of the engine's inner functions. Errors are boxed, so that the usual answer comes back in
+/// registers.
+pub(in crate::simulation) type Outcome<T> = Result<T, Box<RunError>>;
+
+/// An error: a run cannot go on.
+///
+/// The simulation keeps the state in which it noticed the error.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// The end is before the present, or not finite.
+    #[error(
+        "the run cannot end at time {}: the end must be finite and not before the present, {}",
+        Readable(*.end), Readable(*.time)
+    )]
+    End {
+        /// The end asked for.
+        end: f64,
+        /// The present.
+        time: f64,
+    },
+    /// The run hardly progresses: disks come to rest, by an inelastic collapse or under gravity, and collide
+    /// ever more often.
+    #[error(
+        "the run stalled at time {}: {events} events took it only {} further; disk {disk}{} is next to collide: \
+         {remedy}; docs/rest.md compares the remedies, and Limits::with_least_progress allows less progress",
+        Rounded(*.time), Rounded(*.elapsed), Named(*.partner, .wall.as_deref())
+    )]
+    Stalled {
+        /// The present.
+        time: f64,
+        /// A disk that collides again and again: the next one to do so.
+        disk: usize,
+        /// The partner of the disk; `None` if no collision is in sight.
+        partner: Option<Partner>,
+        /// The name of the wall, if the partner is one.
+        wall: Option<String>,
+        /// Number of events with too little progress.
+        events: u64,
+        /// Simulated time that these events took.
+        elapsed: f64,
+        /// The remedy, by what the rule does in these collisions.
+        remedy: Remedy,
+    },
+    /// A rule answered with an impulse that is not finite, or that leads to a motion beyond 1e60.
+    #[error("the collision of {0}")]
+    NotFinite(Box<FailedCollision>),
+    /// The boundary gave an impossible answer.
+    #[error("the boundary gave an impossible answer for disk {disk} at time {}: {fault}", Rounded(*.time))]
+    Boundary {
+        /// The disk about which the engine asked the boundary.
+        disk: usize,
+        /// The present.
+        time: f64,
+        /// The answer.
+        fault: BoundaryFault,
+    },
+    /// The scheduler named a disk that does not exist, or a time that was not set.
+    #[error(
+        "the scheduler names disk {disk}, due at the offset {}, at time {}; {}",
+        Readable(*.due), Rounded(*.time),
+        .expected.map_or("there is no such disk".to_owned(), |due| format!("it was set to {}", Readable(due)))
+    )]
+    Scheduler {
+        /// The disk that the scheduler named.
+        disk: usize,
+        /// The offset that the scheduler named.
+        due: f64,
+        /// The offset that was last set for this disk, if there is such a disk.
+        expected: Option<f64>,
+        /// The present.
+        time: f64,
+    },
+    /// The scheduler has forgotten an event: it named only later ones.
+    #[error(
+        "the scheduler did not name disk {disk}, due at time {}, and the run is at time {}: it lost a time that was \
+         set; scheduler::laws::check tries schedulers",
+        Rounded(*.due), Rounded(*.time)
+    )]
+    Overdue {
+        /// The disk.
+        disk: usize,
+        /// The time at which the next event of the disk was due.
+        due: f64,
+        /// The present.
+        time: f64,
+    },
+    /// A collision away from the surfaces: a disk reaches into its partner by more than rounding, or a wall is
+    /// not where its touch was predicted.
+    #[error(
+        "disk {disk} collides{} at time {} where {}; {}",
+        Named(Some(*.partner), .wall.as_deref()), Rounded(*.time), Misplaced(*.depth), laws_of(*.partner)
+    )]
+    FalseContact {
+        /// The disk.
+        disk: usize,
+        /// The partner of the disk.
+        partner: Partner,
+        /// The name of the wall, if the partner is one.
+        wall: Option<String>,
+        /// Depth to which the disk reaches into its partner. If it is negative, it is a gap: the distance from
+        /// the nearest wall, infinite if there is none.
+        depth: f64,
+        /// The present.
+        time: f64,
+    },
+    /// Times are too coarse to go on: time would stand still.
+    #[error(
+        "the run cannot go on at time {}: times there are {} apart, too coarse for disks that go some tens of diameters \
+         in {}; the run is too late, or its disks have become too fast: does a rule or a wall add energy? \
+         collision::laws::check and wall::laws::check try them",
+        Readable(*.time), Rounded(*.spacing), Rounded(*.epoch)
+    )]
+    TimeTooLate {
+        /// The present.
+        time: f64,
+        /// Distance to the next floating-point number.
+        spacing: f64,
+        /// Time in which a typical disk goes some tens of diameters.
+        epoch: f64,
+    },
+    /// An observer asks for a sample at a time that is not a number, or that is not later than the last
+    /// sample.
+    #[error(
+        "an observer asks for its next sample at time {}, which is not after the last one, at time {}",
+        Readable(*.next), Readable(*.time)
+    )]
+    SampleTime {
+        /// The time asked for.
+        next: f64,
+        /// The present.
+        time: f64,
+    },
+    /// An observer failed.
+    #[error("an observer failed at time {}", Rounded(*.time))]
+    Observer {
+        /// The present.
+        time: f64,
+        /// The error of the observer.
+        source: ObserverError,
+    },
+}
+
+/// The place of a false contact, in the words of its error.
+struct Misplaced(f64);
+
+impl fmt::Display for Misplaced {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            depth if depth > 0.0 => write!(formatter, "it reaches {} into it", Rounded(depth)),
+            f64::NEG_INFINITY => write!(formatter, "there is no wall: does `overlap` know this one?"),
+            gap => write!(formatter, "the nearest wall is {} away", Rounded(-gap)),
+        }
+    }
+}
+
+/// Returns the laws that find the part to blame for a false contact.
+fn laws_of(partner: Partner) -> &'static str {
+    match partner {
+        Partner::Wall(_) => "wall::laws::check tries motions, and boundary::laws::check tries boundaries",
+        Partner::Disk(_) => "scheduler::laws::check tries schedulers, and collision::laws::check tries rules",
+    }
+}

@@ -1,0 +1,307 @@
+//! What the engine notices: walls that are not where they say, events that are lost, walls that jump. A run
+//! that is wrong does not end as if it were right.
+
+use granular_edmd::boundary::{Boundary, Container, Domain, Part, Region, Surface, Touch, Vessel, Wall};
+use granular_edmd::collision::{ContactDuration, Elastic, Smooth};
+use granular_edmd::glam::DVec2;
+use granular_edmd::observable::Partner;
+use granular_edmd::scheduler::{EventScheduler, LinearScan};
+use granular_edmd::simulation::{BoundaryFault, RunError, Warning};
+use granular_edmd::wall::{AccelerationBounds, Sinusoidal, StartingAt, Triangular, WallMotion, WallState};
+use granular_edmd::{Disk, Flight, Simulation, initial};
+
+fn walls() -> Container {
+    Container::closed(12.0, 10.0).unwrap()
+}
+
+fn gas(container: &Container, count: usize) -> Vec<Disk> {
+    let disks = initial::lattice(container, count, 0.5).unwrap();
+    initial::with_maxwellian_velocities(disks, 1.0, 3).unwrap()
+}
+
+/// A container with a fault.
+#[derive(Clone)]
+struct Faulty {
+    honest: Container,
+    fault: Fault,
+}
+
+#[derive(Clone, Copy)]
+enum Fault {
+    /// Disks touch when they are this deep in a wall; with a negative depth, before they touch it.
+    Depth(f64),
+    /// Overlaps are not told.
+    Blind,
+    /// Disks do not touch the floor.
+    NoFloor,
+}
+
+impl Boundary for Faulty {
+    fn domain(&self) -> Domain {
+        self.honest.domain()
+    }
+    fn wall_count(&self) -> usize {
+        self.honest.wall_count()
+    }
+    fn wall_name(&self, wall: usize) -> std::borrow::Cow<'_, str> {
+        self.honest.wall_name(wall)
+    }
+    fn set_time_origin(&mut self, origin: f64) {
+        self.honest.set_time_origin(origin);
+    }
+    fn may_touch(&self, region: &Region, radius: f64) -> bool {
+        self.honest.may_touch(region, 1.1 * radius)
+    }
+    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+        let start = flight.time();
+        let (at, velocity, pull) = (flight.position(start), flight.velocity(start), flight.acceleration());
+        match self.fault {
+            Fault::Depth(depth) => {
+                let other = Flight::new(start, at, velocity, pull, flight.radius() - depth);
+                self.honest.first_touch(&other, until)
+            }
+            Fault::NoFloor => self.honest.first_touch(flight, until).filter(|touch| touch.wall != 0),
+            Fault::Blind => self.honest.first_touch(flight, until),
+        }
+    }
+    fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
+        self.honest.surface(wall, position, time)
+    }
+    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+        self.honest.overlap(position, radius, time).filter(|_| !matches!(self.fault, Fault::Blind))
+    }
+}
+
+/// Runs one disk that falls onto the floor of a container with a fault.
+fn fall(fault: Fault, sides: Container) -> (Simulation<Elastic, Faulty>, Result<(), RunError>) {
+    let disk = Disk::new(DVec2::new(6.0, 5.0), 0.5).unwrap().with_velocity(DVec2::new(0.3, 0.0)).unwrap();
+    let builder = Simulation::builder(Elastic, Faulty { honest: sides, fault }).disks([disk]).gravity(1.0);
+    let mut run = builder.build().unwrap();
+    let end = run.run_until(100.0, &mut ()).map(|_| ());
+    (run, end)
+}
+
+#[test]
+fn a_collision_away_from_its_wall_ends_the_run() {
+    for fault in [0.01, 1e-6, -0.01, -1e-6] {
+        let (run, end) = fall(Fault::Depth(fault), walls());
+        let error = end.unwrap_err();
+        let RunError::FalseContact { disk: 0, partner: Partner::Wall(0), wall, depth, time } = &error else {
+            panic!("{error}")
+        };
+        assert_eq!((wall.as_deref(), *time), (Some("floor"), run.time()));
+        assert!((depth / fault - 1.0).abs() < 1e-6, "{fault:e} {depth:e}");
+        let said = error.to_string();
+        assert!(said.contains("boundary::laws::check") && said.contains("\"floor\""), "{said}");
+        assert_eq!(run.counters().wall_collisions, 0, "the collision is not carried out");
+    }
+}
+
+#[test]
+fn overlaps_within_rounding_are_counted() {
+    for depth in [1e-8, 3e-7] {
+        let (run, end) = fall(Fault::Depth(depth), walls());
+        end.unwrap();
+        assert!((run.counters().max_wall_overlap - depth).abs() < 1e-13, "{:?}", run.counters());
+    }
+}
+
+#[test]
+fn a_boundary_that_tells_no_overlap_is_named() {
+    let error = fall(Fault::Blind, walls()).1.unwrap_err();
+    assert!(matches!(error, RunError::FalseContact { depth: f64::NEG_INFINITY, .. }), "{error}");
+    assert!(error.to_string().contains("does `overlap` know"), "{error}");
+}
+
+#[test]
+fn a_disk_that_passes_a_wall_is_noticed() {
+    // Between periodic sides, there is no other wall that it could meet.
+    for sides in [walls(), walls().with_periodic_sides()] {
+        let (run, end) = fall(Fault::NoFloor, sides);
+        let error = end.unwrap_err();
+        let is_told = match &error {
+            RunError::FalseContact { wall: Some(name), .. } => name == "floor",
+            RunError::Boundary { fault: BoundaryFault::Outside { y, .. }, .. } => *y < -0.5,
+            _ => false,
+        };
+        assert!(is_told && run.time() < 20.0, "{error}");
+        assert!(error.to_string().contains("boundary::laws::check"), "{error}");
+    }
+}
+
+/// A floor whose motion is not what its bounds of the acceleration say.
+#[test]
+fn a_motion_with_false_bounds_ends_the_run() {
+    struct Broken;
+    impl WallMotion for Broken {
+        fn state(&self, phase: f64) -> WallState {
+            WallState::new(0.3 * libm::sin(10.0 * phase), 3.0 * libm::cos(10.0 * phase))
+        }
+        fn acceleration(&self, _: f64) -> AccelerationBounds {
+            AccelerationBounds::new(f64::INFINITY, 0.0, 0.0)
+        }
+        fn reach(&self) -> (f64, f64) {
+            (-0.3, 0.3)
+        }
+    }
+    let container = Container::closed(20.0, 20.0).unwrap().with_motion(Wall::Floor, Broken).unwrap();
+    let disks = gas(&container, 50);
+    let mut run = Simulation::builder(Elastic, container).disks(disks).gravity(1.0).build().unwrap();
+    let error = run.run_until(1000.0, &mut ()).unwrap_err();
+    let RunError::FalseContact { wall: Some(wall), depth, .. } = &error else { panic!("{error}") };
+    assert!(wall == "floor" && depth.abs() > 5e-10 && run.time() < 5.0, "{error}");
+    assert!(error.to_string().contains("wall::laws::check"), "{error}");
+}
+
+/// A scheduler that does not take earlier times, and one that forgets a single one.
+#[test]
+fn an_event_that_the_scheduler_lost_is_noticed() {
+    struct Deaf {
+        honest: LinearScan,
+        due: Vec<f64>,
+        sets: u64,
+        from: u64,
+    }
+    impl EventScheduler for Deaf {
+        fn reset(&mut self, due: &[f64]) {
+            self.due = due.to_vec();
+            self.honest.reset(due);
+        }
+        fn set(&mut self, disk: usize, due: f64) {
+            self.sets += 1;
+            if self.sets < self.from || due > self.due[disk] {
+                self.due[disk] = due;
+                self.honest.set(disk, due);
+            }
+        }
+        fn earliest(&self) -> (usize, f64) {
+            self.honest.earliest()
+        }
+    }
+    let mut overdue = 0;
+    for from in [1, 50, 500, 3000, 12_000] {
+        let scheduler = Deaf { honest: LinearScan::new(), due: Vec::new(), sets: 0, from };
+        let builder = Simulation::builder(Elastic, walls()).disks(gas(&walls(), 20)).scheduler(scheduler);
+        let mut run = builder.build().unwrap();
+        let error = run.run_until(5000.0, &mut ()).unwrap_err();
+        assert!(matches!(error, RunError::Overdue { .. } | RunError::Scheduler { .. }), "{error}");
+        overdue += u32::from(matches!(error, RunError::Overdue { due, time, .. } if due < time));
+    }
+    assert!(overdue > 0);
+}
+
+/// A scheduler that names nothing at all has no events, so that its epoch alone shows it.
+#[test]
+fn a_scheduler_that_names_nothing_is_noticed() {
+    struct Mute;
+    impl EventScheduler for Mute {
+        fn reset(&mut self, _: &[f64]) {}
+        fn set(&mut self, _: usize, _: f64) {}
+        fn earliest(&self) -> (usize, f64) {
+            (usize::MAX, f64::INFINITY)
+        }
+    }
+    let builder = Simulation::builder(Elastic, walls()).disks(gas(&walls(), 20)).scheduler(Mute);
+    let error = builder.build().unwrap().run_until(100.0, &mut ()).unwrap_err();
+    assert!(error.to_string().contains("scheduler::laws::check"), "{error}");
+}
+
+/// Without disks, cells of any size will do, if the domain has room for them.
+#[test]
+fn boxes_without_disks_run_whatever_their_shape() {
+    for (width, height) in [(20.0, 5.0), (5.0, 20.0), (1e3, 1e-3)] {
+        let container = Container::periodic(width, height).unwrap();
+        let mut run = Simulation::builder(Elastic, container).build().unwrap();
+        run.run_until(3.0, &mut ()).unwrap();
+        let disk = Disk::new(DVec2::new(0.5 * width, 0.5 * height), 0.1 * height.min(width)).unwrap();
+        assert_eq!(run.insert([disk]).unwrap(), 0..1);
+        assert_eq!(run.remove(|_, _| true).unwrap().len(), 1);
+        run.run_until(6.0, &mut ()).unwrap();
+        assert!(run.is_empty() && run.time() == 6.0);
+    }
+}
+
+/// The slower the disks, the longer the epoch: there are never many.
+#[test]
+fn the_slowest_disks_take_few_events_to_the_last_times() {
+    for (speed, end) in [(0.0, 1e278), (0.0, 1.7e308), (1e-100, 2.9e100), (1e-100, 1e103)] {
+        let disk = |x: f64| Disk::new(DVec2::new(x, 5.0), 0.5).unwrap();
+        let disks = [disk(2.0).with_velocity(DVec2::new(speed, 0.0)).unwrap(), disk(6.0)];
+        let mut run = Simulation::builder(Elastic, walls()).disks(disks).build().unwrap();
+        run.run_until(end, &mut ()).unwrap();
+        let counters = run.counters();
+        assert!(counters.events() < 5000 && counters.max_overlap < 1e-12, "{speed:e}: {counters:?}");
+        let way = speed * end;
+        if way < 3.0 {
+            assert!(
+                (run.disks()[0].position().x - 2.0 - way).abs() < 1e-12,
+                "{speed:e} {:?}",
+                run.disks()[0]
+            );
+        }
+    }
+}
+
+#[test]
+fn a_wall_that_jumps_between_runs_is_a_warning() {
+    let open = |motion: Option<Triangular>| match motion {
+        Some(motion) => walls().with_motion(Wall::Lid, motion).unwrap(),
+        None => walls(),
+    };
+    let disks = [Disk::new(DVec2::new(6.0, 5.0), 0.5).unwrap()];
+    let mut run = Simulation::builder(Elastic, open(None)).disks(disks).build().unwrap();
+    run.run_until(1.0, &mut ()).unwrap();
+    run.set_boundary(open(None)).unwrap();
+    assert_eq!(run.warnings(), []);
+    let motion = Triangular::new(2.0, std::f64::consts::TAU).unwrap();
+    // At time 1, after a whole period, the motion is in its middle.
+    run.set_boundary(open(Some(motion))).unwrap();
+    assert_eq!(run.warnings(), []);
+    run.run_until(1.125, &mut ()).unwrap();
+    run.set_boundary(open(None)).unwrap();
+    let [Warning::WallJumped { wall: 3, name: Some(name), by, jumps: 1, .. }] = &run.warnings()[..] else {
+        panic!("{:?}", run.warnings())
+    };
+    assert!(name == "lid" && (by - 1.0).abs() < 1e-12, "{by}");
+    assert!(run.warnings()[0].to_string().contains("\"lid\""), "{}", run.warnings()[0]);
+    // The counters have the warning, too: those of a checkpoint and of a record are asked alike.
+    assert_eq!(run.counters().warnings().len(), 1);
+    assert_eq!(run.counters().since(&run.counters().clone()).warnings(), []);
+}
+
+#[test]
+fn a_part_that_jumps_is_named() {
+    let gate = || Part::polyline([DVec2::new(4.0, 5.0), DVec2::new(8.0, 5.0)]).unwrap();
+    let late = |start: f64| {
+        let motion = StartingAt::new(Sinusoidal::new(2.0, 1.0).unwrap(), start).unwrap();
+        gate().with_motion(DVec2::Y, motion).unwrap()
+    };
+    let vessel = |part: Part| Vessel::new(walls()).with("gate", part).unwrap();
+    let disks = [Disk::new(DVec2::new(1.0, 1.0), 0.5).unwrap()];
+    let mut run = Simulation::builder(Elastic, vessel(gate())).disks(disks).build().unwrap();
+    run.run_until(3.0, &mut ()).unwrap();
+    let mut smooth = run.clone();
+    smooth.set_boundary(vessel(late(3.0))).unwrap();
+    assert_eq!(smooth.warnings(), []);
+    run.set_boundary(vessel(late(1.0))).unwrap();
+    let said = run.warnings()[0].to_string();
+    assert!(said.contains("gate") && said.contains("1.81859"), "{said}");
+}
+
+#[test]
+fn a_contact_duration_beyond_the_time_between_collisions_is_a_warning() {
+    let warnings = |duration: f64| {
+        let rule = ContactDuration::new(Smooth::from_restitution(0.9).unwrap(), duration).unwrap();
+        let container = Container::closed(20.0, 20.0).unwrap();
+        let disks = gas(&container, 100);
+        let mut run = Simulation::builder(rule, container).disks(disks).build().unwrap();
+        run.run_until(100.0, &mut ()).unwrap();
+        run.warnings()
+    };
+    assert_eq!(warnings(1e-4), []);
+    let long = warnings(1000.0);
+    assert!(
+        matches!(long[..], [Warning::MostlyContactDuration { elastic, collisions }] if elastic < collisions)
+    );
+    assert!(long[0].to_string().contains("longer than the time between collisions"), "{}", long[0]);
+}
