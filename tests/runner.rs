@@ -178,8 +178,8 @@ fn a_process_that_need_not_wait_leaves_the_rest_to_others() {
     child.wait().unwrap();
 }
 
-/// SIGTERM stops a value in the middle of one sampling interval that lasts longer than any test, and the value
-/// is saved. The next process goes on from there.
+/// SIGTERM stops a value in the middle of one sampling interval that lasts longer than any test, and the
+/// value is saved. The next process goes on from there.
 #[test]
 #[cfg(unix)]
 fn a_signal_acts_within_a_second_whatever_the_sampling_interval_is() {

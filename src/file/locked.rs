@@ -22,8 +22,8 @@ impl Locked {
         Ok(Self(file))
     }
 
-    /// Takes the lock of a file, unless somebody has it. Goes on without a lock where the system has none, and
-    /// outside Unix, where a lock could keep other programs from reading.
+    /// Takes the lock of a file, unless somebody has it. Goes on without a lock where the system has none,
+    /// and outside Unix, where a lock could keep other programs from reading.
     pub(crate) fn take_if_possible(file: File) -> io::Result<Self> {
         match if cfg!(unix) { file.try_lock() } else { Ok(()) } {
             Err(TryLockError::WouldBlock) => Err(io::ErrorKind::WouldBlock.into()),

@@ -101,7 +101,8 @@ enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    /// Lets a study that other code began go on by this program. Records keep the mark of the code that made them.
+    /// Lets a study that other code began go on by this program. Records keep the mark of the code that made
+    /// them.
     Accept {
         /// Folder of the study.
         folder: PathBuf,

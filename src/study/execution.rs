@@ -17,8 +17,8 @@ use control::{Control, Summary};
 use queue::Queue;
 use shift::Shift;
 
-/// Shortest and longest time between two looks at ramps that other processes do. It doubles from look to look:
-/// a process that waits must not burden a file system that others need.
+/// Shortest and longest time between two looks at ramps that other processes do. It doubles from look to
+/// look: a process that waits must not burden a file system that others need.
 const PATIENCE: [Duration; 2] = [Duration::from_millis(50), Duration::from_secs(5)];
 
 /// Most ramps of other processes that one look tries to take over.

@@ -117,12 +117,12 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// Returns the revision of the code of this type, which a study keeps and compares.
     ///
     /// Values that different code has made must not be mixed, so a study is refused once its revision has
-    /// changed. `Fingerprint::of(include_str!("main.rs"))`, with the name of the file that has the experiment,
-    /// changes by itself with every edit of that file, also of a comment. `Fingerprint::of("Cooling 2")`
-    /// changes when you raise the number: do so whenever rule, walls, disks, observer or sample give other
-    /// numbers than before. Code in other files, and in other crates, is covered only if you add it with
-    /// [`Fingerprint::text`]. A study adds the names and units of all columns by itself, and the
-    /// [`RESULTS`](crate::RESULTS) of this crate.
+    /// changed. `Fingerprint::of(include_str!("main.rs"))`, with the name of the file that has the
+    /// experiment, changes by itself with every edit of that file, also of a comment.
+    /// `Fingerprint::of("Cooling 2")` changes when you raise the number: do so whenever rule, walls, disks,
+    /// observer or sample give other numbers than before. Code in other files, and in other crates, is
+    /// covered only if you add it with [`Fingerprint::text`]. A study adds the names and units of all columns
+    /// by itself, and the [`RESULTS`](crate::RESULTS) of this crate.
     fn revision() -> Fingerprint;
 
     /// Returns the collision rule of these parameters.

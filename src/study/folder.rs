@@ -101,8 +101,8 @@ impl Folder {
         let _lock = Lock::take(&self.root.join(LOCK))?;
         sealed::remove_temporaries(&self.root)?;
         let is_new = sealed::publish(&self.plan(), plan.as_bytes())?;
-        // A process that was killed here leaves a plan without a provenance, and no ramps. A folder with ramps
-        // was made by a version that did not tell its provenance, and nobody may do so in its place.
+        // A process that was killed here leaves a plan without a provenance, and no ramps. A folder with
+        // ramps was made by a version that did not tell its provenance, and nobody may do so in its place.
         if !self.root.join(RAMPS).exists() {
             sealed::publish(&self.provenance_file(), provenance.text().as_bytes())?;
         }
@@ -202,7 +202,8 @@ impl Folder {
         self.done(ramp).exists()
     }
 
-    /// Returns for each of so many ramps whether it is done. One call of the system tells of hundreds of them.
+    /// Returns for each of so many ramps whether it is done. One call of the system tells of hundreds of
+    /// them.
     pub(super) fn all_done(&self, ramps: usize) -> Result<Vec<bool>, StudyError> {
         let mut all = vec![false; ramps];
         let folder = self.root.join(DONE);
@@ -222,7 +223,8 @@ impl Folder {
 
     /// Marks a ramp as done, with the values that stalled or failed.
     ///
-    /// The mark need not outlast a loss of power, so it costs no sync: a ramp that lost it is looked at again.
+    /// The mark need not outlast a loss of power, so it costs no sync: a ramp that lost it is looked at
+    /// again.
     pub(super) fn mark_done(&self, ramp: usize, failed: &[usize]) -> Result<(), StudyError> {
         let path = self.done(ramp);
         let text = failed.iter().map(|value| format!("{value:04}\n")).collect::<Vec<_>>().concat();

@@ -83,8 +83,8 @@ impl<E: Experiment> Study<E> {
     /// go on anyway.
     ///
     /// Its finished values stay as they are. Each record keeps the mark of the code that made it, which the
-    /// column `made_by` of `values.csv` shows: values on both sides of the change can be told apart, and it is
-    /// yours to judge whether they can be compared.
+    /// column `made_by` of `values.csv` shows: values on both sides of the change can be told apart, and it
+    /// is yours to judge whether they can be compared.
     ///
     /// # Errors
     /// If the folder holds no study, or cannot be read or written.

@@ -79,7 +79,8 @@ pub struct Plan<E> {
     /// The whole names of the parameters that vary: of the axes in their order, then of the ramp.
     #[serde(skip)]
     varied: Vec<String>,
-    /// The first value of each parameter that varies, as the experiment reads it: it shows the kind of number.
+    /// The first value of each parameter that varies, as the experiment reads it: it shows the kind of
+    /// number.
     #[serde(skip)]
     kinds: Vec<Scalar>,
 }

@@ -92,8 +92,8 @@ impl Provenance {
     }
 }
 
-/// Returns the fields that decide whether a program may go on with the study of a plan: those of its maker, and
-/// the fingerprints of rule and walls at the parameters of the plan.
+/// Returns the fields that decide whether a program may go on with the study of a plan: those of its maker,
+/// and the fingerprints of rule and walls at the parameters of the plan.
 fn deciding<E: Experiment>(plan: &Plan<E>) -> Vec<(&'static str, String)> {
     let rule = plan.experiment.rule().ok().and_then(|rule| rule.fingerprint());
     let boundary = plan.experiment.boundary().ok().and_then(|boundary| boundary.fingerprint());

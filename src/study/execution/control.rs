@@ -55,8 +55,8 @@ impl<'a> Control<'a> {
         Self { progress: Some(progress), ..self }
     }
 
-    /// Returns the same control, which saves all work and stops within a second after `interrupt` becomes true,
-    /// however long a sampling interval takes.
+    /// Returns the same control, which saves all work and stops within a second after `interrupt` becomes
+    /// true, however long a sampling interval takes.
     ///
     /// A very large system takes longer to be saved, and nothing stops it while it is set up.
     pub fn with_interrupt(self, interrupt: &'a AtomicBool) -> Self {
@@ -86,8 +86,8 @@ impl<'a> Control<'a> {
         Self { tables: false, ..self }
     }
 
-    /// Returns the same control, which reads the records of ramps that are done, too, and does damaged or lost
-    /// ones again. It reads the whole study.
+    /// Returns the same control, which reads the records of ramps that are done, too, and does damaged or
+    /// lost ones again. It reads the whole study.
     pub fn with_verification(self) -> Self {
         Self { verifies: true, ..self }
     }
@@ -127,9 +127,9 @@ impl fmt::Debug for Control<'_> {
 pub struct Summary {
     /// Number of values that have a record now.
     pub finished: usize,
-    /// Number of values of the ramps that this run has looked at which the engine could not finish: they stalled
-    /// or failed. They have fewer samples or none; [`Outcome::reason`](crate::study::Outcome::reason) and the
-    /// `log.jsonl` of their ramp say why. Ramps that were done before are looked at only with
+    /// Number of values of the ramps that this run has looked at which the engine could not finish: they
+    /// stalled or failed. They have fewer samples or none; [`Outcome::reason`](crate::study::Outcome::reason)
+    /// and the `log.jsonl` of their ramp say why. Ramps that were done before are looked at only with
     /// [`Control::with_verification`].
     pub failed: usize,
     /// Number of values of the study, or of the ramps that were to be run.

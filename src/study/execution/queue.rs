@@ -6,8 +6,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Ramps that nobody is known to do, and ramps that other processes do.
 ///
-/// Processes begin at random places and go on in order from there. So they seldom meet, and each does what lies
-/// ahead of it. One that meets another takes a new place.
+/// Processes begin at random places and go on in order from there. So they seldom meet, and each does what
+/// lies ahead of it. One that meets another takes a new place.
 #[derive(Debug)]
 pub(super) struct Queue {
     left: Mutex<VecDeque<usize>>,

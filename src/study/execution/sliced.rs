@@ -9,8 +9,8 @@ use crate::simulation::{Limits, RunEnd, RunError, Simulation};
 
 /// Runs until an absolute time, or for this wall-clock time at most.
 ///
-/// `is_under_way` tells whether an earlier slice of the same run has begun it. The observer hears of one start
-/// and one end, however many slices there are, so an observer that counts them counts the same.
+/// `is_under_way` tells whether an earlier slice of the same run has begun it. The observer hears of one
+/// start and one end, however many slices there are, so an observer that counts them counts the same.
 pub(super) fn run<R: CollisionRule, B: Boundary, O: Observer>(
     simulation: &mut Simulation<R, B>,
     end: f64,

@@ -47,11 +47,11 @@ impl Lock {
         self.0.file().metadata().is_ok_and(|file| file.len() == 0)
     }
 
-    /// Adds a line to the file of the lock, which is its log. A log that cannot be written is no reason to lose
-    /// work, so a failure is ignored.
+    /// Adds a line to the file of the lock, which is its log. A log that cannot be written is no reason to
+    /// lose work, so a failure is ignored.
     ///
-    /// If a kill or a full drive has cut the last line short, it is removed first, so that every line is whole.
-    /// Only the holder of the lock writes, so appending is safe on network file systems, too.
+    /// If a kill or a full drive has cut the last line short, it is removed first, so that every line is
+    /// whole. Only the holder of the lock writes, so appending is safe on network file systems, too.
     pub(in crate::study) fn log(&mut self, line: &str) {
         let _ = to_last_line_end(&mut self.0).and_then(|()| self.0.write_all(format!("{line}\n").as_bytes()));
     }

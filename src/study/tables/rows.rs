@@ -58,8 +58,8 @@ impl Row {
     }
 }
 
-/// Returns the text of a cell. One without a number is empty, which every reader of tables takes for a missing
-/// value; the text `NaN` spoils the means of some.
+/// Returns the text of a cell. One without a number is empty, which every reader of tables takes for a
+/// missing value; the text `NaN` spoils the means of some.
 fn cell_of(value: &Scalar) -> String {
     match value {
         Scalar::Number(number) if number.is_nan() => String::new(),
