@@ -107,7 +107,7 @@ pub mod wall;
 ///
 /// Versions with the same number give the same bits for the same inputs. A version that changes a trajectory,
 /// a seed or a measured value has a larger number, and a line under “Results” in its changelog. A
-/// [study](crate::study) goes on only by versions with the number of the one that began it.
+/// study goes on only by versions with the number of the one that began it.
 pub const RESULTS: u32 = 1;
 
 pub use disk::Disk;

@@ -171,8 +171,8 @@ impl<E: Experiment> Record<E> {
         &self.experiment
     }
 
-    /// Returns a parameter of the experiment by its name, as in a [`Plan`]; `None` if there is no parameter
-    /// of this name.
+    /// Returns a parameter of the experiment by its name, as in a [`Plan`](crate::study::Plan); `None` if
+    /// there is no parameter of this name.
     pub fn parameter(&self, name: &str) -> Option<Scalar> {
         let tree = parameters::tree(&self.experiment).ok()?;
         let name = parameters::whole_name(&tree, name).ok()?;
