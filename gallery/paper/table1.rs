@@ -91,8 +91,8 @@ fn read(folder: &Path) -> Result<Vec<Point>, Box<dyn Error>> {
 
 /// The energy change per collision and the effective inelasticity over the points of a line.
 ///
-/// The table's "±" is the standard deviation of the points, not the error of their mean: the scatter along the
-/// line tests the paper's hypothesis.
+/// The table's "±" is the standard deviation of the points, not the error of their mean: the scatter along
+/// the line tests the paper's hypothesis.
 struct LineAverage {
     energy_change: RunningMean,
     effective_inelasticity: RunningMean,

@@ -18,7 +18,9 @@ impl Palette {
     /// in two halves, until there are enough groups.
     pub fn of(pixels: &[Color]) -> Self {
         let mut counts = BTreeMap::<Color, u64>::new();
-        pixels.iter().for_each(|&color| *counts.entry(color).or_default() += 1);
+        for &color in pixels {
+            *counts.entry(color).or_default() += 1;
+        }
         let mut groups = vec![Group::of(counts.into_iter().collect())];
         while groups.len() < MOST {
             let widest = (0..groups.len()).max_by_key(|&k| (groups[k].weight, k));

@@ -1,8 +1,8 @@
 //! The speed of this crate as a multiple of the speed of a plain event-driven simulation of the same system.
 //!
 //! ```sh
-//! REFERENCE=path/to/its/folder cargo run --release -p tools --bin ratio          # a dilute and a dense state
-//! REFERENCE=path/to/its/folder GRID=1 cargo run --release -p tools --bin ratio   # the κ–q plane of Fig. 5, both gravities
+//! # A dilute and a dense state; with GRID=1 the κ–q plane of Fig. 5 at both gravities.
+//! REFERENCE=path/to/its/folder cargo run --release -p tools --bin ratio
 //! ```
 //!
 //! This crate is measured as users get it without flags of the compiler, and built for the processor at hand.
