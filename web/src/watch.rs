@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use granular_edmd::analysis::{StateCriteria, thermal_noise};
 use granular_edmd::boundary::Container;
 use granular_edmd::observable::{
-    Accumulator, Collision, ConvectionOrder, DenseLayer, HeightProfile, Observable, Observer, OrderParameters, Partner,
+    Accumulator, Collision, ConvectionOrder, DenseLayer, HeightProfile, Observable, OrderParameters, Partner,
     Temperatures,
 };
 use granular_edmd::{ParameterError, Simulation};
