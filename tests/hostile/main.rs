@@ -7,6 +7,7 @@
 #[path = "../support/cases.rs"]
 mod cases;
 mod constructors;
+mod edits;
 #[cfg(all(feature = "serde", unix))]
 mod faults;
 mod few;
@@ -37,6 +38,7 @@ mod script;
 #[cfg(feature = "serde")]
 mod specimens;
 mod systems;
+mod texts;
 #[cfg(feature = "serde")]
 mod unknown_fields;
 mod vessels;
