@@ -57,8 +57,8 @@ pub mod when_it_is_slow {}
 #[doc = include_str!("../docs/guide/glossary.md")]
 pub mod glossary {}
 
-// Pages of the repository. On code hosts, their links lead to files. A definition that comes first wins, so the ones
-// here lead to modules instead, or nowhere, for pictures: their descriptions are shown.
+// Pages of the repository. On code hosts, their links lead to files. A definition that comes first wins, so
+// the ones here lead to modules instead, or nowhere, for pictures: their descriptions are shown.
 
 #[doc(alias("equations", "notation", "thermal wall"))]
 #[doc = "[physics-kinetic.md]: crate::guide::physics_kinetic"]

@@ -6,9 +6,9 @@
 //! observables compose as tuples and in a `Box`, observers also in a slice, a `Vec` or an `Option`. Watching
 //! never changes a trajectory.
 //!
-//! An [`Accumulator`] adds up snapshots, whoever gives them: a [`Sampled`] around it in a run, or a program with
-//! snapshots of its own. [`Stress`], [`WallStress`], [`MeanSquaredDisplacement`] and [`TimeCorrelation`] have a
-//! clock of their own, since its interval is a part of what they measure.
+//! An [`Accumulator`] adds up snapshots, whoever gives them: a [`Sampled`] around it in a run, or a program
+//! with snapshots of its own. [`Stress`], [`WallStress`], [`MeanSquaredDisplacement`] and [`TimeCorrelation`]
+//! have a clock of their own, since its interval is a part of what they measure.
 //!
 //! | observable | value |
 //! |---|---|
@@ -44,8 +44,8 @@
 //! | [`stop_when`], [`stop_when_sampled`] | nothing: they stop the run when a closure says so |
 //!
 //! # An observer of your own
-//! An observer that only needs snapshots is an [`Accumulator`] in a [`Sampled`]. For others, [`SampleTimes`] is a
-//! clock. In a plain test, [`laws::check`]
+//! An observer that only needs snapshots is an [`Accumulator`] in a [`Sampled`]. For others, [`SampleTimes`]
+//! is a clock. In a plain test, [`laws::check`]
 //! checks the contract of an observer.
 //!
 //! ```
@@ -84,9 +84,9 @@
 //!
 //! # Measurements in files
 //! With the feature `serde`, you can write the observers of this module, except for closures, to a file
-//! together with the checkpoint of the run: `Checkpoint::write_with` keeps every bit. Read back and lent to the
-//! resumed run, they have the same bits in the end as in a run without interruption. Text formats may lose
-//! bits: JSON has no NaN, and its reader must round correctly (serde_json's `float_roundtrip`).
+//! together with the checkpoint of the run: `Checkpoint::write_with` keeps every bit. Read back and lent to
+//! the resumed run, they have the same bits in the end as in a run without interruption. Text formats may
+//! lose bits: JSON has no NaN, and its reader must round correctly (serde_json's `float_roundtrip`).
 
 mod by_kind;
 mod center_of_mass;

@@ -64,7 +64,8 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 /// scheduler has lost a `set` or prefers a later time, ends the run when its epoch does. It also does so at
 /// the end of a run that had at least as many events as disks. To look at all disks more often would cost
 /// time, so the engine does not notice a lost event in shorter runs and in single steps within an epoch, nor
-/// two events in the wrong order that have both been named by then. [`laws::check`] finds all of these faults.
+/// two events in the wrong order that have both been named by then. [`laws::check`] finds all of these
+/// faults.
 ///
 /// # Why the answer is a pair and not an `Option`
 /// The engine asks for the answer at every event. A pair comes back in two registers, and [`NOTHING_DUE`]

@@ -188,8 +188,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.bodies.disks(self.clock.now)
     }
 
-    /// Returns the disk or wall into which another disk would reach deepest now, and the depth; `None` if there
-    /// is room for it.
+    /// Returns the disk or wall into which another disk would reach deepest now, and the depth; `None` if
+    /// there is room for it.
     ///
     /// This looks at all disks.
     ///

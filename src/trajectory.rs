@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | [`ExtendedXyz`] | one file, frame after frame | OVITO (not ASE), [`XyzFrames`] to start from |
 //! | [`LammpsDump`] | one file, frame after frame | OVITO, VMD, tools around LAMMPS |
-//! | GSD, as of HOOMD-blue | one binary file with an index ([`Recorder::create_gsd`]) | OVITO, freud, the Python package `gsd` |
+//! | GSD, as of HOOMD-blue | one binary file with an index ([`Recorder::create_gsd`]) | OVITO, freud, `gsd` |
 //! | VTK's `PolyData` | `.vtp` for each frame, `.pvd` for times ([`Recorder::create_vtk`]) | ParaView, VTK |
 //!
 //! | state in a file | read by | written by |

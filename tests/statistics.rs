@@ -57,8 +57,8 @@ fn printed(mean: &BlockedMean) -> f64 {
     mean.estimate().standard_error()
 }
 
-/// Returns the share of the series whose error is called converged, and the share of these whose true mean, 0,
-/// lies within two errors.
+/// Returns the share of the series whose error is called converged, and the share of these whose true mean,
+/// 0, lies within two errors.
 fn called_converged(series: impl Fn(u64) -> BlockedMean) -> (f64, f64) {
     const SERIES: u64 = 1000;
     let estimates = (0..SERIES).map(|seed| series(seed).estimate()).filter(Estimate::is_converged);

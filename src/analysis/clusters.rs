@@ -81,8 +81,8 @@ impl Clusters {
             .filter(|(_, members)| !members.is_empty())
             .map(|(label, members)| (label, Cluster::new(&members, sorted.len())))
             .collect();
-        // The numbers from the search depend on chance. Sorted by center, a cluster has the same number for any
-        // seed.
+        // The numbers from the search depend on chance. Sorted by center, a cluster has the same number for
+        // any seed.
         found.sort_by(|(_, a), (_, b)| {
             a.center.x.total_cmp(&b.center.x).then(a.center.y.total_cmp(&b.center.y))
         });

@@ -69,7 +69,8 @@ impl KMeans {
     /// If there are fewer points than clusters, or a coordinate is not finite or above 1e100 in size.
     pub fn fit(&self, points: &[DVec2]) -> Result<Clusters, ParameterError> {
         check(points, self.clusters)?;
-        // Sums of sorted points round alike, so the bits do not depend on the order in which points are given.
+        // Sums of sorted points round alike, so the bits do not depend on the order in which points are
+        // given.
         let mut order: Vec<usize> = (0..points.len()).collect();
         order.sort_by(|&a, &b| points[a].x.total_cmp(&points[b].x).then(points[a].y.total_cmp(&points[b].y)));
         let sorted: Vec<DVec2> = order.iter().map(|&point| points[point]).collect();
@@ -97,8 +98,8 @@ fn check(points: &[DVec2], clusters: usize) -> Result<(), ParameterError> {
 /// Draws the first centers among the points. The probability of each next one is proportional to its squared
 /// distance from the nearest center so far.
 fn plus_plus(points: &[DVec2], clusters: usize, generator: &mut Xoshiro256PlusPlus) -> Vec<DVec2> {
-    // Centers drawn evenly often begin in the same cloud, and a descent cannot carry one of them across the gap
-    // to another cloud. Drawn by squared distance, they begin in different clouds in most restarts.
+    // Centers drawn evenly often begin in the same cloud, and a descent cannot carry one of them across the
+    // gap to another cloud. Drawn by squared distance, they begin in different clouds in most restarts.
     let first = (uniform(generator) * points.len() as f64) as usize;
     let mut centers = vec![points[first.min(points.len() - 1)]];
     while centers.len() < clusters {
@@ -108,8 +109,8 @@ fn plus_plus(points: &[DVec2], clusters: usize, generator: &mut Xoshiro256PlusPl
             left -= distance;
             distance > 0.0 && left <= 0.0
         };
-        // Rounding of the sum may leave something after all points. Then the last point that is not a center yet
-        // is the next one.
+        // Rounding of the sum may leave something after all points. Then the last point that is not a center
+        // yet is the next one.
         let last = distances.iter().rposition(|&distance| distance > 0.0);
         let Some(next) = distances.iter().enumerate().find(passed).map(|(point, _)| point).or(last) else {
             // All points lie on centers: there are no more different ones.

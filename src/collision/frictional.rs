@@ -40,8 +40,8 @@ pub struct Frictional {
 }
 
 impl Frictional {
-    /// Creates a rule from the inelasticities q_n, in `[0, 1/2]`, and q_t, in `[0, 1]`, and one coefficient of
-    /// friction, κ = κ_s = κ_d.
+    /// Creates a rule from the inelasticities q_n, in `[0, 1/2]`, and q_t, in `[0, 1]`, and one coefficient
+    /// of friction, κ = κ_s = κ_d.
     ///
     /// The paper takes q_n = q_t.
     ///

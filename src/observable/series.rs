@@ -7,9 +7,9 @@ use crate::statistics::{Estimate, block_average};
 
 /// An observer that keeps the values of an observable at set times.
 ///
-/// The times increase. A run that starts before the last sample ends at once with an error: it is another run,
-/// for which the series must be [cleared](Self::clear), or the checkpoint from which it was resumed is older
-/// than the series.
+/// The times increase. A run that starts before the last sample ends at once with an error: it is another
+/// run, for which the series must be [cleared](Self::clear), or the checkpoint from which it was resumed is
+/// older than the series.
 ///
 /// With the feature `serde`, a series can be written to a file and read back if its observable and its values
 /// can.

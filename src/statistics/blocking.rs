@@ -12,15 +12,17 @@ const FEWEST_BLOCKS: u64 = 8;
 
 /// Smallest number of independent samples of an error that can be trusted.
 ///
-/// Blocks of a series of 50 independent samples look like those of 120 or more in one case of a thousand. With
-/// half of this number, every tenth series of 30 would be called converged, with an error too small by a third.
+/// Blocks of a series of 50 independent samples look like those of 120 or more in one case of a thousand.
+/// With half of this number, every tenth series of 30 would be called converged, with an error too small by a
+/// third.
 const FEWEST_INDEPENDENT: f64 = 120.0;
 
 /// Excess of a trusted error over that of its blocks, times the number of independent samples.
 ///
 /// A series is called converged if its error is small, and some errors are small by chance: the errors that
-/// are trusted are too small on average, the more so the fewer samples they have. With this excess, two errors
-/// hold the true mean in nine cases of ten or more at any length. The table of [`block_average`] shows it.
+/// are trusted are too small on average, the more so the fewer samples they have. With this excess, two
+/// errors hold the true mean in nine cases of ten or more at any length. The table of [`block_average`] shows
+/// it.
 const EXCESS: f64 = 60.0;
 
 /// Returns the mean of a time series, with an error that accounts for its autocorrelation (Flyvbjerg &

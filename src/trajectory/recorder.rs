@@ -19,8 +19,8 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 /// frame. The next run with the same recorder takes the frame that was missed.
 ///
 /// [`OfKind`](crate::observable::OfKind) around a recorder records only the disks of one kind, and `id` then
-/// numbers these. Files hold the box. Files for ParaView also hold the walls of the run's boundary as they are
-/// at each frame ([`Snapshot::wall_lines`]).
+/// numbers these. Files hold the box. Files for ParaView also hold the walls of the run's boundary as they
+/// are at each frame ([`Snapshot::wall_lines`]).
 ///
 /// # Going on in a file
 /// After a kill, resume the run from its checkpoint, and [`append`](Self::append) to its file. The run makes
@@ -116,7 +116,7 @@ impl Recorder {
     /// | `particles/diameter` | twice the radius |
     /// | `particles/orientation`, `angmom`, `moment_inertia` | rotation about the third axis |
     /// | `configuration/step`, `box` | number of the frame; width, height and depth |
-    /// | `log/time`, `gravity`, `center` | in double precision; the place in the box from which positions count |
+    /// | `log/time`, `gravity`, `center` | in double precision; where positions count from |
     ///
     /// # Errors
     /// If a file of this name exists, the file cannot be created, or its name ends in `.gz`.
@@ -127,8 +127,8 @@ impl Recorder {
     /// Creates a recorder that continues a file that [`create_gsd`](Self::create_gsd) began.
     ///
     /// # Errors
-    /// If the file cannot be opened, another recorder writes to it, it is not of this kind, or it has no whole
-    /// frame. The file is then left as it is.
+    /// If the file cannot be opened, another recorder writes to it, it is not of this kind, or it has no
+    /// whole frame. The file is then left as it is.
     pub fn append_gsd(path: impl AsRef<Path>, times: SampleTimes) -> Result<Self, RecordError> {
         Ok(Self::new(HoomdSchema, Indexed::reopen(path.as_ref())?, times).going_on())
     }

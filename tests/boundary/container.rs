@@ -174,7 +174,8 @@ fn said(mut boundary: impl Boundary, origin: f64) -> String {
     )
 }
 
-/// The floor rises to 0.5 in the first quarter of its period, falls to -0.5 in half a period, and rises again.
+/// The floor rises to 0.5 in the first quarter of its period, falls to -0.5 in half a period, and rises
+/// again.
 #[test]
 fn a_moving_floor_is_where_its_motion_is_at_the_absolute_time() {
     let mut container = moving(Wall::Floor, 0.5);

@@ -40,8 +40,8 @@ fn joined(groups: &[Group], bounds: &[bool]) -> Vec<Group> {
 fn cheapest_near(mut bounds: Vec<bool>, cost: impl Fn(&[bool]) -> f64) -> (f64, Vec<bool>) {
     let mut least = cost(&bounds);
     loop {
-        // Two neighbors inverted together are a bound that shifts, or two that come or go at once. Without such
-        // steps the search would stay in a valley where every single change is a loss.
+        // Two neighbors inverted together are a bound that shifts, or two that come or go at once. Without
+        // such steps the search would stay in a valley where every single change is a loss.
         let changed = (0..bounds.len()).flat_map(|first| [1, 2].map(|count| changed(&bounds, first, count)));
         let costs = changed.map(|bounds| (cost(&bounds), bounds));
         match costs.min_by(|a, b| a.0.total_cmp(&b.0)) {

@@ -5,8 +5,9 @@
 //! disk would have to know all small disks that it can touch from anywhere in its home. `layers.rs` has a
 //! picture.
 //!
-//! Homes consist of whole cells, a power of two along each side, so that a home follows from a cell by a shift
-//! of bits. A disk that enters another cell is mostly still at home, and then the contents of homes stay as they are.
+//! Homes consist of whole cells, a power of two along each side, so that a home follows from a cell by a
+//! shift of bits. A disk that enters another cell is mostly still at home, and then the contents of homes
+//! stay as they are.
 
 use std::f64::consts::SQRT_2;
 
@@ -139,8 +140,8 @@ impl LayerLayout {
 /// at most the sum of their distance at a touch and the widths of both cells. While this sum is less than
 /// half a period, no other image comes nearer.
 pub(super) fn widest(domain: &Domain, grid: &Grid, smallest: f64, diameter: f64) -> DVec2 {
-    // Equal disks are both somewhere in their cells, so each cell may take half of what a touch leaves of half
-    // a period. Beside a small disk, the margin of its cell counts, too: it may be that far outside.
+    // Equal disks are both somewhere in their cells, so each cell may take half of what a touch leaves of
+    // half a period. Beside a small disk, the margin of its cell counts, too: it may be that far outside.
     let half = 0.5 * domain.periods();
     let small_cell = grid.layout.pitch + 2.0 * grid.margin();
     let beside_equal = 0.5 * (half - LEAST_PITCH * diameter);

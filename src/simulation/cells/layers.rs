@@ -159,8 +159,8 @@ impl Layers {
             return;
         };
         layer.cross(disk, from, to);
-        // Homes in both reaches keep the disk. A home at the rim of the hole may leave the reach on one side of
-        // it and enter on the other, so both directions are needed.
+        // Homes in both reaches keep the disk. A home at the rim of the hole may leave the reach on one side
+        // of it and enter on the other, so both directions are needed.
         for (visitors, reach) in self.visitors.iter_mut().zip(layer.reaches().0) {
             reach.for_each_run_beyond(from, to, |first, count| visitors.remove_from_run(first, count, disk));
             reach.for_each_run_beyond(to, from, |first, count| visitors.push_to_run(first, count, disk));

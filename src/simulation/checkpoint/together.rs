@@ -42,9 +42,9 @@ impl Checkpoint {
     /// ```
     ///
     /// # Errors
-    /// If the observers do not read back as they were written, as types with `#[serde(untagged)]`, `flatten` or
-    /// `skip_serializing_if` may not, or if the file cannot be written. An older file of that name is then as
-    /// it was.
+    /// If the observers do not read back as they were written, as types with `#[serde(untagged)]`, `flatten`
+    /// or `skip_serializing_if` may not, or if the file cannot be written. An older file of that name is then
+    /// as it was.
     pub fn write_with<O: Serialize + DeserializeOwned>(
         &self,
         observers: &O,

@@ -96,8 +96,8 @@ pub enum RunError {
         /// The present.
         time: f64,
     },
-    /// A collision away from the surfaces: a disk reaches into its partner by more than rounding, or a wall is
-    /// not where its touch was predicted.
+    /// A collision away from the surfaces: a disk reaches into its partner by more than rounding, or a wall
+    /// is not where its touch was predicted.
     #[error(
         "disk {disk} collides{} at time {} where {}; {}",
         Named(Some(*.partner), .wall.as_deref()), Rounded(*.time), Misplaced(*.depth), laws_of(*.partner)
@@ -109,8 +109,8 @@ pub enum RunError {
         partner: Partner,
         /// The name of the wall, if the partner is one.
         wall: Option<String>,
-        /// Depth to which the disk reaches into its partner. If it is negative, it is a gap: the distance from
-        /// the nearest wall, infinite if there is none.
+        /// Depth to which the disk reaches into its partner. If it is negative, it is a gap: the distance
+        /// from the nearest wall, infinite if there is none.
         depth: f64,
         /// The present.
         time: f64,
