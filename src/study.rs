@@ -5,7 +5,7 @@
 //! parameters, and its methods define the simulation, the measurements, and the columns of the tables. A
 //! [`Plan`] says what to do with it: a [`Protocol`] says when to sample, a [`Ramp`] takes one parameter up or
 //! down, each [`Axis`] adds a dimension to a grid of independent ramps, and each point of the grid may be
-//! repeated. A [`Study`] is a plan in a folder. [`Study::run`] does the values that are missing, on all cores
+//! repeated. A [`Study`] is a plan in a folder. [`Study::run`] runs the values that are missing, on all cores
 //! with the feature `rayon`, in any number of processes. It writes each finished value at once, as a
 //! [`Record`].
 //!
@@ -17,14 +17,14 @@
 //!    `log.jsonl`, which hold wall-clock times, differ.
 //! 2. A file is whole or absent. A study names a damaged file and never reads it as data;
 //!    [`Control::with_verification`] does its value again.
-//! 3. Any number of processes can run a study at the same time, started at any time; one of them does each
-//!    ramp. They need a file system whose locks all of them see, such as a local one, or NFS from version 4
-//!    on.
+//! 3. Any number of processes can run a study at the same time, started at any time; each ramp is run by one
+//!    of them. They need a file system whose locks all of them see, such as a local one, or NFS from version
+//!    4 on.
 //! 4. A study writes only into a folder that is empty or its own, and changes or removes no file but its own.
 //! 5. All records of a study come from one code. `provenance.json` keeps the [`RESULTS`](crate::RESULTS) of
 //!    the crate and the [revision](Experiment::revision) of the experiment, and other code is refused by name
 //!    whatever it asks of the study ([`StudyError::Code`]), until [`Study::accept_changes`] lets it go on.
-//! 6. If a run cannot progress, the [`Outcome`] of its value says so, and the study goes on.
+//! 6. If a run cannot progress, the [`Outcome`] of its value says so, and the study continues.
 //!
 //! ```
 //! use granular_edmd::study::vibrated_box::{Base, VibratedBox};

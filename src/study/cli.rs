@@ -46,7 +46,7 @@ use super::plan::Plan;
 use super::reading::RampStatus;
 use watch::Watch;
 
-/// Plans, runs and reads studies: many runs of one experiment, in any number of processes.
+/// Plans, runs and reads studies: many runs of one experiment, by any number of processes.
 ///
 /// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 others do the rest, 4 no tables yet, 130
 /// stopped with all saved.
@@ -69,7 +69,7 @@ enum Command {
         /// The plan, in TOML; `-` for standard input.
         plan: PathBuf,
     },
-    /// Does the values of a plan that are not finished, alone or beside other processes that do the same.
+    /// Runs the unfinished values of a plan, alone or beside other processes.
     Run {
         /// The plan, in TOML; `-` for standard input.
         plan: PathBuf,
@@ -101,7 +101,7 @@ enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    /// Lets a study that other code began go on by this program. Records keep the mark of the code that made
+    /// Lets this program continue a study that other code began. Records keep the mark of the code that made
     /// them.
     Accept {
         /// Folder of the study.
@@ -109,7 +109,7 @@ enum Command {
     },
 }
 
-/// Most threads of a run: more than any machine has, and few enough to start them at once.
+/// Largest number of threads of a run: more than any machine has, and few enough to start them at once.
 const MOST_THREADS: i64 = 4096;
 
 #[derive(Debug, clap::Args)]
@@ -120,7 +120,7 @@ struct Manner {
     /// Writes no tables when all ramps are done; `tables` does so later.
     #[arg(long)]
     no_tables: bool,
-    /// Reads the records of ramps that are done, too, and does damaged or lost ones again.
+    /// Also reads the records of finished ramps, and runs damaged or lost ones again.
     #[arg(long)]
     verify: bool,
 }
@@ -193,7 +193,7 @@ fn report(error: &dyn Error, code: u8) -> ExitCode {
     ExitCode::from(code)
 }
 
-/// Prints a line. A reader that is gone has seen enough, so it is no error; a full disk is one.
+/// Prints a line. A closed pipe is no error, since its reader has seen enough; a full disk is one.
 fn say(line: &str) -> Result<(), Failure> {
     let mut out = io::stdout();
     match writeln!(out, "{line}").and_then(|()| out.flush()) {

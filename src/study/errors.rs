@@ -13,7 +13,7 @@ use crate::simulation::CheckpointError;
 /// A reason why an experiment cannot be built or changed: any error of its parts.
 pub type ExperimentError = Box<dyn std::error::Error + Send + Sync>;
 
-/// An error in a plan, which therefore cannot be carried out.
+/// An error in a plan: it cannot be run.
 ///
 /// A message does not repeat its [source](std::error::Error::source): report the whole chain.
 #[derive(Debug, Error)]
@@ -28,7 +28,7 @@ pub enum PlanError {
     /// The experiment refuses the parameters of a value.
     #[error("the experiment cannot be{place}")]
     Experiment {
-        /// The parameters that vary, with their values; empty for the experiment as it is in the plan.
+        /// The parameters that vary, with their values; empty if the plan varies none.
         place: String,
         /// The reason.
         source: ExperimentError,
@@ -140,7 +140,7 @@ pub enum StudyError {
     /// The path of the folder is empty.
     #[error("the path of a study's folder is empty; take `.` for this folder")]
     NoPath,
-    /// The folder holds files but no plan, so a study would mix its own files with them.
+    /// The folder holds other files, and no plan. A study does not mix its files with others.
     #[error("{} holds other files ({}) and no study; choose an empty folder", path.display(), name)]
     Occupied {
         /// The folder.
@@ -268,13 +268,13 @@ pub enum StudyError {
 }
 
 impl PlanError {
-    /// Returns the error of a text that is not TOML, or not that of a plan.
+    /// Returns the error of a text that is no TOML, or no plan.
     pub(super) fn toml(error: &impl fmt::Display) -> Self {
         Self::Toml(shortened(&error.to_string()))
     }
 }
 
-/// Returns a message with the beginnings of its lines, since it repeats a line of the text, of any length.
+/// Returns a message with its lines cut short, since it repeats a line of the text, which may be long.
 pub(super) fn shortened(message: &str) -> String {
     const LONGEST: usize = 160;
     let short = |line: &str| match line.char_indices().nth(LONGEST) {

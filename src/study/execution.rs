@@ -17,20 +17,20 @@ use control::{Control, Summary};
 use queue::Queue;
 use shift::Shift;
 
-/// Shortest and longest time between two looks at ramps that other processes do. It doubles from look to
-/// look: a process that waits must not burden a file system that others need.
+/// Shortest and longest time between two looks at the ramps of other processes. It doubles from look to look,
+/// since a process that waits must not burden a file system that others need.
 const PATIENCE: [Duration; 2] = [Duration::from_millis(50), Duration::from_secs(5)];
 
-/// Most ramps of other processes that one look tries to take over.
+/// Largest number of ramps of other processes that one look tries to take over.
 const TRIED: usize = 8;
 
 impl<E: Experiment> Study<E> {
-    /// Does all values that have no record yet, and writes the tables.
+    /// Runs all values that have no record yet, and writes the tables.
     ///
-    /// Any number of processes may call this and [`Self::run_ramp`] at the same time; one of them does each
-    /// ramp. A run waits for ramps that other processes do, and takes over the ramps of a process that was
-    /// killed. With the feature `rayon`, it does ramps in parallel, in the thread pool from which it is
-    /// called. A run that is interrupted returns with all work saved. The next run goes on from there, with
+    /// Any number of processes may call this and [`Self::run_ramp`] at the same time; each ramp is run by one
+    /// of them. A run waits for ramps of other processes, and takes over the ramps of a process that was
+    /// killed. With the feature `rayon`, it runs ramps in parallel, in the thread pool from which it is
+    /// called. A run that is interrupted returns with all work saved. The next run continues from there, with
     /// the same result.
     ///
     /// # Errors
@@ -40,7 +40,7 @@ impl<E: Experiment> Study<E> {
         self.run_ramps((0..self.plan().ramp_count()).collect(), control)
     }
 
-    /// Does the values of one ramp that have no record yet, and writes the tables if all other ramps are
+    /// Runs the values of one ramp that have no record yet, and writes the tables if all other ramps are
     /// done.
     ///
     /// # Errors
@@ -64,8 +64,8 @@ impl<E: Experiment> Study<E> {
         Ok(summary)
     }
 
-    /// Returns whether all ramps are done. Ramps here and there come first, since a list of all of them takes
-    /// as many calls of the system as there are hundreds of ramps, and each of many tasks asks.
+    /// Returns whether all ramps are done. It looks at a few ramps first: a list of all takes a call of the
+    /// system for each hundred ramps, and each of many tasks asks.
     fn is_done(&self, ramp: usize) -> Result<bool, StudyError> {
         const PROBES: usize = 64;
         let ramps = self.plan().ramp_count();
@@ -76,7 +76,7 @@ impl<E: Experiment> Study<E> {
     }
 
     /// Writes the tables, unless another process has done so meanwhile. A run of the whole study also writes
-    /// lost tables again. One of many tasks that finds everything done leaves the tables as they are.
+    /// lost tables again. If one of many tasks finds everything done, it leaves the tables as they are.
     fn write_tables_once(&self, is_whole: bool) -> Result<(), StudyError> {
         let is_there = || if is_whole { self.has_tables() } else { self.folder.is_complete() };
         if is_there() {
@@ -91,8 +91,8 @@ impl<E: Experiment> Study<E> {
     }
 }
 
-/// Does ramps until each of them is done, here or elsewhere. If it need not wait, it returns the ramps that
-/// other processes do.
+/// Runs ramps until each of them is done, here or elsewhere. If it need not wait, it returns the ramps of
+/// other processes.
 fn all<E: Experiment>(shift: &Shift<'_, E>, ramps: Vec<usize>) -> Result<Vec<usize>, StudyError> {
     let queue = Queue::new(shift.without_done(ramps)?);
     work_in_parallel(shift, &queue)?;

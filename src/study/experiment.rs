@@ -32,7 +32,7 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
 ///
 /// # Contract
 /// 1. All methods are functions of the parameters and their arguments: they use no clock and no other random
-///    numbers. This gives the files of a study the same bytes, however they come about.
+///    numbers. So the files of a study have the same bytes, however often it is interrupted.
 /// 2. [`rule`](Self::rule) and [`boundary`](Self::boundary) return the rule and the walls of the simulation
 ///    that [`build`](Self::build) makes, since a run is resumed with them.
 /// 3. Samples and observer read back as they were written, in a format that does not describe itself. So
@@ -40,8 +40,8 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
 ///    cannot read them back ends with an error.
 ///
 /// A study guarantees that it calls `sample` at the times of the protocol, in order, and that the observer
-/// has seen everything since the value settled. Where a run is interrupted, the study writes the observer and
-/// reads it back.
+/// has seen everything since the value has settled. Where a run is interrupted, the study writes the observer
+/// and reads it back.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -116,13 +116,13 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Returns the revision of the code of this type, which a study keeps and compares.
     ///
-    /// Values that different code has made must not be mixed, so a study is refused once its revision has
-    /// changed. `Fingerprint::of(include_str!("main.rs"))`, with the name of the file that has the
-    /// experiment, changes by itself with every edit of that file, also of a comment.
-    /// `Fingerprint::of("Cooling 2")` changes when you raise the number: do so whenever rule, walls, disks,
-    /// observer or sample give other numbers than before. Code in other files, and in other crates, is
-    /// covered only if you add it with [`Fingerprint::text`]. A study adds the names and units of all columns
-    /// by itself, and the [`RESULTS`](crate::RESULTS) of this crate.
+    /// Values of different code must not be mixed, so a study with another revision is refused.
+    /// `Fingerprint::of(include_str!("main.rs"))`, with the name of the file that has the experiment, changes
+    /// by itself with every edit of that file, also of a comment. `Fingerprint::of("Cooling 2")` changes when
+    /// you raise the number: do so whenever rule, walls, disks, observer or sample give other numbers than
+    /// before. Code in other files, and in other crates, is covered only if you add it with
+    /// [`Fingerprint::text`]. A study adds the names and units of all columns by itself, and the
+    /// [`RESULTS`](crate::RESULTS) of this crate.
     fn revision() -> Fingerprint;
 
     /// Returns the collision rule of these parameters.
@@ -154,7 +154,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         1.0
     }
 
-    /// Returns the observer with which a value begins.
+    /// Returns the observer at the start of a value.
     ///
     /// # Errors
     /// If these parameters do not give one.
@@ -162,8 +162,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Returns the sample of this moment.
     ///
-    /// It may read and change the observer: empty it for the interval until the next sample, or leave it to
-    /// add up over all samples.
+    /// It may read the observer, and empty it for the interval until the next sample, or let it add up over
+    /// all samples.
     fn sample(&self, snapshot: &Snapshot<'_>, observer: &mut Self::Observer) -> Self::Sample;
 
     /// Returns the columns of the tables, each with its name, unit and value.
@@ -230,7 +230,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Checks that the contents of a file can belong to these parameters.
     ///
-    /// The study has already checked the checksum, the place and the time. Many records keep no state.
+    /// The study has checked the checksum, the place and the time before. Many records keep no state.
     ///
     /// # Errors
     /// The reason why they cannot, if there is one.
@@ -244,8 +244,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         Ok(())
     }
 
-    /// Returns the name of the state that a record shows, for a ramp that is refined
-    /// ([`Ramp::with_refinement`](super::Ramp::with_refinement)); `None` if it shows none.
+    /// Returns the name of the state in a record, for a refined ramp
+    /// ([`Ramp::with_refinement`](super::Ramp::with_refinement)); `None` if the record shows no state.
     fn state(record: &Record<Self>) -> Option<String> {
         let _ = record;
         None

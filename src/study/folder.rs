@@ -1,7 +1,7 @@
 //! The folder of a study, with its files and the locks of the processes that write them.
 //!
-//! A process that writes into the folder of a study or of a ramp holds the lock of that folder. So the next
-//! holder of the lock knows that the writer of a temporary file there is dead.
+//! A process that writes into the folder of a study or of a ramp holds the lock of that folder. So whoever
+//! holds the lock next knows that the writer of a temporary file there is dead.
 
 mod lock;
 pub(super) mod sealed;
@@ -15,7 +15,7 @@ use super::provenance::Provenance;
 use crate::file::{Draft, is_temporary};
 pub(super) use lock::Lock;
 
-/// Text of the README in the folder of a study, for somebody who comes across it.
+/// Text of the README in the folder of a study.
 const ABOUT: &str = "\
 A study by granular-edmd (event-driven molecular dynamics of frictional, inelastic, rotating disks).
 
@@ -101,8 +101,8 @@ impl Folder {
         let _lock = Lock::take(&self.root.join(LOCK))?;
         sealed::remove_temporaries(&self.root)?;
         let is_new = sealed::publish(&self.plan(), plan.as_bytes())?;
-        // A process that was killed here leaves a plan without a provenance, and no ramps. A folder with
-        // ramps was made by a version that did not tell its provenance, and nobody may do so in its place.
+        // If a process was killed here, there is a plan without a provenance, and no ramps. If there are
+        // ramps, an older version made the folder, and its provenance is not known.
         if !self.root.join(RAMPS).exists() {
             sealed::publish(&self.provenance_file(), provenance.text().as_bytes())?;
         }
@@ -123,13 +123,13 @@ impl Folder {
         }
     }
 
-    /// Puts another provenance in the place of the one that is there.
+    /// Replaces the provenance.
     pub(super) fn replace_provenance(&self, provenance: &Provenance) -> Result<(), StudyError> {
         let _lock = Lock::take(&self.root.join(LOCK))?;
         sealed::write(&self.provenance_file(), provenance.text().as_bytes())
     }
 
-    /// Writes the README of the folder, if it is not there or was cut. One that somebody has edited stays.
+    /// Writes the README of the folder, if it is missing or cut short. An edited one stays.
     fn write_about(&self) -> Result<(), StudyError> {
         let path = self.root.join(README);
         match fs::read(&path) {
@@ -140,7 +140,7 @@ impl Folder {
         }
     }
 
-    /// Checks that the folder has a plan, or nothing but a lock and temporary files, which come before a
+    /// Checks that the folder has a plan, or only a lock and temporary files, which are written before a
     /// plan.
     fn check_free(&self) -> Result<(), StudyError> {
         let Some(stranger) = self.stranger()? else { return Ok(()) };
@@ -175,13 +175,13 @@ impl Folder {
         fs::read_to_string(self.plan()).map_err(StudyError::io("read", &self.plan()))
     }
 
-    /// Takes the lock of a ramp; returns `None` if somebody does the ramp. The flag tells whether nothing was
-    /// ever done there.
+    /// Takes the lock of a ramp; returns `None` if another process runs the ramp. The flag tells whether
+    /// nothing was ever run there.
     pub(super) fn take(&self, ramp: usize) -> Result<Option<(Lock, bool)>, StudyError> {
         let folder = self.ramp(ramp);
         let is_new = create(&folder)?;
         let Some(lock) = Lock::try_take(&self.log(ramp))? else { return Ok(None) };
-        // Somebody else may have done the ramp since this process made its folder.
+        // Another process may have run the ramp since this one made its folder.
         let is_fresh = is_new && lock.is_fresh();
         if !is_fresh {
             sealed::remove_temporaries(&folder)?;
@@ -202,7 +202,7 @@ impl Folder {
         self.done(ramp).exists()
     }
 
-    /// Returns for each of so many ramps whether it is done. One call of the system tells of hundreds of
+    /// Returns for each of this many ramps whether it is done. One call of the system tells of hundreds of
     /// them.
     pub(super) fn all_done(&self, ramps: usize) -> Result<Vec<bool>, StudyError> {
         let mut all = vec![false; ramps];
@@ -223,7 +223,7 @@ impl Folder {
 
     /// Marks a ramp as done, with the values that stalled or failed.
     ///
-    /// The mark need not outlast a loss of power, so it costs no sync: a ramp that lost it is looked at
+    /// The mark need not survive a loss of power, so it is not synced: a ramp that lost it is looked at
     /// again.
     pub(super) fn mark_done(&self, ramp: usize, failed: &[usize]) -> Result<(), StudyError> {
         let path = self.done(ramp);
@@ -248,7 +248,7 @@ impl Folder {
         self.complete().exists()
     }
 
-    /// Removes the mark that the study is complete, before a value comes that may not be in the tables.
+    /// Removes the mark of a complete study before a value is written that the tables may lack.
     pub(super) fn mark_incomplete(&self) -> Result<(), StudyError> {
         sealed::remove(&self.complete())
     }

@@ -15,7 +15,7 @@ pub(super) struct Maker {
     pub(super) version: String,
     /// The crate's [`RESULTS`](crate::RESULTS).
     pub(super) results: u32,
-    /// The experiment's own revision.
+    /// The revision of the experiment.
     pub(super) revision: Fingerprint,
     /// Fingerprint of the names and units in all tables. An experiment need not declare a change of these.
     pub(super) columns: Fingerprint,

@@ -53,7 +53,7 @@ impl<E: Experiment> Study<E> {
 
     /// Opens the study in a folder, or creates a new one.
     ///
-    /// So the same command starts a study and goes on with it, also in several processes at the same time.
+    /// The same command thus starts a study and continues it, also in several processes at the same time.
     ///
     /// # Errors
     /// If the folder holds a study with another plan or by other code ([`StudyError::Code`]), or other files
@@ -67,9 +67,9 @@ impl<E: Experiment> Study<E> {
         study.checked()
     }
 
-    /// Opens or creates the study of a plan whose experiments have not been tried yet. It tries them, unless
-    /// the folder holds the same plan: then they were tried when that plan was put there. To try them takes
-    /// seconds in large studies, and each of many processes would do it again.
+    /// Opens or creates the study of a plan whose experiments have not been checked yet. They are checked
+    /// now, unless the folder holds the same plan: then they were checked when that plan was put there. The
+    /// check takes seconds in large studies, and each of many processes would repeat it.
     #[cfg(feature = "cli")]
     pub(super) fn open_or_create_unproven(folder: &Path, plan: Plan<E>) -> Result<Self, StudyError> {
         let study = Self::in_folder(Folder::new(folder)?, plan)?;
@@ -79,8 +79,8 @@ impl<E: Experiment> Study<E> {
         Self::open_or_create(folder, &study.plan.proven()?)
     }
 
-    /// Lets a study that other code made go on by this program, and returns what differs; nothing, if it may
-    /// go on anyway.
+    /// Lets this program continue a study that other code made, and returns the names of the differences;
+    /// none if it may continue anyway.
     ///
     /// Its finished values stay as they are. Each record keeps the mark of the code that made it, which the
     /// column `made_by` of `values.csv` shows: values on both sides of the change can be told apart, and it
@@ -147,7 +147,7 @@ impl<E: Experiment> Study<E> {
         Err(StudyError::Code { path: self.folder.root().to_owned(), differences })
     }
 
-    /// Checks that plan and code of the folder are still these, since somebody may have changed them.
+    /// Checks that plan and code of the folder are still these, since they may have been changed.
     pub(super) fn check_unchanged(&self) -> Result<(), StudyError> {
         self.check_plan()?;
         self.check_code().map(drop)

@@ -17,7 +17,7 @@ pub(super) fn experiment<E: DeserializeOwned>(tree: Table) -> Result<E, String> 
     E::deserialize(Value::Table(tree)).map_err(|error| shortened(&error.to_string()))
 }
 
-/// Returns the whole names of all parameters, in which a dot separates a group and its parts.
+/// Returns the whole names of all parameters, with dots between the names of groups and fields.
 pub(super) fn names(tree: &Table) -> Vec<String> {
     let mut names = Vec::new();
     for (name, value) in tree {
@@ -59,9 +59,9 @@ pub(super) fn set(tree: &mut Table, name: &str, to: &Scalar) -> bool {
     }
 }
 
-/// Returns the whole name of a parameter. Its last part is enough if no other parameter ends with it.
+/// Returns the whole name of a parameter. The name after the last dot is enough if no other parameter has it.
 ///
-/// An unknown name is returned as it is, since it may be that of a parameter without a value.
+/// An unknown name is returned unchanged, since the parameter may have no value yet.
 pub(super) fn whole_name(tree: &Table, name: &str) -> Result<String, PlanError> {
     if get(tree, name).is_some() {
         return Ok(name.to_owned());
@@ -75,8 +75,8 @@ pub(super) fn whole_name(tree: &Table, name: &str) -> Result<String, PlanError> 
     }
 }
 
-/// Sets a parameter of an experiment, and returns its value as it reads back. The error says why there is no
-/// such parameter, or why the experiment refuses the value.
+/// Sets a parameter of an experiment, and returns its value as it reads back. The error names the reason:
+/// there is no such parameter, or the experiment refuses the value.
 pub(super) fn probe<E: Serialize + DeserializeOwned>(
     base: &Table,
     parameter: &str,

@@ -31,8 +31,8 @@ use refinement::{Seen, Step};
 /// a ramp, each point has one value.
 ///
 /// Axes and ramps vary parameters of the experiment by name. The whole name is that of the field, after the
-/// names of the groups that contain it (`base.bi_parabolic.amplitude`). The last part is enough if no other
-/// parameter ends with it.
+/// names of the groups that contain it (`base.bi_parabolic.amplitude`). The name after the last dot is enough
+/// if no other parameter has it.
 ///
 /// A ramp is a function of plan, index and seed alone. The seed of a ramp is the first eight bytes of
 /// $`\mathrm{BLAKE3}(\text{seed}, \text{index})`$. In the index of a ramp, the repeat counts fastest.
@@ -143,7 +143,8 @@ impl<E: Experiment> Plan<E> {
     /// Returns the same plan, whose records all keep the state at their end
     /// ([`Record::checkpoint`](super::Record::checkpoint)).
     ///
-    /// Otherwise only those keep it from which another value starts. States are most of a record's bytes.
+    /// Otherwise, a record keeps it only if another value starts from it, since states are most of a record's
+    /// bytes.
     pub fn with_end_states(self) -> Self {
         Self { end_states: true, ..self }
     }
@@ -208,7 +209,7 @@ impl<E: Experiment> Plan<E> {
         self.parameters_at(ramp, self.step(value).map(|(_, at)| at))
     }
 
-    /// Returns the parameters that vary, as they are where the ramped parameter is `at`.
+    /// Returns the parameters that vary, with the ramped parameter at `at`.
     pub(super) fn parameters_at(&self, ramp: usize, at: Option<f64>) -> Vec<(&str, Scalar)> {
         let mut rest = ramp / self.repeats;
         let mut found: Vec<(&str, Scalar)> = Vec::with_capacity(self.varied.len());
@@ -248,7 +249,7 @@ impl<E: Experiment> Plan<E> {
         self.ramp.as_ref().is_some_and(|ramp| ramp.refinement().is_some())
     }
 
-    /// Returns the next value of a ramp after those that are done; `None` if there is none.
+    /// Returns the next value of a ramp after the finished ones; `None` if there is none.
     pub(super) fn next(&self, seen: &[Seen]) -> Option<Step> {
         match &self.ramp {
             Some(ramp) => ramp.next(seen),
@@ -261,7 +262,7 @@ impl<E: Experiment> Plan<E> {
         for (name, (_, to)) in self.varied.iter().zip(varied) {
             let known = parameters::get(&tree, name).and_then(Scalar::of_toml);
             let to = known.map_or_else(|| to.clone(), |known| to.clone().like(&known));
-            // The names were tried when the plan was made, so this succeeds.
+            // The names were checked when the plan was made, so this succeeds.
             let _ = parameters::set(&mut tree, name, &to);
         }
         let refused = |reason: String| Self::refused(varied, reason.into());

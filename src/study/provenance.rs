@@ -28,18 +28,18 @@ fn columns<E: Experiment>() -> Fingerprint {
     })
 }
 
-/// The file `provenance.json`: the code by which a study may go on, and the program that began it.
+/// The file `provenance.json`: the code that may continue a study, and the program that began it.
 #[derive(Debug, Clone)]
 pub(super) struct Provenance(String);
 
-/// Name of the field with the makers before the present one, which somebody accepted.
+/// Name of the field with earlier makers that were accepted.
 const ACCEPTED: &str = "accepted";
 
 /// Name of the field with the hash of the plan.
 const PLAN: &str = "plan";
 
 impl Provenance {
-    /// Describes this program as the maker of the study of a plan, after those that were accepted before.
+    /// Describes this program as the maker of the study of a plan, after the earlier, accepted ones.
     pub(super) fn here<E: Experiment>(plan: &Plan<E>, hash: &blake3::Hash, accepted: &str) -> Self {
         let program = std::env::current_exe().ok();
         let program = program.as_deref().and_then(|path| path.file_stem()).unwrap_or_default();
@@ -79,21 +79,21 @@ impl Provenance {
             .collect()
     }
 
-    /// Returns the present maker and all that were accepted before, as keys separated by blanks.
+    /// Returns the present maker and the earlier, accepted ones, as keys separated by blanks.
     pub(super) fn keys(&self) -> String {
         let of = |name| json::field(&self.0, name).unwrap_or_default();
         let present = format!("{}:{}:{}", of("results"), of("revision"), of("columns"));
         format!("{} {present}", of(ACCEPTED)).trim_start().to_owned()
     }
 
-    /// Returns whether the study takes records of this maker.
+    /// Returns whether the study accepts records of this maker.
     pub(super) fn takes(&self, maker: &Maker) -> bool {
         self.keys().split(' ').any(|key| key == maker.key())
     }
 }
 
-/// Returns the fields that decide whether a program may go on with the study of a plan: those of its maker,
-/// and the fingerprints of rule and walls at the parameters of the plan.
+/// Returns the fields that decide whether a program may continue the study of a plan: those of its maker, and
+/// the fingerprints of rule and walls at the parameters of the plan.
 fn deciding<E: Experiment>(plan: &Plan<E>) -> Vec<(&'static str, String)> {
     let rule = plan.experiment.rule().ok().and_then(|rule| rule.fingerprint());
     let boundary = plan.experiment.boundary().ok().and_then(|boundary| boundary.fingerprint());

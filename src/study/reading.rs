@@ -42,7 +42,7 @@ impl<E: Experiment> Study<E> {
         }
         let record = Record { experiment: self.plan.experiment_at(ramp, contents.at)?, contents };
         check_record(&record, &self.plan).map_err(|reason| sealed::damaged(&path, reason))?;
-        // Code that somebody accepted differs from this program on purpose.
+        // Accepted code differs from this program on purpose.
         match record.changed_part().filter(|_| self.is_ours(&record.contents.origin)) {
             Some(part) => Err(StudyError::Changed { path, part }),
             None => Ok(Some(record)),
@@ -202,7 +202,7 @@ impl<E: Experiment> Study<E> {
     }
 }
 
-/// Checks that a record can belong to its place in a study. The error says why it cannot.
+/// Checks that a record fits its place in a study, or returns the reason why it does not.
 fn check_record<E: Experiment>(record: &Record<E>, plan: &Plan<E>) -> Result<(), String> {
     let Contents { origin, leg, at, outcome, end, measured, state, .. } = &record.contents;
     let protocol = plan.protocol();

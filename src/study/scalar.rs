@@ -54,8 +54,8 @@ impl Scalar {
         }
     }
 
-    /// Returns the same value as the kind of number that `other` is, if nothing is lost: 1.0 becomes the
-    /// integer 1, for example.
+    /// Returns the same value in the type of `other`, if nothing is lost: 1.0 becomes the integer 1, for
+    /// example.
     pub(super) fn like(self, other: &Self) -> Self {
         /// Up to this size, all whole numbers are doubles.
         const EXACT: f64 = 9_007_199_254_740_992.0;

@@ -1,6 +1,6 @@
 //! Seeds that follow from another seed.
 
-/// Returns the seed of this index that follows from another seed.
+/// Returns the seed that follows from a seed and this index.
 pub(super) fn derived_seed(seed: u64, index: u64) -> u64 {
     let bytes = [seed.to_le_bytes(), index.to_le_bytes()].concat();
     let hash = blake3::hash(&bytes);

@@ -113,7 +113,8 @@ impl<'a, E: Experiment> Tables<'a, E> {
     }
 
     fn add_value(&mut self, record: &Record<E>, row: Row) -> Result<(), StudyError> {
-        // A number of 64 bits is no double: with a letter before it, it is a text for every reader of tables.
+        // A double does not hold a number of 64 bits. With a letter before it, it is text for every reader of
+        // tables.
         let row = row.with(&format!("x{:016x}", record.seed()).into());
         let row = row.with(&record.contents.origin.maker.to_string().into());
         let mut row = row.with(&record.outcome().name().into()).with(&record.samples().len().into());
@@ -183,7 +184,7 @@ fn plain<const N: usize>(names: [&str; N]) -> Vec<Heading> {
     names.map(|name| Heading::new(name, "")).into()
 }
 
-/// Describes a mean, its error, and the number of independent samples that they rest on.
+/// Describes a mean, its error, and its number of independent samples.
 fn of_estimate<E: Experiment>(column: &Column<E>) -> [Heading; 3] {
     let (name, unit) = (column.name(), column.unit());
     let [error, independent] = error_names(name);

@@ -31,8 +31,8 @@ const RADIUS: f64 = 0.5;
 /// Most disks of a study.
 const MOST_DISKS: usize = 1 << 24;
 
-/// A box of equal disks as data: how many, how they collide, what moves them. Diameter and mass of a disk are
-/// the units.
+/// A box of equal disks as data: their number, their collisions and their driving. Diameter and mass of a
+/// disk are the units.
 ///
 /// Disks start on a lattice with Maxwellian velocities. Values are checked where the box enters a
 /// [`Plan`](super::Plan).
@@ -234,7 +234,7 @@ impl Experiment for VibratedBox {
     type Observer = Measurement;
     type Sample = Sample;
 
-    /// The box is part of this crate, whose own number tells of changed results.
+    /// The box is part of this crate, and the crate's own number shows changed results.
     fn revision() -> Fingerprint {
         Fingerprint::of("VibratedBox")
     }
@@ -258,7 +258,7 @@ impl Experiment for VibratedBox {
         if self.disks == 0 {
             return Err(ParameterError::new("number of disks", "at least 1", 0.0).into());
         }
-        // An open box has room for any number: a typing error must not take all memory.
+        // An open box has room for any number, so a mistyped number must not take all memory.
         accept(self.disks <= MOST_DISKS, "number of disks", "at most 2^24", self.disks as f64)?;
         let disks = initial::lattice(&self.container()?, self.disks, RADIUS)?;
         Ok(initial::with_maxwellian_velocities(disks, self.initial_temperature, seed)?)
@@ -296,8 +296,8 @@ impl Experiment for VibratedBox {
         found.ok().map(|found| found.regime().to_string())
     }
 
-    /// Returns false for the size of the box, which has the disks in it, and for a frequency, which would
-    /// make the base jump.
+    /// Returns false for the size of the box, which must hold its disks, and for a frequency, with which the
+    /// base would jump.
     fn can_be_ramped(parameter: &str) -> bool {
         let name = parameter.rsplit('.').next().unwrap_or(parameter);
         let fixed = ["disks", "width", "height", "sides", "angular_frequency", "slip", "initial_temperature"];

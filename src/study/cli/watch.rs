@@ -33,7 +33,7 @@ pub(super) struct Watch {
 
 impl Watch {
     /// Creates the display, and lets Ctrl-C or SIGTERM stop the study. A second signal ends the process at
-    /// once, with what is saved by then.
+    /// once; only saved work is kept.
     pub(super) fn new() -> Result<Self, Box<dyn Error>> {
         ctrlc::set_handler(|| {
             if STOP.swap(true, Ordering::Relaxed) {
@@ -51,7 +51,7 @@ impl Watch {
         let before = bar.position();
         bar.set_length(progress.total);
         bar.set_position(progress.done);
-        // A value that was done before says nothing about the rate.
+        // Values done before do not count for the rate.
         if progress.done > before + 1 {
             bar.reset_eta();
         }

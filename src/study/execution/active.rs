@@ -1,5 +1,5 @@
-//! One value of a ramp, from its start to its record, as a pure function of the plan, the index and the
-//! record from which it starts.
+//! One value of a ramp, from its start to its record: a pure function of the plan, the index and the record
+//! from which it starts.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ use crate::study::plan::Plan;
 use crate::study::plan::protocol::Protocol;
 use crate::study::plan::refinement::Step;
 
-/// A value that is to be done.
+/// A value to be run.
 pub(super) struct Value<'a, E: Experiment> {
     pub(super) plan: &'a Plan<E>,
     pub(super) origin: Origin,
@@ -25,25 +25,25 @@ pub(super) struct Value<'a, E: Experiment> {
     pub(super) before: Option<&'a Record<E>>,
 }
 
-/// An unfinished value as data: its place, the work that is done, and its state.
+/// An unfinished value as data: its place, the work so far, and its state.
 pub(super) type Partial<E> =
     (Origin, Work<<E as Experiment>::Sample, <E as Experiment>::Observer>, Checkpoint);
 
-/// The part of a value that is done.
+/// The finished work of a value.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Work<S, O> {
     /// The start of the value.
     start: Cycles,
     steps: u64,
-    /// True if the observer has heard of the start of a run whose end is yet to come.
+    /// True if the observer has seen the start of a run, and not its end.
     is_under_way: bool,
     /// Counters at the start of the value.
     counters: Counters,
     measured: Measured<S, O>,
 }
 
-/// A value that is being done.
+/// A value that is being run.
 pub(super) struct Active<'a, E: Experiment> {
     value: &'a Value<'a, E>,
     work: Work<E::Sample, E::Observer>,
@@ -61,7 +61,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         Ok(Active { value: self, work, run })
     }
 
-    /// Goes on with the value where it was saved. The error says why that is impossible.
+    /// Continues the value where it was saved, or returns the reason why it cannot.
     pub(super) fn go_on(&'a self, (_, work, state): Partial<E>) -> Result<Active<'a, E>, String> {
         let protocol = self.plan.protocol();
         work.check(protocol)?;
@@ -75,8 +75,7 @@ impl<'a, E: Experiment> Value<'a, E> {
         Ok(Active { value: self, work, run })
     }
 
-    /// Returns the time at which the value starts, in whole cycles as long as the length of a cycle stays the
-    /// same.
+    /// Returns the time at which the value starts, in whole cycles if the length of a cycle has not changed.
     fn start(&self) -> Cycles {
         let Some(before) = self.before else { return Cycles::START };
         let (end, cycle) = (before.contents.end, before.experiment.cycle());
@@ -134,9 +133,9 @@ impl<E: Experiment> Active<'_, E> {
         (self.value.origin.ramp, self.value.origin.value)
     }
 
-    /// Goes on with the next step, which settles or takes a sample, for this wall-clock time at most. The
-    /// observer may end the value during the step. A step that takes longer goes on with the next call, to
-    /// the same bits.
+    /// Runs the next step, which settles or takes a sample, for this wall-clock time at most. The observer
+    /// may end the value during the step. The next call continues a step that takes longer, with the same
+    /// bits.
     pub(super) fn step(&mut self, slice: Duration) -> Result<RunEnd, RunError> {
         let protocol = self.value.plan.protocol();
         let (step, cycle) = (self.work.steps, self.value.experiment.cycle());
@@ -175,7 +174,7 @@ impl<E: Experiment> Active<'_, E> {
         (&self.value.origin, &self.work, self.run.checkpoint())
     }
 
-    /// Returns the record of a value that is done.
+    /// Returns the record of a finished value.
     pub(super) fn record(self) -> Record<E> {
         let mut end = self.work.start;
         end.count += self.value.plan.protocol().cycles();
@@ -222,7 +221,7 @@ impl<E: Experiment> Active<'_, E> {
 }
 
 impl<S, O> Work<S, O> {
-    /// Checks that a value can have come this far under the protocol.
+    /// Checks that the work so far fits the protocol.
     fn check(&self, protocol: &Protocol) -> Result<(), &'static str> {
         check(self.steps <= protocol.steps(), "it is longer than the protocol")?;
         let (samples, next) = (protocol.samples_of(self.steps), protocol.samples_of(self.steps + 1));

@@ -19,7 +19,7 @@ pub struct Progress {
     pub total: u64,
 }
 
-/// The means to watch and stop a study, none of which influences results.
+/// Means to watch and stop a study. None of them influences results.
 ///
 /// ```
 /// use granular_edmd::study::{Control, Progress};
@@ -41,8 +41,8 @@ pub struct Control<'a> {
 }
 
 impl Default for Control<'_> {
-    /// Creates the control of a study that nobody watches or stops. The study saves unfinished values every
-    /// minute, and waits for ramps that other processes do.
+    /// Creates the control of a study that is neither watched nor stopped. The study saves unfinished values
+    /// every minute, and waits for ramps that other processes run.
     fn default() -> Self {
         let save_interval = Duration::from_secs(60);
         Self { progress: None, interrupt: None, save_interval, waits: true, tables: true, verifies: false }
@@ -71,7 +71,7 @@ impl<'a> Control<'a> {
         Self { save_interval: interval, ..self }
     }
 
-    /// Returns the same control, which does not wait for ramps that other processes do.
+    /// Returns the same control, which does not wait for ramps that other processes run.
     ///
     /// A run then returns as soon as only such ramps are left. [`Summary::elsewhere`] names them, since their
     /// processes may yet be killed.
@@ -86,8 +86,8 @@ impl<'a> Control<'a> {
         Self { tables: false, ..self }
     }
 
-    /// Returns the same control, which reads the records of ramps that are done, too, and does damaged or
-    /// lost ones again. It reads the whole study.
+    /// Returns the same control, which also reads the records of finished ramps, and runs damaged or lost
+    /// ones again. It reads the whole study.
     pub fn with_verification(self) -> Self {
         Self { verifies: true, ..self }
     }
@@ -127,7 +127,7 @@ impl fmt::Debug for Control<'_> {
 pub struct Summary {
     /// Number of values that have a record now.
     pub finished: usize,
-    /// Number of values of the ramps that this run has looked at which the engine could not finish: they
+    /// Number of values that the engine could not finish, in the ramps that this run has looked at: they
     /// stalled or failed. They have fewer samples or none; [`Outcome::reason`](crate::study::Outcome::reason)
     /// and the `log.jsonl` of their ramp say why. Ramps that were done before are looked at only with
     /// [`Control::with_verification`].

@@ -4,10 +4,10 @@ use std::collections::VecDeque;
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Ramps that nobody is known to do, and ramps that other processes do.
+/// Ramps that are free as far as is known, and ramps of other processes.
 ///
-/// Processes begin at random places and go on in order from there. So they seldom meet, and each does what
-/// lies ahead of it. One that meets another takes a new place.
+/// Processes begin at random places and go on in order from there. So they seldom meet, and each runs the
+/// ramps ahead of it. One that meets another goes to a new place.
 #[derive(Debug)]
 pub(super) struct Queue {
     left: Mutex<VecDeque<usize>>,

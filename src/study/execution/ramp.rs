@@ -8,7 +8,7 @@ use crate::study::experiment::record::Record;
 use crate::study::folder::Lock;
 use crate::study::plan::refinement::{Seen, Step};
 
-/// Does a ramp, unless it is done, until it is done or must stop. Returns false if another process does it.
+/// Runs a ramp, unless it is done, until it is done or must stop. Returns false if another process runs it.
 pub(super) fn attempt<E: Experiment>(shift: &Shift<'_, E>, ramp: usize) -> Result<bool, StudyError> {
     let folder = &shift.study.folder;
     // This costs less than the lock, which somebody else may need.
@@ -31,7 +31,7 @@ pub(super) fn attempt<E: Experiment>(shift: &Shift<'_, E>, ramp: usize) -> Resul
 struct Walk<'a, 's, E: Experiment> {
     shift: &'a Shift<'s, E>,
     ramp: usize,
-    /// True if nothing was ever done here, so that no file need be looked for.
+    /// True if nothing was ever run here, so no file need be looked for.
     is_fresh: bool,
     lock: Lock,
     seen: Vec<Seen>,
@@ -41,7 +41,7 @@ struct Walk<'a, 's, E: Experiment> {
 }
 
 impl<E: Experiment> Walk<'_, '_, E> {
-    /// Takes a step; returns false if its value was interrupted.
+    /// Runs a step; returns false if its value was interrupted.
     fn take(&mut self, step: Step) -> Result<bool, StudyError> {
         let (plan, value) = (self.shift.study.plan(), self.seen.len());
         if value >= plan.value_count() {
@@ -66,7 +66,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         Ok(true)
     }
 
-    /// Does a value that starts from the last one, or from the one to which a bisection goes back.
+    /// Runs a value that starts from the last one, or from an earlier one in a bisection.
     fn new_value(&mut self, value: usize, step: Step) -> Result<Option<Record<E>>, StudyError> {
         let before = match step.before {
             Some(before) if before + 1 < value => self.shift.study.record(self.ramp, before)?,

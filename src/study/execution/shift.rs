@@ -10,10 +10,10 @@ use crate::study::errors::StudyError;
 use crate::study::experiment::Experiment;
 use crate::study::opening::Study;
 
-/// Longest time until a thread looks whether it must stop.
+/// Longest time until a thread checks whether it must stop.
 pub(super) const LOOK: Duration = Duration::from_millis(200);
 
-/// Number of ramps up to which each is asked for alone whether it is done. A list of all ramps costs more.
+/// Number of ramps up to which the state of each is asked for alone. A list of all ramps costs more.
 const FEW: usize = 16;
 
 /// A run of a study.

@@ -9,8 +9,8 @@ use crate::simulation::{Limits, RunEnd, RunError, Simulation};
 
 /// Runs until an absolute time, or for this wall-clock time at most.
 ///
-/// `is_under_way` tells whether an earlier slice of the same run has begun it. The observer hears of one
-/// start and one end, however many slices there are, so an observer that counts them counts the same.
+/// `is_under_way` tells whether an earlier slice has begun the run. The observer sees one start and one end,
+/// however many slices there are.
 pub(super) fn run<R: CollisionRule, B: Boundary, O: Observer>(
     simulation: &mut Simulation<R, B>,
     end: f64,
@@ -33,7 +33,7 @@ pub(super) fn run<R: CollisionRule, B: Boundary, O: Observer>(
     }
 }
 
-/// An observer that hears of the start of its first slice alone, and of no end.
+/// A wrapper that shows its observer the start of the first slice only, and no end.
 struct Sliced<'a, O> {
     observer: &'a mut O,
     is_under_way: bool,

@@ -1,4 +1,4 @@
-//! One value of a run: it is read if it is finished, continued if it was begun, and else done from its start.
+//! One value of a run: read if it is finished, continued if it was begun, and otherwise run from its start.
 
 use std::path::Path;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -13,10 +13,10 @@ use crate::study::folder::{Lock, sealed};
 use crate::study::json::Object;
 use crate::study::plan::refinement::Step;
 
-/// Shortest piece of a run. It always goes on a little, also if it is to be saved all the time.
+/// Shortest piece of a run, so that it advances even if it is saved all the time.
 const SHORTEST: Duration = Duration::from_millis(20);
 
-/// A value that is to be done.
+/// A value to be run.
 pub(super) struct Task<'a, E: Experiment> {
     pub(super) ramp: usize,
     pub(super) value: usize,
@@ -27,7 +27,7 @@ pub(super) struct Task<'a, E: Experiment> {
     pub(super) is_fresh: bool,
 }
 
-/// The reason why the steps of a value came to an end.
+/// The reason why a value stopped.
 enum Pause {
     Done,
     Interrupted,
@@ -45,7 +45,7 @@ pub(super) fn known<E: Experiment>(
 ) -> Result<Option<Record<E>>, StudyError> {
     let folder = &shift.study.folder;
     let read = shift.study.record(ramp, value).and_then(|record| match record {
-        // It may belong to another step, if a record before it has been done again since.
+        // It may belong to another step, if an earlier value was run again since.
         Some(record) if (record.leg(), record.ramped_value()) != (step.leg, step.at) => {
             Err(sealed::damaged(&folder.record(ramp, value), "it is of another value"))
         }
@@ -54,7 +54,7 @@ pub(super) fn known<E: Experiment>(
     let record = if_sound(shift, lock, ramp, read)?;
     if record.is_some() {
         shift.meter.advance(ramp, value, shift.study.plan().protocol().steps());
-        // A process that was killed just after finishing a value may have left this behind.
+        // A process that was killed just after it had finished a value may have left this file.
         sealed::remove(&folder.partial(ramp, value))?;
     }
     Ok(record)
@@ -78,7 +78,7 @@ fn if_sound<T, E: Experiment>(
     }
 }
 
-/// Does a value; `None` if it was interrupted.
+/// Runs a value; `None` if it was interrupted.
 pub(super) fn done<E: Experiment>(
     shift: &Shift<'_, E>,
     lock: &mut Lock,
@@ -122,7 +122,7 @@ fn saved<'v, E: Experiment>(
     value.go_on(partial).map(Some).map_err(|reason| sealed::damaged(&path, reason))
 }
 
-/// Does the steps of a value until it is done, piece by piece, and saves it now and then.
+/// Runs the steps of a value until it is finished, piece by piece, and saves it now and then.
 fn steps<E: Experiment>(
     shift: &Shift<'_, E>,
     active: &mut Active<'_, E>,

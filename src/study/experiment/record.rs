@@ -16,7 +16,7 @@ use crate::study::scalar::Scalar;
 /// Relative rounding of the time at which a run ended.
 const TIME_ROUNDING: f64 = 1e-12;
 
-/// The way in which a value ended.
+/// The outcome of a value.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -25,15 +25,16 @@ pub enum Outcome {
     Completed,
     /// The observer ended the value.
     ///
-    /// There are only the samples until then. The next value of the ramp starts from the state at that time.
+    /// The record has only the samples until then. The next value of the ramp starts from the state at that
+    /// time.
     Stopped {
         /// Time since the start of the ramp.
         time: f64,
     },
-    /// Events piled up in vanishing time, as in an inelastic collapse.
+    /// Time hardly advanced, as in an inelastic collapse.
     ///
-    /// There are only the samples until then. The next value of the ramp starts from the state in which this
-    /// one started.
+    /// The record has only the samples until then. The next value of the ramp starts from the state in which
+    /// this one started.
     Stalled {
         /// Time since the start of the ramp.
         time: f64,
@@ -179,7 +180,7 @@ impl<E: Experiment> Record<E> {
         parameters::get(&tree, &name).and_then(Scalar::of_toml)
     }
 
-    /// Returns the way in which the value ended.
+    /// Returns the outcome of the value.
     pub const fn outcome(&self) -> &Outcome {
         &self.contents.outcome
     }
@@ -212,8 +213,8 @@ impl<E: Experiment> Record<E> {
         self.contents.state.as_ref()
     }
 
-    /// Returns the part of the simulation that the experiment now makes differently than when the value was
-    /// done, if there is one. Parts without fingerprints cannot be told apart.
+    /// Returns the name of the rule or the walls if they are not those with which the value was run. Rules
+    /// and walls without fingerprints cannot be told apart.
     pub(in crate::study) fn changed_part(&self) -> Option<&'static str> {
         let [rule, boundary] = self.contents.parts;
         if self.experiment.rule().is_ok_and(|now| now.fingerprint() != rule) {
@@ -269,7 +270,7 @@ impl<E: Experiment> fmt::Debug for Record<E> {
 }
 
 impl<S, O> Measured<S, O> {
-    /// Checks that the times, the samples and the observer can have been measured.
+    /// Checks that the times, the samples and the observer are possible.
     pub(in crate::study) fn check<E>(&self, experiment: &E, state: Option<&Checkpoint>) -> Result<(), String>
     where
         E: Experiment<Sample = S, Observer = O>,

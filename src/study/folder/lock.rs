@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::file::Locked;
 use crate::study::errors::StudyError;
 
-/// The right to write into a folder; it ends with the process at the latest, however the process ends.
+/// The right to write into a folder. It ends with the process, even if that is killed.
 ///
 /// The file of the lock stays. If it were removed, two processes could hold the locks of two different files
 /// of the same name.
@@ -24,12 +24,12 @@ impl Lock {
         }
     }
 
-    /// Waits until nobody else has the lock of a file, and takes it.
+    /// Waits until no other process has the lock of a file, and takes it.
     pub(super) fn take(path: &Path) -> Result<Self, StudyError> {
         Locked::wait(open(path)?).map(Self).map_err(StudyError::io("lock", path))
     }
 
-    /// Returns whether somebody has the lock of a file; false if that cannot be found out.
+    /// Returns whether a process has the lock of a file; false if the system does not tell.
     pub(super) fn is_taken(path: &Path) -> bool {
         let Ok(file) = File::open(path) else { return false };
         match file.try_lock_shared() {

@@ -18,7 +18,7 @@ pub(in crate::study) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyErro
     write_whole(path, bytes).map_err(StudyError::io("write", path))
 }
 
-/// Writes a new file, whole or not at all. If there is one already, it stays, and the function returns false.
+/// Writes a new file, whole or not at all. An existing file stays, and the function then returns false.
 ///
 /// A link, unlike a rename, never takes the place of another file: one of two writers wins, also on a network
 /// file system.

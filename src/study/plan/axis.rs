@@ -84,8 +84,7 @@ impl Axis {
         (index < self.len()).then(|| self.values.at(index))
     }
 
-    /// Turns the values of a list into the kind of number that the parameter is, so that equal plans have
-    /// equal files.
+    /// Turns the values of a list into the type of the parameter, so that equal plans have equal files.
     pub(super) fn set_kind(&mut self, kind: &Scalar) {
         if let Values::List(list) = &mut self.values {
             for value in list {

@@ -71,7 +71,7 @@ impl TryFrom<Raw> for Ramp {
 pub enum Width {
     /// A width in the unit of the parameter.
     Absolute(f64),
-    /// A share of the value itself, for parameters that go over orders of magnitude.
+    /// A fraction of the value itself, for parameters that span orders of magnitude.
     ///
     /// All values must be positive.
     Relative(f64),

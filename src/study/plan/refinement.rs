@@ -7,7 +7,7 @@ use crate::study::experiment::Experiment;
 use crate::study::experiment::record::Record;
 use crate::study::leg::Leg;
 
-/// The parts of a finished value on which the path depends.
+/// The data of a finished value on which the path depends.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::study) struct Seen {
     pub(in crate::study) leg: Option<Leg>,
@@ -36,18 +36,18 @@ pub(in crate::study) struct Step {
 pub struct Bracket {
     /// The direction from which the ramp came to the transition: from below or from above.
     pub leg: Option<Leg>,
-    /// The value on the side from which the ramp came.
+    /// The value on the near side of the transition, from which the ramp came.
     pub near: f64,
-    /// The value on the other side.
+    /// The value on the far side.
     pub far: f64,
     /// The state on the side from which the ramp came.
     pub from: String,
-    /// The state on the other side; empty if the record there shows none.
+    /// The state on the far side; empty if the record there shows none.
     pub to: String,
 }
 
 impl Ramp {
-    /// Returns the next value after those that are done; `None` if there is none.
+    /// Returns the next value after the finished ones; `None` if there is none.
     pub(in crate::study) fn next(&self, seen: &[Seen]) -> Option<Step> {
         self.search(seen).err()
     }
@@ -115,7 +115,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Returns the middle between two values; `None` if they are close enough.
+    /// Returns the middle of two values; `None` if they are close enough.
     fn middle(&self, near: usize, far: usize) -> Option<f64> {
         let [near, far] = [near, far].map(|index| self.seen[index].at.unwrap_or(f64::NAN));
         let width = far - near;
@@ -127,7 +127,8 @@ impl Search<'_> {
         (is_between && !self.width.holds(near, far)).then_some(at)
     }
 
-    /// Returns the index of the next value of a bisection. The error is the step to it, if it is not done.
+    /// Returns the index of the next value of a bisection. The error is the step to it, if it is not
+    /// finished.
     fn half(&mut self, step: Step) -> Result<usize, Step> {
         self.halves.next().ok_or(step)
     }

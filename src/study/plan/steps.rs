@@ -3,10 +3,10 @@
 use crate::ParameterError;
 use crate::quantity::{accept, finite, positive};
 
-/// Most values of a rule: numbers beyond this size are not counted exactly.
+/// Largest number of values by a rule: larger numbers are not counted exactly.
 const MOST: f64 = 9_007_199_254_740_992.0;
 
-/// Share of a step by which the last one may miss the end. It is some rounding of decimal fractions, since
+/// Fraction of a step by which the last one may miss the end. It is some rounding of decimal fractions, since
 /// neither 0.1 nor 1/3 is a double.
 const ROUNDING: f64 = 1e-9;
 

@@ -1,4 +1,4 @@
-//! Checks of a plan when it is made, so that no run fails because of it later.
+//! Checks of a plan when it is made, so that its faults do not make a run fail later.
 
 use super::Plan;
 use crate::boundary::Boundary;
@@ -103,8 +103,8 @@ impl<E: Experiment> Plan<E> {
         self.check_ramp()
     }
 
-    /// Checks that the ramped parameter changes the simulation, not only the disks at its start: they stay
-    /// what they are along a ramp.
+    /// Checks that the ramped parameter changes the simulation, and not only the disks at its start, which
+    /// stay the same along a ramp.
     fn check_ramp(&self) -> Result<(), PlanError> {
         let (Some(ramp), true) = (&self.ramp, self.value_count() > 1) else { return Ok(()) };
         let varied = self.parameters(0, 1);

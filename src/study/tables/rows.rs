@@ -50,7 +50,7 @@ impl Row {
         Self(self.0 + "," + &cell_of(value))
     }
 
-    /// Adds a mean, its error, and the number of independent samples that they rest on.
+    /// Adds a mean, its error, and its number of independent samples.
     pub(super) fn with_estimate(self, estimate: &Estimate) -> Self {
         let Self(row) = self;
         let numbers = [estimate.mean(), estimate.standard_error(), estimate.independent_samples()];

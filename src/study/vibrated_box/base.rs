@@ -4,7 +4,7 @@ use crate::boundary::{Container, Thermal, Wall};
 use crate::study::errors::ExperimentError;
 use crate::wall::{BiParabolic, Sinusoidal, WallMotion};
 
-/// The base of the box: what gives the disks their energy.
+/// The base of the box, which gives the disks their energy.
 ///
 /// In a plan: `base.bi_parabolic = { amplitude = 0.1, angular_frequency = 10.0 }` or
 /// `base.thermal = { temperature = 1.0 }`.
@@ -46,7 +46,7 @@ pub enum Sides {
     Hard,
     /// Smooth elastic walls.
     Elastic,
-    /// None: what leaves on one side enters on the other.
+    /// No side walls: a disk that leaves on one side enters on the other.
     Periodic,
 }
 

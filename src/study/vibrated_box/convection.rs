@@ -40,7 +40,7 @@ impl Record<VibratedBox> {
         DenseLayer::among(self.profile())
     }
 
-    /// Returns the mean energy change in a collision of two disks, each collision counting alike.
+    /// Returns the mean energy change in a collision of two disks, over all collisions.
     pub fn energy_change(&self) -> Estimate {
         let collisions: f64 = self.samples().iter().map(|sample| sample.collisions as f64).sum();
         let total: f64 = self.samples().iter().map(|s| s.collisions as f64 * s.energy_change).sum();

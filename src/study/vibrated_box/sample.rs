@@ -97,7 +97,7 @@ fn profile(snapshot: &Snapshot<'_>) -> Vec<f64> {
     profile.unwrap_or_default()
 }
 
-/// Checks that what was read from a file can have been measured.
+/// Checks that the contents of a file are possible measurements.
 pub(super) fn check(samples: &[Sample], measurement: &Measurement) -> Result<(), &'static str> {
     let Measurement { samples: count, profile, .. } = measurement;
     let is_sum = |sum: &f64| sum.is_finite() && *sum >= 0.0;
