@@ -190,11 +190,11 @@ pub trait Boundary {
         Cow::Owned(format!("wall {wall}"))
     }
 
-    /// Returns a point of a wall at `time`, which moves as the wall does; `None` if the boundary does not know
+    /// Returns a point of a wall at `time`, which moves with the wall; `None` if the boundary does not know
     /// one.
     ///
-    /// If other walls are set between two runs, the engine tells by this point whether a wall of the same name
-    /// has jumped. It is `None` unless implemented.
+    /// If other walls are set between two runs, the engine tells from this point whether a wall of the same
+    /// name has jumped. It is `None` unless implemented.
     fn place(&self, wall: usize, time: f64) -> Option<DVec2> {
         let _ = (wall, time);
         None
