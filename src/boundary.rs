@@ -54,6 +54,8 @@ pub use touch::Touch;
 #[doc(alias("silo", "hopper", "hourglass"))]
 pub use vessel::{Vessel, VesselError};
 
+pub use crate::wall::FirstTouch;
+
 use std::borrow::Cow;
 
 use glam::DVec2;
@@ -78,7 +80,8 @@ use crate::{Fingerprint, Flight};
 ///    this radius, or a smaller one, can touch a wall at any time. If it is true for a region, it is true for
 ///    every larger region around that one.
 /// 3. [`first_touch`](Self::first_touch) misses no touch, and finds none where a gap is open. The time of the
-///    touch is neither before the flight nor after `until`, and its wall is less than `wall_count`.
+///    touch is neither before the flight nor after `until`, and its wall is less than `wall_count`. A search
+///    that cannot come to an end says how far the way is free, which is later than the flight begins.
 /// 4. If the disk already touches a wall, even if only by rounding, that touch is found at once while the
 ///    disk approaches the wall, and never while the disk leaves it.
 /// 5. [`surface`](Self::surface) gives a unit normal that points from the wall to the disk, and finite
@@ -113,7 +116,7 @@ use crate::{Fingerprint, Flight};
 /// ```
 /// use std::borrow::Cow;
 /// use granular_edmd::Flight;
-/// use granular_edmd::boundary::{Boundary, Domain, Region, Surface, Touch, laws};
+/// use granular_edmd::boundary::{Boundary, Domain, FirstTouch, Region, Surface, Touch, laws};
 /// use granular_edmd::glam::DVec2;
 /// use granular_edmd::roots::first_descent_of_quartic;
 ///
@@ -137,7 +140,7 @@ use crate::{Fingerprint, Flight};
 ///     fn may_touch(&self, region: &Region, radius: f64) -> bool {
 ///         region.min.abs().max(region.max.abs()).length() + radius >= self.radius
 ///     }
-///     fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+///     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
 ///         let start = flight.time();
 ///         let (r, v, a) = (flight.position(start), flight.velocity(start), flight.acceleration());
 ///         let free = self.radius - flight.radius();
@@ -149,8 +152,8 @@ use crate::{Fingerprint, Flight};
 ///             -v.dot(a),
 ///             -0.25 * a.length_squared(),
 ///         ];
-///         let wait = first_descent_of_quartic(&gap, until - start)?;
-///         Some(Touch::new((start + wait).min(until), 0))
+///         let wait = first_descent_of_quartic(&gap, until - start);
+///         wait.map(|wait| Touch::new((start + wait).min(until), 0)).into()
 ///     }
 ///     fn surface(&self, _wall: usize, position: DVec2, _time: f64) -> Surface<'_> {
 ///         Surface::new(-position.normalize_or(DVec2::Y), DVec2::ZERO)
@@ -213,7 +216,11 @@ pub trait Boundary {
     ///
     /// If the disk already touches a wall, that touch is found at once while the disk approaches the wall,
     /// and never while the disk leaves it.
-    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch>;
+    ///
+    /// An `Option<Touch>` becomes the answer by `into`. A search with many steps may answer with the time up to
+    /// which it has found no touch ([`FirstTouch::NotBefore`]); the engine asks again at that time. So a run can
+    /// look at its limits between two parts of a long search.
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch>;
 
     /// Returns the surface that a disk at `position` touches at `time`.
     ///
@@ -231,6 +238,15 @@ pub trait Boundary {
     fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>> {
         let _ = time;
         Vec::new()
+    }
+
+    /// Returns a wall with a hollow that a disk of this radius fills, up to rounding, if there is one.
+    ///
+    /// Rounding alone would decide whether such a disk gets into the hollow, and in which direction the wall then
+    /// pushes it. The engine refuses such disks.
+    fn tight_fit(&self, radius: f64) -> Option<usize> {
+        let _ = radius;
+        None
     }
 
     /// Returns the fingerprint of the boundary: its name and everything on which its answers depend.

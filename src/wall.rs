@@ -30,7 +30,7 @@ mod stroke;
 mod triangular;
 
 pub use bi_parabolic::BiParabolic;
-pub use first_touch::{Approach, first_touch};
+pub use first_touch::{Approach, FirstTouch, first_touch};
 pub use fixed::Fixed;
 pub(crate) use motion::Motion;
 pub use sawtooth::Sawtooth;
@@ -109,7 +109,9 @@ impl AccelerationBounds {
 /// Bounds that are too large only cost time.
 ///
 /// ```
-/// use granular_edmd::wall::{AccelerationBounds, Approach, WallMotion, WallState, first_touch, laws};
+/// use granular_edmd::wall::{
+///     AccelerationBounds, Approach, FirstTouch, WallMotion, WallState, first_touch, laws,
+/// };
 ///
 /// /// A piston that starts at time 0 and accelerates until it has moved by 1.
 /// struct Piston;
@@ -132,7 +134,7 @@ impl AccelerationBounds {
 /// }
 ///
 /// let resting = Approach::new(0.0, 0.25, 0.0, 0.0);
-/// assert_eq!(first_touch(&Piston, &resting, 10.0), Some(0.5));
+/// assert_eq!(first_touch(&Piston, &resting, 10.0), FirstTouch::At(0.5));
 /// assert_eq!(laws::check(&Piston, -2.0, 5.0), Ok(()));
 /// ```
 #[diagnostic::on_unimplemented(

@@ -2,11 +2,12 @@
 
 mod arc;
 mod constructors;
-#[cfg(feature = "serde")]
-mod file;
+mod first_touch;
 mod path;
 mod segment;
-mod touch;
+#[cfg(feature = "serde")]
+mod serialized;
+mod strip;
 
 pub(super) use path::Path;
 
@@ -49,7 +50,7 @@ const MARGIN: f64 = 1e-12;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "file::Record", into = "file::Record"))]
+#[cfg_attr(feature = "serde", serde(try_from = "serialized::Record", into = "serialized::Record"))]
 pub struct Brick {
     shape: Shape,
     free: Free,
@@ -119,6 +120,14 @@ impl Brick {
 
     pub(super) fn is_two_sided(&self) -> bool {
         self.free == Free::Both
+    }
+
+    /// Returns the radius of an arc with disks inside.
+    pub(super) fn hollow(&self) -> Option<f64> {
+        match self.shape {
+            Shape::Arc(arc) if self.free.has(Side::Left) && arc.radius() > 0.0 => Some(arc.radius()),
+            _ => None,
+        }
     }
 
     /// Tells whether the brick is a whole circle about this point.

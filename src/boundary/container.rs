@@ -1,7 +1,7 @@
 //! The rectangular container.
 
 #[cfg(feature = "serde")]
-mod file;
+mod serialized;
 mod shaken;
 mod wall;
 
@@ -14,7 +14,7 @@ use glam::DVec2;
 use super::brick::finite_point;
 use super::conduct::Conduct;
 use super::plane::Plane;
-use super::{Boundary, Domain, Region, Surface, Thermal, Touch};
+use super::{Boundary, Domain, FirstTouch, Region, Surface, Thermal, Touch};
 use crate::collision::CollisionRule;
 use crate::quantity::positive;
 use crate::wall::{Motion, WallMotion};
@@ -46,7 +46,7 @@ use crate::{Fingerprint, Flight, Kind, ParameterError};
 /// ```
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "file::Record", into = "file::Record"))]
+#[cfg_attr(feature = "serde", serde(try_from = "serialized::Record", into = "serialized::Record"))]
 pub struct Container {
     /// Lower left corner.
     corner: DVec2,
@@ -287,16 +287,11 @@ impl Boundary for Container {
         self.planes.iter().any(|plane| plane.may_touch(region, radius))
     }
 
-    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
-        let mut first = None;
-        let mut until = until;
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
+        let mut first = FirstTouch::NONE;
         for (wall, plane) in self.planes.iter().enumerate() {
-            if let Some(time) = plane.first_touch(flight, until)
-                && first.is_none_or(|touch: Touch| time < touch.time)
-            {
-                first = Some(Touch::new(time, wall));
-                until = time;
-            }
+            let found = plane.first_touch(flight, until.min(first.time()));
+            first = first.or(found.map(|time| Touch::new(time, wall)));
         }
         first
     }

@@ -82,6 +82,17 @@ impl Domain {
         shifts(periods.x).flat_map(move |x| shifts(periods.y).map(move |y| DVec2::new(x, y)))
     }
 
+    /// Returns the displacements of those periodic images of another rectangle that come near this one.
+    ///
+    /// An engine's domain is longer than four diameters of a disk where it is periodic. So a quarter of a period
+    /// is more than the radius by which a disk inside reaches beyond the domain.
+    pub(crate) fn images_of(&self, low: DVec2, high: DVec2) -> impl Iterator<Item = DVec2> + use<> {
+        let periods = self.periods();
+        let columns = numbers(periods.x, self.left - high.x, self.right - low.x);
+        let rows = numbers(periods.y, self.bottom - high.y, self.top - low.y);
+        columns.flat_map(move |x| rows.clone().map(move |y| DVec2::new(x, y) * periods))
+    }
+
     /// Returns the shortest vector from `from` to `to`, across periodic sides where that is shorter.
     pub fn separation(&self, from: DVec2, to: DVec2) -> DVec2 {
         let mut separation = to - from;
@@ -124,6 +135,19 @@ impl Domain {
         let [right, up] = disk.image();
         disk.position() + self.periods() * DVec2::new(f64::from(right), f64::from(up))
     }
+}
+
+/// Returns the whole numbers of periods by which a thing is moved to a place from `low` to `high`, or a quarter
+/// of a period beyond. Callers refuse things that would need many more.
+fn numbers(period: f64, low: f64, high: f64) -> impl Iterator<Item = f64> + Clone {
+    const MOST: f64 = 1e4;
+    let (first, last) = if period > 0.0 {
+        ((low / period - 0.25).ceil(), (high / period + 0.25).floor())
+    } else {
+        (0.0, 0.0)
+    };
+    let count = if first.is_finite() { (last - first + 1.0).clamp(0.0, MOST) } else { 0.0 };
+    (0..count as u32).map(move |number| first + f64::from(number))
 }
 
 impl fmt::Display for Domain {

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use super::{Boundary, Domain, Region, Surface, Touch};
+use super::{Boundary, Domain, FirstTouch, Region, Surface, Touch};
 use crate::forward::forward;
 use crate::{Fingerprint, Flight};
 
@@ -14,10 +14,11 @@ forward! { Boundary for [&mut T, Box<T>] {
     fn wall_count(&self) -> usize;
     fn wall_name(&self, wall: usize) -> Cow<'_, str>;
     fn may_touch(&self, region: &Region, radius: f64) -> bool;
-    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch>;
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch>;
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_>;
     fn place(&self, wall: usize, time: f64) -> Option<DVec2>;
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)>;
+    fn tight_fit(&self, radius: f64) -> Option<usize>;
     fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>>;
     fn fingerprint(&self) -> Option<Fingerprint>;
     mut

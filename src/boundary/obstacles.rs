@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use glam::DVec2;
 
 use super::brick::Brick;
-use super::{Boundary, Domain, Region, Surface, Touch};
+use super::{Boundary, Domain, FirstTouch, Region, Surface, Touch};
 use crate::{Disk, Fingerprint, Flight};
 
 /// A boundary with fixed round obstacles inside, such as pegs.
@@ -64,8 +64,8 @@ impl<B: Boundary> Obstacles<B> {
 
     /// Returns the places of an obstacle and of its periodic images.
     fn images(&self, obstacle: &Disk) -> impl Iterator<Item = DVec2> {
-        let place = obstacle.position();
-        self.boundary.domain().images().map(move |image| place + image)
+        let (place, radius) = (obstacle.position(), obstacle.radius());
+        self.boundary.domain().images_of(place - radius, place + radius).map(move |image| place + image)
     }
 }
 
@@ -106,14 +106,14 @@ impl<B: Boundary> Boundary for Obstacles<B> {
                 .any(|obstacle| self.images(obstacle).any(|place| is_near(place, radius + obstacle.radius())))
     }
 
-    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
         let mut first = self.boundary.first_touch(flight, until);
         for (index, obstacle) in self.obstacles.iter().enumerate() {
             for place in self.images(obstacle) {
-                let until = first.map_or(until, |touch| touch.time);
-                let meeting = Brick::round(place, obstacle.radius()).first_touch(flight, until);
-                if let Some(time) = meeting.filter(|&time| first.is_none_or(|touch| time < touch.time)) {
-                    first = Some(Touch::new(time, self.boundary.wall_count() + index));
+                let brick = Brick::round(place, obstacle.radius());
+                if let Some(time) = brick.first_touch(flight, until.min(first.time())) {
+                    let touch = Touch::new(time, self.boundary.wall_count() + index);
+                    first = first.or(FirstTouch::At(touch));
                 }
             }
         }
@@ -147,6 +147,10 @@ impl<B: Boundary> Boundary for Obstacles<B> {
         let others = self.obstacles.iter().enumerate().map(depth).filter(|&(_, depth)| depth > 0.0);
         let all = self.boundary.overlap(position, radius, time).into_iter().chain(others);
         all.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    fn tight_fit(&self, radius: f64) -> Option<usize> {
+        self.boundary.tight_fit(radius)
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {

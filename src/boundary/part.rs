@@ -3,7 +3,7 @@
 mod constructors;
 mod corners;
 #[cfg(feature = "serde")]
-mod file;
+mod serialized;
 mod polygon;
 mod travel;
 
@@ -46,7 +46,7 @@ use crate::{Fingerprint, Kind};
 /// ```
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "file::Record", into = "file::Record"))]
+#[cfg_attr(feature = "serde", serde(try_from = "serialized::Record", into = "serialized::Record"))]
 pub struct Part {
     /// The bricks as given, then the corners.
     bricks: Vec<Brick>,
@@ -250,8 +250,12 @@ impl Part {
 
     /// Returns a rectangle around the part as it was built. Its edges may be infinite.
     pub(super) fn bounds(&self) -> (DVec2, DVec2) {
-        let none = (DVec2::splat(f64::INFINITY), DVec2::splat(f64::NEG_INFINITY));
-        self.bricks.iter().map(Brick::bounds).fold(none, |all, one| (all.0.min(one.0), all.1.max(one.1)))
+        enclosing(self.bricks.iter().map(Brick::bounds))
+    }
+
+    /// Returns a rectangle that holds the part at all times. Its edges may be infinite.
+    pub(super) fn swept_bounds(&self) -> (DVec2, DVec2) {
+        enclosing(self.bricks.iter().map(|brick| self.travel.bounds(brick)))
     }
 
     /// Returns the number of the nearest brick and the distance from it, negative behind it.
@@ -273,6 +277,12 @@ impl Part {
         let part = part.part(self.travel.fingerprint()?).part(self.conduct.fingerprint()?);
         Some(self.bricks.iter().fold(part, |part, brick| part.part(brick.fingerprint())))
     }
+}
+
+/// Returns the rectangle around some rectangles.
+pub(super) fn enclosing(rectangles: impl Iterator<Item = (DVec2, DVec2)>) -> (DVec2, DVec2) {
+    let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    rectangles.fold(none, |all, one| (all.0.min(one.0), all.1.max(one.1)))
 }
 
 /// A brick as seen from a place.

@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::Region;
 use super::conduct::Conduct;
 use super::surface::Surface;
-use crate::wall::{Approach, Motion, first_touch};
+use crate::wall::{Approach, FirstTouch, Motion, first_touch};
 use crate::{Fingerprint, Flight, Kind};
 
 /// A straight wall: the disks stay on one side of a line.
@@ -125,7 +125,7 @@ impl Plane {
         region.least_along(self.normal) - self.place - radius <= self.highest
     }
 
-    pub(super) fn first_touch(&self, flight: &Flight, until: f64) -> Option<f64> {
+    pub(super) fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<f64> {
         let height = flight.position(flight.time()).dot(self.normal) - self.place - flight.radius();
         let approach = Approach::new(
             flight.time() + self.phase,
@@ -135,12 +135,14 @@ impl Plane {
         );
         // Most flights end at the edge of their cell before they get near this wall. They need no search.
         if approach.stays_above(self.highest, until + self.phase) {
-            return None;
+            return FirstTouch::NONE;
         }
-        let touch = first_touch(&*self.motion, &approach, until + self.phase)?;
         // Adding the phase rounds the time, and subtracting it rounds again. The bounds keep the touch within
         // the flight.
-        Some((touch - self.phase).max(flight.time()).min(until))
+        match first_touch(&*self.motion, &approach, until + self.phase) {
+            FirstTouch::At(touch) => FirstTouch::At((touch - self.phase).max(flight.time()).min(until)),
+            FirstTouch::NotBefore(open) => FirstTouch::NotBefore((open - self.phase).max(flight.time())),
+        }
     }
 
     pub(super) fn surface(&self, time: f64) -> Surface<'_> {

@@ -1,5 +1,7 @@
 //! Touches of walls by disks.
 
+use crate::wall::FirstTouch;
+
 /// The first touch of a flight with a wall.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -15,5 +17,30 @@ impl Touch {
     #[inline]
     pub const fn new(time: f64, wall: usize) -> Self {
         Self { time, wall }
+    }
+}
+
+impl FirstTouch<Touch> {
+    /// Returns the time up to which there is no touch: that of the touch, if there is one.
+    #[inline]
+    pub fn time(&self) -> f64 {
+        match self {
+            Self::At(touch) => touch.time,
+            Self::NotBefore(time) => *time,
+        }
+    }
+
+    /// Returns the earlier one of two answers about the same flight.
+    ///
+    /// Of touches at the same time, that of the wall with the smaller index counts. A boundary that puts walls
+    /// into another one, as [`Obstacles`](super::Obstacles) does, combines the answers in this way.
+    #[inline]
+    pub fn or(self, other: Self) -> Self {
+        let is_first = match (&self, &other) {
+            (Self::At(touch), Self::At(next)) if touch.time == next.time => touch.wall <= next.wall,
+            (Self::NotBefore(open), Self::At(next)) => *open < next.time,
+            _ => self.time() <= other.time(),
+        };
+        if is_first { self } else { other }
     }
 }

@@ -2,11 +2,11 @@
 
 mod error;
 #[cfg(feature = "serde")]
-mod file;
+mod serialized;
 mod index;
 mod outline;
 mod overlap;
-mod touch;
+mod search;
 
 pub use error::VesselError;
 
@@ -17,18 +17,27 @@ use glam::DVec2;
 
 use super::brick::Brick;
 use super::part::{Part, Travel};
-use super::{Boundary, Container, Domain, Region, Surface, Touch};
+use super::{Boundary, Container, Domain, FirstTouch, Region, Surface, Touch};
 use crate::{Fingerprint, Flight};
 use index::Index;
 
 /// Largest number of walls of a vessel.
 const MOST_WALLS: usize = 1 << 16;
 
+/// Largest number of periods that a part may extend over. Each brick has an image for each of them.
+const MOST_PERIODS: f64 = 64.0;
+
+/// Least stroke of a part, relative to its coordinates. Places of a part with a smaller one are lost in rounding.
+const LEAST_STROKE: f64 = 4096.0 * f64::EPSILON;
+
+/// Relative difference of radii below which a disk counts as large as a hollow.
+const TIGHT: f64 = 1e-9;
+
 /// A vessel of any shape: named [parts](Part) in a [`Container`].
 ///
 /// A disk must be free of the container's walls and of each part. So two blocks make a hopper, and a polygon
 /// can have pegs in it. Parts may overlap, and may reach beyond the container. Across periodic sides they are
-/// repeated: a part that reaches beyond one side comes in again at the other. They are added, replaced and
+/// repeated: a part that reaches beyond one side comes in again at the other, however far it reaches. They are added, replaced and
 /// removed by name, also between runs
 /// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
 ///
@@ -68,7 +77,7 @@ const MOST_WALLS: usize = 1 << 16;
 /// ```
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "file::Record", into = "file::Record"))]
+#[cfg_attr(feature = "serde", serde(try_from = "serialized::Record", into = "serialized::Record"))]
 pub struct Vessel {
     container: Container,
     parts: Vec<Placed>,
@@ -76,6 +85,8 @@ pub struct Vessel {
     index: Index,
     /// For each cell of the index, the parts at rest that fill it.
     filled: Vec<Vec<u32>>,
+    /// The radii of all arcs with disks inside, in order, each with the index of its wall.
+    hollows: Vec<(f64, usize)>,
     /// Time origin, from which added parts get their phases.
     origin: f64,
 }
@@ -89,6 +100,19 @@ struct Placed {
     first: usize,
     /// Phase of the motion at the time origin.
     phase: f64,
+    /// Lower left and upper right corner of a rectangle that holds the part at all times.
+    bounds: (DVec2, DVec2),
+    /// Largest finite coordinate of that rectangle, in magnitude.
+    size: f64,
+}
+
+impl Placed {
+    fn new(name: String, part: Part) -> Self {
+        let (low, high) = part.swept_bounds();
+        let coordinates = [low.x, low.y, high.x, high.y].map(f64::abs).into_iter();
+        let size = coordinates.filter(|edge| edge.is_finite()).fold(0.0, f64::max);
+        Self { name, part, first: 0, phase: 0.0, bounds: (low, high), size }
+    }
 }
 
 /// A brick of a part.
@@ -108,6 +132,7 @@ impl Vessel {
             walls: Vec::new(),
             index: Index::EMPTY,
             filled: Vec::new(),
+            hollows: Vec::new(),
             origin: 0.0,
         }
     }
@@ -137,12 +162,11 @@ impl Vessel {
         let parts: Vec<(String, Part)> = parts.into_iter().map(|(name, part)| (name.into(), part)).collect();
         let (mut low, mut high) = (DVec2::splat(f64::INFINITY), DVec2::splat(f64::NEG_INFINITY));
         for (name, part) in &parts {
-            for (from, to) in part.all_bricks().iter().map(|brick| part.travel().bounds(brick)) {
-                if !(from.is_finite() && to.is_finite()) {
-                    return Err(VesselError::Endless { name: name.clone() });
-                }
-                (low, high) = (low.min(from), high.max(to));
+            let (from, to) = part.swept_bounds();
+            if !(from.is_finite() && to.is_finite()) {
+                return Err(VesselError::Endless { name: name.clone() });
             }
+            (low, high) = (low.min(from), high.max(to));
         }
         let size = if parts.is_empty() { DVec2::ONE } else { high - low };
         let room = DVec2::splat(ROOM * size.max_element());
@@ -170,18 +194,17 @@ impl Vessel {
     ///
     /// # Errors
     /// If a part or a wall of the container already has this name, or the vessel would have more than 2¹⁶
-    /// walls. The vessel then stays as it was.
+    /// walls. If the part extends over more than 64 periods of the container, or its motion is lost in the
+    /// rounding of its coordinates. The vessel then stays as it was.
     pub fn put(&mut self, name: impl Into<String>, part: Part) -> Result<(), VesselError> {
         let name = name.into();
         let mut walls = (0..self.container.wall_count()).map(|wall| self.container.wall_name(wall));
         if self.part(&name).is_some() || walls.any(|wall| wall == name) {
             return Err(VesselError::Duplicate { name });
         }
-        let count = self.wall_count() + part.all_bricks().len();
-        if count > MOST_WALLS {
-            return Err(VesselError::TooManyWalls { count, most: MOST_WALLS });
-        }
-        self.parts.push(Placed { name, part, first: 0, phase: 0.0 });
+        let placed = Placed::new(name, part);
+        self.check(&placed, 0)?;
+        self.parts.push(placed);
         self.number();
         Ok(())
     }
@@ -193,10 +216,7 @@ impl Vessel {
     /// # Errors
     /// If there is no part of this name. The vessel then stays as it was.
     pub fn remove(&mut self, name: &str) -> Result<Part, VesselError> {
-        let Some(place) = self.parts.iter().position(|placed| placed.name == name) else {
-            return Err(VesselError::Unknown { name: name.to_owned() });
-        };
-        let removed = self.parts.remove(place);
+        let removed = self.parts.remove(self.place_of(name)?);
         self.number();
         Ok(removed.part)
     }
@@ -204,20 +224,40 @@ impl Vessel {
     /// Replaces the part of this name, and returns the old one.
     ///
     /// # Errors
-    /// If there is no part of this name, or the vessel would have more than 2¹⁶ walls. The vessel then stays
-    /// as it was.
+    /// If there is no part of this name, and the same as for [`put`](Self::put). The vessel then stays as it was.
     pub fn replace(&mut self, name: &str, part: Part) -> Result<Part, VesselError> {
-        let Some(place) = self.parts.iter().position(|placed| placed.name == name) else {
-            return Err(VesselError::Unknown { name: name.to_owned() });
-        };
-        let less = self.parts[place].part.all_bricks().len();
-        let count = self.wall_count() - less + part.all_bricks().len();
+        let place = self.place_of(name)?;
+        let placed = Placed::new(name.to_owned(), part);
+        self.check(&placed, self.parts[place].part.all_bricks().len())?;
+        let before = std::mem::replace(&mut self.parts[place], placed);
+        self.number();
+        Ok(before.part)
+    }
+
+    fn place_of(&self, name: &str) -> Result<usize, VesselError> {
+        let place = self.parts.iter().position(|placed| placed.name == name);
+        place.ok_or_else(|| VesselError::Unknown { name: name.to_owned() })
+    }
+
+    /// Checks that a part can be in this vessel, in place of one with `less` walls.
+    fn check(&self, placed: &Placed, less: usize) -> Result<(), VesselError> {
+        let count = self.wall_count() - less + placed.part.all_bricks().len();
         if count > MOST_WALLS {
             return Err(VesselError::TooManyWalls { count, most: MOST_WALLS });
         }
-        let before = std::mem::replace(&mut self.parts[place].part, part);
-        self.number();
-        Ok(before)
+        let (low, high) = placed.bounds;
+        let periods = self.container.domain().periods();
+        let count = |length: f64, period: f64| if period > 0.0 { length / period } else { 0.0 };
+        let periods = count(high.x - low.x, periods.x).max(count(high.y - low.y, periods.y));
+        let name = placed.name.clone();
+        if periods > MOST_PERIODS {
+            return Err(VesselError::TooManyPeriods { name, periods, most: MOST_PERIODS });
+        }
+        let (stroke, least) = (placed.part.travel().stroke(), LEAST_STROKE * placed.size);
+        if stroke > 0.0 && stroke < least {
+            return Err(VesselError::Stroke { name, stroke, least });
+        }
+        Ok(())
     }
 
     /// Returns the part of this name, if there is one.
@@ -258,6 +298,11 @@ impl Vessel {
             |wall, region| travel(wall).may_reach(&wall.brick, region, 0.0),
         );
         self.filled = self.filled_cells();
+        let hollows = self.walls.iter().enumerate().filter_map(|(number, wall)| {
+            Some((wall.brick.hollow()?, number + self.container.wall_count()))
+        });
+        self.hollows = hollows.collect();
+        self.hollows.sort_by(|a, b| a.0.total_cmp(&b.0));
     }
 }
 
@@ -308,9 +353,8 @@ impl Boundary for Vessel {
             })
     }
 
-    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
-        let other = self.container.first_touch(flight, until);
-        self.first_touch_with_parts(flight, other.map_or(until, |touch| touch.time), other)
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
+        self.first_touch_with_parts(flight, until, self.container.first_touch(flight, until))
     }
 
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
@@ -337,6 +381,12 @@ impl Boundary for Vessel {
 
     fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>> {
         self.outline(self.origin + time).map(|(_, line)| line).collect()
+    }
+
+    fn tight_fit(&self, radius: f64) -> Option<usize> {
+        let first = self.hollows.partition_point(|&(hollow, _)| hollow < radius * (1.0 - TIGHT));
+        let &(hollow, wall) = self.hollows.get(first)?;
+        (hollow <= radius * (1.0 + TIGHT)).then_some(wall)
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {

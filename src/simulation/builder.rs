@@ -110,9 +110,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
     ///
     /// # Errors
     /// If gravity or the start time is not finite, or gravity is above 1e60 in magnitude, or a disk moves at
-    /// a speed below 1e-100. If there are too many disks or walls, or times at the start are too coarse for
-    /// such fast disks. If the domain is not finite (only its top may be infinite) or is too small for the
-    /// disks, or a disk is outside, overlaps a wall or overlaps another disk; the error names the disk.
+    /// a speed below 1e-100. If there are too many disks or walls, or times at the start are too coarse for such fast disks. If the domain is not
+    /// finite (only its top may be infinite) or is too small for the disks, or a disk is outside, overlaps a
+    /// wall or another disk, or just fills a hollow of a wall; the error names the disk.
     pub fn build(self) -> Result<Simulation<R, B, S>, BuildError> {
         bounded("gravity", self.gravity)?;
         finite("start time", self.start_time)?;
@@ -226,6 +226,10 @@ fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk], offset: f64)
         {
             let wall = boundary.wall_name(wall).into_owned();
             return Err(BuildError::OverlapsWall { disk, x: position.x, y: position.y, wall, depth });
+        }
+        if let Some(wall) = boundary.tight_fit(radius) {
+            let wall = boundary.wall_name(wall).into_owned();
+            return Err(BuildError::TightFit { disk, radius, wall });
         }
     }
     Ok(())

@@ -9,7 +9,7 @@ use super::Simulation;
 use super::prediction::{LANES, cell_exit, earliest_collision};
 use super::state::{Earliest, Exit, Forecast};
 use crate::Flight;
-use crate::boundary::Boundary;
+use crate::boundary::{Boundary, FirstTouch, Touch};
 use crate::collision::CollisionRule;
 use crate::scheduler::EventScheduler;
 
@@ -121,16 +121,25 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let now = self.clock.now;
         let horizon = now + HORIZON * self.clock.epoch_length;
         let flight = self.flight(disk);
-        let forecast = &mut self.bodies.particles[disk].forecast;
-        let until = forecast.exit_due.min(horizon);
-        if let Some(touch) = self.boundary.first_touch(&flight, until) {
-            let is_possible = touch.time >= now && touch.time <= until && touch.wall < self.wall_count;
-            (forecast.exit_due, forecast.exit) =
-                if is_possible { (touch.time, Exit::Wall) } else { (now, Exit::Impossible) };
-            forecast.wall = touch.wall as u16;
-        } else if forecast.exit_due > horizon {
-            (forecast.exit_due, forecast.exit) = (horizon, Exit::Horizon);
-        }
+        let until = self.forecast(disk).exit_due.min(horizon);
+        let (time, exit) = match self.boundary.first_touch(&flight, until) {
+            FirstTouch::At(Touch { time, wall }) => {
+                self.forecast_mut(disk).wall = wall as u16;
+                let is_possible = time >= now && time <= until && wall < self.wall_count;
+                if is_possible { (time, Exit::Wall) } else { (now, Exit::Impossible) }
+            }
+            FirstTouch::NotBefore(open) if open >= until => {
+                if self.forecast(disk).exit_due <= horizon {
+                    return;
+                }
+                (horizon, Exit::Horizon)
+            }
+            FirstTouch::NotBefore(open) if open > now => (open, Exit::Horizon),
+            // The search gets no further, so neither would the run.
+            FirstTouch::NotBefore(_) => (now, Exit::Impossible),
+        };
+        let forecast = self.forecast_mut(disk);
+        (forecast.exit_due, forecast.exit) = (time, exit);
     }
 
     #[inline]

@@ -9,9 +9,10 @@ use super::state::least_progress;
 use crate::ParameterError;
 use crate::quantity::non_negative;
 
-/// Number of events between two looks at the wall clock and at the flag of another thread. So few that a
-/// limit is noticed at once, and so many that the looks cost next to nothing.
-const EVENTS_BETWEEN_LOOKS: u64 = 1024;
+/// Number of events between two looks at the wall clock and at the flag of another thread. They are so many
+/// that the looks cost next to nothing, and few enough that a limit is noticed at once, even if each event takes
+/// all the steps that a search for a moving wall may take.
+const EVENTS_BETWEEN_LOOKS: u64 = 256;
 
 /// The end of a run, and the limits that may end it earlier: a number of collisions, a wall-clock time, a
 /// flag that another thread sets.
@@ -55,7 +56,7 @@ impl Limits {
 
     /// Returns the same limits, with at most this wall-clock time.
     ///
-    /// The clock is read once in a thousand events and at each sample, so the run takes a little longer.
+    /// The clock is read once in some hundred events and at each sample, so the run takes a little longer.
     pub fn with_wall_clock(self, wall_clock: Duration) -> Self {
         Self { wall_clock: Some(wall_clock), ..self }
     }
@@ -83,8 +84,9 @@ impl Limits {
     /// Returns the same limits, with this simulated time per event as the least progress of the run; 0 for a
     /// run that may stand still.
     ///
-    /// Progress is judged over windows of 200 000 events, and 20 more for each disk. A run with less progress
-    /// is [stalled](crate::simulation::RunError::Stalled). Without this limit, $`N`$ disks may have some
+    /// Progress is judged over windows of 200 000 events, and 20 more for each disk; a search for a wall that
+    /// ends at its horizon counts as 256 events. A run with less progress is
+    /// [stalled](crate::simulation::RunError::Stalled). Without this limit, $`N`$ disks may have some
     /// $`1.3\times10^8 + 4\times10^6 N`$ events in the time in which a typical disk goes or falls some tens
     /// of diameters.
     ///

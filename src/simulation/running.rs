@@ -6,6 +6,7 @@ use super::Simulation;
 use super::errors::{Outcome, RunError};
 use super::events::{Event, RunEnd};
 use super::limits::{Limits, Watch};
+use super::state::effort;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::observable::{Moment, Observer};
@@ -193,7 +194,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if let Some(end) = watch.reached(&self.counters) {
             return Ok(Some(end));
         }
-        let (events, disks) = (self.counters.events(), self.bodies.len());
+        let (events, disks) = (effort(&self.counters), self.bodies.len());
         if self.clock.guard.left(events, disks) == 0 {
             let least = watch.least_progress(self.clock.epoch_length, disks);
             if let Some(standstill) = self.clock.guard.end_window(due, events, least) {

@@ -10,14 +10,58 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 const LEAST_ROOM: f64 = 1e-3;
 
 /// Largest number of steps of a search. If a wall sweeps over its reach in each period, a search meets it
-/// within a few periods, each of which takes a few tens of steps. It needs more steps only under a wall that
-/// stays away from a large part of its stated reach.
-const MOST_STEPS: u32 = 1 << 20;
+/// within a few periods, each of which takes a few tens of steps. A search that has taken more gives its caller
+/// a chance to look at other things, and goes on from there later.
+const MOST_STEPS: u32 = 256;
 
-/// Largest number of steps that floating-point times can hardly resolve. A search that converges takes a few
-/// such steps last. It takes many if the pieces of the motion are too short, or its bounds too large, for its
-/// times.
-const MOST_SHORT_STEPS: u32 = 1 << 10;
+/// The answer of a search for the first touch: the touch, or how far the way is free.
+///
+/// In [`wall`](crate::wall), a touch is its time. In [`boundary`](crate::boundary), it is a
+/// [`Touch`](crate::boundary::Touch). An `Option` turns into an answer with `into`:
+///
+/// ```
+/// use granular_edmd::wall::FirstTouch;
+/// assert_eq!(FirstTouch::from(Some(2.0)), FirstTouch::At(2.0));
+/// assert_eq!(FirstTouch::<f64>::from(None), FirstTouch::NONE);
+/// assert_eq!(FirstTouch::At(2.0).map(|time| time - 1.0).touch(), Some(1.0));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[must_use]
+pub enum FirstTouch<T> {
+    /// The first touch.
+    At(T),
+    /// There is no touch before this time, and nothing is known about later ones. If this is the end of the
+    /// search, or infinite, the search has found no touch at all. If it is the start of the search, the search
+    /// cannot go on.
+    NotBefore(f64),
+}
+
+impl<T> FirstTouch<T> {
+    /// The answer of a search that has found no touch up to its end.
+    pub const NONE: Self = Self::NotBefore(f64::INFINITY);
+
+    /// Returns the touch, if there is one.
+    pub fn touch(self) -> Option<T> {
+        match self {
+            Self::At(touch) => Some(touch),
+            Self::NotBefore(_) => None,
+        }
+    }
+
+    /// Returns the same answer, with another description of the touch.
+    pub fn map<U>(self, change: impl FnOnce(T) -> U) -> FirstTouch<U> {
+        match self {
+            Self::At(touch) => FirstTouch::At(change(touch)),
+            Self::NotBefore(time) => FirstTouch::NotBefore(time),
+        }
+    }
+}
+
+impl<T> From<Option<T>> for FirstTouch<T> {
+    fn from(touch: Option<T>) -> Self {
+        touch.map_or(Self::NONE, Self::At)
+    }
+}
 
 /// The approach of a surface to a wall: its height above the wall's place at rest, along the wall's normal.
 ///
@@ -71,62 +115,49 @@ impl Approach {
 /// bounce. Within the reach, the wall sweeps over every height in each period. The search therefore takes no
 /// more steps than a few periods need, however fast the wall and however long the flight. There are two
 /// exceptions: a surface may stay below the reach and outrun the wall, or hover in a part of the reach that
-/// the wall never enters. The search then follows it from piece to piece, so give it a finite `until`.
+/// the wall never enters. The search then follows it from piece to piece.
 ///
-/// # Walls whose place is unknown
-/// The search always ends, even if the motion answers nonsense, and never lets the surface through unnoticed.
-/// In the following cases, the wall counts as being everywhere within its reach, at every speed. The touch is
-/// then the first time at which the surface is within the reach:
-/// - Floating-point times are too coarse to tell the pieces of the motion apart, or a piece ends before it
-///   begins.
-/// - The state or the bounds are not finite. A reach that is not finite counts as unlimited.
-/// - The search has taken more than a million steps, or more than a thousand steps that were hardly longer
-///   than the spacing of floating-point times. The pieces are too short, or the bounds too large, for the
-///   times.
-///
-/// The gap need not be closed at such a touch. An engine that resolves it finds the number that is not
-/// finite, or a run without progress, and reports that. A gap that is itself not a number counts as touched
-/// at once.
+/// # Searches that do not come to an end
+/// A search invents no touch. It answers [`NotBefore`](FirstTouch::NotBefore) with the time up to which the gap
+/// is known to be open:
+/// - After 256 steps. The caller may take up the search from there.
+/// - Where floating-point times are too coarse to tell the pieces of the motion apart, where a piece ends
+///   before it begins, or where a number is not finite. A search that starts there gets no further. A run ends
+///   with an error at that time.
 ///
 /// ```
-/// use granular_edmd::wall::{Approach, Fixed, first_touch};
+/// use granular_edmd::wall::{Approach, FirstTouch, Fixed, first_touch};
 /// let falling = Approach::new(0.0, 2.0, 0.0, -1.0);
-/// assert_eq!(first_touch(&Fixed, &falling, 10.0), Some(2.0));
-/// assert_eq!(first_touch(&Fixed, &falling, 1.0), None);
+/// assert_eq!(first_touch(&Fixed, &falling, 10.0), FirstTouch::At(2.0));
+/// assert_eq!(first_touch(&Fixed, &falling, 1.0), FirstTouch::NONE);
 /// ```
-pub fn first_touch<M: WallMotion + ?Sized>(motion: &M, approach: &Approach, until: f64) -> Option<f64> {
+pub fn first_touch<M: WallMotion + ?Sized>(
+    motion: &M,
+    approach: &Approach,
+    until: f64,
+) -> FirstTouch<f64> {
     let search = Search::new(motion, approach);
     let is_in_time = |time: f64| time <= until && time < f64::INFINITY;
-    let start = search.enters_reach(approach.time)?;
-    if let Some(touch) = search.low_bounce(start) {
-        return is_in_time(touch).then_some(touch);
+    let touch_at = |touch: f64| if is_in_time(touch) { FirstTouch::At(touch) } else { FirstTouch::NONE };
+    let Some(mut time) = search.enters_reach(approach.time) else { return FirstTouch::NONE };
+    if let Some(touch) = search.low_bounce(time) {
+        return touch_at(touch);
     }
-    let (mut time, mut patience) = (start, Patience::default());
-    while is_in_time(time) {
+    for _ in 0..MOST_STEPS {
+        // The negation is also true for a time that is not a number.
+        if !is_in_time(time) {
+            return if time.is_nan() { FirstTouch::NotBefore(approach.time) } else { FirstTouch::NONE };
+        }
         match search.step(time) {
-            Step::Touch(touch) => return is_in_time(touch).then_some(touch),
-            Step::Open(next) if patience.lasts(time, next) => time = search.enters_reach(next)?,
-            Step::Open(_) => return Some(time),
+            Step::Touch(touch) => return touch_at(touch),
+            Step::Unknown => return FirstTouch::NotBefore(time),
+            Step::Open(next) => match search.enters_reach(next) {
+                Some(entry) => time = entry,
+                None => return FirstTouch::NONE,
+            },
         }
     }
-    None
-}
-
-/// A counter of steps, so that a search ends under any motion.
-#[derive(Default)]
-struct Patience {
-    steps: u32,
-    short_steps: u32,
-}
-
-impl Patience {
-    /// Counts a step, and tells whether another one is allowed.
-    #[inline]
-    fn lasts(&mut self, from: f64, to: f64) -> bool {
-        self.steps += 1;
-        self.short_steps += u32::from(to <= from.next_up().next_up());
-        self.steps < MOST_STEPS && self.short_steps < MOST_SHORT_STEPS
-    }
+    FirstTouch::NotBefore(time)
 }
 
 struct Search<'a, M: ?Sized> {
@@ -159,6 +190,8 @@ enum Step {
     Touch(f64),
     /// The surfaces do not touch before this time.
     Open(f64),
+    /// The place of the wall is unknown from here on.
+    Unknown,
 }
 
 impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
@@ -183,7 +216,10 @@ impl<'a, M: WallMotion + ?Sized> Search<'a, M> {
     fn step(&self, time: f64) -> Step {
         let Look { gap, rate, pull, exact, tolerance, until, finite } = self.look(time);
         let is_resolved = finite && until > time;
-        if !is_resolved || gap.is_nan() || rate.is_nan() || (gap <= tolerance && rate < 0.0) {
+        if !is_resolved || gap.is_nan() || rate.is_nan() {
+            return Step::Unknown;
+        }
+        if gap <= tolerance && rate < 0.0 {
             return Step::Touch(time);
         }
         // The surface is so far away that its place overflows.

@@ -3,6 +3,7 @@
 
 mod container;
 mod contract;
+mod fast_parts;
 mod fingerprints;
 mod names;
 mod obstacles;

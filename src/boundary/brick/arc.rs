@@ -122,9 +122,10 @@ impl Arc {
         }
     }
 
-    pub(super) fn beside(&self, path: &Path) -> Option<Beside> {
+    /// Returns the condition that the disk is beside the arc, or at most `more` beyond its ends.
+    pub(super) fn beside(&self, path: &Path, more: f64) -> Option<Beside> {
         let sector = self.sector?;
-        let margin = MARGIN * (self.center.length() + self.radius);
+        let margin = more + MARGIN * (self.center.length() + self.radius);
         let after = path.along(self.center, sector.start.perp()).widened(margin, path);
         let before = path.along(self.center, -sector.end.perp()).widened(margin, path);
         Some(Beside { quantities: [after, before], one_is_enough: sector.is_wide })
@@ -182,10 +183,17 @@ impl Arc {
         (self.center - self.radius, self.center + self.radius)
     }
 
-    /// Returns a lower and an upper bound of the distances of the arc's points from a place.
+    /// Returns the smallest and the largest distance of the arc's points from a place.
     pub(super) fn distances(&self, place: DVec2) -> (f64, f64) {
-        let distance = place.distance(self.center);
-        ((distance - self.radius).abs(), distance + self.radius)
+        let nearest = self.sight(place).distance;
+        // The point that is opposite the place is the farthest, unless the arc ends before it.
+        let farthest = match (self.sector, self.ends()) {
+            (Some(sector), Some(ends)) if !sector.contains(self.center - place) => {
+                ends.iter().map(|(end, _)| end.distance(place)).fold(0.0, f64::max)
+            }
+            _ => place.distance(self.center) + self.radius,
+        };
+        (nearest, farthest)
     }
 }
 

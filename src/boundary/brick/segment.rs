@@ -65,9 +65,10 @@ impl Segment {
         if side == Side::Left { self.direction.perp() } else { -self.direction.perp() }
     }
 
-    pub(super) fn beside(&self, path: &Path) -> Beside {
+    /// Returns the condition that the disk is beside a segment that is longer by `more` at both ends.
+    pub(super) fn beside(&self, path: &Path, more: f64) -> Beside {
         let along = path.along(self.from, self.direction);
-        let margin = MARGIN * (self.from.length() + self.from.distance(self.to));
+        let margin = more + MARGIN * (self.from.length() + self.from.distance(self.to));
         let before_end = along.negated().widened(margin + self.length, path);
         Beside { quantities: [along.widened(margin, path), before_end], one_is_enough: false }
     }

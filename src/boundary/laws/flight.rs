@@ -43,7 +43,7 @@ pub(super) fn check_flight<B: Boundary + ?Sized>(
     flight: &Flight,
 ) -> Result<Option<Flight>, Violation> {
     let until = flight.time() + longest(trial, flight);
-    let found = trial.boundary.first_touch(flight, until);
+    let found = trial.first_touch(flight, until)?;
     if let Some(touch) = found {
         check_touch(trial, flight, touch, until)?;
     }
@@ -178,7 +178,7 @@ fn check_limits<B: Boundary + ?Sized>(
 ) -> Result<(), Violation> {
     let time = meeting.touch.time;
     let half = flight.time() + 0.5 * (time - flight.time());
-    if let Some(early) = trial.boundary.first_touch(flight, half)
+    if let Some(early) = trial.first_touch(flight, half)?
         && time > half
     {
         return Err(Violation::TouchTime { time: early.time, until: half, flight: *flight });
@@ -189,7 +189,7 @@ fn check_limits<B: Boundary + ?Sized>(
     let going_on = Flight::new(time, meeting.place, meeting.velocity, flight.acceleration(), flight.radius());
     // Rounding may have left the gap open. It then closes within this time.
     let soon = time + 4.0 * trial.rounding() / meeting.rate.abs();
-    match trial.boundary.first_touch(&going_on, soon) {
+    match trial.first_touch(&going_on, soon)? {
         Some(again) if again.time >= time && again.time <= soon => Ok(()),
         _ => Err(Violation::Missed { wall: meeting.touch.wall, flight: going_on }),
     }
@@ -211,7 +211,7 @@ fn check_origin<B: Boundary + ?Sized>(
     let (position, velocity) = (flight.position(start), flight.velocity(start));
     let shifted = Flight::new(start + shift, position, velocity, flight.acceleration(), flight.radius());
     trial.set_origin(origin - shift);
-    let found = trial.boundary.first_touch(&shifted, until + shift);
+    let found = trial.first_touch(&shifted, until + shift)?;
     let other = found.map(|touch| check_place(trial, &shifted, touch)).transpose();
     trial.set_origin(origin);
     // The other touch, relative to the first origin.

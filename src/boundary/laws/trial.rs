@@ -5,10 +5,13 @@ use glam::DVec2;
 use super::Violation;
 use super::flight::check_flight;
 use crate::Flight;
-use crate::boundary::{Boundary, Domain, Region};
+use crate::boundary::{Boundary, Domain, FirstTouch, Region, Touch};
 
 /// Allowed rounding, relative to the size of the domain.
 const ROUNDING: f64 = 1e-9;
+
+/// Largest number of searches that together follow one flight.
+const MOST_SEARCHES: u32 = 10_000;
 
 /// Sizes of the regions around a touch, relative to the radius. The smallest region is a point, up to
 /// rounding.
@@ -71,6 +74,26 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
     pub(super) fn set_origin(&mut self, origin: f64) {
         self.boundary.set_time_origin(origin);
         self.origin = origin;
+    }
+
+    /// Returns the first touch of a flight. If the boundary answers that its search has not come to an end, this
+    /// asks again, as the engine does.
+    pub(super) fn first_touch(&self, flight: &Flight, until: f64) -> Result<Option<Touch>, Violation> {
+        let mut rest = *flight;
+        for _ in 0..MOST_SEARCHES {
+            let open = match self.boundary.first_touch(&rest, until) {
+                FirstTouch::At(touch) => return Ok(Some(touch)),
+                FirstTouch::NotBefore(open) if open >= until => return Ok(None),
+                FirstTouch::NotBefore(open) => open,
+            };
+            // The negation is also true for a time that is not a number.
+            if !(open > rest.time()) {
+                break;
+            }
+            let (place, velocity) = (flight.position(open), flight.velocity(open));
+            rest = Flight::new(open, place, velocity, flight.acceleration(), flight.radius());
+        }
+        Err(Violation::NoProgress { time: rest.time(), flight: *flight })
     }
 
     /// Returns the wall that a disk with a radius larger by `more` overlaps at this place, and the depth.

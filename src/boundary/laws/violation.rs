@@ -97,6 +97,14 @@ pub enum Violation {
         /// The flight.
         flight: Flight,
     },
+    /// A search for a touch gets no further.
+    #[error("the search for a touch gets no further than time {time}, on {flight:?}", time = Readable(*time))]
+    NoProgress {
+        /// The time.
+        time: f64,
+        /// The flight.
+        flight: Flight,
+    },
     /// A touch is with a wall that does not exist.
     #[error("a touch names wall {wall}, but there are {count} walls, on {flight:?}")]
     TouchWall {

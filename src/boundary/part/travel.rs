@@ -140,6 +140,40 @@ impl Travel {
         }
     }
 
+    /// Returns the period of the motion, if there is one.
+    pub(in crate::boundary) fn period(&self) -> Option<f64> {
+        match self {
+            Self::Rest | Self::Spinning { .. } => None,
+            Self::Along { motion, .. } => motion.period(),
+            Self::Turning { angular_velocity, .. } => Some(TAU / angular_velocity.abs()),
+        }
+    }
+
+    /// Returns the distance between the ends of the motion's reach; 0 for a part that does not move along a
+    /// direction.
+    pub(in crate::boundary) fn stroke(&self) -> f64 {
+        if let Self::Along { motion, .. } = self { motion.reach().1 - motion.reach().0 } else { 0.0 }
+    }
+
+    /// Returns how long it takes, at most `wait`, until a disk on this path in the frame at rest enters the strip
+    /// that a brick of the part sweeps: all places at which the disk touches the brick at some phase.
+    pub(in crate::boundary) fn wait_to_enter_strip(
+        &self,
+        brick: &Brick,
+        path: &Path,
+        wait: f64,
+    ) -> Option<f64> {
+        match self {
+            Self::Rest | Self::Spinning { .. } => Some(0.0),
+            Self::Along { direction, motion } => {
+                let (low, high) = motion.reach();
+                let path = Path { place: path.place - *direction * (low + 0.5 * (high - low)), ..*path };
+                brick.wait_to_enter_strip(&path, 0.5 * (high - low) * *direction, wait)
+            }
+            Self::Turning { about, .. } => brick.wait_to_enter_ring(path, *about, wait),
+        }
+    }
+
     /// Tells whether a brick of the part comes within `reach` of a region at any time.
     pub(in crate::boundary) fn may_reach(&self, brick: &Brick, region: &Region, reach: f64) -> bool {
         match self {

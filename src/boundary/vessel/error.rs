@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use crate::ParameterError;
+use crate::error::Rounded;
 use crate::wall::laws::Violation;
 
 /// An error: a vessel cannot be built or changed in this way.
@@ -93,6 +94,33 @@ pub enum VesselError {
     Endless {
         /// The name.
         name: String,
+    },
+    /// A part extends over more periods of the container than a vessel can repeat it, or to infinity.
+    #[error(
+        "the part \"{name}\" extends over {} periods of the container, and {most} are possible: let it end earlier",
+        Rounded(*.periods)
+    )]
+    TooManyPeriods {
+        /// The name.
+        name: String,
+        /// Number of periods; infinite for a part without an end.
+        periods: f64,
+        /// Largest number.
+        most: f64,
+    },
+    /// The motion of a part is so small that it is lost in the rounding of the part's coordinates.
+    #[error(
+        "the part \"{name}\" moves to and fro by {}, which is lost in the rounding of its coordinates: that must be \
+         {} at least, or nothing",
+        Rounded(*.stroke), Rounded(*.least)
+    )]
+    Stroke {
+        /// The name.
+        name: String,
+        /// Distance between the ends of the motion.
+        stroke: f64,
+        /// Least distance.
+        least: f64,
     },
     /// The vessel has more walls than the engine can number.
     #[error("the vessel would have {count} walls, but it can have {most} at most")]

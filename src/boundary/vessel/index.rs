@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::Wall;
+use crate::boundary::part::enclosing;
 use crate::boundary::{Domain, Region};
 
 /// Number of cells for each brick. A brick is then alone in most of its cells.
@@ -53,24 +54,27 @@ impl Index {
         bounds: impl Fn(&Wall) -> (DVec2, DVec2),
         is_near: impl Fn(&Wall, &Region) -> bool,
     ) -> Self {
-        let images: Vec<DVec2> = domain.images().collect();
-        let (low, high) = rectangle(domain, walls.iter().map(&bounds));
+        let images: Vec<(u32, DVec2, (DVec2, DVec2))> = (0..)
+            .zip(walls.iter().map(bounds))
+            .flat_map(|(wall, (low, high))| {
+                domain.images_of(low, high).map(move |image| (wall, image, (low + image, high + image)))
+            })
+            .collect();
+        let (low, high) = rectangle(domain, images.iter().map(|(_, _, bounds)| *bounds));
         let size = (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
-        let most = (CELLS_PER_BRICK * walls.len() * images.len()).clamp(1, MOST_CELLS) as f64;
+        let most = (CELLS_PER_BRICK * images.len()).clamp(1, MOST_CELLS) as f64;
         let columns = (most * size.x / size.y).sqrt().clamp(1.0, most).floor();
         let rows = (most / columns).floor().max(1.0);
         let density = DVec2::new(columns, rows) / size;
         let (columns, rows) = (columns as usize, rows as usize);
         let mut index = Self { corner: low, density, columns, rows, starts: vec![0], entries: Vec::new() };
         let mut cells = vec![Vec::new(); columns * rows];
-        for (number, wall) in walls.iter().enumerate() {
-            let (low, high) = bounds(wall);
-            for &image in &images {
-                for cell in index.cells(low + image, high + image) {
-                    let region = index.region(cell);
-                    if is_near(wall, &Region::new(region.min - image, region.max - image)) {
-                        cells[cell].push(Entry { wall: number as u32, image });
-                    }
+        for (wall, image, (low, high)) in images {
+            for cell in index.cells(low, high) {
+                let region = index.region(cell);
+                let region = Region::new(region.min - image, region.max - image);
+                if is_near(&walls[wall as usize], &region) {
+                    cells[cell].push(Entry { wall, image });
                 }
             }
         }
@@ -139,8 +143,7 @@ impl Index {
 
 /// Returns the part of the domain that holds the bricks.
 fn rectangle(domain: &Domain, bounds: impl Iterator<Item = (DVec2, DVec2)>) -> (DVec2, DVec2) {
-    let outer = (DVec2::splat(f64::INFINITY), DVec2::splat(f64::NEG_INFINITY));
-    let (low, high) = bounds.fold(outer, |all, one| (all.0.min(one.0), all.1.max(one.1)));
+    let (low, high) = enclosing(bounds);
     let low = low.max(DVec2::new(domain.left, domain.bottom)).min(DVec2::new(domain.right, domain.top));
     let high = high.min(DVec2::new(domain.right, domain.top)).max(low);
     // In a domain without a lid, a brick that extends to infinity would make the height infinite.

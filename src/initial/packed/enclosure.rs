@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use crate::boundary::{Boundary, Domain, Region, Response, Surface, Touch};
+use crate::boundary::{Boundary, Domain, FirstTouch, Region, Response, Surface, Touch};
 use crate::initial::cut;
 use crate::roots::first_descent;
 use crate::{Flight, ParameterError};
@@ -63,7 +63,7 @@ impl<B: Boundary + ?Sized> Boundary for Enclosure<'_, B> {
             || self.boundary.may_touch(region, radius)
     }
 
-    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
         let start = flight.time();
         let (position, velocity) = (flight.position(start), flight.velocity(start));
         let side = |(wall, (normal, place)): (usize, (DVec2, f64))| {
@@ -72,10 +72,9 @@ impl<B: Boundary + ?Sized> Boundary for Enclosure<'_, B> {
             (start + wait <= until).then(|| Touch::new(start + wait, wall))
         };
         let own = self.sides().enumerate().filter_map(side).min_by(|a, b| a.time.total_cmp(&b.time));
-        let until = own.map_or(until, |touch| touch.time);
-        let other =
-            self.boundary.first_touch(flight, until).filter(|other| other.time < until || own.is_none());
-        other.map(|touch| Touch::new(touch.time, touch.wall + self.sides().count())).or(own)
+        let (own, sides) = (FirstTouch::from(own), self.sides().count());
+        let other = self.boundary.first_touch(flight, until.min(own.time()));
+        own.or(other.map(|touch| Touch::new(touch.time, touch.wall + sides)))
     }
 
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {

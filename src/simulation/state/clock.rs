@@ -1,6 +1,6 @@
 //! The time of a run, as an offset from an epoch that moves on.
 
-use super::guard::Guard;
+use super::guard::{EVENTS_PER_HORIZON, Guard};
 use crate::simulation::errors::{Outcome, RunError};
 
 /// Least number of floating-point times in an epoch. A typical disk then goes at most about a diameter from
@@ -104,6 +104,12 @@ impl Clock {
     pub(in crate::simulation) fn is_look_due(&mut self) -> bool {
         self.events_to_look -= 1;
         self.events_to_look == 0
+    }
+
+    /// Counts the steps of a search that has ended at its horizon, as if they were events.
+    #[inline]
+    pub(in crate::simulation) fn count_search(&mut self) {
+        self.events_to_look = self.events_to_look.saturating_sub(EVENTS_PER_HORIZON).max(1);
     }
 
     /// Moves the epoch on by this time.

@@ -1,11 +1,17 @@
 //! The guard against runs that hardly progress.
 
+use crate::simulation::events::Counters;
+
 /// Number of events in a window. Progress is judged at its end.
 const WINDOW: u64 = 200_000;
 
 /// Number of additional events in a window for each disk. They are needed since, on a lattice, all disks may
 /// have an event at the same time.
 const WINDOW_PER_DISK: u64 = 20;
+
+/// Number of events for which a search counts, beside its own, that ended at its horizon. A search may take so
+/// many steps, each about as long as an event. So the guard bounds the time that searches take, too.
+pub(in crate::simulation) const EVENTS_PER_HORIZON: u64 = 255;
 
 /// Largest number of events in an epoch that counts as progress: this number, and [`MOST_EVENTS_PER_DISK`]
 /// more for each disk.
@@ -40,6 +46,11 @@ pub(in crate::simulation) struct Standstill {
 /// Returns the least simulated time per event of a run of this many disks, unless its caller sets another.
 pub(in crate::simulation) fn least_progress(epoch_length: f64, disks: usize) -> f64 {
     epoch_length / (MOST_EVENTS + MOST_EVENTS_PER_DISK * disks as f64)
+}
+
+/// Returns the number of events that the guard and the looks at the limits count.
+pub(in crate::simulation) fn effort(counters: &Counters) -> u64 {
+    counters.events().saturating_add(EVENTS_PER_HORIZON.saturating_mul(counters.horizons))
 }
 
 impl Guard {

@@ -1,4 +1,4 @@
-//! Touches of a vessel's parts: the search among the bricks near a flight.
+//! The search for the first touch of a vessel's parts, among the bricks near a flight.
 
 use glam::DVec2;
 
@@ -7,14 +7,30 @@ use super::{Placed, Vessel, Wall};
 use crate::Flight;
 use crate::boundary::brick::Path;
 use crate::boundary::part::Travel;
-use crate::boundary::{Boundary, Surface, Touch};
+use crate::boundary::{Boundary, FirstTouch, Surface, Touch};
 
-/// Largest number of steps of a search. If the motion of a part consists of pieces, the search takes a few
-/// steps in each piece during which the disk is near the brick.
-const MOST_STEPS: u32 = 1 << 16;
+/// Largest number of steps of a search, for all moving bricks near a flight together. The last brick may take a
+/// round more. The engine reads the clock once in some hundred events, so a limit of its time is kept.
+const MOST_STEPS: u32 = 256;
+
+/// Largest number of steps of a search for one brick, before the others have their turn.
+///
+/// A brick that moves fast near the disk may take many steps, and never touch the disk because another one does
+/// so first. An arm that turns has such a brick at its back. The rounds keep it from taking all the steps.
+const STEPS_IN_A_ROUND: u32 = 16;
 
 /// Gap below which surfaces count as touching, relative to the lengths whose difference the gap is.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// Margin of the strip that a brick sweeps, relative to the lengths in the search.
+const MARGIN: f64 = 64.0 * f64::EPSILON;
+
+/// Longest flight for which entries into the strip are computed. Squares of longer times would overflow.
+const LONGEST: f64 = 1e150;
+
+/// Least period of a part, in units of the distance between two floating-point times. The places of a part
+/// that is faster cannot be told.
+const LEAST_PERIOD: f64 = 64.0;
 
 impl Vessel {
     /// Returns a brick and the motion of its part.
@@ -23,41 +39,66 @@ impl Vessel {
         (wall, self.parts[wall.part].part.travel())
     }
 
-    /// Returns the first touch of a part, or `other`, whichever is earlier. At equal times, the wall with the
-    /// smaller index counts.
+    /// Returns the first touch of a part, or `other`, whichever is earlier.
     pub(super) fn first_touch_with_parts(
         &self,
         flight: &Flight,
         until: f64,
-        other: Option<Touch>,
-    ) -> Option<Touch> {
+        other: FirstTouch<Touch>,
+    ) -> FirstTouch<Touch> {
         let (low, high) = rectangle(flight, until);
-        let (mut first, mut until) = (other, until);
+        let mut first = other;
+        let mut moving: Vec<Entry> = Vec::new();
         let mut last = None;
         for entry in self.index.near(low, high) {
             if last.replace(entry) == Some(entry) {
                 continue;
             }
-            let wall = entry.wall as usize + self.container.wall_count();
-            if let Some(time) = self.touch_of(entry, flight, until)
-                && first.is_none_or(|touch| time < touch.time || (time == touch.time && wall < touch.wall))
+            let (wall, travel) = self.wall(entry.wall as usize);
+            if !travel.is_at_rest() {
+                if !moving.contains(&entry) {
+                    moving.push(entry);
+                }
+            } else if let Some(time) =
+                wall.brick.first_touch(&shifted(flight, entry), until.min(first.time()))
             {
-                first = Some(Touch::new(time, wall));
-                until = time;
+                first = first.or(FirstTouch::At(self.touch(entry, time)));
             }
         }
-        first
+        if moving.is_empty() { first } else { self.search(&moving, flight, until, first) }
     }
 
-    /// Returns the first touch of a brick.
-    fn touch_of(&self, entry: Entry, flight: &Flight, until: f64) -> Option<f64> {
-        let wall = &self.walls[entry.wall as usize];
-        let placed = &self.parts[wall.part];
-        let flight = if entry.image == DVec2::ZERO { *flight } else { shifted(flight, -entry.image) };
-        if !placed.part.travel().is_at_rest() {
-            return Search { wall, placed, flight: &flight, until }.run();
+    fn touch(&self, entry: Entry, time: f64) -> Touch {
+        Touch::new(time, entry.wall as usize + self.container.wall_count())
+    }
+
+    /// Searches for the first touch of some moving bricks, in rounds, up to `until` or the touch of another wall.
+    fn search(
+        &self,
+        moving: &[Entry],
+        flight: &Flight,
+        until: f64,
+        other: FirstTouch<Touch>,
+    ) -> FirstTouch<Touch> {
+        let end = until.min(other.time());
+        let (mut from, mut steps) = (flight.time(), 0);
+        loop {
+            let mut first = other;
+            for &entry in moving {
+                let wall = &self.walls[entry.wall as usize];
+                let search = Search {
+                    wall,
+                    placed: &self.parts[wall.part],
+                    flight: &shifted(flight, entry),
+                    until: until.min(first.time()),
+                };
+                first = first.or(search.run(from, &mut steps).map(|time| self.touch(entry, time)));
+            }
+            match first {
+                FirstTouch::NotBefore(open) if open < end && open > from && steps < MOST_STEPS => from = open,
+                _ => return first,
+            }
         }
-        wall.brick.first_touch(&flight, until)
     }
 
     /// Returns the surface of a brick that a disk at this place touches.
@@ -66,7 +107,8 @@ impl Vessel {
         let placed = &self.parts[wall.part];
         let travel = placed.part.travel();
         let pose = travel.pose(time + placed.phase);
-        let images = self.domain().images();
+        let (low, high) = travel.bounds(&wall.brick);
+        let images = self.container.domain().images_of(low, high);
         let sights = images.map(|image| (image, wall.brick.nearest(pose.inward(position - image))));
         let nearest = sights.reduce(|a, b| if b.1.distance < a.1.distance { b } else { a });
         let Some((image, nearest)) = nearest else {
@@ -86,6 +128,10 @@ impl Vessel {
 /// first touch is exact. Otherwise, the path is known up to an error. A disk that grows by this error touches
 /// no later than the true disk. The search advances to the touch of the growing disk, and starts again from
 /// there, until the gap is within rounding. It never steps over a touch.
+///
+/// A fast part has many pieces of motion during a flight. But a disk can touch the part only in the strip that
+/// the part sweeps, and the part sweeps all of the strip within a period. So the search goes straight to the
+/// time at which the disk enters the strip, and is over a few pieces later.
 struct Search<'a> {
     wall: &'a Wall,
     placed: &'a Placed,
@@ -102,22 +148,35 @@ enum Step {
 }
 
 impl Search<'_> {
-    fn run(&self) -> Option<f64> {
-        let mut time = self.flight.time();
-        for _ in 0..MOST_STEPS {
-            time = self.enters_reach(time)?;
-            if time > self.until || self.is_out_of_reach(time) {
-                return None;
+    /// Searches from a time on, at which there was no touch yet, for a round of steps.
+    fn run(&self, from: f64, steps: &mut u32) -> FirstTouch<f64> {
+        let mut time = from;
+        for _ in 0..STEPS_IN_A_ROUND {
+            match self.enters_strip(time) {
+                Some(entry) if entry <= self.until && !self.is_out_of_reach(entry) => time = entry,
+                _ => return FirstTouch::NONE,
             }
+            if self.is_too_fast(time) {
+                break;
+            }
+            *steps += 1;
             match self.step(time) {
-                Step::Touch(touch) => return (touch <= self.until).then_some(touch),
-                Step::Open(_) if time >= self.until => return None,
-                Step::Open(next) => time = next.max(time.next_up()),
+                Step::Touch(touch) if touch <= self.until => return FirstTouch::At(touch),
+                Step::Open(next) if time < self.until => time = next.max(time.next_up()),
+                _ => return FirstTouch::NONE,
+            }
+            if *steps >= MOST_STEPS {
+                break;
             }
         }
-        // A search that makes no progress may be at a touch, so the function returns one. If the run makes no
-        // progress either, the engine reports that.
-        Some(time.min(self.until))
+        FirstTouch::NotBefore(time)
+    }
+
+    /// Tells whether floating-point times are too coarse to tell where the part is.
+    fn is_too_fast(&self, time: f64) -> bool {
+        let latest = time.abs() + self.placed.phase.abs();
+        let spacing = latest.next_up() - latest;
+        self.placed.part.travel().period().is_some_and(|period| period < LEAST_PERIOD * spacing)
     }
 
     /// Tells whether a turning brick is out of the disk's reach at this time. Most bricks of a turning part
@@ -162,23 +221,17 @@ impl Search<'_> {
         Step::Open(time + open.max(time_for(&path, rounding)))
     }
 
-    /// Returns the first time, from this one on, at which the disk is within the rectangle that the brick
-    /// never leaves. The result may be too early, but never too late.
-    fn enters_reach(&self, time: f64) -> Option<f64> {
-        let (low, high) = self.placed.part.travel().bounds(&self.wall.brick);
+    /// Returns the first time, from this one on, at which the disk is so near that the part, wherever it is then,
+    /// may touch it with this brick. The result may be too early, but never too late.
+    fn enters_strip(&self, time: f64) -> Option<f64> {
         let (place, velocity) = (self.flight.position(time), self.flight.velocity(time));
-        let (pull, radius) = (self.flight.acceleration(), 1.001 * self.flight.radius());
-        let entry = |value: f64, rate: f64, pull: f64, low: f64, high: f64| {
-            let gap = (low - radius - value).max(value - high - radius);
-            if gap <= 0.0 {
-                return Some(0.0);
-            }
-            let sign = if value > high { 1.0 } else { -1.0 };
-            crate::roots::first_descent(gap, sign * rate, sign * pull)
-        };
-        let x = entry(place.x, velocity.x, pull.x, low.x, high.x)?;
-        let y = entry(place.y, velocity.y, pull.y, low.y, high.y)?;
-        Some(time + x.max(y))
+        let (travel, radius) = (self.placed.part.travel(), self.flight.radius());
+        // The margin is far above the rounding of lengths, and far below the stroke of any motion that `put`
+        // accepts: a disk that waits in the margin costs steps.
+        let radius = radius + MARGIN * (radius + place.abs().max_element() + self.placed.size);
+        let path = Path::exact(place, velocity, self.flight.acceleration(), radius);
+        let wait = (self.until - time).clamp(0.0, LONGEST);
+        Some(time + travel.wait_to_enter_strip(&self.wall.brick, &path, wait)?)
     }
 }
 
@@ -199,8 +252,12 @@ fn rectangle(flight: &Flight, until: f64) -> (DVec2, DVec2) {
     (from.min(to) - reach, from.max(to) + reach)
 }
 
-fn shifted(flight: &Flight, by: DVec2) -> Flight {
+/// Returns the flight as seen from a periodic image of a brick.
+fn shifted(flight: &Flight, entry: Entry) -> Flight {
+    if entry.image == DVec2::ZERO {
+        return *flight;
+    }
     let time = flight.time();
     let (place, velocity) = (flight.position(time), flight.velocity(time));
-    Flight::new(time, place + by, velocity, flight.acceleration(), flight.radius())
+    Flight::new(time, place - entry.image, velocity, flight.acceleration(), flight.radius())
 }

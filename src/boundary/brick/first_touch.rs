@@ -53,8 +53,8 @@ impl Brick {
         let beside = match self.shape {
             Shape::Segment(segment) if segment.is_out_of_reach(path, wait) => return None,
             Shape::Arc(arc) if arc.is_out_of_reach(path, wait) => return None,
-            Shape::Segment(segment) => Some(segment.beside(path)),
-            Shape::Arc(arc) => arc.beside(path),
+            Shape::Segment(segment) => Some(segment.beside(path, 0.0)),
+            Shape::Arc(arc) => arc.beside(path, 0.0),
         };
         let Some(beside) = beside else {
             return self.touch_between(path, 0.0, wait);
@@ -116,7 +116,7 @@ impl Brick {
     }
 
     /// Returns the distance from the line or the circle on which the brick lies.
-    fn distance_from_line(&self, place: DVec2) -> f64 {
+    pub(super) fn distance_from_line(&self, place: DVec2) -> f64 {
         match self.shape {
             Shape::Segment(segment) => segment.direction().perp_dot(place - segment.from()).abs(),
             Shape::Arc(arc) => (place.distance(arc.center()) - arc.radius()).abs(),
@@ -135,14 +135,14 @@ impl Brick {
         }
     }
 
-    fn side(&self, place: DVec2) -> Side {
+    pub(super) fn side(&self, place: DVec2) -> Side {
         match self.shape {
             Shape::Segment(segment) => segment.side(place),
             Shape::Arc(arc) => arc.side(place),
         }
     }
 
-    fn gap(&self, path: &Path, side: Side) -> [f64; 5] {
+    pub(super) fn gap(&self, path: &Path, side: Side) -> [f64; 5] {
         match self.shape {
             Shape::Segment(segment) => segment.gap(path, side),
             Shape::Arc(arc) => arc.gap(path, side),
