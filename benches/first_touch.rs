@@ -30,8 +30,12 @@ fn searches(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("first_touch");
     group.throughput(Throughput::Elements(FLIGHTS as u64));
     for (name, motion) in &motions {
-        let search =
-            || flights.iter().filter_map(|flight| first_touch(motion, black_box(flight), 1e3)).sum::<f64>();
+        let search = || {
+            flights
+                .iter()
+                .filter_map(|flight| first_touch(motion, black_box(flight), 1e3).touch())
+                .sum::<f64>()
+        };
         group.bench_function(*name, |bencher| bencher.iter(search));
     }
     group.finish();

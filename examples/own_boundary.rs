@@ -39,9 +39,9 @@ impl Boundary for Drum {
         self.rim.may_touch(region, radius)
     }
 
-    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
-        let time = self.rim.first_touch(flight, until)?;
-        Some(Touch::new(time, usize::from(flight.position(time).x < 0.0)))
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
+        let wall = |time| usize::from(flight.position(time).x < 0.0);
+        self.rim.first_touch(flight, until).map(|time| Touch::new(time, wall(time))).into()
     }
 
     fn surface(&self, wall: usize, position: DVec2, _time: f64) -> Surface<'_> {

@@ -61,8 +61,8 @@ impl Boundary for Drum {
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
         self.rim.may_touch(region, radius)
     }
-    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
-        self.rim.first_touch(flight, until).map(|time| Touch::new(time, 0))
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
+        self.rim.first_touch(flight, until).map(|time| Touch::new(time, 0)).into()
     }
     fn surface(&self, _wall: usize, position: DVec2, _time: f64) -> Surface<'_> {
         let normal = self.rim.normal(position);

@@ -2,9 +2,9 @@
 
 mod constructors;
 mod corners;
+mod polygon;
 #[cfg(feature = "serde")]
 mod serialized;
-mod polygon;
 mod travel;
 
 pub(super) use travel::Travel;

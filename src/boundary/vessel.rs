@@ -1,12 +1,12 @@
 //! Vessels of any shape: named parts in a container.
 
 mod error;
-#[cfg(feature = "serde")]
-mod serialized;
 mod index;
 mod outline;
 mod overlap;
 mod search;
+#[cfg(feature = "serde")]
+mod serialized;
 
 pub use error::VesselError;
 
@@ -298,9 +298,10 @@ impl Vessel {
             |wall, region| travel(wall).may_reach(&wall.brick, region, 0.0),
         );
         self.filled = self.filled_cells();
-        let hollows = self.walls.iter().enumerate().filter_map(|(number, wall)| {
-            Some((wall.brick.hollow()?, number + self.container.wall_count()))
-        });
+        let hollows =
+            self.walls.iter().enumerate().filter_map(|(number, wall)| {
+                Some((wall.brick.hollow()?, number + self.container.wall_count()))
+            });
         self.hollows = hollows.collect();
         self.hollows.sort_by(|a, b| a.0.total_cmp(&b.0));
     }

@@ -12,7 +12,7 @@ use super::Simulation;
 use super::errors::{BoundaryFault, Outcome, RunError};
 use super::forecasting::HORIZON;
 use super::state::{FARTHEST, Forecast};
-use crate::boundary::Boundary;
+use crate::boundary::{Boundary, FirstTouch};
 use crate::collision::CollisionRule;
 use crate::observable::Partner;
 use crate::scheduler::EventScheduler;
@@ -162,11 +162,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Asks the boundary again for an impossible touch, in order to report it.
     #[cold]
     pub(super) fn impossible_touch(&self, disk: usize) -> RunError {
-        let (now, forecast) = (self.clock.now, self.forecast(disk));
+        let now = self.clock.now;
         let until = now + HORIZON * self.clock.epoch_length;
-        let touch = self.boundary.first_touch(&self.flight(disk), until);
-        let wall = touch.map_or(usize::from(forecast.wall), |touch| touch.wall);
-        let early_by = now - touch.map_or(now, |touch| touch.time);
+        let FirstTouch::At(touch) = self.boundary.first_touch(&self.flight(disk), until) else {
+            return self.boundary_fault(disk, BoundaryFault::Search);
+        };
+        let (wall, early_by) = (touch.wall, now - touch.time);
         self.boundary_fault(disk, BoundaryFault::Touch { wall, early_by, walls: self.wall_count })
     }
 }

@@ -11,14 +11,8 @@ use super::Simulation;
 use super::errors::{BoundaryFault, Outcome};
 use super::events::Event;
 use super::resolution::{Kick, failed, is_parting, is_possible, resolve_pair, resolve_wall};
-<<<<<<< HEAD
 use super::state::{Clock, Earliest, Exit};
 use crate::boundary::{Boundary, Response};
-=======
-use super::state::{Clock, Earliest, Exit, Forecast};
-use crate::boundary::{Boundary, FirstTouch, Response};
-use crate::collision::laws::closing_speed_after;
->>>>>>> ec6cf34 (Searches that use up their steps end as a horizon, never as a touch)
 use crate::collision::{CollisionRule, Regime};
 use crate::observable::{Collision, Observer, Partner};
 use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
@@ -256,30 +250,4 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             self.lookahead.look(&mut self.scheduler, &self.bodies, &self.cells, &mut self.scratch.found);
         }
     }
-<<<<<<< HEAD
-=======
-
-    #[cold]
-    fn scheduler_fault(&self, disk: usize, due: f64) -> RunError {
-        let expected = self.bodies.forecast(disk).map(Forecast::due);
-        RunError::Scheduler { disk, due, expected, time: self.time() }
-    }
-
-    #[cold]
-    fn boundary_fault(&self, disk: usize, fault: BoundaryFault) -> RunError {
-        RunError::Boundary { disk, time: self.time(), fault }
-    }
-
-    /// Asks the boundary again for an impossible touch, in order to report it.
-    #[cold]
-    fn impossible_touch(&self, disk: usize) -> RunError {
-        let now = self.clock.now;
-        let until = now + HORIZON * self.clock.epoch_length;
-        let FirstTouch::At(touch) = self.boundary.first_touch(&self.flight(disk), until) else {
-            return self.boundary_fault(disk, BoundaryFault::Search);
-        };
-        let (wall, early_by) = (touch.wall, now - touch.time);
-        self.boundary_fault(disk, BoundaryFault::Touch { wall, early_by, walls: self.wall_count })
-    }
->>>>>>> ec6cf34 (Searches that use up their steps end as a horizon, never as a touch)
 }

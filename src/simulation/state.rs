@@ -15,9 +15,5 @@ pub(super) use clock::{Clock, Tally};
 pub(super) use forecast::{Earliest, Exit, Forecast};
 #[cfg(feature = "serde")]
 pub(super) use guard::Guard;
-<<<<<<< HEAD
-pub(super) use guard::{Standstill, least_progress};
-pub(super) use pace::FARTHEST;
-=======
 pub(super) use guard::{Standstill, effort, least_progress};
->>>>>>> ec6cf34 (Searches that use up their steps end as a horizon, never as a touch)
+pub(super) use pace::FARTHEST;

@@ -131,11 +131,7 @@ impl Approach {
 /// assert_eq!(first_touch(&Fixed, &falling, 10.0), FirstTouch::At(2.0));
 /// assert_eq!(first_touch(&Fixed, &falling, 1.0), FirstTouch::NONE);
 /// ```
-pub fn first_touch<M: WallMotion + ?Sized>(
-    motion: &M,
-    approach: &Approach,
-    until: f64,
-) -> FirstTouch<f64> {
+pub fn first_touch<M: WallMotion + ?Sized>(motion: &M, approach: &Approach, until: f64) -> FirstTouch<f64> {
     let search = Search::new(motion, approach);
     let is_in_time = |time: f64| time <= until && time < f64::INFINITY;
     let touch_at = |touch: f64| if is_in_time(touch) { FirstTouch::At(touch) } else { FirstTouch::NONE };

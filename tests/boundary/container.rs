@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use granular_edmd::Flight;
-use granular_edmd::boundary::{Boundary, Container, Domain, Region, Thermal, Touch, Wall};
+use granular_edmd::boundary::{Boundary, Container, Domain, FirstTouch, Region, Thermal, Touch, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::Triangular;
@@ -109,15 +109,19 @@ fn a_flight_touches_the_wall_that_is_in_its_way() {
         let flight = flight(velocity, (0.0, 0.0));
         let wall = names(&closed()).iter().position(|wall| wall == name).unwrap();
         for until in [time, 99.0] {
-            assert_eq!(closed().first_touch(&flight, until), Some(Touch::new(time, wall)), "{name}");
+            assert_eq!(
+                closed().first_touch(&flight, until),
+                FirstTouch::At(Touch::new(time, wall)),
+                "{name}"
+            );
         }
-        assert_eq!(closed().first_touch(&flight, time.next_down()), None, "{name}");
+        assert_eq!(closed().first_touch(&flight, time.next_down()), FirstTouch::NONE, "{name}");
     }
     let falling = flight((0.0, 0.0), (0.0, -11.0));
-    assert_eq!(closed().first_touch(&falling, 9.0), Some(Touch::new(3.0, FLOOR)));
+    assert_eq!(closed().first_touch(&falling, 9.0), FirstTouch::At(Touch::new(3.0, FLOOR)));
     let corner = flight((-7.0, -11.0), (0.0, 0.0));
     let touch = Touch::new(2.5, FLOOR);
-    assert_eq!(closed().first_touch(&corner, 9.0), Some(touch), "the first of equals");
+    assert_eq!(closed().first_touch(&corner, 9.0), FirstTouch::At(touch), "the first of equals");
 }
 
 #[test]
@@ -185,7 +189,7 @@ fn a_moving_floor_is_where_its_motion_is_at_the_absolute_time() {
     let velocity = |time| container.surface(FLOOR, DVec2::ZERO, time).velocity;
     assert_eq!([0.125, 0.375].map(velocity), [DVec2::new(0.0, 2.0), DVec2::new(0.0, -2.0)]);
     let meeting = Flight::new(0.0, DVec2::new(5.0, 1.0), DVec2::new(0.0, -2.0), DVec2::ZERO, RADIUS);
-    let touch = Some(Touch::new(0.125, FLOOR));
+    let touch = FirstTouch::At(Touch::new(0.125, FLOOR));
     assert_eq!([0.125, 9.0].map(|until| container.first_touch(&meeting, until)), [touch; 2]);
     assert_eq!(said(moving(Wall::Floor, 0.5), 1e9 + 0.1), said(moving(Wall::Floor, 0.5), (1e9 + 0.1) % 1.0));
 }

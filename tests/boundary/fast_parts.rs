@@ -24,7 +24,8 @@ fn arm(angular_velocity: f64) -> Part {
 }
 
 fn beside_an_arm(angular_velocity: f64, disk: Disk) -> Simulation<Elastic, Vessel> {
-    let room = Vessel::new(Container::closed(20.0, 20.0).unwrap()).with("arm", arm(angular_velocity)).unwrap();
+    let room =
+        Vessel::new(Container::closed(20.0, 20.0).unwrap()).with("arm", arm(angular_velocity)).unwrap();
     Simulation::builder(Elastic, room).disks([disk]).build().unwrap()
 }
 
@@ -197,11 +198,12 @@ impl WallMotion for Lazy {
 fn searches_count_as_events() {
     let floor = Part::block([point(2.0, 2.0), point(8.0, 2.0), point(8.0, 3.0), point(2.0, 3.0)]).unwrap();
     let room = Vessel::new(Container::closed(10.0, 10.0).unwrap());
-    let room = room.with("floor", floor.with_motion(DVec2::Y, Lazy).unwrap()).unwrap();
+    let room = room.with("slab", floor.with_motion(DVec2::Y, Lazy).unwrap()).unwrap();
     let disk = Disk::new(point(5.0, 4.0), 0.5).unwrap();
     let mut run = Simulation::builder(Elastic, room).disks([disk]).build().unwrap();
     let start = Instant::now();
-    let limits = Limits::until(1e3).with_wall_clock(Duration::from_millis(20)).with_least_progress(0.0).unwrap();
+    let limits =
+        Limits::until(1e3).with_wall_clock(Duration::from_millis(20)).with_least_progress(0.0).unwrap();
     assert_eq!(run.run(&limits, &mut ()).unwrap(), RunEnd::WallClock);
     // The limit is kept within 0.1 s; a busy machine may be asleep for longer than that.
     assert!(start.elapsed() < Duration::from_secs(5));
@@ -229,7 +231,8 @@ fn a_stroke_below_rounding_is_refused() {
     let part = |amplitude: f64| {
         let peg = Part::peg(point(5.0, 5.0), 1.0).unwrap();
         let motion = BiParabolic::new(amplitude, 1.0 / amplitude).unwrap();
-        Vessel::new(Container::closed(10.0, 10.0).unwrap()).with("peg", peg.with_motion(DVec2::X, motion).unwrap())
+        Vessel::new(Container::closed(10.0, 10.0).unwrap())
+            .with("peg", peg.with_motion(DVec2::X, motion).unwrap())
     };
     assert!(part(1e-9).is_ok());
     let error = part(1e-15).unwrap_err().to_string();

@@ -7,6 +7,7 @@ mod fast_parts;
 mod fingerprints;
 mod names;
 mod obstacles;
+mod periodic_parts;
 mod planted;
 mod touches;
 mod vessels;

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use granular_edmd::boundary::{Boundary, Container, Domain, Region, Surface, Touch};
+use granular_edmd::boundary::{Boundary, Container, Domain, FirstTouch, Region, Surface, Touch};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::BuildError;
@@ -28,7 +28,7 @@ impl Boundary for Named {
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
         self.0.may_touch(region, radius)
     }
-    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
         self.0.first_touch(flight, until)
     }
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {

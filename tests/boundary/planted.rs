@@ -2,7 +2,7 @@
 
 use granular_edmd::Flight;
 use granular_edmd::boundary::laws::{Violation, check};
-use granular_edmd::boundary::{Boundary, Container, Domain, Region, Surface, Touch, Wall};
+use granular_edmd::boundary::{Boundary, Container, Domain, FirstTouch, Region, Surface, Touch, Wall};
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::Sinusoidal;
 
@@ -22,6 +22,7 @@ enum Fault {
     WallTooLarge,
     TouchWhileLeaving,
     MissesWhatItTouches,
+    StandsStill,
     BlindRegions,
     BlindEndlessRegions,
     BlindLargeDisks,
@@ -96,11 +97,14 @@ impl Boundary for Spoilt {
         }
     }
 
-    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
-        let touch = self.container.first_touch(flight, until);
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
+        let touch = self.container.first_touch(flight, until).touch();
         let start = flight.time();
         let is_at_wall = self.container.overlap(flight.position(start), 1.000_001 * flight.radius(), start);
-        match self.fault {
+        if self.fault == Fault::StandsStill {
+            return FirstTouch::NotBefore(start);
+        }
+        let touch = match self.fault {
             Fault::Hole | Fault::OpenHole => {
                 touch.filter(|touch| touch.wall != 0 || !is_over_hole(flight.position(touch.time)))
             }
@@ -115,7 +119,8 @@ impl Boundary for Spoilt {
             }
             Fault::MissesWhatItTouches => touch.filter(|touch| touch.time > start + 1e-6),
             _ => touch,
-        }
+        };
+        touch.into()
     }
 
     fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
@@ -166,6 +171,7 @@ fn touches_at_the_wrong_time_are_caught() {
     }
     assert!(matches!(verdict(Fault::TouchWhileLeaving), Violation::Leaving { .. }));
     assert!(matches!(verdict(Fault::MissesWhatItTouches), Violation::Missed { .. }));
+    assert!(matches!(verdict(Fault::StandsStill), Violation::NoProgress { .. }));
 }
 
 #[test]

@@ -87,7 +87,7 @@ impl Specimen {
     /// Checks a flight. Returns the way between the two touches, and the gap at the touch.
     fn check(&self, flight: &Flight) -> Option<(f64, f64)> {
         let until = flight.time() + LONGEST;
-        let found = self.vessel.first_touch(flight, until).map(|touch| touch.time);
+        let found = self.vessel.first_touch(flight, until).touch().map(|touch| touch.time);
         let sampled = self.by_sampling(flight);
         let Some(found) = found else {
             assert_eq!(sampled, None, "{} misses a touch of {flight:?}", self.name);

@@ -96,7 +96,7 @@ fn a_search_takes_some_periods_of_a_wall_however_fast_it_is() {
             let start = f64::from(step) * 0.063 / frequency;
             let place = wall.state(start).displacement;
             wall.1.set(0);
-            let touch = first_touch(&wall, &Approach::new(start, place, 2.0, -1.0), 10.0).unwrap();
+            let touch = first_touch(&wall, &Approach::new(start, place, 2.0, -1.0), 10.0).touch().unwrap();
             assert!(touch > 3.9 && wall.1.get() < 200, "{frequency:e}: {} looks", wall.1.get());
         }
     }

@@ -5,7 +5,7 @@ use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::rc::Rc;
 
-use granular_edmd::boundary::{Boundary, Container, Domain, Region, Surface, Touch};
+use granular_edmd::boundary::{Boundary, Container, Domain, FirstTouch, Region, Surface, Touch};
 use granular_edmd::collision::{CollisionRule, Contact, Elastic, Frictional, Impulse};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, Moment, Observer, Partner, Snapshot, Verdict};
@@ -80,14 +80,14 @@ impl Boundary for Liar {
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
         self.honest.may_touch(region, radius)
     }
-    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
         let touch = self.honest.first_touch(flight, until);
         match self.lie {
-            Lie::Time(wait) if self.lies() => Some(Touch::new(flight.time() + wait, 0)),
+            Lie::Time(wait) if self.lies() => FirstTouch::At(Touch::new(flight.time() + wait, 0)),
             Lie::Beyond if self.lies() => {
-                Some(Touch::new(if until == f64::INFINITY { until } else { until.next_up() }, 0))
+                FirstTouch::At(Touch::new(if until == f64::INFINITY { until } else { until.next_up() }, 0))
             }
-            Lie::Wall(wall) if self.lies() => Some(Touch::new(flight.time(), wall)),
+            Lie::Wall(wall) if self.lies() => FirstTouch::At(Touch::new(flight.time(), wall)),
             _ => touch,
         }
     }
@@ -202,7 +202,7 @@ fn too_many_walls_are_refused() {
         fn may_touch(&self, _: &Region, _: f64) -> bool {
             true
         }
-        fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+        fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
             self.0.first_touch(flight, until).map(|touch| Touch::new(touch.time, self.1 - 1 - touch.wall))
         }
         fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
@@ -549,7 +549,7 @@ impl Boundary for Drum {
     fn may_touch(&self, _: &Region, _: f64) -> bool {
         true
     }
-    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
         let start = flight.time();
         let (r, v, a) = (flight.position(start), flight.velocity(start), flight.acceleration());
         let free = self.radius - flight.radius();
@@ -560,8 +560,8 @@ impl Boundary for Drum {
             -v.dot(a),
             -0.25 * a.length_squared(),
         ];
-        let wait = granular_edmd::roots::first_descent_of_quartic(&gap, until - start)?;
-        Some(Touch::new((start + wait).min(until), 0))
+        let wait = granular_edmd::roots::first_descent_of_quartic(&gap, until - start);
+        wait.map(|wait| Touch::new((start + wait).min(until), 0)).into()
     }
     fn surface(&self, _: usize, position: DVec2, _: f64) -> Surface<'_> {
         let normal = -position.normalize_or(DVec2::Y);

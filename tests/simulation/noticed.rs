@@ -1,7 +1,7 @@
 //! What the engine notices: walls that are not where they say, events that are lost, walls that jump. A run
 //! that is wrong does not end as if it were right.
 
-use granular_edmd::boundary::{Boundary, Container, Domain, Part, Region, Surface, Touch, Vessel, Wall};
+use granular_edmd::boundary::{Boundary, Container, Domain, FirstTouch, Part, Region, Surface, Touch, Vessel, Wall};
 use granular_edmd::collision::{ContactDuration, Elastic, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::Partner;
@@ -52,7 +52,7 @@ impl Boundary for Faulty {
     fn may_touch(&self, region: &Region, radius: f64) -> bool {
         self.honest.may_touch(region, 1.1 * radius)
     }
-    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
         let start = flight.time();
         let (at, velocity, pull) = (flight.position(start), flight.velocity(start), flight.acceleration());
         match self.fault {
@@ -60,7 +60,7 @@ impl Boundary for Faulty {
                 let other = Flight::new(start, at, velocity, pull, flight.radius() - depth);
                 self.honest.first_touch(&other, until)
             }
-            Fault::NoFloor => self.honest.first_touch(flight, until).filter(|touch| touch.wall != 0),
+            Fault::NoFloor => self.honest.first_touch(flight, until).touch().filter(|touch| touch.wall != 0).into(),
             Fault::Blind => self.honest.first_touch(flight, until),
         }
     }

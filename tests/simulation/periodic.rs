@@ -1,6 +1,8 @@
 //! Periodic boxes, with periodic sides, ends or both, and unwrapped positions.
 
-use granular_edmd::boundary::{Boundary, Container, Domain, Region, Surface, Touch, Wall, WallError, laws};
+use granular_edmd::boundary::{
+    Boundary, Container, Domain, FirstTouch, Region, Surface, Touch, Wall, WallError, laws,
+};
 use granular_edmd::collision::{Elastic, Frictional};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::Energies;
@@ -168,8 +170,8 @@ impl Boundary for Endless {
     fn may_touch(&self, _: &Region, _: f64) -> bool {
         false
     }
-    fn first_touch(&self, _: &Flight, _: f64) -> Option<Touch> {
-        None
+    fn first_touch(&self, _: &Flight, _: f64) -> FirstTouch<Touch> {
+        FirstTouch::NONE
     }
     fn surface(&self, _: usize, _: DVec2, _: f64) -> Surface<'_> {
         Surface::new(DVec2::Y, DVec2::ZERO)

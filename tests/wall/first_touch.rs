@@ -6,12 +6,18 @@ mod motions;
 
 use std::f64::consts::TAU;
 
+use granular_edmd::wall;
 use granular_edmd::wall::{
-    AccelerationBounds, Approach, BiParabolic, Fixed, Sawtooth, Sinusoidal, StartingAt, Triangular,
-    WallMotion, WallState, first_touch,
+    AccelerationBounds, Approach, BiParabolic, FirstTouch, Fixed, Sawtooth, Sinusoidal, StartingAt,
+    Triangular, WallMotion, WallState,
 };
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// Returns the time of the first touch, if there is one.
+fn first_touch<M: WallMotion + ?Sized>(motion: &M, approach: &Approach, until: f64) -> Option<f64> {
+    wall::first_touch(motion, approach, until).touch()
+}
 
 /// A motion that only gives a bound of its acceleration for all times, which is three times too large.
 struct Loose(Sinusoidal);
@@ -274,10 +280,9 @@ fn motions_that_break_their_contract_do_not_hang_the_search() {
             for velocity in [0.0, 1.0, -1.0] {
                 for end in [100.0, f64::INFINITY] {
                     let approach = Approach::new(1.0, height, velocity, -1.0);
-                    let touch = first_touch(&Backward(backward), &approach, end);
-                    // Wherever the wall is, the surface is within its reach from the start, or the reach is
-                    // unknown.
-                    assert_eq!(touch, Some(1.0), "{backward} {height} {velocity}");
+                    let answer = wall::first_touch(&Backward(backward), &approach, end);
+                    // The surface is within the reach from the start, so the search gets no further.
+                    assert_eq!(answer, FirstTouch::NotBefore(1.0), "{backward} {height} {velocity}");
                 }
             }
         }
@@ -285,7 +290,10 @@ fn motions_that_break_their_contract_do_not_hang_the_search() {
 }
 
 #[test]
-fn a_wall_too_fast_for_the_times_is_everywhere_within_its_reach() {
+fn a_wall_too_fast_for_the_times_stops_the_search_within_its_reach() {
+    let time = |answer: FirstTouch<f64>| match answer {
+        FirstTouch::At(time) | FirstTouch::NotBefore(time) => time,
+    };
     for frequency in [1e12, 1e20, 1e100] {
         let motions: [Box<dyn WallMotion>; 4] = [
             Box::new(BiParabolic::new(AMPLITUDE, frequency).unwrap()),
@@ -299,10 +307,10 @@ fn a_wall_too_fast_for_the_times_is_everywhere_within_its_reach() {
         for (motion, start) in motions.iter().flat_map(|motion| [1e6, 1e9, 1e15].map(|start| (motion, start)))
         {
             for end in [start + 100.0, f64::INFINITY] {
-                let touch = first_touch(motion, &falling(start), end).unwrap();
-                assert!((start + 1.0..start + 2.0).contains(&touch), "{frequency:e}: {touch}");
-                let touch = first_touch(motion, &hovering(start), end).unwrap();
-                assert!((start..start + 1e-9 * start).contains(&touch), "{frequency:e}: {touch}");
+                let found = time(wall::first_touch(motion, &falling(start), end));
+                assert!((start + 1.0..start + 2.0).contains(&found), "{frequency:e}: {found}");
+                let found = time(wall::first_touch(motion, &hovering(start), end));
+                assert!((start..start + 1e-9 * start).contains(&found), "{frequency:e}: {found}");
                 assert_eq!(first_touch(motion, &leaving(start), end), None, "{frequency:e}");
             }
         }

@@ -32,9 +32,9 @@ impl Brick {
         let path = Path { radius: path.radius + across, ..*path };
         match beside {
             None => self.wait_to_enter_band(&path, wait),
-            Some(beside) => beside.stretches(wait).find_map(|(from, to)| {
-                Some(from + self.wait_to_enter_band(&path.later(from), to - from)?)
-            }),
+            Some(beside) => beside
+                .stretches(wait)
+                .find_map(|(from, to)| Some(from + self.wait_to_enter_band(&path.later(from), to - from)?)),
         }
     }
 

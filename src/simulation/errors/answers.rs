@@ -76,6 +76,12 @@ impl fmt::Display for FailedCollision {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BoundaryFault {
+    /// A search for a touch that gets no further.
+    #[error(
+        "the search for a touch gets no further: a wall moves too fast for times as coarse as these, or its motion \
+         gives numbers that are not finite; see wall::laws::check and boundary::laws::check"
+    )]
+    Search,
     /// A touch before the flight, after the end of the search, or with a wall that does not exist.
     #[error(
         "a touch with wall {wall}, of {walls} walls from 0 on, {} after the start of the flight",

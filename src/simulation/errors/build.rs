@@ -79,6 +79,19 @@ pub enum BuildError {
         /// Depth of the overlap.
         depth: f64,
     },
+    /// A disk fills a hollow of a wall, up to rounding. Rounding alone would decide whether it gets into it.
+    #[error(
+        "disk {disk} of radius {} is just as large as the hollow of the wall {wall:?}: make one of them larger",
+        Readable(*.radius)
+    )]
+    TightFit {
+        /// Index of the disk.
+        disk: usize,
+        /// Radius of the disk.
+        radius: f64,
+        /// The wall's name.
+        wall: String,
+    },
     /// Two disks overlap.
     #[error(
         "disks {first} and {second} at ({}, {}) and ({}, {}) overlap by {}",

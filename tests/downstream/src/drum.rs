@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use granular_edmd::boundary::{Boundary, Brick, Domain, Region, Response, Surface, Touch, VesselError};
+use granular_edmd::boundary::{Boundary, Brick, Domain, FirstTouch, Region, Response, Surface, Touch, VesselError};
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::glam::DVec2;
 use granular_edmd::{Fingerprint, Flight};
@@ -55,8 +55,8 @@ impl Boundary for Drum {
         self.wall.may_touch(region, radius)
     }
 
-    fn first_touch(&self, flight: &Flight, until: f64) -> Option<Touch> {
-        self.wall.first_touch(flight, until).map(|time| Touch::new(time, 0))
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
+        self.wall.first_touch(flight, until).map(|time| Touch::new(time, 0)).into()
     }
 
     fn surface(&self, _wall: usize, position: DVec2, _time: f64) -> Surface<'_> {

@@ -50,7 +50,7 @@ fn the_search_is_exact_with_nothing_but_global_bounds() {
             let surface = height + (0.7 - 0.03 * f64::from(case % 47) - 0.5 * wait) * wait;
             surface - MOTION.state(0.05 * f64::from(case) + wait).displacement
         };
-        let touch = first_touch(&MOTION, &approach, 1000.0).unwrap() - 0.05 * f64::from(case);
+        let touch = first_touch(&MOTION, &approach, 1000.0).touch().unwrap() - 0.05 * f64::from(case);
         assert!(gap(touch).abs() < 1e-11, "case {case}: {}", gap(touch));
         assert!((0..2000).all(|k| gap(touch * f64::from(k) / 2000.0) > -1e-12), "case {case}");
         touches += 1;

@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use granular_edmd::wall::{Approach, Sinusoidal, Triangular, WallMotion, WallState, first_touch};
+use granular_edmd::wall::{Approach, Sinusoidal, Triangular, WallMotion, WallState};
 
-use super::{AMPLITUDE, FREQUENCY, Flight, Loose, PERIOD};
+use super::{AMPLITUDE, FREQUENCY, Flight, Loose, PERIOD, first_touch};
 
 /// A disk leaves a sine so slowly that the whole bounce is lower than rounding. It ends when the gap closes
 /// as fast as it opened.
