@@ -31,6 +31,7 @@ mod brick;
 mod conduct;
 mod container;
 mod domain;
+mod error;
 mod forward;
 pub mod laws;
 mod obstacles;
@@ -39,11 +40,13 @@ mod plane;
 mod squares;
 mod surface;
 mod touch;
+mod vector;
 mod vessel;
 
 pub use brick::Brick;
 pub use container::{Container, Wall, WallError};
 pub use domain::{Domain, Region};
+pub use error::VesselError;
 pub use obstacles::Obstacles;
 pub use part::Part;
 pub(crate) use squares::Squares;
@@ -52,7 +55,7 @@ pub use surface::Thermal;
 pub use surface::{Response, Surface};
 pub use touch::Touch;
 #[doc(alias("silo", "hopper", "hourglass"))]
-pub use vessel::{Vessel, VesselError};
+pub use vessel::Vessel;
 
 pub use crate::wall::FirstTouch;
 

@@ -16,9 +16,12 @@
 //! [`laws`] for a check of your own motion.
 
 mod bi_parabolic;
+mod finite;
 mod first_touch;
 mod fixed;
 mod forward;
+#[cfg(feature = "serde")]
+mod known;
 pub mod laws;
 mod mirrored;
 mod motion;
@@ -28,8 +31,10 @@ mod sinusoidal;
 mod starting_at;
 mod stroke;
 mod triangular;
+mod violation;
 
 pub use bi_parabolic::BiParabolic;
+pub use finite::check_finite;
 pub use first_touch::{Approach, FirstTouch, first_touch};
 pub use fixed::Fixed;
 pub(crate) use motion::Motion;
@@ -37,6 +42,7 @@ pub use sawtooth::Sawtooth;
 pub use sinusoidal::Sinusoidal;
 pub use starting_at::StartingAt;
 pub use triangular::Triangular;
+pub use violation::Violation;
 
 use crate::Fingerprint;
 

@@ -11,9 +11,9 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use super::brick::finite_point;
 use super::conduct::Conduct;
 use super::plane::Plane;
+use super::vector::finite_point;
 use super::{Boundary, Domain, FirstTouch, Region, Surface, Thermal, Touch};
 use crate::collision::CollisionRule;
 use crate::quantity::positive;
@@ -135,7 +135,7 @@ impl Container {
     ///
     /// # Errors
     /// If the container has no such wall, or the motion gives numbers that are not finite at one of the
-    /// phases that [`laws::check_finite`](crate::wall::laws::check_finite) looks at.
+    /// phases that [`check_finite`](crate::wall::check_finite) looks at.
     pub fn with_motion(
         mut self,
         wall: Wall,

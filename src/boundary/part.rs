@@ -11,10 +11,10 @@ pub(super) use travel::Travel;
 
 use glam::DVec2;
 
-use super::brick::{Brick, Nearest, finite_point, unit};
+use super::brick::{Brick, Nearest};
 use super::conduct::Conduct;
-use super::vessel::VesselError;
-use super::{Surface, Thermal};
+use super::vector::{finite_point, unit};
+use super::{Surface, Thermal, VesselError};
 use crate::collision::CollisionRule;
 use crate::quantity::{accept, finite};
 use crate::wall::{Motion, WallMotion};
@@ -99,7 +99,7 @@ impl Part {
     ///
     /// # Errors
     /// If the direction has no length, or the motion gives numbers that are not finite at one of the phases
-    /// that [`laws::check_finite`](crate::wall::laws::check_finite) looks at. Also if the motion jumps, as a
+    /// that [`check_finite`](crate::wall::check_finite) looks at. Also if the motion jumps, as a
     /// [`Sawtooth`](crate::wall::Sawtooth) does, and disks are free on a side of the part toward which it
     /// would jump.
     pub fn with_motion(
@@ -186,7 +186,7 @@ impl Part {
         for brick in &mut self.bricks {
             *brick = brick.rotated(about, angle)?;
         }
-        let turn = super::brick::direction(angle);
+        let turn = super::vector::direction(angle);
         match &mut self.travel {
             Travel::Along { direction, .. } => *direction = unit(turn.rotate(*direction))?,
             Travel::Turning { about: pivot, .. } | Travel::Spinning { about: pivot, .. } => {

@@ -1,14 +1,11 @@
 //! Vessels of any shape: named parts in a container.
 
-mod error;
 mod index;
 mod outline;
 mod overlap;
 mod search;
 #[cfg(feature = "serde")]
 mod serialized;
-
-pub use error::VesselError;
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -17,7 +14,7 @@ use glam::DVec2;
 
 use super::brick::Brick;
 use super::part::{Part, Travel};
-use super::{Boundary, Container, Domain, FirstTouch, Region, Surface, Touch};
+use super::{Boundary, Container, Domain, FirstTouch, Region, Surface, Touch, VesselError};
 use crate::{Fingerprint, Flight};
 use index::Index;
 

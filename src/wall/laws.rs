@@ -1,13 +1,10 @@
 //! Checks of a wall motion's contract, for motions of your own.
 //!
-//! [`check`] tests the whole contract between two phases. [`check_finite`] tests only that all answers are
-//! finite and that pieces advance; a container does this with every motion that it is given.
+//! [`check`] tests the whole contract between two phases. [`check_finite`](super::check_finite) tests only that
+//! all answers are finite and that pieces advance; a container does this with every motion that it is given.
 
-mod violation;
-
-pub use violation::Violation;
-
-use super::{AccelerationBounds, WallMotion, WallState};
+use super::finite::{check_constants, finite_bounds, finite_state, row_of_pieces};
+use super::{AccelerationBounds, Violation, WallMotion, WallState};
 
 /// Number of samples in a piece.
 const SAMPLES: u32 = 512;
@@ -23,12 +20,6 @@ const LAST: f64 = 1.0 / (1u64 << 20) as f64;
 
 /// Length below which a piece may be an artifact of rounding, relative to its phase and the period.
 const SHORT: f64 = 1e-9;
-
-/// Number of pieces in a row that together must advance by more than rounding.
-const PIECES_IN_A_ROW: u32 = 8;
-
-/// Phases at which a motion without a period is tested.
-const PROBES: [f64; 9] = [0.0, 1e-3, 0.1, 1.0, 10.0, 1e2, 1e3, 1e4, 1e6];
 
 /// Checks that a motion keeps its contract between two phases.
 ///
@@ -80,99 +71,6 @@ pub fn check<M: WallMotion + ?Sized>(motion: &M, from: f64, to: f64) -> Result<(
         phase = until;
     }
     Err(Violation::ShortPieces { phase: from, until: phase, pieces: MOST_PIECES })
-}
-
-/// Checks that a motion gives finite numbers and that its pieces advance.
-///
-/// Every run depends on both.
-///
-/// The check looks at phases in the first period, or between 0 and a million for a motion without a period.
-///
-/// # Errors
-/// The first violation that the check finds.
-///
-/// ```
-/// use granular_edmd::wall::{AccelerationBounds, Fixed, WallMotion, WallState, laws};
-///
-/// /// A motion that divides zero by zero.
-/// struct Torn;
-///
-/// impl WallMotion for Torn {
-///     fn state(&self, phase: f64) -> WallState {
-///         WallState::new(phase.sin() / phase, 0.0)
-///     }
-///     fn acceleration(&self, _: f64) -> AccelerationBounds {
-///         AccelerationBounds::new(f64::INFINITY, -1.0, 1.0)
-///     }
-///     fn reach(&self) -> (f64, f64) {
-///         (-1.0, 1.0)
-///     }
-/// }
-///
-/// assert_eq!(laws::check_finite(&Fixed), Ok(()));
-/// assert_eq!(laws::check_finite(&Torn).unwrap_err().to_string(), "at phase 0 its displacement is NaN");
-/// ```
-pub fn check_finite<M: WallMotion + ?Sized>(motion: &M) -> Result<(), Violation> {
-    check_constants(motion)?;
-    match motion.period() {
-        Some(period) => (0..64).try_for_each(|k| row_of_pieces(motion, period * f64::from(k) / 64.0)),
-        None => PROBES.iter().try_for_each(|&phase| row_of_pieces(motion, phase)),
-    }
-}
-
-/// Checks the reach and the period, and returns the reach.
-fn check_constants<M: WallMotion + ?Sized>(motion: &M) -> Result<(f64, f64), Violation> {
-    let (low, high) = motion.reach();
-    if !(low.is_finite() && high.is_finite() && low <= high) {
-        return Err(Violation::Reach { low, high });
-    }
-    match motion.period() {
-        Some(period) if !(period.is_finite() && period > 0.0) => Err(Violation::PeriodValue { period }),
-        _ => Ok((low, high)),
-    }
-}
-
-/// Follows some pieces from this phase on, and also checks the middle of each.
-fn row_of_pieces<M: WallMotion + ?Sized>(motion: &M, start: f64) -> Result<(), Violation> {
-    let mut phase = start;
-    for _ in 0..PIECES_IN_A_ROW {
-        finite_state(motion, phase)?;
-        let until = finite_bounds(motion, phase)?.until;
-        if until == f64::INFINITY {
-            return Ok(());
-        }
-        finite_state(motion, phase + 0.5 * (until - phase))?;
-        phase = until;
-    }
-    // The row must advance by more than two floating-point numbers for each piece. No search can follow
-    // shorter pieces.
-    let least = (0..2 * PIECES_IN_A_ROW).fold(start, |phase, _| phase.next_up());
-    if phase <= least {
-        return Err(Violation::ShortPieces { phase: start, until: phase, pieces: PIECES_IN_A_ROW });
-    }
-    Ok(())
-}
-
-fn finite_state<M: WallMotion + ?Sized>(motion: &M, phase: f64) -> Result<WallState, Violation> {
-    let state = motion.state(phase);
-    finite("displacement", state.displacement, phase)?;
-    finite("velocity", state.velocity, phase)?;
-    Ok(state)
-}
-
-/// Returns the bounds at this phase, if they are finite, in order, and hold for some time.
-fn finite_bounds<M: WallMotion + ?Sized>(motion: &M, phase: f64) -> Result<AccelerationBounds, Violation> {
-    let bounds = motion.acceleration(phase);
-    finite("lower bound of the acceleration", bounds.min, phase)?;
-    finite("upper bound of the acceleration", bounds.max, phase)?;
-    if bounds.min > bounds.max {
-        return Err(Violation::Bounds { phase, min: bounds.min, max: bounds.max });
-    }
-    if bounds.until > phase { Ok(bounds) } else { Err(Violation::PieceEnd { phase, until: bounds.until }) }
-}
-
-fn finite(quantity: &'static str, value: f64, phase: f64) -> Result<(), Violation> {
-    if value.is_finite() { Ok(()) } else { Err(Violation::NotFinite { quantity, phase, value }) }
 }
 
 /// A motion and its reach, under the check.

@@ -4,9 +4,10 @@
 use std::error::Error;
 
 use granular_edmd::boundary::{Container, Wall, WallError};
-use granular_edmd::wall::laws::{Violation, check, check_finite};
+use granular_edmd::wall::laws::check;
 use granular_edmd::wall::{
-    AccelerationBounds, BiParabolic, Fixed, Sinusoidal, StartingAt, WallMotion, WallState,
+    AccelerationBounds, BiParabolic, Fixed, Sinusoidal, StartingAt, Violation, WallMotion, WallState,
+    check_finite,
 };
 
 const AMPLITUDE: f64 = 0.1;

@@ -5,8 +5,9 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 
 use super::path::{Beside, Path};
-use super::{MARGIN, Side, Sight, direction};
+use super::{MARGIN, Side, Sight};
 use crate::boundary::Region;
+use crate::boundary::vector::direction;
 
 /// A circle or a part of it. It leads counterclockwise, so its left side is inside. A point is a circle of
 /// radius 0.

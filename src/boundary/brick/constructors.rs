@@ -4,8 +4,9 @@ use glam::DVec2;
 
 use super::arc::{Arc, Sector};
 use super::segment::Segment;
-use super::{Brick, Free, Nearest, Shape, direction, finite_point, unit};
-use crate::boundary::vessel::VesselError;
+use super::{Brick, Free, Nearest, Shape};
+use crate::boundary::VesselError;
+use crate::boundary::vector::{direction, finite_point, unit};
 use crate::quantity::{accept, finite, positive};
 
 impl Brick {

@@ -5,8 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::arc::{Arc, Sector};
 use super::segment::Segment;
-use super::{Brick, Free, Shape, finite_point, unit_vector};
-use crate::boundary::vessel::VesselError;
+use super::{Brick, Free, Shape};
+use crate::boundary::VesselError;
+use crate::boundary::vector::{finite_point, unit_vector};
 use crate::quantity::accept;
 
 /// A brick as it stands in a file.

@@ -5,7 +5,7 @@ use std::fmt;
 use thiserror::Error;
 
 use crate::ParameterError;
-use crate::wall::laws::Violation;
+use crate::wall::Violation;
 
 /// A wall of a [`Container`](super::Container).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

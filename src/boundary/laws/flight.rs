@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::Violation;
 use super::trial::Trial;
+use super::violation::Violation;
 use crate::Flight;
 use crate::boundary::{Boundary, Surface, Touch};
 
@@ -37,8 +37,26 @@ struct Meeting {
     is_grazing: bool,
 }
 
+/// Checks consecutive flights of a disk. Each wall that the disk touches turns it back.
+pub(super) fn check_flights<B: Boundary + ?Sized>(
+    trial: &mut Trial<'_, B>,
+    first: Flight,
+    flights: usize,
+) -> Result<(), Violation> {
+    let mut flight = first;
+    for _ in 0..flights {
+        let touched = check_flight(trial, &flight)?;
+        trial.check_constants()?;
+        match touched {
+            Some(next) => flight = next,
+            None => break,
+        }
+    }
+    Ok(())
+}
+
 /// Checks a flight, and returns the next one, which begins where a wall turned this one back.
-pub(super) fn check_flight<B: Boundary + ?Sized>(
+fn check_flight<B: Boundary + ?Sized>(
     trial: &mut Trial<'_, B>,
     flight: &Flight,
 ) -> Result<Option<Flight>, Violation> {

@@ -2,8 +2,7 @@
 
 use glam::DVec2;
 
-use super::Violation;
-use super::flight::check_flight;
+use super::violation::Violation;
 use crate::Flight;
 use crate::boundary::{Boundary, Domain, FirstTouch, Region, Touch};
 
@@ -101,23 +100,8 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
         self.boundary.overlap(place, self.radius + more, time)
     }
 
-    /// Checks consecutive flights of a disk. Each wall that the disk touches turns it back.
-    pub(super) fn run(&mut self, origin: f64, first: Flight, flights: usize) -> Result<(), Violation> {
-        self.set_origin(origin);
-        let mut flight = first;
-        for _ in 0..flights {
-            let touched = check_flight(self, &flight)?;
-            self.check_constants()?;
-            match touched {
-                Some(next) => flight = next,
-                None => return Ok(()),
-            }
-        }
-        Ok(())
-    }
-
     /// Checks that the domain and the number of walls have not changed.
-    fn check_constants(&self) -> Result<(), Violation> {
+    pub(super) fn check_constants(&self) -> Result<(), Violation> {
         let (now, walls) = (self.boundary.domain(), self.boundary.wall_count());
         if now != self.domain {
             return Err(Violation::DomainChanged { before: self.domain, now });

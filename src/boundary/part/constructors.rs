@@ -6,9 +6,9 @@ use glam::DVec2;
 
 use super::{Part, Travel, corners, polygon};
 use crate::Kind;
+use crate::boundary::VesselError;
 use crate::boundary::brick::Brick;
 use crate::boundary::conduct::Conduct;
-use crate::boundary::vessel::VesselError;
 
 impl Part {
     /// Creates a part of these bricks, and adds points at the ends that disks can touch.

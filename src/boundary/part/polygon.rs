@@ -2,8 +2,9 @@
 
 use glam::DVec2;
 
-use crate::boundary::brick::{Brick, finite_point};
-use crate::boundary::vessel::VesselError;
+use crate::boundary::VesselError;
+use crate::boundary::brick::Brick;
+use crate::boundary::vector::finite_point;
 
 /// Returns the sides of a polygon with the disks inside or outside, each from one point to the next.
 pub(super) fn sides(mut points: Vec<DVec2>, inside: bool) -> Result<Vec<Brick>, VesselError> {

@@ -4,9 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::{Part, Travel};
 use crate::Kind;
-use crate::boundary::brick::{Brick, finite_point, unit_vector};
+use crate::boundary::VesselError;
+use crate::boundary::brick::Brick;
 use crate::boundary::conduct::Conduct;
-use crate::boundary::vessel::VesselError;
+use crate::boundary::vector::{finite_point, unit_vector};
 use crate::quantity::finite;
 
 /// A part as files hold it.

@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 
 use crate::boundary::Region;
-use crate::boundary::brick::{Brick, Path, direction};
+use crate::boundary::brick::{Brick, Path};
+use crate::boundary::vector::direction;
 use crate::wall::Motion;
 use crate::{Fingerprint, Flight};
 

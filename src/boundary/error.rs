@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::ParameterError;
 use crate::error::Rounded;
-use crate::wall::laws::Violation;
+use crate::wall::Violation;
 
 /// An error: a vessel cannot be built or changed in this way.
 ///

@@ -1,0 +1,105 @@
+//! The gate that every motion passes before a wall takes it: finite answers, and pieces that advance.
+
+use super::{AccelerationBounds, Violation, WallMotion, WallState};
+
+/// Number of pieces in a row that together must advance by more than rounding.
+const PIECES_IN_A_ROW: u32 = 8;
+
+/// Phases at which a motion without a period is tested.
+const PROBES: [f64; 9] = [0.0, 1e-3, 0.1, 1.0, 10.0, 1e2, 1e3, 1e4, 1e6];
+
+/// Checks that a motion gives finite numbers and that its pieces advance.
+///
+/// Every run depends on both.
+///
+/// The check looks at phases in the first period, or between 0 and a million for a motion without a period.
+///
+/// # Errors
+/// The first violation that the check finds.
+///
+/// ```
+/// use granular_edmd::wall::{AccelerationBounds, Fixed, WallMotion, WallState, check_finite};
+///
+/// /// A motion that divides zero by zero.
+/// struct Torn;
+///
+/// impl WallMotion for Torn {
+///     fn state(&self, phase: f64) -> WallState {
+///         WallState::new(phase.sin() / phase, 0.0)
+///     }
+///     fn acceleration(&self, _: f64) -> AccelerationBounds {
+///         AccelerationBounds::new(f64::INFINITY, -1.0, 1.0)
+///     }
+///     fn reach(&self) -> (f64, f64) {
+///         (-1.0, 1.0)
+///     }
+/// }
+///
+/// assert_eq!(check_finite(&Fixed), Ok(()));
+/// assert_eq!(check_finite(&Torn).unwrap_err().to_string(), "at phase 0 its displacement is NaN");
+/// ```
+pub fn check_finite<M: WallMotion + ?Sized>(motion: &M) -> Result<(), Violation> {
+    check_constants(motion)?;
+    match motion.period() {
+        Some(period) => (0..64).try_for_each(|k| row_of_pieces(motion, period * f64::from(k) / 64.0)),
+        None => PROBES.iter().try_for_each(|&phase| row_of_pieces(motion, phase)),
+    }
+}
+
+/// Checks the reach and the period, and returns the reach.
+pub(super) fn check_constants<M: WallMotion + ?Sized>(motion: &M) -> Result<(f64, f64), Violation> {
+    let (low, high) = motion.reach();
+    if !(low.is_finite() && high.is_finite() && low <= high) {
+        return Err(Violation::Reach { low, high });
+    }
+    match motion.period() {
+        Some(period) if !(period.is_finite() && period > 0.0) => Err(Violation::PeriodValue { period }),
+        _ => Ok((low, high)),
+    }
+}
+
+/// Follows some pieces from this phase on, and also checks the middle of each.
+pub(super) fn row_of_pieces<M: WallMotion + ?Sized>(motion: &M, start: f64) -> Result<(), Violation> {
+    let mut phase = start;
+    for _ in 0..PIECES_IN_A_ROW {
+        finite_state(motion, phase)?;
+        let until = finite_bounds(motion, phase)?.until;
+        if until == f64::INFINITY {
+            return Ok(());
+        }
+        finite_state(motion, phase + 0.5 * (until - phase))?;
+        phase = until;
+    }
+    // The row must advance by more than two floating-point numbers for each piece. No search can follow
+    // shorter pieces.
+    let least = (0..2 * PIECES_IN_A_ROW).fold(start, |phase, _| phase.next_up());
+    if phase <= least {
+        return Err(Violation::ShortPieces { phase: start, until: phase, pieces: PIECES_IN_A_ROW });
+    }
+    Ok(())
+}
+
+pub(super) fn finite_state<M: WallMotion + ?Sized>(motion: &M, phase: f64) -> Result<WallState, Violation> {
+    let state = motion.state(phase);
+    finite("displacement", state.displacement, phase)?;
+    finite("velocity", state.velocity, phase)?;
+    Ok(state)
+}
+
+/// Returns the bounds at this phase, if they are finite, in order, and hold for some time.
+pub(super) fn finite_bounds<M: WallMotion + ?Sized>(
+    motion: &M,
+    phase: f64,
+) -> Result<AccelerationBounds, Violation> {
+    let bounds = motion.acceleration(phase);
+    finite("lower bound of the acceleration", bounds.min, phase)?;
+    finite("upper bound of the acceleration", bounds.max, phase)?;
+    if bounds.min > bounds.max {
+        return Err(Violation::Bounds { phase, min: bounds.min, max: bounds.max });
+    }
+    if bounds.until > phase { Ok(bounds) } else { Err(Violation::PieceEnd { phase, until: bounds.until }) }
+}
+
+fn finite(quantity: &'static str, value: f64, phase: f64) -> Result<(), Violation> {
+    if value.is_finite() { Ok(()) } else { Err(Violation::NotFinite { quantity, phase, value }) }
+}
