@@ -4,6 +4,7 @@
 mod container;
 mod contract;
 mod fast_parts;
+mod files;
 mod fingerprints;
 mod names;
 mod obstacles;
