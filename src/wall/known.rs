@@ -65,7 +65,9 @@ macro_rules! known {
                         return Some((Self::$motion(*late.motion()), late.start()));
                     }
                 )*
-                motion.is::<Fixed>().then_some((Self::Fixed, 0.0))
+                let late = motion.downcast_ref().map(StartingAt::<Fixed>::start);
+                let start = late.or_else(|| motion.is::<Fixed>().then_some(0.0))?;
+                Some((Self::Fixed, start))
             }
 
             fn starting_at(self, start: f64) -> Result<Shared, String> {

@@ -1,12 +1,7 @@
-//! Walls in files: every motion and every rule of the crate goes round, in whatever it stands.
+//! Walls in files: every motion of the crate goes round.
 #![cfg(feature = "serde")]
 
-use granular_edmd::Kind;
 use granular_edmd::boundary::{Boundary, Container, Wall};
-use granular_edmd::collision::{
-    CollisionRule, ContactDuration, Elastic, ElasticBelow, Frictional, LeastRebound, Rough, RulesByKind,
-    Smooth, SpeedDependent,
-};
 use granular_edmd::wall::{BiParabolic, Fixed, Sawtooth, Sinusoidal, StartingAt, Triangular, WallMotion};
 
 fn closed() -> Container {
@@ -44,26 +39,4 @@ fn every_motion_goes_round() {
     let types = types.filter(|name| name.starts_with(char::is_uppercase) && *name != "Violation");
     assert_eq!(types.collect::<Vec<_>>(), tried);
     goes_round(&closed().shaken_sideways(Sinusoidal::new(0.1, 3.0).unwrap()).unwrap(), "shaken");
-}
-
-/// The rules alone, in a remedy, in two, and in a table by kinds.
-#[test]
-fn every_rule_goes_round() {
-    fn ruled<R: CollisionRule + Clone + Send + Sync + 'static>(name: &str, rule: R) {
-        let on_floor = |rule: &dyn Fn(Container) -> Container| goes_round(&rule(closed()), name);
-        let remedy = || ContactDuration::new(rule.clone(), 1e-3).unwrap();
-        let table = || RulesByKind::new(rule.clone()).with(Kind::new(1), Kind::WALL, rule.clone());
-        on_floor(&|container| container.with_rule(Wall::Floor, rule.clone()).unwrap());
-        on_floor(&|container| container.with_rule(Wall::Floor, remedy()).unwrap());
-        on_floor(&|container| container.with_rule(Wall::Floor, table()).unwrap());
-        let nested = || LeastRebound::new(remedy(), 0.1).unwrap();
-        on_floor(&|container| container.with_rule(Wall::Floor, nested()).unwrap());
-        let around = || ElasticBelow::new(table(), 0.1).unwrap();
-        on_floor(&|container| container.with_rule(Wall::Floor, around()).unwrap());
-    }
-    ruled("Elastic", Elastic);
-    ruled("Smooth", Smooth::from_inelasticity(0.1).unwrap());
-    ruled("Rough", Rough::from_inelasticity(0.1, 0.2).unwrap());
-    ruled("Frictional", Frictional::from_inelasticity(0.1, 0.1, 0.3).unwrap());
-    ruled("SpeedDependent", SpeedDependent::from_restitution(0.7, 1.0).unwrap());
 }
