@@ -4,8 +4,8 @@
 //! scheduler, an observable or an observer of your own.
 
 pub use crate::boundary::{
-    Boundary, Brick, Container, Domain, Obstacles, Part, Region, Response, Surface, Thermal, Touch, Vessel,
-    Wall,
+    Boundary, Brick, Container, Domain, FirstTouch, Obstacles, Part, Region, Response, Surface, Thermal,
+    Touch, Vessel, Wall,
 };
 pub use crate::collision::{
     CollisionRule, Contact, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, Impulse,

@@ -140,7 +140,7 @@ pub fn first_touch<M: WallMotion + ?Sized>(motion: &M, approach: &Approach, unti
         return touch_at(touch);
     }
     for _ in 0..MOST_STEPS {
-        // The negation is also true for a time that is not a number.
+        // A time that is not a number is not in time either.
         if !is_in_time(time) {
             return if time.is_nan() { FirstTouch::NotBefore(approach.time) } else { FirstTouch::NONE };
         }

@@ -85,8 +85,7 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
                 FirstTouch::NotBefore(open) if open >= until => return Ok(None),
                 FirstTouch::NotBefore(open) => open,
             };
-            // The negation is also true for a time that is not a number.
-            if !(open > rest.time()) {
+            if open.is_nan() || open <= rest.time() {
                 break;
             }
             let (place, velocity) = (flight.position(open), flight.velocity(open));
