@@ -1,7 +1,9 @@
 //! What the engine notices: walls that are not where they say, events that are lost, walls that jump. A run
 //! that is wrong does not end as if it were right.
 
-use granular_edmd::boundary::{Boundary, Container, Domain, FirstTouch, Part, Region, Surface, Touch, Vessel, Wall};
+use granular_edmd::boundary::{
+    Boundary, Container, Domain, FirstTouch, Part, Region, Surface, Touch, Vessel, Wall,
+};
 use granular_edmd::collision::{ContactDuration, Elastic, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::Partner;
@@ -60,7 +62,9 @@ impl Boundary for Faulty {
                 let other = Flight::new(start, at, velocity, pull, flight.radius() - depth);
                 self.honest.first_touch(&other, until)
             }
-            Fault::NoFloor => self.honest.first_touch(flight, until).touch().filter(|touch| touch.wall != 0).into(),
+            Fault::NoFloor => {
+                self.honest.first_touch(flight, until).touch().filter(|touch| touch.wall != 0).into()
+            }
             Fault::Blind => self.honest.first_touch(flight, until),
         }
     }
