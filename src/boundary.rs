@@ -220,9 +220,9 @@ pub trait Boundary {
     /// If the disk already touches a wall, that touch is found at once while the disk approaches the wall,
     /// and never while the disk leaves it.
     ///
-    /// An `Option<Touch>` becomes the answer by `into`. A search with many steps may answer with the time up to
-    /// which it has found no touch ([`FirstTouch::NotBefore`]); the engine asks again at that time. So a run can
-    /// look at its limits between two parts of a long search.
+    /// An `Option<Touch>` becomes the answer by `into`. A search with many steps may answer with the time up
+    /// to which it has found no touch ([`FirstTouch::NotBefore`]); the engine asks again at that time. So a
+    /// run can look at its limits between two parts of a long search.
     fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch>;
 
     /// Returns the surface that a disk at `position` touches at `time`.
@@ -245,8 +245,8 @@ pub trait Boundary {
 
     /// Returns a wall with a hollow that a disk of this radius fills, up to rounding, if there is one.
     ///
-    /// Rounding alone would decide whether such a disk gets into the hollow, and in which direction the wall then
-    /// pushes it. The engine refuses such disks.
+    /// Rounding alone would decide whether such a disk gets into the hollow, and in which direction the wall
+    /// then pushes it. The engine refuses such disks.
     fn tight_fit(&self, radius: f64) -> Option<usize> {
         let _ = radius;
         None

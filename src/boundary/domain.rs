@@ -84,8 +84,8 @@ impl Domain {
 
     /// Returns the displacements of those periodic images of another rectangle that come near this one.
     ///
-    /// An engine's domain is longer than four diameters of a disk where it is periodic. So a quarter of a period
-    /// is more than the radius by which a disk inside reaches beyond the domain.
+    /// An engine's domain is longer than four diameters of a disk where it is periodic. So a quarter of a
+    /// period is more than the radius by which a disk inside reaches beyond the domain.
     pub(crate) fn images_of(&self, low: DVec2, high: DVec2) -> impl Iterator<Item = DVec2> + use<> {
         let periods = self.periods();
         let columns = numbers(periods.x, self.left - high.x, self.right - low.x);
@@ -137,8 +137,8 @@ impl Domain {
     }
 }
 
-/// Returns the whole numbers of periods by which a thing is moved to a place from `low` to `high`, or a quarter
-/// of a period beyond. Callers refuse things that would need many more.
+/// Returns the whole numbers of periods by which a thing is moved to a place from `low` to `high`, or a
+/// quarter of a period beyond. Callers refuse things that would need many more.
 fn numbers(period: f64, low: f64, high: f64) -> impl Iterator<Item = f64> + Clone {
     const MOST: f64 = 1e4;
     let (first, last) = if period > 0.0 {

@@ -24,7 +24,8 @@ const MOST_WALLS: usize = 1 << 16;
 /// Largest number of periods that a part may extend over. Each brick has an image for each of them.
 const MOST_PERIODS: f64 = 64.0;
 
-/// Least stroke of a part, relative to its coordinates. Places of a part with a smaller one are lost in rounding.
+/// Least stroke of a part, relative to its coordinates. Places of a part with a smaller one are lost in
+/// rounding.
 const LEAST_STROKE: f64 = 4096.0 * f64::EPSILON;
 
 /// Relative difference of radii below which a disk counts as large as a hollow.
@@ -34,8 +35,8 @@ const TIGHT: f64 = 1e-9;
 ///
 /// A disk must be free of the container's walls and of each part. So two blocks make a hopper, and a polygon
 /// can have pegs in it. Parts may overlap, and may reach beyond the container. Across periodic sides they are
-/// repeated: a part that reaches beyond one side comes in again at the other, however far it reaches. They are added, replaced and
-/// removed by name, also between runs
+/// repeated: a part that reaches beyond one side comes in again at the other, however far it reaches. They
+/// are added, replaced and removed by name, also between runs
 /// ([`Simulation::set_boundary`](crate::simulation::Simulation::set_boundary)).
 ///
 /// Initial states keep clear of all parts, as these are at time 0. To pack disks densely among parts that
@@ -221,7 +222,8 @@ impl Vessel {
     /// Replaces the part of this name, and returns the old one.
     ///
     /// # Errors
-    /// If there is no part of this name, and the same as for [`put`](Self::put). The vessel then stays as it was.
+    /// If there is no part of this name, and the same as for [`put`](Self::put). The vessel then stays as it
+    /// was.
     pub fn replace(&mut self, name: &str, part: Part) -> Result<Part, VesselError> {
         let place = self.place_of(name)?;
         let placed = Placed::new(name.to_owned(), part);

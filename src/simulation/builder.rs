@@ -110,9 +110,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
     ///
     /// # Errors
     /// If gravity or the start time is not finite, or gravity is above 1e60 in magnitude, or a disk moves at
-    /// a speed below 1e-100. If there are too many disks or walls, or times at the start are too coarse for such fast disks. If the domain is not
-    /// finite (only its top may be infinite) or is too small for the disks, or a disk is outside, overlaps a
-    /// wall or another disk, or just fills a hollow of a wall; the error names the disk.
+    /// a speed below 1e-100. If there are too many disks or walls, or times at the start are too coarse for
+    /// such fast disks. If the domain is not finite (only its top may be infinite) or is too small for the
+    /// disks, or a disk is outside, overlaps a wall or another disk, or just fills a hollow of a wall; the
+    /// error names the disk.
     pub fn build(self) -> Result<Simulation<R, B, S>, BuildError> {
         bounded("gravity", self.gravity)?;
         finite("start time", self.start_time)?;

@@ -10,8 +10,8 @@ use crate::ParameterError;
 use crate::quantity::non_negative;
 
 /// Number of events between two looks at the wall clock and at the flag of another thread. They are so many
-/// that the looks cost next to nothing, and few enough that a limit is noticed at once, even if each event takes
-/// all the steps that a search for a moving wall may take.
+/// that the looks cost next to nothing, and few enough that a limit is noticed at once, even if each event
+/// takes all the steps that a search for a moving wall may take.
 const EVENTS_BETWEEN_LOOKS: u64 = 256;
 
 /// The end of a run, and the limits that may end it earlier: a number of collisions, a wall-clock time, a

@@ -10,8 +10,8 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 const LEAST_ROOM: f64 = 1e-3;
 
 /// Largest number of steps of a search. If a wall sweeps over its reach in each period, a search meets it
-/// within a few periods, each of which takes a few tens of steps. A search that has taken more gives its caller
-/// a chance to look at other things, and goes on from there later.
+/// within a few periods, each of which takes a few tens of steps. A search that has taken more gives its
+/// caller a chance to look at other things, and goes on from there later.
 const MOST_STEPS: u32 = 256;
 
 /// The answer of a search for the first touch: the touch, or how far the way is free.
@@ -31,8 +31,8 @@ pub enum FirstTouch<T> {
     /// The first touch.
     At(T),
     /// There is no touch before this time, and nothing is known about later ones. If this is the end of the
-    /// search, or infinite, the search has found no touch at all. If it is the start of the search, the search
-    /// cannot go on.
+    /// search, or infinite, the search has found no touch at all. If it is the start of the search, the
+    /// search cannot go on.
     NotBefore(f64),
 }
 
@@ -118,12 +118,12 @@ impl Approach {
 /// the wall never enters. The search then follows it from piece to piece.
 ///
 /// # Searches that do not come to an end
-/// A search invents no touch. It answers [`NotBefore`](FirstTouch::NotBefore) with the time up to which the gap
-/// is known to be open:
+/// A search invents no touch. It answers [`NotBefore`](FirstTouch::NotBefore) with the time up to which the
+/// gap is known to be open:
 /// - After 256 steps. The caller may take up the search from there.
 /// - Where floating-point times are too coarse to tell the pieces of the motion apart, where a piece ends
-///   before it begins, or where a number is not finite. A search that starts there gets no further. A run ends
-///   with an error at that time.
+///   before it begins, or where a number is not finite. A search that starts there gets no further. A run
+///   ends with an error at that time.
 ///
 /// ```
 /// use granular_edmd::wall::{Approach, FirstTouch, Fixed, first_touch};

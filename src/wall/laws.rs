@@ -1,7 +1,8 @@
 //! Checks of a wall motion's contract, for motions of your own.
 //!
-//! [`check`] tests the whole contract between two phases. [`check_finite`](super::check_finite) tests only that
-//! all answers are finite and that pieces advance; a container does this with every motion that it is given.
+//! [`check`] tests the whole contract between two phases. [`check_finite`](super::check_finite) tests only
+//! that all answers are finite and that pieces advance; a container does this with every motion that it is
+//! given.
 
 use super::finite::{check_constants, finite_bounds, finite_state, row_of_pieces};
 use super::{AccelerationBounds, Violation, WallMotion, WallState};

@@ -1,7 +1,7 @@
 //! Parts that move fast beside long flights: arms that turn, polygons that are shaken along any direction.
 //!
-//! The oracle is brute force. Every collision with a wall is at that wall, an elastic bounce in its frame, and
-//! between collisions no disk is ever in a wall, at times as dense as the motion needs.
+//! The oracle is brute force. Every collision with a wall is at that wall, an elastic bounce in its frame,
+//! and between collisions no disk is ever in a wall, at times as dense as the motion needs.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -41,8 +41,8 @@ fn an_arm_does_not_touch_what_it_does_not_reach() {
     }
 }
 
-/// A slow disk comes to an arm that turns a million times before: it touches where it gets to the circle of the
-/// arm's end, within a turn. One that passes by is never touched.
+/// A slow disk comes to an arm that turns a million times before: it touches where it gets to the circle of
+/// the arm's end, within a turn. One that passes by is never touched.
 #[test]
 fn an_arm_turns_a_million_times_before_it_touches() {
     let turn = std::f64::consts::TAU / 1e5;
@@ -90,8 +90,8 @@ fn rhombus(direction: DVec2, motion: impl WallMotion + Send + Sync + 'static) ->
     Simulation::builder(Elastic, vessel).disks((0..9).map(disk)).build().unwrap()
 }
 
-/// Runs, and checks every flight by brute force, with samples `dense` apart wherever a disk is near the walls.
-/// Returns the number of wall collisions.
+/// Runs, and checks every flight by brute force, with samples `dense` apart wherever a disk is near the
+/// walls. Returns the number of wall collisions.
 fn checked_run(mut run: Simulation<Elastic, Vessel>, end: f64, amplitude: f64, dense: f64) -> u64 {
     let mut vessel = run.boundary().clone();
     vessel.set_time_origin(0.0);

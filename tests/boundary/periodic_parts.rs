@@ -15,7 +15,8 @@ fn periodic() -> Vessel {
     Vessel::new(Container::closed(10.0, 40.0).unwrap().with_periodic_sides())
 }
 
-/// Counts the collisions of a disk that goes to and fro along a line, with a part in a container of period 10.
+/// Counts the collisions of a disk that goes to and fro along a line, with a part in a container of period
+/// 10.
 fn collisions(part: Part) -> u64 {
     let disk = Disk::new(point(2.0, 20.0), 0.5).unwrap().with_velocity(point(1.0, 0.0)).unwrap();
     let vessel = periodic().with("part", part).unwrap();

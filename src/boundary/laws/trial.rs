@@ -75,8 +75,8 @@ impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
         self.origin = origin;
     }
 
-    /// Returns the first touch of a flight. If the boundary answers that its search has not come to an end, this
-    /// asks again, as the engine does.
+    /// Returns the first touch of a flight. If the boundary answers that its search has not come to an end,
+    /// this asks again, as the engine does.
     pub(super) fn first_touch(&self, flight: &Flight, until: f64) -> Result<Option<Touch>, Violation> {
         let mut rest = *flight;
         for _ in 0..MOST_SEARCHES {

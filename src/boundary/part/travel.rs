@@ -156,8 +156,8 @@ impl Travel {
         if let Self::Along { motion, .. } = self { motion.reach().1 - motion.reach().0 } else { 0.0 }
     }
 
-    /// Returns how long it takes, at most `wait`, until a disk on this path in the frame at rest enters the strip
-    /// that a brick of the part sweeps: all places at which the disk touches the brick at some phase.
+    /// Returns how long it takes, at most `wait`, until a disk on this path in the frame at rest enters the
+    /// strip that a brick of the part sweeps: all places at which the disk touches the brick at some phase.
     pub(in crate::boundary) fn wait_to_enter_strip(
         &self,
         brick: &Brick,

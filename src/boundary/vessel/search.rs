@@ -9,14 +9,15 @@ use crate::boundary::brick::Path;
 use crate::boundary::part::Travel;
 use crate::boundary::{Boundary, FirstTouch, Surface, Touch};
 
-/// Largest number of steps of a search, for all moving bricks near a flight together. The last brick may take a
-/// round more. The engine reads the clock once in some hundred events, so a limit of its time is kept.
+/// Largest number of steps of a search, for all moving bricks near a flight together. The last brick may take
+/// a round more. The engine reads the clock once in some hundred events, so a limit of its time is kept.
 const MOST_STEPS: u32 = 256;
 
 /// Largest number of steps of a search for one brick, before the others have their turn.
 ///
-/// A brick that moves fast near the disk may take many steps, and never touch the disk because another one does
-/// so first. An arm that turns has such a brick at its back. The rounds keep it from taking all the steps.
+/// A brick that moves fast near the disk may take many steps, and never touch the disk because another one
+/// does so first. An arm that turns has such a brick at its back. The rounds keep it from taking all the
+/// steps.
 const STEPS_IN_A_ROUND: u32 = 16;
 
 /// Gap below which surfaces count as touching, relative to the lengths whose difference the gap is.
@@ -72,7 +73,8 @@ impl Vessel {
         Touch::new(time, entry.wall as usize + self.container.wall_count())
     }
 
-    /// Searches for the first touch of some moving bricks, in rounds, up to `until` or the touch of another wall.
+    /// Searches for the first touch of some moving bricks, in rounds, up to `until` or the touch of another
+    /// wall.
     fn search(
         &self,
         moving: &[Entry],
@@ -129,9 +131,9 @@ impl Vessel {
 /// no later than the true disk. The search advances to the touch of the growing disk, and starts again from
 /// there, until the gap is within rounding. It never steps over a touch.
 ///
-/// A fast part has many pieces of motion during a flight. But a disk can touch the part only in the strip that
-/// the part sweeps, and the part sweeps all of the strip within a period. So the search goes straight to the
-/// time at which the disk enters the strip, and is over a few pieces later.
+/// A fast part has many pieces of motion during a flight. But a disk can touch the part only in the strip
+/// that the part sweeps, and the part sweeps all of the strip within a period. So the search goes straight to
+/// the time at which the disk enters the strip, and is over a few pieces later.
 struct Search<'a> {
     wall: &'a Wall,
     placed: &'a Placed,
@@ -221,8 +223,8 @@ impl Search<'_> {
         Step::Open(time + open.max(time_for(&path, rounding)))
     }
 
-    /// Returns the first time, from this one on, at which the disk is so near that the part, wherever it is then,
-    /// may touch it with this brick. The result may be too early, but never too late.
+    /// Returns the first time, from this one on, at which the disk is so near that the part, wherever it is
+    /// then, may touch it with this brick. The result may be too early, but never too late.
     fn enters_strip(&self, time: f64) -> Option<f64> {
         let (place, velocity) = (self.flight.position(time), self.flight.velocity(time));
         let (travel, radius) = (self.placed.part.travel(), self.flight.radius());

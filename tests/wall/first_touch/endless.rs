@@ -33,7 +33,8 @@ fn approaches(start: f64) -> [Approach; 2] {
     [Approach::new(start, 0.5, 0.0, 0.0), Approach::new(start, 0.5, -0.1, 0.0)]
 }
 
-/// Checks that the search ends, invents no touch, and does not let the surface that sinks past the wall unnoticed.
+/// Checks that the search ends, invents no touch, and does not let the surface that sinks past the wall
+/// unnoticed.
 fn is_stopped(liar: Liar) {
     for start in [0.0, 1.0, 1e9, -3.0] {
         let [hovering, sinking] = approaches(start);
@@ -80,8 +81,8 @@ fn a_reach_that_is_no_number_stops_the_search() {
     }
 }
 
-/// A disk must not fly on through a wall that cannot say where it is. The search gets no further, and a run ends
-/// with an error.
+/// A disk must not fly on through a wall that cannot say where it is. The search gets no further, and a run
+/// ends with an error.
 #[test]
 fn a_state_that_is_no_number_stops_the_search() {
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
