@@ -1,6 +1,6 @@
 //! Many processes on one folder: nothing is done twice or mixed, and the bytes are those of one process.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Child;
@@ -142,11 +142,26 @@ fn killed(round: u64) -> BTreeMap<PathBuf, Vec<u8>> {
     contents(&scratch.0)
 }
 
+fn assert_same_bytes(round: u64, found: &BTreeMap<PathBuf, Vec<u8>>, expected: &BTreeMap<PathBuf, Vec<u8>>) {
+    let places: BTreeSet<&PathBuf> = found.keys().chain(expected.keys()).collect();
+    let differ: Vec<_> =
+        places.into_iter().filter(|place| found.get(*place) != expected.get(*place)).collect();
+    let text = |files: &BTreeMap<PathBuf, Vec<u8>>| {
+        differ
+            .first()
+            .and_then(|place| files.get(*place))
+            .map(|bytes| String::from_utf8_lossy(bytes).into_owned())
+    };
+    assert!(differ.is_empty(), "round {round}: {differ:?}: {:?}, not {:?}", text(found), text(expected));
+}
+
 #[test]
 fn four_processes_killed_at_random_end_with_the_bytes_of_one() {
     let (folder, _) = done(&plan(1), "many-not-killed");
     let expected = contents(&folder.0);
-    assert!((0..20).all(|round| killed(round) == expected));
+    for round in 0..20 {
+        assert_same_bytes(round, &killed(round), &expected);
+    }
 }
 
 #[test]
@@ -154,7 +169,9 @@ fn four_processes_killed_at_random_end_with_the_bytes_of_one() {
 fn four_processes_killed_at_random_a_hundred_times_end_with_the_bytes_of_one() {
     let (folder, _) = done(&plan(1), "many-not-killed-often");
     let expected = contents(&folder.0);
-    assert!((100..200).all(|round| killed(round) == expected));
+    for round in 100..200 {
+        assert_same_bytes(round, &killed(round), &expected);
+    }
 }
 
 #[test]

@@ -23,6 +23,11 @@ pub(in crate::study) fn write(path: &Path, bytes: &[u8]) -> Result<(), StudyErro
 /// A link, unlike a rename, never takes the place of another file: one of two writers wins, also on a network
 /// file system.
 pub(in crate::study) fn publish(path: &Path, bytes: &[u8]) -> Result<bool, StudyError> {
+    // Without this look, a process that comes late and is killed here would leave its draft in a study that
+    // is complete, where nobody looks for drafts any more.
+    if path.exists() {
+        return Ok(false);
+    }
     let draft = path.with_file_name(unique_name());
     write(&draft, bytes)?;
     let published = match fs::hard_link(&draft, path) {
