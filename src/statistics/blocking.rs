@@ -132,7 +132,8 @@ pub(super) fn plateau(levels: &[BlockError], samples: u64) -> Option<(f64, f64)>
     let error = (1..known).find(is_plateau).map(|at| levels[at].error)?;
     // The largest error, not that of the plateau: what counts here is how long the correlation may be.
     let largest = levels.iter().map(|level| level.error).fold(levels[0].error, f64::max);
-    let independent = samples as f64 / growth(largest).powi(2);
+    let growth = growth(largest);
+    let independent = samples as f64 / (growth * growth);
     (independent >= FEWEST_INDEPENDENT).then(|| (error, error * (1.0 + EXCESS / independent)))
 }
 

@@ -77,7 +77,7 @@ impl Folder {
     }
 
     /// Returns the log of a ramp, whose lock is that of the ramp.
-    pub(super) fn log(&self, ramp: usize) -> PathBuf {
+    pub(super) fn log_of(&self, ramp: usize) -> PathBuf {
         self.ramp(ramp).join("log.jsonl")
     }
 
@@ -180,7 +180,7 @@ impl Folder {
     pub(super) fn take(&self, ramp: usize) -> Result<Option<(Lock, bool)>, StudyError> {
         let folder = self.ramp(ramp);
         let is_new = create(&folder)?;
-        let Some(lock) = Lock::try_take(&self.log(ramp))? else { return Ok(None) };
+        let Some(lock) = Lock::try_take(&self.log_of(ramp))? else { return Ok(None) };
         // Another process may have run the ramp since this one made its folder.
         let is_fresh = is_new && lock.is_fresh();
         if !is_fresh {
@@ -190,12 +190,12 @@ impl Folder {
     }
 
     pub(super) fn is_taken(&self, ramp: usize) -> bool {
-        Lock::is_taken(&self.log(ramp))
+        Lock::is_taken(&self.log_of(ramp))
     }
 
     /// Returns whether a process has ever begun a ramp.
     pub(super) fn is_begun(&self, ramp: usize) -> bool {
-        self.log(ramp).exists()
+        self.log_of(ramp).exists()
     }
 
     pub(super) fn is_done(&self, ramp: usize) -> bool {

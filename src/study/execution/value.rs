@@ -70,7 +70,7 @@ fn if_sound<T, E: Experiment>(
     match read {
         Err(StudyError::Damaged { path, reason }) => {
             shift.study.folder.mark_undone(ramp)?;
-            lock.log(&Object::default().text("damaged", &name(&path)).text("reason", &reason).line());
+            lock.append(&Object::default().text("damaged", &name(&path)).text("reason", &reason).line());
             shift.note_damaged(path);
             Ok(None)
         }
@@ -168,7 +168,7 @@ fn log<E: Experiment>(lock: &mut Lock, record: &Record<E>, started: Instant) {
     let line = record.outcome().reason().into_iter().fold(line, |line, reason| line.text("reason", reason));
     let line = line.with("collisions", record.counters().disk_collisions);
     let line = line.with("seconds", format_args!("{:.3}", started.elapsed().as_secs_f64()));
-    lock.log(&line.with("unix_time", unix_time).line());
+    lock.append(&line.with("unix_time", unix_time).line());
 }
 
 /// Returns the name of a file after the name of its folder.

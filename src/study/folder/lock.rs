@@ -52,7 +52,7 @@ impl Lock {
     ///
     /// If a kill or a full drive has cut the last line short, it is removed first, so that every line is
     /// whole. Only the holder of the lock writes, so appending is safe on network file systems, too.
-    pub(in crate::study) fn log(&mut self, line: &str) {
+    pub(in crate::study) fn append(&mut self, line: &str) {
         let _ = to_last_line_end(&mut self.0).and_then(|()| self.0.write_all(format!("{line}\n").as_bytes()));
     }
 }
@@ -95,7 +95,7 @@ mod tests {
             fs::write(&path, before).unwrap();
             let mut lock = Lock::try_take(&path).unwrap().unwrap();
             assert_eq!(lock.is_fresh(), before.is_empty());
-            lock.log("next");
+            lock.append("next");
             assert!(Lock::is_taken(&path));
             drop(lock);
             assert!(!Lock::is_taken(&path));
