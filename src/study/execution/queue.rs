@@ -20,6 +20,7 @@ impl Queue {
     }
 
     /// Returns the number of ramps that are left.
+    #[cfg(feature = "rayon")]
     pub(super) fn len(&self) -> usize {
         self.left().len()
     }
