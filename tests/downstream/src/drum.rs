@@ -2,7 +2,9 @@
 
 use std::borrow::Cow;
 
-use granular_edmd::boundary::{Boundary, Brick, Domain, FirstTouch, Region, Response, Surface, Touch, VesselError};
+use granular_edmd::boundary::{
+    Boundary, Brick, Domain, FirstTouch, Region, Response, Surface, Touch, VesselError,
+};
 use granular_edmd::collision::CollisionRule;
 use granular_edmd::glam::DVec2;
 use granular_edmd::{Fingerprint, Flight};
