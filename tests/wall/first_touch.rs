@@ -1,5 +1,6 @@
 //! The first touch of a disk with a moving wall, against fine sampling of the gap: none missed, none early.
 
+mod cost;
 mod endless;
 mod low_bounces;
 mod motions;
