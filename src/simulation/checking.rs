@@ -42,7 +42,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let gap = NEAR * radius;
         match self.boundary.overlap(position, radius + gap, self.clock.now) {
             Some((_, depth)) if depth - gap <= self.counters.max_wall_overlap => Ok(()),
-            Some((_, depth)) => self.note_overlap(disk, Partner::Wall(wall), depth - gap),
+            // The deepest wall need not be the one that was touched.
+            Some((deepest, depth)) => self.note_overlap(disk, Partner::Wall(deepest), depth - gap),
             None => self.check_gap(disk, wall, position),
         }
     }

@@ -2,7 +2,7 @@
 //! that is wrong does not end as if it were right.
 
 use granular_edmd::boundary::{
-    Boundary, Container, Domain, FirstTouch, Part, Region, Surface, Touch, Vessel, Wall,
+    Boundary, Brick, Container, Domain, FirstTouch, Part, Region, Surface, Touch, Vessel, Wall,
 };
 use granular_edmd::collision::{ContactDuration, Elastic, Smooth};
 use granular_edmd::glam::DVec2;
@@ -308,4 +308,31 @@ fn a_contact_duration_beyond_the_time_between_collisions_is_a_warning() {
         matches!(long[..], [Warning::MostlyContactDuration { elastic, collisions }] if elastic < collisions)
     );
     assert!(long[0].to_string().contains("longer than the time between collisions"), "{}", long[0]);
+}
+
+/// A gravity of −0 is a gravity of 0, however it is set.
+#[test]
+fn gravity_has_no_sign_where_there_is_none() {
+    let gas = gas(&walls(), 40);
+    let end = |gravity: f64| {
+        let mut run =
+            Simulation::builder(Elastic, walls()).disks(gas.clone()).gravity(gravity).build().unwrap();
+        run.run_until(60.0, &mut ()).unwrap();
+        run.set_gravity(gravity).unwrap();
+        run.run_until(120.0, &mut ()).unwrap();
+        (run.disks(), run.counters().clone())
+    };
+    assert_eq!(end(-0.0), end(0.0));
+}
+
+/// A disk that rolls over the open end of a bowl is behind it, and the error names the bowl, not the floor on
+/// which it lands.
+#[test]
+fn the_wall_that_a_disk_is_in_is_named_and_not_the_one_it_touches() {
+    let bowl = Part::new([Brick::arc(DVec2::new(10.0, 10.0), 8.0, 4.0, 5.0).unwrap()]).unwrap();
+    let vessel = Vessel::new(Container::closed(20.0, 20.0).unwrap()).with("bowl", bowl).unwrap();
+    let disk = Disk::new(DVec2::new(15.0, 8.0), 0.3).unwrap();
+    let mut run = Simulation::builder(Elastic, vessel).disks([disk]).gravity(1.0).build().unwrap();
+    let error = run.run_until(60.0, &mut ()).unwrap_err();
+    assert!(matches!(&error, RunError::FalseContact { wall: Some(name), .. } if name == "bowl"), "{error}");
 }

@@ -94,7 +94,7 @@ impl Bodies {
         let images = if has_passed { disks.iter().map(Disk::image).collect() } else { Vec::new() };
         let properties = Properties::of(disks);
         let typical_diameter = properties.typical_diameter();
-        Self { particles, spins, gravity, properties, images, typical_diameter }
+        Self { particles, spins, gravity: unsigned_zero(gravity), properties, images, typical_diameter }
     }
 
     /// Creates bodies as they were saved. Disks that are all alike have a single model.
@@ -111,7 +111,7 @@ impl Bodies {
         let particles = trajectories.iter().zip(forecasts).map(particle).collect();
         let properties = Properties::of(models);
         let typical_diameter = properties.typical_diameter();
-        Self { particles, spins, gravity, properties, images, typical_diameter }
+        Self { particles, spins, gravity: unsigned_zero(gravity), properties, images, typical_diameter }
     }
 
     /// Returns the images that [`Self::restored`] takes.
@@ -273,6 +273,12 @@ impl Bodies {
             particle.trajectory.velocity.y += gained;
             particle.trajectory.position.y -= 0.5 * gained * offset;
         }
-        self.gravity = gravity;
+        self.gravity = unsigned_zero(gravity);
     }
+}
+
+/// Returns the same number, with 0 for −0. The exit from a cell divides by gravity, and the sign of the
+/// infinity decides whether a disk that rises ever comes back.
+fn unsigned_zero(gravity: f64) -> f64 {
+    gravity + 0.0
 }
