@@ -74,7 +74,6 @@ impl Estimate {
 
     /// Returns the same error about another mean. The error of a ratio, for example, is that of its
     /// residuals.
-    #[cfg(feature = "serde")]
     pub(crate) fn about(self, mean: f64) -> Self {
         Self { mean, ..self }
     }

@@ -1,10 +1,10 @@
-//! Self-diffusion of elastic disks, against Enskog's theory.
+//! Self-diffusion, viscosities and thermal conductivity of elastic disks, against Enskog's theory.
 
 use std::f64::consts::PI;
 
 use granular_edmd::collision::Elastic;
 use granular_edmd::observable::{
-    MeanSquaredDisplacement, SampleTimes, Temperatures, TimeCorrelation, Velocities,
+    MeanSquaredDisplacement, SampleTimes, Temperatures, TimeCorrelation, TransportCoefficients, Velocities,
 };
 
 use crate::gas::{collision_rate, contact_value, periodic_gas};
@@ -51,5 +51,60 @@ fn velocities_forget_themselves_at_the_rate_of_collisions() -> Outcome {
     assert!(agrees("decay at first", decay, 0.1 * counted, 0.02));
     assert!(agrees("C after half of a mean free time", values[5] / values[0], (-0.5 * counted).exp(), 0.02));
     assert!(agrees("C after two mean free times", values[20] / values[0], (-2.0 * counted).exp(), 0.12));
+    Ok(())
+}
+
+/// Enskog's shear viscosity, bulk viscosity and thermal conductivity for disks of unit diameter, mass and
+/// temperature (Gass 1971).
+fn enskog(packing: f64) -> [f64; 3] {
+    let (chi, density) = (contact_value(packing), 2.0 * packing);
+    let viscosity = 1.022 / (2.0 * PI.sqrt());
+    let conductivity = 1.029 * 2.0 / PI.sqrt();
+    [
+        viscosity * (1.0 / chi + density + 0.8729 * chi * density * density),
+        viscosity * 1.246 * chi * density * density,
+        conductivity * (1.0 / chi + 1.5 * density + 0.8718 * chi * density * density),
+    ]
+}
+
+/// Tells whether the coefficients of a gas are those of Enskog, from slopes between 5 and 10 mean free times.
+fn transport_agrees(
+    packing: f64,
+    mean_free_times: f64,
+    tolerances: [f64; 3],
+) -> Result<bool, Box<dyn std::error::Error>> {
+    let mut gas = periodic_gas(500, packing, Elastic, 7)?;
+    let mean_free_time = 1.0 / collision_rate(packing);
+    let times = SampleTimes::every(0.5 * mean_free_time)?;
+    let mut transport = TransportCoefficients::new(20, times)?;
+    gas.run_until(gas.time() + mean_free_times * mean_free_time, &mut transport)?;
+    let thermal = transport.temperature().sqrt();
+    let [eta, zeta, lambda] = enskog(packing);
+    let measured = [
+        ("eta / eta_E", transport.shear_viscosity(), eta),
+        ("zeta / zeta_E", transport.bulk_viscosity(), zeta),
+        ("lambda / lambda_E", transport.thermal_conductivity(), lambda),
+    ];
+    let agree = measured.iter().zip(tolerances).map(|((name, estimate, enskog), tolerance)| {
+        let (ratio, error) =
+            (estimate.mean() / (enskog * thermal), estimate.standard_error() / (enskog * thermal));
+        println!("{name}, {packing}: {ratio:.4} ± {error:.4}");
+        agrees(&format!("{name}, {packing}"), ratio, 1.0, tolerance)
+    });
+    Ok(agree.fold(true, |all, this| all & this))
+}
+
+#[test]
+fn viscosities_and_conductivity_are_about_those_of_enskog() -> Outcome {
+    // Two components over 400 stretches of 10 mean free times know a mean square to 5 %. The tolerances are
+    // more than three times the standard errors.
+    assert!(transport_agrees(0.05, 4000.0, [0.2, 2.5, 0.25])?);
+    Ok(())
+}
+
+#[test]
+#[ignore = "some minutes"]
+fn long_viscosities_and_conductivity_are_those_of_enskog() -> Outcome {
+    assert!(transport_agrees(0.05, 200_000.0, [0.03, 0.3, 0.03])?);
     Ok(())
 }

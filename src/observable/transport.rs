@@ -1,0 +1,346 @@
+//! Transport coefficients, from the growth of Helfand's moments.
+
+use glam::DVec2;
+
+use super::lags::Lags;
+use super::stretch::Stretch;
+use super::{Collision, Moment, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
+use crate::boundary::Domain;
+use crate::quantity::accept;
+use crate::statistics::{BlockedMean, Estimate, RunningMean};
+use crate::{Disk, ParameterError};
+
+/// Rounding of a velocity, relative to the speed of sound, that many collisions may add up to.
+const ROUNDING: f64 = 1e-6;
+
+/// Number of moments: of shear, of compression and of heat. Each has two components.
+const MOMENTS: usize = 3;
+
+type Moments = [DVec2; MOMENTS];
+
+/// An observer of the viscosities and the thermal conductivity of an elastic gas in a periodic box
+/// (Helfand 1960; Alder, Gass and Wainwright 1970).
+///
+/// The moments are those of momentum and energy, with the collisional parts: in a collision, the momentum
+/// $`\vec\Delta`$ and the energy $`\Delta e`$ go over the vector $`\vec r`$ between the centers at once.
+///
+/// ```math
+/// W_{ab}(t) = \int_0^t \sum_i m_i v_{i,a} v_{i,b}\,dt' + \sum_{\rm collisions}\Delta_a\, r_b ,
+/// \qquad
+/// \vec Q(t) = \int_0^t \sum_i e_i \vec v_i\,dt' + \sum_{\rm collisions}\Delta e\,\vec r .
+/// ```
+///
+/// With the area $`A`$ and the temperature $`T`$, the coefficients are slopes over the second half of the
+/// lags, as in [`MeanSquaredDisplacement`](super::MeanSquaredDisplacement):
+///
+/// ```math
+/// \eta = \frac1{2AT}\frac{d}{dt}\langle W_{xy}^2\rangle, \qquad
+/// \zeta = \frac1{2AT}\frac{d}{dt}\big\langle\big(\tfrac12(W_{xx}+W_{yy})-pAt\big)^2\big\rangle, \qquad
+/// \lambda = \frac1{2AT^2}\frac{d}{dt}\langle Q_x^2\rangle .
+/// ```
+///
+/// Both independent shears and both directions of heat are averaged, and shear takes the symmetric part of
+/// $`W`$. Energy is that of translation and rotation, so smooth and perfectly rough disks are possible.
+/// Velocities are those about the center of mass. All integrals are exact; samples only set the lags.
+///
+/// Units: the viscosities are masses per time, the conductivity is a number per time (the Boltzmann constant
+/// is 1). In two dimensions the slopes grow slowly with the longest lag, so report it, and the number of
+/// disks. Choose lags from a few mean free times up to the time in which sound crosses the box.
+///
+/// A run ends with an error if the domain is not periodic in both directions, or if there is gravity. The
+/// first stretch, as long as the longest lag, only finds the pressure. A run that does not continue the
+/// previous one, and disks that changed between runs, begin anew: the measurements so far stay. The
+/// errors come from blocks of origins.
+///
+/// ```
+/// use granular_edmd::boundary::Container;
+/// use granular_edmd::collision::Elastic;
+/// use granular_edmd::observable::{SampleTimes, TransportCoefficients};
+/// use granular_edmd::{Simulation, initial};
+///
+/// // At a packing fraction of 0.05, Enskog's theory gives a viscosity of 0.298 for T = 1.
+/// let container = Container::periodic(40.0, 40.0)?;
+/// let disks = initial::random(&container, 102, 0.5, 40.0, 1)?;
+/// let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
+/// let mut transport = TransportCoefficients::new(20, SampleTimes::every(2.0)?)?;
+/// Simulation::builder(Elastic, container).disks(disks).build()?.run_until(4000.0, &mut transport)?;
+/// let viscosity = transport.shear_viscosity();
+/// assert!((viscosity.mean() - 0.298).abs() < 0.06, "{viscosity}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct TransportCoefficients {
+    stretch: Stretch,
+    domain: Option<Domain>,
+    /// The disks, as they fly since the latest collision or sample; none before the first sample.
+    movers: Vec<Mover>,
+    /// Time up to which the moments are known.
+    time: f64,
+    moments: Moments,
+    /// Growth of the moments between two collisions.
+    rates: Moments,
+    /// Time and moment of compression at the start of the stretch that finds the pressure.
+    origin: Option<(f64, f64)>,
+    /// Growth of the moment of compression by the pressure.
+    drift: Option<f64>,
+    lags: [Lags<DVec2>; MOMENTS],
+    /// Slopes of the mean squared moments over the second half of the lags.
+    slopes: [BlockedMean; MOMENTS],
+    /// Growth of the moment of compression beyond the drift, over the longest lag.
+    excess: RunningMean,
+    temperature: RunningMean,
+    /// The reason why nothing can be measured in this run.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    fault: Option<ParameterError>,
+}
+
+/// The motion of a disk about the center of mass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+struct Mover {
+    velocity: DVec2,
+    angular_velocity: f64,
+    mass: f64,
+    moment_of_inertia: f64,
+    radius: f64,
+}
+
+impl Mover {
+    fn new(disk: &Disk, frame: DVec2) -> Self {
+        Self {
+            velocity: disk.velocity() - frame,
+            angular_velocity: disk.angular_velocity(),
+            mass: disk.mass(),
+            moment_of_inertia: disk.moment_of_inertia(),
+            radius: disk.radius(),
+        }
+    }
+
+    fn energy(&self) -> f64 {
+        0.5 * (self.mass * self.velocity.length_squared()
+            + self.moment_of_inertia * self.angular_velocity * self.angular_velocity)
+    }
+
+    /// Returns what this disk adds to the rates.
+    fn rates(&self) -> Moments {
+        let Self { velocity, mass, .. } = *self;
+        of_tensor(mass * velocity, velocity, self.energy() * velocity)
+    }
+
+    /// Changes the motion by an impulse, and returns the change of the energy. Both partners get the same
+    /// sense of rotation from a tangential impulse, since they are on opposite sides of the contact.
+    fn kick(&mut self, impulse: DVec2, tangential: f64) -> f64 {
+        let before = self.energy();
+        self.velocity += impulse / self.mass;
+        self.angular_velocity -= tangential * self.radius / self.moment_of_inertia;
+        self.energy() - before
+    }
+}
+
+/// Returns the moments of a momentum that goes over a vector, and of heat. Shear has two components that are
+/// equal in an isotropic gas; compression has one, which stands twice.
+fn of_tensor(momentum: DVec2, way: DVec2, heat: DVec2) -> Moments {
+    let (xx, yy) = (momentum.x * way.x, momentum.y * way.y);
+    let shear = 0.5 * (momentum.x * way.y + momentum.y * way.x);
+    [DVec2::new(shear, 0.5 * (xx - yy)), DVec2::splat(0.5 * (xx + yy)), heat]
+}
+
+fn add(sum: &mut Moments, part: &Moments, factor: f64) {
+    for (sum, part) in sum.iter_mut().zip(part) {
+        *sum += factor * *part;
+    }
+}
+
+impl TransportCoefficients {
+    /// Creates an observer with slopes over the second half of this number of intervals of the sample times.
+    ///
+    /// # Errors
+    /// If the number of lags is not in `2..=2^20`.
+    pub fn new(lags: usize, times: SampleTimes) -> Result<Self, ParameterError> {
+        accept(lags >= 2, "number of lags", "in 2..=2^20", lags as f64)?;
+        let lags = Lags::new(times, lags)?;
+        Ok(Self {
+            stretch: Stretch::new(times),
+            domain: None,
+            movers: Vec::new(),
+            time: 0.0,
+            moments: [DVec2::ZERO; MOMENTS],
+            rates: [DVec2::ZERO; MOMENTS],
+            origin: None,
+            drift: None,
+            lags: [lags.clone(), lags.clone(), lags],
+            slopes: std::array::from_fn(|_| BlockedMean::new()),
+            excess: RunningMean::default(),
+            temperature: RunningMean::default(),
+            fault: None,
+        })
+    }
+
+    /// Returns the shear viscosity η.
+    pub fn shear_viscosity(&self) -> Estimate {
+        self.coefficient(0, 0.0)
+    }
+
+    /// Returns the bulk viscosity ζ.
+    pub fn bulk_viscosity(&self) -> Estimate {
+        // The pressure of the first stretch is not quite that of the run. The difference makes the mean
+        // square of the moment grow by its own square, which is not viscosity.
+        let interval = self.stretch.sample_times.interval();
+        let (longest, half) = (self.lags[1].longest(), self.lags[1].longest() / 2);
+        let excess = self.excess.mean() / (longest as f64 * interval);
+        self.coefficient(1, excess * excess * (longest + half) as f64 * interval)
+    }
+
+    /// Returns the thermal conductivity λ, for disks of one mass; NaN for others, in which energy also goes
+    /// with the diffusion of the masses.
+    pub fn thermal_conductivity(&self) -> Estimate {
+        self.coefficient(2, 0.0).scaled(1.0 / self.temperature())
+    }
+
+    /// Iterates over the lags as times, with the mean squared moments of shear and of heat, for a look at
+    /// where they grow linearly.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (f64, [Estimate; 2])> {
+        self.lags[0].iter().zip(self.lags[2].iter()).map(|((time, shear), (_, heat))| (time, [shear, heat]))
+    }
+
+    /// Returns the mean translational temperature about the center of mass.
+    pub fn temperature(&self) -> f64 {
+        self.temperature.mean()
+    }
+
+    fn coefficient(&self, moment: usize, less: f64) -> Estimate {
+        let area = self.domain.map_or(f64::NAN, |domain| domain.width() * domain.height());
+        let slope = self.slopes[moment].estimate();
+        let mean = slope.mean() - less;
+        slope.about(mean).scaled(0.5 / (area * self.temperature()))
+    }
+
+    /// Brings the moments up to a time.
+    fn advance(&mut self, time: f64) {
+        let rates = self.rates;
+        add(&mut self.moments, &rates, time - self.time);
+        self.time = time;
+    }
+
+    /// Forgets the path so far, so that the next sample is a new origin.
+    fn begin_anew(&mut self) {
+        self.movers.clear();
+        self.rates = [DVec2::ZERO; MOMENTS];
+        self.moments = [DVec2::ZERO; MOMENTS];
+        self.origin = None;
+        for lags in &mut self.lags {
+            lags.forget_samples();
+        }
+    }
+
+    /// Takes the motions from a snapshot. If they are not the ones that the collisions gave, the disks have
+    /// been changed between two runs.
+    fn take_motions(&mut self, disks: &[Disk]) {
+        let mass: f64 = disks.iter().map(Disk::mass).sum();
+        let frame = disks.iter().map(|disk| disk.mass() * disk.velocity()).sum::<DVec2>() / mass;
+        let movers: Vec<Mover> = disks.iter().map(|disk| Mover::new(disk, frame)).collect();
+        let energy: f64 = movers.iter().map(|mover| mover.mass * mover.velocity.length_squared()).sum();
+        let rounding = ROUNDING * (energy / mass).sqrt();
+        let is_same = |(one, other): (&Mover, &Mover)| one.velocity.distance(other.velocity) <= rounding;
+        let goes_on = self.movers.len() == movers.len() && self.movers.iter().zip(&movers).all(is_same);
+        if !goes_on {
+            self.begin_anew();
+        }
+        self.rates = [DVec2::ZERO; MOMENTS];
+        for mover in &movers {
+            add(&mut self.rates, &mover.rates(), 1.0);
+        }
+        self.temperature.push(energy / (2.0 * movers.len().saturating_sub(1) as f64));
+        self.movers = movers;
+    }
+
+    /// Tells whether the pressure is known. The stretch that finds it is as long as the longest lag.
+    fn knows_pressure(&mut self) -> bool {
+        let compression = self.moments[1].x;
+        let (start, at_start) = *self.origin.get_or_insert((self.time, compression));
+        let longest = (self.lags[1].longest() as f64 - 0.5) * self.stretch.sample_times.interval();
+        if self.drift.is_none() && self.time - start > longest {
+            self.drift = Some((compression - at_start) / (self.time - start));
+        }
+        self.drift.is_some()
+    }
+
+    fn take_sample(&mut self) {
+        let Some(drift) = self.drift else { return };
+        let mut sample = self.moments;
+        sample[1] -= drift * self.time;
+        let equal = self.movers.windows(2).all(|two| two[0].mass == two[1].mass);
+        let moments = if equal { MOMENTS } else { 2 };
+        for index in 0..moments {
+            let lags = &mut self.lags[index];
+            lags.push(self.time, sample[index], |one, other| 0.5 * one.distance_squared(*other));
+            let (longest, half) = (lags.longest(), lags.longest() / 2);
+            if let (Some(first), Some(middle)) = (lags.before(longest), lags.before(half)) {
+                let squared = |from: &DVec2| 0.5 * sample[index].distance_squared(*from);
+                let time = (longest - half) as f64 * self.stretch.sample_times.interval();
+                self.slopes[index].push((squared(first) - squared(middle)) / time);
+                if index == 1 {
+                    self.excess.push(sample[1].x - first.x);
+                }
+            }
+        }
+    }
+}
+
+impl Observer for TransportCoefficients {
+    fn on_start(&mut self, moment: &Moment) {
+        let periods = moment.domain().periods();
+        let periodic =
+            accept(periods.min_element() > 0.0, "period of the domain", "positive", periods.min_element());
+        let weightless =
+            accept(moment.gravity() == 0.0, "gravity", "0 for transport coefficients", moment.gravity());
+        self.fault = periodic.and(weightless).err();
+        if self.stretch.begin(moment.time()) | (self.domain != Some(moment.domain())) {
+            self.begin_anew();
+        }
+        self.domain = Some(moment.domain());
+    }
+
+    fn on_collision(&mut self, collision: &Collision) {
+        let Partner::Disk(partner) = collision.partner else { return };
+        let pair = (self.movers.get(collision.disk).copied(), self.movers.get(partner).copied());
+        let (Some(mut first), Some(mut second)) = pair else { return };
+        self.advance(collision.time);
+        let (normal, impulse) = (collision.normal, collision.impulse);
+        let kick = normal * impulse.normal() + normal.perp() * impulse.tangential();
+        for mover in [&first, &second] {
+            add(&mut self.rates, &mover.rates(), -1.0);
+        }
+        let gained = first.kick(kick, impulse.tangential());
+        let lost = second.kick(-kick, impulse.tangential());
+        for mover in [&first, &second] {
+            add(&mut self.rates, &mover.rates(), 1.0);
+        }
+        let way = normal * collision.distance;
+        add(&mut self.moments, &of_tensor(kick, way, 0.5 * (gained - lost) * way), 1.0);
+        (self.movers[collision.disk], self.movers[partner]) = (first, second);
+    }
+
+    fn next_sample(&self) -> f64 {
+        self.stretch.sample_times.upcoming()
+    }
+
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        self.advance(snapshot.time());
+        self.take_motions(snapshot.disks());
+        if self.knows_pressure() {
+            self.take_sample();
+        }
+        self.stretch.finish(snapshot.time());
+    }
+
+    fn on_end(&mut self, moment: &Moment) {
+        self.advance(moment.time());
+        self.stretch.pause(moment.time());
+    }
+
+    fn verdict(&mut self) -> Verdict {
+        contract::verdict(&mut self.fault)
+    }
+}
