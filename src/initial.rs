@@ -2,7 +2,8 @@
 //!
 //! | function | disks | where |
 //! |---|---|---|
-//! | [`lattice`] | equal ones | a square lattice |
+//! | [`lattice`] | equal ones | a square lattice from the floor up |
+//! | [`even_lattice`] | equal ones | a square lattice over the whole interior |
 //! | [`placed_in_rows`] | any | rows, small ones on top of each other |
 //! | [`random`], [`placed_at_random`] | equal ones, any | random places, up to an area fraction of 0.5 |
 //! | [`packed_at_random`] | any | random places, up to an area fraction of 0.8 |
@@ -22,7 +23,7 @@ mod random;
 mod rows;
 mod velocities;
 
-pub use lattice::lattice;
+pub use lattice::{even_lattice, lattice};
 pub use packed::packed_at_random;
 pub use radii::{Radii, homogeneous};
 pub use random::{placed_at_random, random};
@@ -82,10 +83,12 @@ fn countable(count: usize) -> Result<(), ParameterError> {
     accept(count <= MOST_DISKS, "number of disks", "at most 2^28", count as f64).map(|_| ())
 }
 
+/// Smallest distance of neighbors, in diameters.
+const CLOSE: f64 = 1.000_1;
+
 /// Returns the distances of neighbors to try, in diameters, from loose to close.
 fn spacings() -> impl Iterator<Item = f64> {
     const LOOSE: f64 = 1.4;
-    const CLOSE: f64 = 1.000_1;
     (0..=40).map(|k| LOOSE + (CLOSE - LOOSE) * f64::from(k) / 40.0)
 }
 

@@ -45,6 +45,7 @@
 //! | [`study`] (feature `serde`) | studies of your own experiments: plans, ramps, sweeps, records |
 //! | [`analysis`] | convective states, clusters, transitions |
 //! | [`kinetic`] | ⟨dE⟩ by closed form and Monte Carlo, effective inelasticity; needs no simulation |
+//! | [`speed`] | reports of runs, standard states, comparisons of parts |
 //! | [`initial`] | initial states: lattices, random places, dense packings, radii |
 //! | [`simulation`] | the engine: builder, event loop, checkpoints |
 //! | [`trajectory`] | files of disks, frame by frame, and readers |
@@ -95,6 +96,7 @@ mod random;
 pub mod roots;
 pub mod scheduler;
 pub mod simulation;
+pub mod speed;
 pub mod statistics;
 #[cfg(feature = "proptest")]
 pub mod strategies;

@@ -31,6 +31,8 @@ mod epoch;
 mod errors;
 mod event_loop;
 mod events;
+mod exchange;
+mod footprint;
 mod forecasting;
 mod limits;
 mod lookahead;

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use super::{PlacementError, countable, room, spacings};
+use super::{CLOSE, PlacementError, countable, room, spacings};
 use crate::boundary::{Boundary, Domain};
-use crate::quantity::positive;
+use crate::quantity::{accept, positive};
 use crate::{Disk, ParameterError};
 
 /// Number of successive rows without a free place after which the search gives up. Walls may cover the floor,
@@ -46,6 +46,66 @@ pub fn lattice<B: Boundary + ?Sized>(
         most = most.max(disks.len());
     }
     Err(PlacementError::NoRoom { count, placed: most, radius, interior })
+}
+
+/// Returns `count` equal disks at rest on a square lattice over the whole interior of the boundary.
+///
+/// Columns and rows are about equally far apart. If the lattice has more sites than disks, the empty sites lie
+/// evenly among the others. Sites that overlap a wall ([`Boundary::overlap`]) are left out. Without gravity,
+/// such a gas is homogeneous from the start, other than on a [`lattice`] that fills the lower part.
+///
+/// # Errors
+/// If the radius is not finite and positive, there are more than 2²⁸ disks, the interior has no top, or there
+/// is no room.
+///
+/// ```
+/// use granular_edmd::boundary::Container;
+/// use granular_edmd::initial;
+/// let disks = initial::even_lattice(&Container::periodic(100.0, 100.0)?, 1000, 0.5)?;
+/// let upper = disks.iter().filter(|disk| disk.position().y > 49.0).count();
+/// assert!(upper.abs_diff(500) < 20);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn even_lattice<B: Boundary + ?Sized>(
+    boundary: &B,
+    count: usize,
+    radius: f64,
+) -> Result<Vec<Disk>, PlacementError> {
+    positive("radius", radius)?;
+    countable(count)?;
+    let interior = boundary.interior();
+    accept(interior.top.is_finite(), "top of the interior", "finite", interior.top)?;
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    let room = room(&interior, radius);
+    let closest = 2.0 * radius * CLOSE;
+    // The lattice without walls around it is the widest; each try is a little closer.
+    let mut spacing = 1.1 * (interior.width() * interior.height() / count as f64).sqrt();
+    loop {
+        let sites = free_sites(boundary, &room, spacing.max(closest), radius);
+        if sites.len() >= count {
+            let chosen = (0..count).map(|disk| sites[disk * sites.len() / count]);
+            return Ok(chosen.map(|site| Disk::new(site, radius)).collect::<Result<_, _>>()?);
+        }
+        if spacing <= closest {
+            return Err(PlacementError::NoRoom { count, placed: sites.len(), radius, interior });
+        }
+        spacing *= 0.99;
+    }
+}
+
+/// Returns the sites of a square lattice with at least this spacing that overlap no wall.
+fn free_sites<B: Boundary + ?Sized>(boundary: &B, room: &Domain, spacing: f64, radius: f64) -> Vec<DVec2> {
+    let (columns, pitch) = columns(room, spacing);
+    let rows = rows(room, spacing);
+    let intervals = if room.periodic_ends { rows } else { rows.saturating_sub(1) };
+    let rise = (room.top - room.bottom) / intervals.max(1) as f64;
+    let row = |row: u64| {
+        let height = room.bottom + row as f64 * rise;
+        (0..columns).map(move |column| DVec2::new(room.left + column as f64 * pitch, height))
+    };
+    (0..rows).flat_map(row).filter(|&site| boundary.overlap(site, radius, 0.0).is_none()).collect()
 }
 
 /// Returns up to `count` disks on a square lattice with at least this spacing, where they overlap no wall.

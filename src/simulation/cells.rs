@@ -153,6 +153,22 @@ impl Cells {
         &self.grid
     }
 
+    /// Returns the number of cells of the smallest class, of those that hold disks, and of their disks.
+    pub(super) fn occupation(&self) -> [usize; 3] {
+        let small = (0..self.places.len()).filter(|&disk| !self.is_large(disk));
+        let mut taken: Vec<usize> = small.map(|disk| self.grid.index(self.places[disk])).collect();
+        let disks = taken.len();
+        taken.sort_unstable();
+        taken.dedup();
+        [self.grid.places().count(), taken.len(), disks]
+    }
+
+    /// Returns the bytes in memory of the cells, without their edges.
+    pub(super) fn bytes(&self) -> usize {
+        let layers = self.layers.as_ref().map_or(0, |layers| layers.bytes());
+        size_of_val(self.places.as_slice()) + self.contents.bytes() + layers
+    }
+
     /// Writes a disk of any class into its cell.
     fn enter(&mut self, disk: usize) {
         match self.layers.as_mut().filter(|layers| layers.of(disk).is_some()) {

@@ -19,7 +19,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Tells the scheduler the times of all events.
-    fn reset_scheduler(&mut self) {
+    pub(super) fn reset_scheduler(&mut self) {
         let mut due = std::mem::take(&mut self.scratch.due);
         due.clear();
         due.extend(self.bodies.particles.iter().map(|particle| particle.forecast.due()));

@@ -111,7 +111,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Counts the walls that are elsewhere in another boundary at this moment. Walls are the same if their
     /// names are.
-    pub(super) fn count_jumps(&mut self, other: &B) {
+    pub(super) fn count_jumps(&mut self, other: &impl Boundary) {
         let before = places(&self.boundary, self.clock.now);
         for (name, (wall, here)) in places(other, self.clock.now) {
             let by = before.get(&name).map_or(0.0, |(_, there)| there.distance(here));

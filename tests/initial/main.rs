@@ -1,5 +1,6 @@
 //! Initial states: what is placed is inside, apart, in order, and the same for the same seed.
 
+mod even;
 mod packed;
 mod radii;
 mod rows;

@@ -1,0 +1,74 @@
+//! The same disks with another rule, boundary or scheduler, which may be of another type.
+
+use super::builder::fit;
+use super::{BuildError, Simulation};
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::scheduler::EventScheduler;
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
+    /// Returns the same simulation with another rule, which may be of another type.
+    ///
+    /// It goes on as after [`set_rule`](Self::set_rule).
+    ///
+    /// ```
+    /// # use granular_edmd::{Simulation, boundary::Container, initial};
+    /// use granular_edmd::collision::{Elastic, Smooth};
+    /// # let container = Container::closed(20.0, 20.0)?;
+    /// # let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 50, 0.5)?, 1.0, 1)?;
+    /// let mut gas = Simulation::builder(Elastic, container).disks(disks).build()?;
+    /// gas.run_until(10.0, &mut ())?;
+    /// let mut cooling = gas.with_rule(Smooth::from_restitution(0.9)?);
+    /// cooling.run_until(20.0, &mut ())?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_rule<T: CollisionRule>(self, rule: T) -> Simulation<T, B, S> {
+        self.exchanged(|_, boundary, scheduler| (rule, boundary, scheduler))
+    }
+
+    /// Returns the same simulation with another scheduler, which may be of another type.
+    ///
+    /// The trajectory is the same, bit for bit.
+    pub fn with_scheduler<T: EventScheduler>(self, scheduler: T) -> Simulation<R, B, T> {
+        let mut simulation = self.exchanged(|rule, boundary, _| (rule, boundary, scheduler));
+        simulation.reset_scheduler();
+        simulation
+    }
+
+    /// Returns the same simulation with other walls, which may be of another type.
+    ///
+    /// It goes on as after [`set_boundary`](Self::set_boundary).
+    ///
+    /// # Errors
+    /// If the disks do not fit into the new walls, or there are too many walls.
+    pub fn with_boundary<T: Boundary>(mut self, mut boundary: T) -> Result<Simulation<R, T, S>, BuildError> {
+        boundary.set_time_origin(self.clock.origin);
+        let (wall_count, cells) = fit(&boundary, &self.disks(), self.clock.now)?;
+        self.count_jumps(&boundary);
+        (self.wall_count, self.cells) = (wall_count, cells);
+        let mut simulation = self.exchanged(|rule, _, scheduler| (rule, boundary, scheduler));
+        simulation.predict_all();
+        Ok(simulation)
+    }
+
+    /// Exchanges parts, and leaves the rest as it is.
+    fn exchanged<R2, B2, S2>(self, new: impl FnOnce(R, B, S) -> (R2, B2, S2)) -> Simulation<R2, B2, S2> {
+        let Self { wall_count, bodies, cells, clock, generator, .. } = self;
+        let Self { counters, lookahead, instructions, scratch, .. } = self;
+        let (rule, boundary, scheduler) = new(self.rule, self.boundary, self.scheduler);
+        Simulation {
+            rule,
+            boundary,
+            wall_count,
+            scheduler,
+            bodies,
+            cells,
+            clock,
+            generator,
+            counters,
+            lookahead,
+            instructions,
+            scratch,
+        }
+    }
+}

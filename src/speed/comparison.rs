@@ -1,0 +1,227 @@
+//! Two runs in turn, and what their times say about each other.
+
+use std::fmt;
+
+use super::{Meter, Quartiles, RunReport};
+use crate::Simulation;
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::observable::Observer;
+use crate::scheduler::EventScheduler;
+use crate::simulation::{Limits, RunError};
+
+/// Number of pairs of stretches.
+const ROUNDS: usize = 41;
+
+/// Number of ratios on either side of the interval. Of 41 tosses of a coin, fewer than 11 or more than 30 are
+/// heads with a probability of 0.0015.
+const OUTSIDE: usize = 10;
+
+/// Number of collisions in a stretch, and at least one for each disk.
+const COLLISIONS: u64 = 50_000;
+
+/// Runs a copy of the simulation for this many collisions, with disks or walls, and returns the report.
+///
+/// Each call does the same work again, from the same state. In a bench of criterion:
+///
+/// ```no_run
+/// # use criterion_stand_in::Bencher;
+/// # mod criterion_stand_in {
+/// #     pub struct Bencher;
+/// #     impl Bencher { pub fn iter_custom(&mut self, _: impl FnMut(u64) -> std::time::Duration) {} }
+/// # }
+/// # fn bench(bencher: &mut Bencher) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+/// use granular_edmd::collision::Elastic;
+/// use granular_edmd::speed;
+///
+/// let run = speed::dense()?.with_rule(Elastic);
+/// let seconds = |collisions| speed::stretch(&run, collisions, &mut ()).expect("the run goes on").seconds;
+/// bencher.iter_custom(|collisions| std::time::Duration::from_secs_f64(seconds(collisions)));
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+/// The same as for [`Simulation::run`].
+pub fn stretch<R, B, S, O>(
+    simulation: &Simulation<R, B, S>,
+    collisions: u64,
+    observer: &mut O,
+) -> Result<RunReport, RunError>
+where
+    R: CollisionRule + Clone,
+    B: Boundary + Clone,
+    S: EventScheduler + Clone,
+    O: Observer + ?Sized,
+{
+    let mut run = simulation.clone();
+    let limits = Limits::until(f64::MAX).with_most_collisions(collisions);
+    let meter = Meter::start(&run);
+    run.run(&limits, observer)?;
+    Ok(meter.report(&run))
+}
+
+/// The time of a collision in one run over that in another, from stretches in turn.
+///
+/// Stretches of the two runs follow each other in pairs, and each ratio is that of a pair, so what slows both
+/// cancels. Stretches of one run do the same work each time, from the same state. Rules that differ in their
+/// physics make states that differ more and more, so the numbers of events for each collision stand beside
+/// the times.
+///
+/// ```no_run
+/// use granular_edmd::collision::Frictional;
+/// use granular_edmd::speed::{self, Comparison};
+///
+/// let built_in = speed::dilute()?;
+/// let own = built_in.clone().with_rule(Frictional::from_inelasticity(0.0, 0.0, 0.03)?);
+/// let comparison = Comparison::of(&built_in, &own)?;
+/// println!("{comparison}");
+/// assert!(comparison.ratio().median < 1.0);
+/// # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    ratio: Quartiles,
+    interval: [f64; 2],
+    nanoseconds: [Quartiles; 2],
+    events: [f64; 2],
+}
+
+/// What a comparison has found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Finding {
+    /// The other run is faster.
+    Faster,
+    /// The difference is within the noise.
+    Noise,
+    /// The other run is slower.
+    Slower,
+}
+
+impl Comparison {
+    /// Compares another run with a first one.
+    ///
+    /// Both go on from where they are, in copies. It takes some 4 million collisions of either.
+    ///
+    /// # Errors
+    /// The same as for [`Simulation::run`].
+    pub fn of<R1, B1, S1, R2, B2, S2>(
+        first: &Simulation<R1, B1, S1>,
+        other: &Simulation<R2, B2, S2>,
+    ) -> Result<Self, RunError>
+    where
+        R1: CollisionRule + Clone,
+        B1: Boundary + Clone,
+        S1: EventScheduler + Clone,
+        R2: CollisionRule + Clone,
+        B2: Boundary + Clone,
+        S2: EventScheduler + Clone,
+    {
+        let collisions = COLLISIONS.max(first.len() as u64);
+        Self::between(|| stretch(first, collisions, &mut ()), || stretch(other, collisions, &mut ()))
+    }
+
+    /// Compares a run under an observer with the same run under none. Each stretch has a new observer.
+    ///
+    /// # Errors
+    /// The same as for [`Simulation::run`].
+    pub fn of_observer<R, B, S, O>(
+        simulation: &Simulation<R, B, S>,
+        mut observer: impl FnMut() -> O,
+    ) -> Result<Self, RunError>
+    where
+        R: CollisionRule + Clone,
+        B: Boundary + Clone,
+        S: EventScheduler + Clone,
+        O: Observer,
+    {
+        let collisions = COLLISIONS.max(simulation.len() as u64);
+        let watched = || stretch(simulation, collisions, &mut observer());
+        Self::between(|| stretch(simulation, collisions, &mut ()), watched)
+    }
+
+    /// Compares stretches of any other kind, each with its report.
+    ///
+    /// # Errors
+    /// Those of the stretches.
+    pub fn between<E>(
+        mut first: impl FnMut() -> Result<RunReport, E>,
+        mut other: impl FnMut() -> Result<RunReport, E>,
+    ) -> Result<Self, E> {
+        // The first stretch of each fills the caches and does not count.
+        let events = [first()?.events_per_collision, other()?.events_per_collision];
+        let (mut firsts, mut others) = (Vec::with_capacity(ROUNDS), Vec::with_capacity(ROUNDS));
+        for round in 0..ROUNDS {
+            // The order changes, so that neither always has what the other leaves in the caches.
+            if round % 2 == 0 {
+                firsts.push(first()?.nanoseconds_per_collision);
+                others.push(other()?.nanoseconds_per_collision);
+            } else {
+                others.push(other()?.nanoseconds_per_collision);
+                firsts.push(first()?.nanoseconds_per_collision);
+            }
+        }
+        let mut ratios: Vec<f64> = firsts.iter().zip(&others).map(|(first, other)| other / first).collect();
+        ratios.sort_by(f64::total_cmp);
+        Ok(Self {
+            ratio: Quartiles::of(ratios.iter().copied()),
+            interval: [ratios[OUTSIDE], ratios[ROUNDS - 1 - OUTSIDE]],
+            nanoseconds: [Quartiles::of(firsts), Quartiles::of(others)],
+            events,
+        })
+    }
+
+    /// Returns the time of a collision in the other run over that in the first.
+    pub const fn ratio(&self) -> Quartiles {
+        self.ratio
+    }
+
+    /// Returns the interval in which the median of infinitely many such ratios lies with a probability of
+    /// 99.8 %, whatever their distribution, if they are independent.
+    ///
+    /// The compiler places equal code at different addresses, which alone can make 1 or 2 %.
+    pub const fn interval(&self) -> [f64; 2] {
+        self.interval
+    }
+
+    /// Returns the time of a collision in nanoseconds, in the first run and in the other.
+    pub const fn nanoseconds(&self) -> [Quartiles; 2] {
+        self.nanoseconds
+    }
+
+    /// Returns the number of events for each collision, in the first run and in the other.
+    pub const fn events_per_collision(&self) -> [f64; 2] {
+        self.events
+    }
+
+    /// Tells whether 1 is outside the [interval](Self::interval), and on which side.
+    pub fn finding(&self) -> Finding {
+        match self.interval {
+            [low, _] if low > 1.0 => Finding::Slower,
+            [_, high] if high < 1.0 => Finding::Faster,
+            _ => Finding::Noise,
+        }
+    }
+}
+
+impl fmt::Display for Comparison {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { ratio: Quartiles { low, median, high }, interval, nanoseconds, events } = self;
+        let finding = match self.finding() {
+            Finding::Faster => "faster",
+            Finding::Noise => "no difference beyond the noise",
+            Finding::Slower => "slower",
+        };
+        writeln!(
+            formatter,
+            "{median:.4} (quartiles {low:.4}–{high:.4}) times the time of a collision: {finding}"
+        )?;
+        writeln!(formatter, "the median lies in {:.4}–{:.4}", interval[0], interval[1])?;
+        let [first, other] = nanoseconds.map(|quartiles| quartiles.median);
+        write!(
+            formatter,
+            "{first:.1} and {other:.1} ns a collision; {:.3} and {:.3} events a collision",
+            events[0], events[1]
+        )
+    }
+}

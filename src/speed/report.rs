@@ -1,0 +1,170 @@
+//! The report of a run: how fast it was, what it did, and on which machine.
+
+use std::fmt;
+
+use super::{Circumstances, Stopwatch};
+use crate::Simulation;
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::scheduler::EventScheduler;
+use crate::simulation::Counters;
+
+/// A meter that is started before a run and read after it. The run itself takes no longer.
+///
+/// ```
+/// use granular_edmd::speed::Meter;
+/// # use granular_edmd::{Simulation, boundary::Container, collision::Elastic, initial};
+/// # let container = Container::closed(20.0, 20.0)?;
+/// # let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 50, 0.5)?, 1.0, 1)?;
+/// # let mut simulation = Simulation::builder(Elastic, container).disks(disks).build()?;
+/// let meter = Meter::start(&simulation);
+/// simulation.run_until(50.0, &mut ())?;
+/// let report = meter.report(&simulation);
+/// println!("{report}");
+/// assert_eq!(report.counters.disk_collisions, simulation.counters().disk_collisions);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Meter {
+    stopwatch: Stopwatch,
+    counters: Counters,
+    time: f64,
+}
+
+impl Meter {
+    /// Starts a meter of the simulation, for runs in this thread.
+    pub fn start<R, B, S>(simulation: &Simulation<R, B, S>) -> Self
+    where
+        R: CollisionRule,
+        B: Boundary,
+        S: EventScheduler,
+    {
+        let (counters, time) = (*simulation.counters(), simulation.time());
+        Self { counters, time, stopwatch: Stopwatch::of_thread() }
+    }
+
+    /// Returns the report of all that the simulation has done since the start.
+    pub fn report<R, B, S>(&self, simulation: &Simulation<R, B, S>) -> RunReport
+    where
+        R: CollisionRule,
+        B: Boundary,
+        S: EventScheduler,
+    {
+        let seconds = self.stopwatch.seconds();
+        let counters = simulation.counters().since(&self.counters);
+        let (footprint, disks) = (simulation.footprint(), simulation.len());
+        RunReport {
+            disks,
+            simulated_time: simulation.time() - self.time,
+            seconds,
+            nanoseconds_per_collision: 1e9 * seconds / counters.disk_collisions as f64,
+            collisions_per_second: counters.disk_collisions as f64 / seconds,
+            events_per_second: counters.events() as f64 / seconds,
+            events_per_collision: counters.events() as f64 / counters.disk_collisions as f64,
+            counters,
+            observer_share: None,
+            bytes_per_disk: footprint.bytes as f64 / disks as f64,
+            cells: footprint.cells,
+            occupied_cells: footprint.occupied_cells,
+            disks_in_cells: footprint.disks_in_cells,
+            scheduler: footprint.scheduler,
+            instructions: footprint.instructions.to_owned(),
+            circumstances: Circumstances::present(),
+        }
+    }
+}
+
+/// The report of a run, for people ([`Display`](fmt::Display)) and as data (feature `serde`).
+///
+/// A collision is one of two disks. In a run without any, numbers per collision are infinite or NaN.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct RunReport {
+    /// Number of disks at the end.
+    pub disks: usize,
+    /// Simulated time.
+    pub simulated_time: f64,
+    /// Time on the processor in seconds; see [`Stopwatch`].
+    pub seconds: f64,
+    /// Time on the processor of a collision, with all other events that come with it.
+    pub nanoseconds_per_collision: f64,
+    /// Collisions in a second.
+    pub collisions_per_second: f64,
+    /// Events of all kinds in a second.
+    pub events_per_second: f64,
+    /// Events of all kinds for each collision.
+    pub events_per_collision: f64,
+    /// Events by kind.
+    pub counters: Counters,
+    /// Share of the time that the observers took, if it is known; see [`Self::with_bare`].
+    pub observer_share: Option<f64>,
+    /// Bytes of memory for each disk: its motion, its next event, its share of the cells. Schedulers take
+    /// some 8 to 24 more.
+    pub bytes_per_disk: f64,
+    /// Number of neighbor cells of the smallest disks.
+    pub cells: usize,
+    /// Number of these cells that hold disks.
+    pub occupied_cells: usize,
+    /// Number of the disks in these cells.
+    pub disks_in_cells: usize,
+    /// Name of the scheduler.
+    pub scheduler: String,
+    /// The vector instructions that the engine has chosen.
+    pub instructions: String,
+    /// Machine and build.
+    pub circumstances: Circumstances,
+}
+
+impl RunReport {
+    /// Returns the same report with the share of the observers, from the report of the same run without any.
+    ///
+    /// ```
+    /// use granular_edmd::observable::EnergyChange;
+    /// use granular_edmd::speed::{self, Meter};
+    ///
+    /// let mut simulation = speed::gas(0.3)?;
+    /// let mut bare = simulation.clone();
+    /// let (end, meter) = (simulation.time() + 5.0, Meter::start(&bare));
+    /// bare.run_until(end, &mut ())?;
+    /// let (bare, meter) = (meter.report(&bare), Meter::start(&simulation));
+    /// simulation.run_until(end, &mut EnergyChange::default())?;
+    /// println!("{}", meter.report(&simulation).with_bare(&bare));
+    /// # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
+    /// ```
+    pub fn with_bare(self, bare: &Self) -> Self {
+        Self { observer_share: Some(1.0 - bare.seconds / self.seconds), ..self }
+    }
+}
+
+impl fmt::Display for RunReport {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { disks, seconds, counters, circumstances, .. } = self;
+        let per_collision = |events: u64| events as f64 / counters.disk_collisions as f64;
+        let (million, nanoseconds) = (1e-6 * self.collisions_per_second, self.nanoseconds_per_collision);
+        writeln!(formatter, "{disks} disks, {:.6} units of time in {seconds:.3} s", self.simulated_time)?;
+        writeln!(formatter, "{million:.3} million collisions a second, {nanoseconds:.1} ns each")?;
+        writeln!(
+            formatter,
+            "{:.3} million events a second; with each collision {:.3} with walls, {:.3} passages, \
+             {:.3} predicted anew, {:.3} horizons",
+            1e-6 * self.events_per_second,
+            per_collision(counters.wall_collisions),
+            per_collision(counters.cell_crossings),
+            per_collision(counters.repredictions),
+            per_collision(counters.horizons),
+        )?;
+        if let Some(share) = self.observer_share {
+            writeln!(formatter, "{:.1} % of the time for observers", 100.0 * share)?;
+        }
+        let (cells, occupied) = (self.cells, self.occupied_cells);
+        let crowd = self.disks_in_cells as f64 / occupied as f64;
+        writeln!(
+            formatter,
+            "{:.0} bytes a disk; {occupied} of {cells} cells occupied, by {crowd:.2} disks each",
+            self.bytes_per_disk
+        )?;
+        writeln!(formatter, "scheduler {}, instructions {}", self.scheduler, self.instructions)?;
+        write!(formatter, "{circumstances}")
+    }
+}

@@ -1,0 +1,113 @@
+//! The standard states: runs that have settled, always with the same bits.
+
+use std::error::Error;
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec2;
+
+use crate::boundary::{Boundary, Container, Part, Vessel, Wall};
+use crate::collision::{ContactDuration, Elastic, Frictional};
+use crate::initial::{even_lattice, homogeneous, lattice, placed_at_random, with_maxwellian_velocities};
+use crate::simulation::Limits;
+use crate::wall::BiParabolic;
+use crate::{Disk, Simulation};
+
+/// An error: a standard state cannot be made. Unless its parameters were changed, this does not happen.
+pub type StateError = Box<dyn Error + Send + Sync>;
+
+/// The paper's box in a standard state.
+pub type PaperBox = Simulation<ContactDuration<Frictional>>;
+
+/// Number of disks in each standard state.
+const DISKS: usize = 1000;
+/// Oscillations of the paper's box until it has forgotten its lattice.
+const OSCILLATIONS: f64 = 500.0;
+/// Collisions of each disk until a gas has forgotten its lattice.
+const COLLISIONS: u64 = 100;
+
+/// Returns the paper's box as a gas that fills it: $`g = 1/64`$, $`q = 0`$, $`\kappa = 0.03`$.
+///
+/// Most events are passages between cells.
+///
+/// # Errors
+/// If the state cannot be made, which does not happen.
+pub fn dilute() -> Result<PaperBox, StateError> {
+    paper_box(0.0, 0.03)
+}
+
+/// Returns the paper's box as a fluid a dozen diameters high: $`g = 1/64`$, $`q = 0.05`$,
+/// $`\kappa = 0.1`$.
+///
+/// Most events are collisions.
+///
+/// # Errors
+/// If the state cannot be made, which does not happen.
+pub fn dense() -> Result<PaperBox, StateError> {
+    paper_box(0.05, 0.1)
+}
+
+/// Returns an elastic gas of equal disks at this area fraction, periodic on all sides. The standard ones are
+/// 0.1, 0.3 and 0.65.
+///
+/// # Errors
+/// If the area fraction is not in a range in which a square lattice has room: above 0 and up to 0.78.
+pub fn gas(area_fraction: f64) -> Result<Simulation<Elastic>, StateError> {
+    let side = side(DISKS as f64, area_fraction);
+    let container = Container::periodic(side, side)?;
+    let disks = even_lattice(&container, DISKS, 0.5)?;
+    settled_gas(container, disks)
+}
+
+/// Returns an elastic gas of two sizes, 1 to 10, each with half of the disks' area, at the area fraction 0.4,
+/// periodic on all sides.
+///
+/// # Errors
+/// If the state cannot be made, which does not happen.
+pub fn mixture() -> Result<Simulation<Elastic>, StateError> {
+    let large = DISKS / 101;
+    let small = DISKS - large;
+    let side = side(small as f64 + 100.0 * large as f64, 0.4);
+    let container = Container::periodic(side, side)?;
+    let radii = std::iter::repeat_n(5.0, large).chain(std::iter::repeat_n(0.5, small));
+    let disks = placed_at_random(&container, homogeneous(radii, 1.0)?, side, 7)?;
+    settled_gas(container, disks)
+}
+
+/// Returns an elastic gas in a square vessel with 36 round pegs, at the area fraction 0.4.
+///
+/// # Errors
+/// If the state cannot be made, which does not happen.
+pub fn vessel() -> Result<Simulation<Elastic, Vessel>, StateError> {
+    let side = side(DISKS as f64, 0.4);
+    let mut vessel = Vessel::new(Container::closed(side, side)?);
+    for peg in 0..36 {
+        let place = DVec2::new(f64::from(peg % 6) + 0.5, f64::from(peg / 6) + 0.5);
+        vessel.put(format!("peg {peg}"), Part::peg(side / 6.0 * place, 0.25)?)?;
+    }
+    let disks = even_lattice(&vessel, DISKS, 0.5)?;
+    settled_gas(vessel, disks)
+}
+
+fn paper_box(inelasticity: f64, friction: f64) -> Result<PaperBox, StateError> {
+    let base = BiParabolic::new(0.1, 10.0)?;
+    let container = Container::closed(60.0, 150.0)?.with_motion(Wall::Floor, base)?;
+    let disks = with_maxwellian_velocities(lattice(&container, DISKS, 0.5)?, 1.0, 1)?;
+    let rule = Frictional::from_inelasticity(inelasticity, inelasticity, friction)?;
+    let rule = ContactDuration::new(rule, 1e-5)?;
+    let mut run = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
+    run.run_until(OSCILLATIONS * TAU / 10.0, &mut ())?;
+    Ok(run)
+}
+
+/// Returns the side of a square in which this many disks of diameter 1 have this area fraction.
+fn side(disks: f64, area_fraction: f64) -> f64 {
+    (0.25 * PI * disks / area_fraction).sqrt()
+}
+
+fn settled_gas<B: Boundary>(boundary: B, disks: Vec<Disk>) -> Result<Simulation<Elastic, B>, StateError> {
+    let disks = with_maxwellian_velocities(disks, 1.0, 1)?;
+    let collisions = COLLISIONS * disks.len() as u64 / 2;
+    let mut run = Simulation::builder(Elastic, boundary).disks(disks).build()?;
+    run.run(&Limits::until(f64::MAX).with_most_collisions(collisions), &mut ())?;
+    Ok(run)
+}
