@@ -50,6 +50,7 @@ pub use builder::SimulationBuilder;
 pub use checkpoint::{Checkpoint, CheckpointError, Resumption};
 pub use errors::{BoundaryFault, BuildError, FailedCollision, Remedy, RunError};
 pub use events::{Counters, Event, RunEnd};
+pub use footprint::Footprint;
 pub use limits::Limits;
 pub use warnings::Warning;
 

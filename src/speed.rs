@@ -23,7 +23,11 @@
 //! }
 //!
 //! let built_in = speed::dense()?;
-//! println!("{}", Comparison::of(&built_in, &built_in.clone().with_rule(Own))?);
+//! let own = built_in.clone().with_rule(Own);
+//! println!("{}", Comparison::between(
+//!     || speed::stretch(&built_in, 10_000, &mut ()),
+//!     || speed::stretch(&own, 10_000, &mut ()),
+//! )?);
 //! # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
 //! ```
 

@@ -278,3 +278,41 @@ fn a_signal_saves_and_the_same_command_goes_on() {
     assert!(scratch.0.join("study/ramps/0000/0000.partial").exists());
     assert!(said(&scratch.runs(&["status", "study"])).contains("1 begun"));
 }
+
+#[test]
+fn bench_tells_the_standard_states_compares_tables_and_the_hours_of_a_plan() {
+    let scratch = Scratch::new("bench");
+    let output = scratch.runs(&["bench", "--quick", "--json"]);
+    assert_eq!(code(&output), Some(0), "{output:?}");
+    let mut table: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(table["states"].as_array().unwrap().len(), 7);
+    assert_eq!(table["states"][1]["name"], "dense");
+    // A table of a machine far slower or faster: what is found does not depend on the noise here.
+    for (times, found, ends) in [(1e3, "faster", 0), (1e-3, "slower", 5)] {
+        let mut other = table.clone();
+        for state in other["states"].as_array_mut().unwrap() {
+            for quartile in ["low", "median", "high"] {
+                let time = &mut state["nanoseconds_per_collision"][quartile];
+                *time = (time.as_f64().unwrap() * times).into();
+            }
+        }
+        fs::write(scratch.0.join("other.json"), other.to_string()).unwrap();
+        let output = scratch.runs(&["bench", "--quick", "--against", "other.json"]);
+        assert_eq!(code(&output), Some(ends), "{output:?}");
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert_eq!(said.matches(&format!("{found}; the same events")).count(), 7, "{said}");
+    }
+    table["states"] = "none".into();
+    fs::write(scratch.0.join("other.json"), table.to_string()).unwrap();
+    let output = scratch.runs(&["bench", "--quick", "--against", "other.json"]);
+    assert_eq!(code(&output), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("other.json is no table of"));
+    scratch.small_plan();
+    let output = scratch.runs(&["bench", "plan.toml", "--quick", "--json"]);
+    assert_eq!(code(&output), Some(0), "{output:?}");
+    let hours: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let of = |name: &str| hours[name].as_f64().unwrap();
+    assert!(0.0 < of("least") && of("least") <= of("core_hours") && of("core_hours") <= of("most"));
+    assert_eq!(hours["values"], 4);
+    assert_eq!(code(&scratch.runs(&["bench", "missing.toml"])), Some(1));
+}

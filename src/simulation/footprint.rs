@@ -1,53 +1,67 @@
 //! What a simulation takes: memory, cells, and the instructions that it runs with.
 
+use std::fmt;
+
 use super::Simulation;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::instructions::Level;
 use crate::scheduler::{EventScheduler, LARGE_SYSTEM};
 
-/// What a simulation takes, as reports tell it.
-#[derive(Debug, Clone)]
-pub(crate) struct Footprint {
-    /// Bytes of motions, forecasts and cells.
-    pub(crate) bytes: usize,
-    pub(crate) cells: usize,
-    pub(crate) occupied_cells: usize,
-    /// Number of disks in these cells.
-    pub(crate) disks_in_cells: usize,
-    pub(crate) scheduler: String,
-    pub(crate) instructions: &'static str,
+/// The memory and the cells of a simulation, its scheduler, and the instructions that it has chosen.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Footprint {
+    /// Bytes of memory for each disk: its motion, its next event, its share of the cells. A scheduler takes
+    /// some 8 to 24 more.
+    pub bytes_per_disk: f64,
+    /// Number of neighbor cells of the smallest disks.
+    pub cells: usize,
+    /// Number of these cells that hold disks.
+    pub occupied_cells: usize,
+    /// Number of the disks in these cells.
+    pub disks_in_cells: usize,
+    /// Name of the scheduler.
+    pub scheduler: String,
+    /// Vector instructions that the engine has chosen.
+    pub instructions: String,
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns what the simulation takes at present.
-    pub(crate) fn footprint(&self) -> Footprint {
+    pub fn footprint(&self) -> Footprint {
         let [cells, occupied_cells, disks_in_cells] = self.cells.occupation();
-        let bytes = self.bodies.bytes() + self.cells.bytes();
+        let name = std::any::type_name::<S>().rsplit("::").next().unwrap_or_default();
+        let scheduler = match (name, self.len() < LARGE_SYSTEM) {
+            ("BySize", true) => "TournamentTree, by size",
+            ("BySize", false) => "BucketQueue, by size",
+            _ => name,
+        };
         let instructions = match self.instructions.level() {
             Level::Avx512 => "AVX-512",
             Level::Avx2 => "AVX2",
-            Level::Built if cfg!(target_feature = "avx2") => "AVX2, as built",
-            Level::Built => "as built",
+            Level::Built => "those of the build",
         };
         Footprint {
-            bytes,
+            bytes_per_disk: (self.bodies.bytes() + self.cells.bytes()) as f64 / self.len() as f64,
             cells,
             occupied_cells,
             disks_in_cells,
-            scheduler: self.scheduler_name(),
-            instructions,
+            scheduler: scheduler.into(),
+            instructions: instructions.into(),
         }
     }
+}
 
-    /// Returns the name of the type of the scheduler, and what it has chosen.
-    fn scheduler_name(&self) -> String {
-        let whole = std::any::type_name::<S>();
-        let name = whole.rsplit("::").next().unwrap_or(whole);
-        match (name, self.len() < LARGE_SYSTEM) {
-            ("BySize", true) => "TournamentTree, by size".into(),
-            ("BySize", false) => "BucketQueue, by size".into(),
-            _ => name.into(),
-        }
+impl fmt::Display for Footprint {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { bytes_per_disk, cells, occupied_cells, scheduler, instructions, .. } = self;
+        let crowd = self.disks_in_cells as f64 / *occupied_cells as f64;
+        write!(
+            formatter,
+            "{bytes_per_disk:.0} bytes a disk; {occupied_cells} of {cells} cells occupied, by "
+        )?;
+        write!(formatter, "{crowd:.2} disks each; scheduler {scheduler}, instructions {instructions}")
     }
 }

@@ -11,14 +11,11 @@ use crate::scheduler::EventScheduler;
 use crate::simulation::{Limits, RunError};
 
 /// Number of pairs of stretches.
-const ROUNDS: usize = 41;
+const ROUNDS: usize = 201;
 
-/// Number of ratios on either side of the interval. Of 41 tosses of a coin, fewer than 11 or more than 30 are
-/// heads with a probability of 0.0015.
-const OUTSIDE: usize = 10;
-
-/// Number of collisions in a stretch, and at least one for each disk.
-const COLLISIONS: u64 = 50_000;
+/// Number of ratios on either side of the interval. Of 201 tosses of a coin, fewer than 79 or more than 122 are
+/// heads with a probability of 0.0018.
+const OUTSIDE: usize = 78;
 
 /// Runs a copy of the simulation for this many collisions, with disks or walls, and returns the report.
 ///
@@ -43,17 +40,11 @@ const COLLISIONS: u64 = 50_000;
 ///
 /// # Errors
 /// The same as for [`Simulation::run`].
-pub fn stretch<R, B, S, O>(
+pub fn stretch<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone>(
     simulation: &Simulation<R, B, S>,
     collisions: u64,
-    observer: &mut O,
-) -> Result<RunReport, RunError>
-where
-    R: CollisionRule + Clone,
-    B: Boundary + Clone,
-    S: EventScheduler + Clone,
-    O: Observer + ?Sized,
-{
+    observer: &mut (impl Observer + ?Sized),
+) -> Result<RunReport, RunError> {
     let mut run = simulation.clone();
     let limits = Limits::until(f64::MAX).with_most_collisions(collisions);
     let meter = Meter::start(&run);
@@ -74,7 +65,11 @@ where
 ///
 /// let built_in = speed::dilute()?;
 /// let own = built_in.clone().with_rule(Frictional::from_inelasticity(0.0, 0.0, 0.03)?);
-/// let comparison = Comparison::of(&built_in, &own)?;
+/// let stretch = 10_000;
+/// let comparison = Comparison::between(
+///     || speed::stretch(&built_in, stretch, &mut ()),
+///     || speed::stretch(&own, stretch, &mut ()),
+/// )?;
 /// println!("{comparison}");
 /// assert!(comparison.ratio().median < 1.0);
 /// # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
@@ -99,48 +94,7 @@ pub enum Finding {
 }
 
 impl Comparison {
-    /// Compares another run with a first one.
-    ///
-    /// Both go on from where they are, in copies. It takes some 4 million collisions of either.
-    ///
-    /// # Errors
-    /// The same as for [`Simulation::run`].
-    pub fn of<R1, B1, S1, R2, B2, S2>(
-        first: &Simulation<R1, B1, S1>,
-        other: &Simulation<R2, B2, S2>,
-    ) -> Result<Self, RunError>
-    where
-        R1: CollisionRule + Clone,
-        B1: Boundary + Clone,
-        S1: EventScheduler + Clone,
-        R2: CollisionRule + Clone,
-        B2: Boundary + Clone,
-        S2: EventScheduler + Clone,
-    {
-        let collisions = COLLISIONS.max(first.len() as u64);
-        Self::between(|| stretch(first, collisions, &mut ()), || stretch(other, collisions, &mut ()))
-    }
-
-    /// Compares a run under an observer with the same run under none. Each stretch has a new observer.
-    ///
-    /// # Errors
-    /// The same as for [`Simulation::run`].
-    pub fn of_observer<R, B, S, O>(
-        simulation: &Simulation<R, B, S>,
-        mut observer: impl FnMut() -> O,
-    ) -> Result<Self, RunError>
-    where
-        R: CollisionRule + Clone,
-        B: Boundary + Clone,
-        S: EventScheduler + Clone,
-        O: Observer,
-    {
-        let collisions = COLLISIONS.max(simulation.len() as u64);
-        let watched = || stretch(simulation, collisions, &mut observer());
-        Self::between(|| stretch(simulation, collisions, &mut ()), watched)
-    }
-
-    /// Compares stretches of any other kind, each with its report.
+    /// Compares stretches of two runs, 201 of each. Stretches of a few milliseconds are best: 10 000 collisions.
     ///
     /// # Errors
     /// Those of the stretches.

@@ -7,7 +7,7 @@ use crate::Simulation;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::scheduler::EventScheduler;
-use crate::simulation::Counters;
+use crate::simulation::{Counters, Footprint};
 
 /// A meter that is started before a run and read after it. The run itself takes no longer.
 ///
@@ -33,29 +33,21 @@ pub struct Meter {
 
 impl Meter {
     /// Starts a meter of the simulation, for runs in this thread.
-    pub fn start<R, B, S>(simulation: &Simulation<R, B, S>) -> Self
-    where
-        R: CollisionRule,
-        B: Boundary,
-        S: EventScheduler,
-    {
-        let (counters, time) = (*simulation.counters(), simulation.time());
+    pub fn start<R: CollisionRule, B: Boundary, S: EventScheduler>(run: &Simulation<R, B, S>) -> Self {
+        let (counters, time) = (*run.counters(), run.time());
         Self { counters, time, stopwatch: Stopwatch::of_thread() }
     }
 
     /// Returns the report of all that the simulation has done since the start.
-    pub fn report<R, B, S>(&self, simulation: &Simulation<R, B, S>) -> RunReport
-    where
-        R: CollisionRule,
-        B: Boundary,
-        S: EventScheduler,
-    {
+    pub fn report<R: CollisionRule, B: Boundary, S: EventScheduler>(
+        &self,
+        run: &Simulation<R, B, S>,
+    ) -> RunReport {
         let seconds = self.stopwatch.seconds();
-        let counters = simulation.counters().since(&self.counters);
-        let (footprint, disks) = (simulation.footprint(), simulation.len());
+        let (counters, disks) = (run.counters().since(&self.counters), run.len());
         RunReport {
             disks,
-            simulated_time: simulation.time() - self.time,
+            simulated_time: run.time() - self.time,
             seconds,
             nanoseconds_per_collision: 1e9 * seconds / counters.disk_collisions as f64,
             collisions_per_second: counters.disk_collisions as f64 / seconds,
@@ -63,12 +55,7 @@ impl Meter {
             events_per_collision: counters.events() as f64 / counters.disk_collisions as f64,
             counters,
             observer_share: None,
-            bytes_per_disk: footprint.bytes as f64 / disks as f64,
-            cells: footprint.cells,
-            occupied_cells: footprint.occupied_cells,
-            disks_in_cells: footprint.disks_in_cells,
-            scheduler: footprint.scheduler,
-            instructions: footprint.instructions.to_owned(),
+            footprint: run.footprint(),
             circumstances: Circumstances::present(),
         }
     }
@@ -99,19 +86,8 @@ pub struct RunReport {
     pub counters: Counters,
     /// Share of the time that the observers took, if it is known; see [`Self::with_bare`].
     pub observer_share: Option<f64>,
-    /// Bytes of memory for each disk: its motion, its next event, its share of the cells. Schedulers take
-    /// some 8 to 24 more.
-    pub bytes_per_disk: f64,
-    /// Number of neighbor cells of the smallest disks.
-    pub cells: usize,
-    /// Number of these cells that hold disks.
-    pub occupied_cells: usize,
-    /// Number of the disks in these cells.
-    pub disks_in_cells: usize,
-    /// Name of the scheduler.
-    pub scheduler: String,
-    /// The vector instructions that the engine has chosen.
-    pub instructions: String,
+    /// Memory, cells, scheduler and instructions at the end.
+    pub footprint: Footprint,
     /// Machine and build.
     pub circumstances: Circumstances,
 }
@@ -157,14 +133,7 @@ impl fmt::Display for RunReport {
         if let Some(share) = self.observer_share {
             writeln!(formatter, "{:.1} % of the time for observers", 100.0 * share)?;
         }
-        let (cells, occupied) = (self.cells, self.occupied_cells);
-        let crowd = self.disks_in_cells as f64 / occupied as f64;
-        writeln!(
-            formatter,
-            "{:.0} bytes a disk; {occupied} of {cells} cells occupied, by {crowd:.2} disks each",
-            self.bytes_per_disk
-        )?;
-        writeln!(formatter, "scheduler {}, instructions {}", self.scheduler, self.instructions)?;
+        writeln!(formatter, "{}", self.footprint)?;
         write!(formatter, "{circumstances}")
     }
 }

@@ -1,10 +1,7 @@
 //! A stopwatch for the time on processors. Other work on the machine does not count.
 
 use std::fs;
-use std::path::Path;
 use std::time::{Duration, Instant};
-
-type Clock = fn() -> Option<f64>;
 
 /// A stopwatch for the time on processors, which starts when it is made.
 ///
@@ -20,40 +17,27 @@ type Clock = fn() -> Option<f64>;
 #[derive(Debug)]
 pub struct Stopwatch {
     wall: Instant,
-    clock: Clock,
     start: Option<f64>,
 }
 
 impl Stopwatch {
     /// Starts a stopwatch of this thread, which must also read it.
     pub fn of_thread() -> Self {
-        Self::with(|| seconds_of(Path::new("/proc/thread-self")))
-    }
-
-    /// Starts a stopwatch of all threads that this process has both now and at the end.
-    pub fn of_process() -> Self {
-        Self::with(|| {
-            let tasks = fs::read_dir("/proc/self/task").ok()?;
-            tasks.map(|task| seconds_of(&task.ok()?.path())).sum()
-        })
-    }
-
-    fn with(clock: Clock) -> Self {
-        Self { clock, start: clock(), wall: Instant::now() }
+        Self { start: seconds_of_thread(), wall: Instant::now() }
     }
 
     /// Returns the seconds since the start.
     pub fn seconds(&self) -> f64 {
         let wall = self.wall.elapsed().as_secs_f64();
-        (self.clock)().zip(self.start).map_or(wall, |(now, start)| now - start)
+        seconds_of_thread().zip(self.start).map_or(wall, |(now, start)| now - start)
     }
 }
 
-/// Returns the seconds that a task has had on processors.
-fn seconds_of(task: &Path) -> Option<f64> {
+/// Returns the seconds that this thread has had on processors.
+fn seconds_of_thread() -> Option<f64> {
     // The kernel books the time of a task when the task gives up the processor, or some milliseconds later.
     std::thread::sleep(Duration::from_nanos(1));
-    let text = fs::read_to_string(task.join("schedstat")).ok()?;
+    let text = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
     Some(1e-9 * nanoseconds)
 }

@@ -1,4 +1,5 @@
-//! The command line of a study: `new`, `check`, `run`, `status`, `tables` and `accept`, for any experiment.
+//! The command line of a study: `new`, `check`, `run`, `status`, `tables`, `accept` and `bench`, for any
+//! experiment.
 //!
 //! In a program of your own, `main` is one call of [`main`]. The binary `granular-edmd` is such a program for
 //! the paper's box.
@@ -24,8 +25,10 @@
 //! | 2 | the command line or the plan cannot be used |
 //! | 3 | other processes do the rest (`--no-wait`); from `status`: not all ramps are done |
 //! | 4 | from `status`: all ramps are done, but there are no tables of them |
+//! | 5 | from `bench --against`: a standard state is slower, beyond the noise |
 //! | 130 | stopped by Ctrl-C or SIGTERM with all work saved; the same command goes on |
 
+mod bench;
 mod template;
 mod watch;
 
@@ -48,8 +51,8 @@ use watch::Watch;
 
 /// Plans, runs and reads studies: many runs of one experiment, by any number of processes.
 ///
-/// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 others do the rest, 4 no tables yet, 130
-/// stopped with all saved.
+/// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 others do the rest, 4 no tables yet, 5
+/// slower than before, 130 stopped with all saved.
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Arguments {
@@ -107,6 +110,20 @@ enum Command {
         /// Folder of the study.
         folder: PathBuf,
     },
+    /// Measures the standard states, in a minute; for a plan, the core hours that it will take.
+    Bench {
+        /// A plan, in TOML; `-` for standard input. Without one, the standard states are measured.
+        plan: Option<PathBuf>,
+        /// Prints JSON, for `--against`.
+        #[arg(long)]
+        json: bool,
+        /// Measures for a few seconds only.
+        #[arg(long)]
+        quick: bool,
+        /// File with the JSON of an earlier table, to which the present one is compared.
+        #[arg(long, conflicts_with = "plan")]
+        against: Option<PathBuf>,
+    },
 }
 
 /// Largest number of threads of a run: more than any machine has, and few enough to start them at once.
@@ -142,6 +159,8 @@ enum End {
     Elsewhere = 3,
     /// All is done but the tables.
     NoTables = 4,
+    /// A standard state is slower than in an earlier table, beyond the noise.
+    Slower = 5,
     Interrupted = 130,
 }
 
@@ -177,6 +196,8 @@ pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>)
         Command::Status { folder, json } => status::<E>(&folder, json),
         Command::Tables { folder, out } => tables::<E>(&folder, out.as_deref()),
         Command::Accept { folder } => accept::<E>(&folder),
+        Command::Bench { plan: Some(plan), json, quick, .. } => bench::plan::<E>(&plan, json, quick),
+        Command::Bench { plan: None, json, quick, against } => bench::table(json, quick, against.as_deref()),
     };
     match ended {
         Ok(end) => ExitCode::from(end as u8),

@@ -1,38 +1,44 @@
-//! The run whose instructions `.ci/instructions` counts: a settled state, dilute or dense, that goes on for a
-//! few oscillations.
+//! The run whose instructions `.ci/instructions` counts: a standard state that goes on for a while.
 
 use std::process::ExitCode;
 
-use benches::state::{DENSE, DILUTE, Outcome, Run, oscillate};
+use benches::Outcome;
+use granular_edmd::boundary::Boundary;
+use granular_edmd::collision::CollisionRule;
+use granular_edmd::simulation::Limits;
+use granular_edmd::{Simulation, speed};
+
+/// Number of collisions, with disks or walls, in the part that is counted.
+const COLLISIONS: u64 = 100_000;
 
 fn main() -> ExitCode {
-    match run() {
-        Ok(collisions) => {
-            println!("{collisions}");
-            ExitCode::SUCCESS
-        }
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
-        }
+    benches::report(run())
+}
+
+fn run() -> Outcome<()> {
+    match std::env::args().nth(1).as_deref() {
+        Some("dilute") => count(speed::dilute()?),
+        Some("dense") => count(speed::dense()?),
+        Some("gas_0.1") => count(speed::gas(0.1)?),
+        Some("gas_0.3") => count(speed::gas(0.3)?),
+        Some("gas_0.65") => count(speed::gas(0.65)?),
+        Some("mixture") => count(speed::mixture()?),
+        Some("vessel") => count(speed::vessel()?),
+        _ => Err("which state: dilute, dense, gas_0.1, gas_0.3, gas_0.65, mixture or vessel?".into()),
     }
 }
 
-/// Runs the program, and returns the number of collisions of two disks in the part that is counted.
-fn run() -> Outcome<u64> {
-    let (state, settle, oscillations) = match std::env::args().nth(1).as_deref() {
-        Some("dilute") => (DILUTE, 200, 200),
-        Some("dense") => (DENSE, 200, 100),
-        _ => return Err("which state: dilute or dense?".into()),
-    };
-    let mut run = state.settled(1, settle)?;
+/// Prints the number of collisions of two disks in the part that is counted.
+fn count<R: CollisionRule, B: Boundary>(mut run: Simulation<R, B>) -> Outcome<()> {
     let before = run.counters().disk_collisions;
-    counted_part(&mut run, oscillations)?;
-    Ok(run.counters().disk_collisions - before)
+    counted_part(&mut run)?;
+    println!("{}", run.counters().disk_collisions - before);
+    Ok(())
 }
 
 /// Runs the part that is counted. Callgrind finds it by this name.
 #[inline(never)]
-fn counted_part(run: &mut Run, oscillations: u32) -> Outcome<()> {
-    oscillate(run, oscillations)
+fn counted_part<R: CollisionRule, B: Boundary>(run: &mut Simulation<R, B>) -> Outcome<()> {
+    run.run(&Limits::until(f64::MAX).with_most_collisions(COLLISIONS), &mut ())?;
+    Ok(())
 }

@@ -1,0 +1,186 @@
+//! The command `bench`: the standard states of [`speed`], two tables of them side by side, and the core hours
+//! of a plan.
+
+use std::fmt;
+use std::path::Path;
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use super::{End, Failure, Plan, StudyError, read, refused, say};
+use crate::Simulation;
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::simulation::{Limits, RunError};
+use crate::speed::{self, Circumstances, Meter, Quartiles, RunReport, StateError};
+use crate::study::experiment::Experiment;
+
+/// Largest number of ramps whose first values are run for the core hours of a plan.
+const RAMPS: usize = 4;
+
+/// The standard table: what a collision takes in each of the standard states.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Table {
+    circumstances: Circumstances,
+    states: Vec<State>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct State {
+    name: String,
+    nanoseconds_per_collision: Quartiles,
+    events_per_collision: f64,
+}
+
+type Stretch = Box<dyn Fn(u64) -> Result<RunReport, RunError>>;
+
+/// Measures the standard table and prints it, against an earlier one if there is a file with it.
+pub(super) fn table(json: bool, quick: bool, against: Option<&Path>) -> Result<End, Failure> {
+    let earlier = against.map(earlier).transpose()?;
+    let (rounds, collisions) = if quick { (5, 20_000) } else { (31, 100_000) };
+    let table = measured(rounds, collisions).map_err(|error| Failure::Run(error))?;
+    if json {
+        say(&serde_json::to_string_pretty(&table).map_err(|error| Failure::Run(error.into()))?)?;
+    } else {
+        say(&table.to_string())?;
+    }
+    let Some(earlier) = earlier else { return Ok(End::Done) };
+    let changes: Vec<Change<'_>> = table.states.iter().filter_map(|state| earlier.change(state)).collect();
+    for change in changes.iter().filter(|_| !json) {
+        say(&change.to_string())?;
+    }
+    Ok(if changes.iter().any(|change| change.finding() == "slower") { End::Slower } else { End::Done })
+}
+
+fn earlier(path: &Path) -> Result<Table, Failure> {
+    serde_json::from_str(&read(path)?).map_err(|source| {
+        Failure::Plan(format!("{} is no table of `bench --json`: {source}", path.display()).into())
+    })
+}
+
+/// Runs all states in turn, so that a slow moment of the machine slows one stretch of each.
+fn measured(rounds: usize, collisions: u64) -> Result<Table, StateError> {
+    let states: [(&str, Stretch); 7] = [
+        ("dilute", stretches(speed::dilute()?)),
+        ("dense", stretches(speed::dense()?)),
+        ("gas at 0.1", stretches(speed::gas(0.1)?)),
+        ("gas at 0.3", stretches(speed::gas(0.3)?)),
+        ("gas at 0.65", stretches(speed::gas(0.65)?)),
+        ("mixture", stretches(speed::mixture()?)),
+        ("vessel", stretches(speed::vessel()?)),
+    ];
+    let mut times = states.each_ref().map(|_| Vec::with_capacity(rounds));
+    let mut events = [0.0; 7];
+    for _ in 0..rounds {
+        for (k, (_, stretch)) in states.iter().enumerate() {
+            let report = stretch(collisions)?;
+            times[k].push(report.nanoseconds_per_collision);
+            events[k] = report.events_per_collision;
+        }
+    }
+    let states = states.into_iter().zip(times).zip(events).map(|(((name, _), times), events)| State {
+        name: name.to_owned(),
+        nanoseconds_per_collision: Quartiles::of(times),
+        events_per_collision: events,
+    });
+    Ok(Table { states: states.collect(), circumstances: Circumstances::present() })
+}
+
+fn stretches<R, B>(run: Simulation<R, B>) -> Stretch
+where
+    R: CollisionRule + Clone + 'static,
+    B: Boundary + Clone + 'static,
+{
+    Box::new(move |collisions| speed::stretch(&run, collisions, &mut ()))
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            formatter,
+            "| state | ns a collision (quartiles) | million a second | events a collision |"
+        )?;
+        writeln!(formatter, "|---|---|---|---|")?;
+        for State { name, nanoseconds_per_collision: time, events_per_collision } in &self.states {
+            let rate = 1e3 / time.median;
+            writeln!(formatter, "| {name} | {time} | {rate:.2} | {events_per_collision:.3} |")?;
+        }
+        write!(formatter, "{}", self.circumstances)
+    }
+}
+
+/// The times of a state in two tables.
+struct Change<'a> {
+    before: &'a State,
+    now: &'a State,
+}
+
+impl Table {
+    /// Returns the change of a state since this table.
+    fn change<'a>(&'a self, now: &'a State) -> Option<Change<'a>> {
+        let before = self.states.iter().find(|before| before.name == now.name)?;
+        Some(Change { before, now })
+    }
+}
+
+impl Change<'_> {
+    /// A difference counts if the quartiles of the two sittings are apart.
+    fn finding(&self) -> &'static str {
+        let (before, now) = (self.before.nanoseconds_per_collision, self.now.nanoseconds_per_collision);
+        match () {
+            () if now.low > before.high => "slower",
+            () if now.high < before.low => "faster",
+            () => "noise",
+        }
+    }
+}
+
+impl fmt::Display for Change<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { before, now } = self;
+        let ratio = now.nanoseconds_per_collision.median / before.nanoseconds_per_collision.median;
+        let same = before.events_per_collision == now.events_per_collision;
+        let events = if same { "the same events" } else { "other events" };
+        write!(formatter, "{}: {ratio:.3} times the earlier time: {}; {events}", now.name, self.finding())
+    }
+}
+
+/// Prints the core hours of a plan, from a short run of the first values of some ramps.
+pub(super) fn plan<E: Experiment>(path: &Path, json: bool, quick: bool) -> Result<End, Failure> {
+    let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
+    let (ramps, share) = (plan.ramp_count(), Duration::from_millis(if quick { 200 } else { 2000 }));
+    let chosen: Vec<usize> = (0..ramps.min(RAMPS)).map(|k| k * ramps / ramps.min(RAMPS)).collect();
+    let hours =
+        chosen.iter().map(|&ramp| Ok(hours(&plan, ramp, share)?)).collect::<Result<Vec<f64>, Failure>>()?;
+    let values = (ramps * plan.value_count()) as f64;
+    let [least, most] = [f64::min as fn(f64, f64) -> f64, f64::max]
+        .map(|of| values * hours.iter().copied().reduce(of).unwrap_or(0.0));
+    let mean = values * hours.iter().sum::<f64>() / hours.len() as f64;
+    say(&if json {
+        format!(r#"{{"core_hours":{mean},"least":{least},"most":{most},"values":{values}}}"#)
+    } else {
+        let measured = chosen.len();
+        format!(
+            "{mean:.3e} core hours for {values} values ({least:.3e} to {most:.3e} if all were as one of the \
+             {measured} first values that ran); denser or refined values add to it"
+        )
+    })?;
+    Ok(End::Done)
+}
+
+/// Returns the hours on a core of the first value of a ramp, if all its cycles take as long as those of now.
+fn hours<E: Experiment>(plan: &Plan<E>, ramp: usize, share: Duration) -> Result<f64, Failure> {
+    let cannot = |source| Failure::from(StudyError::Build { ramp, value: 0, source });
+    let experiment = plan.experiment(ramp, 0)?;
+    let mut run = experiment.build(plan.ramp_seed(ramp)).map_err(cannot)?;
+    let mut observer = experiment.observer().map_err(cannot)?;
+    let limits = Limits::until(f64::MAX).with_wall_clock(share);
+    let fails = |error: RunError| Failure::Run(error.into());
+    run.run(&limits, &mut ()).map_err(fails)?;
+    let (meter, start) = (Meter::start(&run), run.time());
+    run.run(&limits, &mut observer).map_err(fails)?;
+    let cycles = (run.time() - start) / experiment.cycle();
+    Ok(meter.report(&run).seconds / cycles * plan.protocol().cycles() as f64 / 3600.0)
+}
