@@ -153,7 +153,7 @@ pub(super) fn plan<E: Experiment>(path: &Path, json: bool, quick: bool) -> Resul
     let (ramps, share) = (plan.ramp_count(), Duration::from_millis(if quick { 200 } else { 2000 }));
     let chosen: Vec<usize> = (0..ramps.min(RAMPS)).map(|k| k * ramps / ramps.min(RAMPS)).collect();
     let hours =
-        chosen.iter().map(|&ramp| Ok(hours(&plan, ramp, share)?)).collect::<Result<Vec<f64>, Failure>>()?;
+        chosen.iter().map(|&ramp| hours(&plan, ramp, share)).collect::<Result<Vec<f64>, Failure>>()?;
     let values = (ramps * plan.value_count()) as f64;
     let [least, most] = [f64::min as fn(f64, f64) -> f64, f64::max]
         .map(|of| values * hours.iter().copied().reduce(of).unwrap_or(0.0));
