@@ -110,13 +110,22 @@ fn ramps_in_many_processes_are_a_study() {
     let status = scratch.runs(&["status", "many"]);
     assert_eq!(
         (code(&status), said(&status).as_str()),
-        (Some(3), "4 ramps: 3 done, 0 running, 0 begun, 1 waiting; no tables of all\n")
+        (
+            Some(3),
+            "4 ramps: 3 done, 0 running, 0 begun, 1 waiting; no tables of all\nabout 0.000 core hours are done, 0.000 are left\n"
+        )
     );
-    let json: serde_json::Value =
+    let mut json: serde_json::Value =
         serde_json::from_slice(&scratch.runs(&["status", "many", "--json"]).stdout).unwrap();
     let expected = serde_json::json!({
-        "ramps": 4, "done": [0, 1, 2], "running": [], "begun": [], "waiting": [3], "tables": false
+        "ramps": 4, "done": [0, 1, 2], "running": [], "begun": [], "waiting": [3], "failed": [], "tables": false
     });
+    let [spent, left] = ["seconds", "seconds_left"].map(|name| json[name].as_f64().unwrap());
+    // Times in logs have three digits.
+    assert!(left >= 0.0 && (left - spent / 3.0).abs() < 1e-9, "{spent} {left}");
+    for name in ["seconds", "seconds_left"] {
+        json.as_object_mut().unwrap().remove(name);
+    }
     assert_eq!(json, expected);
     assert!(!scratch.0.join("many/values.csv").exists());
     assert_eq!(code(&scratch.runs(&["tables", "many"])), Some(0));
@@ -131,6 +140,32 @@ fn ramps_in_many_processes_are_a_study() {
     }
     let outside = scratch.runs(&["run", "plan.toml", "--out", "many", "--ramp", "4"]);
     assert_eq!((code(&outside), said(&outside).lines().count()), (Some(1), 1));
+}
+
+/// Failed values are listed, and tried again with all that started from them.
+#[test]
+fn failed_values_are_listed_and_tried_again() {
+    let scratch = Scratch::new("failed");
+    let ramp = "[ramp]\nparameter = \"inelasticity\"\nvalues = [0.0, 0.45]\ncourse = \"up_and_down\"\n";
+    let (head, _) = SMALL.split_once("[[sweep]]").unwrap();
+    let plan = head.replace("0.02", "0.5").replace("contact_duration = 1e-4", "").replace("= 20\n", "= 30\n");
+    let plan = plan.replace("settle = 10", "settle = 50").replace("every = 2", "every = 10") + ramp;
+    fs::write(scratch.0.join("plan.toml"), plan.replace("repeats = 2", "repeats = 1")).unwrap();
+    let run = |arguments: &[&str]| {
+        let output = scratch.runs(&[&["run", "plan.toml", "--out", "study"], arguments].concat());
+        assert_eq!(code(&output), Some(0), "{}", said(&output));
+        let files = ["0000.record", "0001.record", "0002.record"];
+        files.map(|file| fs::read(scratch.0.join("study/ramps/0000").join(file)).unwrap())
+    };
+    let before = run(&[]);
+    let status = said(&scratch.runs(&["status", "study"]));
+    assert!(status.contains("1 values stalled or failed: 0000/0001"), "{status}");
+    assert!(said(&scratch.runs(&["status", "study", "--json"])).contains(r#""failed":[[0, 1]]"#));
+    let log = || fs::read_to_string(scratch.0.join("study/ramps/0000/log.jsonl")).unwrap().lines().count();
+    assert!(run(&[]) == before && log() == 3);
+    assert!(run(&["--retry"]) == before, "the same code fails with the same bytes");
+    assert_eq!(log(), 5, "the failed value and the one after it");
+    assert_eq!(code(&scratch.runs(&["status", "study"])), Some(0));
 }
 
 /// Each row of the table of exit codes, but 130, which the next test has.

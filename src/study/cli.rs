@@ -15,7 +15,8 @@
 //! ```
 //!
 //! `status --json` prints one object: the number of ramps, the indices of those that are done, running, begun
-//! and waiting, and whether there are tables of all of them. Tables are CSV files whose first line has the
+//! and waiting, ramp and value of those values that stalled or failed, whether there are tables of all, and
+//! about how many seconds of one processor the finished values took and the others will take. Tables are CSV files whose first line has the
 //! names of the columns; `columns.csv` has the units of all columns.
 //!
 //! | exit code | meaning |
@@ -126,6 +127,9 @@ enum Command {
     },
 }
 
+/// Largest number of failed values that `status` prints; its JSON has all.
+const LISTED: usize = 8;
+
 /// Largest number of threads of a run: more than any machine has, and few enough to start them at once.
 const MOST_THREADS: i64 = 4096;
 
@@ -140,6 +144,10 @@ struct Manner {
     /// Also reads the records of finished ramps, and runs damaged or lost ones again.
     #[arg(long)]
     verify: bool,
+    /// Runs values that stalled or failed again, with those after them in their ramps. The same code fails
+    /// again.
+    #[arg(long)]
+    retry: bool,
 }
 
 impl Manner {
@@ -279,6 +287,12 @@ fn run<E: Experiment>(
     manner: &Manner,
 ) -> Result<End, Failure> {
     let study = study::<E>(path, out)?;
+    if manner.retry {
+        let ramps = ramp.map_or(0..study.plan().ramp_count(), |ramp| ramp..ramp + 1);
+        for ramp in ramps {
+            study.forget_failed(ramp)?;
+        }
+    }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from)).build();
     let pool = pool.map_err(|error| Failure::Run(error.into()))?;
     let watch = Watch::new().map_err(Failure::Run)?;
@@ -295,7 +309,11 @@ fn run<E: Experiment>(
     say(&format!("{} of {} values are finished in {}", summary.finished, summary.total, out.display()))?;
     if summary.failed > 0 {
         let logs = out.join("ramps/*/log.jsonl");
-        say(&format!("{} of them stalled or failed; {} say why", summary.failed, logs.display()))?;
+        say(&format!(
+            "{} of them stalled or failed; status lists them, {} say why",
+            summary.failed,
+            logs.display()
+        ))?;
     }
     Ok(match (summary.is_complete(), summary.elsewhere.is_empty()) {
         (true, _) => End::Done,
@@ -315,15 +333,33 @@ fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
         ("begun", of(RampStatus::Begun)),
         ("waiting", of(RampStatus::Waiting)),
     ];
+    let done = found[0].1.iter();
+    let failed = done.map(|&ramp| Ok(study.failed(ramp)?.into_iter().map(move |value| [ramp, value])));
+    let failed: Vec<[usize; 2]> =
+        failed.collect::<Result<Vec<_>, StudyError>>()?.into_iter().flatten().collect();
+    let (spent, left) = study.seconds(&all);
     if json {
         let object = Object::default().with("ramps", ramps);
         let object =
             found.iter().fold(object, |object, (name, of)| object.with(name, format_args!("{of:?}")));
-        say(&object.with("tables", has_tables).line())?;
+        let object = object.with("failed", format_args!("{failed:?}")).with("tables", has_tables);
+        // JSON has no NaN.
+        let told = |seconds: f64| if seconds.is_finite() { seconds.to_string() } else { "null".to_owned() };
+        say(&object.with("seconds", told(spent)).with("seconds_left", told(left)).line())?;
     } else {
         let counts = found.each_ref().map(|(name, of)| format!("{} {name}", of.len()));
         let tables = if has_tables { "tables of all" } else { "no tables of all" };
         say(&format!("{ramps} ramps: {}; {tables}", counts.join(", ")))?;
+        if left.is_finite() {
+            let hours = [spent, left].map(|seconds| seconds / 3600.0);
+            say(&format!("about {:.3} core hours are done, {:.3} are left", hours[0], hours[1]))?;
+        }
+        if !failed.is_empty() {
+            let first: Vec<String> =
+                failed.iter().take(LISTED).map(|[r, v]| format!("{r:04}/{v:04}")).collect();
+            let more = if failed.len() > LISTED { " …" } else { "" };
+            say(&format!("{} values stalled or failed: {}{more}", failed.len(), first.join(" ")))?;
+        }
     }
     Ok(match (found[0].1.len() == ramps, has_tables) {
         (true, true) => End::Done,

@@ -238,6 +238,34 @@ impl Folder {
         Ok(())
     }
 
+    /// Returns the values of a ramp that stalled or failed, as its mark names them; none if it is not done.
+    pub(super) fn failed(&self, ramp: usize) -> Result<Vec<usize>, StudyError> {
+        let path = self.done(ramp);
+        let text = match fs::read_to_string(&path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
+            read => read.map_err(StudyError::io("read", &path))?,
+        };
+        let values = text.lines().map(str::parse).collect::<Result<_, _>>();
+        values.map_err(|_| sealed::damaged(&path, "a line is not the index of a value"))
+    }
+
+    /// Removes the records of a ramp from this value on, the last one first, so that no gap remains if the
+    /// process is killed. The caller holds the lock of the ramp.
+    pub(super) fn remove_records(&self, ramp: usize, from: usize) -> Result<(), StudyError> {
+        let there = (from..).take_while(|value| self.record(ramp, *value).exists()).count();
+        (from..from + there).rev().try_for_each(|value| sealed::remove(&self.record(ramp, value)))
+    }
+
+    /// Returns the number of values that the log of a ramp has, and the seconds that they took.
+    pub(super) fn logged(&self, ramp: usize) -> (usize, f64) {
+        let text = fs::read_to_string(self.log_of(ramp)).unwrap_or_default();
+        let seconds = text.lines().filter_map(|line| {
+            let (_, rest) = line.split_once(r#""seconds":"#)?;
+            rest.split([',', '}']).next()?.parse::<f64>().ok()
+        });
+        seconds.fold((0, 0.0), |(count, sum), seconds| (count + 1, sum + seconds))
+    }
+
     /// Removes the mark that a ramp is done.
     pub(super) fn mark_undone(&self, ramp: usize) -> Result<(), StudyError> {
         sealed::remove(&self.done(ramp))

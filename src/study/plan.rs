@@ -7,7 +7,7 @@ pub(super) mod refinement;
 pub(super) mod steps;
 mod text;
 mod validation;
-mod values;
+pub(super) mod values;
 
 use serde::Serialize;
 use toml::Table;
@@ -237,6 +237,13 @@ impl<E: Experiment> Plan<E> {
     /// Returns the experiment where the ramped parameter is `at`.
     pub(super) fn experiment_at(&self, ramp: usize, at: Option<f64>) -> Result<E, PlanError> {
         self.experiment_of(&self.parameters_at(ramp, at))
+    }
+
+    /// Returns the experiment with these parameters, if it takes them.
+    pub(super) fn sound_experiment(&self, varied: &[(&str, Scalar)]) -> Result<E, PlanError> {
+        let experiment = self.experiment_of(varied)?;
+        experiment.check().map_err(|source| Self::refused(varied, source))?;
+        Ok(experiment)
     }
 
     /// Returns the ramp of each point, if there is one.

@@ -9,6 +9,7 @@ use super::folder::{self, sealed};
 use super::opening::Study;
 use super::plan::Plan;
 use super::plan::refinement::{Bracket, Seen};
+use super::plan::values::tried;
 use super::point::Point;
 use super::tables::{self, Tables};
 
@@ -129,6 +130,54 @@ impl<E: Experiment> Study<E> {
         let done = self.folder.all_done(self.plan.ramp_count())?.into_iter().enumerate();
         let of = |(ramp, done)| if done { RampStatus::Done } else { self.status_of_undone(ramp) };
         Ok(done.map(of).collect())
+    }
+
+    /// Returns the indices of the values of a ramp that stalled or failed; none before the ramp is done.
+    ///
+    /// # Errors
+    /// If there is no such ramp, or its mark cannot be read.
+    pub fn failed(&self, ramp: usize) -> Result<Vec<usize>, StudyError> {
+        self.check_ramp(ramp)?;
+        self.folder.failed(ramp)
+    }
+
+    /// Removes the failed values of a ramp that is done, and all values after the first of them, since they
+    /// started from other states. The next run does them again. Returns whether there were any.
+    ///
+    /// The same code fails again, with the same bytes: call this for code whose changes were
+    /// [accepted](Self::accept_changes). A ramp that another process does is left alone.
+    ///
+    /// # Errors
+    /// If there is no such ramp, plan or code of the study have changed, or files cannot be read or removed.
+    pub fn forget_failed(&self, ramp: usize) -> Result<bool, StudyError> {
+        if self.failed(ramp)?.is_empty() {
+            return Ok(false);
+        }
+        self.check_unchanged()?;
+        let Some((_lock, _)) = self.folder.take(ramp)? else { return Ok(false) };
+        // Another process may have begun the ramp again since.
+        let Some(first) = self.failed(ramp)?.first().copied() else { return Ok(false) };
+        self.folder.mark_incomplete()?;
+        self.folder.mark_undone(ramp)?;
+        self.folder.remove_records(ramp, first).map(|()| true)
+    }
+
+    /// Returns the seconds of one processor that the finished values took, and those that the others will
+    /// take if they are like them; the latter is NaN before a value is finished.
+    ///
+    /// Both are about right: they follow from the logs of 1024 ramps at most, and a value that was
+    /// interrupted logs its last piece alone.
+    pub fn seconds(&self, all: &[RampStatus]) -> (f64, f64) {
+        let begun =
+            |ramp: &usize| matches!(all[*ramp], RampStatus::Done | RampStatus::Begun | RampStatus::Running);
+        let ramps: Vec<usize> = (0..all.len()).filter(begun).collect();
+        let (mut looked, mut values, mut seconds) = (0.0, 0.0, 0.0);
+        for (count, sum) in tried(ramps.len()).map(|index| self.folder.logged(ramps[index])) {
+            (looked, values, seconds) = (looked + 1.0, values + count as f64, seconds + sum);
+        }
+        let scale = ramps.len() as f64 / f64::max(looked, 1.0);
+        let left = (all.len() * self.plan.value_count()) as f64 - scale * values;
+        (scale * seconds, f64::max(left, 0.0) * seconds / values)
     }
 
     fn status_of_undone(&self, ramp: usize) -> RampStatus {

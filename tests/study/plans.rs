@@ -1,12 +1,12 @@
 //! Plans: as data and as text, with errors by name.
 
-use granular_edmd::study::vibrated_box::VibratedBox;
-use granular_edmd::study::{Axis, Course, Plan, Protocol, Ramp};
+use granular_edmd::study::vibrated_box::{Base, VibratedBox};
+use granular_edmd::study::{Axis, Control, Course, Plan, Protocol, Ramp, Scalar, Study};
 use proptest::prelude::*;
 
 use crate::cases::config;
 use crate::report::report;
-use crate::support::{AnyError, BASE, small_box};
+use crate::support::{AnyError, BASE, Scratch, small_box};
 
 const PLAN: &str = r#"
 seed = 1
@@ -144,18 +144,68 @@ fn values_by_rule_are_values() -> Result<(), AnyError> {
     Ok(())
 }
 
-/// Loading takes a time in proportion to a list, which a list with the longest possible axis shows.
+/// A million values are loaded at once, by a rule or in a list: a quadratic comparison, or a look at each of
+/// them, takes minutes.
 #[test]
-fn the_longest_list_is_loaded_at_once() -> Result<(), AnyError> {
+fn a_million_values_are_loaded_at_once() -> Result<(), AnyError> {
     let (head, _) = PLAN.split_once("[ramp]").ok_or("no ramp")?;
-    let values: Vec<String> = (0..300_000).map(|value| format!("{}", f64::from(value) * 1e-3)).collect();
-    let text = format!("{head}[[sweep]]\nparameter = \"lid\"\nvalues = [{}]\n", values.join(","));
-    let start = std::time::Instant::now();
-    // The name is found to be wrong after the list has been read and compared with itself.
-    let error = report(&Plan::<VibratedBox>::from_toml(&text).unwrap_err());
-    assert!(error.contains("no parameter `lid`"), "{error}");
-    // A quadratic comparison takes minutes.
-    assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+    let list: Vec<String> = (0..1_000_000).map(|value| format!("{}", f64::from(value) * 1e-6)).collect();
+    for values in
+        ["{ from = 0.0, to = 0.999999, step = 1e-6 }".to_owned(), format!("{list:?}").replace('"', "")]
+    {
+        let text = format!("{head}[[sweep]]\nparameter = \"friction\"\nvalues = {values}\n");
+        let start = std::time::Instant::now();
+        assert_eq!(Plan::<VibratedBox>::from_toml(&text)?.ramp_count(), 1_000_000);
+        assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+    }
+    Ok(())
+}
+
+/// Of many values, a plan tries some. The others are refused when their turn comes, with the same error.
+#[test]
+fn a_value_that_was_not_tried_is_refused_in_its_turn() -> Result<(), AnyError> {
+    let mut values: Vec<Scalar> = (1..=3000).map(Scalar::from).collect();
+    let with = |values: &[Scalar]| {
+        let plan = Plan::new(VibratedBox::new(10, 10.0, BASE), Protocol::new(1, 1, 1)?, 1)?;
+        plan.with_axis(Axis::new("disks", values.to_vec())?)
+    };
+    values[1701] = 1.5.into();
+    let scratch = Scratch::new("untried");
+    let study = Study::create(&scratch.0, &with(&values)?)?;
+    assert!(study.run_ramp(3, &Control::default())?.is_complete());
+    let error = report(&study.run_ramp(1701, &Control::default()).unwrap_err());
+    assert!(error.contains("the experiment cannot be at disks = 1.5: invalid type"), "{error}");
+    // The smallest and the largest one, and the ends, are always tried.
+    for (index, bad) in [(1701, -1), (1701, i64::MAX), (0, -1), (2999, -1)] {
+        let mut values: Vec<Scalar> = (1..=3000).map(Scalar::from).collect();
+        values[index] = bad.into();
+        let error = report(&with(&values).unwrap_err());
+        assert!(error.contains(&format!("at disks = {bad}")), "{error}");
+    }
+    Ok(())
+}
+
+/// No measured column has the name of a parameter, so each parameter can vary.
+#[test]
+fn every_parameter_of_the_box_can_be_swept() -> Result<(), AnyError> {
+    let (head, _) = PLAN.split_once("[ramp]").ok_or("no ramp")?;
+    let numbers = "width height gravity inelasticity tangential_inelasticity friction dynamic_friction \
+                   wall_inelasticity base_inelasticity base_tangential_inelasticity wall_friction \
+                   contact_duration initial_temperature amplitude angular_frequency";
+    let numbers = numbers.split_whitespace().map(|name| (name, "[0.001, 0.002]"));
+    let fits = |(name, values)| match name {
+        "width" | "height" => (name, "[40, 50]"),
+        _ => (name, values),
+    };
+    for (name, values) in
+        numbers.map(fits).chain([("disks", "[1, 2]"), ("sides", r#"["elastic", "periodic"]"#)])
+    {
+        let text = format!("{head}[[sweep]]\nparameter = {name:?}\nvalues = {values}\n");
+        Plan::<VibratedBox>::from_toml(&text)?;
+    }
+    let bed = VibratedBox::new(10, 10.0, Base::Thermal { temperature: 1.0, slip: false });
+    let plan = Plan::new(bed, Protocol::new(1, 1, 1)?, 1)?;
+    plan.with_axis(Axis::new("temperature", [1.0])?)?.with_axis(Axis::new("slip", [true])?)?;
     Ok(())
 }
 

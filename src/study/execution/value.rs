@@ -86,7 +86,8 @@ pub(super) fn done<E: Experiment>(
 ) -> Result<Option<Record<E>>, StudyError> {
     let (study, started) = (shift.study, Instant::now());
     let Task { ramp, value, step, before, is_fresh } = *task;
-    let experiment = study.plan.experiment_at(ramp, step.at)?;
+    // A plan of many values has not tried all of them.
+    let experiment = study.plan.sound_experiment(&study.plan.parameters_at(ramp, step.at))?;
     let origin = study.origin(ramp, value);
     let work = Value { plan: &study.plan, origin, experiment, step, before };
     let saved = if is_fresh { None } else { if_sound(shift, lock, ramp, saved(shift, &work))? };

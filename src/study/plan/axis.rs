@@ -84,6 +84,11 @@ impl Axis {
         (index < self.len()).then(|| self.values.at(index))
     }
 
+    /// Returns the indices of the values that are tried when a plan is made.
+    pub(super) fn tried(&self) -> impl Iterator<Item = usize> {
+        self.values.tried()
+    }
+
     /// Turns the values of a list into the type of the parameter, so that equal plans have equal files.
     pub(super) fn set_kind(&mut self, kind: &Scalar) {
         if let Values::List(list) = &mut self.values {

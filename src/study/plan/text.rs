@@ -20,8 +20,7 @@ impl<E: Experiment> Plan<E> {
         Self::from_toml_unproven(text)?.proven()
     }
 
-    /// Reads a plan without a check of the experiment of each value, which takes seconds for large plans and
-    /// is needed only once.
+    /// Reads a plan without a check of its experiments, which is needed only once.
     pub(in crate::study) fn from_toml_unproven(text: &str) -> Result<Self, PlanError> {
         let raw: Raw<E> = toml::from_str(text).map_err(|error| PlanError::toml(&error))?;
         raw.plan().consistent()

@@ -1,6 +1,7 @@
 //! Checks of a plan when it is made, so that its faults do not make a run fail later.
 
 use super::Plan;
+use super::values::tried;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::quantity::accept;
@@ -20,7 +21,7 @@ impl<E: Experiment> Plan<E> {
         self.consistent()?.proven()
     }
 
-    /// Returns the plan, if the experiment takes the parameters of each value.
+    /// Returns the plan, if the experiment takes the parameters of those values that are tried.
     pub(in crate::study) fn proven(self) -> Result<Self, PlanError> {
         self.try_values()?;
         self.check_experiments()?;
@@ -72,10 +73,10 @@ impl<E: Experiment> Plan<E> {
         Ok(())
     }
 
-    /// Sets each parameter of the sweep to each of its values, to check that the experiment reads them.
+    /// Sets each parameter of the sweep to some of its values, to check that the experiment reads them.
     fn try_values(&self) -> Result<(), PlanError> {
         for (axis, name) in self.sweep.iter().zip(&self.varied) {
-            let mut values = (0..axis.len()).filter_map(|index| axis.value(index));
+            let mut values = axis.tried().filter_map(|index| axis.value(index));
             values.try_for_each(|to| probe::<E>(&self.tree, axis.parameter(), name, &to).map(drop))?;
         }
         Ok(())
@@ -90,14 +91,13 @@ impl<E: Experiment> Plan<E> {
         Ok(())
     }
 
-    /// Checks that the experiment takes the parameters of each value.
+    /// Checks that the experiment takes the parameters of each value, or of some if there are many.
     fn check_experiments(&self) -> Result<(), PlanError> {
         self.experiment.check().map_err(|source| Self::refused(&[], source))?;
-        for ramp in (0..self.ramp_count()).step_by(self.repeats) {
-            for value in 0..self.value_count() {
-                let varied = self.parameters(ramp, value);
-                self.experiment_of(&varied)?.check().map_err(|source| Self::refused(&varied, source))?;
-            }
+        let values = self.value_count();
+        let all = tried(self.point_count() * values);
+        for (ramp, value) in all.map(|index| (index / values * self.repeats, index % values)) {
+            self.sound_experiment(&self.parameters(ramp, value))?;
         }
         self.check_disks()?;
         self.check_ramp()
@@ -123,18 +123,19 @@ impl<E: Experiment> Plan<E> {
         if is_same { Err(PlanError::NotRampable { parameter: ramp.parameter().to_owned() }) } else { Ok(()) }
     }
 
-    /// Checks that the disks fit in, with all axes at their first values, and with each axis in turn at each
-    /// of its other values.
+    /// Checks that the disks fit in, with all axes at their first values, and with each axis in turn at those
+    /// of its values that are tried.
     fn check_disks(&self) -> Result<(), PlanError> {
         let mut stride = self.ramp_count();
         let mut ramps = vec![0];
         for axis in &self.sweep {
             stride /= axis.len();
-            ramps.extend((1..axis.len()).map(|index| index * stride));
+            ramps.extend(axis.tried().filter(|index| *index > 0).map(|index| index * stride));
         }
         for ramp in ramps {
             let varied = self.parameters(ramp, 0);
-            self.experiment_of(&varied)?.disks(0).map_err(|source| Self::refused(&varied, source))?;
+            let disks = self.sound_experiment(&varied)?.disks(0);
+            disks.map_err(|source| Self::refused(&varied, source))?;
         }
         Ok(())
     }

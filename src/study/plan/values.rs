@@ -12,6 +12,17 @@ use super::steps::Steps;
 use crate::study::errors::PlanError;
 use crate::study::scalar::Scalar;
 
+/// Largest number of values that are tried when a plan is made.
+const MOST_TRIED: usize = 1024;
+
+/// Returns the indices, of this many, that are tried when a plan is made: all if they are few, otherwise the
+/// ends and some between at equal distances, so that a plan of a million values is made as fast as a small
+/// one. The others are refused when their turn comes.
+pub(in crate::study) fn tried(count: usize) -> impl Iterator<Item = usize> {
+    let tried = count.min(MOST_TRIED);
+    (0..tried).map(move |index| index * count.saturating_sub(1) / tried.saturating_sub(1).max(1))
+}
+
 /// Values of a parameter, at least one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
@@ -34,6 +45,16 @@ impl<T: Clone + Into<Scalar> + From<f64>> Values<T> {
             Self::List(list) => list[index].clone(),
             Self::Rule(steps) => steps.value(index).into(),
         }
+    }
+
+    /// Returns the indices of the values that are tried. Those of a list are in any order, so they include the
+    /// smallest and the largest: what an experiment takes is most often a range.
+    pub(super) fn tried(&self) -> impl Iterator<Item = usize> {
+        let number = |index: &usize| self.at(*index).into().number().unwrap_or(0.0);
+        let order = |one: &usize, other: &usize| number(one).total_cmp(&number(other));
+        let all = if matches!(self, Self::List(_)) { 0..self.len() } else { 0..0 };
+        let extremes = [all.clone().min_by(order), all.max_by(order)];
+        tried(self.len()).chain(extremes.into_iter().flatten())
     }
 
     /// Checks that there are values, and that they are finite.

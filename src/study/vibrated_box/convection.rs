@@ -58,14 +58,15 @@ impl Record<VibratedBox> {
     }
 }
 
-/// Returns the columns of the tables of values and samples.
+/// Returns the columns of the tables of values and samples. None has the name of a parameter, which could then
+/// not vary.
 pub(super) fn columns() -> Vec<Column<VibratedBox>> {
     vec![
         Column::of_record("state", "", |record| VibratedBox::state(record).unwrap_or_default()),
         Column::sampled("one_roll", "1", |s: &Sample| s.one_roll),
         Column::averaged("one_roll_magnitude", "1", |s: &Sample| s.one_roll.abs()),
         Column::sampled("two_rolls", "1", |s: &Sample| s.two_rolls),
-        Column::sampled("height", "diameter", |s: &Sample| s.height),
+        Column::sampled("center_of_mass_height", "diameter", |s: &Sample| s.height),
         Column::sampled("translational_energy", "energy", |s: &Sample| s.translational_energy),
         Column::sampled("rotational_energy", "energy", |s: &Sample| s.rotational_energy),
         Column::sampled("vertical_temperature", "energy", |s: &Sample| s.vertical_temperature),
@@ -91,7 +92,7 @@ pub(super) fn columns() -> Vec<Column<VibratedBox>> {
 
 /// Returns the table of profiles.
 pub(super) fn tables() -> Vec<Table<VibratedBox>> {
-    vec![Table::new("profiles", [("height", "diameter"), ("packing_fraction", "1")], |record| {
+    vec![Table::new("profiles", [("layer_height", "diameter"), ("packing_fraction", "1")], |record| {
         record.profile().map(|(height, fraction)| vec![height, fraction]).collect()
     })]
 }
