@@ -86,6 +86,10 @@ enum Command {
         /// Number of threads; one for each processor if not given.
         #[arg(long, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
         threads: Option<u16>,
+        /// Runs values that stalled or failed again, with those after them in their ramps. The same code
+        /// fails again.
+        #[arg(long)]
+        retry: bool,
         #[command(flatten)]
         manner: Manner,
     },
@@ -144,10 +148,6 @@ struct Manner {
     /// Also reads the records of finished ramps, and runs damaged or lost ones again.
     #[arg(long)]
     verify: bool,
-    /// Runs values that stalled or failed again, with those after them in their ramps. The same code fails
-    /// again.
-    #[arg(long)]
-    retry: bool,
 }
 
 impl Manner {
@@ -200,7 +200,9 @@ pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>)
     let ended = match Arguments::parse().command {
         Command::New { file } => new(example, file.as_deref()),
         Command::Check { plan } => check::<E>(&plan),
-        Command::Run { plan, out, ramp, threads, manner } => run::<E>(&plan, &out, ramp, threads, &manner),
+        Command::Run { plan, out, ramp, threads, retry, manner } => {
+            run::<E>(&plan, &out, ramp, threads, retry, &manner)
+        }
         Command::Status { folder, json } => status::<E>(&folder, json),
         Command::Tables { folder, out } => tables::<E>(&folder, out.as_deref()),
         Command::Accept { folder } => accept::<E>(&folder),
@@ -284,10 +286,11 @@ fn run<E: Experiment>(
     out: &Path,
     ramp: Option<usize>,
     threads: Option<u16>,
+    retry: bool,
     manner: &Manner,
 ) -> Result<End, Failure> {
     let study = study::<E>(path, out)?;
-    if manner.retry {
+    if retry {
         let ramps = ramp.map_or(0..study.plan().ramp_count(), |ramp| ramp..ramp + 1);
         for ramp in ramps {
             study.forget_failed(ramp)?;

@@ -252,8 +252,8 @@ impl Folder {
     /// Removes the records of a ramp from this value on, the last one first, so that no gap remains if the
     /// process is killed. The caller holds the lock of the ramp.
     pub(super) fn remove_records(&self, ramp: usize, from: usize) -> Result<(), StudyError> {
-        let there = (from..).take_while(|value| self.record(ramp, *value).exists()).count();
-        (from..from + there).rev().try_for_each(|value| sealed::remove(&self.record(ramp, value)))
+        let end = (from..usize::MAX).find(|value| !self.record(ramp, *value).exists()).unwrap_or(from);
+        (from..end).rev().try_for_each(|value| sealed::remove(&self.record(ramp, value)))
     }
 
     /// Returns the number of values that the log of a ramp has, and the seconds that they took.

@@ -33,7 +33,7 @@ fn tables_have_a_row_for_each_thing() {
     assert_eq!(values[7].iter().take(5).collect::<Vec<_>>(), ["1", "2", "up", "0.02", "0.3"]);
     // Six samples are too few for an error, so the last column names all errors that are lower bounds.
     assert_eq!(header.iter().next_back(), Some("not_converged"));
-    let all = "one_roll one_roll_magnitude two_rolls height translational_energy rotational_energy \
+    let all = "one_roll one_roll_magnitude two_rolls center_of_mass_height translational_energy rotational_energy \
                vertical_temperature energy_change";
     assert_eq!(values[7].iter().next_back(), Some(all));
     assert_eq!(rows("samples.csv").1.len(), 60);
@@ -51,18 +51,25 @@ fn repeats_have_seeds_of_their_own_and_are_told_together() -> Result<(), AnyErro
         assert_eq!(first.experiment(), second.experiment());
         assert_ne!(first.samples(), second.samples());
         let height = point.mean(|sample| sample.height);
-        assert_eq!(point.estimate("height"), Some(height));
+        assert_eq!(point.estimate("center_of_mass_height"), Some(height));
         let heights = [first, second].map(|record| record.mean(|sample| sample.height));
         assert_eq!(Estimate::over_repeats(heights), height);
         assert!((height.mean() - 0.5 * (heights[0].mean() + heights[1].mean())).abs() < 1e-12);
         let scatter = 0.5 * (heights[0].mean() - heights[1].mean()).abs();
         assert!(height.standard_error() >= scatter * (1.0 - 1e-12), "{height} {scatter}");
         let told = [height.mean(), height.standard_error(), height.independent_samples()];
-        let cells =
-            ["height", "height_error", "height_independent_samples"].map(|name| row[name].parse::<f64>());
+        let cells = [
+            "center_of_mass_height",
+            "center_of_mass_height_error",
+            "center_of_mass_height_independent_samples",
+        ]
+        .map(|name| row[name].parse::<f64>());
         assert_eq!(cells.map(Result::unwrap), told);
         assert_eq!((row["repeats"].as_str(), height.samples()), ("2", 12));
-        assert_eq!(row["not_converged"].split(' ').any(|name| name == "height"), !height.is_converged());
+        assert_eq!(
+            row["not_converged"].split(' ').any(|name| name == "center_of_mass_height"),
+            !height.is_converged()
+        );
     }
     assert_eq!(points[0].estimate("max_overlap"), None, "a number without an error");
     Ok(())
@@ -82,7 +89,7 @@ fn tables_of_a_study_half_done_keep_points_apart() -> Result<(), AnyError> {
     for (row, ramp) in rows.iter().zip([0, 3, 5]) {
         let record = study.record(ramp, 0)?.ok_or("no record")?;
         assert_eq!((row["point"].clone(), row["repeats"].as_str()), ((ramp / 2).to_string(), "1"));
-        assert_eq!(row["height"].parse::<f64>()?, record.mean(height).mean());
+        assert_eq!(row["center_of_mass_height"].parse::<f64>()?, record.mean(height).mean());
     }
     fs::remove_dir_all(scratch.0.join("ramps/0000"))?;
     assert!(Study::<VibratedBox>::open(&scratch.0)?.point(0, 0)?.is_none());
