@@ -11,7 +11,7 @@ use std::fmt;
 /// assert_eq!(Scalar::from("periodic").number(), None);
 /// ```
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, try_from = "toml::Value")]
 #[non_exhaustive]
 pub enum Scalar {
     /// Yes or no.
@@ -66,6 +66,16 @@ impl Scalar {
             (Self::Number(_), Self::Integer(number)) => Self::Number(number as f64),
             (_, same) => same,
         }
+    }
+}
+
+/// Derived code would try each kind in turn and make an error for each that does not fit, which costs a second
+/// for a million values.
+impl TryFrom<toml::Value> for Scalar {
+    type Error = &'static str;
+
+    fn try_from(value: toml::Value) -> Result<Self, Self::Error> {
+        Self::of_toml(&value).ok_or("a value must be a number, a word or a switch")
     }
 }
 

@@ -79,8 +79,8 @@ impl<T: Clone + Into<Scalar> + From<f64>> Values<T> {
         // Zero is added so that both zeros are one value.
         all.find(|value: &Scalar| {
             !known.insert(match value {
-                Scalar::Number(number) => format!("{:?}", number + 0.0),
-                other => format!("{other:?}"),
+                Scalar::Number(number) => Ok((number + 0.0).to_bits()),
+                other => Err(format!("{other:?}")),
             })
         })
     }
