@@ -16,8 +16,9 @@
 //!
 //! `status --json` prints one object: the number of ramps, the indices of those that are done, running, begun
 //! and waiting, ramp and value of those values that stalled or failed, whether there are tables of all, and
-//! about how many seconds of one processor the finished values took and the others will take. Tables are CSV files whose first line has the
-//! names of the columns; `columns.csv` has the units of all columns.
+//! about how many seconds of one processor the finished values took and the others will take.
+//! Tables are CSV files whose first line has the names of the columns; `columns.csv` has the units of all
+//! columns.
 //!
 //! | exit code | meaning |
 //! |---|---|

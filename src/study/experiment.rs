@@ -209,8 +209,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Checks that the parameters are valid.
     ///
-    /// A plan calls this before anything runs, for all of its values or, of many, for some. A run calls it for
-    /// each value that it begins.
+    /// A plan calls this before anything runs, for all of its values or, of many, for some. A run calls
+    /// it for each value that it begins.
     ///
     /// # Errors
     /// If they are not.

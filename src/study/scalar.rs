@@ -69,8 +69,8 @@ impl Scalar {
     }
 }
 
-/// Derived code would try each kind in turn and make an error for each that does not fit, which costs a second
-/// for a million values.
+/// Derived code would try each kind in turn and make an error for each that does not fit, which costs a
+/// second for a million values.
 impl TryFrom<toml::Value> for Scalar {
     type Error = &'static str;
 
