@@ -36,8 +36,7 @@ pub(crate) const LARGEST: f64 = 1e60;
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawDisk"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Disk {
     position: DVec2,
     velocity: DVec2,
@@ -234,35 +233,15 @@ fn bounded_vector(name: &'static str, vector: DVec2) -> Result<DVec2, ParameterE
     Ok(DVec2::new(bounded(name, vector.x)?, bounded(name, vector.y)?))
 }
 
-/// Fields of a disk in a file, before they have passed the constructors.
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Disk")]
-struct RawDisk {
-    position: DVec2,
-    velocity: DVec2,
-    angle: f64,
-    angular_velocity: f64,
-    radius: f64,
-    mass: f64,
-    inertia_factor: f64,
-    #[serde(default)]
-    kind: Kind,
-    #[serde(default)]
-    image: [i32; 2],
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawDisk> for Disk {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawDisk) -> Result<Self, ParameterError> {
-        Self::new(raw.position, raw.radius)?
-            .with_velocity(raw.velocity)?
-            .with_angle(raw.angle)?
-            .with_angular_velocity(raw.angular_velocity)?
-            .with_mass(raw.mass)?
-            .with_inertia_factor(raw.inertia_factor)
-            .map(|disk| disk.with_kind(raw.kind).with_image(raw.image))
-    }
+crate::gate::from_file! {
+    Disk {
+        position: DVec2, velocity: DVec2, angle: f64, angular_velocity: f64, radius: f64, mass: f64,
+        inertia_factor: f64, #[serde(default)] kind: Kind, #[serde(default)] image: [i32; 2]
+     } => Self::new(position, radius)?
+            .with_velocity(velocity)?
+            .with_angle(angle)?
+            .with_angular_velocity(angular_velocity)?
+            .with_mass(mass)?
+            .with_inertia_factor(inertia_factor)
+            .map(|disk| disk.with_kind(kind).with_image(image))
 }

@@ -83,6 +83,7 @@ mod file;
 mod fingerprint;
 mod flight;
 mod forward;
+mod gate;
 pub mod guide;
 pub mod initial;
 mod instructions;

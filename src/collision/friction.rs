@@ -40,8 +40,7 @@ use crate::{Fingerprint, ParameterError};
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawFriction"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[expect(clippy::struct_field_names, reason = "a coefficient has one name in all rules and files")]
 pub struct Friction {
     tangential_inelasticity: TangentialInelasticity,
@@ -121,22 +120,6 @@ impl Friction {
     }
 }
 
-/// Fields of friction in a file, before they are checked against each other.
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Friction")]
-struct RawFriction {
-    tangential_inelasticity: f64,
-    static_friction: f64,
-    dynamic_friction: f64,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawFriction> for Friction {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawFriction) -> Result<Self, ParameterError> {
-        Self::from_inelasticity(raw.tangential_inelasticity, raw.static_friction)?
-            .with_dynamic_friction(raw.dynamic_friction)
-    }
+crate::gate::from_file! {
+    Friction { tangential_inelasticity: f64, static_friction: f64, dynamic_friction: f64 } => Self::from_inelasticity(tangential_inelasticity, static_friction)?.with_dynamic_friction(dynamic_friction)
 }

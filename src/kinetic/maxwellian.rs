@@ -38,8 +38,7 @@ const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawMaxwellian"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Maxwellian {
     translational_temperature: f64,
     rotational_temperature: f64,
@@ -144,29 +143,17 @@ impl Maxwellian {
     }
 }
 
-/// Fields of a gas in a file, before they have passed the constructors.
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Maxwellian")]
-struct RawMaxwellian {
-    translational_temperature: f64,
-    rotational_temperature: f64,
-    masses: [f64; 2],
-    inertia_factors: [f64; 2],
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawMaxwellian> for Maxwellian {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawMaxwellian) -> Result<Self, ParameterError> {
+crate::gate::from_file! {
+    Maxwellian {
+        translational_temperature: f64, rotational_temperature: f64, masses: [f64; 2], inertia_factors: [f64; 2]
+     } => {
         let partner = |index: usize| {
             Disk::new(glam::DVec2::ZERO, 1.0)?
-                .with_mass(raw.masses[index])?
-                .with_inertia_factor(raw.inertia_factors[index])
+                .with_mass(masses[index])?
+                .with_inertia_factor(inertia_factors[index])
         };
-        Ok(Self::new(raw.translational_temperature)?
-            .with_rotational_temperature(raw.rotational_temperature)?
+        Ok(Self::new(translational_temperature)?
+            .with_rotational_temperature(rotational_temperature)?
             .with_partners(&partner(0)?, &partner(1)?))
     }
 }

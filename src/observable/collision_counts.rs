@@ -15,8 +15,7 @@ use crate::collision::Regime;
 /// assert_eq!(counts.rate_per_disk(1000, 10.0), 0.0);
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawCollisionCounts"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct CollisionCounts {
     disks: u64,
     walls: BTreeMap<usize, u64>,
@@ -86,24 +85,11 @@ impl Observer for CollisionCounts {
     }
 }
 
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "CollisionCounts")]
-struct RawCollisionCounts {
-    disks: u64,
-    walls: BTreeMap<usize, u64>,
-    sticking: u64,
-    sliding: u64,
-    contact_duration: u64,
-    elastic_below: u64,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawCollisionCounts> for CollisionCounts {
-    type Error = crate::ParameterError;
-
-    fn try_from(raw: RawCollisionCounts) -> Result<Self, Self::Error> {
-        let RawCollisionCounts { disks, walls, sticking, sliding, contact_duration, elastic_below } = raw;
+crate::gate::from_file! {
+    CollisionCounts {
+        disks: u64, walls: BTreeMap<usize, u64>, sticking: u64, sliding: u64, contact_duration: u64,
+        elastic_below: u64
+     } => {
         // The sum has 128 bits, so that sums of forged counts do not wrap.
         let sum = |counts: &[u64]| counts.iter().map(|&count| u128::from(count)).sum::<u128>();
         let all = u128::from(disks) + walls.values().map(|&count| u128::from(count)).sum::<u128>();

@@ -44,8 +44,7 @@ impl EnergyChangeLayer {
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawEnergyChangeProfile"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct EnergyChangeProfile {
     bins: Bins,
     layers: Vec<EnergyChangeLayer>,
@@ -113,20 +112,8 @@ impl Accumulator for EnergyChangeProfile {
     }
 }
 
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "EnergyChangeProfile")]
-struct RawEnergyChangeProfile {
-    bins: Bins,
-    layers: Vec<EnergyChangeLayer>,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawEnergyChangeProfile> for EnergyChangeProfile {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawEnergyChangeProfile) -> Result<Self, ParameterError> {
-        let RawEnergyChangeProfile { bins, layers } = raw;
+crate::gate::from_file! {
+    EnergyChangeProfile { bins: Bins, layers: Vec<EnergyChangeLayer> } => {
         bins.check_count(layers.len())?;
         for (bin, layer) in layers.iter().enumerate() {
             let is_there = layer.height == bins.middle(bin);

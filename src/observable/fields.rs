@@ -57,8 +57,7 @@ pub struct FieldCell {
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawFields"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Fields {
     grid: Grid,
     sums: Vec<CellSums>,
@@ -134,21 +133,8 @@ impl Accumulator for Fields {
     }
 }
 
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Fields")]
-struct RawFields {
-    grid: Grid,
-    sums: Vec<CellSums>,
-    samples: u64,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawFields> for Fields {
-    type Error = crate::ParameterError;
-
-    fn try_from(raw: RawFields) -> Result<Self, Self::Error> {
-        let RawFields { grid, sums, samples } = raw;
+crate::gate::from_file! {
+    Fields { grid: Grid, sums: Vec<CellSums>, samples: u64 } => {
         let given = sums.len();
         let requirement = "that of the cells";
         crate::quantity::accept(grid.count() == given, "number of sums", requirement, given as f64)?;

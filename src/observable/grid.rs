@@ -24,8 +24,7 @@ const MOST_CELLS: usize = 1 << 22;
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawGrid"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Grid {
     region: Region,
     columns: usize,
@@ -160,20 +159,6 @@ impl CellSums {
     }
 }
 
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Grid")]
-struct RawGrid {
-    region: Region,
-    columns: usize,
-    rows: usize,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawGrid> for Grid {
-    type Error = ParameterError;
-
-    fn try_from(RawGrid { region, columns, rows }: RawGrid) -> Result<Self, ParameterError> {
-        Self::new(region, columns, rows)
-    }
+crate::gate::from_file! {
+    Grid { region: Region, columns: usize, rows: usize } => Self::new(region, columns, rows)
 }

@@ -75,8 +75,7 @@ impl DenseLayer {
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawHeightProfile"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct HeightProfile {
     bins: Bins,
     /// Packing fractions, summed over the samples.
@@ -148,24 +147,12 @@ impl Accumulator for HeightProfile {
     }
 }
 
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "HeightProfile")]
-struct RawHeightProfile {
-    bins: Bins,
-    sums: Vec<f64>,
-    samples: u64,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawHeightProfile> for HeightProfile {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawHeightProfile) -> Result<Self, ParameterError> {
-        let RawHeightProfile { bins, sums, samples } = raw;
+crate::gate::from_file! {
+    HeightProfile { bins: Bins, sums: Vec<f64>, samples: u64 } => {
         bins.check_count(sums.len())?;
-        sums.iter()
-            .try_for_each(|&sum| crate::quantity::finite("sum of packing fractions", sum).map(|_| ()))?;
+        for &sum in &sums {
+            crate::quantity::finite("sum of packing fractions", sum)?;
+        }
         Ok(Self { bins, sums, samples })
     }
 }

@@ -54,8 +54,7 @@ use crate::{Disk, Kind, ParameterError};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawPairCorrelation"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PairCorrelation {
     bins: Bins,
     kinds: Option<[Kind; 2]>,
@@ -206,30 +205,16 @@ impl Accumulator for PairCorrelation {
     }
 }
 
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "PairCorrelation")]
-struct RawPairCorrelation {
-    bins: Bins,
-    kinds: Option<[Kind; 2]>,
-    #[serde(deserialize_with = "super::grid::region_from_file")]
-    region: Option<Region>,
-    pairs: Vec<BlockedMean>,
-    centers: RunningMean,
-    partner_density: RunningMean,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawPairCorrelation> for PairCorrelation {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawPairCorrelation) -> Result<Self, ParameterError> {
-        let RawPairCorrelation { bins, kinds, region, pairs, centers, partner_density } = raw;
+crate::gate::from_file! {
+    PairCorrelation {
+        bins: Bins, kinds: Option<[Kind; 2]>,
+        #[serde(deserialize_with = "super::grid::region_from_file")] region: Option<Region>,
+        pairs: Vec<BlockedMean>, centers: RunningMean, partner_density: RunningMean
+     } => {
         bins.check_count(pairs.len())?;
         let starts_at_zero = bins.edge(0) == 0.0;
         accept(starts_at_zero, "least distance of the correlation", "0", bins.edge(0))?;
-        let counts = pairs.iter().map(BlockedMean::count).chain([partner_density.count()]);
-        for count in counts {
+        for count in pairs.iter().map(BlockedMean::count).chain([partner_density.count()]) {
             let fits = count == centers.count();
             accept(fits, "number of samples of a bin", "that of the correlation", count as f64)?;
         }

@@ -44,8 +44,7 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawSampleTimes"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SampleTimes {
     interval: f64,
     /// The first beat.
@@ -139,22 +138,8 @@ impl SampleTimes {
     }
 }
 
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "SampleTimes")]
-struct RawSampleTimes {
-    interval: f64,
-    first: Option<f64>,
-    beat: i64,
-    started: bool,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawSampleTimes> for SampleTimes {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawSampleTimes) -> Result<Self, ParameterError> {
-        let RawSampleTimes { interval, first, beat, started } = raw;
+crate::gate::from_file! {
+    SampleTimes { interval: f64, first: Option<f64>, beat: i64, started: bool } => {
         positive("sampling interval", interval)?;
         finite("first sampling time", first.unwrap_or(0.0))?;
         let counted = first.is_none() || beat >= 0;

@@ -8,8 +8,7 @@ const MOST_BINS: usize = 1 << 20;
 
 /// Equal bins between two numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawBins"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub(crate) struct Bins {
     low: f64,
     width: f64,
@@ -75,20 +74,6 @@ impl Bins {
     }
 }
 
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Bins")]
-struct RawBins {
-    low: f64,
-    width: f64,
-    count: usize,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawBins> for Bins {
-    type Error = ParameterError;
-
-    fn try_from(RawBins { low, width, count }: RawBins) -> Result<Self, ParameterError> {
-        Self { low, width, count }.checked()
-    }
+crate::gate::from_file! {
+    Bins { low: f64, width: f64, count: usize } => Self { low, width, count }.checked()
 }

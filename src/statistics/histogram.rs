@@ -15,8 +15,7 @@ use crate::ParameterError;
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawHistogram"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Histogram {
     bins: Bins,
     counts: Vec<u64>,
@@ -106,22 +105,8 @@ impl Extend<f64> for Histogram {
     }
 }
 
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Histogram")]
-struct RawHistogram {
-    bins: Bins,
-    counts: Vec<u64>,
-    below: u64,
-    above: u64,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawHistogram> for Histogram {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawHistogram) -> Result<Self, ParameterError> {
-        let RawHistogram { bins, counts, below, above } = raw;
+crate::gate::from_file! {
+    Histogram { bins: Bins, counts: Vec<u64>, below: u64, above: u64 } => {
         bins.check_count(counts.len())?;
         // The sum has 128 bits, so that sums of forged counts do not wrap.
         let all: u128 = counts.iter().chain([&below, &above]).map(|&count| u128::from(count)).sum();

@@ -6,8 +6,7 @@
 /// The deviations are taken from the mean so far. The difference of a sum of squares and a squared sum would
 /// lose the digits of a small variance about a large mean.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawMoments"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub(crate) struct Moments {
     pub(crate) weight: f64,
     pub(crate) mean: f64,
@@ -26,25 +25,20 @@ impl Moments {
 }
 
 #[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Moments")]
-pub(super) struct RawMoments {
-    pub(super) weight: f64,
-    pub(super) mean: f64,
-    pub(super) squares: f64,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawMoments> for Moments {
-    type Error = crate::ParameterError;
-
-    fn try_from(RawMoments { weight, mean, squares }: RawMoments) -> Result<Self, Self::Error> {
+impl Moments {
+    /// Returns these moments if some numbers can have them.
+    pub(super) fn checked(self) -> Result<Self, crate::ParameterError> {
         use crate::quantity::{accept, finite, non_negative};
+        let Self { weight, mean, squares } = self;
         non_negative("weight of a mean", weight)?;
         finite("mean", mean)?;
         non_negative("sum of squared deviations", squares)?;
         accept(weight > 0.0 || mean == 0.0, "mean of no numbers", "0", mean)?;
         accept(weight > 0.0 || squares == 0.0, "sum of squared deviations of no numbers", "0", squares)?;
-        Ok(Self { weight, mean, squares })
+        Ok(self)
     }
+}
+
+crate::gate::from_file! {
+    Moments { weight: f64, mean: f64, squares: f64 } => Self { weight, mean, squares }.checked()
 }

@@ -98,11 +98,10 @@ impl TryFrom<RawRunningMean> for RunningMean {
     type Error = crate::ParameterError;
 
     fn try_from(RawRunningMean { count, mean, squares }: RawRunningMean) -> Result<Self, Self::Error> {
-        use super::moments::RawMoments;
         use crate::quantity::accept;
         // Counts are kept as floating-point numbers, which are exact up to 2^53.
         accept(count <= 1 << 53, "number of samples", "at most 2^53", count as f64)?;
         accept(count != 1 || squares == 0.0, "sum of squared deviations of one number", "0", squares)?;
-        Moments::try_from(RawMoments { weight: count as f64, mean, squares }).map(Self)
+        Moments { weight: count as f64, mean, squares }.checked().map(Self)
     }
 }

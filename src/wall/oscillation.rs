@@ -7,8 +7,7 @@ use crate::{Fingerprint, ParameterError};
 
 /// The amplitude and period of a motion that is cut into equal pieces of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawOscillation"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub(super) struct Oscillation {
     amplitude: f64,
     angular_frequency: f64,
@@ -61,19 +60,6 @@ pub(super) fn is_even(number: f64) -> bool {
     (0.5 * number).floor() * 2.0 == number
 }
 
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Oscillation")]
-struct RawOscillation {
-    amplitude: f64,
-    angular_frequency: f64,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<RawOscillation> for Oscillation {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawOscillation) -> Result<Self, ParameterError> {
-        Self::new(raw.amplitude, raw.angular_frequency)
-    }
+crate::gate::from_file! {
+    Oscillation { amplitude: f64, angular_frequency: f64 } => Self::new(amplitude, angular_frequency)
 }
