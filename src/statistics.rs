@@ -32,6 +32,7 @@ mod blocking;
 mod estimate;
 mod histogram;
 mod moments;
+mod plateau;
 mod repeats;
 mod running_mean;
 

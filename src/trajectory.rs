@@ -82,6 +82,7 @@ mod entry;
 mod errors;
 mod extended_xyz;
 mod format;
+mod frames;
 mod gsd;
 #[cfg(feature = "gzip")]
 mod gzip;

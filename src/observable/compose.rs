@@ -54,52 +54,35 @@ impl<T: Observer> Observer for [T] {
     }
 }
 
-impl<T: Observer> Observer for Vec<T> {
-    fn on_start(&mut self, moment: &Moment) {
-        self.as_mut_slice().on_start(moment);
-    }
-    #[inline]
-    fn on_collision(&mut self, collision: &Collision) {
-        self.as_mut_slice().on_collision(collision);
-    }
-    fn next_sample(&self) -> f64 {
-        self.as_slice().next_sample()
-    }
-    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-        self.as_mut_slice().on_sample(snapshot);
-    }
-    fn on_end(&mut self, moment: &Moment) {
-        self.as_mut_slice().on_end(moment);
-    }
-    #[inline]
-    fn verdict(&mut self) -> Verdict {
-        self.as_mut_slice().verdict()
-    }
+/// Makes observers of the types that hold a slice of observers: of many, and of one that may be absent.
+macro_rules! compose_slice {
+    ($($holder:ty),+) => {
+        $(impl<T: Observer> Observer for $holder {
+            fn on_start(&mut self, moment: &Moment) {
+                self.as_mut_slice().on_start(moment);
+            }
+            #[inline]
+            fn on_collision(&mut self, collision: &Collision) {
+                self.as_mut_slice().on_collision(collision);
+            }
+            fn next_sample(&self) -> f64 {
+                self.as_slice().next_sample()
+            }
+            fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+                self.as_mut_slice().on_sample(snapshot);
+            }
+            fn on_end(&mut self, moment: &Moment) {
+                self.as_mut_slice().on_end(moment);
+            }
+            #[inline]
+            fn verdict(&mut self) -> Verdict {
+                self.as_mut_slice().verdict()
+            }
+        })+
+    };
 }
 
-/// An observer that may be absent.
-impl<T: Observer> Observer for Option<T> {
-    fn on_start(&mut self, moment: &Moment) {
-        self.as_mut_slice().on_start(moment);
-    }
-    #[inline]
-    fn on_collision(&mut self, collision: &Collision) {
-        self.as_mut_slice().on_collision(collision);
-    }
-    fn next_sample(&self) -> f64 {
-        self.as_slice().next_sample()
-    }
-    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-        self.as_mut_slice().on_sample(snapshot);
-    }
-    fn on_end(&mut self, moment: &Moment) {
-        self.as_mut_slice().on_end(moment);
-    }
-    #[inline]
-    fn verdict(&mut self) -> Verdict {
-        self.as_mut_slice().verdict()
-    }
-}
+compose_slice!(Vec<T>, Option<T>);
 
 /// Shows the snapshot to an observer that asked for it, but not to its neighbors that wait for later times.
 fn sample_if_due<T: Observer>(observer: &mut T, snapshot: &Snapshot<'_>) {

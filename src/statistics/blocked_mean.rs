@@ -1,6 +1,6 @@
 //! Means of correlated numbers with their errors, without keeping the numbers.
 
-use super::blocking::{BlockError, plateau};
+use super::plateau::{BlockError, plateau};
 use super::{Estimate, RunningMean};
 
 /// The mean of correlated numbers that come one by one, with an error that accounts for their correlation.

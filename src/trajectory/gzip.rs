@@ -10,7 +10,7 @@ use flate2::write::DeflateEncoder;
 use flate2::{Compression, Crc, Decompress, FlushDecompress, Status};
 
 use super::format::{Format, no_frame};
-use super::one_file::Frames;
+use super::frames::Frames;
 
 /// Beginning of a member: deflated, without a name or a time, of an unknown system.
 const HEAD: [u8; 10] = [0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255];

@@ -1,11 +1,11 @@
 //! Frames one after another in one file, plain or compressed.
 
-use std::hash::{DefaultHasher, Hasher};
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use super::errors::RecordError;
-use super::format::{Format, no_frame};
+use super::format::Format;
+use super::frames::{Frames, digest};
 #[cfg(feature = "gzip")]
 use super::gzip::{self, Member};
 use super::media::{self, Growing};
@@ -29,14 +29,6 @@ enum Packing {
     Plain,
     #[cfg(feature = "gzip")]
     Gzip(Member),
-}
-
-/// The whole frames of a file: their times, digests of their bytes, and the end of the last one.
-#[derive(Debug, Default)]
-pub(super) struct Frames {
-    times: Vec<f64>,
-    digests: Vec<u64>,
-    end: u64,
 }
 
 impl OneFile {
@@ -131,30 +123,6 @@ impl Packing {
             Self::Gzip(member) => gzip::frames(member, input, format),
         }
     }
-}
-
-impl Frames {
-    fn push(&mut self, time: f64, bytes: &[u8], end: u64) {
-        self.times.push(time);
-        self.digests.push(digest(bytes));
-        self.end = end;
-    }
-
-    /// Adds a frame that was found in a file.
-    pub(super) fn add(&mut self, time: f64, bytes: &[u8], end: u64) -> io::Result<()> {
-        if self.times.last().is_some_and(|&last| last >= time) || !time.is_finite() {
-            return Err(no_frame("a frame after the one before", &format!("time {time:?}")));
-        }
-        self.push(time, bytes, end);
-        Ok(())
-    }
-}
-
-/// Returns a hash of these bytes, for comparisons within one process.
-fn digest(bytes: &[u8]) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    hasher.write(bytes);
-    hasher.finish()
 }
 
 fn plain_frames(input: &mut impl BufRead, format: &dyn Format) -> io::Result<Frames> {

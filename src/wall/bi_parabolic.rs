@@ -1,8 +1,7 @@
 //! The paper's vibrating base.
 
-use super::oscillation::{Oscillation, is_even, piece};
+use super::oscillation::{Oscillation, is_even, periodic, periodic_answers, piece};
 use super::{AccelerationBounds, WallMotion, WallState};
-use crate::{Fingerprint, ParameterError};
 
 /// Piecewise constant acceleration that mimics a sine, with two parabolic arcs per period (paper, Sec. III).
 ///
@@ -31,26 +30,9 @@ pub struct BiParabolic {
     oscillation: Oscillation,
 }
 
+periodic!(BiParabolic);
+
 impl BiParabolic {
-    /// Creates a motion of this amplitude A and angular frequency ω.
-    ///
-    /// # Errors
-    /// If a number is not finite and positive, or the period or the peak acceleration would not be. For a
-    /// wall at rest, use [`Fixed`](super::Fixed).
-    pub fn new(amplitude: f64, angular_frequency: f64) -> Result<Self, ParameterError> {
-        Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
-    }
-
-    /// Returns the amplitude.
-    pub const fn amplitude(&self) -> f64 {
-        self.oscillation.amplitude()
-    }
-
-    /// Returns the angular frequency.
-    pub const fn angular_frequency(&self) -> f64 {
-        self.oscillation.angular_frequency()
-    }
-
     fn arc(&self, phase: f64) -> Arc {
         let length = 0.5 * self.oscillation.period();
         let (number, end) = piece(phase, length);
@@ -81,14 +63,5 @@ impl WallMotion for BiParabolic {
         AccelerationBounds::new(arc.end, value, value)
     }
 
-    fn reach(&self) -> (f64, f64) {
-        (-self.amplitude(), self.amplitude())
-    }
-
-    fn period(&self) -> Option<f64> {
-        Some(self.oscillation.period())
-    }
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        Some(self.oscillation.fingerprint("BiParabolic"))
-    }
+    periodic_answers!("BiParabolic");
 }

@@ -63,3 +63,48 @@ pub(super) fn is_even(number: f64) -> bool {
 crate::gate::from_file! {
     Oscillation { amplitude: f64, angular_frequency: f64 } => Self::new(amplitude, angular_frequency)
 }
+
+/// Gives a motion over an [`Oscillation`] its constructor and its two numbers.
+macro_rules! periodic {
+    ($motion:ident) => {
+        impl $motion {
+            /// Creates a motion of this amplitude A and angular frequency ω.
+            ///
+            /// # Errors
+            /// If a number is not finite and positive, or the period or the peak acceleration would not be. For a
+            /// wall at rest, use [`Fixed`](super::Fixed).
+            pub fn new(amplitude: f64, angular_frequency: f64) -> Result<Self, crate::ParameterError> {
+                Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
+            }
+
+            /// Returns the amplitude.
+            pub const fn amplitude(&self) -> f64 {
+                self.oscillation.amplitude()
+            }
+
+            /// Returns the angular frequency.
+            pub const fn angular_frequency(&self) -> f64 {
+                self.oscillation.angular_frequency()
+            }
+        }
+    };
+}
+
+/// Gives a motion over an [`Oscillation`] the answers that follow from its two numbers, and its name.
+macro_rules! periodic_answers {
+    ($name:literal) => {
+        fn reach(&self) -> (f64, f64) {
+            (-self.amplitude(), self.amplitude())
+        }
+
+        fn period(&self) -> Option<f64> {
+            Some(self.oscillation.period())
+        }
+
+        fn fingerprint(&self) -> Option<crate::Fingerprint> {
+            Some(self.oscillation.fingerprint($name))
+        }
+    };
+}
+
+pub(super) use {periodic, periodic_answers};

@@ -1,9 +1,8 @@
 //! The wall that rises at constant speed and jumps back.
 
-use super::oscillation::Oscillation;
+use super::oscillation::{Oscillation, periodic, periodic_answers};
 use super::stroke::{steady, stroke};
 use super::{AccelerationBounds, WallMotion, WallState};
-use crate::{Fingerprint, ParameterError};
 
 /// Sawtooth motion: from −A to A in one period at constant speed, then instantly back to −A.
 ///
@@ -25,25 +24,7 @@ pub struct Sawtooth {
     oscillation: Oscillation,
 }
 
-impl Sawtooth {
-    /// Creates a motion of this amplitude A and angular frequency ω.
-    ///
-    /// # Errors
-    /// If a number is not finite and positive, or the period or the peak acceleration would not be.
-    pub fn new(amplitude: f64, angular_frequency: f64) -> Result<Self, ParameterError> {
-        Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
-    }
-
-    /// Returns the amplitude.
-    pub const fn amplitude(&self) -> f64 {
-        self.oscillation.amplitude()
-    }
-
-    /// Returns the angular frequency.
-    pub const fn angular_frequency(&self) -> f64 {
-        self.oscillation.angular_frequency()
-    }
-}
+periodic!(Sawtooth);
 
 impl WallMotion for Sawtooth {
     fn state(&self, phase: f64) -> WallState {
@@ -54,15 +35,5 @@ impl WallMotion for Sawtooth {
         steady(phase, self.oscillation.period())
     }
 
-    fn reach(&self) -> (f64, f64) {
-        (-self.amplitude(), self.amplitude())
-    }
-
-    fn period(&self) -> Option<f64> {
-        Some(self.oscillation.period())
-    }
-
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        Some(self.oscillation.fingerprint("Sawtooth"))
-    }
+    periodic_answers!("Sawtooth");
 }

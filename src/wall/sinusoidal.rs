@@ -1,8 +1,7 @@
 //! The harmonic wall.
 
-use super::oscillation::{Oscillation, piece};
+use super::oscillation::{Oscillation, periodic, periodic_answers, piece};
 use super::{AccelerationBounds, WallMotion, WallState};
-use crate::{Fingerprint, ParameterError};
 
 /// Number of pieces of a period on which the acceleration is bounded. It is a multiple of four, so that the
 /// acceleration is monotonic on each piece and the values at its ends are the bounds.
@@ -24,25 +23,9 @@ pub struct Sinusoidal {
     oscillation: Oscillation,
 }
 
+periodic!(Sinusoidal);
+
 impl Sinusoidal {
-    /// Creates a motion of this amplitude A and angular frequency ω.
-    ///
-    /// # Errors
-    /// If a number is not finite and positive, or the period or the peak acceleration would not be.
-    pub fn new(amplitude: f64, angular_frequency: f64) -> Result<Self, ParameterError> {
-        Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
-    }
-
-    /// Returns the amplitude.
-    pub const fn amplitude(&self) -> f64 {
-        self.oscillation.amplitude()
-    }
-
-    /// Returns the angular frequency.
-    pub const fn angular_frequency(&self) -> f64 {
-        self.oscillation.angular_frequency()
-    }
-
     fn acceleration_at(&self, phase: f64) -> f64 {
         let frequency = self.angular_frequency();
         -self.amplitude() * frequency * frequency * libm::sin(frequency * phase)
@@ -63,14 +46,5 @@ impl WallMotion for Sinusoidal {
         AccelerationBounds::new(until, start.min(end), start.max(end))
     }
 
-    fn reach(&self) -> (f64, f64) {
-        (-self.amplitude(), self.amplitude())
-    }
-
-    fn period(&self) -> Option<f64> {
-        Some(self.oscillation.period())
-    }
-    fn fingerprint(&self) -> Option<Fingerprint> {
-        Some(self.oscillation.fingerprint("Sinusoidal"))
-    }
+    periodic_answers!("Sinusoidal");
 }
