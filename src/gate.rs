@@ -12,6 +12,8 @@ macro_rules! from_file {
                 // The mirror has the name of the type, which stands in errors of formats.
                 #[derive(serde::Deserialize)]
                 #[serde(deny_unknown_fields)]
+                // The fields have the names that they have in the type, however alike.
+                #[allow(clippy::struct_field_names)]
                 struct $name {
                     $($(#[$attribute])* $field: $type,)+
                 }

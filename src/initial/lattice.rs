@@ -50,9 +50,9 @@ pub fn lattice<B: Boundary + ?Sized>(
 
 /// Returns `count` equal disks at rest on a square lattice over the whole interior of the boundary.
 ///
-/// Columns and rows are about equally far apart. If the lattice has more sites than disks, the empty sites lie
-/// evenly among the others. Sites that overlap a wall ([`Boundary::overlap`]) are left out. Without gravity,
-/// such a gas is homogeneous from the start, other than on a [`lattice`] that fills the lower part.
+/// Columns and rows are about equally far apart. If the lattice has more sites than disks, the empty sites
+/// lie evenly among the others. Sites that overlap a wall ([`Boundary::overlap`]) are left out. Without
+/// gravity, such a gas is homogeneous from the start, other than on a [`lattice`] that fills the lower part.
 ///
 /// # Errors
 /// If the radius is not finite and positive, there are more than 2²⁸ disks, the interior has no top, or there

@@ -13,8 +13,8 @@ use crate::simulation::{Limits, RunError};
 /// Number of pairs of stretches.
 const ROUNDS: usize = 201;
 
-/// Number of ratios on either side of the interval. Of 201 tosses of a coin, fewer than 79 or more than 122 are
-/// heads with a probability of 0.0018.
+/// Number of ratios on either side of the interval. Of 201 tosses of a coin, fewer than 79 or more than 122
+/// are heads with a probability of 0.0018.
 const OUTSIDE: usize = 78;
 
 /// Runs a copy of the simulation for this many collisions, with disks or walls, and returns the report.
@@ -94,7 +94,8 @@ pub enum Finding {
 }
 
 impl Comparison {
-    /// Compares stretches of two runs, 201 of each. Stretches of a few milliseconds are best: 10 000 collisions.
+    /// Compares stretches of two runs, 201 of each. Stretches of a few milliseconds are best: 10 000
+    /// collisions.
     ///
     /// # Errors
     /// Those of the stretches.

@@ -16,8 +16,8 @@ const FEWEST_INDEPENDENT: f64 = 120.0;
 ///
 /// A series is called converged if its error is small, and some errors are small by chance: the errors that
 /// are trusted are too small on average, the more so the fewer samples they have. With this excess, two
-/// errors hold the true mean in nine cases of ten or more at any length. The table of [`block_average`](super::block_average) shows
-/// it.
+/// errors hold the true mean in nine cases of ten or more at any length. The table of
+/// [`block_average`](super::block_average) shows it.
 const EXCESS: f64 = 60.0;
 
 /// The apparent standard error from blocks of one size.

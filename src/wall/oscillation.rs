@@ -71,8 +71,8 @@ macro_rules! periodic {
             /// Creates a motion of this amplitude A and angular frequency ω.
             ///
             /// # Errors
-            /// If a number is not finite and positive, or the period or the peak acceleration would not be. For a
-            /// wall at rest, use [`Fixed`](super::Fixed).
+            /// If a number is not finite and positive, or the period or the peak acceleration would not be.
+            /// For a wall at rest, use [`Fixed`](super::Fixed).
             pub fn new(amplitude: f64, angular_frequency: f64) -> Result<Self, crate::ParameterError> {
                 Ok(Self { oscillation: Oscillation::new(amplitude, angular_frequency)? })
             }

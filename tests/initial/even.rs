@@ -15,7 +15,8 @@ fn a_periodic_box_is_filled_evenly_at_any_area_fraction() {
         let container = Container::periodic(side, side).unwrap();
         let disks = initial::even_lattice(&container, count as usize, 0.5).unwrap();
         assert_eq!(disks.len(), count as usize);
-        // A quarter of the disks is in each quarter, but for a row or a column of them. No row is in the middle.
+        // A quarter of the disks is in each quarter, but for a row or a column of them. No row is in the
+        // middle.
         let line = f64::from(count).sqrt() + 2.0;
         for quarter in 0..4u32 {
             let is_in = |place: DVec2| {

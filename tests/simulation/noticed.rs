@@ -270,7 +270,7 @@ fn a_wall_that_jumps_between_runs_is_a_warning() {
     assert!(run.warnings()[0].to_string().contains("\"lid\""), "{}", run.warnings()[0]);
     // The counters have the warning, too: those of a checkpoint and of a record are asked alike.
     assert_eq!(run.counters().warnings().len(), 1);
-    assert_eq!(run.counters().since(&run.counters().clone()).warnings(), []);
+    assert_eq!(run.counters().since(run.counters()).warnings(), []);
 }
 
 #[test]
@@ -320,7 +320,7 @@ fn gravity_has_no_sign_where_there_is_none() {
         run.run_until(60.0, &mut ()).unwrap();
         run.set_gravity(gravity).unwrap();
         run.run_until(120.0, &mut ()).unwrap();
-        (run.disks(), run.counters().clone())
+        (run.disks(), *run.counters())
     };
     assert_eq!(end(-0.0), end(0.0));
 }

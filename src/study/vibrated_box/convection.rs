@@ -58,8 +58,8 @@ impl Record<VibratedBox> {
     }
 }
 
-/// Returns the columns of the tables of values and samples. None has the name of a parameter, which could then
-/// not vary.
+/// Returns the columns of the tables of values and samples. None has the name of a parameter, which could
+/// then not vary.
 pub(super) fn columns() -> Vec<Column<VibratedBox>> {
     vec![
         Column::of_record("state", "", |record| VibratedBox::state(record).unwrap_or_default()),
