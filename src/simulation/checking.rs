@@ -43,23 +43,32 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         match self.boundary.overlap(position, radius + gap, self.clock.now) {
             Some((_, depth)) if depth - gap <= self.counters.max_wall_overlap => Ok(()),
             // The deepest wall need not be the one that was touched.
-            Some((deepest, depth)) => self.note_overlap(disk, Partner::Wall(deepest), depth - gap),
+            Some((deepest, depth)) => {
+                self.note_overlap(disk, Partner::Wall(wall), Partner::Wall(deepest), depth - gap)
+            }
             None => self.check_gap(disk, wall, position),
         }
     }
 
     /// Keeps an overlap that is larger than all before, if it can be rounding.
     ///
-    /// A larger overlap is not kept, so that the next one is noticed, too.
+    /// A larger overlap is not kept, so that the next one is noticed, too. The error names the partner in which
+    /// the disk is, which may be another wall than the one that it touched.
     #[cold]
     #[inline(never)]
-    pub(super) fn note_overlap(&mut self, disk: usize, partner: Partner, depth: f64) -> Outcome<()> {
+    pub(super) fn note_overlap(
+        &mut self,
+        disk: usize,
+        partner: Partner,
+        inside: Partner,
+        depth: f64,
+    ) -> Outcome<()> {
         let radius = match partner {
             Partner::Disk(other) => self.bodies.radius(disk).min(self.bodies.radius(other)),
             Partner::Wall(_) => self.bodies.radius(disk),
         };
         if depth > DEEP * radius + self.rounding_at(disk, partner) {
-            return Err(self.false_contact(disk, partner, depth).into());
+            return Err(self.false_contact(disk, inside, depth).into());
         }
         match partner {
             Partner::Disk(_) => self.counters.max_overlap = depth,

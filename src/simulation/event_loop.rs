@@ -90,7 +90,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
         let depth = self.bodies.radius(disk) + self.bodies.radius(partner) - collision.distance;
         if depth > self.counters.max_overlap {
-            self.note_overlap(disk, Partner::Disk(partner), depth)?;
+            self.note_overlap(disk, Partner::Disk(partner), Partner::Disk(partner), depth)?;
         }
         self.counters.disk_collisions += 1;
         self.count_regime(&collision);
