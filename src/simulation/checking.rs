@@ -52,8 +52,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Keeps an overlap that is larger than all before, if it can be rounding.
     ///
-    /// A larger overlap is not kept, so that the next one is noticed, too. The error names the partner in which
-    /// the disk is, which may be another wall than the one that it touched.
+    /// A larger overlap is not kept, so that the next one is noticed, too. The error names the partner in
+    /// which the disk is, which may be another wall than the one that it touched.
     #[cold]
     #[inline(never)]
     pub(super) fn note_overlap(
