@@ -108,10 +108,10 @@ fn draw(points: &[Point], slip: bool) -> Sheet {
     let place = |point: &Point| (point.friction, point.height.mean());
     let (rough, smooth) = (LOOKS[0], Look::line(QUIET, "8 4"));
     let mut plots = vec![rough.with_width(1.0).curve(drawn().map(place))];
-    let mut names = vec![
-        (rough.without_line(), "κ > 0, with standard error"),
-        (rough.without_line().open(), "the same, the error a lower bound"),
-    ];
+    let mut names = vec![(rough.without_line(), "κ > 0, with standard error")];
+    if !drawn().all(|point| point.height.is_converged()) {
+        names.push((rough.without_line().open(), "the same, the error a lower bound"));
+    }
     if let Some(at) = points.iter().find(|point| point.friction == 0.0) {
         plots.push(smooth.curve([EDGES.0, EDGES.1].map(|friction| (friction, at.height.mean()))));
         names.push((smooth, "κ = 0"));

@@ -18,9 +18,9 @@ use std::process::ExitCode;
 use clap::Parser;
 use granular_edmd::study::vibrated_box::{Sample, VibratedBox};
 use granular_edmd::study::{Course, Leg, Plan, PlanError, Protocol, Ramp, Study};
-use kuva::prelude::{Layout, Plot, TickFormat};
+use kuva::prelude::{Layout, TickFormat};
 
-use gallery::look::{self, BLUE, Look, Mark, NOISE, VERMILION};
+use gallery::look::{self, BLUE, INK, Look, Mark, NOISE, VERMILION};
 use gallery::panel::{self, COLUMN, Place};
 use gallery::sheet::Sheet;
 
@@ -140,7 +140,8 @@ fn layout(lowest: bool) -> Layout {
 
 fn add_panel(sheet: &mut Sheet, place: Place, records: &[Record], quantity: Quantity, layout: Layout) {
     let place = Place { height: place.height + BELOW, ..place };
-    let panel = sheet.panel(place, [LEFT, 14.0, 8.0, BELOW], vec![noise(records)], layout);
+    let noise = noise(records);
+    let panel = sheet.panel(place, [LEFT, 14.0, 8.0, BELOW], vec![look::noise(&noise)], layout);
     let both = records.iter().any(|record| record.leg() == Some(Leg::Down));
     for record in records {
         let down = record.leg() == Some(Leg::Down);
@@ -151,13 +152,18 @@ fn add_panel(sheet: &mut Sheet, place: Place, records: &[Record], quantity: Quan
         let samples = samples.map(|(index, sample)| (at(index), quantity(sample)));
         sheet.marks(&panel, WAYS[usize::from(down)], samples);
     }
+    // The samples hide the band: its edges go over them.
+    for sign in [-1.0, 1.0] {
+        let edge = noise.iter().map(|&(friction, half)| panel.at((friction, sign * half)));
+        sheet.line(edge.collect(), INK, 1.0);
+    }
 }
 
-/// Returns the band in which nearly all samples of a gas without rolls would be.
-fn noise(records: &[Record]) -> Plot {
+/// Returns half the height of the band in which nearly all samples of a gas without rolls would be.
+fn noise(records: &[Record]) -> Vec<(f64, f64)> {
     let up = records.iter().filter(|record| record.leg() != Some(Leg::Down));
     let ends = |record: &Record| {
         [-0.5, 0.5].map(|end| (friction(record) + end * STEP, 2.0 * record.thermal_noise()))
     };
-    look::noise(&up.flat_map(ends).collect::<Vec<_>>())
+    up.flat_map(ends).collect()
 }
