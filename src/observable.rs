@@ -80,8 +80,9 @@
 //! ```
 //!
 //! # Tables
-//! An observable that is [`Tabular`] names the numbers of its values. [`Series::write_csv`] and
-//! [`Series::write_json_lines`] write them with names and units; a tuple has the columns of its parts.
+//! Every measure is a [`Table`]: [`write_csv`](Table::write_csv) and
+//! [`write_json_lines`](Table::write_json_lines) write its results with names, units and errors. A [`Series`]
+//! is one if its observable is [`Tabular`]; a tuple has the columns of its parts.
 //!
 //! # Measurements in files
 //! With the feature `serde`, you can write the observers of this module, except for closures, to a file
@@ -160,6 +161,7 @@ pub use snapshot::Snapshot;
 pub use stop::{StopWhen, StopWhenSampled, stop_when, stop_when_sampled};
 #[doc(alias("pressure", "pressure tensor", "virial"))]
 pub use stress::{Stress, StressTensor};
+pub use table::Table;
 pub use tabular::{Heading, Named, Tabular};
 #[doc(alias("granular temperature"))]
 pub use temperatures::{Temperature, Temperatures};

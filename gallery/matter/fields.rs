@@ -18,7 +18,7 @@ use std::time::Instant;
 use clap::Parser;
 use granular_edmd::boundary::Region;
 use granular_edmd::glam::DVec2;
-use granular_edmd::observable::{FieldCell, Fields, Grid};
+use granular_edmd::observable::{FieldCell, Fields, Grid, Heading};
 use granular_edmd::prelude::*;
 use kuva::plot::heatmap::ColorMap;
 use kuva::prelude::{Heatmap, Layout, Plot, TickAlign, TickFormat};
@@ -100,25 +100,11 @@ fn measured(arguments: &Arguments) -> Result<(Sampled<Fields>, Sampled<Fields>),
     Ok(fields)
 }
 
-const COLUMNS: [&str; 8] = [
-    "x",
-    "height",
-    "count",
-    "packing_fraction",
-    "velocity_x",
-    "velocity_y",
-    "translational_temperature",
-    "rotational_temperature",
-];
-
 fn write(arguments: &Arguments, fine: &Fields, coarse: &Fields) -> Result<(), Box<dyn Error>> {
-    let mut table = arguments.results.table("fields", &COLUMNS)?;
-    for cell in fine.iter() {
-        let flow = [cell.velocity.x, cell.velocity.y];
-        let temperatures = [cell.translational_temperature, cell.rotational_temperature];
-        let place = [cell.center.x, cell.center.y];
-        table.serialize((place, cell.count, cell.packing_fraction, flow, temperatures))?;
-    }
+    let columns = fine.headings();
+    let columns: Vec<&str> = columns.iter().map(Heading::name).collect();
+    let mut table = arguments.results.table("fields", &columns)?;
+    fine.rows().try_for_each(|row| table.serialize(row))?;
     arguments.results.finish_table("fields", table, Some(&draw(arguments, fine, coarse)))
 }
 

@@ -1,7 +1,8 @@
 //! Histograms over collisions: angles, speeds and impulses.
 
+use super::table::{Table, histogram_headings, histogram_rows};
 use super::wall_stress::check_wall;
-use super::{Collision, Moment, Observer, Partner, Verdict, contract};
+use super::{Collision, Heading, Moment, Observer, Partner, Verdict, contract};
 use crate::ParameterError;
 use crate::statistics::Histogram;
 
@@ -111,5 +112,16 @@ impl Observer for CollisionHistograms {
     #[inline]
     fn verdict(&mut self) -> Verdict {
         contract::verdict(&mut self.fault)
+    }
+}
+
+impl Table for CollisionHistograms {
+    fn headings(&self) -> Vec<Heading> {
+        let names = [("obliqueness", "1"), ("closing_speed", "length/time"), ("impulse", "mass length/time")];
+        histogram_headings(names)
+    }
+
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+        histogram_rows([&self.obliqueness, &self.closing_speed, &self.impulse])
     }
 }

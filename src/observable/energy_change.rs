@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::{Collision, Observer, Partner};
+use super::table::{ENERGY, Table, headings, row};
+use super::{Collision, Heading, Observer, Partner};
 use crate::statistics::BlockedMean;
 
 /// An observer of the mean change of kinetic energy per collision, ⟨dE⟩, for disk–disk collisions and for
@@ -54,5 +55,17 @@ impl Observer for EnergyChange {
             Partner::Wall(wall) => self.walls.entry(wall).or_insert_with(BlockedMean::with_room),
         };
         mean.push(collision.energy_change);
+    }
+}
+
+impl Table for EnergyChange {
+    fn headings(&self) -> Vec<Heading> {
+        headings(&[("wall", "1"), ("collisions", "1")], &[("energy_change", ENERGY)])
+    }
+
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+        let walls = self.walls.iter().map(|(&wall, mean)| (wall as f64, mean));
+        let partners = std::iter::once((f64::NAN, &self.disks)).chain(walls);
+        Box::new(partners.map(|(wall, mean)| row(&[wall, mean.count() as f64], &[mean.estimate()])))
     }
 }

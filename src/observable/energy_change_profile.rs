@@ -1,6 +1,7 @@
 //! The energy change per collision, beside the temperature at the same height.
 
-use super::{Accumulator, Collision, Partner, Snapshot};
+use super::table::{ENERGY, Table, headings, row};
+use super::{Accumulator, Collision, Heading, Partner, Snapshot};
 use crate::ParameterError;
 use crate::statistics::{Bins, BlockedMean};
 
@@ -109,6 +110,21 @@ impl Accumulator for EnergyChangeProfile {
                 self.layers[bin].rotational_temperature.push(2.0 * disk.rotational_energy());
             }
         }
+    }
+}
+
+impl Table for EnergyChangeProfile {
+    fn headings(&self) -> Vec<Heading> {
+        let names = ["energy_change", "translational_temperature", "rotational_temperature"];
+        headings(&[("height", "length"), ("collisions", "1")], &names.map(|name| (name, ENERGY)))
+    }
+
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+        Box::new(self.layers.iter().map(|layer| {
+            let temperatures = [&layer.translational_temperature, &layer.rotational_temperature];
+            let means = [&layer.energy_change, temperatures[0], temperatures[1]].map(BlockedMean::estimate);
+            row(&[layer.height, layer.energy_change.count() as f64], &means)
+        }))
     }
 }
 

@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use super::grid::CellSums;
-use super::{Accumulator, Grid, Snapshot};
+use super::table::{ENERGY, Table, headings};
+use super::{Accumulator, Grid, Heading, Snapshot};
 
 /// The fields in one cell of a grid, averaged over all samples; made by [`Fields`].
 ///
@@ -130,6 +131,32 @@ impl Accumulator for Fields {
             }
         }
         self.samples += 1;
+    }
+}
+
+impl Table for Fields {
+    fn headings(&self) -> Vec<Heading> {
+        let places = [
+            ("x", "length"),
+            ("y", "length"),
+            ("count", "1"),
+            ("number_density", "1/length^2"),
+            ("packing_fraction", "1"),
+        ];
+        let motions =
+            [("velocity_x", "length/time"), ("velocity_y", "length/time"), ("angular_velocity", "1/time")];
+        let temperatures = [("translational_temperature", ENERGY), ("rotational_temperature", ENERGY)];
+        headings(&[&places[..], &motions, &temperatures].concat(), &[])
+    }
+
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+        Box::new(self.iter().map(|cell| {
+            let FieldCell { center, velocity, .. } = cell;
+            let places = [center.x, center.y, cell.count as f64, cell.number_density, cell.packing_fraction];
+            let motions = [velocity.x, velocity.y, cell.angular_velocity];
+            let temperatures = [cell.translational_temperature, cell.rotational_temperature];
+            [&places[..], &motions, &temperatures].concat()
+        }))
     }
 }
 

@@ -34,7 +34,7 @@ impl<F> FromFn<F> {
     /// of it can be written as a table.
     ///
     /// ```
-    /// use granular_edmd::observable::{SampleTimes, Series, Snapshot, from_fn};
+    /// use granular_edmd::observable::{SampleTimes, Series, Snapshot, Table, from_fn};
     /// let count = from_fn(|snapshot: &Snapshot<'_>| snapshot.disks().len() as f64).named("disks", "1");
     /// let mut table = Vec::new();
     /// Series::new(count, SampleTimes::every(1.0)?).write_csv(&mut table)?;

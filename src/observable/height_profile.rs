@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::{Accumulator, Snapshot};
+use super::table::{Table, headings};
+use super::{Accumulator, Heading, Snapshot};
 use crate::statistics::Bins;
 use crate::{Disk, ParameterError};
 
@@ -144,6 +145,16 @@ impl Accumulator for HeightProfile {
         let width = snapshot.domain().width();
         snapshot.disks().iter().for_each(|disk| self.add_disk(disk, width));
         self.samples += 1;
+    }
+}
+
+impl Table for HeightProfile {
+    fn headings(&self) -> Vec<Heading> {
+        headings(&[("height", "length"), ("packing_fraction", "1")], &[])
+    }
+
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+        Box::new(self.iter().map(|(height, fraction)| vec![height, fraction]))
     }
 }
 

@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use super::lags::Lags;
-use super::{Moment, Observer, SampleTimes, Snapshot};
+use super::table::{Table, headings, row};
+use super::{Heading, Moment, Observer, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::statistics::{BlockedMean, Estimate};
 
@@ -120,5 +121,15 @@ impl Observer for MeanSquaredDisplacement {
             self.diffusion.push(0.25 * slope);
         }
         self.lags.sample_times.advance_past(snapshot.time());
+    }
+}
+
+impl Table for MeanSquaredDisplacement {
+    fn headings(&self) -> Vec<Heading> {
+        headings(&[("time", "time")], &[("squared_displacement", "length^2")])
+    }
+
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+        Box::new(self.iter().map(|(time, value)| row(&[time], &[value])))
     }
 }

@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use glam::DVec2;
 
 use super::grid::{checked_region, inside};
-use super::{Accumulator, Moment, Snapshot};
+use super::table::{Table, headings, row};
+use super::{Accumulator, Heading, Moment, Snapshot};
 use crate::boundary::{Domain, Region, Squares};
 use crate::quantity::{accept, positive};
 use crate::statistics::{Bins, BlockedMean, Estimate, RunningMean};
@@ -202,6 +203,16 @@ impl Accumulator for PairCorrelation {
             let (low, high) = (self.bins.edge(bin), self.bins.edge(bin + 1));
             self.pairs[bin].push(count as f64 / (PI * (high - low) * (high + low)));
         }
+    }
+}
+
+impl Table for PairCorrelation {
+    fn headings(&self) -> Vec<Heading> {
+        headings(&[("distance", "length")], &[("pair_correlation", "1")])
+    }
+
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+        Box::new(self.iter().map(|(distance, value)| row(&[distance], &[value])))
     }
 }
 

@@ -4,7 +4,8 @@ use glam::DVec2;
 
 use super::grid::{checked_region, inside};
 use super::stretch::Stretch;
-use super::{Collision, Moment, Observer, SampleTimes, Snapshot, Verdict, contract};
+use super::table::{STRESS, Table, headings, row};
+use super::{Collision, Heading, Moment, Observer, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
 use crate::boundary::{Domain, Region};
 use crate::quantity::accept;
@@ -251,5 +252,20 @@ impl Tensor {
     fn estimate(&self) -> StressTensor {
         let [xx, xy, yx, yy] = [0, 1, 2, 3].map(|entry: usize| self.components[entry].estimate());
         StressTensor { xx, xy, yx, yy, pressure: self.pressure.estimate() }
+    }
+}
+
+impl Table for Stress {
+    fn headings(&self) -> Vec<Heading> {
+        let parts = ["", "kinetic_", "collisional_"]
+            .map(|part| ["pressure", "xx", "xy", "yx", "yy"].map(|name| format!("{part}{name}")));
+        let names: Vec<_> = parts.iter().flatten().map(|name| (name.as_str(), STRESS)).collect();
+        headings(&[], &names)
+    }
+
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+        let parts = [self.tensor(), self.kinetic(), self.collisional()];
+        let numbers = parts.map(|StressTensor { xx, xy, yx, yy, pressure }| [pressure, xx, xy, yx, yy]);
+        Box::new(std::iter::once(row(&[], numbers.as_flattened())))
     }
 }

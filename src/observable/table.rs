@@ -1,12 +1,53 @@
-//! Series as tables in text.
+//! Measures as tables in text.
 
 use std::io::{self, Write};
 
 use super::{Heading, Series, Tabular};
+use crate::statistics::{Estimate, Histogram};
 
-impl<Q: Tabular> Series<Q> {
-    /// Writes the series as comma-separated values: a line of headings, such as `center_y [length]`, and a
-    /// line for each time.
+/// The unit of a stress in two dimensions.
+pub(super) const STRESS: &str = "mass/time^2";
+
+/// The unit of an energy or a temperature.
+pub(super) const ENERGY: &str = "energy";
+
+/// A measure whose results are rows of numbers, each with a name and a unit.
+///
+/// All measures of this module are tables: a [`Series`] has a row for each time, a
+/// [`PairCorrelation`](super::PairCorrelation) for each distance, [`Fields`](super::Fields) for each cell. A
+/// number with an error has three columns: its mean `x`, its standard error `x_error`, and `x_samples`, the
+/// number of independent samples behind it. In a column `wall`, collisions of two disks have the undefined
+/// number. A `Sampled` measure is written like the measure within.
+///
+/// # Contract
+/// Each row has as many numbers as there are headings, in their order.
+///
+/// ```
+/// use granular_edmd::boundary::Domain;
+/// use granular_edmd::observable::{Accumulator, HeightProfile, Snapshot, Table};
+/// use granular_edmd::{Disk, glam::DVec2};
+///
+/// let mut profile = HeightProfile::new(0.0, 4.0, 2)?;
+/// let disk = Disk::new(DVec2::new(1.0, 3.0), 0.5)?;
+/// profile.add(&Snapshot::new(0.0, &[disk], Domain::new(0.0, 2.0, 0.0, 4.0), 1.0));
+/// let mut table = Vec::new();
+/// profile.write_csv(&mut table)?;
+/// assert!(table.starts_with(b"height [length],packing_fraction\n1.0,0.0\n3.0,0.196"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no table",
+    note = "a `Series` is one if its observable is `Tabular`"
+)]
+pub trait Table {
+    /// Returns the names and units of the columns.
+    fn headings(&self) -> Vec<Heading>;
+
+    /// Iterates over the rows.
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_>;
+
+    /// Writes the table as comma-separated values: a line of headings, such as `center_y [length]`, and a
+    /// line for each row.
     ///
     /// The heading of a pure number has no unit. Numbers read back to the same bits. An undefined number is
     /// `NaN`.
@@ -14,7 +55,7 @@ impl<Q: Tabular> Series<Q> {
     /// ```
     /// use granular_edmd::boundary::Domain;
     /// use granular_edmd::observable::{
-    ///     CenterOfMass, Observer, OrderParameters, SampleTimes, Series, Snapshot,
+    ///     CenterOfMass, Observer, OrderParameters, SampleTimes, Series, Snapshot, Table,
     /// };
     ///
     /// let mut series = Series::new((OrderParameters, CenterOfMass), SampleTimes::every(0.5)?);
@@ -28,25 +69,30 @@ impl<Q: Tabular> Series<Q> {
     /// ```
     ///
     /// # Errors
-    /// If the writer fails, two columns have the same name, or a name or a unit has characters that a table
-    /// cannot hold.
-    pub fn write_csv(&self, mut out: impl Write) -> io::Result<()> {
-        writeln!(out, "{}", self.labels()?.join(","))?;
+    /// If the writer fails, two columns have the same name, a name or a unit has characters that a table
+    /// cannot hold, or a row breaks the contract.
+    fn write_csv(&self, mut out: impl Write) -> io::Result<()>
+    where
+        Self: Sized,
+    {
+        let labels = labels(self)?;
+        writeln!(out, "{}", labels.join(","))?;
         for row in self.rows() {
-            let cells: Vec<String> = row?.iter().map(|number| format!("{number:?}")).collect();
+            let cells: Vec<String> =
+                complete(&row, &labels)?.iter().map(|number| format!("{number:?}")).collect();
             writeln!(out, "{}", cells.join(","))?;
         }
         out.flush()
     }
 
-    /// Writes the series as JSON lines: an object for each time, with the headings of
+    /// Writes the table as JSON lines: an object for each row, with the headings of
     /// [`write_csv`](Self::write_csv) as keys.
     ///
     /// Numbers read back to the same bits. A number that is not finite is `null`.
     ///
     /// ```
     /// use granular_edmd::boundary::Domain;
-    /// use granular_edmd::observable::{CenterOfMass, Observer, SampleTimes, Series, Snapshot};
+    /// use granular_edmd::observable::{CenterOfMass, Observer, SampleTimes, Series, Snapshot, Table};
     ///
     /// let mut series = Series::new(CenterOfMass, SampleTimes::every(0.5)?);
     /// series.on_sample(&Snapshot::new(0.5, &[], Domain::new(0.0, 4.0, 0.0, 6.0), 1.0));
@@ -59,36 +105,98 @@ impl<Q: Tabular> Series<Q> {
     ///
     /// # Errors
     /// The same as for [`write_csv`](Self::write_csv).
-    pub fn write_json_lines(&self, mut out: impl Write) -> io::Result<()> {
-        let labels = self.labels()?;
+    fn write_json_lines(&self, mut out: impl Write) -> io::Result<()>
+    where
+        Self: Sized,
+    {
+        let labels = labels(self)?;
         for row in self.rows() {
-            let row = row?;
-            let members: Vec<String> = labels.iter().zip(row).map(member).collect();
+            let members: Vec<String> = labels.iter().zip(complete(&row, &labels)?).map(member).collect();
             writeln!(out, "{{{}}}", members.join(","))?;
         }
         out.flush()
     }
+}
 
-    /// Returns the headings of all columns as they appear in files.
-    fn labels(&self) -> io::Result<Vec<String>> {
-        let headings = [vec![Heading::new("time", "time")], self.observable().headings()].concat();
-        check(&headings)?;
-        Ok(headings.iter().map(label).collect())
+impl<Q: Tabular> Table for Series<Q> {
+    fn headings(&self) -> Vec<Heading> {
+        [vec![Heading::new("time", "time")], self.observable().headings()].concat()
     }
 
-    /// Returns the rows, each with a number for each heading.
-    fn rows(&self) -> impl Iterator<Item = io::Result<Vec<f64>>> {
-        let columns = 1 + self.observable().headings().len();
-        self.iter().map(move |(time, value)| {
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+        Box::new(self.iter().map(|(time, value)| {
             let mut row = vec![time];
             self.observable().add_numbers(value, &mut row);
-            if row.len() == columns {
-                return Ok(row);
-            }
-            let message = format!("a row has {} numbers for {columns} headings", row.len());
-            Err(io::Error::new(io::ErrorKind::InvalidInput, message))
-        })
+            row
+        }))
     }
+}
+
+impl Table for Histogram {
+    fn headings(&self) -> Vec<Heading> {
+        histogram_headings([("value", "1")])
+    }
+
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+        histogram_rows([self])
+    }
+}
+
+/// Returns the headings of numbers without errors, and after them those of numbers with errors.
+pub(super) fn headings(exact: &[(&str, &str)], estimated: &[(&str, &str)]) -> Vec<Heading> {
+    let exact = exact.iter().map(|&heading| heading.into());
+    let estimated = estimated.iter().flat_map(|&(name, unit)| {
+        [(name.to_owned(), unit), (format!("{name}_error"), unit), (format!("{name}_samples"), "1")]
+    });
+    exact.chain(estimated.map(Heading::from)).collect()
+}
+
+/// Returns a row under [`headings`].
+pub(super) fn row(exact: &[f64], estimated: &[Estimate]) -> Vec<f64> {
+    let numbers =
+        |estimate: &Estimate| [estimate.mean(), estimate.standard_error(), estimate.independent_samples()];
+    exact.iter().copied().chain(estimated.iter().flat_map(numbers)).collect()
+}
+
+/// Returns the headings of histograms side by side, by the names and units of what they count.
+pub(super) fn histogram_headings<const COUNT: usize>(names: [(&str, &str); COUNT]) -> Vec<Heading> {
+    let columns = |(name, unit): (&str, &str)| {
+        let inverse = if unit == "1" { unit.to_owned() } else { format!("1/({unit})") };
+        [("low", unit), ("high", unit), ("count", "1"), ("density", &inverse), ("density_error", &inverse)]
+            .map(|(column, unit)| Heading::new(format!("{name}_{column}"), unit))
+    };
+    names.into_iter().flat_map(columns).collect()
+}
+
+/// Returns the rows of histograms side by side, with as many bins each.
+pub(super) fn histogram_rows<const COUNT: usize>(
+    histograms: [&Histogram; COUNT],
+) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+    let mut bins = histograms.map(Histogram::bins);
+    Box::new(std::iter::from_fn(move || {
+        let mut row = Vec::with_capacity(5 * COUNT);
+        for bins in &mut bins {
+            let bin = bins.next()?;
+            row.extend([bin.low, bin.high, bin.count as f64, bin.density, bin.standard_error]);
+        }
+        Some(row)
+    }))
+}
+
+/// Returns the headings of all columns as they appear in files.
+fn labels(table: &impl Table) -> io::Result<Vec<String>> {
+    let headings = table.headings();
+    check(&headings)?;
+    Ok(headings.iter().map(label).collect())
+}
+
+/// Returns a row, if it has a number for each label.
+fn complete<'a>(row: &'a [f64], labels: &[String]) -> io::Result<&'a [f64]> {
+    if row.len() == labels.len() {
+        return Ok(row);
+    }
+    let message = format!("a row has {} numbers for {} headings", row.len(), labels.len());
+    Err(io::Error::new(io::ErrorKind::InvalidInput, message))
 }
 
 fn label(heading: &Heading) -> String {
@@ -96,7 +204,7 @@ fn label(heading: &Heading) -> String {
     if unit == "1" { name.to_owned() } else { format!("{name} [{unit}]") }
 }
 
-fn member((label, number): (&String, f64)) -> String {
+fn member((label, number): (&String, &f64)) -> String {
     if number.is_finite() { format!("\"{label}\":{number:?}") } else { format!("\"{label}\":null") }
 }
 

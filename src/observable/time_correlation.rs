@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use super::lags::Lags;
-use super::{Moment, Observable, Observer, SampleTimes, Snapshot};
+use super::table::{Table, headings, row};
+use super::{Heading, Moment, Observable, Observer, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::statistics::Estimate;
 
@@ -145,5 +146,15 @@ impl<Q: Observable<Value: InnerProduct>> Observer for TimeCorrelation<Q> {
         let value = self.observable.measure(snapshot);
         self.lags.push(snapshot.time(), value, InnerProduct::inner_product);
         self.lags.sample_times.advance_past(snapshot.time());
+    }
+}
+
+impl<Q: Observable> Table for TimeCorrelation<Q> {
+    fn headings(&self) -> Vec<Heading> {
+        headings(&[("time", "time")], &[("correlation", "observable^2")])
+    }
+
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+        Box::new(self.iter().map(|(time, value)| row(&[time], &[value])))
     }
 }

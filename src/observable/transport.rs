@@ -4,7 +4,8 @@ use glam::DVec2;
 
 use super::lags::Lags;
 use super::stretch::Stretch;
-use super::{Collision, Moment, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
+use super::table::{Table, headings, row};
+use super::{Collision, Heading, Moment, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
 use crate::boundary::Domain;
 use crate::quantity::accept;
 use crate::statistics::{BlockedMean, Estimate, RunningMean};
@@ -342,5 +343,17 @@ impl Observer for TransportCoefficients {
 
     fn verdict(&mut self) -> Verdict {
         contract::verdict(&mut self.fault)
+    }
+}
+
+impl Table for TransportCoefficients {
+    fn headings(&self) -> Vec<Heading> {
+        let moments =
+            [("shear_moment", "(mass length^2/time)^2"), ("heat_moment", "(mass length^3/time^2)^2")];
+        headings(&[("time", "time")], &moments)
+    }
+
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+        Box::new(self.iter().map(|(time, moments)| row(&[time], &moments)))
     }
 }

@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use super::grid::CellSums;
-use super::{Accumulator, Grid, Snapshot};
+use super::table::{Table, histogram_headings, histogram_rows};
+use super::{Accumulator, Grid, Heading, Snapshot};
 use crate::statistics::{BlockedMean, Estimate, Histogram};
 use crate::{Disk, ParameterError};
 
@@ -211,5 +212,15 @@ impl Accumulator for VelocityDistribution {
                 mean.push(3.0 * relative_moment(fourth, squares, 4, second, freedom, 3.0) - 3.0);
             }
         }
+    }
+}
+
+impl Table for VelocityDistribution {
+    fn headings(&self) -> Vec<Heading> {
+        histogram_headings(["horizontal", "vertical", "speed"].map(|name| (name, "1")))
+    }
+
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+        histogram_rows([self.horizontal(), self.vertical(), self.speed()])
     }
 }

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::stretch::Stretch;
-use super::{Collision, Moment, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
+use super::table::{STRESS, Table, headings, row};
+use super::{Collision, Heading, Moment, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
 use crate::quantity::{Checked, Quantity, Range, accept};
 use crate::statistics::{BlockedMean, Estimate};
@@ -147,5 +148,16 @@ impl Observer for WallStress {
 
     fn verdict(&mut self) -> Verdict {
         contract::verdict(&mut self.fault)
+    }
+}
+
+impl Table for WallStress {
+    fn headings(&self) -> Vec<Heading> {
+        headings(&[("wall", "1")], &[("pressure", STRESS), ("shear", STRESS)])
+    }
+
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+        let estimates = |received: &Received| received.means.each_ref().map(BlockedMean::estimate);
+        Box::new(self.walls.iter().map(move |(&wall, received)| row(&[wall as f64], &estimates(received))))
     }
 }

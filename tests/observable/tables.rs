@@ -1,10 +1,13 @@
-//! Series as tables: names, units, and numbers to the bit.
+//! Measures as tables: names, units, and numbers to the bit.
 
-use granular_edmd::boundary::{Boundary, Container, Domain};
+use granular_edmd::boundary::{Boundary, Container, Domain, Region};
 use granular_edmd::collision::Elastic;
+use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    CenterOfMass, Energies, Heading, Observable, Observer, OfKind, OrderParameters, SampleTimes, Series,
-    Snapshot, Tabular, Temperatures, from_fn,
+    CenterOfMass, CollisionCounts, CollisionHistograms, Energies, EnergyChange, EnergyChangeProfile, Fields,
+    Grid, Heading, HeightProfile, MeanSquaredDisplacement, Observable, Observer, OfKind, OrderParameters,
+    PairCorrelation, SampleTimes, Sampled, Series, Snapshot, Stress, Table, Tabular, Temperatures,
+    TimeCorrelation, TransportCoefficients, Velocities, VelocityDistribution, WallStress, from_fn,
 };
 use granular_edmd::{Kind, Simulation, initial};
 
@@ -105,4 +108,67 @@ fn rows_have_a_number_for_each_heading() {
     let error = series.write_csv(Vec::new()).unwrap_err().to_string();
     assert_eq!(error, "a row has 4 numbers for 5 headings");
     assert_eq!(series.write_json_lines(Vec::new()).unwrap_err().to_string(), error);
+}
+
+/// Counts the rows, and checks that each has a number for each heading and that both formats hold them.
+fn rows(table: &impl Table) -> usize {
+    let columns = table.headings().len();
+    assert!(table.rows().all(|row| row.len() == columns));
+    let (mut csv, mut lines) = (Vec::new(), Vec::new());
+    table.write_csv(&mut csv).unwrap();
+    table.write_json_lines(&mut lines).unwrap();
+    let text = String::from_utf8(lines).unwrap();
+    for line in text.lines() {
+        let row: serde_json::Map<String, serde_json::Value> = serde_json::from_str(line).unwrap();
+        assert_eq!(row.len(), columns);
+    }
+    let read: Vec<Vec<f64>> =
+        csv::Reader::from_reader(csv.as_slice()).deserialize().collect::<Result<_, _>>().unwrap();
+    let bits = |row: Vec<f64>| row.into_iter().map(f64::to_bits).collect::<Vec<_>>();
+    assert!(read.into_iter().map(bits).eq(table.rows().map(bits)));
+    text.lines().count()
+}
+
+#[test]
+fn every_measure_is_a_table() {
+    let container = Container::closed(10.0, 10.0).unwrap();
+    let disks = initial::lattice(&container, 20, 0.5).unwrap();
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 7).unwrap();
+    let mut run = Simulation::builder(Elastic, container).disks(disks).build().unwrap();
+    let grid = Grid::new(Region::new(DVec2::ZERO, DVec2::splat(10.0)), 4, 3).unwrap();
+    let mut sampled = (
+        Sampled::new(PairCorrelation::new(2.0, 5).unwrap(), times()),
+        Sampled::new(HeightProfile::new(0.0, 10.0, 6).unwrap(), times()),
+        Sampled::new(Fields::new(grid), times()),
+        Sampled::new(VelocityDistribution::new(4.0, 7).unwrap(), times()),
+        Sampled::new(EnergyChangeProfile::new(0.0, 10.0, 8).unwrap(), times()),
+    );
+    let mut clocked = (
+        MeanSquaredDisplacement::new(9, times()).unwrap(),
+        TimeCorrelation::new(Velocities, 10, times()).unwrap(),
+        TransportCoefficients::new(11, times()).unwrap(),
+        Stress::new(times()),
+        WallStress::new(times()).with_wall(0, 10.0).unwrap().with_wall(2, 10.0).unwrap(),
+    );
+    let mut heard = (
+        EnergyChange::default(),
+        CollisionCounts::default(),
+        CollisionHistograms::new(4.0, 4.0, 12).unwrap(),
+    );
+    run.run_until(20.0, &mut (&mut sampled, &mut clocked.0, &mut clocked.1, &mut clocked.3, &mut heard))
+        .unwrap();
+    run.run_until(40.0, &mut clocked.4).unwrap();
+
+    let (pairs, heights, fields, velocities, changes) = &sampled;
+    assert_eq!([rows(&**pairs), rows(&**heights), rows(&**fields)], [5, 6, 12]);
+    assert_eq!([rows(&**velocities), rows(&**changes)], [7, 8]);
+    let (displacement, correlation, transport, stress, walls) = &clocked;
+    assert_eq!([rows(displacement), rows(correlation), rows(transport)], [10, 11, 12]);
+    assert_eq!([rows(stress), rows(walls)], [1, 2]);
+    let (change, counts, histograms) = &heard;
+    // Disks with disks, and with each of four walls.
+    assert_eq!([rows(change), rows(counts), rows(histograms)], [5, 1, 12]);
+    assert_eq!(stress.rows().next().unwrap()[0], stress.tensor().pressure.mean());
+    assert_eq!(displacement.headings()[2], Heading::new("squared_displacement_error", "length^2"));
+    assert_eq!(rows(velocities.speed()), 7);
 }

@@ -16,6 +16,7 @@ use std::process::ExitCode;
 
 use crate::arguments::Arguments;
 use gallery::command_line::{self, Failure};
+use granular_edmd::observable::Table;
 
 fn main() -> ExitCode {
     command_line::main(|arguments: &Arguments| {
