@@ -182,7 +182,7 @@ fn write(arguments: &Arguments, nuts: &[Nut]) -> Result<(), Box<dyn Error>> {
 }
 
 const MARGINS: Margins = [62.0, 16.0, 28.0, 58.0];
-const HEADER: f64 = 66.0;
+const HEADER: f64 = 92.0;
 const HEIGHT: f64 = 440.0;
 
 const BELOW: f64 = 330.0;
@@ -202,11 +202,11 @@ fn draw(nuts: &[Nut]) -> Result<Sheet, Box<dyn Error>> {
     let unit = (HEIGHT - MARGINS[2] - MARGINS[3]) / (LEVELS.1 - LEVELS.0);
     let frame = WIDTH * unit + MARGINS[0] + MARGINS[1];
     let mut sheet = Sheet::new(2.0 * frame, HEADER + HEIGHT + BELOW);
-    let about = "600 grains of diameter d, A = d, ω = 2 √(g/d), q = 0.05, κ = 0.3, rough walls; dotted: the base goes up and down between these";
+    let about = "600 grains of diameter d, A = d, ω = 2 √(g/d), q = 0.05, κ = 0.3, rough walls; dotted: highest and lowest place of the base";
     sheet.header(MARGINS[0], "A large disk among small ones, in a shaken box", &[about]);
     let Some(shown) = nuts.get(nuts.len() / 3) else { return Err("no intruder to draw".into()) };
     let (time, highest) = &shown.highest;
-    let later = format!("highest, after {time:.0} oscillations");
+    let later = format!("highest, at {time:.0} oscillations");
     for (k, (disks, when)) in [(&shown.start, "at first"), (highest, &later)].into_iter().enumerate() {
         let place = Place { x: k as f64 * frame, y: HEADER, width: frame, height: HEIGHT };
         let layout = panel::axes((0.0, WIDTH), LEVELS).with_x_label("x, in diameters");
@@ -220,7 +220,7 @@ fn draw(nuts: &[Nut]) -> Result<Sheet, Box<dyn Error>> {
     }
     let place = Place { x: 0.0, y: HEADER + HEIGHT, width: 2.0 * frame, height: BELOW };
     sheet.panel(place, MARGINS, lines(nuts), heights(nuts));
-    add_legend(&mut sheet, (place.x + MARGINS[0] + 12.0, HEADER + MARGINS[2] + 20.0), nuts);
+    add_legend(&mut sheet, (place.x + MARGINS[0] + 12.0, place.y + MARGINS[2] + 20.0), nuts);
     Ok(sheet)
 }
 
@@ -263,5 +263,5 @@ fn heights(nuts: &[Nut]) -> Layout {
     let last =
         nuts.iter().filter_map(|nut| nut.heights.last()).map(|[time, ..]| time + 1.0).fold(1.0, f64::max);
     let layout = panel::axes((0.0, last), (0.0, SHOWN));
-    layout.with_x_label("oscillations").with_y_label("height of the intruder, in diameters")
+    layout.with_x_label("oscillations").with_y_label("its height, in diameters")
 }

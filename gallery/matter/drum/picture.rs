@@ -30,12 +30,16 @@ pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Sheet {
     let words = format!(
         "{grains} grains, {pins} pins, q = 0.1, κ = {friction}, elastic below {speed} √(gd); arrows: mean flow, dashed: mean surface"
     );
-    sheet.header(MARGINS[0], "A drum, half full, that turns counterclockwise", &[&words]);
+    let last = sheet.header(MARGINS[0], "A drum, half full, that turns counterclockwise", &[&words]);
     let arrows = || drums.iter().map(|drum| Arrows::of(&drum.flow, 0.15, 2.0));
     let fastest = Arrows::fastest(&arrows().collect::<Vec<_>>());
     for (k, (drum, arrows)) in drums.iter().zip(arrows()).enumerate() {
         let place = Place { x: k as f64 * frame, y: HEADER + 24.0, width: frame, height: tall };
         draw_drum(&mut sheet, place, arguments, drum, &arrows.in_scale_of(fastest));
+    }
+    // An arrow of this length is this fast, in all drums.
+    if let Some((speed, length)) = arrows().next().and_then(|arrows| arrows.in_scale_of(fastest).scale()) {
+        sheet.arrow((MARGINS[0], last + 24.0), unit(arguments) * length, &format!("{speed} √(gd)"));
     }
     let place = Place { x: 0.0, y: HEADER + tall + 40.0, width: 0.5 * width, height: BELOW };
     draw_angles(&mut sheet, place, drums);
@@ -43,21 +47,20 @@ pub(crate) fn draw(arguments: &Arguments, drums: &[Turned]) -> Sheet {
     sheet
 }
 
+/// Returns the length of a diameter on the sheet.
+fn unit(arguments: &Arguments) -> f64 {
+    0.5 * SIDE / (1.02 * arguments.radius)
+}
+
 fn draw_drum(sheet: &mut Sheet, place: Place, arguments: &Arguments, drum: &Turned, arrows: &Arrows) {
     let edge = 1.02 * arguments.radius;
     let layout = panel::axes((-edge, edge), (-edge, edge))
         .with_x_label("x, in diameters")
         .with_y_label("y, in diameters");
-    let unit = 0.5 * SIDE / edge;
-    sheet.panel(place, MARGINS, inside(arguments, drum, unit, arrows), layout);
+    sheet.panel(place, MARGINS, inside(arguments, drum, unit(arguments), arrows), layout);
     let (angle, error) = (drum.angle.mean(), drum.angle.standard_error());
     let words = format!("{}: {angle:.1}° ± {error:.1}°", name(drum));
     sheet.text(place.x + MARGINS[0], place.y + 4.0, SMALL, INK, &words);
-    // An arrow of this length in the corner is this fast.
-    if let Some((speed, length)) = arrows.scale() {
-        let corner = (place.x + MARGINS[0] + 8.0, place.y + MARGINS[2] + SIDE - 8.0);
-        sheet.arrow(corner, unit * length, &format!("{speed} √(gd)"));
-    }
 }
 
 fn draw_angles(sheet: &mut Sheet, place: Place, drums: &[Turned]) {
