@@ -263,7 +263,7 @@ pub fn set_up() -> impl Strategy<Value = SetUp> {
 fn container() -> impl Strategy<Value = Container> {
     (0..4_u8, any::<bool>(), any::<bool>()).prop_filter_map("no such box", |(floor, open, periodic)| {
         let container = if open { Container::open(10.0) } else { Container::closed(10.0, 12.0) }.ok()?;
-        let container = if periodic { container.with_periodic_sides() } else { container };
+        let container = if periodic { container.with_periodic_sides().ok()? } else { container };
         match floor {
             0 => Some(container),
             1 => container.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0).ok()?).ok(),

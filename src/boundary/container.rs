@@ -34,7 +34,7 @@ use crate::{Fingerprint, Flight, Kind, ParameterError};
 /// let vibrated = Container::closed(60.0, 150.0)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?;
 /// let heated = Container::open(25.0)?.with_temperature(Wall::Floor, Thermal::new(1.0)?)?;
 /// // Periodic sides, and smooth sides.
-/// let periodic = Container::closed(60.0, 150.0)?.with_periodic_sides();
+/// let periodic = Container::closed(60.0, 150.0)?.with_periodic_sides()?;
 /// let smooth_sides = Container::open(60.0)?
 ///     .with_rule(Wall::Left, Smooth::from_inelasticity(0.0)?)?
 ///     .with_rule(Wall::Right, Smooth::from_inelasticity(0.0)?)?;
@@ -108,11 +108,11 @@ impl Container {
     /// Returns the same container with periodic sides: a disk that leaves on one side enters on the other.
     ///
     /// A simulation needs a width of more than four diameters of the largest disk.
-    pub fn with_periodic_sides(mut self) -> Self {
-        for wall in [Wall::Left, Wall::Right] {
-            self.remove(wall);
-        }
-        self
+    ///
+    /// # Errors
+    /// If a side has a motion, a rule, a temperature or a kind, which would be lost.
+    pub fn with_periodic_sides(self) -> Result<Self, WallError> {
+        self.without([Wall::Left, Wall::Right])
     }
 
     /// Returns the same container with periodic ends: a disk that leaves above enters below, and vice versa.
@@ -120,15 +120,13 @@ impl Container {
     /// Gravity then keeps driving the disks down, as in a pipe.
     ///
     /// # Errors
-    /// If the container is open above.
-    pub fn with_periodic_ends(mut self) -> Result<Self, WallError> {
+    /// If the container is open above, or floor or lid has a motion, a rule, a temperature or a kind, which
+    /// would be lost.
+    pub fn with_periodic_ends(self) -> Result<Self, WallError> {
         if self.height.is_infinite() {
             return Err(WallError::Missing { wall: Wall::Lid });
         }
-        for wall in [Wall::Floor, Wall::Lid] {
-            self.remove(wall);
-        }
-        Ok(self)
+        self.without([Wall::Floor, Wall::Lid])
     }
 
     /// Returns the same container with a wall that moves along its normal. The normal points inward.
@@ -219,11 +217,16 @@ impl Container {
         self.planes.push(plane);
     }
 
-    fn remove(&mut self, wall: Wall) {
-        if let Some(index) = self.index(wall) {
+    /// Takes away those of the walls that exist.
+    fn without(mut self, walls: [Wall; 2]) -> Result<Self, WallError> {
+        for wall in walls {
+            let Some(index) = self.index(wall) else { continue };
             self.walls.remove(index);
-            self.planes.remove(index);
+            if !self.planes.remove(index).is_plain() {
+                return Err(WallError::Lost { wall });
+            }
         }
+        Ok(self)
     }
 
     fn plane_mut(&mut self, wall: Wall) -> Result<&mut Plane, WallError> {

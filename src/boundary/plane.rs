@@ -82,6 +82,12 @@ impl Plane {
         Self { normal, place, motion, highest: 0.0, conduct, kind, phase: 0.0, slide: None }
     }
 
+    /// Tells whether nothing was set for the wall.
+    pub(super) fn is_plain(&self) -> bool {
+        let is_still = self.motion.reach() == (0.0, 0.0) && self.slide.is_none();
+        is_still && matches!(self.conduct, Conduct::Shared) && self.kind == Kind::WALL
+    }
+
     pub(super) fn shift(&mut self, by: DVec2) {
         self.place += self.normal.dot(by);
     }

@@ -135,7 +135,7 @@ mod tests {
     fn what_overlaps_is_near() -> Result<(), Box<dyn std::error::Error>> {
         let mut generator = Xoshiro256PlusPlus::seed_from_u64(1);
         let walled = Container::closed(9.0, 7.0)?;
-        for container in [walled.clone(), walled.with_periodic_sides(), Container::periodic(9.0, 7.0)?] {
+        for container in [walled.clone(), walled.with_periodic_sides()?, Container::periodic(9.0, 7.0)?] {
             let radii = Radii::power_law(3.0, 0.01, 2.0)?.draw(300, 5);
             let mut site = || DVec2::new(9.0 * uniform(&mut generator), 7.0 * uniform(&mut generator));
             let disks: Vec<Disk> = homogeneous(radii, 1.0)?

@@ -1,7 +1,8 @@
 //! The energy change per collision, beside the temperature at the same height.
 
+use super::grid::check_heights;
 use super::table::{ENERGY, Table, headings, row};
-use super::{Accumulator, Collision, Heading, Partner, Snapshot};
+use super::{Accumulator, Collision, Heading, Moment, Partner, Snapshot};
 use crate::ParameterError;
 use crate::statistics::{Bins, BlockedMean};
 
@@ -55,7 +56,8 @@ impl EnergyChangeProfile {
     /// Creates a profile of `layers` layers from the height `bottom` to `top`, with temperatures of the
     /// snapshots.
     ///
-    /// Collisions and disks outside are left out.
+    /// Collisions and disks outside are left out. A run ends with an error if the whole profile is outside the
+    /// domain.
     ///
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of layers is not in `1..=2^20`.
@@ -110,6 +112,10 @@ impl Accumulator for EnergyChangeProfile {
                 self.layers[bin].rotational_temperature.push(2.0 * disk.rotational_energy());
             }
         }
+    }
+
+    fn check(&self, moment: &Moment) -> Result<(), ParameterError> {
+        check_heights(&self.bins, &moment.domain())
     }
 }
 

@@ -4,7 +4,8 @@ use glam::DVec2;
 
 use super::grid::CellSums;
 use super::table::{ENERGY, Table, headings};
-use super::{Accumulator, Grid, Heading, Snapshot};
+use super::{Accumulator, Grid, Heading, Moment, Snapshot};
+use crate::ParameterError;
 
 /// The fields in one cell of a grid, averaged over all samples; made by [`Fields`].
 ///
@@ -68,7 +69,8 @@ pub struct Fields {
 impl Fields {
     /// Creates fields over the cells of a grid.
     ///
-    /// Disks outside are left out.
+    /// Disks outside are left out. A run ends with an error if the whole grid is outside the
+    /// domain.
     pub fn new(grid: Grid) -> Self {
         Self { grid, sums: vec![CellSums::default(); grid.count()], samples: 0 }
     }
@@ -131,6 +133,10 @@ impl Accumulator for Fields {
             }
         }
         self.samples += 1;
+    }
+
+    fn check(&self, moment: &Moment) -> Result<(), ParameterError> {
+        self.grid.check_against(&moment.domain())
     }
 }
 

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::boundary::{Domain, Region};
 use crate::quantity::{accept, finite};
-use crate::statistics::Moments;
+use crate::statistics::{Bins, Moments};
 use crate::{Disk, ParameterError};
 
 /// Largest number of cells of a grid.
@@ -77,6 +77,13 @@ impl Grid {
         inside.then(|| scaled.y as usize * self.columns + scaled.x as usize)
     }
 
+    /// Checks that some of the cells lie inside the domain of a run, which would else measure nothing.
+    pub(super) fn check_against(&self, domain: &Domain) -> Result<(), ParameterError> {
+        let Region { min, max, .. } = self.region;
+        meets("left edge of the grid", [min.x, max.x], [domain.left, domain.right])?;
+        meets("lower edge of the grid", [min.y, max.y], [domain.bottom, domain.top])
+    }
+
     /// Returns the sums over the disks in each cell.
     pub(super) fn sums(&self, disks: &[Disk]) -> Vec<CellSums> {
         let mut sums = vec![CellSums::default(); self.count()];
@@ -87,6 +94,18 @@ impl Grid {
         }
         sums
     }
+}
+
+/// Checks that one range meets another, for the name of its lower end.
+fn meets(name: &'static str, [low, high]: [f64; 2], [from, to]: [f64; 2]) -> Result<(), ParameterError> {
+    let requirement = "where some of the measure is inside the domain";
+    accept(low < to && high > from, name, requirement, low).map(|_| ())
+}
+
+/// Checks that some of a profile by height lies inside the domain of a run.
+pub(super) fn check_heights(bins: &Bins, domain: &Domain) -> Result<(), ParameterError> {
+    let heights = [bins.edge(0), bins.edge(bins.count())];
+    meets("bottom of the profile", heights, [domain.bottom, domain.top])
 }
 
 /// Returns the region if it is finite and has an area.

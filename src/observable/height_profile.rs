@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
+use super::grid::check_heights;
 use super::table::{Table, headings};
-use super::{Accumulator, Heading, Snapshot};
+use super::{Accumulator, Heading, Moment, Snapshot};
 use crate::statistics::Bins;
 use crate::{Disk, ParameterError};
 
@@ -87,7 +88,8 @@ pub struct HeightProfile {
 impl HeightProfile {
     /// Creates a profile of `bins` bins from the height `bottom` to `top`.
     ///
-    /// Disks outside are left out.
+    /// Disks outside are left out. A run ends with an error if the whole profile is outside the
+    /// domain.
     ///
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of bins is not in `1..=2^20`.
@@ -145,6 +147,10 @@ impl Accumulator for HeightProfile {
         let width = snapshot.domain().width();
         snapshot.disks().iter().for_each(|disk| self.add_disk(disk, width));
         self.samples += 1;
+    }
+
+    fn check(&self, moment: &Moment) -> Result<(), ParameterError> {
+        check_heights(&self.bins, &moment.domain())
     }
 }
 

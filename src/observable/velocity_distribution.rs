@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::grid::CellSums;
 use super::table::{Table, histogram_headings, histogram_rows};
-use super::{Accumulator, Grid, Heading, Snapshot};
+use super::{Accumulator, Grid, Heading, Moment, Snapshot};
 use crate::statistics::{BlockedMean, Estimate, Histogram};
 use crate::{Disk, ParameterError};
 
@@ -80,14 +80,17 @@ impl VelocityDistribution {
     }
 
     /// Returns the same distribution about the mean velocity of all disks, weighted by mass, in each sample.
+    ///
+    /// A flow includes the mean: with [`about_flow`](Self::about_flow), in either order, this changes nothing.
     pub fn about_mean(self) -> Self {
-        Self { frame: Frame::Mean, ..self }
+        let frame = if let Frame::Container = self.frame { Frame::Mean } else { self.frame };
+        Self { frame, ..self }
     }
 
     /// Returns the same distribution about the mean velocity in each cell of a grid, weighted by mass, in
     /// each sample.
     ///
-    /// Disks outside the grid are left out.
+    /// Disks outside the grid are left out. A run ends with an error if the whole grid is outside the domain.
     pub fn about_flow(self, grid: Grid) -> Self {
         Self { frame: Frame::Flow(grid), ..self }
     }
@@ -212,6 +215,10 @@ impl Accumulator for VelocityDistribution {
                 mean.push(3.0 * relative_moment(fourth, squares, 4, second, freedom, 3.0) - 3.0);
             }
         }
+    }
+
+    fn check(&self, moment: &Moment) -> Result<(), ParameterError> {
+        if let Frame::Flow(grid) = &self.frame { grid.check_against(&moment.domain()) } else { Ok(()) }
     }
 }
 

@@ -188,7 +188,7 @@ mod tests {
     /// Returns the disks after a run with these instructions; radii grow by `growth` from disk to disk.
     fn state_after_a_run(instructions: Instructions, is_periodic: bool, growth: f64) -> Outcome<Vec<Disk>> {
         let container = Container::open(20.0)?.with_temperature(Wall::Floor, Thermal::new(2.0)?)?;
-        let container = if is_periodic { container.with_periodic_sides() } else { container };
+        let container = if is_periodic { container.with_periodic_sides().unwrap() } else { container };
         let disk = |k: u32| {
             let place = DVec2::new(0.7 + 1.3 * f64::from(k % 15), 0.7 + 1.3 * f64::from(k / 15));
             let velocity = DVec2::new(libm::sin(f64::from(k)), libm::cos(f64::from(7 * k)));

@@ -200,7 +200,7 @@ impl VibratedBox {
         let container = match self.sides {
             Sides::Hard => container,
             Sides::Elastic => container.with_rule(Wall::Left, Elastic)?.with_rule(Wall::Right, Elastic)?,
-            Sides::Periodic => container.with_periodic_sides(),
+            Sides::Periodic => container.with_periodic_sides()?,
         };
         self.base.under(container)
     }

@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use granular_edmd::Flight;
 use granular_edmd::boundary::{Boundary, Container, Domain, FirstTouch, Region, Thermal, Touch, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::Triangular;
+use granular_edmd::{Flight, Kind};
 
 const RADIUS: f64 = 0.5;
 const FLOOR: usize = 0;
@@ -31,7 +31,7 @@ fn names(boundary: &impl Boundary) -> Vec<String> {
 
 #[test]
 fn walls_have_names_numbers_and_sizes() {
-    let (open, periodic) = (Container::open(10.0).unwrap(), closed().with_periodic_sides());
+    let (open, periodic) = (Container::open(10.0).unwrap(), closed().with_periodic_sides().unwrap());
     assert_eq!((closed().width(), closed().height(), open.height()), (10.0, 20.0, f64::INFINITY));
     assert_eq!(names(&closed()), ["floor", "left", "right", "lid"]);
     assert_eq!(names(&open), ["floor", "left", "right"]);
@@ -52,7 +52,7 @@ fn the_domain_reaches_as_far_as_walls_go_and_the_interior_ends_where_they_come()
     let still = domain(0.0, 10.0, 0.0, 20.0);
     let cases = [
         (closed(), still, still),
-        (closed().with_periodic_sides(), still.with_periodic_sides(), still.with_periodic_sides()),
+        (closed().with_periodic_sides().unwrap(), still.with_periodic_sides(), still.with_periodic_sides()),
         (moving(Wall::Floor, 0.25), domain(0.0, 10.0, -0.25, 20.0), domain(0.0, 10.0, 0.25, 20.0)),
         (moving(Wall::Lid, 0.25), domain(0.0, 10.0, 0.0, 20.25), domain(0.0, 10.0, 0.0, 19.75)),
         (moving(Wall::Left, 0.25), domain(-0.25, 10.0, 0.0, 20.0), domain(0.25, 10.0, 0.0, 20.0)),
@@ -87,7 +87,7 @@ fn regions_near_a_wall_may_touch_it_and_others_may_not() {
         assert!(container.may_touch(&touching, RADIUS) && !container.may_touch(&clear, RADIUS));
     }
     let endless = |bottom| region((f64::NEG_INFINITY, bottom), (f64::INFINITY, 3.0));
-    let periodic = closed().with_periodic_sides();
+    let periodic = closed().with_periodic_sides().unwrap();
     assert!(periodic.may_touch(&endless(0.5), RADIUS) && !periodic.may_touch(&endless(0.6), RADIUS));
 }
 
@@ -221,4 +221,20 @@ fn a_domain_with_an_open_top_returns_from_a_file() {
         let json = serde_json::to_string(&domain).unwrap();
         assert_eq!(serde_json::from_str::<Domain>(&json).unwrap(), domain, "{json}");
     }
+}
+
+/// What was set for a wall is not lost without a word when the wall is taken away.
+#[test]
+fn walls_with_settings_do_not_become_periodic() {
+    let lost = |container: Container| container.with_periodic_sides().unwrap_err().to_string();
+    let said = "the wall \"right\" has settings that would be lost: make the container periodic without them";
+    assert_eq!(lost(closed().with_rule(Wall::Right, Elastic).unwrap()), said);
+    assert_eq!(lost(closed().with_kind(Wall::Right, Kind::new(7)).unwrap()), said);
+    assert_eq!(lost(closed().with_surface_speed(Wall::Right, 0.5).unwrap()), said);
+    assert_eq!(lost(moving(Wall::Right, 0.25)), said);
+    let hot = closed().with_temperature(Wall::Lid, Thermal::new(1.0).unwrap()).unwrap();
+    assert_eq!(hot.clone().with_periodic_ends().unwrap_err().to_string(), said.replace("right", "lid"));
+    // Settings of the other walls stay.
+    assert_eq!(hot.with_periodic_sides().unwrap().wall_count(), 2);
+    assert_eq!(moving(Wall::Right, 0.25).with_periodic_ends().unwrap().wall_count(), 2);
 }

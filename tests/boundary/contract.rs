@@ -18,7 +18,7 @@ fn keeps_its_contract(mut container: Container) {
 fn walls_at_rest() {
     keeps_its_contract(closed());
     keeps_its_contract(Container::open(8.0).unwrap());
-    keeps_its_contract(closed().with_periodic_sides());
+    keeps_its_contract(closed().with_periodic_sides().unwrap());
     keeps_its_contract(closed().with_motion(Wall::Left, Fixed).unwrap());
 }
 
@@ -40,7 +40,7 @@ fn walls_that_move() {
         for wall in [Wall::Floor, Wall::Lid, Wall::Left, Wall::Right] {
             keeps_its_contract(closed().with_motion(wall, motion()).unwrap());
         }
-        let periodic = closed().with_periodic_sides().with_motion(Wall::Floor, motion()).unwrap();
+        let periodic = closed().with_periodic_sides().unwrap().with_motion(Wall::Floor, motion()).unwrap();
         keeps_its_contract(periodic);
     }
 }

@@ -41,7 +41,7 @@ fn whatever_differs_has_another_fingerprint() {
         Container::closed(8.0, 7.0).unwrap(),
         Container::closed(7.0, 6.0).unwrap(),
         Container::open(8.0).unwrap(),
-        closed().with_periodic_sides(),
+        closed().with_periodic_sides().unwrap(),
         moving(Wall::Floor, 0.1),
         moving(Wall::Lid, 0.1),
         moving(Wall::Floor, 0.2),

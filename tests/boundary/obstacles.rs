@@ -21,7 +21,7 @@ fn obstacles_keep_the_contract() {
         .unwrap()
         .with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0).unwrap())
         .unwrap();
-    let periodic = Container::open(12.0).unwrap().with_periodic_sides();
+    let periodic = Container::open(12.0).unwrap().with_periodic_sides().unwrap();
     for container in [moving, periodic, Container::periodic(12.0, 9.0).unwrap()] {
         for seed in 0..4 {
             let mut board = Obstacles::new(container.clone(), pegs());

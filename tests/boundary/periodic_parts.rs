@@ -12,7 +12,7 @@ fn point(x: f64, y: f64) -> DVec2 {
 }
 
 fn periodic() -> Vessel {
-    Vessel::new(Container::closed(10.0, 40.0).unwrap().with_periodic_sides())
+    Vessel::new(Container::closed(10.0, 40.0).unwrap().with_periodic_sides().unwrap())
 }
 
 /// Counts the collisions of a disk that goes to and fro along a line, with a part in a container of period

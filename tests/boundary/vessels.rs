@@ -61,7 +61,7 @@ fn vessels_at_rest_keep_the_contract() {
 
 #[test]
 fn vessels_with_periodic_sides_keep_the_contract() {
-    let sides = Container::closed(12.0, 12.0).unwrap().with_periodic_sides();
+    let sides = Container::closed(12.0, 12.0).unwrap().with_periodic_sides().unwrap();
     for container in [sides, Container::periodic(12.0, 12.0).unwrap()] {
         for part in [triangle(), mixed(), triangle().shifted(DVec2::new(6.0, 6.0)).unwrap()] {
             check("periodic", &Vessel::new(container.clone()).with("part", part).unwrap());

@@ -206,7 +206,7 @@ fn systems_of_any_size_end_in_an_error_or_run() {
         }
         if positive(value) {
             runs(&box_of(value), 0.1, 0.0, 1.0);
-            runs(&box_of(value).with_periodic_sides(), 0.0, 0.0, 1.0);
+            runs(&box_of(value).with_periodic_sides().unwrap(), 0.0, 0.0, 1.0);
             runs(&Container::closed(8.0, value).unwrap(), 0.1, 0.0, 1.0);
             runs(&Container::closed(value, value).unwrap(), 0.1, 0.0, 1.0);
         }

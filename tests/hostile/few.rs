@@ -75,7 +75,7 @@ fn disks_of_any_size_find_their_places_or_an_error_at_once() {
         for container in [Container::closed(1.0, 1.0), Container::open(1e9), Container::closed(1e200, 1e200)]
         {
             let container = container.unwrap().with_motion(Wall::Floor, base).unwrap();
-            for container in [container.clone(), container.with_periodic_sides()] {
+            for container in [container.clone(), container.with_periodic_sides().unwrap()] {
                 let lattice = initial::lattice(&container, count, size);
                 let random = initial::random(&container, count, size, 10.0, 1);
                 for disks in [lattice, random].into_iter().flatten() {

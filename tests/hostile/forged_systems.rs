@@ -33,7 +33,7 @@ pub(crate) const SYSTEMS: [System; 8] = [
     System {
         name: "periodic sides",
         rule: dissipative,
-        container: || box_of(7.0).with_periodic_sides(),
+        container: || box_of(7.0).with_periodic_sides().unwrap(),
         disks: |container| gas(container, 5),
         gravity: 0.0,
         end: 3.0,

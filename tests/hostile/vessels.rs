@@ -82,7 +82,7 @@ impl Plan {
         if self.periodic {
             // The polygon is a block that lies across the sides. There is room for a disk all around it, so
             // that it squeezes none.
-            let container = Container::closed(16.0, 14.0)?.with_periodic_sides();
+            let container = Container::closed(16.0, 14.0)?.with_periodic_sides().expect("plain sides");
             let block = self.moving(Part::block(self.polygon(2.0))?, self.motion)?;
             let (block, other) =
                 (block.shifted(DVec2::new(-5.0, 7.0))?, inner.shifted(DVec2::new(3.0, 10.0))?);

@@ -56,7 +56,7 @@ impl Walls {
         let container =
             if self.open { Container::open(self.width) } else { Container::closed(self.width, self.height) };
         let container = container.unwrap();
-        let container = if self.periodic { container.with_periodic_sides() } else { container };
+        let container = if self.periodic { container.with_periodic_sides().unwrap() } else { container };
         WALLS.iter().zip(&self.plans).fold(container, |container, (&wall, plan)| {
             match container.index(wall) {
                 Some(_) => plan.apply(container, wall).unwrap(),

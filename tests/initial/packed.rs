@@ -26,7 +26,7 @@ fn fractions_are_reached() {
         let width = (area(&mix) / fraction).sqrt();
         let closed = Container::closed(width, width).unwrap();
         let periodic = Container::periodic(width, width).unwrap();
-        for container in [closed.clone(), closed.with_periodic_sides(), periodic] {
+        for container in [closed.clone(), closed.with_periodic_sides().unwrap(), periodic] {
             let packed = initial::packed_at_random(&container, mix.clone(), width, 7).unwrap();
             assert_same_disks(&packed, &mix);
             assert_apart(container, &packed);
@@ -140,7 +140,7 @@ fn odd_rooms_are_refused_or_filled() {
     assert!(matches!(packed(6.0, 10.0), Err(PlacementError::Parameter(_))));
     assert_apart(container.clone(), &packed(4.9, 10.0).unwrap());
     assert_eq!(initial::packed_at_random(&container, vec![], 10.0, 1), Ok(vec![]));
-    let narrow = Container::closed(4.0, 50.0).unwrap().with_periodic_sides();
+    let narrow = Container::closed(4.0, 50.0).unwrap().with_periodic_sides().unwrap();
     assert!(narrow.interior().periodic_sides);
     let few = initial::packed_at_random(&narrow, disks([0.45; 80]), 50.0, 1);
     assert_apart(narrow, &few.unwrap());

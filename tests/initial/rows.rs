@@ -18,7 +18,7 @@ fn mixtures_of_all_kinds_stand_apart_in_order() {
         let mix = disks(radii.draw(500, 1));
         let (closed, open) = (Container::closed(40.0, 60.0).unwrap(), Container::open(40.0).unwrap());
         let periodic = Container::periodic(40.0, 60.0).unwrap();
-        for container in [closed.clone(), open.clone(), closed.with_periodic_sides(), periodic] {
+        for container in [closed.clone(), open.clone(), closed.with_periodic_sides().unwrap(), periodic] {
             let placed = initial::placed_in_rows(&container, mix.clone()).unwrap();
             assert_same_disks(&placed, &mix);
             assert_apart(container, &placed);

@@ -56,7 +56,7 @@ fn an_isothermal_atmosphere_has_its_height_temperature_and_virial() -> Outcome {
     let first_order = 0.5 + 1.0 / GRAVITY + FRAC_PI_4 * DISKS as f64 / WIDTH;
     assert!((local_height() / first_order - 1.0).abs() < 0.01, "{} {first_order}", local_height());
     let container =
-        Container::open(WIDTH)?.with_periodic_sides().with_temperature(Wall::Floor, Thermal::new(1.0)?)?;
+        Container::open(WIDTH)?.with_periodic_sides()?.with_temperature(Wall::Floor, Thermal::new(1.0)?)?;
     let disks = initial::random(&container, DISKS, 0.5, 12.0, 1)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
     let mut simulation =

@@ -38,7 +38,7 @@ impl Gas {
     }
 
     pub(crate) fn container(&self) -> Result<Container, Box<dyn Error>> {
-        let container = Container::closed(self.width, self.height)?.with_periodic_sides();
+        let container = Container::closed(self.width, self.height)?.with_periodic_sides()?;
         Ok(container.with_rule(Wall::Floor, Elastic)?.with_rule(Wall::Lid, Elastic)?)
     }
 

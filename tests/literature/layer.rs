@@ -15,7 +15,7 @@ use crate::{Outcome, agrees, measured};
 fn alternation(acceleration: f64) -> Result<f64, Box<dyn std::error::Error>> {
     // Gravity and frequency are 1, so that the amplitude is the acceleration.
     let floor = Sinusoidal::new(acceleration, 1.0)?;
-    let container = Container::open(10.5)?.with_periodic_sides().with_motion(Wall::Floor, floor)?;
+    let container = Container::open(10.5)?.with_periodic_sides()?.with_motion(Wall::Floor, floor)?;
     let bizon =
         SpeedDependent::from_restitution(0.5, 1.0)?.with_friction(Friction::from_inelasticity(0.25, 0.5)?);
     let disks: Vec<Disk> = initial::lattice(&container, 80, 0.5)?;

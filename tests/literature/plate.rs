@@ -75,7 +75,7 @@ const GRAVITY: f64 = 0.05;
 
 fn shaken(restitution: f64, amplitude: f64, duration: f64) -> Result<Shaken, Box<dyn std::error::Error>> {
     let container = Container::open(WIDTH)?
-        .with_periodic_sides()
+        .with_periodic_sides()?
         .with_motion(Wall::Floor, BiParabolic::new(amplitude, 1.0 / amplitude)?)?
         .with_rule(Wall::Floor, Elastic)?;
     let guess = kumaran(restitution);

@@ -75,7 +75,7 @@ fn the_stress_in_the_bulk_is_the_pressure_on_the_walls() -> Outcome {
 #[test]
 fn a_sheared_gas_drags_its_walls_as_it_is_sheared() -> Outcome {
     // Thermal walls that run opposite ways drag a gas of frictional grains.
-    let container = Container::closed(30.0, 15.0)?.with_periodic_sides();
+    let container = Container::closed(30.0, 15.0)?.with_periodic_sides()?;
     let container = container.with_surface_speed(Wall::Floor, -1.0)?.with_surface_speed(Wall::Lid, 1.0)?;
     let container = container
         .with_temperature(Wall::Floor, Thermal::new(1.0)?)?

@@ -14,7 +14,7 @@ use crate::{Outcome, agrees};
 fn a_knudsen_gas_conducts_heat_as_computed() -> Outcome {
     let (cold, hot, gap) = (0.25_f64, 1.0_f64, 4.0);
     let container = Container::closed(8.0, gap + 1.0)?
-        .with_periodic_sides()
+        .with_periodic_sides()?
         .with_temperature(Wall::Floor, Thermal::new(hot)?)?
         .with_temperature(Wall::Lid, Thermal::new(cold)?)?;
     let disk = Disk::new(DVec2::new(2.0, 2.0), 0.5)?.with_velocity(DVec2::Y)?;

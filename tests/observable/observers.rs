@@ -3,8 +3,9 @@
 
 use std::ops::ControlFlow;
 
-use granular_edmd::boundary::{Boundary, Container, Domain};
+use granular_edmd::boundary::{Boundary, Container, Domain, Region};
 use granular_edmd::collision::{Contact, Elastic, Impulse};
+use granular_edmd::glam::DVec2;
 use granular_edmd::observable::laws::{self, Violation};
 use granular_edmd::observable::{
     Accumulator, CenterOfMass, Collision, CollisionCounts, CollisionHistograms, EnergyChange,
@@ -351,6 +352,23 @@ fn what_a_run_cannot_measure_ends_it() -> Result<(), Box<dyn std::error::Error>>
     assert_eq!(reason(error), "index of a wall must be less than the number of walls, but is 9");
     gas()?.run_until(5.0, &mut CollisionHistograms::new(5.0, 5.0, 1)?.with_wall(3))?;
 
+    // Measures that lie wholly outside would be empty.
+    let aside = Grid::new(Region::new(DVec2::new(11.0, 0.0), DVec2::new(12.0, 9.0)), 1, 1)?;
+    let below = Grid::new(Region::new(DVec2::new(0.0, -2.0), DVec2::new(9.0, 0.0)), 1, 1)?;
+    let velocities = VelocityDistribution::new(4.0, 8)?.about_flow(aside);
+    let outside: [(&str, Box<dyn Observer>); 5] = [
+        ("left edge of the grid", Box::new(clocked(Fields::new(aside))?)),
+        ("lower edge of the grid", Box::new(clocked(Fields::new(below))?)),
+        ("left edge of the grid", Box::new(clocked(velocities)?)),
+        ("bottom of the profile", Box::new(clocked(HeightProfile::new(10.0, 20.0, 3)?)?)),
+        ("bottom of the profile", Box::new(clocked(EnergyChangeProfile::new(-9.0, -1.0, 3)?)?)),
+    ];
+    for (name, mut observer) in outside {
+        let said = reason(gas()?.run_until(3.0, &mut observer).unwrap_err());
+        assert!(said.contains(name) && said.contains("inside the domain, but is"), "{said}");
+    }
+    gas()?.run_until(3.0, &mut clocked(HeightProfile::new(9.0, 20.0, 3)?)?)?;
+
     let mut series = Series::new(OrderParameters, SampleTimes::every(1.0)?);
     let mut first = gas()?;
     first.run_until(3.0, &mut series)?;
@@ -361,6 +379,21 @@ fn what_a_run_cannot_measure_ends_it() -> Result<(), Box<dyn std::error::Error>>
     series.clear();
     gas()?.run_until(3.0, &mut series)?;
     assert_eq!(series.times(), [1.0, 2.0, 3.0]);
+    Ok(())
+}
+
+fn clocked<A>(accumulator: A) -> Result<Sampled<A>, granular_edmd::ParameterError> {
+    Ok(Sampled::new(accumulator, SampleTimes::every(1.0)?))
+}
+
+/// The mean velocity and the flow can be asked for in either order, and neither is forgotten.
+#[test]
+fn a_flow_includes_the_mean() -> Result<(), Box<dyn std::error::Error>> {
+    let grid = Grid::new(Region::new(DVec2::ZERO, DVec2::splat(10.0)), 2, 2)?;
+    let new = || VelocityDistribution::new(4.0, 8);
+    assert_eq!(new()?.about_flow(grid).about_mean(), new()?.about_flow(grid));
+    assert_eq!(new()?.about_mean().about_flow(grid), new()?.about_flow(grid));
+    assert_ne!(new()?.about_mean(), new()?);
     Ok(())
 }
 

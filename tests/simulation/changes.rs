@@ -122,11 +122,11 @@ fn sides_that_become_periodic_must_not_join_disks() {
     // Free between walls; across the joined sides they overlap.
     let at = |x: f64| Disk::new(DVec2::new(x, 1.0), 0.5).unwrap();
     let mut simulation =
-        Simulation::builder(Elastic, Container::closed(8.0, 2.0).unwrap().with_periodic_sides())
+        Simulation::builder(Elastic, Container::closed(8.0, 2.0).unwrap().with_periodic_sides().unwrap())
             .disks([at(0.1), at(5.5)])
             .build()
             .unwrap();
-    let narrow = Container::closed(6.0, 2.0).unwrap().with_periodic_sides();
+    let narrow = Container::closed(6.0, 2.0).unwrap().with_periodic_sides().unwrap();
     let error = simulation.set_boundary(narrow).unwrap_err();
     assert!(matches!(error, BuildError::Overlap { first: 0, second: 1, .. }), "{error}");
     simulation.run_until(1.0, &mut ()).unwrap();

@@ -44,7 +44,8 @@ impl Random {
 
     fn walls(&mut self, size: f64) -> Container {
         let closed = if self.chance(4) { Container::open(size) } else { Container::closed(size, size) };
-        let closed = if self.chance(4) { closed.unwrap().with_periodic_sides() } else { closed.unwrap() };
+        let closed =
+            if self.chance(4) { closed.unwrap().with_periodic_sides().unwrap() } else { closed.unwrap() };
         let wall = Wall::Floor;
         match self.0.random_range(0..4) {
             0 => {

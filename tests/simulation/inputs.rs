@@ -76,7 +76,7 @@ fn disks_must_be_inside_and_apart() {
     assert!(matches!(error, BuildError::Overlap { first: 0, second: 2, .. }), "{error}");
     let error = build(closed(), &[at(2.0, 2.0), at(2.0, 2.0)]).unwrap_err();
     assert_eq!(error.to_string(), "disks 0 and 1 at (2, 2) and (2, 2) overlap by 1");
-    let error = build(closed().with_periodic_sides(), &[at(0.2, 2.0), at(7.8, 2.0)]).unwrap_err();
+    let error = build(closed().with_periodic_sides().unwrap(), &[at(0.2, 2.0), at(7.8, 2.0)]).unwrap_err();
     assert!(matches!(error, BuildError::Overlap { first: 0, second: 1, .. }), "across the sides: {error}");
 }
 
@@ -105,11 +105,11 @@ fn boxes_too_thin_for_a_disk_are_refused() {
         ));
     }
     for width in [0.3, 1.0, 3.9] {
-        let narrow = Container::closed(width, 6.0).unwrap().with_periodic_sides();
+        let narrow = Container::closed(width, 6.0).unwrap().with_periodic_sides().unwrap();
         let error = build(narrow, &[at(0.1, 2.0)]).unwrap_err();
         assert!(matches!(error, BuildError::DomainTooSmall { diameter: 1.0, .. }), "{error}");
     }
-    build(Container::closed(4.1, 6.0).unwrap().with_periodic_sides(), &[at(0.1, 2.0)]).unwrap();
+    build(Container::closed(4.1, 6.0).unwrap().with_periodic_sides().unwrap(), &[at(0.1, 2.0)]).unwrap();
     // A disk in a tube of its own width has nowhere to go.
     let mut tube = build(Container::closed(1.0, 6.0).unwrap(), &[at(0.5, 2.0)]).unwrap();
     tube.run_until(10.0, &mut ()).unwrap();
@@ -119,7 +119,7 @@ fn boxes_too_thin_for_a_disk_are_refused() {
 fn none_one_and_two_disks_run() {
     for count in 0..3 {
         for periodic in [false, true] {
-            let boundary = if periodic { closed().with_periodic_sides() } else { closed() };
+            let boundary = if periodic { closed().with_periodic_sides().unwrap() } else { closed() };
             let disks = initial::lattice(&boundary, count, 0.5).unwrap();
             let disks = initial::with_maxwellian_velocities(disks, 1.0, 1).unwrap();
             let mut simulation = build(boundary.clone(), &disks).unwrap();
@@ -129,7 +129,7 @@ fn none_one_and_two_disks_run() {
         }
     }
     // Without disks, none is too large for a narrow periodic box.
-    build(Container::closed(0.1, 0.1).unwrap().with_periodic_sides(), &[])
+    build(Container::closed(0.1, 0.1).unwrap().with_periodic_sides().unwrap(), &[])
         .unwrap()
         .run_until(1.0, &mut ())
         .unwrap();
@@ -155,7 +155,7 @@ fn initial_states_refuse_what_makes_no_sense() {
 fn initial_states_are_accepted_by_the_builder() {
     let base = BiParabolic::new(0.4, 3.0).unwrap();
     for boundary in
-        [closed(), closed().with_periodic_sides(), closed().with_motion(Wall::Floor, base).unwrap()]
+        [closed(), closed().with_periodic_sides().unwrap(), closed().with_motion(Wall::Floor, base).unwrap()]
     {
         for start in [0.0, 0.7, 1e7] {
             for disks in [

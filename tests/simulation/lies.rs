@@ -602,7 +602,7 @@ fn no_rule_is_given_a_closing_speed_below_zero() {
         walls().with_motion(Wall::Left, Sawtooth::new(0.1, 10.0).unwrap()),
         walls().with_motion(Wall::Right, Triangular::new(0.1, 10.0).unwrap()),
         walls().with_temperature(Wall::Floor, Thermal::new(2.0).unwrap()),
-        Ok(walls().with_periodic_sides()),
+        Ok(walls().with_periodic_sides().unwrap()),
     ];
     for (container, rule) in
         containers.into_iter().map(Result::unwrap).flat_map(|c| rules().map(|r| (c.clone(), r)))

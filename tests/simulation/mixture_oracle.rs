@@ -104,7 +104,7 @@ impl Mixture {
             Sides::Closed => closed,
             Sides::Open => Container::open(width).unwrap().with_motion(Wall::Floor, base).unwrap(),
             Sides::Periodic(true, true) => Container::periodic(width, height).unwrap(),
-            Sides::Periodic(true, false) => closed.with_periodic_sides(),
+            Sides::Periodic(true, false) => closed.with_periodic_sides().unwrap(),
             Sides::Periodic(false, ends) => {
                 assert!(ends);
                 closed.with_periodic_ends().unwrap()

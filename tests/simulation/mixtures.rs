@@ -32,7 +32,7 @@ fn container(sides: u8, width: f64) -> Container {
     match sides {
         0 => Container::closed(width, width).unwrap(),
         1 => Container::open(width).unwrap().with_motion(Wall::Floor, base).unwrap(),
-        2 => Container::closed(width, width).unwrap().with_periodic_sides(),
+        2 => Container::closed(width, width).unwrap().with_periodic_sides().unwrap(),
         _ => Container::periodic(width, width).unwrap(),
     }
 }

@@ -120,7 +120,7 @@ fn a_boundary_that_tells_no_overlap_is_named() {
 #[test]
 fn a_disk_that_passes_a_wall_is_noticed() {
     // Between periodic sides, there is no other wall that it could meet.
-    for sides in [walls(), walls().with_periodic_sides()] {
+    for sides in [walls(), walls().with_periodic_sides().unwrap()] {
         let (run, end) = fall(Fault::NoFloor, sides);
         let error = end.unwrap_err();
         let is_told = match &error {

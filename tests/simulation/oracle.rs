@@ -151,7 +151,7 @@ proptest! {
         seed in any::<u64>(),
     ) {
         let container = Container::closed(WIDTH, HEIGHT).unwrap();
-        let boundary = if periodic[0] { container.with_periodic_sides() } else { container };
+        let boundary = if periodic[0] { container.with_periodic_sides().unwrap() } else { container };
         let boundary = if periodic[1] { boundary.with_periodic_ends().unwrap() } else { boundary };
         // The disks go from grains of dust to stones of fifty (and five, and one) times their size.
         let radius = |k: usize| if k.is_multiple_of(5) { 2.5 } else { smallest * (1.0 + k as f64 / 40.0) };

@@ -220,7 +220,7 @@ fn a_ball_of_speed_dependent_restitution_bounces_as_iterated_and_stalls_in_the_e
 /// Disks that only have slow collisions keep their energy.
 #[test]
 fn a_heap_that_only_has_slow_collisions_keeps_its_energy() {
-    let walls = Container::closed(8.0, 20.0).unwrap().with_periodic_sides();
+    let walls = Container::closed(8.0, 20.0).unwrap().with_periodic_sides().unwrap();
     let disks = initial::lattice(&walls, 30, 0.5).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 1e-4, 2).unwrap();
     let rule = ElasticBelow::new(Frictional::from_inelasticity(0.1, 0.1, 0.3).unwrap(), 100.0).unwrap();

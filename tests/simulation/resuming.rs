@@ -117,7 +117,7 @@ fn another_rule_or_boundary_is_taken_on_purpose_only() {
     let wider = || Container::closed(14.0, 10.0).unwrap();
     let vibrated = || walls().with_motion(Wall::Lid, Sinusoidal::new(0.05, 3.0).unwrap()).unwrap();
     for (number, other) in
-        [hotter(), wider(), vibrated(), walls().with_periodic_sides()].into_iter().enumerate()
+        [hotter(), wider(), vibrated(), walls().with_periodic_sides().unwrap()].into_iter().enumerate()
     {
         let error = Simulation::resume(&state, rule(), other.clone()).build().map(|_| ()).unwrap_err();
         assert!(matches!(error, CheckpointError::AnotherBoundary), "{number}: {error}");

@@ -66,7 +66,7 @@ impl Setup {
     pub(crate) fn boundary(&self) -> Container {
         let container =
             if self.open { Container::open(14.0) } else { Container::closed(14.0, 20.0) }.unwrap();
-        let container = if self.periodic { container.with_periodic_sides() } else { container };
+        let container = if self.periodic { container.with_periodic_sides().unwrap() } else { container };
         match self.base {
             Base::Fixed => Ok(container),
             Base::BiParabolic => container.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0).unwrap()),

@@ -58,6 +58,7 @@ fn a_gas_takes_the_temperature_of_its_wall() {
     let boundary = Container::closed(12.0, 12.0)
         .unwrap()
         .with_periodic_sides()
+        .unwrap()
         .with_temperature(Wall::Floor, Thermal::new(2.0).unwrap())
         .unwrap();
     let disks = initial::lattice(&boundary, 40, 0.5).unwrap();

@@ -77,7 +77,7 @@ fn a_run_starts_from_any_frame_as_if_it_had_not_stopped() {
     // chaos allows.
     let base = BiParabolic::new(0.1, 10.0).unwrap();
     let container =
-        Container::open(15.0).unwrap().with_periodic_sides().with_motion(Wall::Floor, base).unwrap();
+        Container::open(15.0).unwrap().with_periodic_sides().unwrap().with_motion(Wall::Floor, base).unwrap();
     let state = states[6].clone();
     let mut again = Simulation::builder(Frictional::from_inelasticity(0.02, 0.02, 0.2).unwrap(), container)
         .gravity(state.gravity().unwrap())

@@ -13,7 +13,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 pub(crate) fn mixture() -> Simulation<Frictional> {
     let base = BiParabolic::new(0.1, 10.0).unwrap();
     let container =
-        Container::open(15.0).unwrap().with_periodic_sides().with_motion(Wall::Floor, base).unwrap();
+        Container::open(15.0).unwrap().with_periodic_sides().unwrap().with_motion(Wall::Floor, base).unwrap();
     let disks = initial::lattice(&container, 40, 0.5).unwrap();
     let disks = initial::with_maxwellian_velocities(disks, 2.0, 5).unwrap();
     let disks = disks.into_iter().enumerate().map(|(index, disk)| {
@@ -32,7 +32,7 @@ pub(crate) fn mixture() -> Simulation<Frictional> {
 pub(crate) fn domain(sort: usize) -> Domain {
     match sort % 4 {
         0 => Container::closed(30.0, 40.0).unwrap().domain(),
-        1 => Container::open(30.0).unwrap().with_periodic_sides().domain(),
+        1 => Container::open(30.0).unwrap().with_periodic_sides().unwrap().domain(),
         2 => Container::periodic(30.0, 40.0).unwrap().shifted(DVec2::new(-7.1, 1.0 / 3.0)).unwrap().domain(),
         _ => Container::closed(30.0, 40.0).unwrap().with_periodic_ends().unwrap().domain(),
     }

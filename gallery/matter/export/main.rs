@@ -92,7 +92,7 @@ fn start(arguments: &Arguments) -> Result<Run, Box<dyn Error>> {
     let count = if arguments.quick { arguments.disks.min(100) } else { arguments.disks };
     let width = if arguments.quick { 20.0 } else { 60.0 };
     let base = BiParabolic::new(0.1, 10.0)?;
-    let container = Container::open(width)?.with_periodic_sides().with_motion(Wall::Floor, base)?;
+    let container = Container::open(width)?.with_periodic_sides()?.with_motion(Wall::Floor, base)?;
     let disks = initial::lattice(&container, count as usize, 0.5)?;
     let mut disks = initial::with_maxwellian_velocities(disks, 0.5, arguments.seed)?;
     for disk in disks.iter_mut().step_by(3) {

@@ -195,7 +195,7 @@ fn at_contact(values: &[f64]) -> f64 {
 
 fn between_walls(gas: &Gas, intervals: u32, rows: &mut Rows) -> Result<(), Box<dyn Error>> {
     let side = gas.side();
-    let container = Container::closed(side, side + 1.0)?.with_periodic_sides();
+    let container = Container::closed(side, side + 1.0)?.with_periodic_sides()?;
     let [floor, lid] = [Wall::Floor, Wall::Lid].map(|wall| container.index(wall).unwrap_or(0));
     let mut run = gas.settled(container, Elastic)?;
     let times = SampleTimes::every(1.0 / gas.collision_rate())?;

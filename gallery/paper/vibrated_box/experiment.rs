@@ -70,7 +70,7 @@ fn container(arguments: &Arguments) -> Result<Container, Box<dyn Error>> {
     let Arguments { width, height, omega, .. } = *arguments;
     let amplitude = arguments.amplitude();
     let container = if arguments.open { Container::open(width)? } else { Container::closed(width, height)? };
-    let container = if arguments.periodic { container.with_periodic_sides() } else { container };
+    let container = if arguments.periodic { container.with_periodic_sides()? } else { container };
     Ok(match arguments.base {
         Base::BiParabolic => container.with_motion(Wall::Floor, BiParabolic::new(amplitude, omega)?)?,
         Base::Sinusoidal => container.with_motion(Wall::Floor, Sinusoidal::new(amplitude, omega)?)?,

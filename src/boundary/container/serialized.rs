@@ -55,7 +55,7 @@ impl TryFrom<Record> for Container {
         }
         .map_err(|error| error.to_string())?;
         if !has(Wall::Left) {
-            container = container.with_periodic_sides();
+            container = container.with_periodic_sides().map_err(|error| error.to_string())?;
         }
         if !has(Wall::Floor) {
             container = container.with_periodic_ends().map_err(|error| error.to_string())?;

@@ -18,7 +18,7 @@ impl Container {
     /// use granular_edmd::boundary::{Container, Wall};
     /// // A shear cell: the lid moves to the right, the floor to the left.
     /// let cell = Container::closed(20.0, 10.0)?
-    ///     .with_periodic_sides()
+    ///     .with_periodic_sides()?
     ///     .with_surface_speed(Wall::Lid, 0.5)?
     ///     .with_surface_speed(Wall::Floor, -0.5)?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())

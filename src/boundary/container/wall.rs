@@ -57,6 +57,12 @@ pub enum WallError {
         /// The wall asked for.
         wall: Wall,
     },
+    /// The wall would be taken away, and with it what was set for it.
+    #[error("the wall \"{wall}\" has settings that would be lost: make the container periodic without them")]
+    Lost {
+        /// The wall with the settings.
+        wall: Wall,
+    },
     /// The motion gives numbers that would break every run.
     #[error("the motion of the wall \"{wall}\" cannot be used: {violation}")]
     Motion {

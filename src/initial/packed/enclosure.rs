@@ -111,7 +111,7 @@ mod tests {
         let peg = |x: f64| -> Result<Disk, ParameterError> { Disk::new(DVec2::new(x, 3.0), 0.8) };
         for container in [
             Container::open(8.0)?.with_motion(Wall::Floor, base)?,
-            Container::closed(8.0, 5.0)?.with_periodic_sides(),
+            Container::closed(8.0, 5.0)?.with_periodic_sides()?,
             Container::periodic(8.0, 6.0)?,
             Container::periodic(8.0, 20.0)?,
         ] {

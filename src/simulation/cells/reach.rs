@@ -261,7 +261,7 @@ mod tests {
     fn what_comes_within_reach_is_what_was_not_there_before() {
         let walled = Container::closed(60.0, 60.0).unwrap();
         let periodic = Container::periodic(60.0, 60.0).unwrap();
-        for container in [walled.clone(), walled.with_periodic_sides(), periodic] {
+        for container in [walled.clone(), walled.with_periodic_sides().unwrap(), periodic] {
             let (from, small) = (grid(&container, 5.0), grid(&container, 1.5));
             let homes = Homes { grid: &small, cells: 1, stride: 40, first: 3 };
             let reach = Reach::new(&from, &homes, Distances { most: 11.0, least: 10.9 });

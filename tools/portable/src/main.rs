@@ -50,7 +50,7 @@ fn shaken_box() -> Outcome<String> {
 fn heated_column() -> Outcome<String> {
     let container = || -> Outcome<Container> {
         Ok(Container::open(20.0)?
-            .with_periodic_sides()
+            .with_periodic_sides()?
             .with_motion(Wall::Floor, Sinusoidal::new(0.05, 20.0)?)?
             .with_temperature(Wall::Floor, Thermal::new(1.0)?)?)
     };
@@ -69,7 +69,7 @@ fn packing() -> Outcome<String> {
     let radii = radii.iter().zip(1..).flat_map(|(radii, seed)| radii.draw(40, seed));
     let disks = initial::homogeneous(radii, 1.0)?;
     let area: f64 = disks.iter().map(|disk| std::f64::consts::PI * disk.radius() * disk.radius()).sum();
-    let container = Container::open(12.0)?.with_periodic_sides();
+    let container = Container::open(12.0)?.with_periodic_sides()?;
     let disks = initial::packed_at_random(&container, disks, area / (0.8 * 12.0), 1)?;
     let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
     let rule = rule(0.02, 0.1)?;
