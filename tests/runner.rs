@@ -169,6 +169,23 @@ fn failed_values_are_listed_and_tried_again() {
 }
 
 /// Each row of the table of exit codes, but 130, which the next test has.
+/// A contact duration longer than the time between collisions turns the rule off: it is said, not only a
+/// number in a table.
+#[test]
+fn warnings_of_values_are_told() {
+    let scratch = Scratch::new("warned");
+    let plan = SMALL.replace("contact_duration = 1e-4", "contact_duration = 1000.0");
+    let plan = plan.replace("samples = 5", "samples = 1000");
+    assert_ne!(plan, SMALL);
+    fs::write(scratch.0.join("plan.toml"), plan).unwrap();
+    let output = scratch.runs(&["run", "plan.toml", "--out", "study"]);
+    assert_eq!(code(&output), Some(0), "{}", said(&output));
+    let told = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(told.contains("of them have warnings; study/ramps/*/log.jsonl say of what"), "{told}");
+    let log = fs::read_to_string(scratch.0.join("study/ramps/0000/log.jsonl")).unwrap();
+    assert!(log.contains("longer than the time between collisions"), "{log}");
+}
+
 #[test]
 fn exit_codes_say_how_a_command_ended() {
     let scratch = Scratch::new("codes");

@@ -319,6 +319,10 @@ fn run<E: Experiment>(
             logs.display()
         ))?;
     }
+    if summary.warned > 0 {
+        let logs = out.join("ramps/*/log.jsonl");
+        say(&format!("{} of them have warnings; {} say of what", summary.warned, logs.display()))?;
+    }
     Ok(match (summary.is_complete(), summary.elsewhere.is_empty()) {
         (true, _) => End::Done,
         (false, false) if !watch::is_stopped() => End::Elsewhere,

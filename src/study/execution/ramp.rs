@@ -60,7 +60,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let Some(record) = found else { return Ok(false) };
         let is_failed = record.outcome().reason().is_some();
         self.failed.extend(is_failed.then_some(value));
-        self.shift.count_finished(is_failed);
+        self.shift.count_finished(is_failed, !record.counters().warnings().is_empty());
         self.seen.push(Seen::of(&record));
         self.last = Some(record);
         Ok(true)

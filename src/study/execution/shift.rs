@@ -26,6 +26,8 @@ pub(super) struct Shift<'a, E: Experiment> {
     finished: AtomicUsize,
     /// Number of values that the engine could not finish.
     failed: AtomicUsize,
+    /// Number of values whose runs have warnings.
+    warned: AtomicUsize,
     redone: Mutex<Vec<PathBuf>>,
     /// True once a thread has met an error.
     ///
@@ -45,6 +47,7 @@ impl<'a, E: Experiment> Shift<'a, E> {
             total: AtomicUsize::new(values),
             finished: AtomicUsize::new(0),
             failed: AtomicUsize::new(0),
+            warned: AtomicUsize::new(0),
             redone: Mutex::default(),
             broken: AtomicBool::new(false),
             is_opened: AtomicBool::new(false),
@@ -82,8 +85,9 @@ impl<'a, E: Experiment> Shift<'a, E> {
     }
 
     /// Counts a value that has a record now.
-    pub(super) fn count_finished(&self, is_failed: bool) {
+    pub(super) fn count_finished(&self, is_failed: bool, is_warned: bool) {
         self.finished.fetch_add(1, Ordering::Relaxed);
+        self.warned.fetch_add(usize::from(is_warned), Ordering::Relaxed);
         self.failed.fetch_add(usize::from(is_failed), Ordering::Relaxed);
     }
 
@@ -123,7 +127,8 @@ impl<'a, E: Experiment> Shift<'a, E> {
         let mut redone = self.redone.into_inner().unwrap_or_else(PoisonError::into_inner);
         redone.sort();
         elsewhere.sort_unstable();
-        let [finished, failed, total] = [self.finished, self.failed, self.total].map(AtomicUsize::into_inner);
-        Summary { finished, failed, total, elsewhere, redone }
+        let counts = [self.finished, self.failed, self.warned, self.total];
+        let [finished, failed, warned, total] = counts.map(AtomicUsize::into_inner);
+        Summary { finished, failed, warned, total, elsewhere, redone }
     }
 }

@@ -167,6 +167,8 @@ fn log<E: Experiment>(lock: &mut Lock, record: &Record<E>, started: Instant) {
     let line = Object::default().with("ramp", record.ramp_index()).with("value", record.value_index());
     let line = line.text("outcome", record.outcome().name());
     let line = record.outcome().reason().into_iter().fold(line, |line, reason| line.text("reason", reason));
+    let warnings: Vec<String> = record.counters().warnings().iter().map(ToString::to_string).collect();
+    let line = if warnings.is_empty() { line } else { line.text("warnings", &warnings.join("; ")) };
     let line = line.with("collisions", record.counters().disk_collisions);
     let line = line.with("seconds", format_args!("{:.3}", started.elapsed().as_secs_f64()));
     lock.append(&line.with("unix_time", unix_time).line());
