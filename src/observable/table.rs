@@ -162,8 +162,10 @@ pub(super) fn row(exact: &[f64], estimated: &[Estimate]) -> Vec<f64> {
 pub(super) fn histogram_headings<const COUNT: usize>(names: [(&str, &str); COUNT]) -> Vec<Heading> {
     let columns = |(name, unit): (&str, &str)| {
         let inverse = if unit == "1" { unit.to_owned() } else { format!("1/({unit})") };
-        [("low", unit), ("high", unit), ("count", "1"), ("density", &inverse), ("density_error", &inverse)]
-            .map(|(column, unit)| Heading::new(format!("{name}_{column}"), unit))
+        let exact = [("low", unit), ("high", unit), ("count", "1")];
+        let exact = exact.map(|(column, unit)| (format!("{name}_{column}"), unit));
+        let exact = exact.each_ref().map(|(column, unit)| (column.as_str(), *unit));
+        headings(&exact, &[(&format!("{name}_density"), &inverse)])
     };
     names.into_iter().flat_map(columns).collect()
 }
@@ -174,12 +176,12 @@ pub(super) fn histogram_rows<const COUNT: usize>(
 ) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
     let mut bins = histograms.map(Histogram::bins);
     Box::new(std::iter::from_fn(move || {
-        let mut row = Vec::with_capacity(5 * COUNT);
+        let mut all = Vec::with_capacity(6 * COUNT);
         for bins in &mut bins {
             let bin = bins.next()?;
-            row.extend([bin.low, bin.high, bin.count as f64, bin.density, bin.standard_error]);
+            all.extend(row(&[bin.low, bin.high, bin.count as f64], &[bin.density]));
         }
-        Some(row)
+        Some(all)
     }))
 }
 

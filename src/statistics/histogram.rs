@@ -1,16 +1,21 @@
 //! Histograms.
 
-use super::Bins;
+use super::{Bins, BlockedMean, Estimate};
 use crate::ParameterError;
 
 /// A histogram of numbers that come one by one.
+///
+/// The numbers may be correlated: the errors come from the scatter between blocks of numbers that came after
+/// each other, by the method of [`BlockedMean`]. The smallest blocks have as many numbers as there are bins,
+/// and at least 64.
 ///
 /// ```
 /// use granular_edmd::statistics::Histogram;
 /// let mut histogram = Histogram::new(0.0, 2.0, 4)?;
 /// histogram.extend([0.1, 0.2, 1.7, 3.0]);
 /// let first = histogram.bins().next().unwrap();
-/// assert_eq!((first.low, first.high, first.count, first.density), (0.0, 0.5, 2, 1.0));
+/// assert_eq!((first.low, first.high, first.count, first.density.mean()), (0.0, 0.5, 2, 1.0));
+/// assert!(!first.density.is_converged());
 /// assert_eq!((histogram.count(), histogram.below(), histogram.above()), (4, 0, 1));
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
@@ -21,6 +26,12 @@ pub struct Histogram {
     counts: Vec<u64>,
     below: u64,
     above: u64,
+    /// Number of all numbers, inside and outside the bins.
+    count: u64,
+    /// The counts at the end of the last block.
+    before: Vec<u64>,
+    /// Shares of the numbers of a block, for each bin.
+    shares: Vec<BlockedMean>,
 }
 
 /// A bin of a [`Histogram`].
@@ -34,10 +45,10 @@ pub struct HistogramBin {
     /// Count of the numbers in the bin.
     pub count: u64,
     /// Density: the fraction of all numbers that are in the bin, over its width; NaN without numbers.
-    pub density: f64,
-    /// Standard error of the density for n independent numbers: √(p(1 − p)/n)/w for the share p and the width
-    /// w; NaN without numbers. It is too small for correlated numbers.
-    pub standard_error: f64,
+    ///
+    /// Before there are two blocks, its error is that of independent numbers, √(p(1 − p)/n)/w for the share p
+    /// and the width w. It is then called a lower bound.
+    pub density: Estimate,
 }
 
 impl Histogram {
@@ -47,7 +58,8 @@ impl Histogram {
     /// If an end is not finite, `high` is not above `low`, or the number of bins is not in `1..=2^20`.
     pub fn new(low: f64, high: f64, bins: usize) -> Result<Self, ParameterError> {
         let bins = Bins::new(low, high, bins)?;
-        Ok(Self { bins, counts: vec![0; bins.count()], below: 0, above: 0 })
+        let (counts, shares) = (vec![0; bins.count()], vec![BlockedMean::new(); bins.count()]);
+        Ok(Self { bins, before: counts.clone(), counts, below: 0, above: 0, count: 0, shares })
     }
 
     /// Takes one more number.
@@ -58,13 +70,26 @@ impl Histogram {
         match self.bins.find(value) {
             Some(bin) => self.counts[bin] += 1,
             None if value < self.bins.edge(0) => self.below += 1,
-            None => self.above += u64::from(!value.is_nan()),
+            None if value.is_nan() => return,
+            None => self.above += 1,
+        }
+        self.count += 1;
+        if self.count.is_multiple_of(block(&self.bins)) {
+            self.end_block();
+        }
+    }
+
+    fn end_block(&mut self) {
+        let size = block(&self.bins) as f64;
+        for ((share, count), before) in self.shares.iter_mut().zip(&self.counts).zip(&mut self.before) {
+            share.push((count - *before) as f64 / size);
+            *before = *count;
         }
     }
 
     /// Returns the count of all numbers, inside and outside the bins.
-    pub fn count(&self) -> u64 {
-        self.counts.iter().sum::<u64>() + self.below + self.above
+    pub const fn count(&self) -> u64 {
+        self.count
     }
 
     /// Returns the count of the numbers below the first bin.
@@ -79,24 +104,33 @@ impl Histogram {
 
     /// Iterates over the bins, from the lowest up.
     pub fn bins(&self) -> impl ExactSizeIterator<Item = HistogramBin> {
-        let (all, width) = (self.count() as f64, self.bins.width());
-        self.counts.iter().enumerate().map(move |(bin, &count)| {
+        let all = self.count as f64;
+        self.counts.iter().zip(&self.shares).enumerate().map(move |(bin, (&count, shares))| {
             let share = count as f64 / all;
-            HistogramBin {
-                low: self.bins.edge(bin),
-                high: self.bins.edge(bin + 1),
-                count,
-                density: share / width,
-                standard_error: (share * (1.0 - share) / all).sqrt() / width,
-            }
+            let density = if shares.count() < 2 {
+                Estimate::blocked(share, (share * (1.0 - share) / all).sqrt(), self.count, 1.0, false)
+            } else {
+                // Numbers after the last block are in the mean, too.
+                shares.estimate().about(share)
+            };
+            let [low, high] = [bin, bin + 1].map(|edge| self.bins.edge(edge));
+            HistogramBin { low, high, count, density: density.scaled(1.0 / self.bins.width()) }
         })
     }
 
     /// Forgets all numbers so far.
     pub fn clear(&mut self) {
         self.counts.fill(0);
-        (self.below, self.above) = (0, 0);
+        self.before.fill(0);
+        self.shares.fill(BlockedMean::new());
+        (self.below, self.above, self.count) = (0, 0, 0);
     }
+}
+
+/// Returns the size of the smallest blocks. A number then costs constant time, however many bins there are.
+const fn block(bins: &Bins) -> u64 {
+    let bins = bins.count() as u64;
+    if bins > 64 { bins } else { 64 }
 }
 
 impl Extend<f64> for Histogram {
@@ -106,12 +140,22 @@ impl Extend<f64> for Histogram {
 }
 
 crate::gate::from_file! {
-    Histogram { bins: Bins, counts: Vec<u64>, below: u64, above: u64 } => {
-        bins.check_count(counts.len())?;
+    Histogram {
+        bins: Bins, counts: Vec<u64>, below: u64, above: u64, count: u64, before: Vec<u64>, shares: Vec<BlockedMean>
+    } => {
+        use crate::quantity::accept;
+        for given in [counts.len(), before.len(), shares.len()] {
+            bins.check_count(given)?;
+        }
         // The sum has 128 bits, so that sums of forged counts do not wrap.
         let all: u128 = counts.iter().chain([&below, &above]).map(|&count| u128::from(count)).sum();
-        let fits = all <= u128::from(u64::MAX / 2);
-        crate::quantity::accept(fits, "count of a histogram", "at most 2^63 in all", all as f64)?;
-        Ok(Self { bins, counts, below, above })
+        let fits = all == u128::from(count) && count <= u64::MAX / 2;
+        accept(fits, "count of a histogram", "the sum of its bins, and at most 2^63", count as f64)?;
+        for ((share, before), count_of_bin) in shares.iter().zip(&before).zip(&counts) {
+            accept(before <= count_of_bin, "count of the blocks of a bin", "at most that of the bin", *before as f64)?;
+            let blocks = share.count();
+            accept(blocks == count / block(&bins), "number of blocks", "that of the numbers", blocks as f64)?;
+        }
+        Ok(Self { bins, counts, below, above, count, before, shares })
     }
 }

@@ -154,10 +154,33 @@ fn a_histogram_counts_what_is_inside_and_outside() -> Outcome {
     assert_eq!(histogram.bins().map(|bin| bin.count).collect::<Vec<_>>(), [1, 1, 1, 1]);
     assert_eq!((histogram.count(), histogram.below(), histogram.above()), (8, 2, 2));
     let bin = histogram.bins().nth(1).unwrap();
-    assert_eq!((bin.low, bin.high, bin.density), (-0.5, 0.0, 0.25));
-    assert_eq!(bin.standard_error, (0.125_f64 * 0.875 / 8.0).sqrt() / 0.5);
+    assert_eq!((bin.low, bin.high, bin.density.mean()), (-0.5, 0.0, 0.25));
+    assert_eq!(bin.density.standard_error(), (0.125_f64 * 0.875 / 8.0).sqrt() / 0.5);
     histogram.clear();
-    assert!(histogram.bins().all(|bin| bin.count == 0 && bin.density.is_nan()));
+    assert!(histogram.bins().all(|bin| bin.count == 0 && bin.density.mean().is_nan()));
+    Ok(())
+}
+
+/// Numbers that come after each other are alike, as velocities in time are: the errors must hold the truth
+/// all the same. Those of independent numbers would be four times too small.
+#[test]
+fn errors_of_a_histogram_hold_for_correlated_numbers() -> Outcome {
+    let (mut held, mut called) = (0, 0);
+    for seed in 0..200 {
+        let mut histogram = Histogram::new(-2.0, 2.0, 8)?;
+        // A series with correlation 0.9 between neighbors, of variance 1.
+        let mut chance = Chance::new(seed);
+        let mut present = chance.normal();
+        for _ in 0..50_000 {
+            present = 0.9 * present + (1.0_f64 - 0.81).sqrt() * chance.normal();
+            histogram.push(present);
+        }
+        // The bin from 0 to 0.5 has 19.15 % of a normal distribution.
+        let density = histogram.bins().nth(4).ok_or("no bin")?.density;
+        called += u32::from(density.is_converged());
+        held += u32::from((density.mean() - 2.0 * 0.191_462).abs() < 2.0 * density.standard_error());
+    }
+    assert!(called >= 180 && held >= 180, "{called} of 200 are converged, {held} within two errors");
     Ok(())
 }
 

@@ -77,5 +77,5 @@ fn ratio(bin: &HistogramBin) -> (f64, f64, f64) {
     // The whole bin counts, since the distribution falls steeply.
     let share = (-bin.low * bin.low).exp() - (-bin.high * bin.high).exp();
     let scale = (bin.high - bin.low) / share;
-    (0.5 * (bin.low + bin.high), scale * bin.density, scale * bin.standard_error)
+    (0.5 * (bin.low + bin.high), scale * bin.density.mean(), scale * bin.density.standard_error())
 }
