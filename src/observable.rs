@@ -84,6 +84,13 @@
 //! [`write_json_lines`](Table::write_json_lines) write its results with names, units and errors. A [`Series`]
 //! is one if its observable is [`Tabular`]; a tuple has the columns of its parts.
 //!
+//! # Errors
+//! The errors of these measures take no samples as independent. They come from blocks of consecutive samples
+//! or collisions, as [`block_average`](crate::statistics::block_average) takes them, and an
+//! [`Estimate`](crate::statistics::Estimate) tells how many independent samples there were. [`Fields`],
+//! [`HeightProfile`] and [`CollisionCounts`] have no errors: repeat the run with other seeds, or keep a
+//! [`Series`] of the number that you need.
+//!
 //! # Measurements in files
 //! With the feature `serde`, you can write the observers of this module, except for closures, to a file
 //! together with the checkpoint of the run: `Checkpoint::write_with` keeps every bit. Read back and lent to

@@ -18,7 +18,8 @@ use crate::statistics::Histogram;
 /// p(b) = \frac12,\qquad p(v_n) = \frac{v_n}{2T/m}\,e^{-m v_n^2/4T} .
 /// ```
 ///
-/// Collisions between disks count, unless [`with_wall`](Self::with_wall) chooses a wall.
+/// Collisions between disks count, unless [`with_wall`](Self::with_wall) chooses a wall. The errors come from
+/// blocks of collisions in their order; none are taken as independent.
 ///
 /// ```
 /// use granular_edmd::collision::{Contact, Impulse};

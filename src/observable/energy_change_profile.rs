@@ -37,6 +37,8 @@ impl EnergyChangeLayer {
 /// The energy change per disk–disk collision by height, with the temperatures there.
 ///
 /// It allows a comparison with the kinetic theory of a gas of one temperature, layer by layer and on average.
+/// Errors come from blocks of the collisions and of the disks in a layer, in the order in which they are
+/// seen; none are taken as independent.
 ///
 /// ```
 /// use granular_edmd::observable::EnergyChangeProfile;
