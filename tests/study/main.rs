@@ -13,6 +13,7 @@ mod mixture;
 mod own;
 mod plans;
 mod processes;
+mod random;
 mod refinement;
 #[path = "../support/report.rs"]
 mod report;
