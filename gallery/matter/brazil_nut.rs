@@ -127,6 +127,7 @@ fn shaken(arguments: &Arguments, diameter: f64, density: f64) -> Result<Nut, Box
     let end = period * f64::from(oscillations);
     let mut progress = Progress::of(format!("diameter {diameter}")).until(end);
     simulation.run_until(end, &mut (&mut series, &mut watch, &mut progress))?;
+    gallery::output::warn(&simulation.warnings());
 
     let point = |(k, part): (usize, &[(DVec2, DVec2)])| {
         let mean = |of: fn(&(DVec2, DVec2)) -> f64| part.iter().map(of).sum::<f64>() / POINT as f64;

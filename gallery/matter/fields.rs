@@ -97,6 +97,7 @@ fn measured(arguments: &Arguments) -> Result<(Sampled<Fields>, Sampled<Fields>),
         Sampled::new(Fields::new(Grid::new(region, COARSE.0, COARSE.1)?), times),
     );
     simulation.run_until(end, &mut (&mut fields, &mut progress))?;
+    gallery::output::warn(&simulation.warnings());
     Ok(fields)
 }
 

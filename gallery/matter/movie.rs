@@ -113,6 +113,7 @@ fn frames(arguments: &Arguments) -> Result<Vec<Frame>, Box<dyn Error>> {
             frames.push(Frame { time: snapshot.time(), heights, canvas });
         });
     run.run_until(end, &mut (&mut camera, &mut progress))?;
+    gallery::output::warn(&run.warnings());
     Ok(frames)
 }
 

@@ -161,6 +161,7 @@ fn measured(arguments: &Arguments, outlet: f64) -> Result<Flow, Box<dyn Error>> 
             shot = run.disks();
         }
     }
+    gallery::output::warn(&run.warnings());
     let counted = f64::from(refills) * REFILL - (begin / REFILL).floor() * REFILL;
     Ok(Flow { outlet, rate: left as f64 / counted, shot })
 }

@@ -188,6 +188,7 @@ fn measure(
         temperature.push(run.measure(&Temperatures).vertical);
         profile.add(&run.snapshot());
     }
+    gallery::output::warn(&run.warnings());
     let layer = profile.densest_layer();
     let noise = thermal_noise(temperature.mean(), 1.0, run.len())?;
     let regime = StateCriteria::default().classify(&orders, noise, layer)?.regime();

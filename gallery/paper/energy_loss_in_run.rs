@@ -144,6 +144,7 @@ fn measured(arguments: &Arguments, rule: Frictional) -> Result<Measured, Box<dyn
         measured.parts[0].extend(profile.relative_energy_change());
         measured.parts[1].extend(profile.rotational_ratio());
     }
+    gallery::output::warn(&simulation.warnings());
     Ok(measured)
 }
 

@@ -8,6 +8,8 @@ use std::io::{self, ErrorKind, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
+use granular_edmd::simulation::Warning;
+
 use crate::command_line::Failure;
 
 /// Why nothing is printed any more.
@@ -32,6 +34,13 @@ pub fn line(text: Arguments<'_>) {
             writeln!(io::stdout(), "{text}")
         };
         *failed = written.err();
+    }
+}
+
+/// Prints what a run noticed and survived, on standard error.
+pub fn warn(warnings: &[Warning]) {
+    for warning in warnings {
+        complain(format_args!("warning: {warning}"));
     }
 }
 

@@ -82,6 +82,10 @@ pub fn complete<E: Experiment>(
     for file in &summary.redone {
         crate::say!("{} was damaged and has been done again", file.display());
     }
+    if summary.warned > 0 {
+        let logs = folder.join("ramps/*/log.jsonl");
+        crate::say!("{} values have warnings; {} say of what", summary.warned, logs.display());
+    }
     if (0..plan.ramp_count()).all(|ramp| matches!(study.status(ramp), Ok(RampStatus::Done))) {
         return Ok(Some(study));
     }

@@ -147,6 +147,7 @@ fn turned(arguments: &Arguments, rate: f64) -> Result<Turned, Box<dyn Error>> {
         }
     });
     simulation.run_until(end, &mut (&mut watch, &mut flow, &mut progress))?;
+    gallery::output::warn(&simulation.warnings());
 
     let mut angles = BlockedMean::new();
     for (_, surface) in &surfaces {

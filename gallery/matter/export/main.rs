@@ -145,6 +145,7 @@ fn write_all(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let mut expected = on_sample(clock, |snapshot: &Snapshot<'_>| frames.push(all_of(snapshot)));
     let mut progress = Progress::of("run").until(end);
     run.run_until(end, &mut ((&mut recorders, &mut progress), &mut series, &mut expected))?;
+    gallery::output::warn(&run.warnings());
     let state = State::of(&run.snapshot());
     state.write_csv(new(&out.join("end.csv"))?)?;
     state.write_lammps_data(new(&out.join("end.data"))?)?;

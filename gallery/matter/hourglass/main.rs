@@ -203,6 +203,7 @@ fn way(arguments: &Arguments, run: &mut Run) -> Result<Way, Box<dyn Error>> {
         above == 0
     });
     let ended = run.run(&limits(arguments, start + END), &mut empty)?;
+    gallery::output::warn(&run.warnings());
     let counters = run.counters().since(&before);
     let collisions = counters.disk_collisions + counters.wall_collisions;
     Ok(Way { frames, ended, seconds: since.elapsed().as_secs_f64(), collisions })

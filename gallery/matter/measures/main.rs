@@ -160,6 +160,7 @@ fn in_the_bulk(gas: &Gas, intervals: u32, rows: &mut Rows) -> Result<Bulk, Box<d
     let mut stress = Stress::new(times);
     let mut observers = (&mut pairs, (&mut displacement, &mut memory), &mut velocities, &mut stress);
     run.run_until(run.time() + f64::from(intervals) * times.interval(), &mut observers)?;
+    gallery::output::warn(&run.warnings());
 
     let temperature = run.measure(&Temperatures).translational();
     let ideal = gas.density() * temperature;
@@ -204,6 +205,7 @@ fn between_walls(gas: &Gas, intervals: u32, rows: &mut Rows) -> Result<(), Box<d
     let mut walls = WallStress::new(times).with_wall(floor, side)?.with_wall(lid, side)?;
     let end = run.time() + f64::from(intervals) * times.interval();
     run.run_until(end, &mut (&mut stress, &mut walls))?;
+    gallery::output::warn(&run.warnings());
     for (what, wall) in [("pressure on the floor, and in the bulk", floor), ("pressure on the lid", lid)] {
         if let Some(pressure) = walls.pressure(wall) {
             rows.add_estimate(what, pressure, stress.tensor().yy.mean());
