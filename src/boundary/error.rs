@@ -13,7 +13,7 @@ use crate::wall::Violation;
 /// ```
 /// use granular_edmd::boundary::{Container, Vessel};
 /// let error = Vessel::new(Container::open(20.0)?).remove("gate").unwrap_err();
-/// assert_eq!(error.to_string(), "the vessel has no part \"gate\"");
+/// assert_eq!(error.to_string(), "the vessel has no part \"gate\"; it has none");
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -78,10 +78,12 @@ pub enum VesselError {
         reason: String,
     },
     /// The vessel has no part of this name.
-    #[error("the vessel has no part \"{name}\"")]
+    #[error("the vessel has no part \"{name}\"; {}", listed(.parts))]
     Unknown {
         /// The name.
         name: String,
+        /// The names of the parts that it has.
+        parts: Vec<String>,
     },
     /// The vessel has a part or a wall of this name already.
     #[error("the vessel has a part or a wall of its container \"{name}\" already")]
@@ -130,4 +132,17 @@ pub enum VesselError {
         /// Largest number.
         most: usize,
     },
+}
+
+/// Most names of parts that an error lists.
+const LISTED: usize = 8;
+
+/// Says which parts a vessel has.
+fn listed(parts: &[String]) -> String {
+    let names: Vec<String> = parts.iter().take(LISTED).map(|name| format!("\"{name}\"")).collect();
+    match parts.len() {
+        0 => "it has none".to_owned(),
+        count if count > LISTED => format!("its {count} parts are {}, …", names.join(", ")),
+        _ => format!("its parts are {}", names.join(", ")),
+    }
 }

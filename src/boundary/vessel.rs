@@ -235,7 +235,8 @@ impl Vessel {
 
     fn place_of(&self, name: &str) -> Result<usize, VesselError> {
         let place = self.parts.iter().position(|placed| placed.name == name);
-        place.ok_or_else(|| VesselError::Unknown { name: name.to_owned() })
+        let parts = || self.parts.iter().map(|placed| placed.name.clone()).collect();
+        place.ok_or_else(|| VesselError::Unknown { name: name.to_owned(), parts: parts() })
     }
 
     /// Checks that a part can be in this vessel, in place of one with `less` walls.
