@@ -202,11 +202,21 @@ impl Folder {
         self.done(ramp).exists()
     }
 
-    /// Returns for each of this many ramps whether it is done. One call of the system tells of hundreds of
-    /// them.
+    /// Returns for each of this many ramps whether it is done.
     pub(super) fn all_done(&self, ramps: usize) -> Result<Vec<bool>, StudyError> {
+        self.listed(DONE, ramps)
+    }
+
+    /// Returns for each of this many ramps whether a process has ever looked into it.
+    pub(super) fn all_begun(&self, ramps: usize) -> Result<Vec<bool>, StudyError> {
+        self.listed(RAMPS, ramps)
+    }
+
+    /// Returns for each of this many ramps whether a folder has an entry of its name. One call of the system
+    /// tells of hundreds of them.
+    fn listed(&self, folder: &str, ramps: usize) -> Result<Vec<bool>, StudyError> {
         let mut all = vec![false; ramps];
-        let folder = self.root.join(DONE);
+        let folder = self.root.join(folder);
         let entries = match fs::read_dir(&folder) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(all),
             entries => entries.map_err(StudyError::io("read", &folder))?,
@@ -214,8 +224,8 @@ impl Folder {
         for entry in entries {
             let name = entry.map_err(StudyError::io("read", &folder))?.file_name();
             let ramp = name.to_str().and_then(|name| name.parse::<usize>().ok());
-            if let Some(done) = ramp.and_then(|ramp| all.get_mut(ramp)) {
-                *done = true;
+            if let Some(is_listed) = ramp.and_then(|ramp| all.get_mut(ramp)) {
+                *is_listed = true;
             }
         }
         Ok(all)

@@ -127,9 +127,14 @@ impl<E: Experiment> Study<E> {
     /// # Errors
     /// If the folder cannot be read.
     pub fn all_status(&self) -> Result<Vec<RampStatus>, StudyError> {
-        let done = self.folder.all_done(self.plan.ramp_count())?.into_iter().enumerate();
-        let of = |(ramp, done)| if done { RampStatus::Done } else { self.status_of_undone(ramp) };
-        Ok(done.map(of).collect())
+        let ramps = self.plan.ramp_count();
+        let (done, begun) = (self.folder.all_done(ramps)?, self.folder.all_begun(ramps)?);
+        let of = |ramp: usize| match (done[ramp], begun[ramp]) {
+            (true, _) => RampStatus::Done,
+            (false, true) => self.status_of_undone(ramp),
+            (false, false) => RampStatus::Waiting,
+        };
+        Ok((0..ramps).map(of).collect())
     }
 
     /// Returns the indices of the values of a ramp that stalled or failed; none before the ramp is done.
