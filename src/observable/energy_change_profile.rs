@@ -58,8 +58,8 @@ impl EnergyChangeProfile {
     /// Creates a profile of `layers` layers from the height `bottom` to `top`, with temperatures of the
     /// snapshots.
     ///
-    /// Collisions and disks outside are left out. A run ends with an error if the whole profile is outside the
-    /// domain.
+    /// Collisions and disks outside are left out. A run ends with an error if the whole profile is outside
+    /// the domain.
     ///
     /// # Errors
     /// If a height is not finite, `top` is not above `bottom`, or the number of layers is not in `1..=2^20`.

@@ -81,7 +81,8 @@ impl VelocityDistribution {
 
     /// Returns the same distribution about the mean velocity of all disks, weighted by mass, in each sample.
     ///
-    /// A flow includes the mean: with [`about_flow`](Self::about_flow), in either order, this changes nothing.
+    /// A flow includes the mean: with [`about_flow`](Self::about_flow), in either order, this changes
+    /// nothing.
     pub fn about_mean(self) -> Self {
         let frame = if let Frame::Container = self.frame { Frame::Mean } else { self.frame };
         Self { frame, ..self }

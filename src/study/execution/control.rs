@@ -132,8 +132,8 @@ pub struct Summary {
     /// and the `log.jsonl` of their ramp say why. Ramps that were done before are looked at only with
     /// [`Control::with_verification`].
     pub failed: usize,
-    /// Number of values, in the same ramps, whose runs have [warnings](crate::simulation::Counters::warnings).
-    /// The `log.jsonl` of their ramp says of what.
+    /// Number of values, in the same ramps, whose runs have
+    /// [warnings](crate::simulation::Counters::warnings). The `log.jsonl` of their ramp says of what.
     pub warned: usize,
     /// Number of values of the study, or of the ramps that were to be run.
     pub total: usize,
