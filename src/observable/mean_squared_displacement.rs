@@ -13,9 +13,8 @@ use crate::statistics::{BlockedMean, Estimate};
 ///
 /// Every sample is a time origin, and the lags are whole numbers of intervals. Positions are unwrapped at
 /// periodic sides and ends. A drift of all disks counts as displacement. The disks must stay the same while
-/// they are followed: if their number or the periods of the domain change, or if time jumps, the observer
-/// begins with new origins. It cannot notice that disks were replaced by as many others: clear it then. The
-/// errors come from blocks of origins.
+/// they are followed: if some are removed, their number or the periods of the domain change, or time jumps,
+/// the observer begins with new origins. The errors come from blocks of origins.
 ///
 /// A sample costs time and memory in proportion to the number of disks and of lags.
 ///
@@ -101,7 +100,7 @@ fn squared_displacement(from: &[DVec2], to: &[DVec2]) -> f64 {
 
 impl Observer for MeanSquaredDisplacement {
     fn on_start(&mut self, moment: &Moment) {
-        self.lags.sample_times.start_at(moment.time());
+        self.lags.start(moment);
     }
 
     fn next_sample(&self) -> f64 {

@@ -64,7 +64,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Removes the disks that `chosen` selects by their index and state, and returns them in their order.
     ///
     /// The other disks stay in their order: the index of each becomes smaller by the number of disks removed
-    /// before it. An observer that identifies disks by their index must begin anew. For the bits, see
+    /// before it. An observer that identifies disks by their index must begin anew, as
+    /// [`Moment::is_renumbered`](crate::observable::Moment::is_renumbered) tells it. For the bits, see
     /// [`insert`](Self::insert).
     ///
     /// # Errors

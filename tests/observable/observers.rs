@@ -410,3 +410,27 @@ fn an_accumulator_alone_measures_as_in_a_run() -> Result<(), Box<dyn std::error:
     assert_eq!((sampled.samples(), sampled.into_inner()), (28, alone));
     Ok(())
 }
+
+/// Disks that are exchanged for as many others are not mistaken for them.
+#[test]
+fn displacements_are_those_of_the_same_disks() -> Result<(), Box<dyn std::error::Error>> {
+    let container = Container::closed(10.0, 10.0)?;
+    let disks = initial::lattice(&container, 20, 0.5)?;
+    let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
+    let times = SampleTimes::every(1.0)?;
+    let mut displacement = MeanSquaredDisplacement::new(4, times)?;
+    let mut places = TimeCorrelation::new(from_fn(|now: &Snapshot<'_>| now.disks()[0].position()), 2, times)?;
+    let first = run.disks()[0].position();
+    run.run_until(5.0, &mut (&mut displacement, &mut places))?;
+    // The disk comes back as the last one.
+    let gone = run.remove(|disk, _| disk == 0)?;
+    run.insert(gone)?;
+    run.run_until(10.0, &mut (&mut displacement, &mut places))?;
+    assert!(displacement.iter().all(|(_, squared)| squared.mean() == 0.0), "no disk has moved");
+    let second = run.disks()[0].position();
+    // Origins of the first run have no partners in the second: 4 pairs of neighbors in each.
+    let neighbors = places.iter().nth(1).ok_or("no lag")?.1;
+    assert_eq!(neighbors.samples(), 8);
+    assert!((neighbors.mean() - 0.5 * (first.length_squared() + second.length_squared())).abs() < 1e-9);
+    Ok(())
+}

@@ -83,6 +83,8 @@ pub(in crate::simulation) struct Bodies {
     pub(super) images: Vec<[i32; 2]>,
     /// Typical diameter, in which the length of an epoch is measured.
     pub(in crate::simulation) typical_diameter: f64,
+    /// True if disks were removed since the last run began.
+    pub(in crate::simulation) is_renumbered: bool,
 }
 
 impl Bodies {
@@ -94,7 +96,8 @@ impl Bodies {
         let images = if has_passed { disks.iter().map(Disk::image).collect() } else { Vec::new() };
         let properties = Properties::of(disks);
         let typical_diameter = properties.typical_diameter();
-        Self { particles, spins, gravity: unsigned_zero(gravity), properties, images, typical_diameter }
+        let gravity = unsigned_zero(gravity);
+        Self { particles, spins, gravity, properties, images, typical_diameter, is_renumbered: false }
     }
 
     /// Creates bodies as they were saved. Disks that are all alike have a single model.
@@ -111,7 +114,8 @@ impl Bodies {
         let particles = trajectories.iter().zip(forecasts).map(particle).collect();
         let properties = Properties::of(models);
         let typical_diameter = properties.typical_diameter();
-        Self { particles, spins, gravity: unsigned_zero(gravity), properties, images, typical_diameter }
+        let gravity = unsigned_zero(gravity);
+        Self { particles, spins, gravity, properties, images, typical_diameter, is_renumbered: false }
     }
 
     /// Returns the images that [`Self::restored`] takes.

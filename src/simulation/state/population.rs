@@ -33,6 +33,7 @@ impl Bodies {
         self.images = staying(&self.images, leaves);
         self.particles = staying(&self.particles, leaves);
         self.spins = staying(&self.spins, leaves);
+        self.is_renumbered = true;
     }
 }
 
