@@ -7,40 +7,74 @@
 //! | [`Sinusoidal`] | $`A\sin\omega t`$ | |
 //! | [`Triangular`] | constant speed up, constant speed down | |
 //! | [`Sawtooth`] | constant speed up, instantly back | |
-//! | [`StartingAt`] | any of these, with phase 0 at a later time | |
+//! | [`Tabulated`] | through given places at given times, or from one place to another | |
 //!
 //! All oscillations begin alike: at phase 0 the displacement is 0, and the wall rises.
+//!
+//! Motions combine, and bounds of the acceleration follow:
+//!
+//! | of motions | displacement |
+//! |---|---|
+//! | [`StartingAt`] | phase 0 at another time |
+//! | [`Delayed`] | the same, and at rest before |
+//! | [`Scaled`] | times a factor; −1 mirrors |
+//! | [`Summed`] | the sum of two |
+//!
+//! ```
+//! use granular_edmd::boundary::{Container, Wall};
+//! use granular_edmd::wall::{Delayed, Scaled, Sinusoidal, Summed, Tabulated};
+//!
+//! let shake = Sinusoidal::new(0.1, 10.0)?;
+//! let container = Container::closed(20.0, 30.0)?
+//!     // The grains settle for 50, then two frequencies shake them.
+//!     .with_motion(Wall::Floor, Delayed::new(Summed::new(shake, Sinusoidal::new(0.02, 30.0)?)?, 50.0)?)?
+//!     // The lid comes down by 4 from time 80 to 100.
+//!     .with_motion(Wall::Lid, Delayed::new(Tabulated::from_to(0.0, 4.0, 20.0)?, 80.0)?)?
+//!     // Both sides move to the right: the normals of two opposite walls are opposite.
+//!     .with_motion(Wall::Left, shake)?
+//!     .with_motion(Wall::Right, Scaled::new(shake, -1.0)?)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! [`first_touch`] finds the contact for all of them and for your own motions. Apart from place, velocity and
 //! reach, it needs only bounds of the acceleration on pieces of time. See [`WallMotion`] for an example, and
 //! [`laws`] for a check of your own motion.
 
 mod bi_parabolic;
+mod delayed;
 mod finite;
 mod first_touch;
 mod fixed;
 mod forward;
+mod jumps;
 #[cfg(feature = "serde")]
 mod known;
 pub mod laws;
-mod mirrored;
 mod motion;
 mod oscillation;
 mod sawtooth;
+mod scaled;
 mod sinusoidal;
 mod starting_at;
 mod stroke;
+mod summed;
+mod tabulated;
 mod triangular;
 mod violation;
 
 pub use bi_parabolic::BiParabolic;
+pub use delayed::Delayed;
 pub use finite::check_finite;
 pub use first_touch::{Approach, FirstTouch, first_touch};
 pub use fixed::Fixed;
+pub(crate) use jumps::jumps;
 pub(crate) use motion::Motion;
 pub use sawtooth::Sawtooth;
+pub use scaled::Scaled;
 pub use sinusoidal::Sinusoidal;
 pub use starting_at::StartingAt;
+pub use summed::Summed;
+pub use tabulated::Tabulated;
 pub use triangular::Triangular;
 pub use violation::Violation;
 
@@ -81,6 +115,40 @@ impl AccelerationBounds {
     #[inline]
     pub const fn new(until: f64, min: f64, max: f64) -> Self {
         Self { until, min, max }
+    }
+
+    /// Creates bounds from the acceleration at this phase and a bound of the jerk, its rate of change.
+    ///
+    /// They hold for a time of this length: $`a\pm|j|\,\mathit{length}`$. A good length is a sixteenth of the
+    /// shortest period in the motion. Shorter pieces cost steps, and so do longer ones, whose bounds are
+    /// wide.
+    ///
+    /// ```
+    /// use granular_edmd::wall::{AccelerationBounds, WallMotion, WallState, laws};
+    ///
+    /// /// The motion sin t sin 2t.
+    /// struct Beat;
+    ///
+    /// impl WallMotion for Beat {
+    ///     fn state(&self, t: f64) -> WallState {
+    ///         let velocity = t.cos() * (2.0 * t).sin() + 2.0 * t.sin() * (2.0 * t).cos();
+    ///         WallState::new(t.sin() * (2.0 * t).sin(), velocity)
+    ///     }
+    ///     fn acceleration(&self, t: f64) -> AccelerationBounds {
+    ///         let now = 4.0 * t.cos() * (2.0 * t).cos() - 5.0 * t.sin() * (2.0 * t).sin();
+    ///         // Such a product has a jerk of (1 + 2)³ at most.
+    ///         AccelerationBounds::from_jerk(t, now, 27.0, 0.2)
+    ///     }
+    ///     fn reach(&self) -> (f64, f64) {
+    ///         (-1.0, 1.0)
+    ///     }
+    /// }
+    ///
+    /// assert_eq!(laws::check(&Beat, 0.0, 20.0), Ok(()));
+    /// ```
+    pub const fn from_jerk(phase: f64, acceleration: f64, jerk: f64, length: f64) -> Self {
+        let change = jerk.abs() * length;
+        Self::new(phase + length, acceleration - change, acceleration + change)
     }
 }
 

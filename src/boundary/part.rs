@@ -17,7 +17,7 @@ use super::vector::{finite_point, unit};
 use super::{Surface, Thermal, VesselError};
 use crate::collision::CollisionRule;
 use crate::quantity::{accept, finite};
-use crate::wall::{Motion, WallMotion};
+use crate::wall::{Motion, WallMotion, jumps};
 use crate::{Fingerprint, Kind};
 
 /// A part of a [`Vessel`](super::Vessel): bricks that share a rule, a kind, the motion of their surface and
@@ -213,7 +213,7 @@ impl Part {
     fn traveling(self, travel: Travel) -> Result<Self, VesselError> {
         match &travel {
             Travel::Along { direction, motion } => {
-                let is_safe = !motion.jumps() || self.bricks.iter().all(|brick| brick.faces(*direction));
+                let is_safe = !jumps(&**motion) || self.bricks.iter().all(|brick| brick.faces(*direction));
                 if !is_safe {
                     return Err(VesselError::Jump);
                 }

@@ -1,18 +1,20 @@
 //! The motions that can be written to files: one list. A new motion is entered here and nowhere else.
 
 use std::any::Any;
-use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::ser::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{BiParabolic, Fixed, Sawtooth, Sinusoidal, StartingAt, Triangular, WallMotion, check_finite};
-
-type Shared = Arc<dyn WallMotion + Send + Sync>;
+use super::{
+    BiParabolic, Delayed, Fixed, Motion, Sawtooth, Scaled, Sinusoidal, StartingAt, Summed, Tabulated,
+    Triangular, WallMotion,
+};
 
 /// A motion as it stands in a file.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Motion")]
-pub(super) struct Record {
+struct Record {
     motion: Known,
     /// Time from which the phase counts.
     #[serde(default)]
@@ -22,32 +24,42 @@ pub(super) struct Record {
 }
 
 impl Record {
-    /// The record of a wall at rest, which has no numbers.
-    pub(super) const FIXED: Self = Self { motion: Known::Fixed, start: 0.0, is_mirrored: false };
-
-    pub(super) fn of(motion: &dyn Any) -> Option<Self> {
-        let (motion, start) = Known::of(motion)?;
+    fn of(motion: &Motion) -> Option<Self> {
+        let mirrored = motion.as_any().downcast_ref().and_then(Scaled::mirrored);
+        if let Some(record) = mirrored.and_then(Self::of).filter(|record| !record.is_mirrored) {
+            return Some(Self { is_mirrored: true, ..record });
+        }
+        let (motion, start) = Known::of(motion.as_any())?;
         Some(Self { motion, start, is_mirrored: false })
     }
 
-    pub(super) fn mirrored(self) -> Self {
-        Self { is_mirrored: !self.is_mirrored, ..self }
+    /// Returns the motion, or the reason why the record is none.
+    fn motion(self) -> Result<Motion, String> {
+        let motion = self.motion.starting_at(self.start)?;
+        if !self.is_mirrored {
+            return Ok(motion);
+        }
+        checked(Scaled::of(motion, -1.0).map_err(|error| error.to_string())?)
     }
+}
 
-    pub(super) const fn is_mirrored(&self) -> bool {
-        self.is_mirrored
+impl Serialize for Motion {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let own = "only the wall motions of granular-edmd can be serialized";
+        Record::of(self).ok_or_else(|| S::Error::custom(own))?.serialize(serializer)
     }
+}
 
-    /// Returns the motion, not mirrored yet, or the reason why the record is none.
-    pub(super) fn motion(&self) -> Result<Shared, String> {
-        self.motion.starting_at(self.start)
+impl<'de> Deserialize<'de> for Motion {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Record::deserialize(deserializer)?.motion().map_err(D::Error::custom)
     }
 }
 
 /// Lists the motions with numbers. Each is recognized alone, and within [`StartingAt`].
 macro_rules! known {
     ($($motion:ident),*) => {
-        #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+        #[derive(Serialize, Deserialize)]
         #[serde(rename_all = "snake_case", rename = "KnownMotion")]
         enum Known {
             Fixed,
@@ -59,10 +71,10 @@ macro_rules! known {
             fn of(motion: &dyn Any) -> Option<(Self, f64)> {
                 $(
                     if let Some(known) = motion.downcast_ref::<$motion>() {
-                        return Some((Self::$motion(*known), 0.0));
+                        return Some((Self::$motion(Clone::clone(known)), 0.0));
                     }
                     if let Some(late) = motion.downcast_ref::<StartingAt<$motion>>() {
-                        return Some((Self::$motion(*late.motion()), late.start()));
+                        return Some((Self::$motion(Clone::clone(late.motion())), late.start()));
                     }
                 )*
                 let late = motion.downcast_ref().map(StartingAt::<Fixed>::start);
@@ -70,7 +82,7 @@ macro_rules! known {
                 Some((Self::Fixed, start))
             }
 
-            fn starting_at(self, start: f64) -> Result<Shared, String> {
+            fn starting_at(self, start: f64) -> Result<Motion, String> {
                 match self {
                     Self::Fixed => starting_at(Fixed, start),
                     $(Self::$motion(motion) => starting_at(motion, start),)*
@@ -80,17 +92,16 @@ macro_rules! known {
     };
 }
 
-known!(BiParabolic, Sinusoidal, Triangular, Sawtooth);
+known!(BiParabolic, Sinusoidal, Triangular, Sawtooth, Tabulated, Delayed, Scaled, Summed);
 
 /// Builds a motion from the data of a file, or returns the reason why it cannot.
-fn starting_at<M: WallMotion + Send + Sync + 'static>(motion: M, start: f64) -> Result<Shared, String> {
+fn starting_at<M: WallMotion + Send + Sync + 'static>(motion: M, start: f64) -> Result<Motion, String> {
     if start == 0.0 {
         return checked(motion);
     }
     checked(StartingAt::new(motion, start).map_err(|error| error.to_string())?)
 }
 
-fn checked<M: WallMotion + Send + Sync + 'static>(motion: M) -> Result<Shared, String> {
-    check_finite(&motion).map_err(|violation| violation.to_string())?;
-    Ok(Arc::new(motion))
+fn checked<M: WallMotion + Send + Sync + 'static>(motion: M) -> Result<Motion, String> {
+    Motion::new(motion).map_err(|violation| violation.to_string())
 }

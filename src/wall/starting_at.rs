@@ -1,6 +1,6 @@
 //! A motion whose phase counts from a given time.
 
-use super::{AccelerationBounds, WallMotion, WallState};
+use super::{AccelerationBounds, WallMotion, WallState, jumps};
 use crate::quantity::finite;
 use crate::{Fingerprint, ParameterError};
 
@@ -23,6 +23,7 @@ pub struct StartingAt<M> {
     start: f64,
     /// Phase of the motion at time 0.
     lead: f64,
+    jumps: bool,
 }
 
 impl<M: WallMotion> StartingAt<M> {
@@ -39,7 +40,8 @@ impl<M: WallMotion> StartingAt<M> {
             Some(_) => 0.0,
             None => -start,
         };
-        Ok(Self { motion, start, lead })
+        let jumps = jumps(&motion);
+        Ok(Self { motion, start, lead, jumps })
     }
 
     /// Returns the motion.
@@ -55,18 +57,11 @@ impl<M: WallMotion> StartingAt<M> {
 
 impl<M: WallMotion> WallMotion for StartingAt<M> {
     fn state(&self, phase: f64) -> WallState {
-        self.motion.state(phase + self.lead)
+        late_state(&self.motion, phase, self.lead, self.jumps)
     }
 
     fn acceleration(&self, phase: f64) -> AccelerationBounds {
-        let bounds = self.motion.acceleration(phase + self.lead);
-        let until = bounds.until - self.lead;
-        if until > phase {
-            return AccelerationBounds::new(until, bounds.min, bounds.max);
-        }
-        // The sum was rounded to just before the end of a piece, but the phase belongs to the next piece.
-        let next = self.motion.acceleration(bounds.until);
-        AccelerationBounds::new(next.until - self.lead, next.min, next.max)
+        late_bounds(&self.motion, phase, self.lead)
     }
 
     fn reach(&self) -> (f64, f64) {
@@ -80,4 +75,29 @@ impl<M: WallMotion> WallMotion for StartingAt<M> {
     fn fingerprint(&self) -> Option<Fingerprint> {
         Some(Fingerprint::of("StartingAt").number(self.start).part(self.motion.fingerprint()?))
     }
+}
+
+/// Returns the state at a phase of a motion that is ahead by `lead`.
+pub(super) fn late_state<M: WallMotion + ?Sized>(
+    motion: &M,
+    phase: f64,
+    lead: f64,
+    jumps: bool,
+) -> WallState {
+    let late = phase + lead;
+    // As in `late_bounds`. A motion that does not jump has almost the same state in both pieces.
+    let until = if jumps { motion.acceleration(late).until } else { f64::INFINITY };
+    motion.state(if until - lead > phase { late } else { until })
+}
+
+/// Returns the bounds at a phase of a motion that is ahead by `lead`.
+pub(super) fn late_bounds<M: WallMotion + ?Sized>(motion: &M, phase: f64, lead: f64) -> AccelerationBounds {
+    let bounds = motion.acceleration(phase + lead);
+    let until = bounds.until - lead;
+    if until > phase {
+        return AccelerationBounds::new(until, bounds.min, bounds.max);
+    }
+    // The sum was rounded to just before the end of a piece, but the phase belongs to the next piece.
+    let next = motion.acceleration(bounds.until);
+    AccelerationBounds::new(next.until - lead, next.min, next.max)
 }

@@ -11,7 +11,10 @@ use granular_edmd::boundary::{Boundary, Container, Part, Vessel};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::{Event, Limits, RunEnd, RunError};
-use granular_edmd::wall::{AccelerationBounds, BiParabolic, Sinusoidal, Triangular, WallMotion, WallState};
+use granular_edmd::wall::{
+    AccelerationBounds, BiParabolic, Delayed, Scaled, Sinusoidal, Summed, Tabulated, Triangular, WallMotion,
+    WallState,
+};
 use granular_edmd::{Disk, Simulation};
 
 fn point(x: f64, y: f64) -> DVec2 {
@@ -156,6 +159,45 @@ fn shaken_polygons_have_the_collisions_of_brute_force() {
         checked_run(rhombus(DVec2::Y, motion), end, amplitude, dense);
         let motion = Triangular::new(amplitude, 1.0 / amplitude).unwrap();
         checked_run(rhombus(DVec2::Y, motion), end, amplitude, dense);
+    }
+}
+
+/// So have polygons whose motions are delayed, summed, scaled, from a table, or from one place to another.
+#[test]
+fn combined_motions_have_the_collisions_of_brute_force() {
+    for (amplitude, end) in [(0.3, 60.0), (1e-2, 60.0), (1e-3, 20.0)] {
+        let dense = 0.03 * amplitude;
+        let collisions = |direction, motion: Box<dyn WallMotion + Send + Sync>| {
+            checked_run(rhombus(direction, motion), end, 2.0 * amplitude, dense)
+        };
+        let sine = |share: f64, speed: f64| Sinusoidal::new(share * amplitude, speed / amplitude).unwrap();
+        let sum = Summed::new(sine(0.5, 1.0), Scaled::new(sine(0.25, 2.3), -2.0).unwrap()).unwrap();
+        let row = |k: u32| (0.5 * amplitude * f64::from(k), amplitude * libm::cos(f64::from(k * k)));
+        let table = || Tabulated::new((0..4000).map(row)).unwrap();
+        let gone = Tabulated::from_to(-amplitude, amplitude, 0.4 * end).unwrap();
+        let counts = [
+            collisions(DVec2::Y, Box::new(Delayed::new(sine(1.0, 1.0), 0.3 * end).unwrap())),
+            collisions(point(1.0, 0.3), Box::new(sum.clone())),
+            collisions(DVec2::Y, Box::new(table())),
+            collisions(point(1.0, 1.0), Box::new(Delayed::new(gone, 0.3 * end).unwrap())),
+            collisions(
+                DVec2::Y,
+                Box::new(Summed::new(Delayed::new(sum, 0.2 * end).unwrap(), table()).unwrap()),
+            ),
+        ];
+        assert!(counts.iter().all(|&count| count > 10), "{counts:?}");
+    }
+}
+
+/// A wall that begins to move meets the disks that are near it then.
+#[test]
+fn delayed_motions_are_met_at_their_start() {
+    for start in 1..40 {
+        let start = f64::from(start);
+        let motion = Delayed::new(Sinusoidal::new(1.0, 3.0).unwrap(), start).unwrap();
+        checked_run(rhombus(DVec2::Y, motion), start + 1.0, 1.0, 0.01);
+        let motion = Delayed::new(Tabulated::from_to(0.0, 1.0, 0.3).unwrap(), start).unwrap();
+        checked_run(rhombus(point(-1.0, 0.5), motion), start + 1.0, 1.0, 0.01);
     }
 }
 

@@ -2,7 +2,10 @@
 #![cfg(feature = "serde")]
 
 use granular_edmd::boundary::{Boundary, Container, Wall};
-use granular_edmd::wall::{BiParabolic, Fixed, Sawtooth, Sinusoidal, StartingAt, Triangular, WallMotion};
+use granular_edmd::wall::{
+    BiParabolic, Delayed, Fixed, Sawtooth, Scaled, Sinusoidal, StartingAt, Summed, Tabulated, Triangular,
+    WallMotion,
+};
 
 fn closed() -> Container {
     Container::closed(8.0, 6.0).unwrap()
@@ -18,18 +21,30 @@ fn goes_round(container: &Container, name: &str) {
 /// The public motions, as the source lists them.
 #[test]
 fn every_motion_goes_round() {
-    fn moving<M: WallMotion + Copy + Send + Sync + 'static>(name: &str, motion: M) -> String {
-        goes_round(&closed().with_motion(Wall::Floor, motion).unwrap(), name);
+    fn moving<M: WallMotion + Clone + Send + Sync + 'static>(name: &str, motion: M) -> String {
+        goes_round(&closed().with_motion(Wall::Floor, motion.clone()).unwrap(), name);
+        goes_round(
+            &closed()
+                .shaken_vertically(Scaled::new(motion.clone(), 0.5).unwrap())
+                .unwrap_or_else(|_| closed()),
+            name,
+        );
         let late = StartingAt::new(motion, 2.5).unwrap();
         goes_round(&closed().with_motion(Wall::Lid, late).unwrap(), name);
         name.to_owned()
     }
+    let sine = || Sinusoidal::new(0.1, 3.0).unwrap();
+    let gate = || Tabulated::new([(0.0, 0.0), (1.0, 0.3), (4.0, 0.1)]).unwrap();
     let tried = [
         moving("BiParabolic", BiParabolic::new(0.1, 3.0).unwrap()),
+        moving("Delayed", Delayed::new(Summed::new(gate(), sine()).unwrap(), 2.0).unwrap()),
         moving("Fixed", Fixed),
         moving("Sawtooth", Sawtooth::new(0.1, 3.0).unwrap()),
+        moving("Scaled", Scaled::new(Scaled::new(sine(), -1.0).unwrap(), -1.0).unwrap()),
         moving("Sinusoidal", Sinusoidal::new(0.1, 3.0).unwrap()),
         moving("StartingAt", Sinusoidal::new(0.1, 3.0).unwrap()),
+        moving("Summed", Summed::new(StartingAt::new(sine(), 0.3).unwrap(), gate()).unwrap()),
+        moving("Tabulated", gate()),
         moving("Triangular", Triangular::new(0.1, 3.0).unwrap()),
     ];
     // A motion that is public and not tried here is one that someone added.

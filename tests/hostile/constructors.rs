@@ -10,7 +10,7 @@ use granular_edmd::observable::{
     EnergyChangeProfile, Grid, HeightProfile, PairCorrelation, SampleTimes, WallStress,
 };
 use granular_edmd::statistics::Histogram;
-use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
+use granular_edmd::wall::{BiParabolic, Delayed, Fixed, Sawtooth, Scaled, Sinusoidal, Tabulated, Triangular};
 use granular_edmd::{Disk, Simulation, initial};
 
 /// Numbers that a file or a typing error may bring.
@@ -72,6 +72,8 @@ fn box_of(width: f64) -> Container {
 
 fn motions() -> Vec<Case> {
     let swings = |value: f64| positive(value) && positive(value * 9.0);
+    // A time that has a middle between itself and 0.
+    let splits = |value: f64| positive(value) && positive(0.5 * value);
     let turns = |value: f64| {
         positive(value) && positive(std::f64::consts::TAU / value) && positive(0.1 * value * value)
     };
@@ -82,6 +84,11 @@ fn motions() -> Vec<Case> {
         ("", |value| told(Sinusoidal::new(0.1, value)), turns),
         ("", |value| told(Triangular::new(value, 3.0)), swings),
         ("", |value| told(Sawtooth::new(0.1, value)), turns),
+        ("time of row 1", |value| told(Tabulated::new([(0.0, 0.0), (value, 0.0)])), splits),
+        ("displacement of row 0", |value| told(Tabulated::from_to(value, value, 1.0)), f64::is_finite),
+        ("", |value| told(Tabulated::from_to(0.0, 0.0, value)), splits),
+        ("start of a motion", |value| told(Delayed::new(Fixed, value)), f64::is_finite),
+        ("factor of a motion", |value| told(Scaled::new(Fixed, value)), f64::is_finite),
     ]
 }
 
@@ -215,6 +222,7 @@ fn systems_of_any_size_end_in_an_error_or_run() {
 
 #[test]
 fn walls_of_any_motion_end_in_an_error_or_run() {
+    let sine = Sinusoidal::new(0.1, 3.0).unwrap();
     for value in NUMBERS {
         let floors = [
             BiParabolic::new(value, 3.0).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
@@ -222,9 +230,19 @@ fn walls_of_any_motion_end_in_an_error_or_run() {
             Sinusoidal::new(value, 3.0).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
             Sinusoidal::new(0.1, value).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
             Sawtooth::new(0.1, value).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
+            Tabulated::from_to(0.0, value, 3.0).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
+            Tabulated::from_to(0.0, 0.1, value).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
+            Scaled::new(sine, value).map(|motion| box_of(8.0).with_motion(Wall::Floor, motion)),
             Thermal::new(value).map(|thermal| box_of(8.0).with_temperature(Wall::Floor, thermal)),
         ];
         floors.into_iter().flatten().for_each(|floor| runs(&floor.unwrap(), 0.1, 0.0, 1.0));
+        // Where floating-point times cannot tell the pieces of a sine apart, the container says so.
+        let Ok(late) = Delayed::new(sine, value) else { continue };
+        let floor = box_of(8.0).with_motion(Wall::Floor, late);
+        assert!(floor.is_ok() || value.abs() > 1e9, "{value}");
+        if let Ok(floor) = floor {
+            runs(&floor, 0.1, 0.0, 1.0);
+        }
     }
 }
 

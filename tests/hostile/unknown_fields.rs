@@ -19,7 +19,9 @@ use granular_edmd::simulation::Checkpoint;
 use granular_edmd::statistics::BlockedMean;
 use granular_edmd::study::vibrated_box::{Base, Measurement, Sample, VibratedBox};
 use granular_edmd::study::{Axis, Course, Outcome, Plan, Protocol, Ramp};
-use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular};
+use granular_edmd::wall::{
+    BiParabolic, Delayed, Sawtooth, Scaled, Sinusoidal, Summed, Tabulated, Triangular,
+};
 use granular_edmd::{Disk, initial};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -89,6 +91,7 @@ fn parameters_with_a_field_too_many_are_refused() {
     refuses(&Sinusoidal::new(0.1, 3.0).unwrap());
     refuses(&Triangular::new(0.1, 3.0).unwrap());
     refuses(&Sawtooth::new(0.1, 3.0).unwrap());
+    refuses(&Tabulated::new([(0.0, 0.0), (1.0, 0.3)]).unwrap());
     refuses(&Thermal::new(2.0).unwrap());
     refuses(&Maxwellian::new(1.0).unwrap().with_rotational_temperature(0.5).unwrap());
 }
@@ -114,6 +117,9 @@ fn boundaries_with_a_field_too_many_are_refused() {
     let container =
         Container::open(10.0).unwrap().shaken_sideways(BiParabolic::new(0.1, 3.0).unwrap()).unwrap();
     let container = container.with_surface_speed(Wall::Left, 0.3).unwrap();
+    let sine = Sinusoidal::new(0.1, 3.0).unwrap();
+    let combined = Summed::new(Delayed::new(sine, 2.0).unwrap(), Scaled::new(sine, 2.0).unwrap()).unwrap();
+    let container = container.with_motion(Wall::Floor, combined).unwrap();
     refuses_intruders::<Container>(&serde_json::to_value(&container).unwrap());
     for part in parts {
         refuses_intruders::<Part>(&serde_json::to_value(&part).unwrap());

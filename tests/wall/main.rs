@@ -1,6 +1,7 @@
 //! Wall motions: first touches with a disk, of which none is missed or early; the contract, which each
 //! planted fault breaks.
 
+mod combined;
 mod engine;
 mod first_touch;
 mod motions;

@@ -3,7 +3,7 @@
 use super::{Container, Wall, WallError};
 use crate::boundary::plane::Slide;
 use crate::quantity::finite;
-use crate::wall::{Motion, WallMotion};
+use crate::wall::{Motion, Scaled, WallMotion};
 
 impl Container {
     /// Returns the same container with a wall whose surface moves along itself at this speed, like a conveyor
@@ -94,10 +94,8 @@ impl Container {
     ) -> Result<Self, WallError> {
         let [first, second] = pair;
         let motion = Motion::new(motion).map_err(|violation| WallError::Motion { wall: first, violation })?;
-        if motion.jumps() {
-            return Err(WallError::Jump { wall: second });
-        }
-        for (wall, motion) in [(first, motion.clone()), (second, motion.mirrored())] {
+        let mirrored = Scaled::of(motion.clone(), -1.0).map_err(|_| WallError::Jump { wall: second })?;
+        for (wall, motion) in [(first, motion.clone()), (second, Motion::of(mirrored))] {
             if let Ok(plane) = self.plane_mut(wall) {
                 plane.set_motion(motion);
             }

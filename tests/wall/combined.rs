@@ -1,0 +1,150 @@
+//! Motions that combine: the contract, the equations of the documentation, and what constructors refuse.
+
+use granular_edmd::ParameterError;
+use granular_edmd::wall::laws::check;
+use granular_edmd::wall::{
+    BiParabolic, Delayed, Fixed, Sawtooth, Scaled, Sinusoidal, StartingAt, Summed, Tabulated, Triangular,
+    WallMotion, check_finite,
+};
+use proptest::prelude::*;
+
+fn sine(frequency: f64) -> Sinusoidal {
+    Sinusoidal::new(0.1, frequency).unwrap()
+}
+
+fn gate() -> Tabulated {
+    Tabulated::new([(0.5, 0.0), (1.0, 0.3), (1.1, 0.3), (3.0, -0.2), (3.3, -0.1), (4.0, 0.0)]).unwrap()
+}
+
+fn keeps_its_contract(motion: &impl WallMotion) {
+    for (from, to) in [(-3.0, 12.0), (0.49, 0.51), (1e4, 1e4 + 2.0)] {
+        assert_eq!(check(motion, from, to), Ok(()), "from {from} to {to}");
+    }
+    assert_eq!(check_finite(motion), Ok(()));
+}
+
+#[test]
+fn all_keep_the_contract() {
+    let arcs = BiParabolic::new(0.1, 7.0).unwrap();
+    let saw = Sawtooth::new(0.1, 3.0).unwrap();
+    for start in [-2.7, 0.0, 0.3, 5.0] {
+        keeps_its_contract(&Delayed::new(sine(10.0), start).unwrap());
+        keeps_its_contract(&Delayed::new(arcs, start).unwrap());
+        keeps_its_contract(&Delayed::new(saw, start).unwrap());
+        keeps_its_contract(&Delayed::new(gate(), start).unwrap());
+        keeps_its_contract(&StartingAt::new(gate(), start).unwrap());
+        keeps_its_contract(&StartingAt::new(saw, start).unwrap());
+    }
+    for factor in [-1.0, 0.0, 1e-3, 2.5] {
+        keeps_its_contract(&Scaled::new(sine(10.0), factor).unwrap());
+        keeps_its_contract(&Scaled::new(Triangular::new(0.1, 3.0).unwrap(), factor).unwrap());
+        keeps_its_contract(&Scaled::new(gate(), factor).unwrap());
+    }
+    keeps_its_contract(&Summed::new(sine(10.0), sine(20.0)).unwrap());
+    keeps_its_contract(&Summed::new(sine(10.0), sine(7.3)).unwrap());
+    keeps_its_contract(&Summed::new(arcs, saw).unwrap());
+    keeps_its_contract(&Summed::new(Delayed::new(arcs, 1.0).unwrap(), gate()).unwrap());
+    keeps_its_contract(&gate());
+    keeps_its_contract(&Tabulated::from_to(-1.0, 2.0, 0.3).unwrap());
+    keeps_its_contract(&Tabulated::from_to(0.5, 0.5, 0.3).unwrap());
+}
+
+#[test]
+fn a_sum_has_the_longer_period_if_the_shorter_one_divides_it() {
+    let of = |motion: &dyn WallMotion| motion.period();
+    let long = of(&sine(10.0));
+    assert_eq!(of(&Summed::new(sine(10.0), sine(40.0)).unwrap()), long);
+    assert_eq!(of(&Summed::new(sine(10.0), sine(10.0)).unwrap()), long);
+    assert_eq!(of(&Summed::new(Fixed, sine(10.0)).unwrap()), long);
+    assert_eq!(of(&Summed::new(sine(10.0), sine(7.3)).unwrap()), None);
+    assert_eq!(of(&Summed::new(sine(10.0), gate()).unwrap()), None);
+    assert_eq!(of(&Summed::new(Fixed, Fixed).unwrap()), None);
+}
+
+/// A delayed wall rests at the place at which its motion begins, at phase 0.
+#[test]
+fn a_delayed_wall_rests_where_it_begins() {
+    let shifted = Tabulated::new([(-1.0, 0.0), (1.0, 1.0)]).unwrap();
+    let late = Delayed::new(shifted, 4.0).unwrap();
+    for (time, displacement, velocity) in
+        [(-9.0, 0.5, 0.0), (3.999, 0.5, 0.0), (4.0, 0.5, 1.0), (5.0, 1.0, 0.0)]
+    {
+        let state = late.state(time);
+        assert_eq!((state.displacement, state.velocity), (displacement, velocity), "{time}");
+    }
+}
+
+/// A table of a smooth rise follows it to second order in the distance of rows, and a rest stays a rest.
+#[test]
+fn a_table_follows_what_it_was_made_of() {
+    let errors = [8, 16, 32, 64].map(|rows: u32| {
+        let row = |k: u32| f64::from(k) / f64::from(rows);
+        let table = Tabulated::new((0..=rows).map(|k| (row(k), libm::exp(row(k))))).unwrap();
+        let error = |k: u32| {
+            (table.state(0.3 + 1e-3 * f64::from(k)).velocity - libm::exp(0.3 + 1e-3 * f64::from(k))).abs()
+        };
+        (0..400).map(error).fold(0.0, f64::max)
+    });
+    assert!(errors.windows(2).all(|pair| pair[1] < 0.3 * pair[0]), "{errors:?}");
+    for time in [0.0, 0.5, 1.0, 1.04, 1.1, 4.0, 9.0] {
+        assert_eq!(gate().state(time).velocity, 0.0, "{time}");
+    }
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_name() {
+    let told = |result: Result<(), ParameterError>| result.unwrap_err().to_string();
+    let table = |rows: &[(f64, f64)]| told(Tabulated::new(rows.iter().copied()).map(drop));
+    assert_eq!(table(&[]), "number of rows must be at least 2, but is 0");
+    assert_eq!(table(&[(1.0, 2.0)]), "number of rows must be at least 2, but is 1");
+    assert_eq!(table(&[(0.0, 0.0), (f64::NAN, 1.0)]), "time of row 1 must be finite, but is NaN");
+    assert_eq!(
+        table(&[(0.0, f64::INFINITY), (1.0, 1.0)]),
+        "displacement of row 0 must be finite, but is inf"
+    );
+    let late = "time of row 1 must be later than 3 by more than rounding, but is ";
+    assert_eq!(table(&[(3.0, 0.0), (2.0, 1.0)]), format!("{late}2"));
+    assert_eq!(table(&[(3.0, 0.0), (3.0, 1.0)]), format!("{late}3"));
+    assert!(table(&[(3.0, 0.0), (3f64.next_up(), 1.0)]).starts_with(late));
+    let fast = "acceleration before row 1 must be finite, but is ";
+    assert!(table(&[(0.0, 0.0), (1e-200, 1.0)]).starts_with(fast));
+    assert!(table(&[(0.0, -1e308), (1.0, 1e308)]).starts_with(fast));
+    assert_eq!(
+        told(Tabulated::from_to(0.0, 1.0, 0.0).map(drop)),
+        "duration must be finite and positive, but is 0"
+    );
+    let saw = Sawtooth::new(0.1, 3.0).unwrap();
+    assert_eq!(
+        told(Scaled::new(saw, -2.0).map(drop)),
+        "factor of a motion that jumps must be not negative, but is -2"
+    );
+    assert_eq!(told(Scaled::new(Fixed, f64::NAN).map(drop)), "factor of a motion must be finite, but is NaN");
+    let far = || Tabulated::from_to(0.0, 1e300, 1e9).unwrap();
+    let largest = |what: &str| format!("largest displacement of a {what} must be finite, but is inf");
+    assert_eq!(told(Scaled::new(far(), 1e9).map(drop)), largest("scaled motion"));
+    let huge = || Scaled::new(far(), 1e8).unwrap();
+    assert_eq!(told(Summed::new(huge(), huge()).map(drop)), largest("sum"));
+    assert_eq!(
+        told(Delayed::new(Fixed, f64::INFINITY).map(drop)),
+        "start of a motion must be finite, but is inf"
+    );
+}
+
+proptest! {
+    /// Any table keeps the contract, passes through its rows, and never turns between two of them.
+    #[test]
+    fn any_table_keeps_the_contract(steps in prop::collection::vec((1e-3..2.0f64, -1.0..1.0f64), 2..12)) {
+        let mut time = -2.0;
+        let rows: Vec<(f64, f64)> = steps.iter().map(|&(wait, place)| { time += wait; (time, place) }).collect();
+        let table = Tabulated::new(rows.iter().copied()).unwrap();
+        prop_assert_eq!(check(&table, -3.0, time + 1.0), Ok(()));
+        for pair in rows.windows(2) {
+            let ((from, low), (to, high)) = (pair[0], pair[1]);
+            prop_assert_eq!(table.state(from).displacement, low);
+            for k in 0..=50 {
+                let velocity = table.state(from + 0.02 * f64::from(k) * (to - from)).velocity;
+                prop_assert!(velocity * (high - low) >= -1e-12 * velocity.abs(), "{velocity} at {k}");
+            }
+        }
+    }
+}
