@@ -15,10 +15,13 @@ pub(crate) const TOUCHING: f64 = 1e-10;
 /// Largest number of disks in a simulation.
 pub(crate) const MOST_DISKS: usize = 1 << 28;
 
+/// Largest id that a caller may give. All whole numbers up to it are floating-point numbers.
+const LARGEST_ID: u64 = 1 << 53;
+
 /// Largest magnitude of a component of a position or velocity, and of an angular velocity.
 pub(crate) const LARGEST: f64 = 1e60;
 
-/// A rotating hard disk: position, velocity, angle, angular velocity, radius, mass, inertia factor and kind.
+/// A rotating hard disk: position, velocity, angle, angular velocity, radius, mass, inertia factor, kind and id.
 ///
 /// The moment of inertia is $`I = \beta m R^2`$, where $`\beta = 1/2`$ unless another factor is given.
 /// Lengths, times and masses are in any consistent units; the paper takes the diameter and the mass of a disk
@@ -47,6 +50,7 @@ pub struct Disk {
     inertia_factor: f64,
     kind: Kind,
     image: [i32; 2],
+    id: u64,
 }
 
 impl Disk {
@@ -69,6 +73,7 @@ impl Disk {
             inertia_factor: Self::HOMOGENEOUS_INERTIA_FACTOR,
             kind: Kind::DEFAULT,
             image: [0; 2],
+            id: 0,
         })
     }
 
@@ -133,6 +138,18 @@ impl Disk {
         Self { image, ..self }
     }
 
+    /// Returns the same disk with this id, by which it is known as long as it exists.
+    ///
+    /// A simulation gives ids from 1 on to the disks that have none, so few programs call this. The id 0
+    /// stands for none.
+    ///
+    /// # Errors
+    /// If it is above 2^53. Ids stay exact in programs that read tables as floating-point numbers.
+    pub fn with_id(self, id: u64) -> Result<Self, ParameterError> {
+        accept(id <= LARGEST_ID, "id of a disk", "at most 2^53", id as f64)?;
+        Ok(Self { id, ..self })
+    }
+
     /// Returns the position of the center.
     pub const fn position(&self) -> DVec2 {
         self.position
@@ -184,6 +201,27 @@ impl Disk {
         self.image
     }
 
+    /// Returns the id, by which the disk is known as long as it exists; 0 before a simulation has given one.
+    ///
+    /// Unlike the index, it stays the same when other disks are removed. Checkpoints and files keep it, and a
+    /// run never gives the id of a disk that was removed to another one.
+    ///
+    /// ```
+    /// use granular_edmd::prelude::*;
+    ///
+    /// let disk = |x: f64| Disk::new(DVec2::new(x, 1.0), 0.5);
+    /// let disks = [disk(1.0)?, disk(3.0)?, disk(5.0)?];
+    /// let mut run = Simulation::builder(Elastic, Container::open(8.0)?).disks(disks).build()?;
+    /// let removed = run.remove(|_, disk| disk.id() == 2)?;
+    /// assert_eq!((removed[0].id(), run.disks()[1].id(), run.index_of(3)), (2, 3, Some(1)));
+    /// run.insert([disk(3.0)?])?;
+    /// assert_eq!(run.disks()[2].id(), 4);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub const fn id(&self) -> u64 {
+        self.id
+    }
+
     /// Returns the moment of inertia about the center, I = β m R².
     pub fn moment_of_inertia(&self) -> f64 {
         self.inertia_factor * self.mass * self.radius * self.radius
@@ -203,8 +241,13 @@ impl Disk {
     #[inline]
     pub(crate) const fn at_rest(radius: f64, mass: f64, inertia_factor: f64, kind: Kind) -> Self {
         let (position, velocity) = (DVec2::ZERO, DVec2::ZERO);
-        let (angle, angular_velocity, image) = (0.0, 0.0, [0; 2]);
-        Self { position, velocity, angle, angular_velocity, radius, mass, inertia_factor, kind, image }
+        let (angle, angular_velocity, image, id) = (0.0, 0.0, [0; 2], 0);
+        Self { position, velocity, angle, angular_velocity, radius, mass, inertia_factor, kind, image, id }
+    }
+
+    /// Returns the disk with the id that the engine gave it.
+    pub(crate) const fn identified(self, id: u64) -> Self {
+        Self { id, ..self }
     }
 
     /// Returns the disk with the motion that the engine computed for it. The engine has its own checks, so
@@ -233,15 +276,22 @@ fn bounded_vector(name: &'static str, vector: DVec2) -> Result<DVec2, ParameterE
     Ok(DVec2::new(bounded(name, vector.x)?, bounded(name, vector.y)?))
 }
 
+/// Returns the disks with their ids, or with 1, 2, 3, … if some have none, since no simulation made them.
+pub(crate) fn numbered(disks: &[Disk]) -> impl Iterator<Item = (u64, &Disk)> {
+    let are_known = disks.iter().all(|disk| disk.id() != 0);
+    disks.iter().zip(1_u64..).map(move |(disk, number)| (if are_known { disk.id() } else { number }, disk))
+}
+
 crate::gate::from_file! {
     Disk {
         position: DVec2, velocity: DVec2, angle: f64, angular_velocity: f64, radius: f64, mass: f64,
-        inertia_factor: f64, #[serde(default)] kind: Kind, #[serde(default)] image: [i32; 2]
+        inertia_factor: f64, #[serde(default)] kind: Kind, #[serde(default)] image: [i32; 2],
+        #[serde(default)] id: u64
      } => Self::new(position, radius)?
             .with_velocity(velocity)?
             .with_angle(angle)?
             .with_angular_velocity(angular_velocity)?
             .with_mass(mass)?
             .with_inertia_factor(inertia_factor)
-            .map(|disk| disk.with_kind(kind).with_image(image))
+            .and_then(|disk| disk.with_kind(kind).with_image(image).with_id(id))
 }

@@ -117,6 +117,7 @@ mod mean_squared_displacement;
 mod moment;
 mod order_parameters;
 mod pair_correlation;
+mod per_disk;
 mod sample_times;
 mod sampled;
 mod series;
@@ -161,6 +162,7 @@ pub use moment::Moment;
 pub use order_parameters::{ConvectionOrder, OrderParameters};
 #[doc(alias("pair correlation", "radial distribution", "RDF", "structure"))]
 pub use pair_correlation::PairCorrelation;
+pub use per_disk::PerDisk;
 pub use sample_times::SampleTimes;
 pub use sampled::{Accumulator, Sampled};
 pub use series::Series;

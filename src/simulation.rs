@@ -186,6 +186,13 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         (disk < self.len()).then(|| self.bodies.disk(disk, self.clock.now))
     }
 
+    /// Returns the index of the disk with this [id](Disk::id), if there is one.
+    ///
+    /// This looks at all disks.
+    pub fn index_of(&self, id: u64) -> Option<usize> {
+        (0..self.len()).find(|&disk| self.bodies.id(disk) == id)
+    }
+
     /// Returns all disks as they are now.
     pub fn disks(&self) -> Vec<Disk> {
         self.bodies.disks(self.clock.now)

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::{Moment, SampleTimes};
+use super::SampleTimes;
 use crate::ParameterError;
 use crate::quantity::accept;
 use crate::statistics::{BlockedMean, Estimate};
@@ -44,14 +44,6 @@ impl<V> Lags<V> {
     /// Returns the longest lag, as a number of intervals.
     pub(super) const fn longest(&self) -> usize {
         self.means.len() - 1
-    }
-
-    /// Begins a run. Where disks have new indices, samples from before are no origins of theirs.
-    pub(super) fn start(&mut self, moment: &Moment) {
-        self.sample_times.start_at(moment.time());
-        if moment.is_renumbered() {
-            self.forget_samples();
-        }
     }
 
     /// Adds a sample and its pairs with the earlier ones. It leaves out pairs whose value is NaN.

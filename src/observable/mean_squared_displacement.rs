@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::lags::Lags;
 use super::table::{Table, headings, row};
-use super::{Heading, Moment, Observer, SampleTimes, Snapshot};
+use super::{Heading, Moment, Observer, PerDisk, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::statistics::{BlockedMean, Estimate};
 
@@ -12,9 +12,9 @@ use crate::statistics::{BlockedMean, Estimate};
 /// self-diffusion.
 ///
 /// Every sample is a time origin, and the lags are whole numbers of intervals. Positions are unwrapped at
-/// periodic sides and ends. A drift of all disks counts as displacement. The disks must stay the same while
-/// they are followed: if some are removed, their number or the periods of the domain change, or time jumps,
-/// the observer begins with new origins. The errors come from blocks of origins.
+/// periodic sides and ends. A drift of all disks counts as displacement. Each lag takes the disks that
+/// are there at both of its ends. If the periods of the domain change, or time jumps, the observer begins
+/// with new origins. The errors come from blocks of origins.
 ///
 /// A sample costs time and memory in proportion to the number of disks and of lags.
 ///
@@ -38,7 +38,7 @@ use crate::statistics::{BlockedMean, Estimate};
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct MeanSquaredDisplacement {
-    lags: Lags<Vec<DVec2>>,
+    lags: Lags<PerDisk<DVec2>>,
     periods: DVec2,
     /// Slopes of the mean squared displacement over the second half of the lags, divided by four.
     diffusion: BlockedMean,
@@ -88,19 +88,14 @@ impl MeanSquaredDisplacement {
     }
 }
 
-/// Returns the mean squared distance between two lists of places; NaN if they are empty or of different
-/// lengths.
-fn squared_displacement(from: &[DVec2], to: &[DVec2]) -> f64 {
-    if from.len() != to.len() {
-        return f64::NAN;
-    }
-    let squares = from.iter().zip(to).map(|(from, to)| from.distance_squared(*to));
-    squares.sum::<f64>() / to.len() as f64
+/// Returns the mean squared distance between two places of each disk.
+fn squared_displacement(from: &PerDisk<DVec2>, to: &PerDisk<DVec2>) -> f64 {
+    from.mean_with(to, |from, to| from.distance_squared(*to))
 }
 
 impl Observer for MeanSquaredDisplacement {
     fn on_start(&mut self, moment: &Moment) {
-        self.lags.start(moment);
+        self.lags.sample_times.start_at(moment.time());
     }
 
     fn next_sample(&self) -> f64 {
@@ -109,13 +104,12 @@ impl Observer for MeanSquaredDisplacement {
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         let domain = snapshot.domain();
-        let places: Vec<DVec2> = snapshot.disks().iter().map(|disk| domain.unwrapped(disk)).collect();
-        let same_number = self.lags.before(0).is_none_or(|before| before.len() == places.len());
-        if !same_number || self.periods != domain.periods() {
+        let places = PerDisk::of(snapshot.disks(), |disk| domain.unwrapped(disk));
+        if self.periods != domain.periods() {
             self.periods = domain.periods();
             self.lags.forget_samples();
         }
-        self.lags.push(snapshot.time(), places, |from, to| squared_displacement(from, to));
+        self.lags.push(snapshot.time(), places, squared_displacement);
         if let Some(slope) = self.slope().filter(|slope| !slope.is_nan()) {
             self.diffusion.push(0.25 * slope);
         }

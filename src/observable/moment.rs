@@ -21,7 +21,6 @@ pub struct Moment {
     wall_count: usize,
     domain: Domain,
     gravity: f64,
-    is_renumbered: bool,
 }
 
 impl Moment {
@@ -29,20 +28,7 @@ impl Moment {
     ///
     /// The engine creates moments, and tests may do so.
     pub const fn new(time: f64, disk_count: usize, wall_count: usize, domain: Domain, gravity: f64) -> Self {
-        Self { time, disk_count, wall_count, domain, gravity, is_renumbered: false }
-    }
-
-    /// Returns the same moment, at the start of a run before which disks were removed.
-    pub const fn renumbered(self) -> Self {
-        Self { is_renumbered: true, ..self }
-    }
-
-    /// Returns whether disks were removed since the last run, so that the others have new indices.
-    ///
-    /// An observer that follows disks by their indices begins anew then. A checkpoint does not hold this:
-    /// begin anew by hand if one is taken between the removal and the next run.
-    pub const fn is_renumbered(&self) -> bool {
-        self.is_renumbered
+        Self { time, disk_count, wall_count, domain, gravity }
     }
 
     /// Returns the absolute time.

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::lags::Lags;
 use super::table::{Table, headings, row};
-use super::{Heading, Moment, Observable, Observer, SampleTimes, Snapshot};
+use super::{Heading, Moment, Observable, Observer, PerDisk, SampleTimes, Snapshot};
 use crate::ParameterError;
 use crate::statistics::Estimate;
 
@@ -37,7 +37,7 @@ impl InnerProduct for DVec2 {
 }
 
 /// The product is the mean of the products of entries at the same place. It is NaN if the lists are empty or
-/// of different lengths.
+/// of different lengths. For values of disks, take [`PerDisk`], which follows each of them.
 impl<T: InnerProduct> InnerProduct for Vec<T> {
     fn inner_product(&self, other: &Self) -> f64 {
         if self.len() != other.len() {
@@ -48,7 +48,14 @@ impl<T: InnerProduct> InnerProduct for Vec<T> {
     }
 }
 
-/// The velocities of all disks, in their order.
+/// The product is the mean of the products of the two values of a disk, over the disks that are in both.
+impl<T: InnerProduct> InnerProduct for PerDisk<T> {
+    fn inner_product(&self, other: &Self) -> f64 {
+        self.mean_with(other, T::inner_product)
+    }
+}
+
+/// The velocity of each disk.
 ///
 /// Their [`TimeCorrelation`] is the velocity autocorrelation function.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -56,10 +63,10 @@ impl<T: InnerProduct> InnerProduct for Vec<T> {
 pub struct Velocities;
 
 impl Observable for Velocities {
-    type Value = Vec<DVec2>;
+    type Value = PerDisk<DVec2>;
 
-    fn measure(&self, snapshot: &Snapshot<'_>) -> Vec<DVec2> {
-        snapshot.disks().iter().map(crate::Disk::velocity).collect()
+    fn measure(&self, snapshot: &Snapshot<'_>) -> PerDisk<DVec2> {
+        PerDisk::of(snapshot.disks(), crate::Disk::velocity)
     }
 }
 
@@ -72,8 +79,8 @@ impl Observable for Velocities {
 /// Every sample is a time origin, and the lags are whole numbers of intervals. The product is that of
 /// [`InnerProduct`]: the dot product of vectors, and the mean over the entries of lists. No mean is
 /// subtracted. For fluctuations, subtract the mean in the observable if it is known, or use
-/// [`autocorrelation`](crate::statistics::autocorrelation) of a series. After a gap in time, or after disks
-/// were removed, the observer begins with new origins. Pairs without a product, such as lists of different
+/// [`autocorrelation`](crate::statistics::autocorrelation) of a series. After a gap in time, the observer begins
+/// with new origins. Pairs without a product, such as lists of different
 /// lengths, are left out. The errors come from blocks of origins.
 ///
 /// A sample costs time and memory in proportion to the number of lags.
@@ -135,7 +142,7 @@ impl<Q: Observable> TimeCorrelation<Q> {
 
 impl<Q: Observable<Value: InnerProduct>> Observer for TimeCorrelation<Q> {
     fn on_start(&mut self, moment: &Moment) {
-        self.lags.start(moment);
+        self.lags.sample_times.start_at(moment.time());
     }
 
     fn next_sample(&self) -> f64 {

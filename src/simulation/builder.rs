@@ -154,6 +154,7 @@ pub(super) fn fit<B: Boundary + ?Sized>(
     offset: f64,
 ) -> Result<(usize, Cells), BuildError> {
     let wall_count = count_walls(boundary)?;
+    check_ids(disks)?;
     check_inside(boundary, disks, offset)?;
     let cells = cells_around(boundary, disks)?;
     check_overlaps(boundary, disks, &cells)?;
@@ -170,6 +171,16 @@ pub(super) fn check_speeds(disks: &[Disk]) -> Result<(), ParameterError> {
     let mut speeds = disks.iter().map(|disk| disk.velocity().abs().max_element());
     let slow = speeds.find(|&speed| speed > 0.0 && speed < SLOWEST);
     slow.map_or(Ok(()), |speed| Err(ParameterError::new("speed of a disk", "0 or at least 1e-100", speed)))
+}
+
+/// Checks that no two disks have the same id.
+fn check_ids(disks: &[Disk]) -> Result<(), BuildError> {
+    let numbered = disks.iter().enumerate().filter(|(_, disk)| disk.id() != 0);
+    let mut ids: Vec<(u64, usize)> = numbered.map(|(index, disk)| (disk.id(), index)).collect();
+    ids.sort_unstable();
+    let twice = ids.windows(2).find(|pair| pair[0].0 == pair[1].0);
+    twice
+        .map_or(Ok(()), |pair| Err(BuildError::SameId { id: pair[0].0, first: pair[0].1, second: pair[1].1 }))
 }
 
 /// Checks that times at this offset are not too coarse, so that time cannot stand still.

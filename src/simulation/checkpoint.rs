@@ -20,7 +20,7 @@ pub use resumption::Resumption;
 use super::Simulation;
 use super::cells::{Layouts, Place};
 use super::events::Counters;
-use super::state::{Forecast, Guard, Spin, Tally, Trajectory};
+use super::state::{Forecast, Guard, Identities, Spin, Tally, Trajectory};
 use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
 use crate::file::{Broken, Seal, write_whole};
@@ -28,7 +28,7 @@ use crate::scheduler::EventScheduler;
 use crate::{Disk, Fingerprint};
 
 /// The mark of a checkpoint, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 5 };
+const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 6 };
 
 /// Everything on which the future of a run depends, except its rule and its boundary.
 ///
@@ -77,6 +77,7 @@ struct Saved {
     spins: Vec<Spin>,
     /// Numbers of periods that each disk has passed; empty if none has passed any.
     images: Vec<[i32; 2]>,
+    identities: Identities,
     forecasts: Vec<Forecast>,
     layouts: Layouts,
     places: Vec<Place>,
@@ -287,6 +288,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             trajectories: particles.iter().map(|particle| particle.trajectory).collect(),
             spins: self.bodies.spins.clone(),
             images: self.bodies.images().to_vec(),
+            identities: self.bodies.identities.clone(),
             forecasts: particles.iter().map(|particle| particle.forecast).collect(),
             layouts: self.cells.layouts(),
             places: self.cells.places.clone(),

@@ -19,10 +19,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     ///
     /// All events are predicted anew. The run then has the same bits under every scheduler, and also if it is
     /// resumed from a checkpoint taken before or after. The counters keep counting. The new disks have
-    /// collided with nothing yet, and may be of any size and kind.
+    /// collided with nothing yet, and may be of any size and kind. A disk that was removed keeps its
+    /// [id](Disk::id); one without gets a new one.
     ///
     /// # Errors
-    /// If a disk is outside, overlaps a wall or overlaps another disk; the error names its index. If there
+    /// If a disk is outside, overlaps a wall or overlaps another disk, or has the id of another; the error
+    /// names its index. If there
     /// would be too many disks, the domain is too small for a disk, or a disk is so fast that times as late
     /// as the present are too coarse. The simulation then stays as it was.
     ///
@@ -64,9 +66,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Removes the disks that `chosen` selects by their index and state, and returns them in their order.
     ///
     /// The other disks stay in their order: the index of each becomes smaller by the number of disks removed
-    /// before it. An observer that identifies disks by their index must begin anew, as
-    /// [`Moment::is_renumbered`](crate::observable::Moment::is_renumbered) tells it. For the bits, see
-    /// [`insert`](Self::insert).
+    /// before it. Their [ids](Disk::id) stay. For the bits, see [`insert`](Self::insert).
     ///
     /// # Errors
     /// If the boundary's domain cannot hold the other disks any more, which happens only if the boundary

@@ -63,9 +63,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let watch = Watch::new(limits, &self.counters);
         let (events, start) = (self.counters.events(), self.time());
         self.clock.events_to_look = 1;
-        let start_of_run = self.moment();
-        let is_renumbered = std::mem::take(&mut self.bodies.is_renumbered);
-        observer.on_start(&if is_renumbered { start_of_run.renumbered() } else { start_of_run });
+        observer.on_start(&self.moment());
         let ended = match self.verdict_of(observer) {
             Ok(ControlFlow::Continue(())) => self.instructions.run(
                 #[inline(always)]

@@ -4,6 +4,7 @@ mod bodies;
 mod clock;
 mod forecast;
 mod guard;
+mod identities;
 mod pace;
 mod population;
 mod properties;
@@ -16,4 +17,6 @@ pub(super) use forecast::{Earliest, Exit, Forecast};
 #[cfg(feature = "serde")]
 pub(super) use guard::Guard;
 pub(super) use guard::{Standstill, effort, least_progress};
+#[cfg(feature = "serde")]
+pub(super) use identities::Identities;
 pub(super) use pace::FARTHEST;

@@ -6,6 +6,7 @@ use super::entry::{Columns, Entry, Field};
 use super::errors::ReadError;
 use super::lines::Lines;
 use super::state::State;
+use crate::disk::numbered;
 
 impl State {
     /// Reads disks from a table of comma-separated values.
@@ -44,7 +45,7 @@ impl State {
     /// If the writer fails.
     pub fn write_csv(&self, mut out: impl Write) -> io::Result<()> {
         writeln!(out, "{}", Field::NAMED.map(|(name, _)| name).join(","))?;
-        for (disk, id) in self.disks.iter().zip(1_usize..) {
+        for (id, disk) in numbered(&self.disks) {
             let (position, velocity, [right, up]) = (disk.position(), disk.velocity(), disk.image());
             write!(out, "{id},{},{:?},{:?},", disk.kind().number(), position.x, position.y)?;
             write!(out, "{:?},{:?},{:?},", velocity.x, velocity.y, disk.angle())?;

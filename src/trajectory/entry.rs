@@ -169,7 +169,8 @@ impl Draft {
             .with_angle(self.angle)?
             .with_angular_velocity(self.angular_velocity)?
             .with_mass(self.mass)?
-            .with_inertia_factor(self.inertia_factor)?;
+            .with_inertia_factor(self.inertia_factor)?
+            .with_id(self.id.unwrap_or(0))?;
         Ok(disk.with_kind(self.kind).with_image(self.image))
     }
 }

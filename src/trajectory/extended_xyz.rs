@@ -10,6 +10,7 @@ use std::io::{self, BufRead, Write};
 use super::format::{Format, Frame, no_frame, skip_lines, whole_line};
 use crate::Disk;
 use crate::boundary::Domain;
+use crate::disk::numbered;
 
 /// The extended XYZ format: a number of disks, a line of keys, and a line for each disk.
 ///
@@ -41,7 +42,7 @@ use crate::boundary::Domain;
 /// let mut text = Vec::new();
 /// ExtendedXyz.write_frame(&Frame::new(0, snapshot), &mut text)?;
 /// let state = State::from_xyz(text.as_slice())?;
-/// assert_eq!((state.disks(), state.time()), (disks.as_slice(), Some(12.5)));
+/// assert_eq!((state.disks(), state.time()), ([disks[0].with_id(1)?].as_slice(), Some(12.5)));
 /// assert_eq!(state.domain(), Some(snapshot.domain()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -65,7 +66,7 @@ impl Format for ExtendedXyz {
         write!(out, "pbc=\"{} {} F\" ", letter(domain.periodic_sides), letter(domain.periodic_ends))?;
         write!(out, "Properties={PROPERTIES} Time={:?} Gravity={:?} ", snapshot.time(), snapshot.gravity())?;
         writeln!(out, "Domain=\"{left:?} {right:?} {bottom:?} {top:?}\"")?;
-        disks.iter().zip(1_usize..).try_for_each(|(disk, id)| write_disk(out, id, disk, &domain))
+        numbered(disks).try_for_each(|(id, disk)| write_disk(out, id, disk, &domain))
     }
 
     fn skip_frame(&self, input: &mut dyn BufRead) -> io::Result<Option<f64>> {
@@ -77,7 +78,7 @@ impl Format for ExtendedXyz {
     }
 }
 
-fn write_disk(out: &mut dyn Write, id: usize, disk: &Disk, domain: &Domain) -> io::Result<()> {
+fn write_disk(out: &mut dyn Write, id: u64, disk: &Disk, domain: &Domain) -> io::Result<()> {
     let (position, velocity, unwrapped) = (disk.position(), disk.velocity(), domain.unwrapped(disk));
     let [right, up] = disk.image();
     writeln!(

@@ -9,6 +9,7 @@ use std::io::{self, Write};
 use super::extended_xyz::{shown_depth, shown_top};
 use super::format::{Format, Frame};
 use crate::Disk;
+use crate::disk::numbered;
 use crate::observable::Snapshot;
 
 /// The format of a frame, as the bytes of its chunks, one after another. It stays inside this module, since
@@ -39,7 +40,7 @@ const F64: u8 = 10;
 const NAME: usize = 6;
 
 /// The chunks of each frame in their order: name, type, numbers in a row, rows.
-const CHUNKS: [(&str, u8, u32, Rows); 17] = [
+const CHUNKS: [(&str, u8, u32, Rows); 18] = [
     ("configuration/step", U64, 1, Rows::One),
     ("configuration/dimensions", U8, 1, Rows::One),
     ("configuration/box", F32, 1, Rows::Six),
@@ -54,6 +55,7 @@ const CHUNKS: [(&str, u8, u32, Rows); 17] = [
     ("particles/velocity", F32, 3, Rows::Disks),
     ("particles/angmom", F32, 4, Rows::Disks),
     ("particles/image", I32, 3, Rows::Disks),
+    ("log/particles/id", U64, 1, Rows::Disks),
     ("log/time", F64, 1, Rows::One),
     ("log/gravity", F64, 1, Rows::One),
     ("log/center", F64, 2, Rows::One),
@@ -115,6 +117,7 @@ impl Format for HoomdSchema {
         for [right, up] in disks.iter().map(Disk::image) {
             [right, up, 0].iter().try_for_each(|image| out.write_all(&image.to_le_bytes()))?;
         }
+        numbered(disks).try_for_each(|(id, _)| out.write_all(&id.to_le_bytes()))?;
         let log = [snapshot.time(), snapshot.gravity(), center[0], center[1]];
         log.iter().try_for_each(|number| out.write_all(&number.to_le_bytes()))
     }

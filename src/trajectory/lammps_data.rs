@@ -10,6 +10,7 @@ use super::extended_xyz::{shown_depth, shown_top};
 use super::state::State;
 use crate::Disk;
 use crate::boundary::Domain;
+use crate::disk::numbered;
 
 /// Words in the title that tell the files of this crate from others.
 const WRITER: &str = "written by granular-edmd";
@@ -40,22 +41,22 @@ impl State {
         writeln!(out, "{:?} {half:?} zlo zhi", -half)?;
         if !disks.is_empty() {
             writeln!(out, "\nAtoms # sphere\n")?;
-            disks.iter().zip(1_usize..).try_for_each(|(disk, id)| write_atom(&mut out, id, disk))?;
+            numbered(disks).try_for_each(|(id, disk)| write_atom(&mut out, id, disk))?;
             writeln!(out, "\nVelocities\n")?;
-            disks.iter().zip(1_usize..).try_for_each(|(disk, id)| write_velocity(&mut out, id, disk))?;
+            numbered(disks).try_for_each(|(id, disk)| write_velocity(&mut out, id, disk))?;
         }
         out.flush()
     }
 }
 
-fn write_atom(out: &mut impl Write, id: usize, disk: &Disk) -> io::Result<()> {
+fn write_atom(out: &mut impl Write, id: u64, disk: &Disk) -> io::Result<()> {
     let (position, [right, up]) = (disk.position(), disk.image());
     let (kind, diameter) = (u32::from(disk.kind().number()) + 1, 2.0 * disk.radius());
     let density = density(disk.mass(), disk.radius());
     writeln!(out, "{id} {kind} {diameter:?} {density:?} {:?} {:?} 0.0 {right} {up} 0", position.x, position.y)
 }
 
-fn write_velocity(out: &mut impl Write, id: usize, disk: &Disk) -> io::Result<()> {
+fn write_velocity(out: &mut impl Write, id: u64, disk: &Disk) -> io::Result<()> {
     let (velocity, turning) = (disk.velocity(), disk.angular_velocity());
     writeln!(out, "{id} {:?} {:?} 0.0 0.0 0.0 {turning:?}", velocity.x, velocity.y)
 }

@@ -6,6 +6,7 @@ use super::extended_xyz::{shown_depth, shown_top};
 use super::format::{Format, Frame, no_frame, skip_lines, whole_line};
 use crate::Disk;
 use crate::boundary::Domain;
+use crate::disk::numbered;
 
 /// The dump format of LAMMPS, as `dump custom` writes it with `units yes time yes`.
 ///
@@ -56,7 +57,7 @@ impl Format for LammpsDump {
         writeln!(out, "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}", frame.number(), disks.len())?;
         writeln!(out, "ITEM: BOX BOUNDS {sides} {ends} pp\n{:?} {:?}", domain.left, domain.right)?;
         writeln!(out, "{:?} {top:?}\n{:?} {half:?}\n{COLUMNS}", domain.bottom, -half)?;
-        disks.iter().zip(1_usize..).try_for_each(|(disk, id)| write_disk(out, id, disk, &domain))
+        numbered(disks).try_for_each(|(id, disk)| write_disk(out, id, disk, &domain))
     }
 
     fn skip_frame(&self, input: &mut dyn BufRead) -> io::Result<Option<f64>> {
@@ -89,7 +90,7 @@ fn after(name: &str, line: &str, input: &mut dyn BufRead) -> io::Result<Option<S
     if line.starts_with(name) { whole_line(input) } else { Err(no_frame(&format!("`{name}`"), line)) }
 }
 
-fn write_disk(out: &mut dyn Write, id: usize, disk: &Disk, domain: &Domain) -> io::Result<()> {
+fn write_disk(out: &mut dyn Write, id: u64, disk: &Disk, domain: &Domain) -> io::Result<()> {
     let (position, velocity, unwrapped) = (disk.position(), disk.velocity(), domain.unwrapped(disk));
     let [right, up] = disk.image();
     writeln!(

@@ -15,6 +15,7 @@ use super::format::{Format, Frame};
 use super::state::State;
 use crate::Disk;
 use crate::boundary::Domain;
+use crate::disk::numbered;
 use crate::observable::Snapshot;
 
 /// The format of a file that holds one frame. It stays inside this module, since a recorder of one file would
@@ -61,7 +62,7 @@ fn write_disks(
     writeln!(out, "<Piece NumberOfPoints=\"{count}\" NumberOfVerts=\"{count}\">\n<PointData>")?;
     let whole = |of: fn(&Disk) -> i64| disks.iter().map(of);
     let number = |of: fn(&Disk) -> f64| disks.iter().map(of);
-    write_array(out, "Int64", "id", 1, (1_i64..).take(count))?;
+    write_array(out, "Int64", "id", 1, numbered(disks).map(|(id, _)| id.cast_signed()))?;
     write_array(out, "Int64", "kind", 1, whole(|disk| disk.kind().number().into()))?;
     write_numbers(out, "velocity", 3, disks.iter().flat_map(|disk| in_space(disk.velocity())))?;
     write_numbers(out, "angle", 1, number(Disk::angle))?;

@@ -121,14 +121,16 @@ fn free_disks_move_by_their_speed() -> Outcome {
 }
 
 #[test]
-fn a_gap_and_another_number_of_disks_begin_with_new_origins() -> Outcome {
+fn a_gap_and_other_disks_begin_with_new_origins() -> Outcome {
     let domain = BOX.with_periodic_sides();
     let disk = |x: f64| Disk::new(DVec2::new(x, 1.0), 0.5);
     let mut displacement = MeanSquaredDisplacement::new(3, times()?)?;
     for (time, places) in
         [(1.0, vec![1.0]), (2.0, vec![2.0]), (5.0, vec![9.0]), (6.0, vec![9.5]), (7.0, vec![1.0, 2.0])]
     {
-        let disks = places.into_iter().map(disk).collect::<Result<Vec<_>, _>>()?;
+        let first = if places.len() > 1 { 2 } else { 1 };
+        let disks = places.into_iter().zip(first..).map(|(x, id)| disk(x)?.with_id(id));
+        let disks = disks.collect::<Result<Vec<_>, _>>()?;
         displacement.on_sample(&Snapshot::new(time, &disks, domain, 0.0));
     }
     let lags: Vec<(u64, f64)> = displacement.iter().map(|(_, v)| (v.samples(), v.mean())).collect();

@@ -14,7 +14,7 @@ use granular_edmd::observable::{
     TimeCorrelation, Velocities, VelocityDistribution, Verdict, WallStress, from_fn, on_collision, on_sample,
     stop_when, stop_when_sampled,
 };
-use granular_edmd::{ParameterError, Simulation, initial};
+use granular_edmd::{Disk, ParameterError, Simulation, initial};
 
 type Outcome = Result<(), ParameterError>;
 
@@ -411,26 +411,29 @@ fn an_accumulator_alone_measures_as_in_a_run() -> Result<(), Box<dyn std::error:
     Ok(())
 }
 
-/// Disks that are exchanged for as many others are not mistaken for them.
+/// Half of the disks are exchanged during the run: each of the others is followed by its id.
 #[test]
 fn displacements_are_those_of_the_same_disks() -> Result<(), Box<dyn std::error::Error>> {
-    let container = Container::closed(10.0, 10.0)?;
-    let disks = initial::lattice(&container, 20, 0.5)?;
+    let container = Container::periodic(10.0, 10.0)?;
+    let disk = |x: f64, speed: f64| Disk::new(DVec2::new(x, 5.0), 0.1)?.with_velocity(DVec2::Y * speed);
+    let disks = (0..8).map(|n| disk(0.5 + f64::from(n), 1.0)).collect::<Result<Vec<_>, _>>()?;
     let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
     let times = SampleTimes::every(1.0)?;
-    let mut displacement = MeanSquaredDisplacement::new(4, times)?;
-    let mut places = TimeCorrelation::new(from_fn(|now: &Snapshot<'_>| now.disks()[0].position()), 2, times)?;
-    let first = run.disks()[0].position();
-    run.run_until(5.0, &mut (&mut displacement, &mut places))?;
-    // The disk comes back as the last one.
-    let gone = run.remove(|disk, _| disk == 0)?;
-    run.insert(gone)?;
-    run.run_until(10.0, &mut (&mut displacement, &mut places))?;
-    assert!(displacement.iter().all(|(_, squared)| squared.mean() == 0.0), "no disk has moved");
-    let second = run.disks()[0].position();
-    // Origins of the first run have no partners in the second: 4 pairs of neighbors in each.
-    let neighbors = places.iter().nth(1).ok_or("no lag")?.1;
-    assert_eq!(neighbors.samples(), 8);
-    assert!((neighbors.mean() - 0.5 * (first.length_squared() + second.length_squared())).abs() < 1e-9);
+    let mut displacement = MeanSquaredDisplacement::new(6, times)?;
+    let mut velocities = TimeCorrelation::new(Velocities, 6, times)?;
+    run.run_until(5.0, &mut (&mut displacement, &mut velocities))?;
+    // The second comes back as the last one, the others that leave are replaced by faster ones.
+    let gone = run.remove(|disk, _| disk < 4)?;
+    run.insert(gone.iter().skip(3).copied())?;
+    run.insert([disk(0.5, 3.0)?, disk(1.5, 3.0)?, disk(2.5, 3.0)?])?;
+    assert_eq!(run.disks().iter().map(Disk::id).collect::<Vec<_>>(), [5, 6, 7, 8, 4, 9, 10, 11]);
+    run.run_until(10.0, &mut (&mut displacement, &mut velocities))?;
+    // No pair of samples more than 5 apart sees a fast disk at both ends: the first of them is at 6.
+    let squared: Vec<f64> = displacement.iter().map(|(_, squared)| squared.mean()).collect();
+    assert!((squared[6] - 36.0).abs() < 1e-9, "{squared:?}");
+    let products: Vec<f64> = velocities.iter().map(|(_, product)| product.mean()).collect();
+    assert!((products[6] - 1.0).abs() < 1e-12, "{products:?}");
+    // Five of eight at speed 1, three at 3, in half of the samples.
+    assert!(products[1] > 1.5 && products[1] < 4.0, "{products:?}");
     Ok(())
 }

@@ -124,7 +124,7 @@ fn disks_at_rest_take_no_events() {
         let mut run = builder.disks([disk(0.6), disk(5.0)]).build().unwrap();
         run.run_until(end, &mut ()).unwrap();
         assert!(run.counters().events() < 10, "{:?}", run.counters());
-        assert_eq!((run.time(), run.disks()[0]), (end, disk(0.6)));
+        assert_eq!((run.time(), run.disks()[0].with_id(0).unwrap()), (end, disk(0.6)));
     }
     // A wall that begins to move finds them where they are.
     let floor = granular_edmd::wall::Sinusoidal::new(0.3, 2.0).unwrap();

@@ -48,7 +48,7 @@ fn history(disks: &[Disk], order: &[usize], end: f64) -> (Vec<Told>, Vec<Disk>) 
     });
     let mut after = disks.to_vec();
     for (listed, &disk) in run.disks().iter().zip(order) {
-        after[disk] = *listed;
+        after[disk] = listed.with_id(0).unwrap();
     }
     (told.collect(), after)
 }

@@ -6,6 +6,8 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::BuildError;
 #[cfg(feature = "serde")]
 use granular_edmd::simulation::Checkpoint;
+#[cfg(feature = "serde")]
+use granular_edmd::trajectory::State;
 use granular_edmd::{Disk, Kind, Simulation};
 use proptest::prelude::*;
 
@@ -96,7 +98,7 @@ fn a_disk_that_does_not_fit_is_refused_and_changes_nothing() {
     let mut run = elastic_gas(20, 12.0, 12.0, 0.1);
     run.run_until(3.0, &mut ()).unwrap();
     let before = run.disks();
-    let there = run.disk(4).unwrap();
+    let there = run.disk(4).unwrap().with_id(0).unwrap();
     let domain = run.boundary().domain();
     let at = |x: f64, y: f64| Disk::new(DVec2::new(x, y), 0.5).unwrap();
     assert!(matches!(run.insert([there]), Err(BuildError::Overlap { first: 4, second: 20, .. })));
@@ -135,4 +137,40 @@ fn a_disk_put_in_late_falls_like_any_other() {
         assert!((run.disk(top).unwrap().position().y - (2e3 - 0.125)).abs() < 1e-9);
         assert_eq!(run.remove(|index, _| index == top).unwrap().len(), 1);
     }
+}
+
+/// Ids stay with their disks through removal, insertion, checkpoints and files, and none is given twice.
+#[cfg(feature = "serde")]
+#[test]
+fn ids_stay_with_their_disks() -> Result<(), Box<dyn std::error::Error>> {
+    let ids = |disks: &[Disk]| disks.iter().map(Disk::id).collect::<Vec<_>>();
+    let at = |x: f64| Disk::new(DVec2::new(x, 1.0), 0.4);
+    let box_of = || Container::closed(10.0, 2.0);
+    let disks = (1..8).map(|x| at(f64::from(x))).collect::<Result<Vec<_>, _>>()?;
+    let mut run = Simulation::builder(Elastic, box_of()?).disks(disks).build()?;
+    assert_eq!(ids(&run.disks()), [1, 2, 3, 4, 5, 6, 7]);
+    let gone = run.remove(|index, _| index == 1 || index == 6)?;
+    assert_eq!((ids(&gone), ids(&run.disks())), (vec![2, 7], vec![1, 3, 4, 5, 6]));
+
+    let mut run = Simulation::resume(&run.checkpoint(), Elastic, box_of()?).build()?;
+    run.insert([at(7.0)?, gone[0]])?;
+    assert_eq!(ids(&run.disks()), [1, 3, 4, 5, 6, 8, 2]);
+    assert_eq!((run.index_of(8), run.index_of(7)), (Some(5), None));
+
+    let copy = run.disks()[2].with_position(DVec2::new(9.0, 1.0))?;
+    assert!(matches!(run.insert([copy]), Err(BuildError::SameId { id: 4, first: 2, second: 7 })));
+    run.insert([copy.with_id(0)?])?;
+    assert_eq!(run.disks()[7].id(), 9);
+
+    let mut table = Vec::new();
+    State::of(&run.snapshot()).write_csv(&mut table)?;
+    // A table is read in the order of the ids.
+    let read = State::from_csv(table.as_slice())?;
+    assert_eq!(ids(read.disks()), [1, 2, 3, 4, 5, 6, 8, 9]);
+    let mut second = Simulation::builder(Elastic, box_of()?).disks(read.into_disks()).build()?;
+    second.remove(|_, _| true)?;
+    second.insert([at(1.0)?])?;
+    assert_eq!(second.disks()[0].id(), 10);
+    assert!(at(1.0)?.with_id(u64::MAX).is_err());
+    Ok(())
 }

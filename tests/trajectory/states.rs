@@ -55,6 +55,8 @@ pub(crate) fn random_disks(seed: u64, domain: &Domain) -> Vec<Disk> {
         let disk =
             disk.with_angular_velocity(any()).unwrap().with_mass(any().abs().clamp(1e-30, 1e30)).unwrap();
         let disk = disk.with_inertia_factor(generator.random_range(1e-6..1.0)).unwrap();
+        let id = 3 * index.unsigned_abs() + 1;
+        let disk = disk.with_id(id.into()).unwrap();
         disks.push(disk.with_kind(Kind::new((index % 5) as u16)).with_image([index, -3 * index]));
     }
     disks

@@ -141,6 +141,7 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
 }
 
 fn bodies_of(saved: &Saved) -> Bodies {
-    let Saved { models, gravity, trajectories, forecasts, spins, images, .. } = saved;
-    Bodies::restored(models, *gravity, trajectories, forecasts, spins.clone(), images.clone())
+    let Saved { models, gravity, trajectories, forecasts, spins, images, identities, .. } = saved;
+    let (spins, images, identities) = (spins.clone(), images.clone(), identities.clone());
+    Bodies::restored(models, *gravity, trajectories, forecasts, spins, images, identities)
 }

@@ -34,6 +34,7 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     let lengths = [saved.spins.len(), saved.forecasts.len(), saved.places.len()];
     check(lengths.iter().all(|&length| length == count), "its parts differ in length")?;
     check([0, count].contains(&saved.images.len()), "the number of images is not the number of disks")?;
+    check(saved.identities.suits(count), "its ids are not those of so many disks")?;
     check([1, count].contains(&saved.models.len()), "its disks have too many models, or none")?;
     let times = [saved.origin, saved.now, saved.epoch_length, saved.gravity];
     check(times.iter().all(|time| time.is_finite()), "a time is not finite")?;

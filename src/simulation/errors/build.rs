@@ -108,6 +108,16 @@ pub enum BuildError {
         /// Depth of the overlap.
         depth: f64,
     },
+    /// Two disks have the same id.
+    #[error("disks {first} and {second} both have the id {id}: give the new one the id 0")]
+    SameId {
+        /// The id.
+        id: u64,
+        /// Index of the first disk.
+        first: usize,
+        /// Index of the second disk.
+        second: usize,
+    },
     /// The domain has no area, or its periodic sides are so close that a disk could meet its own image.
     #[error(
         "a domain of width {} and height {} is too small for disks of diameter {}: \

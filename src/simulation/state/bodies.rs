@@ -9,6 +9,7 @@
 use glam::DVec2;
 
 use super::forecast::Forecast;
+use super::identities::Identities;
 use super::properties::Properties;
 use crate::Disk;
 use crate::collision::{Body, Material};
@@ -83,8 +84,7 @@ pub(in crate::simulation) struct Bodies {
     pub(super) images: Vec<[i32; 2]>,
     /// Typical diameter, in which the length of an epoch is measured.
     pub(in crate::simulation) typical_diameter: f64,
-    /// True if disks were removed since the last run began.
-    pub(in crate::simulation) is_renumbered: bool,
+    pub(in crate::simulation) identities: Identities,
 }
 
 impl Bodies {
@@ -97,7 +97,8 @@ impl Bodies {
         let properties = Properties::of(disks);
         let typical_diameter = properties.typical_diameter();
         let gravity = unsigned_zero(gravity);
-        Self { particles, spins, gravity, properties, images, typical_diameter, is_renumbered: false }
+        let identities = Identities::new(disks);
+        Self { particles, spins, gravity, properties, images, typical_diameter, identities }
     }
 
     /// Creates bodies as they were saved. Disks that are all alike have a single model.
@@ -109,13 +110,14 @@ impl Bodies {
         forecasts: &[Forecast],
         spins: Vec<Spin>,
         images: Vec<[i32; 2]>,
+        identities: Identities,
     ) -> Self {
         let particle = |(&trajectory, &forecast)| Particle { trajectory, forecast };
         let particles = trajectories.iter().zip(forecasts).map(particle).collect();
         let properties = Properties::of(models);
         let typical_diameter = properties.typical_diameter();
         let gravity = unsigned_zero(gravity);
-        Self { particles, spins, gravity, properties, images, typical_diameter, is_renumbered: false }
+        Self { particles, spins, gravity, properties, images, typical_diameter, identities }
     }
 
     /// Returns the images that [`Self::restored`] takes.
@@ -144,6 +146,10 @@ impl Bodies {
     #[inline]
     pub(in crate::simulation) fn forecast(&self, disk: usize) -> Option<&Forecast> {
         self.particles.get(disk).map(|particle| &particle.forecast)
+    }
+
+    pub(in crate::simulation) fn id(&self, disk: usize) -> u64 {
+        self.identities.of(disk)
     }
 
     /// Returns the speed in the free-fall frame, which is the scale of the rounding of a velocity.
@@ -248,7 +254,7 @@ impl Bodies {
     pub(in crate::simulation) fn disk(&self, disk: usize, offset: f64) -> Disk {
         let spin = &self.spins[disk];
         let image = self.images.get(disk).copied().unwrap_or_default();
-        self.properties.model(disk).with_image(image).with_motion(
+        self.properties.model(disk).with_image(image).identified(self.id(disk)).with_motion(
             self.position(disk, offset),
             self.velocity(disk, offset),
             spin.angle + spin.angular_velocity * offset,

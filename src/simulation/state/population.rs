@@ -8,6 +8,7 @@ use crate::Disk;
 impl Bodies {
     /// Adds disks as they are at this time offset.
     pub(in crate::simulation) fn insert(&mut self, disks: &[Disk], offset: f64) {
+        self.identities.insert(self.len(), disks);
         let models = (0..self.len()).map(|disk| self.properties.model(disk)).chain(disks.iter().copied());
         self.properties = Properties::of(&models.collect::<Vec<_>>());
         self.typical_diameter = self.properties.typical_diameter();
@@ -33,7 +34,7 @@ impl Bodies {
         self.images = staying(&self.images, leaves);
         self.particles = staying(&self.particles, leaves);
         self.spins = staying(&self.spins, leaves);
-        self.is_renumbered = true;
+        self.identities.remove(leaves);
     }
 }
 

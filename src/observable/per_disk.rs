@@ -1,0 +1,76 @@
+//! Values of single disks, which are found again by the ids of the disks.
+
+use crate::Disk;
+use crate::disk::numbered;
+
+/// A value for each disk of a snapshot.
+///
+/// Two of them, taken at different times, are compared by the ids of the disks: only those that are in both
+/// count, whichever were inserted, removed or sorted in between.
+///
+/// ```
+/// use granular_edmd::glam::DVec2;
+/// use granular_edmd::observable::{InnerProduct, PerDisk};
+/// use granular_edmd::Disk;
+///
+/// let disk = |id: u64, speed: f64| Disk::new(DVec2::ZERO, 0.5)?.with_velocity(DVec2::X * speed)?.with_id(id);
+/// let before = PerDisk::of(&[disk(1, 2.0)?, disk(2, 3.0)?], |disk| disk.velocity().x);
+/// let after = PerDisk::of(&[disk(7, 9.0)?, disk(2, 5.0)?], |disk| disk.velocity().x);
+/// assert_eq!(before.inner_product(&after), 15.0);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "Vec<(u64, T)>", into = "Vec<(u64, T)>"))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(serialize = "T: Clone + serde::Serialize", deserialize = "T: serde::Deserialize<'de>"))
+)]
+pub struct PerDisk<T> {
+    /// Ids and values, in the order of the ids.
+    entries: Vec<(u64, T)>,
+}
+
+impl<T> PerDisk<T> {
+    /// Evaluates a quantity of each disk.
+    ///
+    /// If some of them have no id, all are known by their place in the list.
+    pub fn of(disks: &[Disk], quantity: impl Fn(&Disk) -> T) -> Self {
+        numbered(disks).map(|(id, disk)| (id, quantity(disk))).collect::<Vec<_>>().into()
+    }
+
+    /// Iterates over the ids and values, in the order of the ids.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (u64, &T)> {
+        self.entries.iter().map(|(id, value)| (*id, value))
+    }
+
+    /// Returns the mean of a function of the two values of a disk, over the disks that are in both; NaN if
+    /// there are none.
+    pub fn mean_with(&self, other: &Self, function: impl Fn(&T, &T) -> f64) -> f64 {
+        let (mut sum, mut count) = (0.0, 0);
+        let mut others = other.entries.iter().peekable();
+        for (id, value) in &self.entries {
+            while others.next_if(|(other, _)| other < id).is_some() {}
+            if let Some((_, of_other)) = others.next_if(|(other, _)| other == id) {
+                sum += function(value, of_other);
+                count += 1;
+            }
+        }
+        sum / f64::from(count)
+    }
+}
+
+impl<T> From<Vec<(u64, T)>> for PerDisk<T> {
+    /// Takes ids and values in any order.
+    fn from(mut entries: Vec<(u64, T)>) -> Self {
+        // A run of the same disks has them in order already.
+        entries.sort_by_key(|(id, _)| *id);
+        Self { entries }
+    }
+}
+
+impl<T> From<PerDisk<T>> for Vec<(u64, T)> {
+    fn from(values: PerDisk<T>) -> Self {
+        values.entries
+    }
+}

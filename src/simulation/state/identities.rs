@@ -1,0 +1,68 @@
+//! The ids of disks, which stay as they are while indices change.
+
+use crate::Disk;
+
+/// The id of each disk. Ids are given from 1 on, and none is given twice.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub(in crate::simulation) struct Identities {
+    /// Empty as long as the ids are 1, 2, 3, …: most runs need no memory for them.
+    ids: Vec<u64>,
+    /// The largest id so far, also of disks that were removed.
+    last: u64,
+}
+
+impl Identities {
+    pub(super) fn new(disks: &[Disk]) -> Self {
+        let mut identities = Self::default();
+        identities.insert(0, disks);
+        identities
+    }
+
+    pub(super) fn of(&self, disk: usize) -> u64 {
+        self.ids.get(disk).copied().unwrap_or(disk as u64 + 1)
+    }
+
+    /// Adds disks after these `count` ones. Those without an id get one after all that were ever given.
+    pub(super) fn insert(&mut self, count: usize, disks: &[Disk]) {
+        self.last = disks.iter().map(Disk::id).fold(self.last, u64::max);
+        self.list(count);
+        for disk in disks {
+            let is_new = disk.id() == 0;
+            self.last += u64::from(is_new);
+            self.ids.push(if is_new { self.last } else { disk.id() });
+        }
+        self.forget_the_obvious();
+    }
+
+    /// Removes those of these disks for which `leaves` is true.
+    pub(super) fn remove(&mut self, leaves: &[bool]) {
+        self.list(leaves.len());
+        let mut leaves = leaves.iter();
+        self.ids.retain(|_| leaves.next() == Some(&false));
+        self.forget_the_obvious();
+    }
+
+    /// Tells whether there can be such ids of so many disks, none of them twice.
+    #[cfg(feature = "serde")]
+    pub(in crate::simulation) fn suits(&self, count: usize) -> bool {
+        let mut ids = self.ids.clone();
+        ids.sort_unstable();
+        let differ = ids.windows(2).all(|pair| pair[0] < pair[1]);
+        let is_complete = [0, count].contains(&ids.len()) && self.last >= count as u64;
+        let known = ids.first() != Some(&0) && ids.last().is_none_or(|&largest| largest <= self.last);
+        is_complete && differ && known && self.last <= u64::MAX / 2
+    }
+
+    fn list(&mut self, count: usize) {
+        if self.ids.is_empty() {
+            self.ids = (1..=count as u64).collect();
+        }
+    }
+
+    fn forget_the_obvious(&mut self) {
+        if self.ids.iter().zip(1_u64..).all(|(&id, number)| id == number) {
+            self.ids = Vec::new();
+        }
+    }
+}
