@@ -120,6 +120,7 @@ def read_by_gsd():
             same(f"{place}: time", read.log["time"], np.array([frame["time"]]))
             same(f"{place}: gravity", read.log["gravity"], np.array([frame["gravity"]]))
             same(f"{place}: center", read.log["center"], center.reshape(1, 2))
+            same(f"{place}: ids", read.log["particles/id"], column(frame, "id"))
             same(f"{place}: kinds", particles.typeid, column(frame, "kind"))
             same(f"{place}: names", [int(name) for name in particles.types], list(range(len(particles.types))))
             same(f"{place}: positions", particles.position, positions)

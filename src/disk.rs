@@ -21,7 +21,8 @@ const LARGEST_ID: u64 = 1 << 53;
 /// Largest magnitude of a component of a position or velocity, and of an angular velocity.
 pub(crate) const LARGEST: f64 = 1e60;
 
-/// A rotating hard disk: position, velocity, angle, angular velocity, radius, mass, inertia factor, kind and id.
+/// A rotating hard disk: position, velocity, angle, angular velocity, radius, mass, inertia factor, kind and
+/// id.
 ///
 /// The moment of inertia is $`I = \beta m R^2`$, where $`\beta = 1/2`$ unless another factor is given.
 /// Lengths, times and masses are in any consistent units; the paper takes the diameter and the mass of a disk

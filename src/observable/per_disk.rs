@@ -13,7 +13,8 @@ use crate::disk::numbered;
 /// use granular_edmd::observable::{InnerProduct, PerDisk};
 /// use granular_edmd::Disk;
 ///
-/// let disk = |id: u64, speed: f64| Disk::new(DVec2::ZERO, 0.5)?.with_velocity(DVec2::X * speed)?.with_id(id);
+/// let at_rest = Disk::new(DVec2::ZERO, 0.5)?;
+/// let disk = |id: u64, speed: f64| at_rest.with_velocity(DVec2::X * speed)?.with_id(id);
 /// let before = PerDisk::of(&[disk(1, 2.0)?, disk(2, 3.0)?], |disk| disk.velocity().x);
 /// let after = PerDisk::of(&[disk(7, 9.0)?, disk(2, 5.0)?], |disk| disk.velocity().x);
 /// assert_eq!(before.inner_product(&after), 15.0);
