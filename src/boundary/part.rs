@@ -7,7 +7,8 @@ mod polygon;
 mod serialized;
 mod travel;
 
-pub(super) use travel::Travel;
+use travel::Along;
+pub(super) use travel::{Phase, Travel, Turning};
 
 use glam::DVec2;
 
@@ -93,15 +94,16 @@ impl Part {
         Ok(Self { surface_speed: finite("surface speed", speed)?, ..self })
     }
 
-    /// Returns the same part with a motion along a direction, in place of an earlier motion.
+    /// Returns the same part with a motion along a direction, in place of an earlier motion along one.
     ///
-    /// The vector `direction` can have any length except 0.
+    /// The vector `direction` can have any length except 0. A part that also [turns](Self::with_rotation)
+    /// moves along the same direction at all times, and takes the point about which it turns along.
     ///
     /// # Errors
     /// If the direction has no length, or the motion gives numbers that are not finite at one of the phases
     /// that [`check_finite`](crate::wall::check_finite) looks at. Also if the motion jumps, as a
     /// [`Sawtooth`](crate::wall::Sawtooth) does, and disks are free on a side of the part toward which it
-    /// would jump.
+    /// would jump. A part that turns has no such side, so no motion of it may jump.
     pub fn with_motion(
         self,
         direction: DVec2,
@@ -109,29 +111,55 @@ impl Part {
     ) -> Result<Self, VesselError> {
         let direction = unit(direction)?;
         let motion = Motion::new(motion).map_err(|violation| VesselError::Motion { violation })?;
-        self.traveling(Travel::Along { direction, motion })
+        self.moving(Along { direction, motion })
     }
 
-    /// Returns the same part, turning about a point in place of an earlier motion, counterclockwise at this
+    /// Returns the same part, turning about a point in place of an earlier rotation, counterclockwise at this
     /// angular velocity.
+    ///
+    /// With a [motion](Self::with_motion), the point moves along: with the point $`c`$, the direction $`e`$
+    /// and the displacement $`z`$, the place $`r`$ of the part as built is at the time $`t`$ in
+    ///
+    /// ```math
+    /// c + z(t)\,e + R(\omega t)\,(r - c),\qquad\text{at the velocity}\quad
+    /// \dot z(t)\,e + \omega\,R(\omega t)\,(r - c)_\perp .
+    /// ```
     ///
     /// A circle about that point stays in place; only its surface moves. Any other part is where it was built
     /// at time 0, and after each whole turn.
     ///
     /// # Errors
     /// If a number is not finite, or the angular velocity is so small or large that a turn would take more
-    /// than 1e60 or less than 1e-60. An angular velocity of 0 is allowed: the part is then at rest.
+    /// than 1e60 or less than 1e-60. An angular velocity of 0 is allowed: the part then does not turn.
+    /// Also if the part has a motion that jumps.
+    ///
+    /// ```
+    /// use granular_edmd::boundary::{Boundary, Part, Vessel};
+    /// use granular_edmd::glam::DVec2;
+    /// use granular_edmd::wall::Tabulated;
+    ///
+    /// // A stirrer that turns, and travels by 10 to the right in a time of 20.
+    /// let stirrer = Part::polyline([DVec2::new(-3.0, 0.0), DVec2::new(3.0, 0.0)])?
+    ///     .with_rotation(DVec2::ZERO, 1.0)?
+    ///     .with_motion(DVec2::X, Tabulated::from_to(0.0, 10.0, 20.0)?)?;
+    /// let vessel = Vessel::around([("stirrer", stirrer)])?;
+    /// let wall = vessel.walls("stirrer").unwrap().start;
+    /// // Halfway, its middle moves at the speed 1.
+    /// let surface = vessel.surface(wall, DVec2::new(5.0, 0.0), 10.0);
+    /// assert!(surface.velocity.distance(DVec2::X) < 1e-12);
+    /// # Ok::<(), granular_edmd::boundary::VesselError>(())
+    /// ```
     pub fn with_rotation(self, about: DVec2, angular_velocity: f64) -> Result<Self, VesselError> {
         let about = finite_point(about)?;
         if finite("angular velocity", angular_velocity)? == 0.0 {
-            return self.traveling(Travel::Rest);
+            return Ok(Self { travel: Travel { turning: None, ..self.travel }, ..self });
         }
+        let turn = std::f64::consts::TAU / angular_velocity.abs();
+        let range = "such that a turn takes from 1e-60 to 1e60";
+        accept((1e-60..=1e60).contains(&turn), "angular velocity", range, angular_velocity)?;
         let is_round = self.bricks.iter().all(|brick| brick.is_circle_about(about));
-        self.traveling(if is_round {
-            Travel::Spinning { about, angular_velocity }
-        } else {
-            Travel::Turning { about, angular_velocity }
-        })
+        let turning = Some(Turning { about, angular_velocity, is_round });
+        Self { travel: Travel { turning, ..self.travel }, ..self }.safe()
     }
 
     /// Returns the same part with a motion whose phase counts from this absolute time instead of 0.
@@ -170,7 +198,7 @@ impl Part {
         for brick in &mut self.bricks {
             *brick = brick.shifted(by)?;
         }
-        if let Travel::Turning { about, .. } | Travel::Spinning { about, .. } = &mut self.travel {
+        if let Some(Turning { about, .. }) = &mut self.travel.turning {
             *about = finite_point(*about + by)?;
         }
         Ok(self)
@@ -178,7 +206,7 @@ impl Part {
 
     /// Returns the same part, rotated about a point, counterclockwise by this angle in radians.
     ///
-    /// The direction of its motion, or the point about which it turns, rotates with it.
+    /// The direction of its motion and the point about which it turns rotate with it.
     ///
     /// # Errors
     /// If an argument is not finite, or a coordinate would not be.
@@ -187,12 +215,11 @@ impl Part {
             *brick = brick.rotated(about, angle)?;
         }
         let turn = super::vector::direction(angle);
-        match &mut self.travel {
-            Travel::Along { direction, .. } => *direction = unit(turn.rotate(*direction))?,
-            Travel::Turning { about: pivot, .. } | Travel::Spinning { about: pivot, .. } => {
-                *pivot = finite_point(about + turn.rotate(*pivot - about))?;
-            }
-            Travel::Rest => {}
+        if let Some(Along { direction, .. }) = &mut self.travel.along {
+            *direction = unit(turn.rotate(*direction))?;
+        }
+        if let Some(Turning { about: pivot, .. }) = &mut self.travel.turning {
+            *pivot = finite_point(about + turn.rotate(*pivot - about))?;
         }
         Ok(self)
     }
@@ -209,27 +236,18 @@ impl Part {
 }
 
 impl Part {
-    /// Gives the part a motion, if the part can move in this way.
-    fn traveling(self, travel: Travel) -> Result<Self, VesselError> {
-        match &travel {
-            Travel::Along { direction, motion } => {
-                let is_safe = !jumps(&**motion) || self.bricks.iter().all(|brick| brick.faces(*direction));
-                if !is_safe {
-                    return Err(VesselError::Jump);
-                }
-            }
-            Travel::Turning { angular_velocity, .. } | Travel::Spinning { angular_velocity, .. } => {
-                let turn = std::f64::consts::TAU / angular_velocity.abs();
-                accept(
-                    turn.is_finite() && (1e-60..=1e60).contains(&turn),
-                    "angular velocity",
-                    "such that a turn takes from 1e-60 to 1e60",
-                    *angular_velocity,
-                )?;
-            }
-            Travel::Rest => {}
-        }
-        Ok(Self { travel, ..self })
+    /// Gives the part a motion along a direction, if the part can move in this way.
+    fn moving(self, along: Along) -> Result<Self, VesselError> {
+        Self { travel: Travel { along: Some(along), ..self.travel }, ..self }.safe()
+    }
+
+    /// Returns the part, if it never jumps into disks.
+    fn safe(self) -> Result<Self, VesselError> {
+        let Travel { along: Some(Along { direction, motion }), turning } = &self.travel else {
+            return Ok(self);
+        };
+        let faces = turning.is_none() && self.bricks.iter().all(|brick| brick.faces(*direction));
+        if faces || !jumps(&**motion) { Ok(self) } else { Err(VesselError::Jump) }
     }
 
     /// Returns all bricks, with the corners.
@@ -244,8 +262,8 @@ impl Part {
     /// Returns the phase of the motion at a time origin.
     ///
     /// Both remainders are exact. Their difference has the rounding of a phase, not that of a late time.
-    pub(super) fn phase(&self, origin: f64) -> f64 {
-        self.travel.phase(origin) - self.travel.phase(self.start)
+    pub(super) fn phase(&self, origin: f64) -> Phase {
+        self.travel.phase(origin).since(self.travel.phase(self.start))
     }
 
     /// Returns a rectangle around the part as it was built. Its edges may be infinite.

@@ -13,7 +13,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::brick::Brick;
-use super::part::{Part, Travel};
+use super::part::{Part, Phase, Travel};
 use super::{Boundary, Container, Domain, FirstTouch, Region, Surface, Touch, VesselError};
 use crate::{Fingerprint, Flight};
 use index::Index;
@@ -97,7 +97,7 @@ struct Placed {
     /// Index of the first wall.
     first: usize,
     /// Phase of the motion at the time origin.
-    phase: f64,
+    phase: Phase,
     /// Lower left and upper right corner of a rectangle that holds the part at all times.
     bounds: (DVec2, DVec2),
     /// Largest finite coordinate of that rectangle, in magnitude.
@@ -109,7 +109,7 @@ impl Placed {
         let (low, high) = part.swept_bounds();
         let coordinates = [low.x, low.y, high.x, high.y].map(f64::abs).into_iter();
         let size = coordinates.filter(|edge| edge.is_finite()).fold(0.0, f64::max);
-        Self { name, part, first: 0, phase: 0.0, bounds: (low, high), size }
+        Self { name, part, first: 0, phase: Phase::default(), bounds: (low, high), size }
     }
 }
 
@@ -371,7 +371,7 @@ impl Boundary for Vessel {
         };
         let Wall { part, brick } = self.walls.get(brick)?;
         let placed = &self.parts[*part];
-        Some(placed.part.travel().pose(time + placed.phase).outward(brick.landmarks().next()?))
+        Some(placed.part.travel().pose(placed.phase.after(time)).outward(brick.landmarks().next()?))
     }
 
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {

@@ -15,7 +15,7 @@ use granular_edmd::wall::{
     AccelerationBounds, BiParabolic, Delayed, Scaled, Sinusoidal, Summed, Tabulated, Triangular, WallMotion,
     WallState,
 };
-use granular_edmd::{Disk, Simulation};
+use granular_edmd::{Disk, Flight, Simulation};
 
 fn point(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)
@@ -80,16 +80,18 @@ impl<M: WallMotion> WallMotion for Counted<M> {
     }
 }
 
+/// One of nine disks in a square around the origin.
+fn disk(k: i32) -> Disk {
+    let place = point(2.0 * f64::from(k % 3 - 1), 2.0 * f64::from(k / 3 - 1));
+    let angle = 0.7 + 2.4 * f64::from(k);
+    Disk::new(place, 0.5).unwrap().with_velocity(point(libm::cos(angle), libm::sin(angle))).unwrap()
+}
+
 /// A rhombus with its middle at the origin, and nine disks in it.
 fn rhombus(direction: DVec2, motion: impl WallMotion + Send + Sync + 'static) -> Simulation<Elastic, Vessel> {
     let corners = [point(10.0, 0.0), point(0.0, 10.0), point(-10.0, 0.0), point(0.0, -10.0)];
     let rhombus = Part::polygon(corners).unwrap().with_motion(direction, motion).unwrap();
     let vessel = Vessel::around([("rhombus", rhombus)]).unwrap();
-    let disk = |k: i32| {
-        let place = point(2.0 * f64::from(k % 3 - 1), 2.0 * f64::from(k / 3 - 1));
-        let angle = 0.7 + 2.4 * f64::from(k);
-        Disk::new(place, 0.5).unwrap().with_velocity(point(libm::cos(angle), libm::sin(angle))).unwrap()
-    };
     Simulation::builder(Elastic, vessel).disks((0..9).map(disk)).build().unwrap()
 }
 
@@ -187,6 +189,51 @@ fn combined_motions_have_the_collisions_of_brute_force() {
         ];
         assert!(counts.iter().all(|&count| count > 10), "{counts:?}");
     }
+}
+
+/// So has a polygon that turns and travels, and a drum that does: its surface turns.
+#[test]
+fn parts_that_turn_and_travel_have_the_collisions_of_brute_force() {
+    let gone = Tabulated::from_to(-1.0, 1.5, 25.0).unwrap();
+    let fast = || Sinusoidal::new(0.05, 20.0).unwrap();
+    let motions: [Box<dyn Fn() -> Box<dyn WallMotion + Send + Sync>>; 3] = [
+        Box::new(|| Box::new(fast())),
+        Box::new(move || Box::new(Delayed::new(gone.clone(), 5.0).unwrap())),
+        Box::new(|| Box::new(BiParabolic::new(0.4, 2.0).unwrap())),
+    ];
+    for motion in motions {
+        for (angular_velocity, start) in [(0.1, 0.0), (-1.7, 3.0), (9.0, -7.5)] {
+            let moves = |part: Part| {
+                let part = part.with_motion(point(1.0, 0.3), motion()).unwrap();
+                let part = part.with_rotation(point(0.4, -0.2), angular_velocity).unwrap();
+                Vessel::around([("part", part.starting_at(start).unwrap())]).unwrap()
+            };
+            let corners = [point(10.0, 0.0), point(0.0, 10.0), point(-10.0, 0.0), point(0.0, -10.0)];
+            let rhombus = moves(Part::polygon(corners).unwrap());
+            let drum = moves(Part::drum(point(0.4, -0.2), 8.0).unwrap());
+            for vessel in [rhombus, drum] {
+                let run = Simulation::builder(Elastic, vessel).disks((0..9).map(disk)).build().unwrap();
+                assert!(checked_run(run, 40.0, 1.5, 1e-3) > 10);
+            }
+        }
+    }
+}
+
+/// A peg that hardly turns and travels far meets a disk that waits on its way, however long the flight.
+#[test]
+fn a_part_that_turns_travels_to_a_waiting_disk() {
+    let travel = Tabulated::from_to(0.0, 12.0, 20.0).unwrap();
+    let peg = Part::peg(point(3.0, 10.0), 0.5).unwrap().with_rotation(point(3.0, 11.0), 1e-9).unwrap();
+    let peg = peg.with_motion(DVec2::X, travel.clone()).unwrap();
+    let room = Vessel::new(Container::closed(20.0, 20.0).unwrap()).with("peg", peg).unwrap();
+    let disk = Disk::new(point(12.0, 10.0), 0.5).unwrap();
+    let flight = Flight::new(0.0, disk.position(), DVec2::ZERO, DVec2::ZERO, disk.radius());
+    let touch = room.first_touch(&flight, 1e3).touch().unwrap().time;
+    let displacement = travel.state(touch).displacement;
+    assert!((displacement - 8.0).abs() < 1e-6, "{touch}: {displacement}");
+    let mut run = Simulation::builder(Elastic, room).disks([disk]).build().unwrap();
+    assert!(matches!(run.step_until(100.0, &mut ()).unwrap(), Some(Event::WallCollision { .. })));
+    assert!((travel.state(run.time()).displacement - 8.0).abs() < 0.05, "{}", run.time());
 }
 
 /// A wall that begins to move meets the disks that are near it then.

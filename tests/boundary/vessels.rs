@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use granular_edmd::boundary::{Boundary, Brick, Container, Part, Vessel, Wall, laws};
+use granular_edmd::boundary::{Boundary, Brick, Container, Part, Vessel, VesselError, Wall, laws};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::{BiParabolic, Sawtooth, Sinusoidal, Triangular, WallMotion};
@@ -423,4 +423,48 @@ fn an_unknown_part_is_answered_with_those_there_are() {
     }
     let said = many.replace("gate", triangle()).unwrap_err().to_string();
     assert!(said.contains("its 9 parts are \"part 0\"") && said.ends_with("\"part 7\", …"), "{said}");
+}
+
+/// A part turns and travels, in whichever order it is told so. Each call replaces an earlier one of its kind.
+#[test]
+fn a_part_turns_and_travels() {
+    let arm = || Part::polyline([DVec2::ZERO, DVec2::new(2.0, 0.0)]).unwrap();
+    let sine = |amplitude: f64| Sinusoidal::new(amplitude, 3.0).unwrap();
+    let (about, up) = (DVec2::new(0.5, 0.0), DVec2::Y);
+    let vessel = |part: Part| Vessel::around([("arm", part)]).unwrap();
+    let turned = arm().with_rotation(about, 0.7).unwrap();
+    let both = vessel(turned.clone().with_motion(up, sine(0.3)).unwrap());
+    let other = arm().with_motion(up, sine(0.3)).unwrap().with_rotation(about, 0.7).unwrap();
+    assert_eq!(both.fingerprint(), vessel(other).fingerprint());
+    let again = turned.clone().with_motion(up, sine(9.0)).unwrap().with_rotation(about, 5.0).unwrap();
+    let again = again.with_motion(up, sine(0.3)).unwrap().with_rotation(about, 0.7).unwrap();
+    assert_eq!(both.fingerprint(), vessel(again).fingerprint());
+    let still = both.part("arm").unwrap().clone().with_rotation(about, 0.0).unwrap();
+    let along = vessel(arm().with_motion(up, sine(0.3)).unwrap());
+    assert_eq!(vessel(still).fingerprint(), along.fingerprint());
+    assert_ne!(both.fingerprint(), along.fingerprint());
+    assert_ne!(both.fingerprint(), vessel(turned.clone()).fingerprint());
+
+    // The equation of the documentation, also long after the start: the phases keep their digits.
+    for time in [0.0, 1.3, 1e9] {
+        let (_, line) = both.outline(time).next().unwrap();
+        let shift = sine(0.3).state(time % sine(0.3).period().unwrap()).displacement;
+        let turn = DVec2::from_angle(0.7 * (time % (std::f64::consts::TAU / 0.7)));
+        let end = about + shift * up + turn.rotate(DVec2::new(1.5, 0.0));
+        assert!(line[1].distance(end) < 1e-12, "{time}: {} {end}", line[1]);
+    }
+    let moved = turned.with_motion(up, sine(0.3)).unwrap().rotated(DVec2::ZERO, std::f64::consts::FRAC_PI_2);
+    let (_, line) = vessel(moved.unwrap().shifted(DVec2::X).unwrap()).outline(0.0).next().unwrap();
+    assert!(line[1].distance(DVec2::new(1.0, 2.0)) < 1e-12);
+
+    let saw = || Sawtooth::new(0.2, 3.0).unwrap();
+    let turned = arm().with_rotation(about, 0.7).unwrap();
+    assert_eq!(turned.with_motion(up, saw()).err(), Some(VesselError::Jump));
+    #[cfg(feature = "serde")]
+    {
+        let text = serde_json::to_string(&both).unwrap();
+        let back: Vessel = serde_json::from_str(&text).unwrap();
+        assert_eq!(back.fingerprint(), both.fingerprint());
+        assert_eq!(serde_json::to_string(&back).unwrap(), text);
+    }
 }

@@ -108,16 +108,17 @@ fn boundaries_with_a_field_too_many_are_refused() {
     for brick in &bricks {
         refuses(brick);
     }
+    let sine = Sinusoidal::new(0.1, 3.0).unwrap();
     let part = || Part::new(bricks).unwrap();
     let parts = [
         part().with_rule(Smooth::from_inelasticity(0.1).unwrap()),
         part().with_motion(DVec2::ONE, Sinusoidal::new(0.1, 3.0).unwrap()).unwrap(),
         part().with_rotation(DVec2::ONE, 0.3).unwrap().with_temperature(Thermal::new(2.0).unwrap()),
+        part().with_rotation(DVec2::ONE, 0.3).unwrap().with_motion(DVec2::X, sine).unwrap(),
     ];
     let container =
         Container::open(10.0).unwrap().shaken_sideways(BiParabolic::new(0.1, 3.0).unwrap()).unwrap();
     let container = container.with_surface_speed(Wall::Left, 0.3).unwrap();
-    let sine = Sinusoidal::new(0.1, 3.0).unwrap();
     let combined = Summed::new(Delayed::new(sine, 2.0).unwrap(), Scaled::new(sine, 2.0).unwrap()).unwrap();
     let container = container.with_motion(Wall::Floor, combined).unwrap();
     refuses_intruders::<Container>(&serde_json::to_value(&container).unwrap());

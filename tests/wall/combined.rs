@@ -141,9 +141,11 @@ proptest! {
         for pair in rows.windows(2) {
             let ((from, low), (to, high)) = (pair[0], pair[1]);
             prop_assert_eq!(table.state(from).displacement, low);
+            // A velocity that should be 0 has the rounding of those from which it is computed.
+            let rounding = 1e-13 * (2.0 / 1e-3);
             for k in 0..=50 {
                 let velocity = table.state(from + 0.02 * f64::from(k) * (to - from)).velocity;
-                prop_assert!(velocity * (high - low) >= -1e-12 * velocity.abs(), "{velocity} at {k}");
+                prop_assert!(velocity * (high - low).signum() >= -rounding, "{velocity} at {k}");
             }
         }
     }

@@ -26,7 +26,7 @@ impl Part {
         }
         bricks.extend(corners::corners(&bricks));
         let (conduct, kind) = (Conduct::Shared, Kind::WALL);
-        Ok(Self { bricks, given, travel: Travel::Rest, conduct, kind, surface_speed: 0.0, start: 0.0 })
+        Ok(Self { bricks, given, travel: Travel::default(), conduct, kind, surface_speed: 0.0, start: 0.0 })
     }
 
     /// Creates a closed polygon with the disks inside.

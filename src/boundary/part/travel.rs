@@ -14,20 +14,51 @@ use crate::{Fingerprint, Flight};
 /// error.
 const PIECES: f64 = 16.0;
 
-/// The motion of a part.
+/// The motion of a part: along a direction, about a point, both, or none.
+#[derive(Debug, Clone, Default)]
+pub(in crate::boundary) struct Travel {
+    pub(super) along: Option<Along>,
+    pub(super) turning: Option<Turning>,
+}
+
+/// A motion along a direction, which is a unit vector.
 #[derive(Debug, Clone)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields, rename_all = "snake_case"))]
-pub(in crate::boundary) enum Travel {
-    /// The part stays where it is.
-    Rest,
-    /// The part moves along a direction, which is a unit vector.
-    Along { direction: DVec2, motion: Motion },
-    /// The part turns about a point.
-    Turning { about: DVec2, angular_velocity: f64 },
-    /// The part turns about a point, and all its bricks are circles about that point, so only its surface
-    /// moves.
-    Spinning { about: DVec2, angular_velocity: f64 },
+pub(super) struct Along {
+    pub(super) direction: DVec2,
+    pub(super) motion: Motion,
+}
+
+/// Turning about a point, which moves with the part.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::boundary) struct Turning {
+    pub(in crate::boundary) about: DVec2,
+    pub(in crate::boundary) angular_velocity: f64,
+    /// True if all bricks are circles about the point, so only the surface turns.
+    pub(super) is_round: bool,
+}
+
+/// The phases of both motions of a part, each the time less whole periods.
+#[derive(Debug, Clone, Copy, Default)]
+pub(in crate::boundary) struct Phase {
+    along: f64,
+    turning: f64,
+}
+
+impl Phase {
+    /// Returns the phase at a later time.
+    pub(in crate::boundary) fn after(self, time: f64) -> Self {
+        Self { along: time + self.along, turning: time + self.turning }
+    }
+
+    /// Returns the phase that counts from another one.
+    pub(super) fn since(self, start: Self) -> Self {
+        Self { along: self.along - start.along, turning: self.turning - start.turning }
+    }
+
+    /// Returns the largest magnitude.
+    pub(in crate::boundary) fn size(self) -> f64 {
+        self.along.abs().max(self.turning.abs())
+    }
 }
 
 /// A flight in the frame of a part, from one moment to a later one.
@@ -65,95 +96,122 @@ fn unturned(turn: DVec2, vector: DVec2) -> DVec2 {
     DVec2::new(turn.x, -turn.y).rotate(vector)
 }
 
-impl Travel {
-    pub(in crate::boundary) fn is_at_rest(&self) -> bool {
-        matches!(self, Self::Rest | Self::Spinning { .. })
+impl Along {
+    /// Returns the displacement at a phase.
+    fn shift(&self, phase: f64) -> DVec2 {
+        self.direction * self.motion.state(phase).displacement
     }
 
-    /// Returns the phase of the motion at a time origin: the origin less whole periods.
-    pub(in crate::boundary) fn phase(&self, origin: f64) -> f64 {
-        match self {
-            Self::Rest | Self::Spinning { .. } => 0.0,
-            Self::Along { motion, .. } => motion.phase(origin),
-            Self::Turning { angular_velocity, .. } => origin % (TAU / angular_velocity),
+    /// Describes a path in the frame that moves along, with the acceleration in the middle of its bounds.
+    fn look(&self, path: &Path, phase: f64, time: f64) -> Look {
+        let (state, bounds) = (self.motion.state(time + phase), self.motion.acceleration(time + phase));
+        let middle = bounds.min + 0.5 * (bounds.max - bounds.min);
+        let path = Path {
+            place: path.place - self.direction * state.displacement,
+            velocity: path.velocity - self.direction * state.velocity,
+            acceleration: path.acceleration - self.direction * middle,
+            spread: 0.5 * (bounds.max - bounds.min),
+            ..*path
+        };
+        Look { path, until: bounds.until - phase }
+    }
+}
+
+impl Turning {
+    fn period(&self) -> f64 {
+        TAU / self.angular_velocity.abs()
+    }
+
+    /// Describes a path in the frame that turns. The errors of both frames add.
+    fn look(&self, look: &Look, phase: f64, time: f64, longest: f64) -> Look {
+        let Self { about, angular_velocity, .. } = *self;
+        let turn = direction(angular_velocity * (time + phase));
+        let wait = longest.min(TAU / (PIECES * angular_velocity.abs())).min((look.until - time).max(0.0));
+        let Path { place, velocity, acceleration, spread, .. } = look.path;
+        let turned = turning_path(place - about, velocity, acceleration, angular_velocity, wait);
+        let path = Path {
+            place: about + unturned(turn, turned.place),
+            velocity: unturned(turn, turned.velocity),
+            acceleration: unturned(turn, turned.acceleration),
+            spread: turned.spread + spread,
+            ..look.path
+        };
+        Look { path, until: time + wait }
+    }
+}
+
+impl Travel {
+    pub(in crate::boundary) fn is_at_rest(&self) -> bool {
+        self.along.is_none() && self.frame().is_none()
+    }
+
+    /// Returns how the frame of the part turns, if it does.
+    pub(in crate::boundary) fn frame(&self) -> Option<&Turning> {
+        self.turning.as_ref().filter(|turning| !turning.is_round)
+    }
+
+    /// Returns the phases of the motions at a time origin: the origin less whole periods.
+    pub(in crate::boundary) fn phase(&self, origin: f64) -> Phase {
+        Phase {
+            along: self.along.as_ref().map_or(0.0, |along| along.motion.phase(origin)),
+            turning: self.frame().map_or(0.0, |turning| origin % (TAU / turning.angular_velocity)),
         }
+    }
+
+    /// Returns the displacement of the part along its direction, at a phase.
+    pub(in crate::boundary) fn shift(&self, phase: Phase) -> DVec2 {
+        self.along.as_ref().map_or(DVec2::ZERO, |along| along.shift(phase.along))
     }
 
     /// Returns the place of the part at a phase.
-    pub(in crate::boundary) fn pose(&self, phase: f64) -> Pose {
-        match self {
-            Self::Rest | Self::Spinning { .. } => Pose { turn: DVec2::X, shift: DVec2::ZERO },
-            Self::Along { direction, motion } => {
-                Pose { turn: DVec2::X, shift: *direction * motion.state(phase).displacement }
-            }
-            Self::Turning { about, angular_velocity } => {
-                let turn = direction(angular_velocity * phase);
-                Pose { turn, shift: *about - turn.rotate(*about) }
-            }
-        }
+    pub(in crate::boundary) fn pose(&self, phase: Phase) -> Pose {
+        let shift = self.shift(phase);
+        let Some(Turning { about, angular_velocity, .. }) = self.frame() else {
+            return Pose { turn: DVec2::X, shift };
+        };
+        let turn = direction(angular_velocity * phase.turning);
+        Pose { turn, shift: *about - turn.rotate(*about) + shift }
     }
 
     /// Returns the velocity of the part at a place, at a phase.
-    pub(in crate::boundary) fn velocity(&self, place: DVec2, phase: f64) -> DVec2 {
-        match self {
-            Self::Rest => DVec2::ZERO,
-            Self::Along { direction, motion } => *direction * motion.state(phase).velocity,
-            Self::Turning { about, angular_velocity } | Self::Spinning { about, angular_velocity } => {
-                *angular_velocity * (place - *about).perp()
-            }
-        }
+    pub(in crate::boundary) fn velocity(&self, place: DVec2, phase: Phase) -> DVec2 {
+        let along = self.along.as_ref();
+        let along = along.map(|along| along.direction * along.motion.state(phase.along).velocity);
+        let arm = |about: DVec2| place - (about + self.shift(phase));
+        let turning = self.turning.map(|turning| turning.angular_velocity * arm(turning.about).perp());
+        along.into_iter().chain(turning).reduce(|a, b| a + b).unwrap_or(DVec2::ZERO)
     }
 
     /// Describes a flight in the frame of the part, from a time on and for at most `longest`. The phase is
     /// that of time 0.
-    pub(in crate::boundary) fn look(&self, flight: &Flight, phase: f64, time: f64, longest: f64) -> Look {
+    pub(in crate::boundary) fn look(&self, flight: &Flight, phase: Phase, time: f64, longest: f64) -> Look {
         let (place, velocity, pull) = (flight.position(time), flight.velocity(time), flight.acceleration());
-        match self {
-            Self::Rest | Self::Spinning { .. } => {
-                Look { path: Path::exact(place, velocity, pull, flight.radius()), until: f64::INFINITY }
-            }
-            Self::Along { direction, motion } => {
-                let (state, bounds) = (motion.state(time + phase), motion.acceleration(time + phase));
-                let middle = bounds.min + 0.5 * (bounds.max - bounds.min);
-                let path = Path {
-                    place: place - *direction * state.displacement,
-                    velocity: velocity - *direction * state.velocity,
-                    acceleration: pull - *direction * middle,
-                    radius: flight.radius(),
-                    widening: 0.0,
-                    spread: 0.5 * (bounds.max - bounds.min),
-                };
-                Look { path, until: bounds.until - phase }
-            }
-            Self::Turning { about, angular_velocity } => {
-                let turn = direction(angular_velocity * (time + phase));
-                let wait = longest.min(TAU / (PIECES * angular_velocity.abs()));
-                let path = turning_path(place - *about, velocity, pull, *angular_velocity, wait);
-                let path = Path {
-                    place: *about + unturned(turn, path.place),
-                    velocity: unturned(turn, path.velocity),
-                    acceleration: unturned(turn, path.acceleration),
-                    radius: flight.radius(),
-                    ..path
-                };
-                Look { path, until: time + wait }
-            }
+        let path = Path::exact(place, velocity, pull, flight.radius());
+        let look = match &self.along {
+            Some(along) => along.look(&path, phase.along, time),
+            None => Look { path, until: f64::INFINITY },
+        };
+        match self.frame() {
+            Some(turning) => turning.look(&look, phase.turning, time, longest),
+            None => look,
         }
     }
 
-    /// Returns the period of the motion, if there is one.
+    /// Returns the shortest period of the motions, if there is one.
     pub(in crate::boundary) fn period(&self) -> Option<f64> {
-        match self {
-            Self::Rest | Self::Spinning { .. } => None,
-            Self::Along { motion, .. } => motion.period(),
-            Self::Turning { angular_velocity, .. } => Some(TAU / angular_velocity.abs()),
-        }
+        let along = self.along.as_ref().and_then(|along| along.motion.period());
+        along.into_iter().chain(self.frame().map(Turning::period)).reduce(f64::min)
+    }
+
+    /// Returns the smallest and largest displacement along the direction.
+    fn reach(&self) -> (f64, f64) {
+        self.along.as_ref().map_or((0.0, 0.0), |along| along.motion.reach())
     }
 
     /// Returns the distance between the ends of the motion's reach; 0 for a part that does not move along a
     /// direction.
     pub(in crate::boundary) fn stroke(&self) -> f64 {
-        if let Self::Along { motion, .. } = self { motion.reach().1 - motion.reach().0 } else { 0.0 }
+        self.reach().1 - self.reach().0
     }
 
     /// Returns how long it takes, at most `wait`, until a disk on this path in the frame at rest enters the
@@ -164,64 +222,59 @@ impl Travel {
         path: &Path,
         wait: f64,
     ) -> Option<f64> {
-        match self {
-            Self::Rest | Self::Spinning { .. } => Some(0.0),
-            Self::Along { direction, motion } => {
-                let (low, high) = motion.reach();
-                let path = Path { place: path.place - *direction * (low + 0.5 * (high - low)), ..*path };
-                brick.wait_to_enter_strip(&path, 0.5 * (high - low) * *direction, wait)
+        let (mut path, mut stroke) = (*path, DVec2::ZERO);
+        if let Some(Along { direction, motion }) = &self.along {
+            let (low, high) = motion.reach();
+            path.place -= *direction * (low + 0.5 * (high - low));
+            stroke = 0.5 * (high - low) * *direction;
+        }
+        match self.frame() {
+            Some(Turning { about, .. }) => {
+                path.radius += stroke.length();
+                brick.wait_to_enter_ring(&path, *about, wait)
             }
-            Self::Turning { about, .. } => brick.wait_to_enter_ring(path, *about, wait),
+            None if self.along.is_some() => brick.wait_to_enter_strip(&path, stroke, wait),
+            None => Some(0.0),
         }
     }
 
     /// Tells whether a brick of the part comes within `reach` of a region at any time.
     pub(in crate::boundary) fn may_reach(&self, brick: &Brick, region: &Region, reach: f64) -> bool {
-        match self {
-            Self::Rest | Self::Spinning { .. } => brick.is_near(region, reach),
-            Self::Along { motion, .. } => {
-                let (low, high) = motion.reach();
-                brick.is_near(region, reach + low.abs().max(high.abs()))
-            }
-            Self::Turning { about, .. } => {
-                let (nearest, farthest) = brick.distances(*about);
-                let from = about.clamp(region.min, region.max).distance(*about);
-                let to = (region.min - *about).abs().max((region.max - *about).abs()).length();
-                from <= farthest + reach && to >= nearest - reach
-            }
-        }
+        let (low, high) = self.reach();
+        let reach = reach + low.abs().max(high.abs());
+        let Some(Turning { about, .. }) = self.frame() else { return brick.is_near(region, reach) };
+        let (nearest, farthest) = brick.distances(*about);
+        let from = about.clamp(region.min, region.max).distance(*about);
+        let to = (region.min - *about).abs().max((region.max - *about).abs()).length();
+        from <= farthest + reach && to >= nearest - reach
     }
 
     /// Returns a rectangle that holds a brick of the part at all times. Its edges may be infinite.
     pub(in crate::boundary) fn bounds(&self, brick: &Brick) -> (DVec2, DVec2) {
-        let (low, high) = brick.bounds();
-        match self {
-            Self::Rest | Self::Spinning { .. } => (low, high),
-            Self::Along { direction, motion } => {
-                let (back, on) = motion.reach();
-                let (back, on) = (*direction * back, *direction * on);
-                (low + back.min(on), high + back.max(on))
-            }
-            Self::Turning { about, .. } => {
-                let (_, farthest) = brick.distances(*about);
-                (*about - farthest, *about + farthest)
-            }
-        }
+        let (low, high) = self.frame().map_or_else(
+            || brick.bounds(),
+            |&Turning { about, .. }| {
+                let (_, farthest) = brick.distances(about);
+                (about - farthest, about + farthest)
+            },
+        );
+        let Some(Along { direction, motion }) = &self.along else { return (low, high) };
+        let (back, on) = motion.reach();
+        let (back, on) = (*direction * back, *direction * on);
+        (low + back.min(on), high + back.max(on))
     }
 
     pub(in crate::boundary) fn fingerprint(&self) -> Option<Fingerprint> {
-        let turning = |name: &str, about: DVec2, angular_velocity: f64| {
-            Fingerprint::of(name).number(about.x).number(about.y).number(angular_velocity)
+        let turning = self.turning.map(|Turning { about, angular_velocity, is_round }| {
+            let name = Fingerprint::of(if is_round { "Spinning" } else { "Turning" });
+            name.number(about.x).number(about.y).number(angular_velocity)
+        });
+        let Some(Along { direction, motion }) = &self.along else {
+            return Some(turning.unwrap_or(Fingerprint::of("Rest")));
         };
-        Some(match self {
-            Self::Rest => Fingerprint::of("Rest"),
-            Self::Along { direction, motion } => {
-                let along = Fingerprint::of("Along").number(direction.x).number(direction.y);
-                along.part(motion.fingerprint()?)
-            }
-            Self::Turning { about, angular_velocity } => turning("Turning", *about, *angular_velocity),
-            Self::Spinning { about, angular_velocity } => turning("Spinning", *about, *angular_velocity),
-        })
+        let along = Fingerprint::of("Along").number(direction.x).number(direction.y);
+        let along = along.part(motion.fingerprint()?);
+        Some(turning.map_or(along, |turning| along.part(turning)))
     }
 }
 

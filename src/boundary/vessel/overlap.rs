@@ -55,7 +55,7 @@ impl Vessel {
 
     /// Returns the nearest wall of a part, and the depth to which a disk reaches into it.
     fn depth(&self, placed: &Placed, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
-        let pose = placed.part.travel().pose(time + placed.phase);
+        let pose = placed.part.travel().pose(placed.phase.after(time));
         let (low, high) = placed.bounds;
         let depths = self.container.domain().images_of(low, high).filter_map(|image| {
             let (brick, distance) = placed.part.nearest(pose.inward(position - image))?;

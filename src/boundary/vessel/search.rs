@@ -6,7 +6,7 @@ use super::index::Entry;
 use super::{Placed, Vessel, Wall};
 use crate::Flight;
 use crate::boundary::brick::Path;
-use crate::boundary::part::Travel;
+use crate::boundary::part::{Travel, Turning};
 use crate::boundary::{Boundary, FirstTouch, Surface, Touch};
 
 /// Largest number of steps of a search, for all moving bricks near a flight together. The last brick may take
@@ -108,7 +108,7 @@ impl Vessel {
         let wall = &self.walls[brick];
         let placed = &self.parts[wall.part];
         let travel = placed.part.travel();
-        let pose = travel.pose(time + placed.phase);
+        let pose = travel.pose(placed.phase.after(time));
         let (low, high) = travel.bounds(&wall.brick);
         let images = self.container.domain().images_of(low, high);
         let sights = images.map(|image| (image, wall.brick.nearest(pose.inward(position - image))));
@@ -118,7 +118,7 @@ impl Vessel {
         };
         let normal = pose.direction_outward(nearest.normal);
         let contact = position - image - nearest.distance * normal;
-        let surface = placed.part.surface(normal, travel.velocity(contact, time + placed.phase));
+        let surface = placed.part.surface(normal, travel.velocity(contact, placed.phase.after(time)));
         surface.with_radius(wall.brick.radius_at(pose.inward(position - image)))
     }
 }
@@ -176,7 +176,7 @@ impl Search<'_> {
 
     /// Tells whether floating-point times are too coarse to tell where the part is.
     fn is_too_fast(&self, time: f64) -> bool {
-        let latest = time.abs() + self.placed.phase.abs();
+        let latest = time.abs() + self.placed.phase.size();
         let spacing = latest.next_up() - latest;
         self.placed.part.travel().period().is_some_and(|period| period < LEAST_PERIOD * spacing)
     }
@@ -185,14 +185,15 @@ impl Search<'_> {
     /// are, even where the circles on which they turn are near.
     fn is_out_of_reach(&self, time: f64) -> bool {
         let travel = self.placed.part.travel();
-        let Travel::Turning { about, angular_velocity } = travel else { return false };
+        let Some(Turning { about, angular_velocity, .. }) = travel.frame() else { return false };
+        let phase = self.placed.phase.after(time);
         let (low, high) = self.wall.brick.bounds();
-        let middle = travel.pose(time + self.placed.phase).outward(0.5 * (low + high));
+        let middle = travel.pose(phase).outward(0.5 * (low + high));
         let wait = self.until - time;
         let speed = self.flight.velocity(time).length()
             + self.flight.acceleration().length() * wait
-            + angular_velocity.abs() * middle.distance(*about);
-        let reach = 0.5 * (high - low).length() + 1.001 * self.flight.radius();
+            + angular_velocity.abs() * middle.distance(*about + travel.shift(phase));
+        let reach = 0.5 * (high - low).length() + 1.001 * self.flight.radius() + travel.stroke();
         self.flight.position(time).distance(middle) - reach > speed * wait
     }
 
