@@ -7,6 +7,10 @@ use crate::quantity::{finite, positive};
 /// rounded a few times.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
+/// Smallest ratio of the interval to the time. Rounding then moves a beat by a sixteenth of the interval at
+/// most.
+const COARSEST: f64 = 16.0 * f64::EPSILON;
+
 /// A clock for observers, with equally spaced times of samples.
 ///
 /// The beats of the clock are the multiples of the interval, counted from time 0 ([`Self::every`]) or from a
@@ -81,9 +85,13 @@ impl SampleTimes {
         self.interval
     }
 
-    /// Returns the upcoming beat; infinite once the interval is lost in rounding.
+    /// Returns the upcoming beat.
+    ///
+    /// It is NaN where times are too coarse for the interval, which ends a run with an error: samples would
+    /// be unevenly spaced there, or missing.
     pub fn upcoming(&self) -> f64 {
-        self.time_of(self.beat)
+        let beat = self.time_of(self.beat);
+        if self.interval < COARSEST * beat.abs() { f64::NAN } else { beat }
     }
 
     /// Advances to the first beat after this absolute time.
@@ -93,8 +101,8 @@ impl SampleTimes {
         // Each further attempt skips twice as many beats, so that the clock passes the time soon even where
         // rounding swallows single intervals.
         let mut more = 1_i64;
-        while self.beat < i64::MAX && self.upcoming() <= time {
-            let skipped = ((time - self.upcoming()) / self.interval).floor().max(0.0);
+        while self.beat < i64::MAX && self.time_of(self.beat) <= time {
+            let skipped = ((time - self.time_of(self.beat)) / self.interval).floor().max(0.0);
             self.beat = self.beat.saturating_add(more).saturating_add(skipped as i64);
             more = more.saturating_mul(2);
         }
@@ -110,7 +118,7 @@ impl SampleTimes {
         let rounding = ROUNDING * (time.abs() + self.interval);
         if !self.started || time < self.time_of(self.beat.saturating_sub(1)) - rounding {
             self.begin_anew(time, rounding);
-        } else if self.upcoming() < time - rounding {
+        } else if self.time_of(self.beat) < time - rounding {
             self.advance_past(time + rounding);
         }
         self.started = true;

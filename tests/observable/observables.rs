@@ -73,7 +73,25 @@ fn samples_come_at_multiples_of_their_interval() -> Outcome {
     assert!(series.times().is_empty() && series.values().is_empty());
     let mut lost = Series::new(CenterOfMass, SampleTimes::every(1e-300)?.starting_at(1.0)?);
     lost.on_sample(&Snapshot::new(1.0, &disks, DOMAIN, 0.0));
-    assert_eq!(lost.next_sample(), f64::INFINITY, "the interval is lost in rounding");
+    assert!(lost.next_sample().is_nan(), "the interval is lost in rounding");
+    Ok(())
+}
+
+/// A run whose samples would be missing or unevenly spaced ends with an error.
+#[test]
+fn times_too_coarse_for_samples_are_told() -> Outcome {
+    for (start, interval, fits) in
+        [(1e3, 1e-18, false), (1e15, 0.01, false), (1e15, 0.3, false), (1e15, 4.0, true)]
+    {
+        let disk = Disk::new(DVec2::splat(3.0), 0.5)?;
+        let container = Container::closed(10.0, 10.0)?;
+        let mut run = Simulation::builder(Elastic, container).disks([disk]).start_time(start).build()?;
+        let mut series = Series::new(CenterOfMass, SampleTimes::every(interval)?);
+        match run.run_until(start + 8.0, &mut series) {
+            Ok(_) => assert!(fits && series.times() == [start + 4.0, start + 8.0], "{start} {interval}"),
+            Err(error) => assert!(!fits && error.to_string().contains("lost in the rounding"), "{error}"),
+        }
+    }
     Ok(())
 }
 

@@ -120,7 +120,8 @@ fn clocks_far_out_do_not_hang() -> Outcome {
             for mut times in [SampleTimes::every(interval)?, SampleTimes::every(interval)?.starting_at(1.0)?]
             {
                 times.start_at(far);
-                assert!(!times.upcoming().is_nan());
+                let is_coarse = far.is_finite() && interval < far * f64::EPSILON;
+                assert!(times.upcoming().is_nan() >= is_coarse, "{interval} {far}");
                 times.advance_past(far);
                 assert!(!(far.is_finite() && times.upcoming() <= far), "{interval} {far} {times:?}");
             }

@@ -133,7 +133,8 @@ pub enum RunError {
     /// An observer asks for a sample at a time that is not a number, or that is not later than the last
     /// sample.
     #[error(
-        "an observer asks for its next sample at time {}, which is not after the last one, at time {}",
+        "an observer asks for its next sample at time {}, which is not after the last one, at time {}; \
+         its interval may be lost in the rounding of such times",
         Readable(*.next), Readable(*.time)
     )]
     SampleTime {
