@@ -54,6 +54,12 @@ pub(crate) struct Arguments {
     /// Inelasticity of all walls, normal and tangential; that of the disks unless given.
     #[arg(long, value_parser = non_negative)]
     pub(crate) wall_inelasticity: Option<f64>,
+    /// Inelasticity of the base along the normal; that of the walls unless given.
+    #[arg(long, value_parser = non_negative)]
+    pub(crate) base_inelasticity: Option<f64>,
+    /// Inelasticity of the base along the tangent; that of the walls unless given.
+    #[arg(long, value_parser = non_negative)]
+    pub(crate) base_tangential_inelasticity: Option<f64>,
     /// Base.
     #[arg(long, value_enum, default_value = "bi-parabolic")]
     pub(crate) base: Base,
@@ -108,9 +114,15 @@ impl Arguments {
             (self.gravity == 0.0 && self.open, "--gravity 0 --open: without gravity the box needs a lid"),
             (thermal && self.amplitude.is_some(), "--amplitude: a thermal base does not move"),
             (!thermal && self.temperature.is_some(), "--temperature: only --base thermal has one"),
+            (thermal && self.has_own_base(), "--base-inelasticity: a thermal base draws velocities anew"),
         ];
         let made = mistakes.into_iter().find(|(made, _)| *made);
         made.map_or(Ok(()), |(_, message)| Err(Failure::usage(message)))
+    }
+
+    /// Returns true if the base has an inelasticity that is not that of the walls.
+    pub(crate) fn has_own_base(&self) -> bool {
+        self.base_inelasticity.or(self.base_tangential_inelasticity).is_some()
     }
 
     /// Returns the length of the run, in oscillations.

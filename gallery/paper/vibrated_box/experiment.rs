@@ -71,6 +71,15 @@ fn container(arguments: &Arguments) -> Result<Container, Box<dyn Error>> {
     let amplitude = arguments.amplitude();
     let container = if arguments.open { Container::open(width)? } else { Container::closed(width, height)? };
     let container = if arguments.periodic { container.with_periodic_sides()? } else { container };
+    let container = if arguments.has_own_base() {
+        let [normal, tangential] = wall_inelasticities(arguments);
+        let normal = arguments.base_inelasticity.unwrap_or(normal);
+        let tangential = arguments.base_tangential_inelasticity.unwrap_or(tangential);
+        container
+            .with_rule(Wall::Floor, with_duration(arguments, wall_rule(arguments, normal, tangential)?)?)?
+    } else {
+        container
+    };
     Ok(match arguments.base {
         Base::BiParabolic => container.with_motion(Wall::Floor, BiParabolic::new(amplitude, omega)?)?,
         Base::Sinusoidal => container.with_motion(Wall::Floor, Sinusoidal::new(amplitude, omega)?)?,
@@ -81,17 +90,36 @@ fn container(arguments: &Arguments) -> Result<Container, Box<dyn Error>> {
 
 /// Returns one rule for collisions of disks, and one for those with walls.
 fn rule(arguments: &Arguments) -> Result<BoxedRule, ParameterError> {
-    let Arguments { inelasticity, friction, wall_inelasticity, wall_friction, .. } = *arguments;
+    let Arguments { inelasticity, friction, .. } = *arguments;
     let tangential = arguments.tangential_inelasticity.unwrap_or(inelasticity);
     let dynamic = arguments.dynamic_friction.unwrap_or(friction);
     let disks =
         Frictional::from_inelasticity(inelasticity, tangential, friction)?.with_dynamic_friction(dynamic)?;
-    let [normal, along] = [inelasticity, tangential].map(|disks| wall_inelasticity.unwrap_or(disks));
+    let [normal, tangential] = wall_inelasticities(arguments);
+    let walls = wall_rule(arguments, normal, tangential)?;
+    with_duration(arguments, RulesByKind::new(disks).with(Kind::DEFAULT, Kind::WALL, walls))
+}
+
+/// Returns the inelasticities of the walls, along the normal and along the tangent.
+fn wall_inelasticities(arguments: &Arguments) -> [f64; 2] {
+    let normal = arguments.inelasticity;
+    let tangential = arguments.tangential_inelasticity.unwrap_or(normal);
+    [normal, tangential].map(|disks| arguments.wall_inelasticity.unwrap_or(disks))
+}
+
+fn wall_rule(arguments: &Arguments, normal: f64, tangential: f64) -> Result<Frictional, ParameterError> {
+    let Arguments { friction, wall_friction, .. } = *arguments;
+    let dynamic = arguments.dynamic_friction.unwrap_or(friction);
     let [at_rest, sliding] = [friction, dynamic].map(|disks| wall_friction.unwrap_or(disks));
-    let walls = Frictional::from_inelasticity(normal, along, at_rest)?.with_dynamic_friction(sliding)?;
-    let rules = RulesByKind::new(disks).with(Kind::DEFAULT, Kind::WALL, walls);
+    Frictional::from_inelasticity(normal, tangential, at_rest)?.with_dynamic_friction(sliding)
+}
+
+fn with_duration(
+    arguments: &Arguments,
+    rule: impl CollisionRule + Send + Sync + 'static,
+) -> Result<BoxedRule, ParameterError> {
     let duration = arguments.contact_duration();
-    Ok(if duration > 0.0 { Box::new(ContactDuration::new(rules, duration)?) } else { Box::new(rules) })
+    Ok(if duration > 0.0 { Box::new(ContactDuration::new(rule, duration)?) } else { Box::new(rule) })
 }
 
 /// Returns a grid of about seven diameters a cell: fewer columns if the box is narrow, larger cells if it is
