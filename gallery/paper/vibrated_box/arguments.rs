@@ -104,6 +104,17 @@ pub(crate) enum Base {
     Thermal,
 }
 
+impl Base {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::BiParabolic => "bi-parabolic",
+            Self::Sinusoidal => "sinusoidal",
+            Self::Triangular => "triangular",
+            Self::Thermal => "thermal",
+        }
+    }
+}
+
 impl Arguments {
     /// Checks what no flag alone can tell.
     pub(crate) fn check(&self) -> Result<(), Failure> {
@@ -165,7 +176,7 @@ impl Display for Arguments {
         let Self { width, height, base, omega, gravity, inelasticity, friction, .. } = self;
         let top = if self.open { "open above".to_owned() } else { format!("{height} high") };
         let sides = if self.periodic { ", periodic sides" } else { "" };
-        write!(formatter, "box {width} wide, {top}{sides}; {base:?} base, ")?;
+        write!(formatter, "box {width} wide, {top}{sides}; {} base, ", base.name())?;
         match base {
             Base::Thermal => write!(formatter, "T₀ = {}", self.temperature())?,
             _ => write!(formatter, "A = {}, ω = {omega}", self.amplitude())?,
