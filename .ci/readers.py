@@ -118,7 +118,7 @@ def read_by_gsd():
             same(f"{place}: dimensions", read.configuration.dimensions, 2)
             same(f"{place}: width", read.configuration.box[0], in_single(frame["right"] - frame["left"]))
             same(f"{place}: time", read.log["time"], np.array([frame["time"]]))
-            same(f"{place}: gravity", read.log["gravity"], np.array([frame["gravity"]]))
+            same(f"{place}: gravity", read.log["gravity"], np.array([[0.0, -frame["gravity"]]]))
             same(f"{place}: center", read.log["center"], center.reshape(1, 2))
             same(f"{place}: ids", read.log["particles/id"], column(frame, "id"))
             same(f"{place}: kinds", particles.typeid, column(frame, "kind"))

@@ -27,4 +27,4 @@ pub use crate::trajectory::{ExtendedXyz, LammpsDump, Recorder};
 pub use crate::wall::{
     AccelerationBounds, BiParabolic, Fixed, Sawtooth, Sinusoidal, Triangular, WallMotion, WallState,
 };
-pub use crate::{Disk, Fingerprint, Flight, Kind, ParameterError};
+pub use crate::{Disk, Fingerprint, Flight, Gravity, Kind, ParameterError};

@@ -58,12 +58,11 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::boundary::{Boundary, Container};
 use crate::collision::{CollisionRule, Frictional};
-use crate::disk::bounded;
 use crate::instructions::Instructions;
 use crate::observable::{Observable, Partner, Snapshot};
 use crate::quantity::accept;
 use crate::scheduler::{BySize, EventScheduler};
-use crate::{Disk, ParameterError};
+use crate::{Disk, Gravity, ParameterError};
 use builder::fit;
 use cells::Cells;
 use lookahead::Lookahead;
@@ -268,8 +267,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         &self.boundary
     }
 
-    /// Returns gravity, which points down.
-    pub const fn gravity(&self) -> f64 {
+    /// Returns gravity.
+    pub const fn gravity(&self) -> Gravity {
         self.bodies.gravity
     }
 
@@ -283,14 +282,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Sets gravity from now on.
     ///
     /// # Errors
-    /// If gravity is not finite, or is above 1e60 in magnitude. If disks would fall so fast that times as
-    /// late as the present are too coarse. The simulation then stays as it was.
-    pub fn set_gravity(&mut self, gravity: f64) -> Result<(), ParameterError> {
-        bounded("gravity", gravity)?;
+    /// If gravity is not finite, or a component is above 1e60 in magnitude. If disks would fall so fast that
+    /// times as late as the present are too coarse. The simulation then stays as it was.
+    pub fn set_gravity(&mut self, gravity: impl Into<Gravity>) -> Result<(), ParameterError> {
+        let gravity = gravity.into().checked()?;
         let epoch_length = self.bodies.epoch_length_under(gravity);
         let is_coarse = Clock { epoch_length, ..self.clock }.coarseness(self.clock.now).is_some();
         let requirement = "so small that the run can still tell times apart";
-        accept(self.is_empty() || !is_coarse, "gravity", requirement, gravity)?;
+        accept(self.is_empty() || !is_coarse, "gravity", requirement, gravity.larger())?;
         self.shift_epoch(self.clock.exact_offset());
         self.bodies.set_gravity(gravity, self.clock.now);
         self.clock.epoch_length = self.bodies.epoch_length();

@@ -45,7 +45,7 @@ use crate::boundary::{Container, Thermal, Wall};
 use crate::collision::{CollisionRule, Contact, Elastic, collide};
 use crate::simulation::BuildError;
 use crate::wall::{BiParabolic, Sinusoidal};
-use crate::{Disk, Kind, Simulation, initial};
+use crate::{Disk, Gravity, Kind, Simulation, initial};
 
 /// Returns positive numbers, spread evenly over the decades from 10 to the power `low` to 10 to the power
 /// `high`.
@@ -210,8 +210,8 @@ pub struct SetUp {
     pub container: Container,
     /// The disks, with their velocities.
     pub disks: Vec<Disk>,
-    /// Gravity, pointing down.
-    pub gravity: f64,
+    /// Gravity.
+    pub gravity: Gravity,
     /// The absolute time of the start.
     pub start_time: f64,
     /// Seed of a thermal floor.
@@ -248,7 +248,8 @@ impl SetUp {
 /// });
 /// ```
 pub fn set_up() -> impl Strategy<Value = SetUp> {
-    let gravity = prop_oneof![Just(0.0), Just(0.05), Just(1.0)];
+    let gravity =
+        prop_oneof![Just(0.0.into()), Just(0.05.into()), Just(1.0.into()), Just(Gravity::tilted(1.0, 0.4))];
     let start_time = prop_oneof![3 => Just(0.0), 1 => Just(-100.3), 1 => Just(1e7)];
     (container(), 0..30_usize, any::<bool>(), gravity, start_time, any::<u64>()).prop_filter_map(
         "the disks do not fit",

@@ -118,8 +118,11 @@ impl Random {
         // between platforms.
         let direction = DVec2::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0)).normalize_or(DVec2::X);
         let pull = trial.speed() * trial.speed() / trial.length();
-        let gravity = [0.0, 0.5 * pull, 4.0 * pull, -pull][self.between(0.0, 4.0) as usize];
-        let acceleration = DVec2::new(0.0, -gravity);
+        let choice = self.between(0.0, 4.0);
+        let gravity = [0.0, 0.5 * pull, 4.0 * pull, -pull][choice as usize];
+        // A third of the pulls are not vertical.
+        let down = if choice.fract() < 1.0 / 3.0 { DVec2::new(0.6, -0.8) } else { DVec2::NEG_Y };
+        let acceleration = gravity * down;
         Ok((origin, Flight::new(time, position, speed * direction, acceleration, trial.radius())))
     }
 

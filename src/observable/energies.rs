@@ -12,7 +12,7 @@ pub struct EnergyPerDisk {
     pub translational: f64,
     /// Rotational energy, ⟨½ I ω²⟩.
     pub rotational: f64,
-    /// Potential energy, ⟨m g y⟩, which is zero at height 0.
+    /// Potential energy, ⟨−m **g**·**r**⟩, which is zero at the origin, with unwrapped places.
     pub potential: f64,
 }
 
@@ -53,9 +53,14 @@ impl Observable for Energies {
         EnergyPerDisk {
             translational: snapshot.mean(Disk::translational_energy),
             rotational: snapshot.mean(Disk::rotational_energy),
-            potential: snapshot.mean(|disk| disk.mass() * snapshot.gravity() * disk.position().y),
+            potential: snapshot.mean(|disk| potential(snapshot, disk)),
         }
     }
+}
+
+fn potential(snapshot: &Snapshot<'_>, disk: &Disk) -> f64 {
+    let (gravity, place) = (snapshot.gravity(), snapshot.domain().unwrapped(disk));
+    disk.mass() * gravity.downward() * place.y - disk.mass() * gravity.rightward() * place.x
 }
 
 impl Tabular for Energies {

@@ -1,5 +1,6 @@
 //! Moments: the beginning and the end of a run.
 
+use crate::Gravity;
 use crate::boundary::Domain;
 
 /// A moment at which a run begins or ends, and the system that runs.
@@ -20,15 +21,21 @@ pub struct Moment {
     disk_count: usize,
     wall_count: usize,
     domain: Domain,
-    gravity: f64,
+    gravity: Gravity,
 }
 
 impl Moment {
     /// Creates a moment of a run with these numbers of disks and walls.
     ///
     /// The engine creates moments, and tests may do so.
-    pub const fn new(time: f64, disk_count: usize, wall_count: usize, domain: Domain, gravity: f64) -> Self {
-        Self { time, disk_count, wall_count, domain, gravity }
+    pub fn new(
+        time: f64,
+        disk_count: usize,
+        wall_count: usize,
+        domain: Domain,
+        gravity: impl Into<Gravity>,
+    ) -> Self {
+        Self { time, disk_count, wall_count, domain, gravity: gravity.into() }
     }
 
     /// Returns the absolute time.
@@ -53,8 +60,8 @@ impl Moment {
         self.domain
     }
 
-    /// Returns gravity, which points down.
-    pub const fn gravity(&self) -> f64 {
+    /// Returns gravity.
+    pub const fn gravity(&self) -> Gravity {
         self.gravity
     }
 }

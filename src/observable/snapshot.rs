@@ -4,8 +4,8 @@ use std::fmt;
 
 use glam::DVec2;
 
-use crate::Disk;
 use crate::boundary::{Boundary, Domain};
+use crate::{Disk, Gravity};
 
 /// The disks at one time, as copies.
 ///
@@ -15,7 +15,7 @@ pub struct Snapshot<'a> {
     time: f64,
     disks: &'a [Disk],
     domain: Domain,
-    gravity: f64,
+    gravity: Gravity,
     walls: Option<Walls<'a>>,
 }
 
@@ -36,8 +36,8 @@ impl<'a> Snapshot<'a> {
     /// Creates a snapshot of `disks` at an absolute time.
     ///
     /// The engine creates snapshots, and tests may do so.
-    pub const fn new(time: f64, disks: &'a [Disk], domain: Domain, gravity: f64) -> Self {
-        Self { time, disks, domain, gravity, walls: None }
+    pub fn new(time: f64, disks: &'a [Disk], domain: Domain, gravity: impl Into<Gravity>) -> Self {
+        Self { time, disks, domain, gravity: gravity.into(), walls: None }
     }
 
     /// Returns the same snapshot with the walls of a boundary, for which the snapshot is at this time after
@@ -61,8 +61,8 @@ impl<'a> Snapshot<'a> {
         self.domain
     }
 
-    /// Returns gravity, which points down.
-    pub const fn gravity(&self) -> f64 {
+    /// Returns gravity.
+    pub const fn gravity(&self) -> Gravity {
         self.gravity
     }
 

@@ -294,8 +294,8 @@ impl Observer for TransportCoefficients {
         let periods = moment.domain().periods();
         let periodic =
             accept(periods.min_element() > 0.0, "period of the domain", "positive", periods.min_element());
-        let weightless =
-            accept(moment.gravity() == 0.0, "gravity", "0 for transport coefficients", moment.gravity());
+        let gravity = moment.gravity().larger();
+        let weightless = accept(gravity == 0.0, "gravity", "0 for transport coefficients", gravity);
         self.fault = periodic.and(weightless).err();
         if self.stretch.begin(moment.time()) | (self.domain != Some(moment.domain())) {
             self.begin_anew();

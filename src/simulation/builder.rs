@@ -12,11 +12,11 @@ use super::lookahead::Lookahead;
 use super::state::{Bodies, Clock};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
-use crate::disk::{MOST_DISKS, TOUCHING, bounded};
+use crate::disk::{MOST_DISKS, TOUCHING};
 use crate::instructions::Instructions;
 use crate::quantity::finite;
 use crate::scheduler::{BySize, EventScheduler};
-use crate::{Disk, ParameterError};
+use crate::{Disk, Gravity, ParameterError};
 
 /// Smallest speed but 0. The squares of slower disks would vanish, and with them their collisions.
 const SLOWEST: f64 = 1e-100;
@@ -32,7 +32,7 @@ pub struct SimulationBuilder<R, B, S = BySize> {
     boundary: B,
     scheduler: S,
     disks: Vec<Disk>,
-    gravity: f64,
+    gravity: Gravity,
     seed: u64,
     start_time: f64,
 }
@@ -64,7 +64,7 @@ impl<R: CollisionRule, B: Boundary> Simulation<R, B, BySize> {
             boundary,
             scheduler: BySize::new(),
             disks: Vec::new(),
-            gravity: 0.0,
+            gravity: Gravity::NONE,
             seed: 0,
             start_time: 0.0,
         }
@@ -78,9 +78,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         self
     }
 
-    /// Sets gravity, which points down, or up if it is negative; 0 unless given.
-    pub const fn gravity(mut self, gravity: f64) -> Self {
-        self.gravity = gravity;
+    /// Sets gravity; 0 unless given.
+    ///
+    /// A number points down, or up if it is negative. A vector is the acceleration, and
+    /// [`Gravity::tilted`] that on a slope.
+    pub fn gravity(mut self, gravity: impl Into<Gravity>) -> Self {
+        self.gravity = gravity.into();
         self
     }
 
@@ -115,14 +118,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
     /// disks, or a disk is outside, overlaps a wall or another disk, or just fills a hollow of a wall; the
     /// error names the disk.
     pub fn build(self) -> Result<Simulation<R, B, S>, BuildError> {
-        bounded("gravity", self.gravity)?;
+        let gravity = self.gravity.checked()?;
         finite("start time", self.start_time)?;
         bounded_count(self.disks.len())?;
         check_speeds(&self.disks)?;
         let mut boundary = self.boundary;
         boundary.set_time_origin(self.start_time);
         let (wall_count, cells) = fit(&boundary, &self.disks, 0.0)?;
-        let bodies = Bodies::new(&self.disks, self.gravity);
+        let bodies = Bodies::new(&self.disks, gravity);
         let clock = Clock::new(self.start_time, bodies.epoch_length());
         if !self.disks.is_empty() {
             check_epoch(&clock, 0.0)?;

@@ -11,6 +11,7 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use glam::DVec2;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use thiserror::Error;
@@ -28,7 +29,7 @@ use crate::scheduler::EventScheduler;
 use crate::{Disk, Fingerprint};
 
 /// The mark of a checkpoint, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 6 };
+const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 7 };
 
 /// Everything on which the future of a run depends, except its rule and its boundary.
 ///
@@ -72,7 +73,8 @@ struct Saved {
     /// Radius, mass, inertia and kind of each disk, as disks at rest at the origin; a single disk if all are
     /// alike.
     models: Vec<Disk>,
-    gravity: f64,
+    /// The acceleration of disks in free flight.
+    gravity: DVec2,
     trajectories: Vec<Trajectory>,
     spins: Vec<Spin>,
     /// Numbers of periods that each disk has passed; empty if none has passed any.
@@ -284,7 +286,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             boundary: self.boundary.fingerprint(),
             domain: self.boundary.domain(),
             models: self.bodies.models(),
-            gravity: self.bodies.gravity,
+            gravity: self.bodies.gravity.acceleration(),
             trajectories: particles.iter().map(|particle| particle.trajectory).collect(),
             spins: self.bodies.spins.clone(),
             images: self.bodies.images().to_vec(),

@@ -3,8 +3,6 @@
 
 use std::hint::select_unpredictable;
 
-use glam::DVec2;
-
 use super::Simulation;
 use super::prediction::{LANES, cell_exit, earliest_collision};
 use super::state::{Earliest, Exit, Forecast};
@@ -145,9 +143,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline]
     pub(super) fn flight(&self, disk: usize) -> Flight {
         let now = self.clock.now;
-        let acceleration = DVec2::new(0.0, -self.bodies.gravity);
         let (position, velocity) = (self.bodies.position(disk, now), self.bodies.velocity(disk, now));
-        Flight::new(now, position, velocity, acceleration, self.bodies.radius(disk))
+        Flight::new(now, position, velocity, self.bodies.gravity.acceleration(), self.bodies.radius(disk))
     }
 
     #[inline]

@@ -196,11 +196,12 @@ pub(super) fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64)
     let distance = if rightward { region.max.x - position.x } else { position.x - region.min.x };
     let sideways = distance / velocity.x.abs();
     let (above, below) = (region.max.y - position.y, position.y - region.min.y);
-    let (vertical, up) = if bodies.gravity >= 0.0 {
-        vertical_exit(above, below, velocity.y, bodies.gravity)
+    let (vertical, up) = exit_under_pull(above, below, velocity.y, bodies.gravity.downward());
+    let (sideways, rightward) = if bodies.gravity.rightward() == 0.0 {
+        (sideways, rightward)
     } else {
-        let (wait, down) = vertical_exit(below, above, -velocity.y, -bodies.gravity);
-        (wait, !down)
+        let (left, right) = (position.x - region.min.x, region.max.x - position.x);
+        exit_sideways(left, right, velocity.x, bodies.gravity.rightward())
     };
     // For a disk at rest that reaches no edge, the result is 0/0 or inf/inf, which means never.
     let sideways = if sideways.is_nan() { f64::INFINITY } else { sideways };
@@ -208,6 +209,25 @@ pub(super) fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64)
     let wait = if level { vertical } else { sideways }.max(0.0);
     let exit = Exit::EDGES[usize::from(level)][usize::from((level & up) | (!level & rightward))];
     (now + wait, exit)
+}
+
+/// Returns the time until a disk leaves its column, and whether it leaves to the right, for gravity to the
+/// right. It is not inlined, since gravity is vertical in most runs.
+#[inline(never)]
+fn exit_sideways(left: f64, right: f64, velocity: f64, gravity: f64) -> (f64, bool) {
+    let (wait, leftward) = exit_under_pull(left, right, -velocity, gravity);
+    (wait, !leftward)
+}
+
+/// Returns the time until a disk leaves its row, and whether it leaves through the edge above, for gravity
+/// that pulls down, or up if it is negative.
+#[inline(always)]
+fn exit_under_pull(above: f64, below: f64, velocity: f64, gravity: f64) -> (f64, bool) {
+    if gravity >= 0.0 {
+        return vertical_exit(above, below, velocity, gravity);
+    }
+    let (wait, down) = vertical_exit(below, above, -velocity, -gravity);
+    (wait, !down)
 }
 
 /// Returns the time until a disk leaves its row, and whether it leaves through the edge above, for gravity

@@ -12,9 +12,9 @@ use super::seed::derived_seed;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::observable::{Observer, Snapshot};
-use crate::quantity::{finite, positive};
+use crate::quantity::positive;
 use crate::simulation::Checkpoint;
-use crate::{Disk, Fingerprint, Simulation};
+use crate::{Disk, Fingerprint, Gravity, Simulation};
 use columns::{Column, Table};
 use record::Record;
 
@@ -143,9 +143,9 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
     /// If they do not fit.
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError>;
 
-    /// Returns gravity, which points down.
-    fn gravity(&self) -> f64 {
-        0.0
+    /// Returns gravity; a number turns into it by `into`, and points down.
+    fn gravity(&self) -> Gravity {
+        Gravity::NONE
     }
 
     /// Returns the duration of a cycle, the unit of time of a [`Protocol`](super::Protocol), such as the
@@ -218,7 +218,7 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         self.rule()?;
         self.boundary()?;
         self.observer()?;
-        finite("gravity", self.gravity())?;
+        self.gravity().checked()?;
         positive("cycle", self.cycle())?;
         Ok(())
     }

@@ -23,7 +23,7 @@ use crate::collision::{ContactDuration, Elastic, Frictional};
 use crate::observable::Snapshot;
 use crate::quantity::accept;
 use crate::simulation::Checkpoint;
-use crate::{Disk, Fingerprint, ParameterError, initial};
+use crate::{Disk, Fingerprint, Gravity, ParameterError, initial};
 
 /// Radius of the disks: their diameter and mass are the units.
 const RADIUS: f64 = 0.5;
@@ -264,8 +264,8 @@ impl Experiment for VibratedBox {
         Ok(initial::with_maxwellian_velocities(disks, self.initial_temperature, seed)?)
     }
 
-    fn gravity(&self) -> f64 {
-        self.gravity
+    fn gravity(&self) -> Gravity {
+        self.gravity.into()
     }
 
     /// Returns a period of the base, or 1 if it does not oscillate.

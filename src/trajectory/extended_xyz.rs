@@ -7,10 +7,12 @@ pub use read::XyzFrames;
 
 use std::io::{self, BufRead, Write};
 
+use glam::DVec2;
+
 use super::format::{Format, Frame, no_frame, skip_lines, whole_line};
-use crate::Disk;
 use crate::boundary::Domain;
 use crate::disk::numbered;
+use crate::{Disk, Gravity};
 
 /// The extended XYZ format: a number of disks, a line of keys, and a line for each disk.
 ///
@@ -25,7 +27,8 @@ use crate::disk::numbered;
 /// | `unwrapped` | position from [`Domain::unwrapped`] |
 ///
 /// The keys are `Lattice`, `Origin` and `pbc`, which OVITO knows, and `Time`, `Gravity` and `Domain`
-/// (left, right, bottom and top, where an open top is `inf`). The lattice of an open box ends above the
+/// (left, right, bottom and top, where an open top is `inf`). Gravity is a number that points down, or the two
+/// components of the acceleration. The lattice of an open box ends above the
 /// highest disk.
 ///
 /// [`XyzFrames`] reads the disks back to the same bits.
@@ -64,8 +67,9 @@ impl Format for ExtendedXyz {
         write!(out, "Lattice=\"{:?} 0.0 0.0 0.0 {height:?} 0.0 0.0 0.0 {depth:?}\" ", domain.width())?;
         write!(out, "Origin=\"{left:?} {bottom:?} {:?}\" ", -0.5 * depth)?;
         write!(out, "pbc=\"{} {} F\" ", letter(domain.periodic_sides), letter(domain.periodic_ends))?;
-        write!(out, "Properties={PROPERTIES} Time={:?} Gravity={:?} ", snapshot.time(), snapshot.gravity())?;
-        writeln!(out, "Domain=\"{left:?} {right:?} {bottom:?} {top:?}\"")?;
+        write!(out, "Properties={PROPERTIES} Time={:?} Gravity=", snapshot.time())?;
+        write_gravity(out, snapshot.gravity())?;
+        writeln!(out, " Domain=\"{left:?} {right:?} {bottom:?} {top:?}\"")?;
         numbered(disks).try_for_each(|(id, disk)| write_disk(out, id, disk, &domain))
     }
 
@@ -76,6 +80,15 @@ impl Format for ExtendedXyz {
         let time = header::time(&keys).ok_or_else(|| no_frame("the key `Time` and a number", &keys))?;
         Ok(skip_lines(input, count)?.then_some(time))
     }
+}
+
+/// Writes the number of gravity that points down, or else the acceleration.
+fn write_gravity(out: &mut dyn Write, gravity: Gravity) -> io::Result<()> {
+    if gravity.rightward() == 0.0 {
+        return write!(out, "{:?}", gravity.downward());
+    }
+    let DVec2 { x, y } = gravity.acceleration();
+    write!(out, "\"{x:?} {y:?}\"")
 }
 
 fn write_disk(out: &mut dyn Write, id: u64, disk: &Disk, domain: &Domain) -> io::Result<()> {

@@ -57,7 +57,7 @@ const CHUNKS: [(&str, u8, u32, Rows); 18] = [
     ("particles/image", I32, 3, Rows::Disks),
     ("log/particles/id", U64, 1, Rows::Disks),
     ("log/time", F64, 1, Rows::One),
-    ("log/gravity", F64, 1, Rows::One),
+    ("log/gravity", F64, 2, Rows::One),
     ("log/center", F64, 2, Rows::One),
 ];
 
@@ -118,7 +118,8 @@ impl Format for HoomdSchema {
             [right, up, 0].iter().try_for_each(|image| out.write_all(&image.to_le_bytes()))?;
         }
         numbered(disks).try_for_each(|(id, _)| out.write_all(&id.to_le_bytes()))?;
-        let log = [snapshot.time(), snapshot.gravity(), center[0], center[1]];
+        let gravity = snapshot.gravity().acceleration();
+        let log = [snapshot.time(), gravity.x, gravity.y, center[0], center[1]];
         log.iter().try_for_each(|number| out.write_all(&number.to_le_bytes()))
     }
 }

@@ -1,8 +1,8 @@
 //! The state that a file holds.
 
-use crate::Disk;
 use crate::boundary::Domain;
 use crate::observable::Snapshot;
+use crate::{Disk, Gravity};
 
 /// The disks of a file, with the time, gravity and the box if the file has them.
 ///
@@ -26,7 +26,7 @@ pub struct State {
     pub(super) disks: Vec<Disk>,
     pub(super) domain: Option<Domain>,
     pub(super) time: Option<f64>,
-    pub(super) gravity: Option<f64>,
+    pub(super) gravity: Option<Gravity>,
 }
 
 impl State {
@@ -60,8 +60,8 @@ impl State {
         self.time
     }
 
-    /// Returns gravity, which points down, if the file has it.
-    pub const fn gravity(&self) -> Option<f64> {
+    /// Returns gravity, if the file has it.
+    pub const fn gravity(&self) -> Option<Gravity> {
         self.gravity
     }
 }

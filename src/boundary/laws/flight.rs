@@ -80,19 +80,26 @@ fn longest<B: Boundary + ?Sized>(trial: &Trial<'_, B>, flight: &Flight) -> f64 {
     let longest = LONGEST * trial.length() / trial.speed();
     let (domain, start) = (trial.domain(), flight.time());
     let (place, velocity) = (flight.position(start), flight.velocity(start));
+    let pull = flight.acceleration();
     let mut longest = longest;
     if domain.periodic_sides {
-        let side = if velocity.x > 0.0 { domain.right - place.x } else { place.x - domain.left };
-        longest = longest.min((side / velocity.x.abs()).max(0.0));
+        let ahead = if velocity.x > 0.0 { domain.right - place.x } else { place.x - domain.left };
+        let nearer = (domain.right - place.x).min(place.x - domain.left);
+        let way = if pull.x == 0.0 { ahead } else { nearer };
+        longest = longest.min(shortest_wait(way, velocity.x, pull.x));
     }
     if domain.periodic_ends {
-        // A flight of this duration cannot leave the domain, in whichever direction it turns: |v| t + |a| t²
-        // / 2 is at most the distance to the nearer end.
-        let way = (domain.top - place.y).min(place.y - domain.bottom).max(0.0);
-        let (speed, pull) = (velocity.y.abs(), flight.acceleration().y.abs());
-        longest = longest.min(2.0 * way / (speed + (speed * speed + 2.0 * pull * way).sqrt()));
+        let way = (domain.top - place.y).min(place.y - domain.bottom);
+        longest = longest.min(shortest_wait(way, velocity.y, pull.y));
     }
     longest
+}
+
+/// Returns the duration of a flight that goes no further than `way`, in whichever direction it turns:
+/// |v| t + |a| t² / 2 is at most this way.
+fn shortest_wait(way: f64, velocity: f64, pull: f64) -> f64 {
+    let (way, speed) = (way.max(0.0), velocity.abs());
+    2.0 * way / (speed + (speed * speed + 2.0 * pull.abs() * way).sqrt())
 }
 
 fn check_touch<B: Boundary + ?Sized>(

@@ -2,6 +2,7 @@
 
 use super::validation::{check_numbers, check_places, grids};
 use super::{Checkpoint, CheckpointError, Saved};
+use crate::Gravity;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::instructions::Instructions;
@@ -143,5 +144,6 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
 fn bodies_of(saved: &Saved) -> Bodies {
     let Saved { models, gravity, trajectories, forecasts, spins, images, identities, .. } = saved;
     let (spins, images, identities) = (spins.clone(), images.clone(), identities.clone());
-    Bodies::restored(models, *gravity, trajectories, forecasts, spins, images, identities)
+    let gravity = Gravity::from(*gravity);
+    Bodies::restored(models, gravity, trajectories, forecasts, spins, images, identities)
 }

@@ -36,9 +36,9 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     check([0, count].contains(&saved.images.len()), "the number of images is not the number of disks")?;
     check(saved.identities.suits(count), "its ids are not those of so many disks")?;
     check([1, count].contains(&saved.models.len()), "its disks have too many models, or none")?;
-    let times = [saved.origin, saved.now, saved.epoch_length, saved.gravity];
+    let times = [saved.origin, saved.now, saved.epoch_length];
     check(times.iter().all(|time| time.is_finite()), "a time is not finite")?;
-    check(saved.gravity.abs() <= LARGEST, "its gravity is beyond all bounds")?;
+    check(is_bounded(saved.gravity), "its gravity is beyond all bounds")?;
     check(is_epoch_length(saved.epoch_length) && saved.now >= 0.0, "its epoch is out of order")?;
     check(saved.trajectories.iter().all(is_trajectory), "a trajectory is beyond all bounds")?;
     check(saved.spins.iter().all(|spin| is_spin(spin, saved.now)), "a rotation is beyond all bounds")?;

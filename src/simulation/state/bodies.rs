@@ -11,8 +11,8 @@ use glam::DVec2;
 use super::forecast::Forecast;
 use super::identities::Identities;
 use super::properties::Properties;
-use crate::Disk;
 use crate::collision::{Body, Material};
+use crate::{Disk, Gravity};
 
 /// A straight trajectory in the free-fall frame. One row is one 32-byte load.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,7 +78,7 @@ impl Particle {
 pub(in crate::simulation) struct Bodies {
     pub(in crate::simulation) particles: Vec<Particle>,
     pub(in crate::simulation) spins: Vec<Spin>,
-    pub(in crate::simulation) gravity: f64,
+    pub(in crate::simulation) gravity: Gravity,
     pub(super) properties: Properties,
     /// Numbers of periods that each disk has passed; empty as long as none has passed any.
     pub(super) images: Vec<[i32; 2]>,
@@ -88,7 +88,7 @@ pub(in crate::simulation) struct Bodies {
 }
 
 impl Bodies {
-    pub(in crate::simulation) fn new(disks: &[Disk], gravity: f64) -> Self {
+    pub(in crate::simulation) fn new(disks: &[Disk], gravity: Gravity) -> Self {
         let trajectory = |disk: &Disk| Trajectory { position: disk.position(), velocity: disk.velocity() };
         let particles = disks.iter().map(trajectory).map(Particle::new).collect();
         let spins = disks.iter().map(Spin::of).collect();
@@ -96,7 +96,6 @@ impl Bodies {
         let images = if has_passed { disks.iter().map(Disk::image).collect() } else { Vec::new() };
         let properties = Properties::of(disks);
         let typical_diameter = properties.typical_diameter();
-        let gravity = unsigned_zero(gravity);
         let identities = Identities::new(disks);
         Self { particles, spins, gravity, properties, images, typical_diameter, identities }
     }
@@ -105,7 +104,7 @@ impl Bodies {
     #[cfg(feature = "serde")]
     pub(in crate::simulation) fn restored(
         models: &[Disk],
-        gravity: f64,
+        gravity: Gravity,
         trajectories: &[Trajectory],
         forecasts: &[Forecast],
         spins: Vec<Spin>,
@@ -116,7 +115,6 @@ impl Bodies {
         let particles = trajectories.iter().zip(forecasts).map(particle).collect();
         let properties = Properties::of(models);
         let typical_diameter = properties.typical_diameter();
-        let gravity = unsigned_zero(gravity);
         Self { particles, spins, gravity, properties, images, typical_diameter, identities }
     }
 
@@ -176,8 +174,8 @@ impl Bodies {
     /// Returns the displacement and velocity that gravity has added by this time offset.
     #[inline]
     pub(in crate::simulation) fn fall(&self, offset: f64) -> (DVec2, DVec2) {
-        let velocity = -self.gravity * offset;
-        (DVec2::new(0.0, 0.5 * velocity * offset), DVec2::new(0.0, velocity))
+        let velocity = self.gravity.acceleration() * offset;
+        (0.5 * velocity * offset, velocity)
     }
 
     /// Returns the position in the frame of the container.
@@ -282,19 +280,16 @@ impl Bodies {
     }
 
     /// Sets gravity to another value from this offset on. The motion at that time stays as it is.
-    pub(in crate::simulation) fn set_gravity(&mut self, gravity: f64, offset: f64) {
-        let gained = (gravity - self.gravity) * offset;
+    pub(in crate::simulation) fn set_gravity(&mut self, gravity: Gravity, offset: f64) {
+        let gained = (gravity.downward() - self.gravity.downward()) * offset;
+        let pushed = (gravity.rightward() - self.gravity.rightward()) * offset;
         // The new flight leads to the same place and velocity under the new gravity.
         for particle in &mut self.particles {
             particle.trajectory.velocity.y += gained;
             particle.trajectory.position.y -= 0.5 * gained * offset;
+            particle.trajectory.velocity.x -= pushed;
+            particle.trajectory.position.x += 0.5 * pushed * offset;
         }
-        self.gravity = unsigned_zero(gravity);
+        self.gravity = gravity;
     }
-}
-
-/// Returns the same number, with 0 for −0. The exit from a cell divides by gravity, and the sign of the
-/// infinity decides whether a disk that rises ever comes back.
-fn unsigned_zero(gravity: f64) -> f64 {
-    gravity + 0.0
 }

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::bodies::Bodies;
+use crate::Gravity;
 
 /// Number of diameters that a typical disk goes, or falls, in an epoch.
 const DIAMETERS: f64 = 64.0;
@@ -23,7 +24,7 @@ impl Bodies {
     }
 
     /// Returns the length of an epoch under another gravity.
-    pub(in crate::simulation) fn epoch_length_under(&mut self, gravity: f64) -> f64 {
+    pub(in crate::simulation) fn epoch_length_under(&mut self, gravity: Gravity) -> f64 {
         let own = std::mem::replace(&mut self.gravity, gravity);
         let length = self.epoch_length();
         self.gravity = own;
@@ -49,7 +50,7 @@ impl Bodies {
     /// rounding.
     fn epoch_length_at(&self, speed: f64) -> f64 {
         let way = DIAMETERS * self.typical_diameter;
-        let length = way / (speed + (self.gravity.abs() * way).sqrt());
+        let length = way / (speed + (self.gravity.strength() * way).sqrt());
         // The length is NaN without disks. It is infinite if all disks are at rest without gravity; no search
         // for a wall then needs a horizon.
         if length > 0.0 { power_of_two_below(length) } else { 1.0 }

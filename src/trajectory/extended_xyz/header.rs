@@ -2,6 +2,9 @@
 
 use std::collections::HashMap;
 
+use glam::DVec2;
+
+use crate::Gravity;
 use crate::boundary::Domain;
 use crate::trajectory::entry::{Columns, Field};
 use crate::trajectory::errors::ReadError;
@@ -11,7 +14,7 @@ use crate::trajectory::lines::{checked_box, finite, number};
 pub(super) struct Header {
     pub(super) columns: Columns,
     pub(super) time: Option<f64>,
-    pub(super) gravity: Option<f64>,
+    pub(super) gravity: Option<Gravity>,
     pub(super) domain: Option<Domain>,
 }
 
@@ -27,10 +30,22 @@ impl Header {
         Ok(Self {
             columns: Columns::new(fields(properties, line)?, line)?,
             time: one("Time")?,
-            gravity: one("Gravity")?,
+            gravity: keys.value("Gravity").map(|value| gravity(value, line)).transpose()?,
             domain: domain(&keys, line)?,
         })
     }
+}
+
+/// Reads gravity: a number that points down, or the acceleration.
+fn gravity(value: &str, line: usize) -> Result<Gravity, ReadError> {
+    if !value.contains(' ') {
+        return Ok(finite("Gravity", value, line)?.into());
+    }
+    let [x, y] = numbers("Gravity", value, line)?;
+    let is_finite = x.is_finite() && y.is_finite();
+    is_finite
+        .then_some(DVec2::new(x, y).into())
+        .ok_or_else(|| ReadError::unexpected(line, "Gravity", "finite", value))
 }
 
 /// The keys of a frame, each once, with their values without quotes.

@@ -1,0 +1,90 @@
+//! Gravity, the constant acceleration of all disks in free flight.
+
+use glam::DVec2;
+
+use crate::ParameterError;
+use crate::disk::bounded;
+
+/// Gravity: the constant acceleration of all disks in free flight.
+///
+/// A number is gravity that points down, or up if it is negative; a vector is the acceleration itself. Both
+/// turn into gravity by themselves, wherever a function asks for it.
+///
+/// ```
+/// use granular_edmd::Gravity;
+/// use granular_edmd::glam::DVec2;
+///
+/// assert_eq!(Gravity::from(2.0).acceleration(), DVec2::new(0.0, -2.0));
+/// assert_eq!(Gravity::from(DVec2::new(0.3, -0.4)).downward(), 0.4);
+/// // A chute that descends to the right by 30 degrees.
+/// let slope = Gravity::tilted(1.0, 30_f64.to_radians());
+/// assert!((slope.rightward() - 0.5).abs() < 1e-15);
+/// ```
+///
+/// Each simulation checks its gravity, when it is built and in
+/// [`set_gravity`](crate::Simulation::set_gravity).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Gravity {
+    rightward: f64,
+    downward: f64,
+}
+
+impl Gravity {
+    /// No gravity.
+    pub const NONE: Self = Self { rightward: 0.0, downward: 0.0 };
+
+    /// Returns gravity of this strength in a box that is turned clockwise by `angle`, in radians: the floor
+    /// descends to the right.
+    pub fn tilted(strength: f64, angle: f64) -> Self {
+        Self { rightward: strength * libm::sin(angle), downward: strength * libm::cos(angle) }
+    }
+
+    /// Returns the component that points to the right.
+    #[inline]
+    pub const fn rightward(self) -> f64 {
+        self.rightward
+    }
+
+    /// Returns the component that points down.
+    #[inline]
+    pub const fn downward(self) -> f64 {
+        self.downward
+    }
+
+    /// Returns the acceleration of a disk in free flight.
+    #[inline]
+    pub const fn acceleration(self) -> DVec2 {
+        DVec2::new(self.rightward, -self.downward)
+    }
+
+    /// Returns the strength, which is not negative.
+    pub fn strength(self) -> f64 {
+        libm::hypot(self.rightward, self.downward)
+    }
+
+    /// Returns the same gravity, if both components are finite and at most 1e60 in magnitude, with 0 for −0.
+    ///
+    /// The exit from a cell divides by gravity, and the sign of the infinity decides whether a disk that
+    /// rises ever comes back.
+    pub(crate) fn checked(self) -> Result<Self, ParameterError> {
+        let rightward = bounded("gravity to the right", self.rightward)?;
+        Ok(Self { rightward: rightward + 0.0, downward: bounded("gravity", self.downward)? + 0.0 })
+    }
+
+    /// Returns the larger component, for errors.
+    pub(crate) fn larger(self) -> f64 {
+        if self.rightward.abs() > self.downward.abs() { self.rightward } else { self.downward }
+    }
+}
+
+impl From<f64> for Gravity {
+    fn from(downward: f64) -> Self {
+        Self { rightward: 0.0, downward }
+    }
+}
+
+impl From<DVec2> for Gravity {
+    fn from(acceleration: DVec2) -> Self {
+        Self { rightward: acceleration.x, downward: -acceleration.y }
+    }
+}
