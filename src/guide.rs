@@ -16,6 +16,10 @@ pub mod choose_a_rule {}
 #[doc = include_str!("../docs/guide/shake_it.md")]
 pub mod shake_it {}
 
+#[doc(alias("chute", "inclined plane", "thermostat", "DSMC", "homogeneous cooling state"))]
+#[doc = include_str!("../docs/guide/gases.md")]
+pub mod gases {}
+
 #[doc(alias("polydisperse", "bidisperse", "initial condition", "packing fraction"))]
 #[doc = include_str!("../docs/guide/fill_it.md")]
 pub mod fill_it {}

@@ -199,7 +199,7 @@ fn short_while(disks: &[Disk], gravity: f64) -> f64 {
 /// Does this many events of a forged state, if it is one, and takes it to other walls and another gravity.
 fn run_on(mut run: Run, events: usize) -> bool {
     for _ in 0..events {
-        let end = run.time() + short_while(&run.disks(), run.gravity());
+        let end = run.time() + short_while(&run.disks(), run.gravity().strength());
         if run.step_until(end, &mut ()).is_err() {
             break;
         }

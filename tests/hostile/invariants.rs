@@ -84,7 +84,7 @@ pub(crate) struct Change<'a> {
 impl Change<'_> {
     /// Returns the velocity with which a disk came to the event.
     fn arriving(&self, disk: usize) -> DVec2 {
-        self.before[disk].velocity() - DVec2::new(0.0, self.run.gravity() * self.elapsed)
+        self.before[disk].velocity() + self.run.gravity().acceleration() * self.elapsed
     }
 
     fn time_error(&self) -> f64 {
@@ -94,7 +94,7 @@ impl Change<'_> {
     /// Checks that a disk without a collision flies freely: nothing else has touched it.
     pub(crate) fn check_flight(&self, disk: usize) -> Verdict {
         let (old, new) = (&self.before[disk], &self.after[disk]);
-        let fall = DVec2::new(0.0, -0.5 * self.run.gravity() * self.elapsed * self.elapsed);
+        let fall = 0.5 * self.run.gravity().acceleration() * self.elapsed * self.elapsed;
         let expected = old.position() + old.velocity() * self.elapsed + fall;
         let missed = self.run.boundary().domain().separation(expected, new.position()).length();
         let (way, speed) = (self.elapsed * old.velocity().length(), new.velocity().length());
@@ -109,7 +109,7 @@ impl Change<'_> {
     fn check_velocity(&self, disk: usize, kick: DVec2) -> Verdict {
         let missed = (self.after[disk].velocity() - self.arriving(disk) - kick).length();
         let scale = self.before[disk].velocity().length() + self.after[disk].velocity().length();
-        let slack = ROUNDING * (1.0 + scale) + self.time_error() * self.run.gravity().abs();
+        let slack = ROUNDING * (1.0 + scale) + self.time_error() * self.run.gravity().strength();
         prop_assert!(missed <= slack, "the velocity of disk {disk} is wrong by {missed:e}");
         Ok(())
     }
@@ -161,7 +161,7 @@ impl Change<'_> {
             let came = 0.5 * old.mass() * self.arriving(disk).length_squared() + old.rotational_energy();
             let left = new.translational_energy() + new.rotational_energy();
             change += left - came;
-            let fall = new.mass() * self.arriving(disk).length() * self.run.gravity().abs();
+            let fall = new.mass() * self.arriving(disk).length() * self.run.gravity().strength();
             scale += ROUNDING * (left + came) + fall * self.time_error();
         }
         let missed = (change - collision.energy_change).abs();

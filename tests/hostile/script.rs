@@ -1,9 +1,9 @@
 //! Random operations on a run, with all invariants checked after each event, and the trace that the run
 //! leaves.
 
-use granular_edmd::Disk;
 use granular_edmd::observable::Collision;
 use granular_edmd::simulation::{BuildError, Event, RunEnd, RunError};
+use granular_edmd::{Disk, Gravity};
 use proptest::prelude::*;
 
 use crate::invariants::{Change, check_state, farthest};
@@ -35,7 +35,7 @@ pub(crate) enum Operation {
     /// on.
     Run(f64, u32),
     Rule(Law),
-    Gravity(f64),
+    Gravity(Gravity),
     /// Other walls. The disks may not fit into them.
     Walls(Box<Walls>),
     /// The present walls, set again.

@@ -2,7 +2,7 @@
 
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::SimulationBuilder;
-use granular_edmd::{Disk, Simulation, initial};
+use granular_edmd::{Disk, Gravity, Simulation, initial};
 use proptest::prelude::*;
 
 use granular_edmd::boundary::Container;
@@ -18,7 +18,7 @@ pub(crate) type Run = Simulation<Rule, Container, Scheduler>;
 pub(crate) struct System {
     pub(crate) walls: Walls,
     pub(crate) law: Law,
-    pub(crate) gravity: f64,
+    pub(crate) gravity: Gravity,
     start: f64,
     seed: u64,
     disks: Vec<Disk>,
@@ -58,8 +58,10 @@ fn disks() -> impl Strategy<Value = Vec<Disk>> {
     ]
 }
 
-pub(crate) fn gravity() -> impl Strategy<Value = f64> {
-    prop_oneof![Just(0.0), Just(0.05), Just(-0.05), Just(1.0), Just(-1.0), -0.5..0.5f64]
+pub(crate) fn gravity() -> impl Strategy<Value = Gravity> {
+    let down = prop_oneof![Just(0.0), Just(0.05), Just(-0.05), Just(1.0), Just(-1.0), -0.5..0.5f64];
+    let any = (-0.5..0.5f64, -0.5..0.5f64).prop_map(|(x, y)| DVec2::new(x, y).into());
+    prop_oneof![3 => down.prop_map(Gravity::from), 1 => any]
 }
 
 pub(crate) fn system() -> impl Strategy<Value = System> {

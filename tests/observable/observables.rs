@@ -26,7 +26,7 @@ fn disks() -> Result<[Disk; 2], ParameterError> {
 fn two_disks_have_the_observables_of_their_formulas() -> Outcome {
     let disks = disks()?;
     let snapshot = Snapshot::new(1.5, &disks, DOMAIN, 2.0);
-    assert_eq!((snapshot.time(), snapshot.gravity(), snapshot.domain()), (1.5, 2.0, DOMAIN));
+    assert_eq!((snapshot.time(), snapshot.gravity(), snapshot.domain()), (1.5, 2.0.into(), DOMAIN));
     let boxed: Box<dyn Observable<Value = _>> = Box::new(CenterOfMass);
     let (center, energies, temperatures) = (boxed, &Energies, Temperatures).measure(&snapshot);
     assert_eq!(center, DVec2::new(2.5, 4.0));

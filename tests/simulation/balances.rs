@@ -81,7 +81,7 @@ proptest! {
         let kicks: DVec2 = log.0.iter().filter(|c| matches!(c.partner, Partner::Wall(_))).map(|c| {
             c.normal * c.impulse.normal() + c.normal.perp() * c.impulse.tangential()
         }).sum();
-        let fall = DVec2::new(0.0, -mass * setup.gravity * 4.0);
+        let fall = 4.0 * mass * setup.gravity.acceleration();
         prop_assert!((energy_after - energy - changes).abs() < 1e-9 * (1.0 + energy.abs()), "energy");
         prop_assert!((momentum_after - momentum - kicks - fall).length() < 1e-9 * (1.0 + energy.abs()), "momentum");
     }
@@ -95,7 +95,7 @@ fn the_base_carries_the_weight() {
         periodic: true,
         open: false,
         polydisperse: false,
-        gravity: 0.5,
+        gravity: 0.5.into(),
         inelasticity: 0.02,
         friction: 0.2,
         count: 40,

@@ -65,7 +65,7 @@ fn gravity_switched_off_lets_disks_fly_straight() {
     let mut simulation = elastic_gas(50, 20.0, 30.0, 1.0);
     simulation.run_until(10.0, &mut ()).unwrap();
     simulation.set_gravity(0.0).unwrap();
-    assert_eq!(simulation.gravity(), 0.0);
+    assert_eq!(simulation.gravity(), 0.0.into());
     let energy = |simulation: &mut Simulation<Elastic>| simulation.measure(&Energies);
     let before = energy(&mut simulation);
     simulation.run_until(30.0, &mut ()).unwrap();
@@ -73,7 +73,7 @@ fn gravity_switched_off_lets_disks_fly_straight() {
     assert!((after.translational / before.translational - 1.0).abs() < 1e-11);
     assert_eq!(after.potential, 0.0);
     assert!(simulation.set_gravity(f64::NAN).is_err());
-    assert_eq!(simulation.gravity(), 0.0);
+    assert_eq!(simulation.gravity(), 0.0.into());
 }
 
 #[test]

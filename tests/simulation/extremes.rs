@@ -6,7 +6,7 @@ use granular_edmd::collision::{CollisionRule, Elastic, Frictional, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::BuildError;
 use granular_edmd::wall::{BiParabolic, Sinusoidal};
-use granular_edmd::{Disk, Simulation};
+use granular_edmd::{Disk, Gravity, Simulation};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -74,13 +74,14 @@ impl Random {
         (0..count).map(|k| disk(k).unwrap()).collect()
     }
 
-    fn gravity(&mut self) -> f64 {
-        match self.0.random_range(0..5) {
+    fn gravity(&mut self) -> Gravity {
+        let strength = match self.0.random_range(0..5) {
             0 | 1 => 0.0,
             2 => self.decade(-300.0, 300.0),
             3 => -self.decade(-30.0, 30.0),
             _ => self.decade(-30.0, 30.0),
-        }
+        };
+        if self.chance(4) { Gravity::tilted(strength, 0.7) } else { strength.into() }
     }
 }
 
@@ -90,7 +91,7 @@ fn short_while(run: &Run) -> f64 {
     let diameter = disks.iter().map(|disk| 2.0 * disk.radius()).fold(f64::INFINITY, f64::min);
     let speed = disks.iter().map(|disk| disk.velocity().length()).fold(0.0, f64::max);
     let way = 20.0 * diameter;
-    (way / (speed + (run.gravity().abs() * way).sqrt())).min(1e100)
+    (way / (speed + (run.gravity().strength() * way).sqrt())).min(1e100)
 }
 
 /// Returns the depth by which disks are beyond the domain, in terms of their size, less what the rounding of

@@ -223,7 +223,7 @@ fn gravity_too_strong_for_the_time_is_refused() {
         let before = run.disks();
         let error = run.set_gravity(gravity).unwrap_err();
         assert!(error.to_string().contains("tell times apart"), "{error}");
-        assert_eq!((run.gravity(), run.disks()), (0.0, before));
+        assert_eq!((run.gravity(), run.disks()), (0.0.into(), before));
         run.set_gravity(1.0).unwrap();
         run.run_until(start + 5.0, &mut ()).unwrap();
     }

@@ -30,6 +30,7 @@ mod resuming;
 #[path = "../support/schedulers.rs"]
 mod schedulers;
 mod setups;
+mod slopes;
 mod steps;
 mod stopping;
 mod thermal;

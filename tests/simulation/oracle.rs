@@ -4,7 +4,7 @@ use granular_edmd::boundary::Container;
 use granular_edmd::collision::{Elastic, Encounter, collide, collide_with_wall};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{Collision, Partner};
-use granular_edmd::{Disk, Simulation, initial};
+use granular_edmd::{Disk, Gravity, Simulation, initial};
 use proptest::prelude::*;
 
 use crate::setups::{Log, config};
@@ -14,7 +14,7 @@ const HEIGHT: f64 = 24.0;
 
 struct Naive {
     time: f64,
-    gravity: f64,
+    gravity: Gravity,
     periodic: [bool; 2],
     disks: Vec<Disk>,
 }
@@ -53,7 +53,7 @@ impl Naive {
     fn wall(&self, i: usize, normal: DVec2, offset: f64) -> f64 {
         let disk = &self.disks[i];
         let gap = disk.position().dot(normal) - offset - disk.radius();
-        let (rate, pull) = (disk.velocity().dot(normal), -self.gravity * normal.y);
+        let (rate, pull) = (disk.velocity().dot(normal), self.gravity.acceleration().dot(normal));
         if pull < 0.0 {
             // The disk goes up and down again, so the later root counts. A disk that has just left the wall
             // has a gap of rounding.
@@ -93,7 +93,7 @@ impl Naive {
     }
 
     fn advance(&mut self, wait: f64) {
-        let fall = DVec2::new(0.0, -self.gravity);
+        let fall = self.gravity.acceleration();
         for disk in &mut self.disks {
             let mut position = disk.position() + wait * (disk.velocity() + 0.5 * wait * fall);
             if self.periodic[0] {
@@ -146,7 +146,7 @@ proptest! {
     #[test]
     fn the_engine_does_what_brute_force_does(
         periodic in any::<[bool; 2]>(),
-        gravity in prop_oneof![Just(0.0), Just(0.1), Just(1.0)],
+        gravity in prop_oneof![Just(0.0.into()), Just(0.1.into()), Just(1.0.into()), Just(Gravity::tilted(1.0, 0.7)), Just(Gravity::tilted(0.5, -2.5))],
         smallest in prop_oneof![Just(0.5), Just(0.05), Just(0.01)],
         seed in any::<u64>(),
     ) {

@@ -8,7 +8,7 @@ use granular_edmd::glam::DVec2;
 use granular_edmd::observable::Energies;
 use granular_edmd::scheduler::{BucketQueue, LinearScan};
 use granular_edmd::simulation::BuildError;
-use granular_edmd::{Disk, Flight, Simulation, initial};
+use granular_edmd::{Disk, Flight, Gravity, Simulation, initial};
 
 type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
 
@@ -20,7 +20,8 @@ fn gas(container: &Container, count: usize, seed: u64) -> Outcome<Vec<Disk>> {
 /// A disk that meets nobody flies straight, or falls, through as many periods as its time allows.
 #[test]
 fn a_lonely_disk_is_where_its_flight_leads() -> Outcome {
-    for gravity in [0.0, 0.3, -0.3] {
+    let tilted = [0.4, -2.0].map(|angle| Gravity::tilted(0.3, angle));
+    for gravity in [0.0, 0.3, -0.3].map(Gravity::from).into_iter().chain(tilted) {
         let container = Container::periodic(7.0, 5.0)?;
         let (start, velocity) = (DVec2::new(1.0, 2.0), DVec2::new(-1.3, 0.7));
         let disk = Disk::new(start, 0.5)?.with_velocity(velocity)?;
@@ -29,7 +30,7 @@ fn a_lonely_disk_is_where_its_flight_leads() -> Outcome {
             run.run_until(time, &mut ())?;
             let domain = run.boundary().domain();
             let disk = run.disk(0).ok_or("no disk")?;
-            let there = start + velocity * time - DVec2::new(0.0, 0.5 * gravity * time * time);
+            let there = start + velocity * time + 0.5 * time * time * gravity.acceleration();
             let error = (domain.unwrapped(&disk) - there).length();
             assert!(error < 1e-12 * (1.0 + there.length()), "{error:e} at {time}");
             assert!((0.0..=7.0).contains(&disk.position().x) && (0.0..=5.0).contains(&disk.position().y));

@@ -7,7 +7,7 @@ use granular_edmd::observable::{Collision, Observer};
 use granular_edmd::scheduler::EventScheduler;
 use granular_edmd::simulation::SimulationBuilder;
 use granular_edmd::wall::{BiParabolic, Sinusoidal};
-use granular_edmd::{Disk, Simulation, initial};
+use granular_edmd::{Disk, Gravity, Simulation, initial};
 use proptest::prelude::*;
 
 pub(crate) use crate::cases::config;
@@ -28,7 +28,7 @@ pub(crate) struct Setup {
     pub(crate) periodic: bool,
     pub(crate) open: bool,
     pub(crate) polydisperse: bool,
-    pub(crate) gravity: f64,
+    pub(crate) gravity: Gravity,
     pub(crate) inelasticity: f64,
     pub(crate) friction: f64,
     pub(crate) count: usize,
@@ -39,7 +39,13 @@ pub(crate) struct Setup {
 pub(crate) fn setup() -> impl Strategy<Value = Setup> {
     let base =
         prop_oneof![Just(Base::Fixed), Just(Base::BiParabolic), Just(Base::Sinusoidal), Just(Base::Thermal)];
-    let gravity = prop_oneof![Just(0.0), Just(0.05), Just(-0.05), Just(1.0)];
+    let gravity = prop_oneof![
+        Just(0.0.into()),
+        Just(0.05.into()),
+        Just((-0.05).into()),
+        Just(1.0.into()),
+        Just(Gravity::tilted(0.3, 0.7))
+    ];
     let flags = any::<[bool; 3]>();
     let rule = (0.0..0.1f64, 0.0..0.5f64);
     let start = prop_oneof![3 => Just(0.0), 1 => Just(-100.3), 1 => Just(1e7)];
@@ -49,7 +55,7 @@ pub(crate) fn setup() -> impl Strategy<Value = Setup> {
                 base,
                 periodic,
                 // Disks that fall upward need a lid.
-                open: open && gravity >= 0.0,
+                open: open && gravity.downward() >= 0.0,
                 polydisperse,
                 gravity,
                 inelasticity,

@@ -10,7 +10,7 @@ use granular_edmd::study::{
     Axis, Column, Control, Course, Experiment, ExperimentError, Plan, PlanError, Protocol, Ramp, Record,
     Scalar, Study, StudyError,
 };
-use granular_edmd::{Disk, Fingerprint, initial};
+use granular_edmd::{Disk, Fingerprint, Gravity, initial};
 use serde::{Deserialize, Serialize};
 
 use crate::mixture::{Mixture, Sticky, mixture};
@@ -258,8 +258,8 @@ impl Experiment for Fall {
         Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
     }
 
-    fn gravity(&self) -> f64 {
-        1.0
+    fn gravity(&self) -> Gravity {
+        1.0.into()
     }
 
     fn observer(&self) -> Result<(), ExperimentError> {

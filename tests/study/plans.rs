@@ -59,7 +59,11 @@ const REFUSED: [(&str, &str, &str); 20] = [
     ("disks = 30", "", "missing field `disks`"),
     ("width = 10.0", "width = -10.0", "width must be finite and positive, but is -10"),
     ("height = 30", "height = inf", "height must be finite and positive, but is inf"),
-    ("gravity = 0.015625", "gravity = nan", "gravity must be finite, but is NaN"),
+    (
+        "gravity = 0.015625",
+        "gravity = nan",
+        "gravity must be finite and at most 1e60 in magnitude, but is NaN",
+    ),
     (
         "friction = 0.01",
         "dynamic_friction = 1.5",

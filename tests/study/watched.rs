@@ -12,7 +12,7 @@ use granular_edmd::study::{
     Axis, Column, Control, Course, Experiment, ExperimentError, Plan, PlanError, Protocol, Ramp, RampStatus,
     Record, Study, StudyError, Table, Width,
 };
-use granular_edmd::{Disk, Fingerprint, initial};
+use granular_edmd::{Disk, Fingerprint, Gravity, initial};
 use serde::{Deserialize, Serialize};
 
 use crate::report::report;
@@ -51,8 +51,8 @@ impl Experiment for Watched {
         Ok(initial::with_maxwellian_velocities(disks, 1.0, seed)?)
     }
 
-    fn gravity(&self) -> f64 {
-        self.weight
+    fn gravity(&self) -> Gravity {
+        self.weight.into()
     }
 
     fn observer(&self) -> Result<Sampled<HeightProfile>, ExperimentError> {

@@ -6,7 +6,7 @@ use granular_edmd::collision::{CollisionRule, Contact, Impulse};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{CollisionCounts, Snapshot};
 use granular_edmd::study::{Column, Experiment, ExperimentError, Record, Table};
-use granular_edmd::{Disk, Fingerprint, initial, quantity};
+use granular_edmd::{Disk, Fingerprint, Gravity, initial, quantity};
 use serde::{Deserialize, Serialize};
 
 /// A rule that loses more at higher speeds. It has no fingerprint, like a closure.
@@ -73,8 +73,8 @@ impl Experiment for Mixture {
         Fingerprint::of("Mixture")
     }
 
-    fn gravity(&self) -> f64 {
-        self.weight
+    fn gravity(&self) -> Gravity {
+        self.weight.into()
     }
 
     fn cycle(&self) -> f64 {

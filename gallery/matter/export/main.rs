@@ -180,7 +180,7 @@ fn all_of(snapshot: &Snapshot<'_>) -> Value {
     };
     json!({
         "time": snapshot.time(),
-        "gravity": snapshot.gravity(),
+        "gravity": snapshot.gravity().downward(),
         "left": domain.left,
         "right": domain.right,
         "bottom": domain.bottom,

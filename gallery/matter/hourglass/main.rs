@@ -190,7 +190,7 @@ fn limits(arguments: &Arguments, end: f64) -> Limits {
 
 /// Runs until no grain is above the neck.
 fn way(arguments: &Arguments, run: &mut Run) -> Result<Way, Box<dyn Error>> {
-    let (start, up) = (run.time(), run.gravity());
+    let (start, up) = (run.time(), run.gravity().downward());
     let mut frames = vec![frame(0.0, up, &run.disks())];
     let (since, before) = (Instant::now(), *run.counters());
     let times = SampleTimes::every(FRAME)?.starting_at(start + FRAME)?;
