@@ -16,6 +16,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use granular_edmd::boundary::Region;
+use granular_edmd::observable::FieldCell;
 use granular_edmd::prelude::*;
 
 use gallery::command_line::{self, Failure, positive};
