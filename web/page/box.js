@@ -1,34 +1,21 @@
 // Draws the disks in their box, the mean flow, and collisions.
 
-const WIDTH = 60, HEIGHT = 150, MARGIN = 1;
-const COLUMNS = 10, ROWS = 25;
-const INK = '#22272e', LEAST_FLOW = 0.12, ENOUGH = 0.08;
+import { fit, look } from './look.js';
 
-// From blue through a light gray to vermillion, both of Okabe and Ito, softened so that arrows stand out.
-const SHADES = [-1, -0.75, -0.5, -0.25, 0, 0.25, 0.5, 0.75, 1].map((level) => {
-  const end = level < 0 ? [0, 114, 178] : [213, 94, 0], share = 0.82 * Math.abs(level);
-  return `rgb(${[222, 226, 231].map((gray, i) => Math.round(gray + share * (end[i] - gray))).join(' ')})`;
-});
-
-export function fit(canvas) {
-  const scale = Math.min(window.devicePixelRatio || 1, 2);
-  const [width, height] = [Math.round(canvas.clientWidth * scale), Math.round(canvas.clientHeight * scale)];
-  if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; }
-  const context = canvas.getContext('2d');
-  context.setTransform(scale, 0, 0, scale, 0, 0);
-  context.clearRect(0, 0, canvas.clientWidth, canvas.clientHeight);
-  return context;
-}
+const MARGIN = 1, NUMBERS = 5; // Numbers of a disk: place, angle, angular velocity, radius.
+const ENOUGH = 0.08, LARGE = 0.6; // Share of the fullest cell that makes an arrow; radius from which a disk is drawn with a rim.
 
 export class Box {
-  #canvas; #marks = []; #dye = null; #before = null;
+  #canvas; #scene; #marks = []; #dye = null; #before = null;
   fastest = 0; // Speed of the longest arrow.
   constructor(canvas) { this.#canvas = canvas; }
 
-  // Dyes the disks by the half of the box in which they are.
-  dye(disks) { this.#dye = Float32Array.from({ length: disks.length / 4 }, (_, i) => (disks[4 * i] < WIDTH / 2 ? -0.8 : 0.8)); }
+  get canvas() { return this.#canvas; }
 
-  forget() { this.#marks = []; this.#dye = null; this.#before = null; }
+  // Dyes the disks by the half of the box in which they are.
+  dye(disks) { this.#dye = Float32Array.from({ length: disks.length / NUMBERS }, (_, i) => (disks[NUMBERS * i] < this.#scene.width / 2 ? -0.8 : 0.8)); }
+
+  begin(scene) { this.#scene = scene; this.#marks = []; this.#dye = null; this.#before = null; }
 
   mark(marks, isStep) {
     const now = performance.now();
@@ -40,9 +27,9 @@ export class Box {
   clearSteps() { this.#marks = []; }
 
   draw({ disks, flow, numbers }, { color, arrows, isSlow }) {
-    const context = fit(this.#canvas), unit = this.#canvas.clientWidth / (WIDTH + 2 * MARGIN);
-    context.translate(MARGIN * unit, (HEIGHT + MARGIN) * unit);
-    this.#walls(context, unit, numbers[6]);
+    const { width, height } = this.#scene, context = fit(this.#canvas), unit = this.#canvas.clientWidth / (width + 2 * MARGIN);
+    context.translate(MARGIN * unit, (height + MARGIN) * unit);
+    this.#walls(context, unit, numbers[3]);
     this.#disks(context, unit, disks, color);
     if (isSlow && unit > 4) this.#spokes(context, unit, disks);
     if (arrows) this.#arrows(context, unit, flow);
@@ -51,65 +38,69 @@ export class Box {
   }
 
   #walls(context, unit, base) {
-    context.fillStyle = '#8d96a0';
-    context.fillRect(0, -base * unit, WIDTH * unit, (MARGIN + base) * unit);
-    context.strokeStyle = '#b9c0c8';
+    const { width, height } = this.#scene;
+    context.fillStyle = look.wall;
+    context.fillRect(0, -base * unit, width * unit, (MARGIN + Math.max(base, 0)) * unit);
+    context.strokeStyle = look.rule;
     context.lineWidth = 1;
-    context.strokeRect(-0.5, -HEIGHT * unit - 0.5, WIDTH * unit + 1, HEIGHT * unit + 1);
+    context.strokeRect(-0.5, -height * unit - 0.5, width * unit + 1, height * unit + 1);
   }
 
   #shade(disks, i, color) {
-    const value = color === 'dye' && this.#dye ? this.#dye[i] : color === 'rise' ? this.#rise(disks, i) : disks[4 * i + 3] / 2;
+    const value = color === 'dye' && this.#dye ? this.#dye[i] : color === 'rise' ? this.#rise(disks, i) : disks[NUMBERS * i + 3] / 2;
     return Math.round(4 + 4 * Math.max(-1, Math.min(1, value)));
   }
 
   #rise(disks, i) {
-    return this.#before ? (disks[4 * i + 1] - this.#before[4 * i + 1]) / 3 : 0;
+    return this.#before ? (disks[NUMBERS * i + 1] - this.#before[NUMBERS * i + 1]) / 3 : 0;
   }
 
   #disks(context, unit, disks, color) {
-    const groups = SHADES.map(() => []);
-    for (let i = 0; i < disks.length / 4; i += 1) groups[this.#shade(disks, i, color)].push(i);
+    const groups = look.shades.map(() => []);
+    for (let i = 0; i < disks.length / NUMBERS; i += 1) groups[this.#shade(disks, i, color)].push(NUMBERS * i);
+    const path = (at) => circle(context, disks[at] * unit, -disks[at + 1] * unit, disks[at + 4] * unit);
     groups.forEach((group, shade) => {
-      context.fillStyle = SHADES[shade];
+      context.fillStyle = look.shades[shade];
       context.beginPath();
-      for (const i of group) {
-        const [x, y] = [disks[4 * i] * unit, -disks[4 * i + 1] * unit];
-        context.moveTo(x + unit / 2, y);
-        context.arc(x, y, unit / 2, 0, 2 * Math.PI);
-      }
+      group.forEach(path);
       context.fill();
     });
+    context.strokeStyle = look.ink;
+    context.lineWidth = 1.5;
+    context.beginPath();
+    for (let at = 0; at < disks.length; at += NUMBERS) if (disks[at + 4] > LARGE) path(at);
+    context.stroke();
   }
 
   #spokes(context, unit, disks) {
-    context.strokeStyle = '#69727d';
+    context.strokeStyle = look.quiet;
     context.lineWidth = 0.7;
     context.beginPath();
-    for (let i = 0; i < disks.length; i += 4) {
-      const [x, y, angle] = [disks[i] * unit, -disks[i + 1] * unit, -disks[i + 2]];
+    for (let i = 0; i < disks.length; i += NUMBERS) {
+      const [x, y, angle, length] = [disks[i] * unit, -disks[i + 1] * unit, -disks[i + 2], 0.9 * disks[i + 4] * unit];
       context.moveTo(x, y);
-      context.lineTo(x + Math.cos(angle) * unit * 0.45, y + Math.sin(angle) * unit * 0.45);
+      context.lineTo(x + Math.cos(angle) * length, y + Math.sin(angle) * length);
     }
     context.stroke();
   }
 
   #arrows(context, unit, flow) {
-    let most = 0, fastest = LEAST_FLOW;
+    const { columns, rows, width, leastFlow } = this.#scene;
+    let most = 0, fastest = leastFlow;
     for (let i = 0; i < flow.length; i += 3) most = Math.max(most, flow[i + 2]);
     const seen = [];
-    for (let cell = 0; cell < COLUMNS * ROWS; cell += 1) {
+    for (let cell = 0; cell < columns * rows; cell += 1) {
       const [u, v, count] = flow.subarray(3 * cell, 3 * cell + 3);
       if (count < ENOUGH * most || count === 0) continue;
       seen.push([cell, u, v]);
       fastest = Math.max(fastest, Math.hypot(u, v));
     }
     this.fastest = fastest;
-    const size = (WIDTH / COLUMNS) * unit;
-    context.strokeStyle = context.fillStyle = INK;
-    context.lineWidth = Math.max(1, unit * 0.28);
+    const size = (width / columns) * unit;
+    context.strokeStyle = context.fillStyle = look.ink;
+    context.lineWidth = Math.max(1, Math.min(unit * 0.28, 1.8));
     for (const [cell, u, v] of seen) {
-      const x = ((cell % COLUMNS) + 0.5) * size, y = -(Math.floor(cell / COLUMNS) + 0.5) * size;
+      const x = ((cell % columns) + 0.5) * size, y = -(Math.floor(cell / columns) + 0.5) * size;
       arrow(context, x, y, (u / fastest) * size * 1.15, (-v / fastest) * size * 1.15);
     }
   }
@@ -118,20 +109,23 @@ export class Box {
     const now = performance.now();
     for (const { at: [x, y, strength, first, second], until } of this.#marks) {
       context.globalAlpha = until === Infinity ? 1 : Math.max(0, Math.min(1, (until - now) / 350));
-      context.strokeStyle = INK;
+      context.strokeStyle = look.ink;
       context.lineWidth = 1.4;
-      for (const disk of [first, second]) {
-        if (disk < 0 || 4 * disk >= disks.length) continue;
-        circle(context, disks[4 * disk] * unit, -disks[4 * disk + 1] * unit, unit / 2);
+      for (const at of [NUMBERS * first, NUMBERS * second]) {
+        if (at < 0 || at >= disks.length) continue;
+        context.beginPath();
+        circle(context, disks[at] * unit, -disks[at + 1] * unit, disks[at + 4] * unit);
         context.stroke();
       }
-      context.strokeStyle = '#e69f00';
+      context.strokeStyle = look.mark;
       context.lineWidth = 2.2;
+      context.beginPath();
       circle(context, x * unit, -y * unit, 2 * unit);
       context.stroke();
-      context.strokeStyle = INK;
+      context.strokeStyle = look.ink;
       context.lineWidth = 1;
-      context.fillStyle = '#e69f00';
+      context.fillStyle = look.mark;
+      context.beginPath();
       circle(context, x * unit, -y * unit, Math.min(unit, 2 + 2.5 * Math.sqrt(strength)));
       context.fill();
       context.stroke();
@@ -141,7 +135,7 @@ export class Box {
 }
 
 function circle(context, x, y, radius) {
-  context.beginPath();
+  context.moveTo(x + radius, y);
   context.arc(x, y, radius, 0, 2 * Math.PI);
 }
 

@@ -1,16 +1,21 @@
 // The diagram of states in the plane of friction and inelasticity: areas of recorded runs, the paper's lines, the point of this run.
 
-import { fit } from './box.js';
+import { fit, font, look } from './look.js';
 
-const FRICTIONS = [0.004, 4], LEFT = 44, RIGHT = 10, TOP = 8, BOTTOM = 34, INK = '#22272e', QUIET = '#69727d';
-const AREAS = { 'no roll': '#e6e9ec', conductive: '#e6e9ec', 'one roll': '#b3d1e5', 'coexistence of one roll and two': '#ecccdc', 'two rolls': '#f3ceb0', collapsed: '#c3c6ca' };
-const LINES = [['#0072b2', '0–1'], ['#a85585', '1–2 (a)'], ['#d55e00', '1–2 (b)'], ['#222', '2–collapse']];
+const FRICTIONS = [0.004, 4], LEFT = 44, RIGHT = 10, TOP = 8, BOTTOM = 34;
+const AREAS = { 'no roll': 'none', conductive: 'none', 'one roll': 'one', 'coexistence of one roll and two': 'both', 'two rolls': 'two', collapsed: 'collapse' };
+const LINES = [['one', '0–1'], ['change', '1–2 (a)'], ['two', '1–2 (b)'], ['collapse', '2–collapse']];
 
-// Gravities of the recorded runs, and the largest inelasticity of their diagrams.
-export const LARGER = { gravity: '0.015625', most: 0.08 }, SMALLER = { gravity: '0.002025', most: 0.24 };
+// Gravities of the recorded runs at Aω = 1, and the largest inelasticity of their diagrams.
+const LARGER = { gravity: '0.015625', most: 0.08 }, SMALLER = { gravity: '0.002025', most: 0.24 };
+
+// Only g/(Aω)² counts: a faster base with more gravity is the same run, seen in a shorter unit of time.
+export const reducedGravity = ([, , gravity, amplitude, frequency]) => gravity / (amplitude * frequency) ** 2;
+export const setOf = (values) => (reducedGravity(values) > Math.sqrt(LARGER.gravity * SMALLER.gravity) ? LARGER : SMALLER);
+export const isLarger = (set) => set === LARGER;
 
 export class Diagram {
-  #canvas; #back = null; #cells = []; #lines = []; #trail = []; #size = '';
+  #canvas; #back = null; #cells = []; #lines = []; #trail = []; #drawn = '';
   set = LARGER;
 
   constructor(canvas, onMove) {
@@ -20,39 +25,63 @@ export class Diagram {
     canvas.addEventListener('pointermove', move);
   }
 
+  get canvas() { return this.#canvas; }
+
   // Takes the table of recorded runs and the lines for one gravity.
   async load(set, lines) {
     const table = await (await fetch(`states-${set.gravity}.csv`)).text();
     this.set = set;
     this.#lines = lines;
     this.#cells = cells(table);
-    this.#size = '';
+    this.#drawn = '';
   }
 
-  forget() { this.#trail = []; }
+  begin() { this.#trail = []; }
 
-  draw(friction, inelasticity) {
-    const { clientWidth: width, clientHeight: height } = this.#canvas, size = `${width} ${height}`;
+  // Draws the points of the runs: of the one with its trail, and of the one beside it.
+  draw([friction, inelasticity], beside) {
+    const { clientWidth: width, clientHeight: height } = this.#canvas, drawn = `${width} ${height} ${look.scheme}`;
     const context = fit(this.#canvas);
-    if (size !== this.#size) { this.#size = size; this.#back = this.#background(width, height, this.#canvas.width / width); }
+    if (drawn !== this.#drawn) { this.#drawn = drawn; this.#back = this.#background(width, height, this.#canvas.width / width); }
     context.drawImage(this.#back, 0, 0, width, height);
     const last = this.#trail.at(-1);
     if (last?.[0] !== friction || last?.[1] !== inelasticity) this.#trail = [...this.#trail, [friction, inelasticity]].slice(-60);
-    context.strokeStyle = INK;
+    context.strokeStyle = look.ink;
     context.globalAlpha = 0.45;
+    context.save();
+    context.rect(LEFT, TOP, width - LEFT - RIGHT, height - TOP - BOTTOM);
+    context.clip();
     this.#path(context, this.#trail, 1.2);
+    context.restore();
     context.globalAlpha = 1;
-    const [x, y] = this.#place(friction, inelasticity);
+    if (beside) this.#point(context, beside, look.ink);
+    this.#point(context, [friction, inelasticity], look.paper);
+  }
+
+  // A circle, or at the frame a triangle that points to where the point is, outside.
+  #point(context, [friction, inelasticity], fill) {
+    const { clientWidth: width, clientHeight: height } = this.#canvas, [x, y] = this.#place(friction, inelasticity);
+    const [px, py] = [Math.max(LEFT, Math.min(width - RIGHT, x)), Math.max(TOP, Math.min(height - BOTTOM, y))];
+    Object.assign(context, { fillStyle: fill, strokeStyle: look.ink, lineWidth: 3, lineJoin: 'round' });
     context.beginPath();
-    context.arc(Math.max(LEFT, Math.min(width - RIGHT, x)), Math.max(TOP, y), 6.5, 0, 2 * Math.PI);
-    context.fillStyle = '#fff';
-    context.fill();
-    context.lineWidth = 3.5;
+    if (px === x && py === y) {
+      context.arc(x, y, 6.5, 0, 2 * Math.PI);
+    } else {
+      const way = Math.atan2(Math.sign(y - py), Math.sign(x - px));
+      for (const turn of [0, 2.2, -2.2]) context.lineTo(px + 9 * (Math.cos(way + turn) - Math.cos(way)), py + 9 * (Math.sin(way + turn) - Math.sin(way)));
+      context.closePath();
+    }
     context.stroke();
+    context.fill();
+    if (px === x && py === y) return;
+    Object.assign(context, { font: font(11, 600), fillStyle: look.ink, strokeStyle: look.halo, textAlign: x < width / 2 ? 'left' : 'right' });
+    const at = ['outside', px + (x < width / 2 ? 18 : -18), Math.max(py, TOP + 12) + (py > height / 2 ? -8 : 4)];
+    context.strokeText(...at);
+    context.fillText(...at);
   }
 
   #place(friction, inelasticity) {
-    const share = Math.log(friction / FRICTIONS[0]) / Math.log(FRICTIONS[1] / FRICTIONS[0]);
+    const share = Math.log(Math.max(friction, 1e-9) / FRICTIONS[0]) / Math.log(FRICTIONS[1] / FRICTIONS[0]);
     const { clientWidth: width, clientHeight: height } = this.#canvas;
     return [LEFT + share * (width - LEFT - RIGHT), height - BOTTOM - (inelasticity / this.set.most) * (height - TOP - BOTTOM)];
   }
@@ -76,10 +105,13 @@ export class Diagram {
     [back.width, back.height] = [width * scale, height * scale];
     const context = back.getContext('2d');
     context.scale(scale, scale);
+    const hatch = context.createPattern(hatching(), 'repeat');
     for (const { left, right, low, high, state } of this.#cells) {
-      const [x0, y0] = this.#place(left, low), [x1, y1] = this.#place(right, high);
-      context.fillStyle = AREAS[state] ?? '#fff';
-      context.fillRect(x0, y1, x1 - x0 + 0.6, y0 - y1 + 0.6);
+      const [x0, y0] = this.#place(left, low), [x1, y1] = this.#place(right, high), area = AREAS[state];
+      for (const fill of [look[`area-${area}`] ?? look.paper, ...(area === 'both' ? [hatch] : [])]) {
+        context.fillStyle = fill;
+        context.fillRect(x0, y1, x1 - x0 + 0.6, y0 - y1 + 0.6);
+      }
     }
     this.#isoLines(context);
     this.#axes(context, width, height);
@@ -94,26 +126,26 @@ export class Diagram {
     const named = new Set();
     for (const piece of pieces.filter((piece) => piece.length > 1)) {
       const [color, name] = LINES[piece[0][0]];
-      context.strokeStyle = context.fillStyle = color;
+      context.strokeStyle = context.fillStyle = look[color];
       this.#path(context, piece.map(([, friction, q]) => [friction, q]), 1.8);
       // The two lines from one roll to two nearly coincide, and share a name.
       if (named.has(name) || name === '1–2 (a)') continue;
       named.add(name);
       const [x, y] = this.#place(piece[0][1], piece[0][2]);
-      context.font = '600 11px system-ui, sans-serif';
+      context.font = font(11, 600);
       const at = [name.replace(' (b)', ''), x + 6, y - 5 < TOP + 14 ? y + 28 : y - 5];
-      Object.assign(context, { strokeStyle: 'rgb(255 255 255 / 70%)', lineWidth: 3, lineJoin: 'round' });
+      Object.assign(context, { strokeStyle: look.halo, lineWidth: 3, lineJoin: 'round' });
       context.strokeText(...at);
       context.fillText(...at);
     }
   }
 
   #axes(context, width, height) {
-    context.strokeStyle = '#8d96a0';
+    context.strokeStyle = look.wall;
     context.lineWidth = 1;
     context.strokeRect(LEFT + 0.5, TOP + 0.5, width - LEFT - RIGHT - 1, height - TOP - BOTTOM - 1);
-    context.font = '11px system-ui, sans-serif';
-    context.fillStyle = QUIET;
+    context.font = font(11);
+    context.fillStyle = look.quiet;
     context.textAlign = 'center';
     for (const friction of [0.01, 0.03, 0.1, 0.3, 1, 3]) context.fillText(String(friction), this.#place(friction, 0)[0], height - BOTTOM + 14);
     context.fillText('friction κ', LEFT + (width - LEFT - RIGHT) / 2, height - 5);
@@ -131,12 +163,21 @@ export class Diagram {
   }
 }
 
-// Makes a rectangle of each run on the way up, reaching halfway to its neighbors.
+// Slanted lines over what comes in turn, so that color alone does not tell it.
+function hatching() {
+  const tile = document.createElement('canvas');
+  tile.width = tile.height = 6;
+  const context = tile.getContext('2d');
+  context.strokeStyle = look.hatch;
+  context.lineWidth = 1.4;
+  for (const shift of [-6, 0, 6]) { context.moveTo(shift, 6); context.lineTo(shift + 6, 0); }
+  context.stroke();
+  return tile;
+}
+
+// Makes a rectangle of each run, reaching halfway to its neighbors.
 function cells(table) {
-  const [header, ...rows] = table.trim().split('\n').map((row) => row.split(','));
-  const at = (name) => header.indexOf(name);
-  const runs = rows.filter((row) => row[at('leg')] === 'up').map((row) => ({ friction: Number(row[at('friction')]),
-    q: Number(row[at('inelasticity')]), state: row[at('regime')] }));
+  const runs = table.trim().split('\n').slice(1).map((row) => row.split(',')).map(([friction, q, state]) => ({ friction: Number(friction), q: Number(q), state }));
   const frictions = edges(runs.map((run) => run.friction), (a, b) => Math.sqrt(a * b));
   const inelasticities = edges(runs.map((run) => run.q), (a, b) => (a + b) / 2);
   return runs.map(({ friction, q, state }) => {

@@ -1,70 +1,79 @@
-// Plots the order parameters over the last oscillations.
+// Plots two numbers over the last oscillations: the order parameters, or two heights; dashed those of the run beside.
 
-import { fit } from './box.js';
+import { fit, font, look } from './look.js';
 
-const WINDOW = 3000, KEPT = 400, ONE = '#0072b2', TWO = '#d55e00', QUIET = '#69727d';
-const LEFT = 38, RIGHT = 8, TOP = 8, BOTTOM = 32;
+const KEPT = 400, LEFT = 38, RIGHT = 8, TOP = 8, BOTTOM = 32;
 
 export class Order {
-  #canvas; #samples = []; #changes = []; #drawn = '';
+  #canvas; #scene; #samples = [[], []]; #changes = []; #drawn = '';
   constructor(canvas) { this.#canvas = canvas; }
 
-  forget() { this.#samples = []; this.#changes = []; this.#drawn = ''; }
+  get canvas() { return this.#canvas; }
 
-  add(samples) {
-    for (let i = 0; i < samples.length; i += 4) this.#samples.push(samples.subarray(i, i + 4));
-    this.#samples = this.#samples.slice(-KEPT);
+  begin(scene) { this.#scene = scene; this.#samples = [[], []]; this.#changes = []; this.#drawn = ''; }
+
+  // Adds samples of the run, or of the one beside it.
+  add(samples, side = 0) {
+    for (let i = 0; i < samples.length; i += 4) this.#samples[side].push(samples.subarray(i, i + 4));
+    this.#samples[side] = this.#samples[side].slice(-KEPT);
   }
 
   changed(at) { if (this.#changes.at(-1) !== at) this.#changes.push(at); this.#changes = this.#changes.slice(-KEPT); }
 
   draw() {
-    const last = this.#samples.at(-1)?.[0] ?? 0;
-    const drawn = `${last} ${this.#samples.length} ${this.#changes.length} ${this.#canvas.clientWidth}`;
+    const last = this.#samples[0].at(-1)?.[0] ?? 0, { clientWidth: width, clientHeight: height } = this.#canvas;
+    const drawn = [last, ...this.#samples.map((side) => side.length), this.#changes.length, width, look.scheme].join();
     if (drawn === this.#drawn) return;
     this.#drawn = drawn;
-    const context = fit(this.#canvas), { clientWidth: width, clientHeight: height } = this.#canvas;
-    const first = Math.max(0, last - WINDOW);
-    const seen = this.#samples.filter((sample) => sample[0] >= first);
-    const most = 1.15 * Math.max(0.13, ...seen.map((sample) => Math.max(Math.abs(sample[1]), Math.abs(sample[2]))));
-    const x = (at) => LEFT + ((at - first) / WINDOW) * (width - LEFT - RIGHT);
-    const y = (value) => TOP + (0.5 - (0.5 * value) / most) * (height - TOP - BOTTOM);
+    const context = fit(this.#canvas), { plot } = this.#scene, first = Math.max(0, last - plot.window);
+    const [seen, beside] = this.#samples.map((side) => side.filter((sample) => sample[0] >= first));
+    const values = [...seen, ...beside].flatMap((sample) => [sample[1], sample[2]]);
+    const [least, most] = [1.15 * Math.min(plot.least, ...values), 1.15 * Math.max(plot.most, ...values)];
+    // The order parameters have a sign that means as much as its opposite.
+    const low = plot.least < 0 ? Math.min(least, -most) : 0, high = plot.least < 0 ? -low : most;
+    const x = (at) => LEFT + ((at - first) / plot.window) * (width - LEFT - RIGHT);
+    const y = (value) => TOP + ((high - value) / (high - low)) * (height - TOP - BOTTOM);
     noise(context, seen, x, y);
-    axes(context, { width, height, first, most, x, y });
-    context.strokeStyle = '#b9c0c8';
+    axes(context, { width, height, first, low, high, x, y, plot });
+    context.strokeStyle = look.rule;
     for (const at of this.#changes.filter((at) => at >= first)) line(context, [[x(at), TOP], [x(at), height - BOTTOM]], 1);
-    context.strokeStyle = ONE;
-    line(context, seen.map((sample) => [x(sample[0]), y(sample[1])]), 1.6);
-    context.strokeStyle = TWO;
-    line(context, seen.map((sample) => [x(sample[0]), y(sample[2])]), 1.6);
+    for (const [samples, dash] of [[seen, []], [beside, [4, 3]]]) {
+      context.setLineDash(dash);
+      [look.one, look.two].forEach((color, k) => {
+        context.strokeStyle = color;
+        line(context, samples.map((sample) => [x(sample[0]), y(sample[1 + k])]), 1.6);
+      });
+    }
+    context.setLineDash([]);
   }
 }
 
 // The band of two standard deviations in which a gas at rest would be.
 function noise(context, samples, x, y) {
   if (samples.length < 2) return;
-  context.fillStyle = '#eceef1';
+  context.fillStyle = look.faint;
   context.beginPath();
   for (const sample of samples) context.lineTo(x(sample[0]), y(2 * sample[3]));
   for (const sample of samples.toReversed()) context.lineTo(x(sample[0]), y(-2 * sample[3]));
   context.fill();
 }
 
-function axes(context, { width, height, first, most, x, y }) {
-  context.font = '11px system-ui, sans-serif';
-  context.fillStyle = QUIET;
+function axes(context, { width, height, first, low, high, x, y, plot }) {
+  context.font = font(11);
+  context.fillStyle = look.quiet;
   context.textAlign = 'right';
   context.textBaseline = 'middle';
-  const step = most > 0.5 ? 0.25 : most > 0.22 ? 0.1 : 0.05;
-  for (let value = -Math.floor(most / step) * step; value <= most; value += step) {
-    context.strokeStyle = Math.abs(value) < 1e-9 ? '#b9c0c8' : '#eceef1';
+  const step = plot.steps.find((step) => (high - low) / step < 9) ?? plot.steps.at(-1);
+  for (let count = Math.ceil(low / step); count * step <= high; count += 1) {
+    const value = count * step;
+    context.strokeStyle = count === 0 ? look.rule : look.faint;
     line(context, [[LEFT, y(value)], [width - RIGHT, y(value)]], 1);
-    context.fillText(value.toFixed(2).replace('-', '−').replace('−0.00', '0.00'), LEFT - 5, y(value));
+    context.fillText(value.toFixed(plot.digits).replace('-', '−'), LEFT - 5, y(value));
   }
   context.textAlign = 'center';
   context.textBaseline = 'alphabetic';
-  const stride = width < 260 ? 2000 : 1000;
-  for (let at = Math.ceil(first / stride) * stride; at <= first + WINDOW; at += stride) {
+  const stride = width < 260 ? 2 * plot.stride : plot.stride;
+  for (let at = Math.ceil(first / stride) * stride; at <= first + plot.window; at += stride) {
     if (x(at) < width - 14) context.fillText(String(at), x(at), height - BOTTOM + 14);
   }
   context.fillText('oscillations', LEFT + (width - LEFT - RIGHT) / 2, height - 4);

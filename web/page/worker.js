@@ -6,7 +6,8 @@ const MARKED = 3; // Oscillations per second below which collisions are marked.
 
 let library;
 let speed = 300, playing = false, target = 0, clock = 0, isTurning = false;
-let ahead = [], until = 0; // What is still to be replayed.
+let ahead = [], until = 0; // Settings that are still to come, and how far the run is replayed.
+let leash = Infinity; // The oscillations of the run that this one follows.
 let hash = { text: '', at: -1, when: 0 };
 let state = { text: '', until: 0 };
 let isStarted = false, isFrameOwed = false;
@@ -21,12 +22,13 @@ const left = (write) => { write(); return numbers(); };
 const told = (write) => { check(write()); return text(); };
 function check(failed) { if (failed) throw new Error(text()); }
 
-const isReplaying = () => ahead.length > 0 || library.oscillations() < until;
+const isReplaying = () => library.oscillations() < until;
 
-function start({ seed, plan, at, isPlaying }) {
-  check(library.start(seed, ...plan[0].setting));
+function start({ nut, seed, plan, at, isPlaying }) {
+  check(library.start(seed, ...nut, ...plan[0].setting));
   ahead = plan.slice(1);
-  until = at;
+  until = Math.max(at, plan.at(-1).at);
+  leash = Infinity;
   playing = isPlaying;
   state.until = 0;
   hash = { text: '', at: -1, when: 0 };
@@ -60,7 +62,9 @@ function runTo(goal, marks) {
   while (now < goal && performance.now() < end) {
     check(library.advance(Math.min(goal, Math.floor(now) + 1), COLLISIONS, marks ? 1 : 0));
     now = library.oscillations();
-    if (Number.isInteger(now)) nameState();
+    if (!Number.isInteger(now)) continue;
+    if (now === ahead[0]?.at) check(library.ask(...ahead.shift().setting));
+    nameState();
   }
   measure();
   return now;
@@ -72,14 +76,12 @@ function play() {
   const present = library.oscillations();
   // What could not be computed in time is let go.
   target = Math.min(Math.max(target, present) + speed * passed, present + Math.max(speed * 0.1, 1e-9));
-  return runTo(speed === Infinity ? present + 1000 : target, speed < MARKED) < target || speed === Infinity;
+  const goal = Math.min(speed === Infinity ? present + 1000 : target, leash);
+  return runTo(goal, speed < MARKED) < goal || (speed === Infinity && goal < leash);
 }
 
 function replay() {
-  const goal = ahead.length > 0 ? ahead[0].at : until;
-  if (runTo(goal, false) < goal) return;
-  if (ahead.length > 0) check(library.ask(...ahead.shift().setting));
-  if (!isReplaying()) { hash.when = 0; nameState(); begin(); postMessage({ arrived: true }); }
+  if (runTo(until, false) >= until) { hash.when = 0; nameState(); begin(); postMessage({ arrived: true }); }
 }
 
 // Names the state by its hash, a few times a second, at whole oscillations.
@@ -123,9 +125,14 @@ function fail(error) {
 
 const orders = {
   start,
-  want() { if (isStarted) frame(); else isFrameOwed = true; },
+  want(most = Infinity) { leash = most; if (isStarted) frame(); else isFrameOwed = true; },
   // Whoever changes a setting leaves the rest of a plan behind.
-  ask(setting) { [ahead, until] = [[], 0]; postMessage({ asked: Number(told(() => library.ask(...setting))), setting }); },
+  ask(setting) {
+    [ahead, until] = [[], 0];
+    if (library.ask(...setting)) postMessage({ refused: text() }); else postMessage({ asked: Number(text()), setting });
+  },
+  // A change of the run that this one follows, and that has not come as far.
+  follow(step) { if (step.at === library.oscillations()) check(library.ask(...step.setting)); else ahead.push(step); },
   speed(value) { speed = value; target = library.oscillations(); clock = performance.now(); },
   play(value) { playing = value; begin(); },
   step() { playing = false; check(library.step()); postMessage({ stepped: true }); },

@@ -9,10 +9,9 @@
 
 use std::cell::RefCell;
 
-use granular_edmd::observable::{CenterOfMass, Energies, OrderParameters};
-
 use crate::plan::Setting;
 use crate::run::{Advance, Failure, Run};
+use crate::scene::Scene;
 
 #[derive(Default)]
 struct Page {
@@ -23,10 +22,12 @@ struct Page {
 
 thread_local! { static PAGE: RefCell<Page> = RefCell::default(); }
 
-/// Starts a run anew.
+/// Starts a run anew, with a large disk if its diameter is not 0.
 #[unsafe(no_mangle)]
 pub extern "C" fn start(
     seed: f64,
+    diameter: f64,
+    density: f64,
     friction: f64,
     q: f64,
     gravity: f64,
@@ -35,7 +36,7 @@ pub extern "C" fn start(
 ) -> u32 {
     let setting = setting([friction, q, gravity, amplitude, frequency]);
     attempt(|page| {
-        page.run = Some(Run::new(seed as u64, setting)?);
+        page.run = Some(Run::new(seed as u64, Scene::with_large_disk(diameter, density)?, setting)?);
         Ok(())
     })
 }
@@ -75,13 +76,14 @@ pub extern "C" fn collisions() -> f64 {
     ask_run(0.0, |run| run.collisions() as f64)
 }
 
-/// Leaves position, angle and angular velocity of each disk.
+/// Leaves position, angle, angular velocity and radius of each disk.
 #[unsafe(no_mangle)]
 pub extern "C" fn disks() {
     leave(|run, out| {
         for disk in run.simulation().disks() {
-            let place = [disk.position().x, disk.position().y, disk.angle(), disk.angular_velocity()];
-            out.extend(place.map(|number| number as f32));
+            let (place, radius) = (disk.position(), disk.radius());
+            let all = [place.x, place.y, disk.angle(), disk.angular_velocity(), radius];
+            out.extend(all.map(|number| number as f32));
         }
     });
 }
@@ -102,28 +104,23 @@ pub extern "C" fn marks() {
     leave(|run, out| out.extend(run.watch().marks.drain(..).flat_map(|mark| mark.0)));
 }
 
-/// Leaves the new samples, and forgets them: oscillation, both order parameters, their noise.
+/// Leaves the new samples, and forgets them: oscillation, both order parameters or both heights, and noise.
 #[unsafe(no_mangle)]
 pub extern "C" fn samples() {
     leave(|run, out| {
         for sample in run.watch().fresh.drain(..) {
-            let order = [sample.order.one_roll, sample.order.two_rolls, sample.noise];
-            out.push(sample.oscillation as f32);
-            out.extend(order.map(|number| number as f32));
+            let [first, second] = sample.plotted;
+            out.extend([sample.oscillation as f64, first, second, sample.noise].map(|number| number as f32));
         }
     });
 }
 
-/// Leaves time, order parameters, height of the center of mass, energies, and height of the base.
+/// Leaves both order parameters or both heights, the height of the center of mass, and that of the base.
 #[unsafe(no_mangle)]
 pub extern "C" fn numbers() {
     leave(|run, out| {
-        let (order, center, energies) = run.simulation().measure(&(OrderParameters, CenterOfMass, Energies));
-        let time = run.simulation().time();
-        let all =
-            [time, order.one_roll, order.two_rolls, center.y, energies.translational, energies.rotational];
-        out.extend(all.map(|number| number as f32));
-        out.push(run.base() as f32);
+        let ([first, second], height) = run.plotted();
+        out.extend([first, second, height, run.base()].map(|number| number as f32));
     });
 }
 

@@ -1,10 +1,13 @@
 //! The mean flow on a grid, over the last oscillations.
 
+use granular_edmd::Disk;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::Snapshot;
 
+use crate::scene::Scene;
+
+/// Cells side by side.
 pub(crate) const COLUMNS: usize = 10;
-pub(crate) const ROWS: usize = 25;
 
 /// Oscillations over which the flow is averaged: older ones count less and less.
 const MEMORY: f64 = 100.0;
@@ -16,37 +19,47 @@ pub(crate) struct Cell {
     pub(crate) velocities: DVec2,
 }
 
-/// The flow. Unlike the library's `Fields` it forgets, so that it shows a roll that turns.
+/// The flow: how far disks come in an oscillation, whatever they do within it. Unlike the library's `Fields`
+/// it forgets, so that it shows a roll that turns.
 #[derive(Debug)]
-pub(crate) struct Flow(Vec<Cell>);
+pub(crate) struct Flow {
+    cells: Vec<Cell>,
+    /// Cells on a unit of length.
+    per_length: f64,
+    /// Time and places an oscillation ago.
+    before: (f64, Vec<DVec2>),
+}
 
 impl Flow {
-    pub(crate) fn new() -> Self {
-        Self(vec![Cell::default(); COLUMNS * ROWS])
+    /// Lays square cells over the box.
+    pub(crate) fn new(scene: Scene) -> Self {
+        let (width, height) = scene.size();
+        let per_length = COLUMNS as f64 / width;
+        let rows = (height * per_length).ceil() as usize;
+        Self { cells: vec![Cell::default(); COLUMNS * rows], per_length, before: (0.0, Vec::new()) }
     }
 
     pub(crate) fn add(&mut self, snapshot: &Snapshot<'_>) {
         let fade = 1.0 - 1.0 / MEMORY;
-        for cell in &mut self.0 {
+        for cell in &mut self.cells {
             cell.weight *= fade;
             cell.velocities *= fade;
         }
-        let domain = snapshot.domain();
-        let corner = DVec2::new(domain.left, domain.bottom);
-        let per_length =
-            DVec2::new(COLUMNS as f64, ROWS as f64) / DVec2::new(domain.width(), domain.top - domain.bottom);
-        for disk in snapshot.disks() {
-            let place = (disk.position() - corner) * per_length;
-            let (column, row) = (place.x.max(0.0) as usize, place.y.max(0.0) as usize);
-            if let Some(cell) = self.0.get_mut(row.min(ROWS - 1) * COLUMNS + column.min(COLUMNS - 1)) {
+        let places: Vec<DVec2> = snapshot.disks().iter().map(Disk::position).collect();
+        let elapsed = snapshot.time() - self.before.0;
+        for (place, before) in places.iter().zip(&self.before.1) {
+            let cell = 0.5 * (*place + *before) * self.per_length;
+            let (column, row) = (cell.x.max(0.0) as usize, cell.y.max(0.0) as usize);
+            if let Some(cell) = self.cells.get_mut(row * COLUMNS + column.min(COLUMNS - 1)) {
                 cell.weight += 1.0;
-                cell.velocities += disk.velocity();
+                cell.velocities += (*place - *before) / elapsed;
             }
         }
+        self.before = (snapshot.time(), places);
     }
 
     /// Returns mean velocity and mean number of disks of each cell, row by row from below.
     pub(crate) fn cells(&self) -> impl Iterator<Item = (DVec2, f64)> {
-        self.0.iter().map(|cell| (cell.velocities / cell.weight.max(1e-9), cell.weight / MEMORY))
+        self.cells.iter().map(|cell| (cell.velocities / cell.weight.max(1e-9), cell.weight / MEMORY))
     }
 }

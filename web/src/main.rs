@@ -14,7 +14,7 @@ use std::process::ExitCode;
 
 use rolls::{Failure, Plan, Run};
 
-const USAGE: &str = "usage: rolls [serve [PORT] | build | hash SEED PLAN OSCILLATIONS]";
+const USAGE: &str = "usage: rolls [serve [PORT] | build | hash SEED PLAN OSCILLATIONS [DIAMETER,DENSITY]]";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -33,7 +33,8 @@ fn run(arguments: &[&str]) -> Result<(), Failure> {
         [] | ["serve"] => serve(0),
         ["serve", port] => serve(port.parse().map_err(|_| format!("{port} is no port"))?),
         ["build"] => site::build().map(|folder| println!("the page is in {}", folder.display())),
-        ["hash", seed, plan, oscillations] => hash(seed, plan, oscillations),
+        ["hash", seed, plan, oscillations] => hash(seed, plan, oscillations, "rolls"),
+        ["hash", seed, plan, oscillations, large] => hash(seed, plan, oscillations, large),
         _ => Err(USAGE.into()),
     }
 }
@@ -44,9 +45,9 @@ fn serve(port: u16) -> Result<(), Failure> {
 }
 
 /// Prints the hash of the state that the page shows after so many oscillations of the same plan.
-fn hash(seed: &str, plan: &str, oscillations: &str) -> Result<(), Failure> {
+fn hash(seed: &str, plan: &str, oscillations: &str, scene: &str) -> Result<(), Failure> {
     let number = |text: &str| text.parse::<u32>().map_err(|_| format!("{text} is not in 0..2^32"));
     let (seed, plan, oscillations) = (number(seed)?, plan.parse::<Plan>()?, number(oscillations)?);
-    println!("{}", Run::planned(seed.into(), &plan, oscillations.into())?);
+    println!("{}", Run::planned(seed.into(), scene.parse()?, &plan, oscillations.into())?);
     Ok(())
 }

@@ -29,14 +29,14 @@ impl Setting {
         BiParabolic::new(self.amplitude, self.angular_frequency)
     }
 
-    /// Returns the rule, whose contact duration is 1e-4 of the time in which a disk with the speed of the
-    /// base moves by its diameter.
-    pub(crate) fn rule(&self) -> Result<Rule, ParameterError> {
+    /// Returns the rule, whose contact duration is this share of the time in which a disk with the speed of
+    /// the base moves by its diameter.
+    pub(crate) fn rule(&self, contact_duration: f64) -> Result<Rule, ParameterError> {
         self.base()?;
         let speed = self.amplitude * self.angular_frequency;
         ContactDuration::new(
             Frictional::from_inelasticity(self.inelasticity, self.inelasticity, self.friction)?,
-            1e-4 / speed,
+            contact_duration / speed,
         )
     }
 

@@ -1,21 +1,16 @@
-//! The run: the paper's box, advanced by oscillations, with settings that change at whole ones.
+//! The run: a box of disks, advanced by oscillations, with settings that change at whole ones.
 
 use std::f64::consts::TAU;
 
-use granular_edmd::boundary::{Container, Wall};
-use granular_edmd::observable::on_collision;
+use granular_edmd::boundary::Container;
+use granular_edmd::observable::{CenterOfMass, on_collision};
 use granular_edmd::simulation::{Limits, RunEnd};
-use granular_edmd::wall::{StartingAt, WallMotion};
-use granular_edmd::{Disk, Simulation, initial};
+use granular_edmd::wall::WallMotion;
+use granular_edmd::{Disk, Simulation};
 
 use crate::plan::{Plan, Rule, Setting};
+use crate::scene::Scene;
 use crate::watch::{Mark, Watch};
-
-/// Disks, and the box of the paper.
-pub(crate) const DISKS: usize = 1000;
-pub(crate) const WIDTH: f64 = 60.0;
-pub(crate) const HEIGHT: f64 = 150.0;
-const RADIUS: f64 = 0.5;
 
 /// An error of any part of the library, for people.
 pub type Failure = Box<dyn std::error::Error>;
@@ -31,20 +26,21 @@ pub struct Advance {
     pub marks: bool,
 }
 
-/// The paper's box with settings that change while it runs.
+/// A box with settings that change while it runs.
 ///
 /// Settings change at whole oscillations, when the base passes its middle upward, so that it never jumps.
 /// The state is then a function of the seed and of the plan alone, not of frames and clicks.
 ///
 /// ```
-/// use rolls::{Plan, Run};
+/// use rolls::{Plan, Run, Scene};
 /// let plan: Plan = "0:0.03,0,0.015625,0.1,10;3:0.08,0,0.015625,0.1,12".parse()?;
-/// assert_eq!(Run::planned(7, &plan, 6)?, Run::planned(7, &plan, 6)?);
-/// assert_ne!(Run::planned(7, &plan, 6)?, Run::planned(8, &plan, 6)?);
+/// assert_eq!(Run::planned(7, Scene::Rolls, &plan, 6)?, Run::planned(7, Scene::Rolls, &plan, 6)?);
+/// assert_ne!(Run::planned(7, Scene::Rolls, &plan, 6)?, Run::planned(8, Scene::Rolls, &plan, 6)?);
 /// # Ok::<(), rolls::Failure>(())
 /// ```
 #[derive(Debug)]
 pub struct Run {
+    scene: Scene,
     simulation: Simulation<Rule, Container>,
     setting: Setting,
     pending: Option<Setting>,
@@ -62,23 +58,31 @@ impl Run {
     ///
     /// # Errors
     /// If a setting is out of its range.
-    pub fn new(seed: u64, setting: Setting) -> Result<Self, Failure> {
-        let container = container(&setting, 0.0)?;
-        let disks = initial::lattice(&container, DISKS, RADIUS)?;
-        let disks = initial::with_maxwellian_velocities(disks, setting.temperature(), seed)?;
-        let builder = Simulation::builder(setting.rule()?, container).disks(disks);
+    pub fn new(seed: u64, scene: Scene, setting: Setting) -> Result<Self, Failure> {
+        let container = scene.container(&setting, 0.0)?;
+        let disks = scene.disks(&container, &setting, seed)?;
+        let builder = Simulation::builder(setting.rule(scene.contact_duration())?, container).disks(disks);
         let mut simulation = builder.gravity(setting.gravity).seed(seed).build()?;
-        let mut watch = Watch::new()?;
+        let mut watch = Watch::new(scene)?;
         watch.look(0, &mut simulation);
-        Ok(Self { simulation, setting, pending: None, began: (0.0, 0), whole: 0, is_whole: true, watch })
+        Ok(Self {
+            scene,
+            simulation,
+            setting,
+            pending: None,
+            began: (0.0, 0),
+            whole: 0,
+            is_whole: true,
+            watch,
+        })
     }
 
     /// Runs a plan for so many oscillations, and returns the hash of the state.
     ///
     /// # Errors
     /// As [`Self::new`] and [`Self::advance`].
-    pub fn planned(seed: u64, plan: &Plan, oscillations: u64) -> Result<String, Failure> {
-        let mut run = Self::new(seed, *plan.first())?;
+    pub fn planned(seed: u64, scene: Scene, plan: &Plan, oscillations: u64) -> Result<String, Failure> {
+        let mut run = Self::new(seed, scene, *plan.first())?;
         for &(when, setting) in plan.later().iter().take_while(|step| step.0 <= oscillations) {
             run.advance_to(when)?;
             run.ask(setting)?;
@@ -96,8 +100,8 @@ impl Run {
     /// # Errors
     /// If the setting is out of its range. It is then not taken.
     pub fn ask(&mut self, setting: Setting) -> Result<u64, Failure> {
-        setting.rule()?;
-        container(&setting, self.simulation.time())?;
+        setting.rule(self.scene.contact_duration())?;
+        self.scene.container(&setting, self.simulation.time())?;
         self.pending = Some(setting);
         if self.is_whole {
             self.change()?;
@@ -169,7 +173,7 @@ impl Run {
         let time = self.time_of(self.whole as f64);
         let Setting { amplitude, angular_frequency, .. } = self.setting;
         if (setting.amplitude, setting.angular_frequency) != (amplitude, angular_frequency) {
-            if self.simulation.set_boundary(container(&setting, time)?).is_err() {
+            if self.simulation.set_boundary(self.scene.container(&setting, time)?).is_err() {
                 return Ok(());
             }
             self.began = (time, self.whole);
@@ -177,7 +181,7 @@ impl Run {
         if setting.gravity != self.setting.gravity {
             self.simulation.set_gravity(setting.gravity)?;
         }
-        self.simulation.set_rule(setting.rule()?);
+        self.simulation.set_rule(setting.rule(self.scene.contact_duration())?);
         (self.setting, self.pending) = (setting, None);
         self.watch.forget();
         Ok(())
@@ -226,6 +230,12 @@ impl Run {
         &mut self.watch
     }
 
+    /// Returns what is plotted, and the height of the center of mass, now.
+    pub(crate) fn plotted(&self) -> ([f64; 2], f64) {
+        let (plotted, center) = self.simulation.measure(&(self.scene, CenterOfMass));
+        (plotted, center.y)
+    }
+
     /// Returns the height of the base now.
     pub(crate) fn base(&self) -> f64 {
         let share = self.oscillations().fract();
@@ -238,10 +248,4 @@ impl Run {
 fn numbers(disk: &Disk) -> [f64; 6] {
     let (position, velocity) = (disk.position(), disk.velocity());
     [position.x, position.y, velocity.x, velocity.y, disk.angle(), disk.angular_velocity()]
-}
-
-/// Returns the box with its base, which begins an oscillation at this time.
-fn container(setting: &Setting, time: f64) -> Result<Container, Failure> {
-    let base = StartingAt::new(setting.base()?, time)?;
-    Ok(Container::closed(WIDTH, HEIGHT)?.with_motion(Wall::Floor, base)?)
 }

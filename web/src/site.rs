@@ -25,9 +25,25 @@ pub(crate) fn build() -> Result<PathBuf, Failure> {
     fs::copy(target.join(TARGET).join("release/rolls.wasm"), site.join("rolls.wasm"))?;
     for gravity in GRAVITIES {
         let points = format!("../docs/reproduction/fig5_phase_diagram-{gravity}/points.csv");
-        fs::copy(package.join(points), site.join(format!("states-{gravity}.csv")))?;
+        let states = states(&fs::read_to_string(package.join(points))?)?;
+        fs::write(site.join(format!("states-{gravity}.csv")), states)?;
     }
     Ok(site)
+}
+
+/// Returns friction, inelasticity and state of the runs on the way up: a tenth of the table.
+fn states(points: &str) -> Result<String, Failure> {
+    let mut states = vec!["friction,inelasticity,state".to_owned()];
+    for line in points.lines().skip(1) {
+        let columns: Vec<&str> = line.split(',').collect();
+        let [_, friction, inelasticity, leg, state, ..] = columns[..] else {
+            return Err(format!("not a point of Fig. 5: {line}").into());
+        };
+        if leg == "up" {
+            states.push(format!("{friction},{inelasticity},{state}"));
+        }
+    }
+    Ok(states.join("\n"))
 }
 
 fn compile(package: &Path, target: &Path) -> Result<(), Failure> {

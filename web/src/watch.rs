@@ -12,10 +12,7 @@ use granular_edmd::{ParameterError, Simulation};
 
 use crate::flow::Flow;
 use crate::plan::Rule;
-use crate::run::{DISKS, HEIGHT};
-
-/// Oscillations from sample to sample.
-const EVERY: u64 = 10;
+use crate::scene::Scene;
 
 /// Samples of which the state is named.
 const NAMED: usize = 60;
@@ -43,16 +40,18 @@ impl Mark {
     }
 }
 
-/// A sample of the order parameters.
+/// A sample of what is plotted, and of the order parameters with their noise in a gas at rest.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sample {
     pub(crate) oscillation: u64,
+    pub(crate) plotted: [f64; 2],
     pub(crate) order: ConvectionOrder,
     pub(crate) noise: f64,
 }
 
 #[derive(Debug)]
 pub(crate) struct Watch {
+    scene: Scene,
     pub(crate) flow: Flow,
     pub(crate) marks: Vec<Mark>,
     /// Samples that the page has not fetched.
@@ -63,10 +62,11 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    pub(crate) fn new() -> Result<Self, ParameterError> {
-        let profile = HeightProfile::new(0.0, HEIGHT, HEIGHT as usize)?;
+    pub(crate) fn new(scene: Scene) -> Result<Self, ParameterError> {
+        let (_, height) = scene.size();
+        let profile = HeightProfile::new(0.0, height, height as usize)?;
         let (marks, fresh, recent) = (Vec::new(), Vec::new(), VecDeque::new());
-        Ok(Self { flow: Flow::new(), marks, fresh, recent, profile, layer: None })
+        Ok(Self { scene, flow: Flow::new(scene), marks, fresh, recent, profile, layer: None })
     }
 
     pub(crate) fn mark(&mut self, collision: &Collision) {
@@ -79,12 +79,12 @@ impl Watch {
     pub(crate) fn look(&mut self, oscillation: u64, simulation: &mut Simulation<Rule, Container>) {
         let snapshot = simulation.snapshot();
         self.flow.add(&snapshot);
-        if !oscillation.is_multiple_of(EVERY) {
+        if !oscillation.is_multiple_of(self.scene.sampled_every()) {
             return;
         }
-        let order = OrderParameters.measure(&snapshot);
-        let noise = thermal_noise(Temperatures.measure(&snapshot).vertical, 1.0, DISKS).unwrap_or(0.0);
-        let sample = Sample { oscillation, order, noise };
+        let (plotted, order, temperatures) = (self.scene, OrderParameters, Temperatures).measure(&snapshot);
+        let noise = thermal_noise(temperatures.vertical, 1.0, self.scene.count()).unwrap_or(0.0);
+        let sample = Sample { oscillation, plotted, order, noise };
         if self.fresh.len() >= MOST_FRESH {
             self.fresh.drain(..MOST_FRESH / 2);
         }
@@ -107,9 +107,9 @@ impl Watch {
         self.layer = None;
     }
 
-    /// Returns the name of the state by the last samples; none while there are few.
+    /// Returns the name of the state by the last samples; none while there are few, and none for a large disk.
     pub(crate) fn state(&self) -> Option<String> {
-        if self.recent.len() < FEWEST {
+        if self.recent.len() < FEWEST || self.scene != Scene::Rolls {
             return None;
         }
         let orders: Vec<ConvectionOrder> = self.recent.iter().map(|sample| sample.order).collect();
