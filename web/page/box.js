@@ -3,7 +3,7 @@
 import { fit, look } from './look.js';
 
 const MARGIN = 1, NUMBERS = 5; // Numbers of a disk: place, angle, angular velocity, radius.
-const ENOUGH = 0.08, LARGE = 0.6; // Share of the fullest cell that makes an arrow; radius from which a disk is drawn with a rim.
+const LARGE = 0.6; // Radius from which a disk is drawn with a rim.
 
 export class Box {
   #canvas; #scene; #marks = []; #dye = null; #before = null;
@@ -85,13 +85,13 @@ export class Box {
   }
 
   #arrows(context, unit, flow) {
-    const { columns, rows, width, leastFlow } = this.#scene;
+    const { columns, rows, width, leastFlow, enough } = this.#scene;
     let most = 0, fastest = leastFlow;
     for (let i = 0; i < flow.length; i += 3) most = Math.max(most, flow[i + 2]);
     const seen = [];
     for (let cell = 0; cell < columns * rows; cell += 1) {
       const [u, v, count] = flow.subarray(3 * cell, 3 * cell + 3);
-      if (count < ENOUGH * most || count === 0) continue;
+      if (count < enough * most || count === 0) continue;
       seen.push([cell, u, v]);
       fastest = Math.max(fastest, Math.hypot(u, v));
     }

@@ -121,7 +121,7 @@ function stateOf({ isReplaying, until, state, numbers: [large, rest] }) {
 }
 
 function captionOf(frame, value) {
-  return `${run.scene.settings[run.beside.setting].symbol} = ${value}, after ${Math.floor(frame.oscillations)}: ${stateOf(frame)}`;
+  return `${run.scene.settings[run.beside.setting].symbol} = ${value}, after ${Math.floor(frame.oscillations)} oscillations: ${stateOf(frame)}`;
 }
 
 function show(frame) {
@@ -145,8 +145,10 @@ function show(frame) {
 function draw() {
   requestAnimationFrame(draw);
   const options = { color: at('color').value, arrows: at('arrows').checked, isSlow: run.speed < run.scene.speed / 100 || !run.isPlaying };
+  // Neither leaves the other behind, and the one beside is never ahead.
+  const lead = Math.max(1, Math.min(run.speed, 300) / 10);
   other?.draw(options, side.frame?.oscillations);
-  if (!side.draw(options)) return;
+  if (!side.draw(options, other ? (other.frame?.oscillations ?? 0) + lead : undefined)) return;
   plot.draw();
   if (run.scene === ROLLS) diagram.draw(sliders.values, run.beside && varied({ setting: sliders.values }).setting);
   if (drawn.frames % 4 === 0 || !run.isPlaying) show(side.frame);

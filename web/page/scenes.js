@@ -11,7 +11,7 @@ const amplitude = { symbol: 'A', name: 'amplitude', least: 0.01, ...digits(2) };
 const frequency = { symbol: 'ω', name: 'angular frequency', ...digits(2) };
 
 export const ROLLS = {
-  name: 'rolls', title: 'Convection rolls of shaken disks', width: 60, height: 150, columns: 10, rows: 25, leastFlow: 0.12, speed: 300,
+  name: 'rolls', title: 'Convection rolls of shaken disks', width: 60, height: 150, columns: 10, rows: 25, leastFlow: 0.12, enough: 0.08, speed: 300,
   settings: [friction, inelasticity, { ...gravity, most: 1, ...log(0.001, 0.1) }, { ...amplitude, most: 1, ...log(0.02, 0.5) },
     { ...frequency, least: 1, most: 50, ...log(2, 30) }],
   starts: [0.03, 0, 0.015625, 0.1, 10],
@@ -19,10 +19,10 @@ export const ROLLS = {
 };
 
 export const NUT = {
-  name: 'nut', title: 'A large disk among small ones', width: 30, height: 50, columns: 10, rows: 17, leastFlow: 0.06, speed: 15,
+  name: 'nut', title: 'A large disk among small ones', width: 30, height: 50, columns: 10, rows: 17, leastFlow: 0.06, enough: 0.3, speed: 10,
   settings: [friction, inelasticity, { ...gravity, most: 20, ...log(0.2, 5) }, { ...amplitude, most: 3, ...log(0.1, 3) },
     { ...frequency, least: 0.2, most: 10, ...log(0.5, 5) }],
-  starts: [0.3, 0.05, 1, 1, 2],
+  starts: [0.3, 0.05, 1, 1, 2.3],
   plot: { window: 300, stride: 100, least: 0, most: 20, digits: 0, steps: [5, 10, 20] },
 };
 

@@ -2,14 +2,18 @@
 
 use granular_edmd::boundary::{Container, Obstacles, Wall};
 use granular_edmd::glam::DVec2;
+use granular_edmd::initial::{self, Radii};
 use granular_edmd::observable::{CenterOfMass, Observable, OfKind, OrderParameters, Snapshot};
 use granular_edmd::wall::StartingAt;
-use granular_edmd::{Disk, Kind, initial};
+use granular_edmd::{Disk, Kind};
 
 use crate::plan::Setting;
 use crate::run::Failure;
 
 const RADIUS: f64 = 0.5;
+
+/// The smallest radius of a grain around the large disk.
+const SMALLEST: f64 = 0.42;
 
 /// The kind of the large disk.
 const LARGE: Kind = Kind::new(1);
@@ -63,11 +67,11 @@ impl Scene {
 
     /// Returns the oscillations from sample to sample of what is plotted.
     pub(crate) const fn sampled_every(self) -> u64 {
-        if let Self::Rolls = self { 10 } else { 1 }
+        if let Self::Rolls = self { 10 } else { 2 }
     }
 
-    /// Returns the contact duration as a share of the time in which a disk with the speed of the base moves by
-    /// its diameter. Grains under a strong gravity lie on each other for moments, and need a longer one.
+    /// Returns the contact duration as a share of the time in which a disk with the speed of the base moves
+    /// by its diameter. Grains under a strong gravity lie on each other for moments, and need a longer one.
     pub(crate) const fn contact_duration(self) -> f64 {
         if let Self::Rolls = self { 1e-4 } else { 2e-3 }
     }
@@ -86,7 +90,7 @@ impl Scene {
         setting: &Setting,
         seed: u64,
     ) -> Result<Vec<Disk>, Failure> {
-        let mut disks = match self {
+        let disks = match self {
             Self::Rolls => initial::lattice(container, self.count(), RADIUS)?,
             Self::Nut { diameter, density } => {
                 let (width, height) = self.size();
@@ -95,13 +99,14 @@ impl Scene {
                 let large = Disk::new(DVec2::new(0.5 * width, level), radius)?;
                 let large = large.with_mass(density * diameter * diameter)?.with_kind(LARGE);
                 let around = Obstacles::new(container.clone(), [large]);
-                let mut disks = initial::lattice(&around, self.count() - 1, RADIUS)?;
-                disks.push(large);
-                disks
+                // Equal grains would come to lie in a lattice, in which nothing moves.
+                let sites = initial::lattice(&around, self.count() - 1, RADIUS)?;
+                let radii = Radii::uniform(SMALLEST, RADIUS)?.draw(sites.len(), seed);
+                let grains = sites.iter().zip(radii).map(|(site, radius)| Disk::new(site.position(), radius));
+                grains.chain([Ok(large)]).collect::<Result<_, _>>()?
             }
         };
-        disks = initial::with_maxwellian_velocities(disks, setting.temperature(), seed)?;
-        Ok(disks)
+        Ok(initial::with_maxwellian_velocities(disks, setting.temperature(), seed)?)
     }
 }
 

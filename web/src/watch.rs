@@ -107,7 +107,7 @@ impl Watch {
         self.layer = None;
     }
 
-    /// Returns the name of the state by the last samples; none while there are few, and none for a large disk.
+    /// Returns the name of the state by the last samples; none while there are few, or with a large disk.
     pub(crate) fn state(&self) -> Option<String> {
         if self.recent.len() < FEWEST || self.scene != Scene::Rolls {
             return None;

@@ -8,7 +8,7 @@ import { join } from 'node:path';
 const FLAGS = ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
   '--disable-component-update', '--disable-sync', '--disable-default-apps', '--disable-dev-shm-usage', '--remote-debugging-pipe'];
 
-export async function open(program, { width = 1280, height = 900, mobile = false } = {}) {
+export async function open(program, { width = 1280, height = 900, mobile = false, dark = false } = {}) {
   const profile = mkdtempSync(join(tmpdir(), 'rolls-'));
   const child = spawn(program, [...FLAGS, `--user-data-dir=${profile}`, 'about:blank'], { stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe'] });
   const waiting = new Map(), listeners = [];
@@ -40,6 +40,7 @@ export async function open(program, { width = 1280, height = 900, mobile = false
   });
   for (const domain of ['Page', 'Runtime', 'Log', 'Network']) await call(`${domain}.enable`);
   await call('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: mobile ? 2 : 1, mobile });
+  await call('Emulation.setEmulatedMedia', { features: [{ name: 'prefers-color-scheme', value: dark ? 'dark' : 'light' }] });
 
   const evaluate = async (expression) => {
     const { result, exceptionDetails } = await call('Runtime.evaluate', { expression, awaitPromise: true, returnByValue: true });
@@ -54,7 +55,7 @@ export async function open(program, { width = 1280, height = 900, mobile = false
     }
   };
   return {
-    problems, requests, evaluate, until,
+    problems, requests, evaluate, until, call,
     go: async (url) => { await call('Page.navigate', { url: 'about:blank' }); await call('Page.navigate', { url }); await until('Boolean(window.rolls?.frame)'); },
     screenshot: async (full = false) => Buffer.from((await call('Page.captureScreenshot', { format: 'png', captureBeyondViewport: full })).data, 'base64'),
     close: async () => {

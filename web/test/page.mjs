@@ -1,11 +1,14 @@
-// Tests the page in Chromium: node web/test/page.mjs PROGRAM [CHROMIUM]; the program is this package's binary.
+// Tests the page: node web/test/page.mjs PROGRAM CHROMIUM [FIREFOX [AXE]]; the program is this package's binary, and axe the file of axe-core.
 
 import { execFileSync, spawn } from 'node:child_process';
 import { strict as assert } from 'node:assert';
+import { readFileSync, readdirSync, statSync } from 'node:fs';
+import { dirname, join } from 'node:path';
 
 import { open } from './browser.mjs';
+import { open as openFirefox } from './firefox.mjs';
 
-const [program, chromium = 'chromium'] = process.argv.slice(2);
+const [program, chromium = 'chromium', firefox, axe] = process.argv.slice(2);
 const SEED = 7;
 const seconds = (count) => new Promise((resolve) => setTimeout(resolve, 1000 * count));
 const step = (text) => console.log(text);
@@ -17,7 +20,7 @@ const url = await new Promise((resolve, reject) => {
   server.stdout.on('data', (data) => { printed += data; const found = /http:\S+/.exec(printed); if (found) resolve(found[0]); });
   server.on('exit', () => reject(new Error('the server ended')));
 });
-const page = await open(chromium);
+let page = await open(chromium);
 const plan = (...steps) => steps.map(([at, setting]) => `${at}:${setting.join(',')}`).join(';');
 const go = async (text, at, rest) => page.go(`${url}#seed=${SEED}&plan=${text}&at=${at}&${rest}`);
 const frame = (member) => page.evaluate(`rolls.frame.${member}`);
@@ -32,10 +35,10 @@ try {
   const before = await page.evaluate('Array.from(rolls.frame.disks)');
   await seconds(0.5);
   const after = await page.evaluate('Array.from(rolls.frame.disks)');
-  assert.equal(before.length, 4000);
+  assert.equal(before.length, 5000);
   const moved = before.filter((number, i) => number !== after[i]).length;
-  assert.ok(moved > 3000, `${moved} of 4000 numbers changed`);
-  step(`disks move: ${moved} of 4000 numbers changed in half a second`);
+  assert.ok(moved > 3000, `${moved} of 5000 numbers changed`);
+  step(`disks move: ${moved} of 5000 numbers changed in half a second`);
 
   // Two settings one after the other: rule, gravity, amplitude and frequency change on the way.
   const steps = plan([0, [0.03, 0, 0.015625, 0.1, 10]], [40, [0.05, 0.01, 0.01, 0.1, 10]], [75, [0.05, 0.01, 0.01, 0.12, 8]]);
@@ -57,12 +60,26 @@ try {
     await page.until(`rolls.run.plan.length > ${steps}`);
     assert.notEqual(await page.evaluate(`rolls.run.plan.at(-1).setting[${slider}]`), [0.05, 0.01, 0.01, 0.12, 8][slider]);
   }
+  // Keys move each slider at each press, and what was typed wrong is refused in words.
+  for (const id of [0, 1, 2, 3, 4]) {
+    for (const key of ['ArrowRight', 'ArrowRight', 'ArrowLeft', 'PageUp']) {
+      const value = `Number(document.getElementById('value-${id}').value)`, before = await page.evaluate(value);
+      await page.evaluate(`document.getElementById('slider-${id}').dispatchEvent(new KeyboardEvent('keydown', { key: '${key}', cancelable: true }))`);
+      const now = await page.evaluate(value);
+      assert.ok(key === 'ArrowLeft' ? now < before : now > before, `slider ${id}: ${before} to ${now} by ${key}`);
+    }
+  }
+  await set('value-1', 0.4, 'change');
+  assert.match(await page.evaluate('document.getElementById("message").textContent'), /q = 0.4 was refused: a number from 0 to 0.25/);
+  await set('value-1', 0.01, 'change');
+  assert.equal(await page.evaluate('document.getElementById("message").textContent'), '');
+  step('keys move sliders, and a number out of range is refused in words');
+
   // The state is named a few times a second; a link leads to the last name, or to a later change.
   await page.until('rolls.frame.hash.at >= rolls.run.plan.at(-1).at');
   await page.evaluate('document.getElementById("play").click()');
   await seconds(0.7);
-  await page.evaluate('document.getElementById("share").click()');
-  const [shared, hash] = await page.evaluate('[location.hash, rolls.frame.hash]');
+  const [shared, hash] = await page.evaluate('(document.getElementById("share").click(), [location.hash, rolls.frame.hash])');
   const [, text, at] = /plan=([^&]*)&at=(\d+)/.exec(shared);
   assert.equal(Number(at), hash.at);
   assert.equal(hash.text, execFileSync(program, ['hash', String(SEED), text, at]).toString().trim());
@@ -77,6 +94,24 @@ try {
     assert.ok(state.startsWith(name), `κ = ${friction}: ${state}`);
     step(`κ = ${friction}: ${state}`);
   }
+
+  // The other scene, and a run beside that differs in one setting: the bits of native runs, also after a change.
+  await go(plan([0, [0.3, 0.05, 1, 1, 2.3]]), 12, 'nut=4,1&paused');
+  await page.until('rolls.frame.hash.at === 12');
+  assert.equal(await frame('hash.text'), execFileSync(program, ['hash', String(SEED), plan([0, [0.3, 0.05, 1, 1, 2.3]]), '12', '4,1']).toString().trim());
+  step('a large disk among small ones: the hash of the native run');
+  await go(plan([0, [0.03, 0, 0.015625, 0.1, 10]]), 30, 'beside=0:0.08&speed=50');
+  await page.until('rolls.beside?.oscillations > 35');
+  await set('value-2', 0.02, 'change');
+  await page.until('rolls.run.plan.length === 2');
+  const changed = await page.evaluate('rolls.run.plan[1].at');
+  await page.until(`rolls.beside.hash.at > ${changed + 20}`);
+  await page.evaluate('document.getElementById("play").click()');
+  await seconds(0.7);
+  const beside = await page.evaluate('rolls.beside.hash');
+  const varied = plan([0, [0.08, 0, 0.015625, 0.1, 10]], [changed, [0.08, 0, 0.02, 0.1, 10]]);
+  assert.equal(beside.text, execFileSync(program, ['hash', String(SEED), varied, String(beside.at)]).toString().trim());
+  step(`a run beside it, with another friction: the hash of the native run after ${beside.at} oscillations`);
 
   // Speeds, printed and not judged: they are those of the machine.
   for (const speed of ['300', 'max']) {
@@ -102,6 +137,48 @@ try {
   const outside = page.requests.filter((request) => !request.startsWith(url) && !/^(about|blob|data):/.test(request));
   assert.deepEqual(outside, []);
   step('no errors, no requests elsewhere');
+
+  const folder = join(dirname(program), '../site'), bytes = readdirSync(folder).reduce((sum, name) => sum + statSync(join(folder, name)).size, 0);
+  assert.ok(bytes < 500_000, `${bytes} bytes`);
+  step(`${bytes} bytes in all, both diagrams and the library included`);
+
+  if (axe) {
+    for (const [name, size, rest] of [['light', {}, ''], ['dark', { dark: true }, ''], ['phone', { width: 390, height: 844, mobile: true }, ''],
+      ['two runs', {}, '&beside=0:0.08'], ['large disk', { dark: true }, '&nut=4,1']]) {
+      await page.close();
+      page = await open(chromium, size);
+      await page.go(`${url}#seed=1${rest}`);
+      await page.evaluate(readFileSync(axe, 'utf8'));
+      const found = await page.evaluate('axe.run().then(({ violations }) => violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(" ")}`))');
+      assert.deepEqual(found, [], name);
+    }
+    step('axe finds nothing: light, dark, on a phone, with two runs, with a large disk');
+  }
+
+  if (firefox) {
+    const fox = await openFirefox(firefox);
+    try {
+      await fox.go(`${url}#seed=${SEED}&plan=${steps}&at=150&paused`);
+      await fox.until('rolls.frame.hash.at === 150');
+      assert.equal(await fox.evaluate('rolls.frame.hash.text'), native);
+      await fox.go(`${url}#seed=1`);
+      await seconds(4);
+      step(`Firefox: the hash of the native run, ${(await fox.evaluate('rolls.drawn.perSecond')).toFixed(0)} frames/s`);
+    } finally { await fox.close(); }
+  }
+
+  // Without the server, everything still comes: from what the browser keeps.
+  await page.go(url);
+  await page.evaluate('navigator.serviceWorker.ready.then(() => true)');
+  server.removeAllListeners('exit');
+  const offline = new Promise((resolve) => server.once('close', resolve));
+  server.kill();
+  await offline;
+  for (const rest of ['', '#nut=4,1', `#plan=${plan([0, [0.03, 0, 0.002025, 0.1, 10]])}`]) {
+    await page.go(`${url}${rest}`);
+    await page.until('rolls.frame.oscillations > 1');
+  }
+  step('works without its server, once loaded');
 } finally {
   await page.close();
   server.removeAllListeners('exit');
