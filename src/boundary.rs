@@ -77,8 +77,8 @@ use crate::{Fingerprint, Flight};
 /// # Contract
 /// An implementation guarantees:
 /// 1. [`domain`](Self::domain), [`interior`](Self::interior) and [`wall_count`](Self::wall_count) never
-///    change. The domain has finite sides and a finite bottom; only its top may be infinite. A disk that has
-///    not passed a wall has its center in the domain at all times.
+///    change. The domain has finite sides and a finite bottom; only its top may be infinite. As long as
+///    no disk goes through a wall, all centers stay in the domain.
 /// 2. [`may_touch`](Self::may_touch) holds for all times: it is false only for a region in which no disk of
 ///    this radius, or a smaller one, can touch a wall at any time. If it is true for a region, it is true for
 ///    every larger region around that one.
@@ -98,9 +98,9 @@ use crate::{Fingerprint, Flight};
 /// The engine guarantees:
 /// - It sets the origin before it asks anything, and whenever the epoch of the run moves. It never asks about
 ///   a time before the origin.
-/// - All numbers of a flight are finite. The flight begins at the present, in the domain, and ends (`until`)
-///   where the disk leaves a cell, at most two epochs later. In an epoch, a typical disk goes some tens of
-///   diameters. A flight ends at a periodic side or end.
+/// - All numbers of a flight are finite. A flight begins at the present, inside the domain. It ends
+///   (`until`) when the disk leaves its cell or reaches a periodic side or end, two epochs from now at most.
+///   In an epoch, a typical disk goes some tens of diameters.
 /// - It asks `first_touch` only in cells for which `may_touch` holds with the largest of all radii. Cells at
 ///   the edges of the domain reach to infinity.
 /// - It asks `surface` about a touch that `first_touch` found: with its wall, its time, and the position of

@@ -22,7 +22,8 @@
 //!
 //! # A rule of your own
 //! A rule can compute the normal impulse itself and leave the tangential one to [`Friction`]. The example is
-//! a viscoelastic sphere, to the first order of its law:
+//! a viscoelastic sphere: its restitution is $`1 - C v^{1/5}`$ to the first order, here written as
+//! $`1/(1 + C v^{1/5})`$, which stays positive:
 //!
 //! ```
 //! use granular_edmd::collision::{CollisionRule, Contact, Friction, Impulse, laws};

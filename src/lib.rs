@@ -40,7 +40,7 @@
 //! The [`guide`] leads from a question to a figure, with a chapter for each step.
 //!
 //! # Map
-//! | floor | contents |
+//! | module | contents |
 //! |---|---|
 //! | [`study`] (feature `serde`) | studies of your own experiments: plans, ramps, sweeps, records |
 //! | [`analysis`] | convective states, clusters, transitions |
@@ -55,8 +55,6 @@
 //! | [`collision`] | the outcome of a collision |
 //! | [`Disk`] | one grain |
 //! | [`statistics`] | means, and errors of correlated samples |
-//!
-//! Imports run only downward in this order.
 //!
 //! # Features
 //! | feature | additions |

@@ -8,7 +8,7 @@
 //!
 //! An [`Accumulator`] adds up snapshots, whoever gives them: a [`Sampled`] around it in a run, or a program
 //! with snapshots of its own. [`Stress`], [`WallStress`], [`MeanSquaredDisplacement`] and [`TimeCorrelation`]
-//! have a clock of their own, since its interval is a part of what they measure.
+//! have a clock of their own, since the sampling interval is part of what they measure.
 //!
 //! | observable | value |
 //! |---|---|
@@ -85,7 +85,7 @@
 //! is one if its observable is [`Tabular`]; a tuple has the columns of its parts.
 //!
 //! # Errors
-//! The errors of these measures take no samples as independent. They come from blocks of consecutive samples
+//! These errors do not assume that samples are independent. They come from blocks of consecutive samples
 //! or collisions, as [`block_average`](crate::statistics::block_average) takes them, and an
 //! [`Estimate`](crate::statistics::Estimate) tells how many independent samples there were. [`Fields`],
 //! [`HeightProfile`] and [`CollisionCounts`] have no errors: repeat the run with other seeds, or keep a

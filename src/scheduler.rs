@@ -6,7 +6,7 @@
 //!
 //! | scheduler | cost of an event | use |
 //! |---|---|---|
-//! | [`BySize`] | that of the faster of the next two | default |
+//! | [`BySize`] | that of whichever of the next two is faster | default |
 //! | [`TournamentTree`] | $`O(\log N)`$, no branches | up to some ten thousand disks |
 //! | [`BucketQueue`] | $`O(1)`$ | more |
 //! | [`LinearScan`] | $`O(N)`$ | the oracle that tests the others |
@@ -60,9 +60,9 @@ pub const NOTHING_DUE: (usize, f64) = (usize::MAX, f64::INFINITY);
 ///
 /// # Schedulers that break the contract
 /// The engine compares each answer with the event that it keeps: a disk that does not exist, or a time other
-/// than the last one set for it, ends the run with an error. An event that was due and never named, since a
-/// scheduler has lost a `set` or prefers a later time, ends the run when its epoch does. It also does so at
-/// the end of a run that had at least as many events as disks. To look at all disks more often would cost
+/// than the last one set for it, ends the run with an error. If a scheduler loses
+/// a `set` and never names an event that is due, the engine notices when the epoch ends, or at the end of a
+/// run with at least as many events as disks, and ends the run with an error. To look at all disks more often would cost
 /// time, so the engine does not notice a lost event in shorter runs and in single steps within an epoch, nor
 /// two events in the wrong order that have both been named by then. [`laws::check`] finds all of these
 /// faults.

@@ -235,7 +235,7 @@ impl TransportCoefficients {
         }
     }
 
-    /// Takes the motions from a snapshot. If they are not the ones that the collisions gave, the disks have
+    /// Replaces the kept velocities by those of a snapshot. If they are not the ones that the collisions gave, the disks have
     /// been changed between two runs.
     fn take_motions(&mut self, disks: &[Disk]) {
         let mass: f64 = disks.iter().map(Disk::mass).sum();

@@ -1,5 +1,8 @@
 //! Neighbor cells: until it leaves its cell, a disk can collide only with disks in that cell and the eight
 //! cells around it.
+//!
+//! A disk passes to a neighbor cell where it leaves its own, widened by a margin (`layout.rs`, `grid.rs`), at
+//! the time that `prediction::cell_exit` gives. Then it looks at the three cells ahead (`Cells::ahead`).
 
 mod block;
 mod cell_size;

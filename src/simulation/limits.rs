@@ -56,7 +56,7 @@ impl Limits {
 
     /// Returns the same limits, with at most this wall-clock time.
     ///
-    /// The clock is read once in some hundred events and at each sample, so the run takes a little longer.
+    /// The clock is read every 256 events and at each sample, so the run takes a little longer.
     pub fn with_wall_clock(self, wall_clock: Duration) -> Self {
         Self { wall_clock: Some(wall_clock), ..self }
     }

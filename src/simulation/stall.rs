@@ -1,4 +1,5 @@
 //! The diagnosis of a run that hardly progresses: the disk, its partner, and a remedy.
+//! `state/guard.rs` decides when that is so, and has the defaults.
 
 use super::Simulation;
 use super::errors::{Remedy, RunError};

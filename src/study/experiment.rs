@@ -35,11 +35,11 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
 ///    numbers. So the files of a study have the same bytes, however often it is interrupted.
 /// 2. [`rule`](Self::rule) and [`boundary`](Self::boundary) return the rule and the walls of the simulation
 ///    that [`build`](Self::build) makes, since a run is resumed with them.
-/// 3. Samples and observer read back as they were written, in a format that does not describe itself. So
+/// 3. Samples and observer read back as they were written, in a binary format without names of fields. So
 ///    their types must not have `#[serde(untagged)]`, `flatten`, or `skip_serializing_if`. A study that
 ///    cannot read them back ends with an error.
 ///
-/// A study guarantees that it calls `sample` at the times of the protocol, in order, and that the observer
+/// A *value* is the run at one value of the parameters. A study guarantees that it calls `sample` at the times of the protocol, in order, and that the observer
 /// has seen everything since the value has settled. Where a run is interrupted, the study writes the observer
 /// and reads it back.
 ///
@@ -209,8 +209,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Checks that the parameters are valid.
     ///
-    /// A plan calls this before anything runs, for all of its values or, of many, for some. A run calls
-    /// it for each value that it begins.
+    /// A plan calls this before anything runs, for all values, or for a spread of 1024 if there are more.
+    /// A run calls it for each value that it begins.
     ///
     /// # Errors
     /// If they are not.
@@ -223,7 +223,8 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
         Ok(())
     }
 
-    /// Returns whether the parameter of this whole name can change with the disks in place.
+    /// Returns whether this parameter (by its full name, such as `base.amplitude`) may change while the disks
+    /// stay in place.
     fn can_be_ramped(parameter: &str) -> bool {
         let _ = parameter;
         true

@@ -18,7 +18,7 @@ use crate::{Disk, Gravity};
 ///
 /// | column | |
 /// |---|---|
-/// | `id` | number of the disk, from 1 |
+/// | `id` | id of the disk in the run |
 /// | `species` | number of its [`Kind`](crate::Kind) |
 /// | `pos`, `velo` | position and velocity of the center; `z` is 0 |
 /// | `angle`, `angular_velocity` | in radians, counterclockwise |

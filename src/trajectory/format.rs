@@ -1,4 +1,5 @@
-//! Frames of a trajectory, and the trait of the formats in which they are written.
+//! Frames of a trajectory, and the trait of the formats in which they are written, one after another into a
+//! file. Formats with an index, or of several files, have stores (`store.rs`).
 
 use std::io::{self, BufRead, Read, Write};
 

@@ -12,7 +12,7 @@ use crate::disk::numbered;
 ///
 /// | column | |
 /// |---|---|
-/// | `id`, `type` | number of the disk, from 1; number of its [`Kind`](crate::Kind) plus 1 |
+/// | `id`, `type` | id of the disk in the run; number of its [`Kind`](crate::Kind) plus 1 |
 /// | `x y z`, `xu yu` | position of the center, also unwrapped; `z` is 0 |
 /// | `ix iy` | periods that the disk has passed to the right and up |
 /// | `vx vy` | velocity of the center |

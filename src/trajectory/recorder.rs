@@ -18,8 +18,7 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 /// full, the run ends with the error ([`verdict`](Observer::verdict)), and the file ends with its last whole
 /// frame. The next run with the same recorder takes the frame that was missed.
 ///
-/// [`OfKind`](crate::observable::OfKind) around a recorder records only the disks of one kind, and `id` then
-/// numbers these. Files hold the box. Files for ParaView also hold the walls of the run's boundary as they
+/// [`OfKind`](crate::observable::OfKind) around a recorder records only the disks of one kind. Files hold the box. Files for ParaView also hold the walls of the run's boundary as they
 /// are at each frame ([`Snapshot::wall_lines`]).
 ///
 /// # Going on in a file
@@ -30,8 +29,7 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 ///
 /// The recorder continues with the first beat after the last frame of the file. If the run is later than that
 /// beat, as from a checkpoint that is newer than the file, the run ends with an error, since frames would be
-/// missing. If you want the gap, give `times` a first time after it ([`SampleTimes::starting_at`]). After
-/// disks are removed, `id` numbers the remaining ones.
+/// missing. If you want the gap, give `times` a first time after it ([`SampleTimes::starting_at`]).
 ///
 /// The times of the frames increase. On Unix, no two recorders write to one file at a time.
 ///

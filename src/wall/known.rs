@@ -1,4 +1,4 @@
-//! The motions that can be written to files: one list. A new motion is entered here and nowhere else.
+//! The motions that can be written to files: one list. A new motion is entered here, and exported in `wall.rs`.
 
 use std::any::Any;
 

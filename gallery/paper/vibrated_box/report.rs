@@ -44,7 +44,7 @@ pub(crate) fn print(outcome: &Outcome) {
     line("run", &format!("{:.2} s", outcome.seconds));
     line("final state", &outcome.hash());
     if means.iter().any(|(_, mean)| !mean.is_converged()) {
-        gallery::say!("* not converged: the error is a lower bound; a longer run has more --oscillations");
+        gallery::say!("* not converged: the error is a lower bound; run longer with --oscillations N");
     }
 }
 

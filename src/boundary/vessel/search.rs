@@ -10,7 +10,7 @@ use crate::boundary::part::{Travel, Turning};
 use crate::boundary::{Boundary, FirstTouch, Surface, Touch};
 
 /// Largest number of steps of a search, for all moving bricks near a flight together. The last brick may take
-/// a round more. The engine reads the clock once in some hundred events, so a limit of its time is kept.
+/// a round more. The engine reads the clock every 256 events, so a limit of its time is kept.
 const MOST_STEPS: u32 = 256;
 
 /// Largest number of steps of a search for one brick, before the others have their turn.

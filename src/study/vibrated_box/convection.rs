@@ -1,4 +1,4 @@
-//! Convective states from the records of the box, and its tables.
+//! Convective states from the records of the box, and the columns of its tables.
 
 use super::{Sample, VibratedBox};
 use crate::analysis::thermal_noise;
