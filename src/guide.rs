@@ -57,12 +57,23 @@ pub mod when_it_stalls {}
 #[doc = include_str!("../docs/guide/when_it_is_slow.md")]
 pub mod when_it_is_slow {}
 
+#[doc(alias("lecture", "exercise", "course"))]
+#[doc = "[images/fig3.png]: data:image/png,#docs/reproduction/fig3_order_parameters.png"]
+#[doc = include_str!("../docs/guide/exercise_rolls.md")]
+pub mod exercise_rolls {}
+
+#[doc(alias("lecture", "exercise", "course"))]
+#[doc = "[images/exercise_erratum.png]: data:image/png,#docs/images/exercise_erratum.png"]
+#[doc = include_str!("../docs/guide/exercise_erratum.md")]
+pub mod exercise_erratum {}
+
 #[doc(alias("symbols", "notation"))]
 #[doc = include_str!("../docs/guide/glossary.md")]
 pub mod glossary {}
 
 // Pages of the repository. On code hosts, their links lead to files. A definition that comes first wins, so
-// the ones here lead to modules instead, or nowhere, for pictures: their descriptions are shown.
+// the ones here lead to modules instead, or nowhere, for pictures: their descriptions are shown. (Behind the
+// `#` is what `site/build` shows there.)
 
 #[doc(alias("equations", "notation", "thermal wall"))]
 #[doc = "[physics-kinetic.md]: crate::guide::physics_kinetic"]
@@ -76,7 +87,7 @@ pub mod physics_kinetic {}
 
 #[doc(alias("heap", "silo", "jamming"))]
 #[doc = "[validation.md]: crate::guide::validation"]
-#[doc = "[images/rest.png]: data:image/png,"]
+#[doc = "[images/rest.png]: data:image/png,#docs/images/rest.png"]
 #[doc = include_str!("../docs/rest.md")]
 pub mod rest {}
 
@@ -90,7 +101,7 @@ pub mod validation {}
 pub mod architecture {}
 
 #[doc(alias("benchmark", "LAMMPS"))]
-#[doc = "[images/scaling.png]: data:image/png,"]
+#[doc = "[images/scaling.png]: data:image/png,#docs/images/scaling.png"]
 #[doc = include_str!("../docs/performance.md")]
 pub mod performance {}
 

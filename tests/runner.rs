@@ -368,3 +368,19 @@ fn bench_tells_the_standard_states_compares_tables_and_the_hours_of_a_plan() {
     assert_eq!(hours["values"], 4);
     assert_eq!(code(&scratch.runs(&["bench", "missing.toml"])), Some(1));
 }
+
+#[test]
+fn a_trajectory_has_a_frame_after_each_cycle() {
+    let scratch = Scratch::new("trajectory");
+    scratch.small_plan();
+    let arguments = ["trajectory", "plan.toml", "--out", "run.xyz", "--ramp", "2", "--cycles", "3"];
+    let output = scratch.runs(&arguments);
+    assert_eq!(code(&output), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = fs::read_to_string(scratch.0.join("run.xyz")).unwrap();
+    assert_eq!(text.lines().filter(|line| *line == "20").count(), 3);
+    // The file is not overwritten; and there are only four ramps.
+    assert_eq!(code(&scratch.runs(&arguments)), Some(1));
+    let output = scratch.runs(&["trajectory", "plan.toml", "--out", "other.xyz", "--ramp", "4"]);
+    assert_eq!(code(&output), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("the plan has 4, from 0 on"));
+}

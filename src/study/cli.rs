@@ -1,5 +1,5 @@
-//! The command line of a study: `new`, `check`, `run`, `status`, `tables`, `accept` and `bench`, for any
-//! experiment.
+//! The command line of a study: `new`, `check`, `run`, `status`, `tables`, `trajectory`, `accept` and `bench`,
+//! for any experiment.
 //!
 //! In a program of your own, `main` is one call of [`main`]. The binary `granular-edmd` is such a program for
 //! the paper's box.
@@ -32,6 +32,7 @@
 
 mod bench;
 mod template;
+mod trajectory;
 mod watch;
 
 use std::error::Error;
@@ -109,6 +110,21 @@ enum Command {
         /// Folder for the tables; that of the study if not given. Existing tables there are not overwritten.
         #[arg(long)]
         out: Option<PathBuf>,
+    },
+    /// Writes the disks after each cycle of the first value of a ramp, for OVITO. Frames of a `.gsd` are
+    /// binary; others are extended XYZ.
+    Trajectory {
+        /// The plan, in TOML; `-` for standard input.
+        plan: PathBuf,
+        /// File to write. An existing file is not overwritten.
+        #[arg(long)]
+        out: PathBuf,
+        /// Index of the ramp, counted from 0.
+        #[arg(long, default_value_t = 0)]
+        ramp: usize,
+        /// Number of cycles.
+        #[arg(long, default_value_t = 100)]
+        cycles: u32,
     },
     /// Lets this program continue a study that other code began. Records keep the mark of the code that made
     /// them.
@@ -206,6 +222,7 @@ pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>)
         }
         Command::Status { folder, json } => status::<E>(&folder, json),
         Command::Tables { folder, out } => tables::<E>(&folder, out.as_deref()),
+        Command::Trajectory { plan, out, ramp, cycles } => trajectory::write::<E>(&plan, ramp, cycles, &out),
         Command::Accept { folder } => accept::<E>(&folder),
         Command::Bench { plan: Some(plan), json, quick, .. } => bench::plan::<E>(&plan, json, quick),
         Command::Bench { plan: None, json, quick, against } => bench::table(json, quick, against.as_deref()),

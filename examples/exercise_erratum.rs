@@ -1,0 +1,102 @@
+//! Checks the answers to the exercise on the erratum of Eq. (6), `docs/guide/exercise_erratum.md`.
+//!
+//! ```text
+//! cargo run --release --example exercise_erratum > erratum.csv              the curves of its figure
+//! cargo run --release --example exercise_erratum -- FACTOR JUMP FRICTION INELASTICITY
+//! ```
+//!
+//! Nothing is looked up: the answers are computed from the collision rule and from the mean energy change.
+
+use std::process::ExitCode;
+
+use granular_edmd::collision::{CollisionRule, Contact, Frictional};
+use granular_edmd::kinetic::{Maxwellian, friction_of_largest_loss, mean_energy_change, sticking_fraction};
+
+const QUESTIONS: [&str; 4] = [
+    "the factor of q_t (1 - q_t) m v_t²",
+    "the jump of the printed form, in κ² q_t (1 - q_n)² / (1 - q_t) m v_n²",
+    "the friction of the largest loss at q = 0.1",
+    "the inelasticity from which on the printed form has no largest loss",
+];
+
+fn main() -> anyhow::Result<ExitCode> {
+    let answers: Vec<f64> = std::env::args().skip(1).map(|text| text.parse()).collect::<Result<_, _>>()?;
+    if answers.is_empty() {
+        return curves();
+    }
+    anyhow::ensure!(answers.len() == 4, "four numbers are asked for, not {}: {QUESTIONS:?}", answers.len());
+    let truths = [factor()?, jump()?, friction()?, last_maximum()?];
+    let mut all = true;
+    for ((question, answer), truth) in QUESTIONS.iter().zip(answers).zip(truths) {
+        // Wrong by more than two percent: a slip of the pen, and not of the last digit.
+        let right = (answer / truth - 1.0).abs() < 0.02;
+        println!("{}  {question}: {answer}", if right { "right" } else { "WRONG" });
+        all &= right;
+    }
+    Ok(if all { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Returns the energy change of a collision of the paper's disks, of mass 1.
+fn energy_change(rule: &Frictional, closing_speed: f64, slip_speed: f64) -> f64 {
+    let contact = Contact::new(closing_speed, slip_speed, 0.5, 1.0 / 6.0);
+    rule.resolve(&contact).energy_change(&contact)
+}
+
+/// Returns what a sticking collision loses by its slip.
+fn factor() -> anyhow::Result<f64> {
+    let (rule, slip) = (Frictional::from_inelasticity(0.0, 0.2, 10.0)?, 0.3);
+    Ok(-energy_change(&rule, 1.0, slip) / (0.2 * 0.8 * slip * slip))
+}
+
+/// Returns the difference between the rule, just sliding, and the printed form, still sticking.
+fn jump() -> anyhow::Result<f64> {
+    let (normal, tangential, friction) = (0.1, 0.2, 0.3);
+    let rule = Frictional::from_inelasticity(normal, tangential, friction)?;
+    let threshold = 3.0 * friction * (1.0 - normal) / (1.0 - tangential);
+    let printed = -normal * (1.0 - normal) - tangential * (1.0 - tangential) * threshold * threshold;
+    let unit = friction * friction * tangential * (1.0 - normal) * (1.0 - normal) / (1.0 - tangential);
+    Ok((energy_change(&rule, 1.0, threshold * (1.0 + 1e-9)) - printed) / unit)
+}
+
+fn friction() -> anyhow::Result<f64> {
+    let rule = Frictional::from_inelasticity(0.1, 0.1, 1.0)?;
+    friction_of_largest_loss(&rule, &Maxwellian::new(1.0)?).ok_or_else(|| anyhow::anyhow!("no largest loss"))
+}
+
+/// Returns the mean loss by the rule, and with three times the tangential term of sticking, as printed.
+fn losses(inelasticity: f64, friction: f64) -> anyhow::Result<(f64, f64)> {
+    let rule = Frictional::from_inelasticity(inelasticity, inelasticity, friction)?;
+    let gas = Maxwellian::new(1.0)?;
+    let sticking = 2.0 * inelasticity * (1.0 - inelasticity) * sticking_fraction(&rule, &gas).powi(3);
+    let loss = -mean_energy_change(&rule, &gas);
+    Ok((loss, loss + 2.0 * sticking))
+}
+
+fn frictions() -> impl Iterator<Item = f64> {
+    (0..=1200).map(|step| 0.01 * 10_f64.powf(f64::from(step) / 400.0))
+}
+
+/// Returns the inelasticity at which the largest loss of the printed form is lost, by bisection.
+fn last_maximum() -> anyhow::Result<f64> {
+    let (mut with, mut without) = (0.01, 0.2);
+    while without - with > 1e-4 {
+        let middle = 0.5 * (with + without);
+        let losses = frictions().map(|friction| Ok(losses(middle, friction)?.1));
+        let losses: Vec<f64> = losses.collect::<anyhow::Result<_>>()?;
+        let falls = losses.windows(2).any(|pair| pair[1] < pair[0]);
+        (with, without) = if falls { (middle, without) } else { (with, middle) };
+    }
+    Ok(with)
+}
+
+/// Prints the curves of the figure.
+fn curves() -> anyhow::Result<ExitCode> {
+    println!("inelasticity,friction,by_the_rule,as_printed");
+    for inelasticity in [0.0, 0.05, 0.1, 0.2] {
+        for friction in frictions() {
+            let (rule, printed) = losses(inelasticity, friction)?;
+            println!("{inelasticity},{friction},{rule},{printed}");
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}

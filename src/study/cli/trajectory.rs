@@ -1,0 +1,43 @@
+//! The command `trajectory`: the disks of the first value of a ramp, in a file that OVITO opens.
+
+use std::error::Error;
+use std::path::Path;
+
+use super::{End, Failure, Plan, StudyError, read, refused, say};
+use crate::observable::SampleTimes;
+use crate::study::experiment::Experiment;
+use crate::trajectory::{ExtendedXyz, Recorder};
+
+/// Runs the first value of a ramp again, and writes a frame after each cycle.
+pub(super) fn write<E: Experiment>(
+    plan: &Path,
+    ramp: usize,
+    cycles: u32,
+    out: &Path,
+) -> Result<End, Failure> {
+    let path = plan;
+    let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
+    if ramp >= plan.ramp_count() {
+        let message = format!("there is no ramp {ramp}: the plan has {}, from 0 on", plan.ramp_count());
+        return Err(Failure::Plan(message.into()));
+    }
+    let experiment = plan.experiment(ramp, 0)?;
+    let cannot = |source| Failure::from(StudyError::Build { ramp, value: 0, source });
+    let mut run = experiment.build(plan.ramp_seed(ramp)).map_err(cannot)?;
+    let fails = |error: Box<dyn Error>| Failure::Run(error);
+    let times = SampleTimes::every(experiment.cycle()).map_err(|error| fails(error.into()))?;
+    let is_gsd = out.extension().is_some_and(|extension| extension == "gsd");
+    let recorder =
+        if is_gsd { Recorder::create_gsd(out, times) } else { Recorder::create(out, ExtendedXyz, times) };
+    let mut recorder = recorder.map_err(|error| fails(error.into()))?;
+    // Half a cycle more, so that rounding does not cut the last frame off.
+    run.run_until(experiment.cycle() * (f64::from(cycles) + 0.5), &mut recorder)
+        .map_err(|error| fails(error.into()))?;
+    say(&format!(
+        "{} frames of {} disks are in {}",
+        recorder.times().len(),
+        run.disks().len(),
+        out.display()
+    ))?;
+    Ok(End::Done)
+}
