@@ -32,7 +32,10 @@ fn main() -> anyhow::Result<ExitCode> {
     for (friction, expected) in runs {
         let found = regime(friction)?;
         let right = found == expected;
-        println!("{}  κ = {friction:.4}: {found}, {expected} expected", if right { "right" } else { "WRONG" });
+        println!(
+            "{}  κ = {friction:.4}: {found}, {expected} expected",
+            if right { "right" } else { "WRONG" }
+        );
         all &= right;
     }
     Ok(if all { ExitCode::SUCCESS } else { ExitCode::FAILURE })

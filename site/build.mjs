@@ -13,7 +13,13 @@ const [out, documentation, page] = process.argv.slice(2);
 const COPIED = new Set(['.png', '.svg', '.csv', '.txt', '.json', '.xz', '.ipynb', '.html', '.css']);
 const API = 'api/granular_edmd', GUIDE = /^docs\/guide\/(\w+)\.md$/;
 const CRATE_DOC = /^(granular_edmd|src|static\.files|search\.(index|desc)|(trait|type)\.impl)$|\.(html|js)$/;
-const DOCS = ['physics', 'physics-kinetic', 'rest', 'reproduction', 'validation', 'performance', 'first-touch', 'layers', 'clusters', 'stability', 'architecture'];
+const DOCS = {
+  physics: 'Every equation, its source, and the notation.', 'physics-kinetic': 'The closed form of the mean energy loss ⟨dE⟩.',
+  reproduction: 'The figures and the table of the paper, beside those of this library.', validation: 'How the results were checked, and what that is worth.',
+  'first-touch': 'A method: when a disk meets a wall that moves as it likes.', layers: 'A method: finding partners among disks of many sizes.',
+  rest: 'What to do with matter at rest, and what it costs.', performance: 'How fast it is, where the time goes, and how to measure it.',
+  clusters: 'Studies on many processes and machines.', stability: 'What a new version may change.', architecture: 'Why the library is built as it is.',
+};
 const NAVIGATION = [['index.html', 'granular-edmd'], ['rolls/index.html', 'Try it'], [`${API}/guide/index.html`, 'Guide'], ['docs/index.html', 'Docs'],
   ['gallery/index.html', 'Gallery'], ['docs/notebook/index.html', 'Python'], [`${API}/index.html`, 'API'], ['CHANGELOG.html', 'Changes']];
 
@@ -77,7 +83,7 @@ ${body}
 }
 
 // Where a file or a folder of the repository is on the site. What is not there yet is made.
-const made = new Map(), waiting = [];
+const made = new Map(), waiting = [], faults = [];
 function placed(path) {
   if (!made.has(path)) { made.set(path, placeOf(path)); waiting.push(path); }
   return made.get(path);
@@ -95,7 +101,7 @@ function linked(html, from) {
   return html.replace(/(\s(?:href|src)=")([^"]*)"/g, (whole, attribute, link) => {
     if (/^([a-z]+:|\/\/|#)/.test(link)) return whole;
     const [path, anchor] = unescape(link).split('#'), target = posix.normalize(posix.join(posix.dirname(from), decodeURIComponent(path))).replace(/\/$/, '');
-    if (!existsSync(target)) throw new Error(`${from} links to ${link}, which is not there`);
+    if (!existsSync(target)) { faults.push(`${from} links to ${link}, which is not there`); return whole; }
     return `${attribute}${escape(posix.relative(posix.dirname(placeOf(from)), placed(target)))}${anchor ? `#${anchor}` : ''}"`;
   });
 }
@@ -108,7 +114,7 @@ function make(path) {
     const title = /<h1[^>]*>([^]*?)<\/h1>/.exec(html)?.[1].replace(/<[^>]*>/g, '') ?? path;
     write(place, framed(place, unescape(title), linked(html, path)));
   } else if (statSync(path).isDirectory()) {
-    if (existsSync(join(path, 'README.md'))) { make.readme = placed(posix.join(path, 'README.md')); return; }
+    if (existsSync(join(path, 'README.md'))) { placed(posix.join(path, 'README.md')); return; }
     const names = readdirSync(path).filter((name) => !name.startsWith('.') && name !== 'target').sort();
     const items = names.map((name) => `<li><a href="${posix.relative(path, placed(posix.join(path, name)))}">${escape(name)}</a></li>`).join('\n');
     write(place, framed(place, path, `<h1>${escape(path)}</h1>\n<ul>\n${items}\n</ul>`));
@@ -120,12 +126,12 @@ function make(path) {
   }
 }
 
-// An overview of the pages of docs, by their headings and first sentences.
+// An overview of the pages of docs.
 function overview() {
-  const items = DOCS.map((name) => {
-    const text = readFileSync(`docs/${name}.md`, 'utf8'), [, title] = /^# (.*)$/m.exec(text), [, first] = /^# .*\n+([^]*?[.:])\s/.exec(text);
+  const items = Object.entries(DOCS).map(([name, about]) => {
+    const [, title] = /^# (.*)$/m.exec(readFileSync(`docs/${name}.md`, 'utf8'));
     placed(`docs/${name}.md`);
-    return `<dt><a href="${name}.html">${markdown.renderInline(title)}</a></dt><dd>${linked(markdown.renderInline(first.replace(/\n/g, ' ')), `docs/${name}.md`)}</dd>`;
+    return `<dt><a href="${name}.html">${markdown.renderInline(title)}</a></dt><dd>${about}</dd>`;
   });
   write('docs/index.html', framed('docs/index.html', 'Docs', `<h1>Docs</h1>\n<dl>\n${items.join('\n')}\n</dl>`));
 }
@@ -133,6 +139,7 @@ function overview() {
 // The API and the guide, whose formulas rustdoc leaves as TeX.
 function document() {
   for (const name of readdirSync(documentation).filter((name) => CRATE_DOC.test(name))) cpSync(join(documentation, name), join(out, 'api', name), { recursive: true });
+  write('api/index.html', '<!doctype html>\n<title>granular_edmd</title>\n<meta http-equiv="refresh" content="0; url=granular_edmd/index.html">\n<a href="granular_edmd/index.html">granular_edmd</a>\n');
   let count = 0;
   // Pictures of pages that the package has without them.
   const shown = (file) => (_, path) => `src="${posix.relative(posix.dirname(posix.join('api', file)), placed(path))}"`;
@@ -154,3 +161,5 @@ for (const path of ['README.md', 'gallery/README.md', 'docs/notebook/README.md',
 overview();
 while (waiting.length > 0) make(waiting.shift());
 console.log(`${made.size} files of the repository, ${formulas} formulas in the documentation: ${relative('', out)}/index.html`);
+for (const fault of faults) console.error(`error: ${fault}`);
+process.exit(faults.length > 0 ? 1 : 0);
