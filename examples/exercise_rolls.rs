@@ -49,7 +49,7 @@ fn regime(friction: f64) -> anyhow::Result<ConvectiveRegime> {
     let disks = initial::lattice(&container, 1000, 0.5)?;
     let disks = initial::with_maxwellian_velocities(disks, 0.5, 1)?;
     let rule = ContactDuration::new(Frictional::from_inelasticity(0.0, 0.0, friction)?, 1e-4)?;
-    let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.015625).build()?;
+    let mut simulation = Simulation::builder(rule, container).disks(disks).gravity(0.015_625).build()?;
 
     let half = f64::from(OSCILLATIONS / 2) * oscillation;
     simulation.run_until(half, &mut ())?;
