@@ -85,13 +85,6 @@ enum Command {
         /// Index of the only ramp to do, counted from 0.
         #[arg(long)]
         ramp: Option<usize>,
-        /// Number of threads; one for each processor if not given.
-        #[arg(long, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
-        threads: Option<u16>,
-        /// Runs values that stalled or failed again, with those after them in their ramps. The same code
-        /// fails again.
-        #[arg(long)]
-        retry: bool,
         #[command(flatten)]
         manner: Manner,
     },
@@ -156,6 +149,17 @@ const MOST_THREADS: i64 = 4096;
 
 #[derive(Debug, clap::Args)]
 struct Manner {
+    /// Number of threads; one for each processor if not given.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    threads: Option<u16>,
+    /// Folder of an earlier study, to take over what it has done of this plan: with fewer values on the axes
+    /// or at the end of the ramp, fewer repeats, or fewer samples. Can be given several times.
+    #[arg(long)]
+    from: Vec<PathBuf>,
+    /// Runs values that stalled or failed again, with those after them in their ramps. The same code fails
+    /// again.
+    #[arg(long)]
+    retry: bool,
     /// Ends as soon as other processes do all that is left.
     #[arg(long)]
     no_wait: bool,
@@ -169,7 +173,8 @@ struct Manner {
 
 impl Manner {
     /// Returns a control with these wishes.
-    fn of<'a>(&self, control: Control<'a>) -> Control<'a> {
+    fn of<'a>(&'a self, control: Control<'a>) -> Control<'a> {
+        let control = control.with_earlier_studies(&self.from);
         let control = if self.no_wait { control.without_waiting() } else { control };
         let control = if self.no_tables { control.without_tables() } else { control };
         if self.verify { control.with_verification() } else { control }
@@ -217,9 +222,7 @@ pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>)
     let ended = match Arguments::parse().command {
         Command::New { file } => new(example, file.as_deref()),
         Command::Check { plan } => check::<E>(&plan),
-        Command::Run { plan, out, ramp, threads, retry, manner } => {
-            run::<E>(&plan, &out, ramp, threads, retry, &manner)
-        }
+        Command::Run { plan, out, ramp, manner } => run::<E>(&plan, &out, ramp, &manner),
         Command::Status { folder, json } => status::<E>(&folder, json),
         Command::Tables { folder, out } => tables::<E>(&folder, out.as_deref()),
         Command::Trajectory { plan, out, ramp, cycles } => trajectory::write::<E>(&plan, ramp, cycles, &out),
@@ -299,22 +302,15 @@ fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
     Ok(End::Done)
 }
 
-fn run<E: Experiment>(
-    path: &Path,
-    out: &Path,
-    ramp: Option<usize>,
-    threads: Option<u16>,
-    retry: bool,
-    manner: &Manner,
-) -> Result<End, Failure> {
+fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Manner) -> Result<End, Failure> {
     let study = study::<E>(path, out)?;
-    if retry {
+    if manner.retry {
         let ramps = ramp.map_or(0..study.plan().ramp_count(), |ramp| ramp..ramp + 1);
         for ramp in ramps {
             study.forget_failed(ramp)?;
         }
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from)).build();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(manner.threads.map_or(0, usize::from)).build();
     let pool = pool.map_err(|error| Failure::Run(error.into()))?;
     let watch = Watch::new().map_err(Failure::Run)?;
     let show = |progress: &Progress| watch.show(progress);

@@ -2,6 +2,7 @@
 
 mod active;
 pub(super) mod control;
+mod earlier;
 mod queue;
 mod ramp;
 mod shift;
@@ -54,7 +55,7 @@ impl<E: Experiment> Study<E> {
         self.check_unchanged()?;
         let last = ramps.last().copied().unwrap_or(0);
         let is_whole = ramps.len() == self.plan().ramp_count();
-        let shift = Shift::new(self, control, ramps.len());
+        let shift = Shift::new(self, control, ramps.len())?;
         let elsewhere = all(&shift, ramps)?;
         let summary = shift.summary(elsewhere);
         let is_done = summary.is_complete() && (is_whole || self.is_done(last)?);

@@ -266,14 +266,14 @@ impl Folder {
         (from..end).rev().try_for_each(|value| sealed::remove(&self.record(ramp, value)))
     }
 
-    /// Returns the number of values that the log of a ramp has, and the seconds that they took.
-    pub(super) fn logged(&self, ramp: usize) -> (usize, f64) {
+    /// Returns the seconds that the values of a ramp took, by its log; `None` for those that were taken over.
+    pub(super) fn logged(&self, ramp: usize) -> Vec<Option<f64>> {
         let text = fs::read_to_string(self.log_of(ramp)).unwrap_or_default();
-        let seconds = text.lines().filter_map(|line| {
+        let seconds = |line: &str| {
             let (_, rest) = line.split_once(r#""seconds":"#)?;
             rest.split([',', '}']).next()?.parse::<f64>().ok()
-        });
-        seconds.fold((0, 0.0), |(count, sum), seconds| (count + 1, sum + seconds))
+        };
+        text.lines().filter(|line| line.contains(r#""value":"#)).map(seconds).collect()
     }
 
     /// Removes the mark that a ramp is done.

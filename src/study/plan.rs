@@ -17,7 +17,7 @@ use super::experiment::Experiment;
 use super::leg::Leg;
 use super::parameters::{self, place};
 use super::scalar::Scalar;
-use super::seed::derived_seed;
+use super::seed::{derived_seed, seed_at};
 use crate::quantity::accept;
 use axis::Axis;
 use protocol::Protocol;
@@ -34,8 +34,11 @@ use refinement::{Seen, Step};
 /// names of the groups that contain it (`base.bi_parabolic.amplitude`). The name after the last dot is enough
 /// if no other parameter has it.
 ///
-/// A ramp is a function of plan, index and seed alone. The seed of a ramp is the first eight bytes of
-/// $`\mathrm{BLAKE3}(\text{seed}, \text{index})`$. In the index of a ramp, the repeat counts fastest.
+/// A ramp is a function of its parameters, its repeat and the seed, not of the rest of the plan: a larger plan
+/// has the same ramps, and so do the parts of a sweep ([`Study::take_from`](super::Study::take_from)). Its seed
+/// is the first eight bytes of $`\mathrm{BLAKE3}(\text{seed of the point}, \text{repeat})`$. The seed of a
+/// point follows in the same way from that of the plan, and the name and value of each parameter of the sweep.
+/// In the index of a ramp, the repeat counts fastest.
 ///
 /// ```
 /// use granular_edmd::study::{Plan, Scalar, vibrated_box::VibratedBox};
@@ -72,13 +75,13 @@ pub struct Plan<E> {
     #[serde(skip_serializing_if = "Option::is_none")]
     ramp: Option<Ramp>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    sweep: Vec<Axis>,
+    pub(super) sweep: Vec<Axis>,
     /// The parameters of the experiment by name.
     #[serde(skip)]
     tree: Table,
     /// The whole names of the parameters that vary: of the axes in their order, then of the ramp.
     #[serde(skip)]
-    varied: Vec<String>,
+    pub(super) varied: Vec<String>,
     /// The first value of each parameter that varies, as the experiment reads it: it shows the kind of
     /// number.
     #[serde(skip)]
@@ -193,7 +196,12 @@ impl<E: Experiment> Plan<E> {
 
     /// Returns the seed of a ramp.
     pub fn ramp_seed(&self, ramp: usize) -> u64 {
-        derived_seed(self.seed, ramp as u64)
+        let parameters = self.parameters_at(ramp, None);
+        let mut swept: Vec<_> = self.varied.iter().zip(&parameters).collect();
+        // The order of the axes does not count.
+        swept.sort_by_key(|(name, _)| *name);
+        let point = swept.iter().fold(self.seed, |seed, (name, (_, value))| seed_at(seed, name, value));
+        derived_seed(point, (ramp % self.repeats) as u64)
     }
 
     /// Returns the direction from which a ramp comes to a value; `None` without a ramp.

@@ -176,13 +176,13 @@ impl<E: Experiment> Study<E> {
         let begun =
             |ramp: &usize| matches!(all[*ramp], RampStatus::Done | RampStatus::Begun | RampStatus::Running);
         let ramps: Vec<usize> = (0..all.len()).filter(begun).collect();
-        let (mut looked, mut values, mut seconds) = (0.0, 0.0, 0.0);
-        for (count, sum) in tried(ramps.len()).map(|index| self.folder.logged(ramps[index])) {
-            (looked, values, seconds) = (looked + 1.0, values + count as f64, seconds + sum);
-        }
-        let scale = ramps.len() as f64 / f64::max(looked, 1.0);
-        let left = (all.len() * self.plan.value_count()) as f64 - scale * values;
-        (scale * seconds, f64::max(left, 0.0) * seconds / values)
+        let looked: Vec<_> = tried(ramps.len()).map(|index| self.folder.logged(ramps[index])).collect();
+        let scale = ramps.len() as f64 / looked.len().max(1) as f64;
+        let values: Vec<Option<f64>> = looked.into_iter().flatten().collect();
+        let timed: Vec<f64> = values.iter().copied().flatten().collect();
+        let seconds: f64 = timed.iter().sum();
+        let left = (all.len() * self.plan.value_count()) as f64 - scale * values.len() as f64;
+        (scale * seconds, f64::max(left, 0.0) * seconds / timed.len() as f64)
     }
 
     fn status_of_undone(&self, ramp: usize) -> RampStatus {

@@ -1,9 +1,25 @@
 //! Seeds that follow from another seed.
 
+use super::scalar::Scalar;
+
 /// Returns the seed that follows from a seed and this index.
 pub(super) fn derived_seed(seed: u64, index: u64) -> u64 {
-    let bytes = [seed.to_le_bytes(), index.to_le_bytes()].concat();
-    let hash = blake3::hash(&bytes);
+    derived(seed, &index.to_le_bytes())
+}
+
+/// Returns the seed that follows from a seed and the value of a parameter.
+pub(super) fn seed_at(seed: u64, parameter: &str, value: &Scalar) -> u64 {
+    let seed = derived(seed, parameter.as_bytes());
+    match value {
+        // Both zeros are one value.
+        Scalar::Number(number) => derived(seed, &(number + 0.0).to_bits().to_le_bytes()),
+        other => derived(seed, other.to_string().as_bytes()),
+    }
+}
+
+/// Returns the first eight bytes of the hash of a seed and these bytes.
+fn derived(seed: u64, bytes: &[u8]) -> u64 {
+    let hash = blake3::Hasher::new().update(&seed.to_le_bytes()).update(bytes).finalize();
     let mut first = [0; 8];
     first.copy_from_slice(&hash.as_bytes()[..8]);
     u64::from_le_bytes(first)

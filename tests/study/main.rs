@@ -6,6 +6,7 @@
 mod cases;
 mod damage;
 mod folders;
+mod growth;
 mod identity;
 mod interruption;
 #[path = "../support/mixture.rs"]

@@ -51,14 +51,39 @@ pub(super) struct Active<'a, E: Experiment> {
 }
 
 impl<'a, E: Experiment> Value<'a, E> {
-    /// Starts the value.
-    pub(super) fn begin(&'a self) -> Result<Active<'a, E>, StudyError> {
+    /// Starts the value, or goes on from the record of a study with fewer samples, if that keeps its state.
+    pub(super) fn begin(&'a self, shorter: Option<Record<E>>) -> Result<Active<'a, E>, StudyError> {
         let run = self.first_state()?;
         let (start, counters) = (self.start(), *run.counters());
+        if let Some(Contents { outcome: Outcome::Completed, measured, state: Some(state), .. }) =
+            shorter.map(|record| record.contents)
+        {
+            let missing = self.plan.protocol().samples().saturating_sub(measured.samples.len() as u64);
+            let steps = self.plan.protocol().steps() - missing;
+            let work = Work { start, steps, is_under_way: false, counters, measured };
+            if let Ok(active) = self.go_on((self.origin.clone(), work, state)) {
+                return Ok(active);
+            }
+        }
         let observer = self.experiment.observer().map_err(|source| self.cannot_start(source))?;
         let measured = Measured { times: Vec::new(), samples: Vec::new(), observer };
         let work = Work { start, steps: 0, is_under_way: false, counters, measured };
         Ok(Active { value: self, work, run })
+    }
+
+    /// Returns the record of the value that is that of another study with the same ramp. The error is the
+    /// other record, if it has more samples or fewer, or lacks a state.
+    pub(super) fn same_as(&self, other: Record<E>) -> Result<Record<E>, Record<E>> {
+        let (found, keeps) = (&other.contents, self.plan.keeps_state(self.origin.value));
+        let (samples, all) = (found.measured.samples.len() as u64, self.plan.protocol().samples());
+        let is_whole = if found.outcome == Outcome::Completed { samples == all } else { samples < all };
+        if !is_whole || (keeps && found.state.is_none()) {
+            return Err(other);
+        }
+        let origin = Origin { maker: found.origin.maker.clone(), ..self.origin.clone() };
+        let state = other.contents.state.filter(|_| keeps);
+        let contents = Contents { origin, state, ..other.contents };
+        Ok(Record { experiment: self.experiment.clone(), contents })
     }
 
     /// Continues the value where it was saved, or returns the reason why it cannot.
@@ -126,11 +151,6 @@ impl<E: Experiment> Active<'_, E> {
 
     pub(super) fn is_done(&self) -> bool {
         self.work.steps >= self.value.plan.protocol().steps()
-    }
-
-    /// Returns the ramp and the index of the value.
-    pub(super) const fn place(&self) -> (usize, usize) {
-        (self.value.origin.ramp, self.value.origin.value)
     }
 
     /// Runs the next step, which settles or takes a sample, for this wall-clock time at most. The observer

@@ -34,6 +34,7 @@ pub struct Progress {
 pub struct Control<'a> {
     progress: Option<&'a (dyn Fn(&Progress) + Sync)>,
     interrupt: Option<&'a AtomicBool>,
+    earlier: &'a [PathBuf],
     save_interval: Duration,
     waits: bool,
     tables: bool,
@@ -45,7 +46,8 @@ impl Default for Control<'_> {
     /// every minute, and waits for ramps that other processes run.
     fn default() -> Self {
         let save_interval = Duration::from_secs(60);
-        Self { progress: None, interrupt: None, save_interval, waits: true, tables: true, verifies: false }
+        let (progress, interrupt) = (None, None);
+        Self { progress, interrupt, earlier: &[], save_interval, waits: true, tables: true, verifies: false }
     }
 }
 
@@ -61,6 +63,19 @@ impl<'a> Control<'a> {
     /// A very large system takes longer to be saved, and nothing stops it while it is set up.
     pub fn with_interrupt(self, interrupt: &'a AtomicBool) -> Self {
         Self { interrupt: Some(interrupt), ..self }
+    }
+
+    /// Returns the same control, which takes over the values that earlier studies in these folders have done.
+    ///
+    /// So a study grows into a new folder, and so the parts of a sweep become one study. The plans may differ in
+    /// the values of their axes and in repeats. A ramp may have more values at its end. With more samples, a
+    /// value goes on where it ended, if its record keeps the state
+    /// ([`Plan::with_end_states`](crate::study::Plan::with_end_states)). Anything else that differs is an error.
+    /// The study gets the same bytes as without the earlier ones. Values of code that was accepted there are
+    /// done again.
+    #[doc(alias("grow", "merge", "extend"))]
+    pub fn with_earlier_studies(self, folders: &'a [PathBuf]) -> Self {
+        Self { earlier: folders, ..self }
     }
 
     /// Returns the same control, which saves unfinished values after each interval of this length.
@@ -98,6 +113,10 @@ impl<'a> Control<'a> {
 
     pub(super) const fn verifies(&self) -> bool {
         self.verifies
+    }
+
+    pub(super) const fn earlier(&self) -> &'a [PathBuf] {
+        self.earlier
     }
 
     pub(super) const fn waits(&self) -> bool {

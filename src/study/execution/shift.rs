@@ -6,6 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::control::{Control, Meter, Summary};
+use super::earlier::Earlier;
 use crate::study::errors::StudyError;
 use crate::study::experiment::Experiment;
 use crate::study::opening::Study;
@@ -20,6 +21,7 @@ const FEW: usize = 16;
 pub(super) struct Shift<'a, E: Experiment> {
     pub(super) study: &'a Study<E>,
     pub(super) control: &'a Control<'a>,
+    pub(super) earlier: Earlier<E>,
     pub(super) meter: Meter<'a>,
     /// Number of values that are to have a record.
     total: AtomicUsize,
@@ -38,11 +40,16 @@ pub(super) struct Shift<'a, E: Experiment> {
 }
 
 impl<'a, E: Experiment> Shift<'a, E> {
-    pub(super) fn new(study: &'a Study<E>, control: &'a Control<'a>, ramps: usize) -> Self {
+    pub(super) fn new(
+        study: &'a Study<E>,
+        control: &'a Control<'a>,
+        ramps: usize,
+    ) -> Result<Self, StudyError> {
         let values = ramps * study.plan().value_count();
-        Self {
+        Ok(Self {
             study,
             control,
+            earlier: Earlier::open(control.earlier(), study.plan())?,
             meter: Meter::new(control, values as u64 * study.plan().protocol().steps()),
             total: AtomicUsize::new(values),
             finished: AtomicUsize::new(0),
@@ -51,7 +58,7 @@ impl<'a, E: Experiment> Shift<'a, E> {
             redone: Mutex::default(),
             broken: AtomicBool::new(false),
             is_opened: AtomicBool::new(false),
-        }
+        })
     }
 
     /// Returns those of these ramps that are not done, and counts the others as finished.
