@@ -1,11 +1,14 @@
 //! The gate for values from files: they pass the same checks as those of a constructor.
 
 /// Reads a type from files: first these fields, and no others, then the value that the expression makes of
-/// them, or the error of its check.
+/// them, or the error of its check, which is a `ParameterError` if no other type is named.
 ///
 /// A derived `Deserialize` would fill private fields with numbers that no constructor accepts.
 macro_rules! from_file {
-    ($name:ident { $($(#[$attribute:meta])* $field:ident: $type:ty),+ } => $checked:expr) => {
+    ($name:ident { $($fields:tt)+ } => $checked:expr) => {
+        crate::gate::from_file! { $name { $($fields)+ } => $checked, crate::ParameterError }
+    };
+    ($name:ident { $($(#[$attribute:meta])* $field:ident: $type:ty),+ } => $checked:expr, $error:ty) => {
         #[cfg(feature = "serde")]
         impl<'de> serde::Deserialize<'de> for $name {
             fn deserialize<D: serde::Deserializer<'de>>(file: D) -> Result<Self, D::Error> {
@@ -18,7 +21,7 @@ macro_rules! from_file {
                     $($(#[$attribute])* $field: $type,)+
                 }
                 let $name { $($field),+ } = serde::Deserialize::deserialize(file)?;
-                let checked = || -> Result<Self, crate::ParameterError> { $checked };
+                let checked = || -> Result<Self, $error> { $checked };
                 checked().map_err(serde::de::Error::custom)
             }
         }

@@ -48,7 +48,7 @@ fn study_errors() -> Vec<StudyError> {
         },
         StudyError::Build { ramp: 1, value: 2, source: outside.into() },
         StudyError::Build { ramp: 1, value: 2, source: BuildError::Parameter(no_parameter()).into() },
-        StudyError::Checkpoint { ramp: 1, value: 2, source: CheckpointError::Damaged },
+        StudyError::Build { ramp: 1, value: 2, source: CheckpointError::Damaged.into() },
         StudyError::Encode { path, source: "too long".into() },
     ]
 }

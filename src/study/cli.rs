@@ -43,7 +43,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use super::errors::{PlanError, StudyError};
+use super::errors::{PlanError, StudyError, chain};
 use super::execution::control::{Control, Progress};
 use super::experiment::Experiment;
 use super::json::Object;
@@ -237,11 +237,8 @@ pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>)
     }
 }
 
-/// Prints an error and its sources in one line.
 fn report(error: &dyn Error, code: u8) -> ExitCode {
-    let sources = std::iter::successors(error.source(), |&source| source.source()).map(ToString::to_string);
-    let told: Vec<String> = std::iter::once(error.to_string()).chain(sources).collect();
-    let _ = writeln!(std::io::stderr(), "error: {}", told.join(": "));
+    let _ = writeln!(io::stderr(), "error: {}", chain(error));
     ExitCode::from(code)
 }
 

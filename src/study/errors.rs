@@ -8,7 +8,6 @@ use thiserror::Error;
 
 use crate::ParameterError;
 use crate::error::Readable;
-use crate::simulation::CheckpointError;
 
 /// A reason why an experiment cannot be built or changed: any error of its parts.
 pub type ExperimentError = Box<dyn std::error::Error + Send + Sync>;
@@ -237,7 +236,7 @@ pub enum StudyError {
         /// The numbers that differ: `results` of this crate, `revision` of the experiment, `columns`.
         differences: Vec<Difference>,
     },
-    /// A value cannot be started.
+    /// A value cannot be started, or the state from which it starts cannot be resumed.
     #[error("value {value} of ramp {ramp} cannot start")]
     Build {
         /// Index of the ramp.
@@ -247,16 +246,6 @@ pub enum StudyError {
         /// The reason.
         source: ExperimentError,
     },
-    /// A state cannot be resumed.
-    #[error("value {value} of ramp {ramp} cannot go on")]
-    Checkpoint {
-        /// Index of the ramp.
-        ramp: usize,
-        /// Index of the value in it.
-        value: usize,
-        /// The reason.
-        source: CheckpointError,
-    },
     /// The contents of a file cannot be encoded.
     #[error("the contents of {} cannot be encoded", path.display())]
     Encode {
@@ -265,6 +254,12 @@ pub enum StudyError {
         /// The reason, whose type is not part of the public API.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
+}
+
+/// Returns an error with its sources, in one line.
+pub(super) fn chain(error: &dyn std::error::Error) -> String {
+    let sources = std::iter::successors(error.source(), |&source| source.source()).map(ToString::to_string);
+    std::iter::once(error.to_string()).chain(sources).collect::<Vec<_>>().join(": ")
 }
 
 impl PlanError {

@@ -59,7 +59,7 @@ impl<E: Experiment> Study<E> {
         let elsewhere = all(&shift, ramps)?;
         let summary = shift.summary(elsewhere);
         let is_done = summary.is_complete() && (is_whole || self.is_done(last)?);
-        if is_done && control.writes_tables() {
+        if is_done && control.writes_tables {
             self.write_tables_once(is_whole)?;
         }
         Ok(summary)
@@ -100,7 +100,7 @@ fn all<E: Experiment>(shift: &Shift<'_, E>, ramps: Vec<usize>) -> Result<Vec<usi
     let mut patience = PATIENCE[0];
     loop {
         let elsewhere = shift.without_done(queue.elsewhere())?;
-        if elsewhere.is_empty() || !shift.control.waits() || shift.must_stop() {
+        if elsewhere.is_empty() || !shift.control.waits || shift.must_stop() {
             return Ok(elsewhere);
         }
         shift.sleep(patience);

@@ -117,10 +117,8 @@ impl Folder {
     /// Returns the provenance of the study; an empty one if the file is missing.
     pub(super) fn provenance(&self) -> Result<Provenance, StudyError> {
         let path = self.provenance_file();
-        match fs::read_to_string(&path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Provenance::of_text(String::new())),
-            read => read.map(Provenance::of_text).map_err(StudyError::io("read", &path)),
-        }
+        let text = sealed::if_there("read", &path, fs::read_to_string(&path))?;
+        Ok(Provenance::of_text(text.unwrap_or_default()))
     }
 
     /// Replaces the provenance.
@@ -217,11 +215,7 @@ impl Folder {
     fn listed(&self, folder: &str, ramps: usize) -> Result<Vec<bool>, StudyError> {
         let mut all = vec![false; ramps];
         let folder = self.root.join(folder);
-        let entries = match fs::read_dir(&folder) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(all),
-            entries => entries.map_err(StudyError::io("read", &folder))?,
-        };
-        for entry in entries {
+        for entry in sealed::if_there("read", &folder, fs::read_dir(&folder))?.into_iter().flatten() {
             let name = entry.map_err(StudyError::io("read", &folder))?.file_name();
             let ramp = name.to_str().and_then(|name| name.parse::<usize>().ok());
             if let Some(is_listed) = ramp.and_then(|ramp| all.get_mut(ramp)) {
@@ -237,11 +231,8 @@ impl Folder {
     /// again.
     pub(super) fn mark_done(&self, ramp: usize, failed: &[usize]) -> Result<(), StudyError> {
         let path = self.done(ramp);
-        let text = failed.iter().map(|value| format!("{value:04}\n")).collect::<Vec<_>>().concat();
-        if let Err(error) = fs::write(&path, &text) {
-            if error.kind() != io::ErrorKind::NotFound {
-                return Err(StudyError::io("write", &path)(error));
-            }
+        let text = failed.iter().map(|value| format!("{value:04}\n")).collect::<String>();
+        if sealed::if_there("write", &path, fs::write(&path, &text))?.is_none() {
             create(&self.root.join(DONE))?;
             fs::write(&path, text).map_err(StudyError::io("write", &path))?;
         }
@@ -251,10 +242,7 @@ impl Folder {
     /// Returns the values of a ramp that stalled or failed, as its mark names them; none if it is not done.
     pub(super) fn failed(&self, ramp: usize) -> Result<Vec<usize>, StudyError> {
         let path = self.done(ramp);
-        let text = match fs::read_to_string(&path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
-            read => read.map_err(StudyError::io("read", &path))?,
-        };
+        let text = sealed::if_there("read", &path, fs::read_to_string(&path))?.unwrap_or_default();
         let values = text.lines().map(str::parse).collect::<Result<_, _>>();
         values.map_err(|_| sealed::damaged(&path, "a line is not the index of a value"))
     }

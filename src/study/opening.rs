@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use super::errors::{Difference, PlanError, StudyError};
+use super::errors::{Difference, StudyError};
 use super::experiment::Experiment;
 use super::experiment::record::Origin;
 use super::folder::{Folder, sealed};
 use super::maker::Maker;
-use super::parameters;
+use super::parameters::{self, tree};
 use super::plan::Plan;
 use super::provenance::{self, Provenance};
 
@@ -104,15 +104,19 @@ impl<E: Experiment> Study<E> {
         if !folder.holds_study() {
             return Err(StudyError::Missing { path: folder.root().to_owned() });
         }
-        let unreadable = |source| StudyError::Unreadable { path: folder.plan(), source };
-        // The experiments were tried when the plan was put there.
-        let plan = Plan::from_toml_unproven(&folder.read_plan()?).map_err(unreadable)?;
+        let plan = Self::plan_in(&folder)?;
         let study = Self::in_folder(folder, plan)?;
         let provenance = study.folder.provenance()?;
         if provenance.is_there() && !provenance.is_of(&study.hash) {
             return Err(StudyError::Foreign { path: study.folder.provenance_file() });
         }
         Ok(study)
+    }
+
+    /// Reads the plan in a folder. Its experiments were tried when it was put there.
+    fn plan_in(folder: &Folder) -> Result<Plan<E>, StudyError> {
+        let unreadable = |source| StudyError::Unreadable { path: folder.plan(), source };
+        Plan::from_toml_unproven(&folder.read_plan()?).map_err(unreadable)
     }
 
     fn in_folder(folder: Folder, plan: Plan<E>) -> Result<Self, StudyError> {
@@ -154,16 +158,13 @@ impl<E: Experiment> Study<E> {
     }
 
     fn check_plan(&self) -> Result<(), StudyError> {
-        let (found, ours) = (self.folder.read_plan()?, &self.text);
-        if found == *ours {
+        if self.folder.read_plan()? == self.text {
             return Ok(());
         }
-        let tree = |text: &str| text.parse::<toml::Table>().map_err(|error| PlanError::toml(&error));
-        let unreadable = |source| StudyError::Unreadable { path: self.folder.plan(), source };
-        let differences = parameters::differences(&tree(&found).map_err(unreadable)?, &tree(ours)?);
-        if differences.is_empty()
-            || Plan::<E>::from_toml(&found).and_then(|plan| plan.to_toml()).is_ok_and(|text| text == *ours)
-        {
+        // Written otherwise, it may be the same plan.
+        let found = Self::plan_in(&self.folder)?;
+        let differences = parameters::differences(&tree(&found)?, &tree(&self.plan)?);
+        if differences.is_empty() {
             return Ok(());
         }
         Err(StudyError::Different { path: self.folder.root().to_owned(), differences })

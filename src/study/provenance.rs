@@ -19,7 +19,7 @@ pub(super) fn maker<E: Experiment>() -> Maker {
 fn columns<E: Experiment>() -> Fingerprint {
     let heading = |hash: Fingerprint, name: &str, unit: &str| hash.text(name).text(unit);
     let columns = E::columns().iter().fold(Fingerprint::of("columns"), |hash, column| {
-        let tables = f64::from(u8::from(column.is_in_samples()) + 2 * u8::from(column.is_in_values()));
+        let tables = f64::from(u8::from(column.in_samples) + 2 * u8::from(column.in_values));
         heading(hash, column.name(), column.unit()).number(tables)
     });
     E::tables().iter().fold(columns, |hash, table| {

@@ -119,11 +119,11 @@ impl<'a, E: Experiment> Tables<'a, E> {
         let row = row.with(&record.contents.origin.maker.to_string().into());
         let mut row = row.with(&record.outcome().name().into()).with(&record.samples().len().into());
         let mut estimates = Vec::new();
-        for column in self.columns.iter().filter(|column| column.is_in_values()) {
+        for column in self.columns.iter().filter(|column| column.in_values) {
             if let Some(estimate) = column.estimate(record) {
                 row = row.with_estimate(&estimate);
                 estimates.push((column.name().to_owned(), estimate));
-            } else if let Kind::Record(value) = column.kind() {
+            } else if let Kind::Record(value) = &column.kind {
                 row = row.with(&value(record));
             }
         }
@@ -139,8 +139,8 @@ impl<'a, E: Experiment> Tables<'a, E> {
     fn add_samples(&mut self, record: &Record<E>, row: &Row) -> Result<(), StudyError> {
         for (time, sample) in record.times().iter().zip(record.samples()) {
             let mut row = row.clone().with(&(*time).into());
-            for column in self.columns.iter().filter(|column| column.is_in_samples()) {
-                if let Kind::Sample(value) = column.kind() {
+            for column in self.columns.iter().filter(|column| column.in_samples) {
+                if let Kind::Sample(value) = &column.kind {
                     row = row.with(&value(sample));
                 }
             }
@@ -154,11 +154,11 @@ impl<'a, E: Experiment> Tables<'a, E> {
 /// error is only a lower bound, separated by spaces: they have too few samples for their correlations.
 fn of_values<E: Experiment>(columns: &[Column<E>]) -> Vec<Heading> {
     let mut all = plain(["seed", "made_by", "outcome", "samples"]);
-    for column in columns.iter().filter(|column| column.is_in_values()) {
+    for column in columns.iter().filter(|column| column.in_values) {
         if column.has_error() {
             all.extend(of_estimate(column));
         } else {
-            all.push(column.heading().clone());
+            all.push(column.heading.clone());
         }
     }
     all.extend(plain(["not_converged"]));
@@ -166,15 +166,15 @@ fn of_values<E: Experiment>(columns: &[Column<E>]) -> Vec<Heading> {
 }
 
 fn of_samples<E: Experiment>(columns: &[Column<E>]) -> Vec<Heading> {
-    let sampled = columns.iter().filter(|column| column.is_in_samples());
-    let sampled = sampled.map(|column| column.heading().clone());
+    let sampled = columns.iter().filter(|column| column.in_samples);
+    let sampled = sampled.map(|column| column.heading.clone());
     std::iter::once(Heading::new("time", "time")).chain(sampled).collect()
 }
 
 /// Describes the columns of the table of points: the repeats of each value together.
 fn of_points<E: Experiment>(columns: &[Column<E>]) -> Vec<Heading> {
     let mut all = plain(["repeats", "failed"]);
-    let estimated = columns.iter().filter(|column| column.is_in_values() && column.has_error());
+    let estimated = columns.iter().filter(|column| column.in_values && column.has_error());
     all.extend(estimated.flat_map(of_estimate));
     all.extend(plain(["not_converged"]));
     all
@@ -188,5 +188,5 @@ fn plain<const N: usize>(names: [&str; N]) -> Vec<Heading> {
 fn of_estimate<E: Experiment>(column: &Column<E>) -> [Heading; 3] {
     let (name, unit) = (column.name(), column.unit());
     let [error, independent] = error_names(name);
-    [column.heading().clone(), Heading::new(error, unit), Heading::new(independent, "")]
+    [column.heading.clone(), Heading::new(error, unit), Heading::new(independent, "")]
 }

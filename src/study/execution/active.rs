@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use super::sliced;
 use crate::Simulation;
-use crate::simulation::{Checkpoint, CheckpointError, Counters, RunEnd, RunError};
-use crate::study::errors::{ExperimentError, StudyError};
+use crate::simulation::{Checkpoint, Counters, RunEnd, RunError};
+use crate::study::errors::{ExperimentError, StudyError, chain};
 use crate::study::experiment::record::{
     Contents, Cycles, Measured, Origin, Outcome, Record, check, check_state,
 };
@@ -114,33 +114,19 @@ impl<'a, E: Experiment> Value<'a, E> {
         };
         let state =
             before.checkpoint().ok_or_else(|| self.cannot_start("the value before keeps no state".into()))?;
-        let resumed = Self::resume(state, &before.experiment);
-        let mut run = resumed.map_err(|error| match error {
-            Unresumed::Experiment(source) => self.cannot_start(source),
-            Unresumed::Checkpoint(source) => {
-                StudyError::Checkpoint { ramp: self.origin.ramp, value: self.origin.value, source }
-            }
-        })?;
+        let mut run = Self::resume(state, &before.experiment).map_err(|source| self.cannot_start(source))?;
         self.experiment.change(&mut run).map_err(|source| self.cannot_start(source))?;
         Ok(run)
     }
 
     /// Resumes a saved state with the rule and the walls of the experiment that saved it.
-    fn resume(state: &Checkpoint, saved: &E) -> Result<Run<E>, Unresumed> {
-        let rule = saved.rule().map_err(Unresumed::Experiment)?;
-        let boundary = saved.boundary().map_err(Unresumed::Experiment)?;
-        Simulation::resume(state, rule, boundary).build().map_err(Unresumed::Checkpoint)
+    fn resume(state: &Checkpoint, saved: &E) -> Result<Run<E>, ExperimentError> {
+        Ok(Simulation::resume(state, saved.rule()?, saved.boundary()?).build()?)
     }
 
     fn cannot_start(&self, source: ExperimentError) -> StudyError {
         StudyError::Build { ramp: self.origin.ramp, value: self.origin.value, source }
     }
-}
-
-/// The reason why a state cannot go on.
-enum Unresumed {
-    Experiment(ExperimentError),
-    Checkpoint(CheckpointError),
 }
 
 impl<E: Experiment> Active<'_, E> {
@@ -250,12 +236,4 @@ impl<S, O> Work<S, O> {
         let is_taken = found == next && self.steps < protocol.steps();
         check(found == samples || is_taken, "its samples are not as many as its steps")
     }
-}
-
-/// Returns an error with its sources, in one line.
-fn chain(error: &RunError) -> String {
-    let sources = std::iter::successors(std::error::Error::source(error), |&source| source.source());
-    let told: Vec<String> =
-        std::iter::once(error.to_string()).chain(sources.map(ToString::to_string)).collect();
-    told.join(": ")
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// Progress of a study.
@@ -32,13 +32,13 @@ pub struct Progress {
 /// ```
 #[derive(Clone, Copy)]
 pub struct Control<'a> {
-    progress: Option<&'a (dyn Fn(&Progress) + Sync)>,
+    pub(super) progress: Option<&'a (dyn Fn(&Progress) + Sync)>,
     interrupt: Option<&'a AtomicBool>,
-    earlier: &'a [PathBuf],
-    save_interval: Duration,
-    waits: bool,
-    tables: bool,
-    verifies: bool,
+    pub(super) earlier: &'a [PathBuf],
+    pub(super) save_interval: Duration,
+    pub(super) waits: bool,
+    pub(super) writes_tables: bool,
+    pub(super) verifies: bool,
 }
 
 impl Default for Control<'_> {
@@ -47,7 +47,15 @@ impl Default for Control<'_> {
     fn default() -> Self {
         let save_interval = Duration::from_secs(60);
         let (progress, interrupt) = (None, None);
-        Self { progress, interrupt, earlier: &[], save_interval, waits: true, tables: true, verifies: false }
+        Self {
+            progress,
+            interrupt,
+            earlier: &[],
+            save_interval,
+            waits: true,
+            writes_tables: true,
+            verifies: false,
+        }
     }
 }
 
@@ -98,33 +106,13 @@ impl<'a> Control<'a> {
     ///
     /// [`Study::write_tables`](crate::study::Study::write_tables) writes them later.
     pub fn without_tables(self) -> Self {
-        Self { tables: false, ..self }
+        Self { writes_tables: false, ..self }
     }
 
     /// Returns the same control, which also reads the records of finished ramps, and runs damaged or lost
     /// ones again. It reads the whole study.
     pub fn with_verification(self) -> Self {
         Self { verifies: true, ..self }
-    }
-
-    pub(super) const fn writes_tables(&self) -> bool {
-        self.tables
-    }
-
-    pub(super) const fn verifies(&self) -> bool {
-        self.verifies
-    }
-
-    pub(super) const fn earlier(&self) -> &'a [PathBuf] {
-        self.earlier
-    }
-
-    pub(super) const fn waits(&self) -> bool {
-        self.waits
-    }
-
-    pub(super) const fn save_interval(&self) -> Duration {
-        self.save_interval
     }
 
     pub(super) fn is_interrupted(&self) -> bool {
@@ -166,36 +154,5 @@ impl Summary {
     /// Returns true if all ramps that were to be run are complete.
     pub const fn is_complete(&self) -> bool {
         self.finished == self.total
-    }
-}
-
-/// A counter of the steps of all threads.
-pub(super) struct Meter<'a> {
-    control: &'a Control<'a>,
-    done: AtomicU64,
-    total: AtomicU64,
-}
-
-impl<'a> Meter<'a> {
-    pub(super) const fn new(control: &'a Control<'a>, total: u64) -> Self {
-        Self { control, done: AtomicU64::new(0), total: AtomicU64::new(total) }
-    }
-
-    /// Adds further steps that are to be done.
-    pub(super) fn extend(&self, steps: u64) {
-        self.total.fetch_add(steps, Ordering::Relaxed);
-    }
-
-    /// Adds steps that other processes have done.
-    pub(super) fn skip(&self, steps: u64) {
-        self.done.fetch_add(steps, Ordering::Relaxed);
-    }
-
-    /// Adds steps that are done, and reports the progress.
-    pub(super) fn advance(&self, ramp: usize, value: usize, steps: u64) {
-        let done = self.done.fetch_add(steps, Ordering::Relaxed) + steps;
-        if let Some(progress) = self.control.progress {
-            progress(&Progress { ramp, value, done, total: self.total.load(Ordering::Relaxed) });
-        }
     }
 }

@@ -1,11 +1,11 @@
 //! Data that all threads of a running study share.
 
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::control::{Control, Meter, Summary};
+use super::control::{Control, Progress, Summary};
 use super::earlier::Earlier;
 use crate::study::errors::StudyError;
 use crate::study::experiment::Experiment;
@@ -22,7 +22,8 @@ pub(super) struct Shift<'a, E: Experiment> {
     pub(super) study: &'a Study<E>,
     pub(super) control: &'a Control<'a>,
     pub(super) earlier: Earlier<E>,
-    pub(super) meter: Meter<'a>,
+    /// Number of steps that are done, and of those in all values.
+    steps: [AtomicU64; 2],
     /// Number of values that are to have a record.
     total: AtomicUsize,
     finished: AtomicUsize,
@@ -49,8 +50,8 @@ impl<'a, E: Experiment> Shift<'a, E> {
         Ok(Self {
             study,
             control,
-            earlier: Earlier::open(control.earlier(), study.plan())?,
-            meter: Meter::new(control, values as u64 * study.plan().protocol().steps()),
+            earlier: Earlier::open(control.earlier, study.plan())?,
+            steps: [0, values as u64 * study.plan().protocol().steps()].map(AtomicU64::new),
             total: AtomicUsize::new(values),
             finished: AtomicUsize::new(0),
             failed: AtomicUsize::new(0),
@@ -63,7 +64,7 @@ impl<'a, E: Experiment> Shift<'a, E> {
 
     /// Returns those of these ramps that are not done, and counts the others as finished.
     pub(super) fn without_done(&self, ramps: Vec<usize>) -> Result<Vec<usize>, StudyError> {
-        if self.control.verifies() || ramps.is_empty() {
+        if self.control.verifies || ramps.is_empty() {
             return Ok(ramps);
         }
         let (folder, before) = (&self.study.folder, ramps.len());
@@ -82,13 +83,21 @@ impl<'a, E: Experiment> Shift<'a, E> {
         let plan = self.study.plan();
         let values = ramps * plan.value_count();
         self.finished.fetch_add(values, Ordering::Relaxed);
-        self.meter.skip(values as u64 * plan.protocol().steps());
+        self.steps[0].fetch_add(values as u64 * plan.protocol().steps(), Ordering::Relaxed);
     }
 
     /// Counts a value that a refinement adds.
     pub(super) fn count_more(&self) {
         self.total.fetch_add(1, Ordering::Relaxed);
-        self.meter.extend(self.study.plan().protocol().steps());
+        self.steps[1].fetch_add(self.study.plan().protocol().steps(), Ordering::Relaxed);
+    }
+
+    /// Counts steps of a value, and reports the progress.
+    pub(super) fn advance(&self, ramp: usize, value: usize, steps: u64) {
+        let done = self.steps[0].fetch_add(steps, Ordering::Relaxed) + steps;
+        if let Some(progress) = self.control.progress {
+            progress(&Progress { ramp, value, done, total: self.steps[1].load(Ordering::Relaxed) });
+        }
     }
 
     /// Counts a value that has a record now.

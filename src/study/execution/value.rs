@@ -145,12 +145,12 @@ impl<E: Experiment> Walk<'_, '_, E> {
                 save(active)?;
                 return Ok(Pause::Interrupted);
             }
-            if saved.elapsed() > control.save_interval() {
+            if saved.elapsed() > control.save_interval {
                 save(active)?;
                 saved = Instant::now();
             }
             let rest = self.shift.study.plan.protocol().steps() - active.steps();
-            let until_save = control.save_interval().saturating_sub(saved.elapsed());
+            let until_save = control.save_interval.saturating_sub(saved.elapsed());
             match active.step(until_save.clamp(SHORTEST, LOOK)) {
                 Ok(RunEnd::Time) => self.advance(1),
                 Ok(RunEnd::WallClock) => {}
@@ -165,7 +165,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
 
     /// Counts steps of the next value.
     fn advance(&self, steps: u64) {
-        self.shift.meter.advance(self.ramp, self.seen.len(), steps);
+        self.shift.advance(self.ramp, self.seen.len(), steps);
     }
 
     fn log(&mut self, record: &Record<E>, time: Duration, is_taken: bool) {

@@ -25,10 +25,10 @@ type OfRecord<E, T> = Box<dyn Fn(&Record<E>) -> T + Send + Sync>;
 /// assert_eq!((height.name(), overlap.unit()), ("height", "diameter"));
 /// ```
 pub struct Column<E: Experiment> {
-    heading: Heading,
-    kind: Kind<E>,
-    in_samples: bool,
-    in_values: bool,
+    pub(in crate::study) heading: Heading,
+    pub(in crate::study) kind: Kind<E>,
+    pub(in crate::study) in_samples: bool,
+    pub(in crate::study) in_values: bool,
 }
 
 pub(in crate::study) enum Kind<E: Experiment> {
@@ -97,22 +97,6 @@ impl<E: Experiment> Column<E> {
     /// Returns the unit of the column.
     pub fn unit(&self) -> &str {
         self.heading.unit()
-    }
-
-    pub(in crate::study) const fn heading(&self) -> &Heading {
-        &self.heading
-    }
-
-    pub(in crate::study) const fn kind(&self) -> &Kind<E> {
-        &self.kind
-    }
-
-    pub(in crate::study) const fn is_in_samples(&self) -> bool {
-        self.in_samples
-    }
-
-    pub(in crate::study) const fn is_in_values(&self) -> bool {
-        self.in_values
     }
 
     /// Returns whether the values of the column have an error.
@@ -219,11 +203,11 @@ pub(in crate::study) fn check_names<E: Experiment>(varied: &[&str]) -> Result<()
     let of = |is_in: fn(&Column<E>) -> bool| -> Vec<&str> {
         columns.iter().filter(|column| is_in(column)).map(Column::name).collect()
     };
-    check("column", &of(Column::is_in_samples), &[taken.as_slice(), &["time"]].concat())?;
-    let with_errors = columns.iter().filter(|column| column.is_in_values() && column.has_error());
+    check("column", &of(|column| column.in_samples), &[taken.as_slice(), &["time"]].concat())?;
+    let with_errors = columns.iter().filter(|column| column.in_values && column.has_error());
     let errors: Vec<String> = with_errors.flat_map(|column| error_names(column.name())).collect();
     let errors: Vec<&str> = errors.iter().map(String::as_str).collect();
-    check("column", &of(Column::is_in_values), &[taken.as_slice(), &errors].concat())?;
+    check("column", &of(|column| column.in_values), &[taken.as_slice(), &errors].concat())?;
     for table in &tables {
         check("column", &table.columns.iter().map(Heading::name).collect::<Vec<_>>(), &taken)?;
     }

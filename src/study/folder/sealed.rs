@@ -60,11 +60,7 @@ pub(in crate::study) fn write_sealed<T: DeserializeOwned + Serialize>(
 
 /// Reads data that [`write_sealed`] has written; `None` if there is no such file.
 pub(in crate::study) fn read_sealed<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, StudyError> {
-    let bytes = match fs::read(path) {
-        Ok(bytes) => bytes,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(StudyError::io("read", path)(error)),
-    };
+    let Some(bytes) = if_there("read", path, fs::read(path))? else { return Ok(None) };
     unseal(&bytes).map(Some).map_err(|reason| damaged(path, reason))
 }
 
@@ -88,9 +84,18 @@ fn unseal<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, &'static str> {
 
 /// Removes a file, if it is there.
 pub(in crate::study) fn remove(path: &Path) -> Result<(), StudyError> {
-    match fs::remove_file(path) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(StudyError::io("remove", path)(error)),
-        _ => Ok(()),
+    if_there("remove", path, fs::remove_file(path)).map(drop)
+}
+
+/// Returns what the system answers about a file or folder; `None` if there is none of this name.
+pub(in crate::study) fn if_there<T>(
+    action: &'static str,
+    path: &Path,
+    answer: io::Result<T>,
+) -> Result<Option<T>, StudyError> {
+    match answer {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        answer => answer.map(Some).map_err(StudyError::io(action, path)),
     }
 }
 

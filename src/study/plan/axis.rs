@@ -1,7 +1,5 @@
 //! Axes: the values that a parameter takes side by side.
 
-use serde::{Deserialize, Serialize};
-
 use super::steps::Steps;
 use super::values::Values;
 use crate::study::errors::PlanError;
@@ -17,27 +15,14 @@ use crate::study::scalar::Scalar;
 /// # Ok::<(), granular_edmd::study::PlanError>(())
 /// ```
 #[doc(alias("sweep", "parameter scan"))]
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Raw")]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Axis {
     parameter: String,
     values: Values<Scalar>,
 }
 
-/// An axis before its checks.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, rename = "Axis")]
-struct Raw {
-    parameter: String,
-    values: Values<Scalar>,
-}
-
-impl TryFrom<Raw> for Axis {
-    type Error = PlanError;
-
-    fn try_from(Raw { parameter, values }: Raw) -> Result<Self, PlanError> {
-        Self { parameter, values }.checked()
-    }
+crate::gate::from_file! {
+    Axis { parameter: String, values: Values<Scalar> } => Self { parameter, values }.checked(), PlanError
 }
 
 #[expect(clippy::len_without_is_empty, reason = "an axis has at least one value")]

@@ -19,8 +19,7 @@ const MOST: u64 = 1 << 40;
 /// assert!(Protocol::new(50_000, 0, 100).is_err());
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields, try_from = "Raw")]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Protocol {
     settle: u64,
     samples: u64,
@@ -28,27 +27,18 @@ pub struct Protocol {
     phase: f64,
 }
 
-/// A protocol before its checks.
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Protocol")]
-struct Raw {
-    settle: u64,
-    samples: u64,
-    every: u64,
-    #[serde(default = "end")]
-    phase: f64,
+crate::gate::from_file! {
+    Protocol {
+        settle: u64,
+        samples: u64,
+        every: u64,
+        #[serde(default = "end")]
+        phase: f64
+    } => Self::new(settle, samples, every)?.with_phase(phase)
 }
 
 const fn end() -> f64 {
     1.0
-}
-
-impl TryFrom<Raw> for Protocol {
-    type Error = ParameterError;
-
-    fn try_from(Raw { settle, samples, every, phase }: Raw) -> Result<Self, ParameterError> {
-        Self::new(settle, samples, every)?.with_phase(phase)
-    }
 }
 
 impl Protocol {

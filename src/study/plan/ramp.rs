@@ -34,8 +34,7 @@ pub enum Course {
 /// # Ok::<(), granular_edmd::study::PlanError>(())
 /// ```
 #[doc(alias("hysteresis", "annealing"))]
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Raw")]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Ramp {
     parameter: String,
     values: Values<f64>,
@@ -44,24 +43,20 @@ pub struct Ramp {
     refine: Option<Width>,
 }
 
-/// A ramp before its checks.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, rename = "Ramp")]
-struct Raw {
-    parameter: String,
-    values: Values<f64>,
-    #[serde(default)]
-    course: Course,
-    refine: Option<Width>,
-}
-
-impl TryFrom<Raw> for Ramp {
-    type Error = PlanError;
-
-    fn try_from(Raw { parameter, values, course, refine }: Raw) -> Result<Self, PlanError> {
+crate::gate::from_file! {
+    Ramp {
+        parameter: String,
+        values: Values<f64>,
+        #[serde(default)]
+        course: Course,
+        refine: Option<Width>
+    } => {
         let ramp = Self { parameter, values, course, refine: None }.checked()?;
-        refine.map_or(Ok(ramp.clone()), |width| ramp.with_refinement(width))
-    }
+        match refine {
+            Some(width) => ramp.with_refinement(width),
+            None => Ok(ramp),
+        }
+    }, PlanError
 }
 
 /// The width to which transitions are bisected, in a plan `refine = { relative = 0.01 }`.

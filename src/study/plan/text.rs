@@ -8,7 +8,7 @@ use super::Plan;
 use super::axis::Axis;
 use super::protocol::Protocol;
 use super::ramp::Ramp;
-use crate::study::errors::PlanError;
+use crate::study::errors::{PlanError, chain};
 use crate::study::experiment::Experiment;
 
 impl<E: Experiment> Plan<E> {
@@ -70,12 +70,7 @@ impl<E: Experiment> Raw<E> {
 
 impl<'de, E: Experiment> Deserialize<'de> for Plan<E> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let told = |error: PlanError| {
-            let sources = std::iter::successors(std::error::Error::source(&error), |&source| source.source());
-            let told: Vec<String> =
-                std::iter::once(error.to_string()).chain(sources.map(ToString::to_string)).collect();
-            serde::de::Error::custom(told.join(": "))
-        };
+        let told = |error: PlanError| serde::de::Error::custom(chain(&error));
         Raw::deserialize(deserializer)?.plan().checked().map_err(told)
     }
 }

@@ -23,7 +23,6 @@ impl<E: Experiment> Plan<E> {
 
     /// Returns the plan, if the experiment takes the parameters of those values that are tried.
     pub(in crate::study) fn proven(self) -> Result<Self, PlanError> {
-        self.try_values()?;
         self.check_experiments()?;
         Ok(self)
     }
@@ -69,15 +68,6 @@ impl<E: Experiment> Plan<E> {
             && let Some((_, at)) = ramp.at(0)
         {
             probe::<E>(&self.tree, ramp.parameter(), name, &at.into())?;
-        }
-        Ok(())
-    }
-
-    /// Sets each parameter of the sweep to some of its values, to check that the experiment reads them.
-    fn try_values(&self) -> Result<(), PlanError> {
-        for (axis, name) in self.sweep.iter().zip(&self.varied) {
-            let mut values = axis.tried().filter_map(|index| axis.value(index));
-            values.try_for_each(|to| probe::<E>(&self.tree, axis.parameter(), name, &to).map(drop))?;
         }
         Ok(())
     }
