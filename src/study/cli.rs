@@ -148,6 +148,7 @@ const LISTED: usize = 8;
 const MOST_THREADS: i64 = 4096;
 
 #[derive(Debug, clap::Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags are independent of each other")]
 struct Manner {
     /// Number of threads; one for each processor if not given.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
@@ -195,25 +196,7 @@ enum End {
 }
 
 /// The reason why a command failed.
-enum Failure {
-    Plan(Box<dyn Error>),
-    Run(Box<dyn Error>),
-}
-
-impl From<StudyError> for Failure {
-    fn from(error: StudyError) -> Self {
-        match error {
-            StudyError::Plan(error) => error.into(),
-            error => Self::Run(error.into()),
-        }
-    }
-}
-
-impl From<PlanError> for Failure {
-    fn from(error: PlanError) -> Self {
-        Self::Plan(error.into())
-    }
-}
+type Failure = Box<dyn Error>;
 
 /// Runs the command line of a program, with plans of this experiment.
 ///
@@ -232,14 +215,16 @@ pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>)
     };
     match ended {
         Ok(end) => ExitCode::from(end as u8),
-        Err(Failure::Plan(error)) => report(error.as_ref(), 2),
-        Err(Failure::Run(error)) => report(error.as_ref(), 1),
+        Err(error) => report(error.as_ref()),
     }
 }
 
-fn report(error: &dyn Error, code: u8) -> ExitCode {
+/// Tells an error, and returns its exit code: 2 for a plan that cannot be used.
+fn report(error: &(dyn Error + 'static)) -> ExitCode {
     let _ = writeln!(io::stderr(), "error: {}", chain(error));
-    ExitCode::from(code)
+    let of_study = error.downcast_ref::<StudyError>();
+    let is_of_plan = matches!(of_study, Some(StudyError::Plan(_) | StudyError::Unreadable { .. }));
+    ExitCode::from(if is_of_plan || error.is::<PlanError>() { 2 } else { 1 })
 }
 
 /// Prints a line. A closed pipe is no error, since its reader has seen enough; a full disk is one.
@@ -275,17 +260,17 @@ fn read(path: &Path) -> Result<String, Failure> {
 }
 
 /// Returns the error of a plan in a file, which names the file.
-fn refused(path: &Path) -> impl Fn(PlanError) -> Failure {
-    move |source| Failure::Plan(StudyError::Unreadable { path: path.to_owned(), source }.into())
+fn refused(path: &Path) -> impl Fn(PlanError) -> StudyError {
+    move |source| StudyError::Unreadable { path: path.to_owned(), source }
 }
 
 /// Opens or creates the study of a plan in a folder.
 fn study<E: Experiment>(path: &Path, folder: &Path) -> Result<Study<E>, Failure> {
     let plan = Plan::from_toml_unproven(&read(path)?).map_err(refused(path))?;
-    Study::open_or_create_unproven(folder, plan).map_err(|error| match error {
+    Ok(Study::open_or_create_unproven(folder, plan).map_err(|error| match error {
         StudyError::Plan(source) => refused(path)(source),
-        error => error.into(),
-    })
+        error => error,
+    })?)
 }
 
 fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
@@ -307,9 +292,8 @@ fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Man
             study.forget_failed(ramp)?;
         }
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(manner.threads.map_or(0, usize::from)).build();
-    let pool = pool.map_err(|error| Failure::Run(error.into()))?;
-    let watch = Watch::new().map_err(Failure::Run)?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(manner.threads.map_or(0, usize::from)).build()?;
+    let watch = Watch::new()?;
     let show = |progress: &Progress| watch.show(progress);
     let control = manner.of(Control::default().with_progress(&show).with_interrupt(watch::stop()));
     let summary = pool.install(|| match ramp {

@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::ParameterError;
-use crate::error::Readable;
 
 /// A reason why an experiment cannot be built or changed: any error of its parts.
 pub type ExperimentError = Box<dyn std::error::Error + Send + Sync>;
@@ -50,54 +49,14 @@ pub enum PlanError {
         /// The parameters that the name may stand for.
         known: Vec<String>,
     },
-    /// The parameter of a ramp cannot change with the disks in place.
-    #[error("{parameter} cannot be ramped with the disks in place; sweep it instead")]
-    NotRampable {
+    /// A parameter cannot vary in this way: its values are missing, not finite, given twice or out of order, it
+    /// varies twice, or it is ramped and cannot change with the disks in place.
+    #[error("{parameter} {reason}")]
+    Varied {
         /// The parameter.
         parameter: String,
-    },
-    /// The parameter varies in two ways at once.
-    #[error("{parameter} varies twice: each parameter can be ramped or swept once")]
-    VariesTwice {
-        /// The parameter.
-        parameter: String,
-    },
-    /// There are no values.
-    #[error("{parameter} has no values")]
-    NoValues {
-        /// The parameter.
-        parameter: String,
-    },
-    /// An axis has a value twice.
-    #[error(
-        "{parameter} takes the value {value} twice; for several runs of each value give the plan repeats"
-    )]
-    Twice {
-        /// The parameter.
-        parameter: String,
-        /// The value.
-        value: String,
-    },
-    /// A value is infinite or NaN.
-    #[error("a value of {parameter} must be finite, but is {value}", value = Readable(*value))]
-    NotFinite {
-        /// The parameter.
-        parameter: String,
-        /// The value.
-        value: f64,
-    },
-    /// The values of a ramp are out of order.
-    #[error(
-        "the values of a ramp must increase, but {parameter} has {value} after {before}; say `course` for the way",
-        value = Readable(*value), before = Readable(*before)
-    )]
-    NotIncreasing {
-        /// The parameter.
-        parameter: String,
-        /// The value.
-        value: f64,
-        /// The value before it.
-        before: f64,
+        /// The reason.
+        reason: String,
     },
     /// There are more ramps or values than can be numbered.
     #[error("{count} ramps and values are too many: at most {most} are possible")]
@@ -263,6 +222,11 @@ pub(super) fn chain(error: &dyn std::error::Error) -> String {
 }
 
 impl PlanError {
+    /// Returns the error of a parameter that cannot vary in this way.
+    pub(super) fn varied(parameter: &str, reason: impl Into<String>) -> Self {
+        Self::Varied { parameter: parameter.to_owned(), reason: reason.into() }
+    }
+
     /// Returns the error of a text that is no TOML, or no plan.
     pub(super) fn toml(error: &impl fmt::Display) -> Self {
         Self::Toml(shortened(&error.to_string()))

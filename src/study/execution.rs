@@ -116,7 +116,7 @@ fn work_in_parallel<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Resul
     use std::sync::{Mutex, PoisonError};
     let failed = Mutex::new(None);
     rayon::scope(|scope| {
-        for _ in 0..queue.len().min(rayon::current_num_threads()) {
+        for _ in 0..rayon::current_num_threads() {
             scope.spawn(|_| {
                 if let Err(error) = work(shift, queue) {
                     failed.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);

@@ -231,7 +231,7 @@ impl Folder {
     /// again.
     pub(super) fn mark_done(&self, ramp: usize, failed: &[usize]) -> Result<(), StudyError> {
         let path = self.done(ramp);
-        let text = failed.iter().map(|value| format!("{value:04}\n")).collect::<String>();
+        let text = failed.iter().map(|value| format!("{value:04}\n")).collect::<Vec<_>>().concat();
         if sealed::if_there("write", &path, fs::write(&path, &text))?.is_none() {
             create(&self.root.join(DONE))?;
             fs::write(&path, text).map_err(StudyError::io("write", &path))?;

@@ -14,7 +14,7 @@ use super::plan::Plan;
 use super::plan::refinement::Bracket;
 use super::scalar::Scalar;
 use crate::observable::Heading;
-use leading::{Place, leading};
+use leading::{Place, leading, row};
 use points::{Repeat, Repeats};
 use rows::{Row, Rows, not_converged};
 
@@ -54,15 +54,16 @@ impl<'a, E: Experiment> Tables<'a, E> {
             rows.push(Row::of(headings.iter().map(Heading::name)))?;
             Ok(rows)
         };
-        let first = Place::first(plan);
+        let first = Place::in_plan(plan, 0, 0);
+        let transition = Place { value: None, at: None, ..first };
         let values = begin("values", first, of_values(&columns))?;
         let samples = begin("samples", first, of_samples(&columns))?;
-        let points = begin("points", first.of_point(), of_points(&columns))?;
+        let points = begin("points", Place { is_point: true, ..first }, of_points(&columns))?;
         let refined = plan.ramp().filter(|_| plan.is_refined());
         let transitions = refined.map(|ramp| {
             let near = ["near", "far"].map(|side| format!("{}_{side}", ramp.parameter()));
             let own = near.into_iter().chain(["from_state", "to_state"].map(str::to_owned));
-            begin("transitions", first.of_transition(), own.map(|name| Heading::new(name, "")).collect())
+            begin("transitions", transition, own.map(|name| Heading::new(name, "")).collect())
         });
         let transitions = transitions.transpose()?;
         let more = E::tables().into_iter().map(|table| {
@@ -76,8 +77,7 @@ impl<'a, E: Experiment> Tables<'a, E> {
 
     /// Adds the rows of a record; records come in their order.
     pub(super) fn add(&mut self, record: &Record<E>) -> Result<(), StudyError> {
-        let place = Place::of(record);
-        let row = Row::of(leading(self.plan, place).into_iter().map(|(_, cell)| cell));
+        let row = row(self.plan, Place::of(record));
         self.add_value(record, row.clone())?;
         self.add_samples(record, &row)?;
         for (table, rows) in &mut self.more {
@@ -94,10 +94,9 @@ impl<'a, E: Experiment> Tables<'a, E> {
     pub(super) fn end_ramp(&mut self, ramp: usize, brackets: &[Bracket]) -> Result<(), StudyError> {
         for Bracket { leg, near, far, from, to } in brackets {
             let Some(rows) = &mut self.transitions else { break };
-            let place = Place { ramp, leg: *leg, ..Place::first(self.plan) }.of_transition();
-            let row = Row::of(leading(self.plan, place).into_iter().map(|(_, cell)| cell));
+            let place = Place { ramp, value: None, leg: *leg, at: None, is_point: false };
             let cells = [Scalar::from(*near), (*far).into(), from.as_str().into(), to.as_str().into()];
-            rows.push(cells.iter().fold(row, Row::with))?;
+            rows.push(cells.iter().fold(row(self.plan, place), Row::with))?;
         }
         if (ramp + 1).is_multiple_of(self.plan.repeats()) {
             std::mem::take(&mut self.repeats).write(self.plan, ramp, &mut self.points)?;

@@ -92,7 +92,7 @@ fn plans_with_errors_are_refused_by_name() {
         ("friction", "width", "width cannot be ramped"),
         ("friction", "temperature", "there is no parameter `temperature`"),
         ("values = [0.01, 0.02]", "values = []", "friction has no values"),
-        ("values = [0.01, 0.02]", "values = [0.01, inf]", "a value of friction must be finite, but is inf"),
+        ("values = [0.01, 0.02]", "values = [0.01, inf]", "friction has a value that is not finite: inf"),
         (
             "values = [0.01, 0.02]",
             "values = [-1.0]",

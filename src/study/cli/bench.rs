@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::{End, Failure, Plan, StudyError, read, refused, say};
+use super::{End, Failure, Plan, PlanError, StudyError, read, refused, say};
 use crate::Simulation;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
@@ -40,9 +40,9 @@ type Stretch = Box<dyn Fn(u64) -> Result<RunReport, RunError>>;
 pub(super) fn table(json: bool, quick: bool, against: Option<&Path>) -> Result<End, Failure> {
     let earlier = against.map(earlier).transpose()?;
     let (rounds, collisions) = if quick { (5, 20_000) } else { (31, 100_000) };
-    let table = measured(rounds, collisions).map_err(|error| Failure::Run(error))?;
+    let table = measured(rounds, collisions).map_err(|error| -> Failure { error })?;
     if json {
-        say(&serde_json::to_string_pretty(&table).map_err(|error| Failure::Run(error.into()))?)?;
+        say(&serde_json::to_string_pretty(&table)?)?;
     } else {
         say(&table.to_string())?;
     }
@@ -55,9 +55,10 @@ pub(super) fn table(json: bool, quick: bool, against: Option<&Path>) -> Result<E
 }
 
 fn earlier(path: &Path) -> Result<Table, Failure> {
-    serde_json::from_str(&read(path)?).map_err(|source| {
-        Failure::Plan(format!("{} is no table of `bench --json`: {source}", path.display()).into())
-    })
+    let table = serde_json::from_str(&read(path)?);
+    Ok(table.map_err(|source| {
+        PlanError::Toml(format!("{} is no table of `bench --json`: {source}", path.display()))
+    })?)
 }
 
 /// Runs all states in turn, so that a slow moment of the machine slows one stretch of each.
@@ -172,15 +173,14 @@ pub(super) fn plan<E: Experiment>(path: &Path, json: bool, quick: bool) -> Resul
 
 /// Returns the hours on a core of the first value of a ramp, if all its cycles take as long as those of now.
 fn hours<E: Experiment>(plan: &Plan<E>, ramp: usize, share: Duration) -> Result<f64, Failure> {
-    let cannot = |source| Failure::from(StudyError::Build { ramp, value: 0, source });
+    let cannot = |source| StudyError::Build { ramp, value: 0, source };
     let experiment = plan.experiment(ramp, 0)?;
     let mut run = experiment.build(plan.ramp_seed(ramp)).map_err(cannot)?;
     let mut observer = experiment.observer().map_err(cannot)?;
     let limits = Limits::until(f64::MAX).with_wall_clock(share);
-    let fails = |error: RunError| Failure::Run(error.into());
-    run.run(&limits, &mut ()).map_err(fails)?;
+    run.run(&limits, &mut ())?;
     let (meter, start) = (Meter::start(&run), run.time());
-    run.run(&limits, &mut observer).map_err(fails)?;
+    run.run(&limits, &mut observer)?;
     let cycles = (run.time() - start) / experiment.cycle();
     Ok(meter.report(&run).seconds / cycles * plan.protocol().cycles() as f64 / 3600.0)
 }

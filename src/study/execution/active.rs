@@ -71,19 +71,18 @@ impl<'a, E: Experiment> Value<'a, E> {
         Ok(Active { value: self, work, run })
     }
 
-    /// Returns the record of the value that is that of another study with the same ramp. The error is the
-    /// other record, if it has more samples or fewer, or lacks a state.
-    pub(super) fn same_as(&self, other: Record<E>) -> Result<Record<E>, Record<E>> {
-        let (found, keeps) = (&other.contents, self.plan.keeps_state(self.origin.value));
-        let (samples, all) = (found.measured.samples.len() as u64, self.plan.protocol().samples());
-        let is_whole = if found.outcome == Outcome::Completed { samples == all } else { samples < all };
-        if !is_whole || (keeps && found.state.is_none()) {
-            return Err(other);
-        }
-        let origin = Origin { maker: found.origin.maker.clone(), ..self.origin.clone() };
-        let state = other.contents.state.filter(|_| keeps);
-        let contents = Contents { origin, state, ..other.contents };
-        Ok(Record { experiment: self.experiment.clone(), contents })
+    /// Returns whether a record of the same ramp in another study has all that the record of this value needs.
+    pub(super) fn is_finished_by(&self, Record { contents, .. }: &Record<E>) -> bool {
+        let (samples, all) = (contents.measured.samples.len() as u64, self.plan.protocol().samples());
+        let is_whole = if contents.outcome == Outcome::Completed { samples == all } else { samples < all };
+        is_whole && (contents.state.is_some() || !self.plan.keeps_state(self.origin.value))
+    }
+
+    /// Returns the record of this value from that of the same value in another study.
+    pub(super) fn taken_over(&self, Record { contents, .. }: Record<E>) -> Record<E> {
+        let origin = Origin { maker: contents.origin.maker, ..self.origin.clone() };
+        let state = contents.state.filter(|_| self.plan.keeps_state(self.origin.value));
+        Record { experiment: self.experiment.clone(), contents: Contents { origin, state, ..contents } }
     }
 
     /// Continues the value where it was saved, or returns the reason why it cannot.

@@ -151,6 +151,11 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// Returns the summary of a run of this many values before its start.
+    pub(super) const fn of(total: usize) -> Self {
+        Self { finished: 0, failed: 0, warned: 0, total, elsewhere: Vec::new(), redone: Vec::new() }
+    }
+
     /// Returns true if all ramps that were to be run are complete.
     pub const fn is_complete(&self) -> bool {
         self.finished == self.total

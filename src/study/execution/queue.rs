@@ -19,12 +19,6 @@ impl Queue {
         Self { left: Mutex::new(from_anywhere(ramps)), elsewhere: Mutex::default() }
     }
 
-    /// Returns the number of ramps that are left.
-    #[cfg(feature = "rayon")]
-    pub(super) fn len(&self) -> usize {
-        self.left().len()
-    }
-
     /// Takes the next ramp.
     pub(super) fn next(&self) -> Option<usize> {
         self.left().pop_front()

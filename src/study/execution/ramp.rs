@@ -65,7 +65,11 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let Some(record) = found else { return Ok(false) };
         let is_failed = record.outcome().reason().is_some();
         self.failed.extend(is_failed.then_some(value));
-        self.shift.count_finished(is_failed, !record.counters().warnings().is_empty());
+        self.shift.count(|summary| {
+            summary.finished += 1;
+            summary.failed += usize::from(is_failed);
+            summary.warned += usize::from(!record.counters().warnings().is_empty());
+        });
         self.seen.push(Seen::of(&record));
         self.last = Some(record);
         Ok(true)

@@ -1,7 +1,6 @@
 //! Data that all threads of a running study share.
 
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -24,14 +23,8 @@ pub(super) struct Shift<'a, E: Experiment> {
     pub(super) earlier: Earlier<E>,
     /// Number of steps that are done, and of those in all values.
     steps: [AtomicU64; 2],
-    /// Number of values that are to have a record.
-    total: AtomicUsize,
-    finished: AtomicUsize,
-    /// Number of values that the engine could not finish.
-    failed: AtomicUsize,
-    /// Number of values whose runs have warnings.
-    warned: AtomicUsize,
-    redone: Mutex<Vec<PathBuf>>,
+    /// What all threads have done.
+    summary: Mutex<Summary>,
     /// True once a thread has met an error.
     ///
     /// The others then stop as if interrupted.
@@ -52,11 +45,7 @@ impl<'a, E: Experiment> Shift<'a, E> {
             control,
             earlier: Earlier::open(control.earlier, study.plan())?,
             steps: [0, values as u64 * study.plan().protocol().steps()].map(AtomicU64::new),
-            total: AtomicUsize::new(values),
-            finished: AtomicUsize::new(0),
-            failed: AtomicUsize::new(0),
-            warned: AtomicUsize::new(0),
-            redone: Mutex::default(),
+            summary: Mutex::new(Summary::of(values)),
             broken: AtomicBool::new(false),
             is_opened: AtomicBool::new(false),
         })
@@ -82,13 +71,13 @@ impl<'a, E: Experiment> Shift<'a, E> {
     pub(super) fn count_done(&self, ramps: usize) {
         let plan = self.study.plan();
         let values = ramps * plan.value_count();
-        self.finished.fetch_add(values, Ordering::Relaxed);
+        self.count(|summary| summary.finished += values);
         self.steps[0].fetch_add(values as u64 * plan.protocol().steps(), Ordering::Relaxed);
     }
 
     /// Counts a value that a refinement adds.
     pub(super) fn count_more(&self) {
-        self.total.fetch_add(1, Ordering::Relaxed);
+        self.count(|summary| summary.total += 1);
         self.steps[1].fetch_add(self.study.plan().protocol().steps(), Ordering::Relaxed);
     }
 
@@ -100,16 +89,9 @@ impl<'a, E: Experiment> Shift<'a, E> {
         }
     }
 
-    /// Counts a value that has a record now.
-    pub(super) fn count_finished(&self, is_failed: bool, is_warned: bool) {
-        self.finished.fetch_add(1, Ordering::Relaxed);
-        self.warned.fetch_add(usize::from(is_warned), Ordering::Relaxed);
-        self.failed.fetch_add(usize::from(is_failed), Ordering::Relaxed);
-    }
-
-    /// Notes a file that was damaged.
-    pub(super) fn note_damaged(&self, path: PathBuf) {
-        self.redone.lock().unwrap_or_else(PoisonError::into_inner).push(path);
+    /// Changes the summary.
+    pub(super) fn count(&self, change: impl FnOnce(&mut Summary)) {
+        change(&mut self.summary.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
     /// Removes the mark that the study is complete, once in a run, before the first value that may not be in
@@ -139,12 +121,11 @@ impl<'a, E: Experiment> Shift<'a, E> {
     }
 
     /// Returns the summary of the run.
-    pub(super) fn summary(self, mut elsewhere: Vec<usize>) -> Summary {
-        let mut redone = self.redone.into_inner().unwrap_or_else(PoisonError::into_inner);
-        redone.sort();
-        elsewhere.sort_unstable();
-        let counts = [self.finished, self.failed, self.warned, self.total];
-        let [finished, failed, warned, total] = counts.map(AtomicUsize::into_inner);
-        Summary { finished, failed, warned, total, elsewhere, redone }
+    pub(super) fn summary(self, elsewhere: Vec<usize>) -> Summary {
+        let mut summary = self.summary.into_inner().unwrap_or_else(PoisonError::into_inner);
+        summary.elsewhere = elsewhere;
+        summary.elsewhere.sort_unstable();
+        summary.redone.sort();
+        summary
     }
 }

@@ -61,22 +61,21 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let work = Value { plan: &study.plan, origin, experiment, step, before };
         // A damaged one is still there.
         let mut has_partial = !self.is_fresh;
-        let earlier = self.earlier.next(&study.plan, &self.seen, step)?.map(|record| work.same_as(record));
-        let is_taken = matches!(earlier, Some(Ok(_)));
-        let record = match earlier {
-            Some(Ok(record)) => record,
-            shorter => {
-                let active = match self.saved(&work)? {
-                    Some(active) => active,
-                    None => work.begin(shorter.and_then(Result::err))?,
-                };
-                let Some(record) = self.finished(active, &mut has_partial)? else { return Ok(None) };
-                record
-            }
-        };
-        if is_taken {
+        let mut earlier = self.earlier.next(&study.plan, &self.seen, step)?;
+        let taken =
+            earlier.take_if(|record| work.is_finished_by(record)).map(|record| work.taken_over(record));
+        let is_taken = taken.is_some();
+        let record = if let Some(record) = taken {
             self.advance(study.plan.protocol().steps());
-        }
+            record
+        } else {
+            let active = match self.saved(&work)? {
+                Some(active) => active,
+                None => work.begin(earlier)?,
+            };
+            let Some(record) = self.finished(active, &mut has_partial)? else { return Ok(None) };
+            record
+        };
         self.shift.open_study()?;
         let path = study.folder.record(self.ramp, value);
         sealed::write_sealed::<Contents<E::Sample, E::Observer>>(&path, &record.contents)?;
@@ -109,7 +108,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
                 self.shift.study.folder.mark_undone(self.ramp)?;
                 let line = Object::default().text("damaged", &name(&path)).text("reason", &reason);
                 self.lock.append(&line.line());
-                self.shift.note_damaged(path);
+                self.shift.count(|summary| summary.redone.push(path));
                 Ok(None)
             }
             other => other,
@@ -177,9 +176,10 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let warnings: Vec<String> = record.counters().warnings().iter().map(ToString::to_string).collect();
         let line = if warnings.is_empty() { line } else { line.text("warnings", &warnings.join("; ")) };
         let line = line.with("collisions", record.counters().disk_collisions);
-        let line = match is_taken {
-            true => line.with("taken_over", true),
-            false => line.with("seconds", format_args!("{:.3}", time.as_secs_f64())),
+        let line = if is_taken {
+            line.with("taken_over", true)
+        } else {
+            line.with("seconds", format_args!("{:.3}", time.as_secs_f64()))
         };
         self.lock.append(&line.with("unix_time", unix_time).line());
     }

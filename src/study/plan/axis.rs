@@ -46,12 +46,10 @@ impl Axis {
 
     fn checked(self) -> Result<Self, PlanError> {
         self.values.check(&self.parameter)?;
-        match self.values.twice() {
-            Some(value) => {
-                Err(PlanError::Twice { parameter: self.parameter.clone(), value: value.to_string() })
-            }
-            None => Ok(self),
-        }
+        let Some(value) = self.values.twice() else { return Ok(self) };
+        let reason =
+            format!("takes the value {value} twice; for several runs of each value give the plan repeats");
+        Err(PlanError::varied(&self.parameter, reason))
     }
 
     /// Returns the name of the parameter.

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::steps::Steps;
 use super::values::Values;
+use crate::error::Readable;
 use crate::quantity::positive;
 use crate::study::errors::PlanError;
 use crate::study::leg::Leg;
@@ -92,15 +93,14 @@ impl Ramp {
     }
 
     fn checked(self) -> Result<Self, PlanError> {
-        let parameter = || self.parameter.clone();
         self.values.check(&self.parameter)?;
         let Values::List(values) = &self.values else { return Ok(self) };
-        match values.windows(2).find(|pair| pair[0] >= pair[1]) {
-            Some(pair) => {
-                Err(PlanError::NotIncreasing { parameter: parameter(), value: pair[1], before: pair[0] })
-            }
-            None => Ok(self),
-        }
+        let Some(pair) = values.windows(2).find(|pair| pair[0] >= pair[1]) else { return Ok(self) };
+        let [before, value] = [pair[0], pair[1]].map(Readable);
+        let reason = format!(
+            "has {value} after {before}: the values of a ramp must increase; say `course` for the way"
+        );
+        Err(PlanError::varied(&self.parameter, reason))
     }
 
     /// Returns the same ramp, which bisects each transition between two of its values down to this width.

@@ -1,6 +1,7 @@
 //! Checks of a plan when it is made, so that its faults do not make a run fail later.
 
 use super::Plan;
+use super::ramp::Ramp;
 use super::values::tried;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
@@ -44,12 +45,11 @@ impl<E: Experiment> Plan<E> {
     fn check_varied(&self) -> Result<(), PlanError> {
         let twice = self.varied.iter().enumerate().find(|&(index, name)| self.varied[..index].contains(name));
         if let Some((_, parameter)) = twice {
-            return Err(PlanError::VariesTwice { parameter: parameter.clone() });
+            let reason = "varies twice: each parameter can be ramped or swept once";
+            return Err(PlanError::varied(parameter, reason));
         }
         match (&self.ramp, self.varied.last()) {
-            (Some(ramp), Some(name)) if !E::can_be_ramped(name) => {
-                Err(PlanError::NotRampable { parameter: ramp.parameter().to_owned() })
-            }
+            (Some(ramp), Some(name)) if !E::can_be_ramped(name) => Err(not_rampable(ramp)),
             _ => Ok(()),
         }
     }
@@ -110,7 +110,7 @@ impl<E: Experiment> Plan<E> {
         // Parts without fingerprints may have changed.
         let told = run.rule().fingerprint().is_some() && run.boundary().fingerprint().is_some();
         let is_same = told && E::cycle(&first) == E::cycle(&next) && run.checkpoint() == before;
-        if is_same { Err(PlanError::NotRampable { parameter: ramp.parameter().to_owned() }) } else { Ok(()) }
+        if is_same { Err(not_rampable(ramp)) } else { Ok(()) }
     }
 
     /// Checks that the disks fit in, with all axes at their first values, and with each axis in turn at those
@@ -129,4 +129,8 @@ impl<E: Experiment> Plan<E> {
         }
         Ok(())
     }
+}
+
+fn not_rampable(ramp: &Ramp) -> PlanError {
+    PlanError::varied(ramp.parameter(), "cannot be ramped with the disks in place; sweep it instead")
 }

@@ -59,14 +59,15 @@ impl<T: Clone + Into<Scalar> + From<f64>> Values<T> {
 
     /// Checks that there are values, and that they are finite.
     pub(super) fn check(&self, parameter: &str) -> Result<(), PlanError> {
-        let parameter = || parameter.to_owned();
         let Self::List(list) = self else { return Ok(()) };
         if list.is_empty() {
-            return Err(PlanError::NoValues { parameter: parameter() });
+            return Err(PlanError::varied(parameter, "has no values"));
         }
-        let numbers = list.iter().filter_map(|value| value.clone().into().number());
-        match numbers.into_iter().find(|value| !value.is_finite()) {
-            Some(value) => Err(PlanError::NotFinite { parameter: parameter(), value }),
+        let mut numbers = list.iter().filter_map(|value| value.clone().into().number());
+        match numbers.find(|value| !value.is_finite()) {
+            Some(value) => {
+                Err(PlanError::varied(parameter, format!("has a value that is not finite: {value}")))
+            }
             None => Ok(()),
         }
     }

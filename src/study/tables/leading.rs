@@ -1,66 +1,51 @@
 //! The leading columns of every table, which tell the place of a row in the study.
 
+use super::rows::Row;
 use crate::study::experiment::Experiment;
 use crate::study::experiment::record::Record;
 use crate::study::leg::Leg;
 use crate::study::plan::Plan;
 use crate::study::scalar::Scalar;
 
-/// The place of a row.
+/// The place of a row: a value, all its repeats, or, without a value, a transition.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     pub(super) ramp: usize,
-    pub(super) value: usize,
+    pub(super) value: Option<usize>,
     pub(super) leg: Option<Leg>,
     /// Value of the ramped parameter.
     pub(super) at: Option<f64>,
-    pub(super) kind: Kind,
-}
-
-/// The thing that a row is about.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Kind {
-    Value,
-    /// All repeats of a value.
-    Point,
-    /// A place between two values.
-    Transition,
+    /// True for all repeats together.
+    pub(super) is_point: bool,
 }
 
 impl Place {
     /// Returns the place of a record.
     pub(super) fn of<E: Experiment>(record: &Record<E>) -> Self {
-        let (ramp, value) = (record.ramp_index(), record.value_index());
-        Self { ramp, value, leg: record.leg(), at: record.ramped_value(), kind: Kind::Value }
+        let (ramp, value) = (record.ramp_index(), Some(record.value_index()));
+        Self { ramp, value, leg: record.leg(), at: record.ramped_value(), is_point: false }
     }
 
-    /// Returns the place of the first value of a plan.
-    pub(super) fn first<E: Experiment>(plan: &Plan<E>) -> Self {
-        let (leg, at) = plan.step(0).unzip();
-        Self { ramp: 0, value: 0, leg, at, kind: Kind::Value }
-    }
-
-    /// Returns the place of all repeats of the value.
-    pub(super) const fn of_point(self) -> Self {
-        Self { kind: Kind::Point, ..self }
-    }
-
-    /// Returns the place of a transition of the ramp.
-    pub(super) const fn of_transition(self) -> Self {
-        Self { kind: Kind::Transition, at: None, ..self }
+    /// Returns the place of a value of a plan.
+    pub(super) fn in_plan<E: Experiment>(plan: &Plan<E>, ramp: usize, value: usize) -> Self {
+        let (leg, at) = plan.step(value).unzip();
+        Self { ramp, value: Some(value), leg, at, is_point: false }
     }
 }
 
 /// Returns the names and cells of the leading columns.
 pub(super) fn leading<E: Experiment>(plan: &Plan<E>, place: Place) -> Vec<(&str, Scalar)> {
-    let (repeats, kind) = (plan.repeats(), place.kind);
-    let mut cells = vec![match kind {
-        Kind::Point => ("point", (place.ramp / repeats).into()),
-        Kind::Value | Kind::Transition => ("ramp", place.ramp.into()),
-    }];
-    cells.extend((kind != Kind::Transition).then(|| ("value", place.value.into())));
+    let repeats = plan.repeats();
+    let (name, index) = if place.is_point { ("point", place.ramp / repeats) } else { ("ramp", place.ramp) };
+    let mut cells = vec![(name, index.into())];
+    cells.extend(place.value.map(|value| ("value", value.into())));
     cells.push(("leg", place.leg.map_or_else(String::new, |leg| leg.to_string()).into()));
-    cells.extend((kind != Kind::Point && repeats > 1).then(|| ("repeat", (place.ramp % repeats).into())));
+    cells.extend((!place.is_point && repeats > 1).then(|| ("repeat", (place.ramp % repeats).into())));
     cells.extend(plan.parameters_at(place.ramp, place.at));
     cells
+}
+
+/// Begins a row with the leading columns.
+pub(super) fn row<E: Experiment>(plan: &Plan<E>, place: Place) -> Row {
+    Row::of(leading(plan, place).into_iter().map(|(_, cell)| cell))
 }

@@ -1,6 +1,6 @@
 //! The table of points: the repeats of each value together.
 
-use super::leading::{Place, leading};
+use super::leading::{Place, row};
 use super::rows::{Row, Rows, not_converged};
 use crate::statistics::Estimate;
 use crate::study::errors::StudyError;
@@ -36,10 +36,8 @@ impl Repeats {
     ) -> Result<(), StudyError> {
         let done = self.0.iter().enumerate().filter(|(_, repeats)| !repeats.is_empty());
         for (value, repeats) in done {
-            let (leg, at) = plan.step(value).unzip();
-            let place = Place { ramp, value, leg, at, ..Place::first(plan) }.of_point();
-            let row = Row::of(leading(plan, place).into_iter().map(|(_, cell)| cell));
-            table.push(with_repeats(row, repeats))?;
+            let place = Place { is_point: true, ..Place::in_plan(plan, ramp, value) };
+            table.push(with_repeats(row(plan, place), repeats))?;
         }
         Ok(())
     }
