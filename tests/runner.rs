@@ -168,7 +168,6 @@ fn failed_values_are_listed_and_tried_again() {
     assert_eq!(code(&scratch.runs(&["status", "study"])), Some(0));
 }
 
-/// Each row of the table of exit codes, but 130, which the next test has.
 /// A contact duration longer than the time between collisions turns the rule off: it is said, not only a
 /// number in a table.
 #[test]
@@ -186,6 +185,28 @@ fn warnings_of_values_are_told() {
     assert!(log.contains("longer than the time between collisions"), "{log}");
 }
 
+/// A larger plan takes over what a smaller one has done, into a folder of its own.
+#[test]
+fn a_study_grows() {
+    let scratch = Scratch::new("grows");
+    scratch.small_plan();
+    assert_eq!(code(&scratch.runs(&["run", "plan.toml", "--out", "study"])), Some(0));
+    let larger = SMALL.replace("[0.0, 0.1]", "[0.0, 0.05, 0.1]").replace("repeats = 2", "repeats = 3");
+    fs::write(scratch.0.join("larger.toml"), &larger).unwrap();
+    let output = scratch.runs(&["run", "larger.toml", "--out", "larger", "--from", "study"]);
+    assert_eq!((code(&output), said(&output).as_str()), (Some(0), "9 of 9 values are finished in larger\n"));
+    let log = |ramp: &usize| {
+        fs::read_to_string(scratch.0.join(format!("larger/ramps/{ramp:04}/log.jsonl"))).unwrap()
+    };
+    let taken: Vec<usize> = (0..9).filter(|ramp| log(ramp).contains("taken_over")).collect();
+    assert_eq!(taken, [0, 1, 6, 7]);
+    fs::write(scratch.0.join("other.toml"), larger.replace("settle = 10", "settle = 20")).unwrap();
+    let output = scratch.runs(&["run", "other.toml", "--out", "other", "--from", "study"]);
+    assert_eq!(code(&output), Some(1));
+    assert!(said(&output).contains("protocol.settle is 10 there and 20 here"), "{}", said(&output));
+}
+
+/// Each row of the table of exit codes, but 130 and that of `bench`, which have tests of their own.
 #[test]
 fn exit_codes_say_how_a_command_ended() {
     let scratch = Scratch::new("codes");

@@ -305,17 +305,14 @@ fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Man
         say(&format!("{} was damaged and has been done again", file.display()))?;
     }
     say(&format!("{} of {} values are finished in {}", summary.finished, summary.total, out.display()))?;
-    if summary.failed > 0 {
-        let logs = out.join("ramps/*/log.jsonl");
-        say(&format!(
-            "{} of them stalled or failed; status lists them, {} say why",
-            summary.failed,
-            logs.display()
-        ))?;
-    }
-    if summary.warned > 0 {
-        let logs = out.join("ramps/*/log.jsonl");
-        say(&format!("{} of them have warnings; {} say of what", summary.warned, logs.display()))?;
+    let logs = out.join("ramps/*/log.jsonl");
+    for (count, told, of) in [
+        (summary.failed, "stalled or failed; status lists them,", "why"),
+        (summary.warned, "have warnings;", "of what"),
+    ] {
+        if count > 0 {
+            say(&format!("{count} of them {told} {} say {of}", logs.display()))?;
+        }
     }
     Ok(match (summary.is_complete(), summary.elsewhere.is_empty()) {
         (true, _) => End::Done,

@@ -125,9 +125,20 @@ pub enum StudyError {
     /// A file or folder cannot be read or written.
     #[error("cannot {action} {}", path.display())]
     Io {
-        /// The action that failed: `read`, `write`, `create`, `remove` or `lock`.
+        /// The action that failed: `read`, `write`, `create` or `remove`.
         action: &'static str,
         /// The file or folder.
+        path: PathBuf,
+        /// The answer of the system.
+        source: io::Error,
+    },
+    /// A file cannot be locked: some file systems of networks have no locks.
+    #[error(
+        "cannot lock {}; run the study on a file system with locks, such as a disk of each node, and join the parts",
+        path.display()
+    )]
+    NoLock {
+        /// The file.
         path: PathBuf,
         /// The answer of the system.
         source: io::Error,

@@ -96,9 +96,9 @@ impl<E: Experiment> Study<E> {
 /// other processes.
 fn all<E: Experiment>(shift: &Shift<'_, E>, ramps: Vec<usize>) -> Result<Vec<usize>, StudyError> {
     let queue = Queue::new(shift.without_done(ramps)?);
-    work_in_parallel(shift, &queue)?;
     let mut patience = PATIENCE[0];
     loop {
+        work_in_parallel(shift, &queue)?;
         let elsewhere = shift.without_done(queue.elsewhere())?;
         if elsewhere.is_empty() || !shift.control.waits || shift.must_stop() {
             return Ok(elsewhere);
@@ -107,7 +107,6 @@ fn all<E: Experiment>(shift: &Shift<'_, E>, ramps: Vec<usize>) -> Result<Vec<usi
         patience = PATIENCE[1].min(2 * patience);
         // Their process may have been killed.
         queue.refill(elsewhere, TRIED);
-        work_in_parallel(shift, &queue)?;
     }
 }
 
@@ -135,7 +134,7 @@ fn work_in_parallel<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Resul
 /// Does ramps of the queue until it is empty.
 ///
 /// Where it meets another process, it goes elsewhere. A list of what others have done costs more, the more
-/// ramps there are, so it takes no more than a tenth of the time; between lists, done ramps are passed one by
+/// ramps there are, so it takes no more than a thirtieth of the time; between lists, done ramps are passed one by
 /// one.
 fn work<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Result<(), StudyError> {
     let mut next_list = Instant::now();
@@ -153,7 +152,7 @@ fn work<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Result<(), StudyE
             continue;
         }
         queue.put_back(shift.without_done(queue.rest())?);
-        next_list = Instant::now() + 10 * begun.elapsed();
+        next_list = Instant::now() + 30 * begun.elapsed();
     }
     Ok(())
 }

@@ -117,7 +117,7 @@ impl<E: Experiment> Study<E> {
     /// If there is no such ramp.
     pub fn status(&self, ramp: usize) -> Result<RampStatus, StudyError> {
         self.check_ramp(ramp)?;
-        Ok(if self.folder.is_done(ramp) { RampStatus::Done } else { self.status_of_undone(ramp) })
+        Ok(self.status_of(ramp, self.folder.is_done(ramp), self.folder.is_begun(ramp)))
     }
 
     /// Returns the progress of all ramps.
@@ -129,12 +129,16 @@ impl<E: Experiment> Study<E> {
     pub fn all_status(&self) -> Result<Vec<RampStatus>, StudyError> {
         let ramps = self.plan.ramp_count();
         let (done, begun) = (self.folder.all_done(ramps)?, self.folder.all_begun(ramps)?);
-        let of = |ramp: usize| match (done[ramp], begun[ramp]) {
+        Ok((0..ramps).map(|ramp| self.status_of(ramp, done[ramp], begun[ramp])).collect())
+    }
+
+    fn status_of(&self, ramp: usize, is_done: bool, is_begun: bool) -> RampStatus {
+        match (is_done, is_begun) {
             (true, _) => RampStatus::Done,
-            (false, true) => self.status_of_undone(ramp),
             (false, false) => RampStatus::Waiting,
-        };
-        Ok((0..ramps).map(of).collect())
+            (false, true) if self.folder.is_taken(ramp) => RampStatus::Running,
+            (false, true) => RampStatus::Begun,
+        }
     }
 
     /// Returns the indices of the values of a ramp that stalled or failed; none before the ramp is done.
@@ -173,9 +177,7 @@ impl<E: Experiment> Study<E> {
     /// Both are about right: they follow from the logs of 1024 ramps at most, and a value that was
     /// interrupted logs its last piece alone.
     pub fn seconds(&self, all: &[RampStatus]) -> (f64, f64) {
-        let begun =
-            |ramp: &usize| matches!(all[*ramp], RampStatus::Done | RampStatus::Begun | RampStatus::Running);
-        let ramps: Vec<usize> = (0..all.len()).filter(begun).collect();
+        let ramps: Vec<usize> = (0..all.len()).filter(|&ramp| all[ramp] != RampStatus::Waiting).collect();
         let looked: Vec<_> = tried(ramps.len()).map(|index| self.folder.logged(ramps[index])).collect();
         let scale = ramps.len() as f64 / looked.len().max(1) as f64;
         let values: Vec<Option<f64>> = looked.into_iter().flatten().collect();
@@ -183,16 +185,6 @@ impl<E: Experiment> Study<E> {
         let seconds: f64 = timed.iter().sum();
         let left = (all.len() * self.plan.value_count()) as f64 - scale * values.len() as f64;
         (scale * seconds, f64::max(left, 0.0) * seconds / timed.len() as f64)
-    }
-
-    fn status_of_undone(&self, ramp: usize) -> RampStatus {
-        if self.folder.is_taken(ramp) {
-            RampStatus::Running
-        } else if self.folder.is_begun(ramp) {
-            RampStatus::Begun
-        } else {
-            RampStatus::Waiting
-        }
     }
 
     /// Returns whether the folder has tables of all values.

@@ -64,6 +64,24 @@ fn the_parts_of_a_sweep_have_seeds_of_their_own_and_become_one() -> Result<(), A
     Ok(())
 }
 
+/// Ramps of one plan, done in folders of their own: on the disks of nodes, for example, where the file system
+/// that all nodes share has no locks.
+#[test]
+fn ramps_in_many_folders_become_one_study() -> Result<(), AnyError> {
+    let (scratch, plan) = (Scratch::new("growth-folders"), sweep(&[0.1, 0.2], &[0.0], 2)?);
+    let folders = [0, 1, 2, 3].map(|ramp| scratch.0.join(format!("part-{ramp}")));
+    for (ramp, folder) in folders.iter().enumerate() {
+        assert!(Study::create(folder, &plan)?.run_ramp(ramp, &Control::default())?.is_complete());
+    }
+    let study = Study::create(scratch.0.join("joined"), &plan)?;
+    assert!(study.run(&Control::default().with_earlier_studies(&folders))?.is_complete());
+    let fresh = Study::create(scratch.0.join("fresh"), &plan)?;
+    fresh.run(&Control::default())?;
+    assert_same(study.folder(), fresh.folder());
+    assert_eq!(taken(&study), 4);
+    Ok(())
+}
+
 /// The order of the axes and the name by which a plan calls a parameter do not count.
 #[test]
 fn seeds_are_those_of_the_parameters() -> Result<(), AnyError> {

@@ -12,6 +12,7 @@ mod interruption;
 #[path = "../support/mixture.rs"]
 mod mixture;
 mod own;
+mod paths;
 mod plans;
 mod processes;
 mod random;

@@ -13,8 +13,9 @@ use crate::study::opening::Study;
 /// Longest time until a thread checks whether it must stop.
 pub(super) const LOOK: Duration = Duration::from_millis(200);
 
-/// Number of ramps up to which the state of each is asked for alone. A list of all ramps costs more.
-const FEW: usize = 16;
+/// Number of ramps up to which the state of each is asked for alone, and the share of all ramps. A list of all
+/// costs more: a call of the system tells of some hundred.
+const FEW: (usize, usize) = (16, 128);
 
 /// A run of a study.
 pub(super) struct Shift<'a, E: Experiment> {
@@ -56,11 +57,11 @@ impl<'a, E: Experiment> Shift<'a, E> {
         if self.control.verifies || ramps.is_empty() {
             return Ok(ramps);
         }
-        let (folder, before) = (&self.study.folder, ramps.len());
-        let left: Vec<usize> = if before <= FEW {
+        let (folder, before, all) = (&self.study.folder, ramps.len(), self.study.plan().ramp_count());
+        let left: Vec<usize> = if before <= FEW.0.max(all / FEW.1) {
             ramps.into_iter().filter(|&ramp| !folder.is_done(ramp)).collect()
         } else {
-            let done = folder.all_done(self.study.plan().ramp_count())?;
+            let done = folder.all_done(all)?;
             ramps.into_iter().filter(|&ramp| !done[ramp]).collect()
         };
         self.count_done(before - left.len());

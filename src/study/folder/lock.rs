@@ -20,13 +20,13 @@ impl Lock {
         match Locked::take(open(path)?) {
             Ok(file) => Ok(Some(Self(file))),
             Err(TryLockError::WouldBlock) => Ok(None),
-            Err(TryLockError::Error(error)) => Err(StudyError::io("lock", path)(error)),
+            Err(TryLockError::Error(error)) => Err(unlocked(path)(error)),
         }
     }
 
     /// Waits until no other process has the lock of a file, and takes it.
     pub(super) fn take(path: &Path) -> Result<Self, StudyError> {
-        Locked::wait(open(path)?).map(Self).map_err(StudyError::io("lock", path))
+        Locked::wait(open(path)?).map(Self).map_err(unlocked(path))
     }
 
     /// Returns whether a process has the lock of a file; false if the system does not tell.
@@ -55,6 +55,11 @@ impl Lock {
     pub(in crate::study) fn append(&mut self, line: &str) {
         let _ = to_last_line_end(&mut self.0).and_then(|()| self.0.write_all(format!("{line}\n").as_bytes()));
     }
+}
+
+/// Returns the error of a file that the system does not lock.
+fn unlocked(path: &Path) -> impl FnOnce(io::Error) -> StudyError {
+    move |source| StudyError::NoLock { path: path.to_owned(), source }
 }
 
 fn open(path: &Path) -> Result<File, StudyError> {

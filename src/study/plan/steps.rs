@@ -20,55 +20,27 @@ const ROUNDING: f64 = 1e-9;
 /// assert_eq!(Steps::logarithmic(0.1, 10.0, 3)?.values().nth(1), Some(1.0));
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(try_from = "Raw", into = "Raw")]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Steps {
     from: f64,
     to: f64,
-    spacing: Spacing,
+    /// The difference of neighbors; none for equal ratios.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    step: Option<f64>,
+    /// The number of values in equal ratios.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    log: Option<usize>,
+    #[serde(skip)]
     count: usize,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Spacing {
-    /// The difference of neighbors.
-    Step(f64),
-    /// Equal ratios.
-    Log,
-}
-
-/// Values by a rule before their checks.
-#[derive(serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Steps")]
-struct Raw {
-    from: f64,
-    to: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    step: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    log: Option<usize>,
-}
-
-impl TryFrom<Raw> for Steps {
-    type Error = ParameterError;
-
-    fn try_from(raw: Raw) -> Result<Self, ParameterError> {
-        match (raw.step, raw.log) {
-            (Some(step), None) => Self::linear(raw.from, raw.to, step),
-            (None, Some(count)) => Self::logarithmic(raw.from, raw.to, count),
-            (step, _) => {
-                let given = if step.is_some() { 2.0 } else { 0.0 };
-                Err(ParameterError::new("number of `step` and `log` beside `from` and `to`", "1", given))
-            }
-        }
-    }
-}
-
-impl From<Steps> for Raw {
-    fn from(Steps { from, to, spacing, count }: Steps) -> Self {
-        match spacing {
-            Spacing::Step(step) => Self { from, to, step: Some(step), log: None },
-            Spacing::Log => Self { from, to, step: None, log: Some(count) },
+crate::gate::from_file! {
+    Steps { from: f64, to: f64, step: Option<f64>, log: Option<usize> } => match (step, log) {
+        (Some(step), None) => Self::linear(from, to, step),
+        (None, Some(count)) => Self::logarithmic(from, to, count),
+        (step, _) => {
+            let given = if step.is_some() { 2.0 } else { 0.0 };
+            Err(ParameterError::new("number of `step` and `log` beside `from` and `to`", "1", given))
         }
     }
 }
@@ -85,7 +57,7 @@ impl Steps {
         accept(to >= from, "last value", "at least the first one", to)?;
         let steps = libm::floor((to - from) / step + ROUNDING);
         accept(steps < MOST, "number of steps", "below 2^53", steps)?;
-        Ok(Self { from, to, spacing: Spacing::Step(step), count: steps as usize + 1 })
+        Ok(Self { from, to, step: Some(step), log: None, count: steps as usize + 1 })
     }
 
     /// Creates this many values in equal ratios, the first and the last included.
@@ -98,7 +70,7 @@ impl Steps {
         positive("last value", to)?;
         accept(to > from, "last value", "above the first one", to)?;
         accept(count >= 2, "number of values", "at least 2", count as f64)?;
-        Ok(Self { from, to, spacing: Spacing::Log, count })
+        Ok(Self { from, to, step: None, log: Some(count), count })
     }
 
     /// Returns the number of values.
@@ -110,10 +82,10 @@ impl Steps {
     ///
     /// Each value follows from its index, not from the one before, so errors do not add up.
     pub(super) fn value(&self, index: usize) -> f64 {
-        match self.spacing {
-            Spacing::Step(step) => self.from + index as f64 * step,
-            Spacing::Log if index + 1 == self.count => self.to,
-            Spacing::Log => {
+        match self.step {
+            Some(step) => self.from + index as f64 * step,
+            None if index + 1 == self.count => self.to,
+            None => {
                 let share = index as f64 / (self.count - 1) as f64;
                 self.from * libm::pow(self.to / self.from, share)
             }
