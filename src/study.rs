@@ -12,9 +12,10 @@
 //! The paper's system is an experiment like any other: [`vibrated_box`].
 //!
 //! # Promises
-//! 1. A value is a function of plan, index and seed: the files of a complete study have the same bytes for
-//!    any number of threads and processes, however often these were interrupted or killed. Only the files
-//!    `log.jsonl`, which hold wall-clock times, differ.
+//! 1. A value is a function of its parameters, the values before it in its ramp, its repeat and the seed: the
+//!    files of a complete study have the same bytes for any number of threads and processes, however often
+//!    these were interrupted or killed, and whether it was done at once or has grown
+//!    ([`Control::with_earlier_studies`]). Only the files `log.jsonl`, which hold wall-clock times, differ.
 //! 2. A file is whole or absent. A study names a damaged file and never reads it as data;
 //!    [`Control::with_verification`] does its value again.
 //! 3. Any number of processes can run a study at the same time, started at any time; each ramp is run by one
