@@ -1,9 +1,8 @@
 //! The command `trajectory`: the disks of the first value of a ramp, in a file that OVITO opens.
 
-use std::error::Error;
 use std::path::Path;
 
-use super::{End, Failure, Plan, StudyError, read, refused, say};
+use super::{End, Failure, Plan, PlanError, StudyError, read, refused, say};
 use crate::observable::SampleTimes;
 use crate::study::experiment::Experiment;
 use crate::trajectory::{ExtendedXyz, Recorder};
@@ -19,20 +18,17 @@ pub(super) fn write<E: Experiment>(
     let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
     if ramp >= plan.ramp_count() {
         let message = format!("there is no ramp {ramp}: the plan has {}, from 0 on", plan.ramp_count());
-        return Err(Failure::Plan(message.into()));
+        return Err(PlanError::Toml(message).into());
     }
     let experiment = plan.experiment(ramp, 0)?;
-    let cannot = |source| Failure::from(StudyError::Build { ramp, value: 0, source });
+    let cannot = |source| StudyError::Build { ramp, value: 0, source };
     let mut run = experiment.build(plan.ramp_seed(ramp)).map_err(cannot)?;
-    let fails = |error: Box<dyn Error>| Failure::Run(error);
-    let times = SampleTimes::every(experiment.cycle()).map_err(|error| fails(error.into()))?;
+    let times = SampleTimes::every(experiment.cycle())?;
     let is_gsd = out.extension().is_some_and(|extension| extension == "gsd");
-    let recorder =
-        if is_gsd { Recorder::create_gsd(out, times) } else { Recorder::create(out, ExtendedXyz, times) };
-    let mut recorder = recorder.map_err(|error| fails(error.into()))?;
+    let mut recorder =
+        if is_gsd { Recorder::create_gsd(out, times) } else { Recorder::create(out, ExtendedXyz, times) }?;
     // Half a cycle more, so that rounding does not cut the last frame off.
-    run.run_until(experiment.cycle() * (f64::from(cycles) + 0.5), &mut recorder)
-        .map_err(|error| fails(error.into()))?;
+    run.run_until(experiment.cycle() * (f64::from(cycles) + 0.5), &mut recorder)?;
     say(&format!(
         "{} frames of {} disks are in {}",
         recorder.times().len(),
