@@ -174,6 +174,25 @@ def verdict(tables):
     return f'chi square {square:.0f} of {len(rows)} lines, p = {tail(square, len(rows)):.2g}; rms deviation {distance:.2f} of the paper\'s standard deviations'
 
 
+def student(away, places):
+    """The probability that a mean of so few places is as many of its own errors away: Student's t, two-sided."""
+    freedom, steps = places - 1, 2000
+    # With t = tan(angle) √freedom, the density is cos(angle)^(freedom - 1).
+    least = math.atan(abs(away) / math.sqrt(freedom))
+    weight = lambda begin: sum(
+        math.cos(begin + (k + 0.5) / steps * (math.pi / 2 - begin)) ** (freedom - 1) for k in range(steps)
+    ) * (math.pi / 2 - begin)
+    return weight(least) / weight(0)
+
+
+def by_student(tables):
+    """The same verdict with errors that are themselves uncertain: p of each line, and of all together by Fisher's method."""
+    rows = [(f'{line} at {gravity}', student(row.away, row.places)) for gravity, lines in tables.items() for line, row in lines.items() if row.places > 1]
+    least = min(rows, key=lambda row: row[1])
+    together = tail(-2 * sum(math.log(p) for _, p in rows), 2 * len(rows))
+    return f"by Student's t: p = {together:.2g} of {len(rows)} lines together, least p = {least[1]:.2g} ({least[0]})"
+
+
 def fixed():
     for base in BASES:
         tables = {}
@@ -215,7 +234,7 @@ def vary():
                 row = '  '.join(f'{line} {row.mean:.3f} ± {row.deviation:.3f} ({row.away:+.1f})' for line, row in lines.items())
                 print(f'{base:14}  {name:24}  g = {gravity:8}  {row}')
             if tables and 'T_rot' not in name:
-                print(f'{base:14}  {name:24}  {verdict(tables)}')
+                print(f'{base:14}  {name:24}  {verdict(tables)}; {by_student(tables)}')
 
 
 if __name__ == '__main__':
