@@ -17,9 +17,8 @@ use std::time::Instant;
 
 use benches::Outcome;
 use benches::ask;
-use benches::quartiles::Quartiles;
 use benches::state::{AMPLITUDE, ANGULAR_FREQUENCY, CONTACT_DURATION, DILUTE, DISKS, HEIGHT, WIDTH};
-use benches::stopwatch::Stopwatch;
+use granular_edmd::speed::Quartiles;
 use granular_edmd::study::vibrated_box::{Base, VibratedBox};
 use granular_edmd::study::{Axis, Control, Plan, PlanError, Protocol, Study};
 use rayon::prelude::*;
@@ -50,14 +49,24 @@ fn run() -> Outcome<()> {
     let mut times = threads().into_iter().map(Times::on).collect::<Outcome<Vec<_>>>()?;
     for _ in 0..rounds {
         for times in &mut times {
-            let watch = Stopwatch::of_process();
+            let before = seconds_on_processors();
             times.study.push(times.pool.install(|| study(&plan))?);
-            times.processors.push(watch.seconds());
+            times.processors.push(seconds_on_processors() - before);
             times.arithmetic.push(times.pool.install(|| arithmetic(cycles)));
         }
     }
     print(&times, rounds);
     Ok(())
+}
+
+/// Returns the seconds that the threads of this process have had on processors; NaN if that is not known.
+fn seconds_on_processors() -> f64 {
+    let nanoseconds = |task: std::io::Result<std::fs::DirEntry>| -> Option<f64> {
+        let text = std::fs::read_to_string(task.ok()?.path().join("schedstat")).ok()?;
+        text.split_whitespace().next()?.parse().ok()
+    };
+    let tasks = std::fs::read_dir("/proc/self/task");
+    tasks.map_or(f64::NAN, |tasks| 1e-9 * tasks.filter_map(nanoseconds).sum::<f64>())
 }
 
 /// Returns the numbers of threads: one, two, and as many as there are.

@@ -11,12 +11,12 @@
 use std::f64::consts::{PI, TAU};
 use std::process::ExitCode;
 
-use benches::stopwatch::Stopwatch;
 use benches::{Outcome, ask};
 use granular_edmd::boundary::{Boundary, Container, Part, Vessel};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::simulation::BoxedBoundary;
+use granular_edmd::speed::Stopwatch;
 use granular_edmd::{Simulation, initial};
 
 const DISKS: usize = 400;

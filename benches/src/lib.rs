@@ -1,11 +1,9 @@
-//! Parts that the measurements share: the paper's box in a settled state, medians, and settings from the
+//! Parts that the measurements share: the paper's box in a settled state, and settings from the
 //! environment.
 #![allow(clippy::missing_errors_doc, reason = "each program ends with the error that it gets")]
 
 pub mod ask;
-pub mod quartiles;
 pub mod state;
-pub mod stopwatch;
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -7,7 +7,7 @@ use std::process::Command;
 
 use granular_edmd::Disk;
 
-use super::Means;
+use super::soft::Means;
 use benches::Outcome;
 use benches::state::State;
 
@@ -69,7 +69,7 @@ impl Lammps {
         if !output.status.success() {
             let errors = String::from_utf8_lossy(&output.stderr);
             let last = said.lines().rev().find(|line| line.starts_with("ERROR")).unwrap_or_default();
-            return Err(format!("LAMMPS failed: {last} {errors}\n{}", super::HOW_TO_GET_IT).into());
+            return Err(format!("LAMMPS failed: {last} {errors}\n{}", super::HOW_TO_GET_THEM).into());
         }
         let seconds = seconds_of_last_run(&said).ok_or("LAMMPS did not tell its time")?;
         Means::of(seconds / f64::from(oscillations.1), &samples(&fs::read_to_string(means)?)?)

@@ -22,8 +22,8 @@ use std::time::Instant;
 
 use benches::Outcome;
 use benches::ask;
-use benches::quartiles::Quartiles;
 use benches::state::{DENSE, DILUTE, State, oscillate};
+use granular_edmd::speed::Quartiles;
 use itself::Itself;
 use reference::Reference;
 

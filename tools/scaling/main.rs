@@ -20,9 +20,9 @@ use std::process::ExitCode;
 
 use benches::Outcome;
 use benches::ask;
-use benches::quartiles::Quartiles;
 use benches::state::{DILUTE, DISKS};
 use granular_edmd::scheduler::{BucketQueue, TournamentTree};
+use granular_edmd::speed::Quartiles;
 use measurement::{Measurement, asked_for, measure};
 use table::Time;
 use tiles::{Numbering, Tiles};

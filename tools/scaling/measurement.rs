@@ -7,10 +7,10 @@ use std::time::Instant;
 use granular_edmd::Disk;
 use granular_edmd::scheduler::EventScheduler;
 use granular_edmd::simulation::Counters;
+use granular_edmd::speed::Stopwatch;
 
 use benches::Outcome;
 use benches::state::{DISKS, State, oscillate};
-use benches::stopwatch::Stopwatch;
 
 /// The measured numbers of one system, from one run.
 #[derive(Debug, Clone, Copy)]

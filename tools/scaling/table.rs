@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use granular_edmd::speed::Quartiles;
+
 use crate::Row;
 use benches::Outcome;
-use benches::quartiles::Quartiles;
 
 const COLUMNS: [&str; 6] = ["disks", "scheduler", "numbered", "low", "median", "high"];
 
