@@ -81,6 +81,8 @@ pub struct Vessel {
     parts: Vec<Placed>,
     walls: Vec<Wall>,
     index: Index,
+    /// The parts that move.
+    moving: Vec<u32>,
     /// For each cell of the index, the parts at rest that fill it.
     filled: Vec<Vec<u32>>,
     /// The radii of all arcs with disks inside, in order, each with the index of its wall.
@@ -129,6 +131,7 @@ impl Vessel {
             parts: Vec::new(),
             walls: Vec::new(),
             index: Index::EMPTY,
+            moving: Vec::new(),
             filled: Vec::new(),
             hollows: Vec::new(),
             origin: 0.0,
@@ -297,6 +300,8 @@ impl Vessel {
             |wall| travel(wall).bounds(&wall.brick),
             |wall, region| travel(wall).may_reach(&wall.brick, region, 0.0),
         );
+        let moves = |part: &u32| !self.parts[*part as usize].part.travel().is_at_rest();
+        self.moving = (0..self.parts.len() as u32).filter(moves).collect();
         self.filled = self.filled_cells();
         let hollows =
             self.walls.iter().enumerate().filter_map(|(number, wall)| {

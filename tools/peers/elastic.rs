@@ -55,7 +55,7 @@ struct Gas {
 
 /// Prints the table for the code in this folder.
 pub(crate) fn compare(folder: &Path) -> Outcome<()> {
-    let rounds = ask::number("ROUNDS", 11)?;
+    let rounds = ask::number("ROUNDS", 9)?;
     println!(
         "Elastic disks, periodic square; time on the processor, medians (and quartiles) of {rounds} pairs."
     );

@@ -65,11 +65,13 @@ impl Brick {
             // one root is enough. A disk beyond the end may be across the line already, and never reach it
             // from the front.
             let gap = self.gap(path, side);
-            if (gap[0] > 0.0 || beside.holds(0.0))
-                && let Some(touch) = first_descent_of_quartic(&gap, wait)
-                && beside.holds(touch)
-            {
-                return Some(touch);
+            if gap[0] > 0.0 || beside.holds(0.0) {
+                match first_descent_of_quartic(&gap, wait) {
+                    Some(touch) if beside.holds(touch) => return Some(touch),
+                    // The disk stays in front.
+                    None if gap[0] > 0.0 => return None,
+                    _ => {}
+                }
             }
         }
         beside.stretches(wait).find_map(|(from, to)| self.touch_between(path, from, to))

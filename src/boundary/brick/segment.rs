@@ -76,16 +76,13 @@ impl Segment {
     /// Tells whether the path stays too far from the brick for a touch. Most paths do.
     pub(super) fn is_out_of_reach(&self, path: &Path, wait: f64) -> bool {
         let (place, growth) = (path.place - self.from, path.growth(wait));
-        let way = |direction: DVec2| {
-            let (rate, pull) = (path.velocity.dot(direction), path.acceleration.dot(direction));
-            1.001 * ((rate.abs() + 0.5 * pull.abs() * wait) * wait + growth)
+        let passes_by = |direction: DVec2, length: f64| {
+            let (from, drift) = (place.dot(direction), 1.001 * path.velocity.dot(direction) * wait);
+            let bend = 0.5 * path.acceleration.dot(direction).abs() * wait * wait;
+            let reach = path.radius + 1.001 * (bend + growth);
+            from + drift.min(0.0) - reach > length || from + drift.max(0.0) + reach < 0.0
         };
-        let (normal, along) = (self.direction.perp(), place.dot(self.direction));
-        if place.dot(normal).abs() - path.radius > way(normal) {
-            return true;
-        }
-        let way = way(self.direction) + path.radius;
-        along < -way || along - self.length > way
+        passes_by(self.direction.perp(), 0.0) || passes_by(self.direction, self.length)
     }
 
     pub(super) fn sight(&self, place: DVec2) -> Sight {

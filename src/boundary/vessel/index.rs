@@ -1,5 +1,7 @@
 //! The index of a vessel: it finds the bricks near a rectangle.
 
+use std::ops::Range;
+
 use glam::DVec2;
 
 use super::Wall;
@@ -87,7 +89,12 @@ impl Index {
 
     /// Returns the bricks that may come into a rectangle, some of them several times.
     pub(super) fn near(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = Entry> {
-        self.cells(min, max).flat_map(|cell| self.within(cell))
+        let (columns, rows) = self.span(min, max);
+        // In a row, the entries of a cell follow those of the cell before.
+        rows.flat_map(move |row| {
+            let before = row * self.columns;
+            self.entries_of(before + columns.start..before + columns.end)
+        })
     }
 
     /// Returns the number of cells.
@@ -109,7 +116,11 @@ impl Index {
 
     /// Returns the bricks that come into a cell.
     pub(super) fn within(&self, cell: usize) -> impl Iterator<Item = Entry> {
-        let range = match (self.starts.get(cell), self.starts.get(cell + 1)) {
+        self.entries_of(cell..cell + 1)
+    }
+
+    fn entries_of(&self, cells: Range<usize>) -> impl Iterator<Item = Entry> {
+        let range = match (self.starts.get(cells.start), self.starts.get(cells.end)) {
             (Some(&from), Some(&to)) => from as usize..to as usize,
             _ => 0..0,
         };
@@ -118,12 +129,17 @@ impl Index {
 
     /// Returns the cells that overlap a rectangle.
     pub(super) fn cells(&self, min: DVec2, max: DVec2) -> impl Iterator<Item = usize> {
-        let place = |value: f64, count: usize| (value.floor().max(0.0) as usize).min(count.max(1) - 1);
-        let (from, to) = ((min - self.corner) * self.density, (max - self.corner) * self.density);
-        let columns = place(from.x, self.columns)..=place(to.x, self.columns);
-        let rows = place(from.y, self.rows)..=place(to.y, self.rows);
-        let width = self.columns;
+        let ((columns, rows), width) = (self.span(min, max), self.columns);
         rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
+    }
+
+    /// Returns the columns and the rows that overlap a rectangle.
+    fn span(&self, min: DVec2, max: DVec2) -> (Range<usize>, Range<usize>) {
+        // The conversion takes negative numbers to 0.
+        let place = |value: f64, count: usize| (value as usize).min(count - 1);
+        let (from, to) = ((min - self.corner) * self.density, (max - self.corner) * self.density);
+        let columns = place(from.x, self.columns)..place(to.x, self.columns) + 1;
+        (columns, place(from.y, self.rows)..place(to.y, self.rows) + 1)
     }
 
     /// Returns the rectangle of a cell, slightly enlarged, so that rounding leaves no gap between two cells.

@@ -14,26 +14,20 @@ use crate::boundary::part::Sighted;
 impl Vessel {
     /// Returns the wall of a part into which a disk reaches deepest, and the depth.
     pub(super) fn overlap_with_parts(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
-        let moving = self.parts.iter().filter(|placed| !placed.part.travel().is_at_rest());
-        let moving = moving.filter_map(|placed| self.depth(placed, position, radius, time));
         let filled = self.filled.get(self.index.cell(position)).into_iter().flatten();
-        let filled =
-            filled.filter_map(|&part| self.depth(&self.parts[part as usize], position, radius, time));
-        let near = || self.near_at_rest(position, radius);
-        let mut beside: Vec<usize> = near().map(|(part, _)| part).collect();
-        beside.sort_unstable();
-        beside.dedup();
-        let beside = beside.into_iter().filter_map(|part| {
-            let entries = near().filter(|(other, _)| *other == part).map(|(_, entry)| entry);
-            let placed = &self.parts[part];
-            match self.nearest_of(entries, position) {
+        let whole = self.moving.iter().chain(filled);
+        let whole = whole.filter_map(|&part| self.depth(part as usize, position, radius, time));
+        let mut near: Vec<(usize, Entry)> = self.near_at_rest(position, radius).collect();
+        near.sort_by_key(|(part, _)| *part);
+        let beside = near.chunk_by(|a, b| a.0 == b.0).filter_map(|entries| {
+            match self.nearest_of(entries.iter().map(|(_, entry)| *entry), position) {
                 Some((wall, sighted)) if sighted.distance() <= radius => {
                     Some((wall, radius - sighted.signed_distance()))
                 }
-                _ => self.depth(placed, position, radius, time),
+                _ => self.depth(entries[0].0, position, radius, time),
             }
         });
-        moving.chain(filled).chain(beside).max_by(|a, b| a.1.total_cmp(&b.1))
+        whole.chain(beside).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Returns the bricks at rest in the cells around a disk, with the numbers of their parts.
@@ -54,7 +48,8 @@ impl Vessel {
     }
 
     /// Returns the nearest wall of a part, and the depth to which a disk reaches into it.
-    fn depth(&self, placed: &Placed, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+    fn depth(&self, part: usize, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+        let placed = &self.parts[part];
         let pose = placed.part.travel().pose(placed.phase.after(time));
         let (low, high) = placed.bounds;
         let depths = self.container.domain().images_of(low, high).filter_map(|image| {
@@ -89,7 +84,7 @@ impl Vessel {
         let has_brick =
             |cell: usize| self.index.within(cell).any(|entry| self.walls[entry.wall as usize].part == number);
         let is_behind = |cell: usize| {
-            self.depth(placed, self.index.middle(cell), 0.0, 0.0).is_some_and(|(_, depth)| depth > 0.0)
+            self.depth(number, self.index.middle(cell), 0.0, 0.0).is_some_and(|(_, depth)| depth > 0.0)
         };
         // The answers so far, for cells without a brick of the part: true if the cell is behind the part.
         let mut known: Vec<Option<bool>> = vec![None; self.index.len()];
