@@ -16,6 +16,10 @@ use gallery::{flow, progress::Progress};
 type Quantities = (OrderParameters, CenterOfMass, Energies);
 pub(crate) type Sample = <Quantities as Observable>::Value;
 
+/// Most oscillations from sample to sample of the fields. In the paper's box, a disk has about one collision
+/// in this time, so samples between would see most velocities again.
+const FRESH: u64 = 3;
+
 /// The results of one run.
 pub(crate) struct Outcome {
     /// The box at the end.
@@ -126,7 +130,7 @@ fn with_duration(
 /// wide.
 fn grid(arguments: &Arguments) -> Result<Sampled<Fields>, ParameterError> {
     let columns = (arguments.width / 7.0).round().clamp(4.0, 24.0);
-    let times = SampleTimes::every(arguments.period())?;
+    let times = SampleTimes::every(arguments.every.min(FRESH) as f64 * arguments.period())?;
     flow::on_squares(DVec2::ZERO, DVec2::new(arguments.width, arguments.shown()), columns as usize, times)
 }
 

@@ -34,6 +34,10 @@ struct State {
     events_per_collision: f64,
 }
 
+/// Ratio by which the times of the same program drift from sitting to sitting, even if each sitting scatters
+/// less. A [`Comparison`](speed::Comparison) in one sitting has no such drift.
+const DRIFT: f64 = 1.05;
+
 type Stretch = Box<dyn Fn(u64) -> Result<RunReport, RunError>>;
 
 /// Measures the standard table and prints it, against an earlier one if there is a file with it.
@@ -127,12 +131,12 @@ impl Table {
 }
 
 impl Change<'_> {
-    /// A difference counts if the quartiles of the two sittings are apart.
+    /// A difference counts if the quartiles of the two sittings are apart by more than [`DRIFT`].
     fn finding(&self) -> &'static str {
         let (before, now) = (self.before.nanoseconds_per_collision, self.now.nanoseconds_per_collision);
         match () {
-            () if now.low > before.high => "slower",
-            () if now.high < before.low => "faster",
+            () if now.low > DRIFT * before.high => "slower",
+            () if DRIFT * now.high < before.low => "faster",
             () => "noise",
         }
     }
