@@ -1,8 +1,8 @@
-//! The paper's box by soft disks in LAMMPS and by this crate, from the same settled state of this crate, over a
-//! sinusoidal base.
+//! The paper's box by soft disks in LAMMPS and by this crate, from the same settled state of this crate, over
+//! a sinusoidal base.
 //!
-//! LAMMPS first relaxes, since its contacts last. Height and energies have errors from blocks. Times are by the
-//! wall clock, per oscillation of the base. This crate runs longer, so that its own errors are smaller.
+//! LAMMPS first relaxes, since its contacts last. Height and energies have errors from blocks. Times are by
+//! the wall clock, per oscillation of the base. This crate runs longer, so that its own errors are smaller.
 
 use std::path::PathBuf;
 use std::time::Instant;

@@ -249,7 +249,6 @@ impl Bodies {
     }
 
     /// Returns the disk as the user sees it.
-    #[inline]
     pub(in crate::simulation) fn disk(&self, disk: usize, offset: f64) -> Disk {
         let spin = &self.spins[disk];
         let image = self.images.get(disk).copied().unwrap_or_default();
