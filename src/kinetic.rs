@@ -8,6 +8,7 @@
 //! | question | answer | source |
 //! |---|---|---|
 //! | $`\langle dE\rangle`$ of the paper's rule | [`mean_energy_change`] | paper, Fig. 1 |
+//! | cooling, temperatures and cumulants of a gas without correlations | [`DirectSimulation`] | Bird 1994 |
 //! | the share of its collisions that stick | [`sticking_fraction`] | paper, section II |
 //! | $`\langle dE\rangle`$ of any rule | [`MonteCarlo`] | paper, section II |
 //! | friction with the largest loss | [`friction_of_largest_loss`] | paper, $`\kappa\approx0.3`$ |
@@ -34,6 +35,7 @@
 mod bisection;
 mod closed_form;
 mod collision_average;
+mod direct_simulation;
 mod effective_inelasticity;
 mod iso_line;
 mod largest_loss;
@@ -43,6 +45,7 @@ mod stick_slip;
 
 pub use closed_form::{mean_energy_change, sticking_fraction};
 pub use collision_average::CollisionAverage;
+pub use direct_simulation::DirectSimulation;
 pub use effective_inelasticity::{effective_inelasticity, frictionless_energy_change};
 pub use iso_line::{IsoLine, Piece};
 pub use largest_loss::friction_of_largest_loss;

@@ -27,6 +27,7 @@ mod cells;
 mod checking;
 #[cfg(feature = "serde")]
 mod checkpoint;
+mod driving;
 mod epoch;
 mod errors;
 mod event_loop;
@@ -36,6 +37,7 @@ mod footprint;
 mod forecasting;
 mod limits;
 mod lookahead;
+mod mapping;
 mod parting;
 mod population;
 mod prediction;
@@ -48,6 +50,7 @@ mod warnings;
 pub use builder::SimulationBuilder;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Resumption};
+pub use driving::{Driving, Rescaling, WhiteNoise};
 pub use errors::{BoundaryFault, BuildError, FailedCollision, Remedy, RunError};
 pub use events::{Counters, Event, RunEnd};
 pub use footprint::Footprint;

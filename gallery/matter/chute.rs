@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! cargo run --release -p gallery --bin chute
-//! cargo run --release -p gallery --bin chute -- --angles 18,21,24 --time 1000 --out chute
+//! cargo run --release -p gallery --bin chute -- --angles 18,21,24 --time 600 --out chute
 //! ```
 //!
 //! The example writes `chute.svg`, `chute.png` and `chute.csv`. Literature: GDR MiDi, Eur. Phys. J. E 14, 341
@@ -34,7 +34,7 @@ struct Arguments {
     #[arg(long, value_delimiter = ',', default_value = "16,18,20,22", value_parser = positive)]
     angles: Vec<f64>,
     /// Time for which each profile is measured, after as long a time without, in units of √(d/g).
-    #[arg(long, default_value_t = 600.0, value_parser = positive)]
+    #[arg(long, default_value_t = 100.0, value_parser = positive)]
     time: f64,
     /// Measures for a time of 10 at most.
     #[arg(long)]
@@ -44,10 +44,11 @@ struct Arguments {
 }
 
 const GRAINS: usize = 600;
-const WIDTH: f64 = 40.5;
 
-/// Distance of the bumps of the ground, half disks of diameter 1.
+/// Number of the bumps of the ground, half disks of diameter 1, and their distance.
+const BUMPS: u32 = 30;
 const PITCH: f64 = 1.35;
+const WIDTH: f64 = BUMPS as f64 * PITCH;
 
 /// Height of the picture and of the profiles, and their number of layers.
 const TOP: f64 = 20.0;
@@ -75,7 +76,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Lets grains flow down a slope of this angle, and measures them.
 fn flow(arguments: &Arguments, angle: f64) -> Result<Flow, Box<dyn Error>> {
     let bump = |k: u32| Disk::new(DVec2::new(PITCH * (0.5 + f64::from(k)), 0.0), 0.5);
-    let bumps = (0..(WIDTH / PITCH) as u32).map(bump).collect::<Result<Vec<_>, _>>()?;
+    let bumps = (0..BUMPS).map(bump).collect::<Result<Vec<_>, _>>()?;
     let ground = Obstacles::new(Container::open(WIDTH)?.with_periodic_sides()?, bumps.iter().copied());
     let disks = initial::random(&ground, GRAINS, 0.5, 30.0, 1)?;
     let rule = LeastRebound::new(Frictional::from_restitution(0.7, 0.0, 0.5)?, 0.05)?;
@@ -151,6 +152,6 @@ fn draw(flows: &[Flow]) -> Sheet {
     }
     let names: Vec<_> = flows.iter().map(|flow| format!("slope of {}°", flow.angle)).collect();
     let names: Vec<_> = names.iter().enumerate().map(|(k, name)| (look(k), name.as_str())).collect();
-    sheet.legend((panel.place.x + 16.0, panel.place.y + 28.0), &names);
+    sheet.legend((panel.place.x + 280.0, panel.place.y + 250.0), &names);
     sheet
 }

@@ -96,6 +96,18 @@ impl Limits {
         Ok(Self { least_progress: Some(non_negative("least progress", time_per_event)?), ..self })
     }
 
+    /// Returns what is left of the limits after these collisions and this wall-clock time.
+    pub(super) fn rest(&self, collisions: u64, spent: Duration) -> Self {
+        let most_collisions = self.most_collisions.saturating_sub(collisions);
+        let wall_clock = self.wall_clock.map(|time| time.saturating_sub(spent));
+        Self { most_collisions, wall_clock, ..self.clone() }
+    }
+
+    /// Returns the same limits with another end.
+    pub(super) fn ending_at(self, end: f64) -> Self {
+        Self { end, ..self }
+    }
+
     /// Returns the absolute time at which the run ends.
     pub const fn end(&self) -> f64 {
         self.end
@@ -154,6 +166,6 @@ impl<'a> Watch<'a> {
     }
 }
 
-const fn collisions(counters: &Counters) -> u64 {
+pub(super) const fn collisions(counters: &Counters) -> u64 {
     counters.disk_collisions + counters.wall_collisions
 }

@@ -11,6 +11,7 @@ mod atmosphere;
 mod collapse;
 mod collisions;
 mod cooling;
+mod driven;
 mod equilibrium;
 mod figure_2;
 mod gas;

@@ -9,6 +9,7 @@ mod cases;
 mod changes;
 mod counting;
 mod crowds;
+mod driving;
 mod extremes;
 mod inputs;
 mod kinds;

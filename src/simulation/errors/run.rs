@@ -4,6 +4,7 @@ use std::fmt;
 
 use thiserror::Error;
 
+use super::BuildError;
 use super::answers::{BoundaryFault, FailedCollision, Named};
 use super::remedy::Remedy;
 use crate::error::{Readable, Rounded};
@@ -142,6 +143,14 @@ pub enum RunError {
         next: f64,
         /// The present.
         time: f64,
+    },
+    /// A kick of a driving failed: it gives an impossible motion, or its time is too late to be told apart.
+    #[error("a kick failed at time {}", Rounded(*.time))]
+    Driving {
+        /// The present.
+        time: f64,
+        /// The cause.
+        source: Box<BuildError>,
     },
     /// An observer failed.
     #[error("an observer failed at time {}", Rounded(*.time))]

@@ -279,6 +279,24 @@ impl Bodies {
         }
     }
 
+    /// Takes these disks, as they are at this time offset, for those that there are. Their ids and the times
+    /// of their last collisions stay.
+    pub(in crate::simulation) fn replace(&mut self, disks: &[Disk], offset: f64) {
+        self.properties = Properties::of(disks);
+        self.typical_diameter = self.properties.typical_diameter();
+        if disks.iter().any(|disk| disk.image() != [0; 2]) || !self.images.is_empty() {
+            self.images = disks.iter().map(Disk::image).collect();
+        }
+        let (fallen, gained) = self.fall(offset);
+        for ((disk, particle), spin) in disks.iter().zip(&mut self.particles).zip(&mut self.spins) {
+            let velocity = disk.velocity() - gained;
+            let position = disk.position() - fallen - velocity * offset;
+            particle.trajectory = Trajectory { position, velocity };
+            let angle = disk.angle() - disk.angular_velocity() * offset;
+            *spin = Spin { angle, angular_velocity: disk.angular_velocity(), ..*spin };
+        }
+    }
+
     /// Sets gravity to another value from this offset on. The motion at that time stays as it is.
     pub(in crate::simulation) fn set_gravity(&mut self, gravity: Gravity, offset: f64) {
         let gained = (gravity.downward() - self.gravity.downward()) * offset;

@@ -1,0 +1,151 @@
+//! Direct simulation of the homogeneous Boltzmann–Enskog equation, for any rule.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec2;
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use crate::collision::{CollisionRule, collide};
+use crate::quantity::{accept, positive};
+use crate::random::uniform;
+use crate::{Disk, ParameterError};
+
+/// A homogeneous gas without correlations: direct simulation of the Boltzmann–Enskog equation (DSMC) under
+/// any rule.
+///
+/// Disks have velocities and spins, and no places. Any two of them collide, in any direction
+/// $`\hat\sigma`$, at the rate
+///
+/// ```math
+/// \frac{n\chi}{N}\,\sigma\,(\vec v_{12}\cdot\hat\sigma)\,d\hat\sigma ,
+/// ```
+///
+/// so partners are drawn at random and never know each other: molecular chaos holds by construction. A
+/// simulation with events that differs has velocities that are correlated, or a gas that is not homogeneous.
+/// With $`N\to\infty`$, the distribution of velocities is the solution of the equation, without an expansion.
+///
+/// The density with the contact value, $`n\chi`$, sets the unit of time alone. Disks of several radii have one
+/// $`\chi`$.
+///
+/// ```
+/// use granular_edmd::collision::Smooth;
+/// use granular_edmd::glam::DVec2;
+/// use granular_edmd::kinetic::DirectSimulation;
+/// use granular_edmd::{Disk, initial};
+///
+/// let disks = vec![Disk::new(DVec2::ZERO, 0.5)?; 2000];
+/// let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
+/// let mut gas = DirectSimulation::new(Smooth::from_restitution(0.9)?, disks, 0.1, 1)?;
+/// gas.run_until(40.0);
+/// let temperature = gas.disks().iter().map(Disk::translational_energy).sum::<f64>() / 2000.0;
+/// // Haff's law, with the rate of collisions of a Maxwellian.
+/// let rate = 2.0 * std::f64::consts::PI.sqrt() * 0.1;
+/// let haff = (1.0 + 0.25 * (1.0 - 0.81) * rate * 40.0_f64).powi(-2);
+/// assert!((temperature / haff - 1.0).abs() < 0.05);
+/// # Ok::<(), granular_edmd::ParameterError>(())
+/// ```
+///
+/// Source: G. A. Bird, Molecular Gas Dynamics and the Direct Simulation of Gas Flows (1994); for granular
+/// gases, J. J. Brey, M. J. Ruiz-Montero and D. Cubero, Phys. Rev. E 54, 3664 (1996).
+#[derive(Debug, Clone)]
+pub struct DirectSimulation<R> {
+    rule: R,
+    disks: Vec<Disk>,
+    density: f64,
+    generator: Xoshiro256PlusPlus,
+    time: f64,
+    collisions: u64,
+    /// Largest diameter, and a speed that no disk exceeds.
+    widest: f64,
+    fastest: f64,
+}
+
+impl<R: CollisionRule> DirectSimulation<R> {
+    /// Creates a gas of these disks, whose places do not matter, with this number of disks per area times
+    /// the contact value, $`n\chi`$.
+    ///
+    /// # Errors
+    /// If there are fewer than two disks, or the density is not finite and positive.
+    pub fn new(rule: R, disks: Vec<Disk>, density: f64, seed: u64) -> Result<Self, ParameterError> {
+        accept(disks.len() > 1, "number of disks", "at least 2", disks.len() as f64)?;
+        let density = positive("density", density)?;
+        let widest = 2.0 * disks.iter().map(Disk::radius).fold(0.0, f64::max);
+        let generator = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let (time, collisions) = (0.0, 0);
+        Ok(Self { rule, disks, density, generator, time, collisions, widest, fastest: 0.0 })
+    }
+
+    /// Returns the disks.
+    pub fn disks(&self) -> &[Disk] {
+        &self.disks
+    }
+
+    /// Returns the disks, to change them: a driving of a simulation takes them as they are.
+    pub fn disks_mut(&mut self) -> &mut [Disk] {
+        &mut self.disks
+    }
+
+    /// Returns the time.
+    pub const fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Returns the number of collisions so far.
+    pub const fn collisions(&self) -> u64 {
+        self.collisions
+    }
+
+    /// Lets the disks collide until this time.
+    pub fn run_until(&mut self, end: f64) {
+        while self.time < end {
+            // The bound of the speeds is found anew now and then, since a gas that cools becomes slow.
+            let speeds = self.disks.iter().map(|disk| disk.velocity().length());
+            self.fastest = speeds.fold(0.0, f64::max);
+            for _ in 0..self.disks.len() {
+                // Pairs are tried as often as the fastest and widest ones collide.
+                let pairs = self.density * (self.disks.len() - 1) as f64 * PI;
+                self.time -= libm::log(uniform(&mut self.generator)) / (pairs * self.largest_rate());
+                if self.time >= end {
+                    // The waits have no memory, so that of the next run begins anew.
+                    self.time = end;
+                    return;
+                }
+                self.attempt();
+            }
+        }
+    }
+
+    /// Draws a pair and a direction, and lets it collide with its share of the largest rate.
+    fn attempt(&mut self) {
+        let count = self.disks.len();
+        let first = self.index(count);
+        let second = (first + 1 + self.index(count - 1)) % count;
+        let (sine, cosine) = libm::sincos(TAU * uniform(&mut self.generator));
+        let normal = DVec2::new(cosine, sine);
+        let [one, other] = [first, second].map(|disk| self.disks[disk]);
+        let contact = one.radius() + other.radius();
+        let closing = (other.velocity() - one.velocity()).dot(normal);
+        if uniform(&mut self.generator) * self.largest_rate() >= contact * closing {
+            return;
+        }
+        let placed = |disk: Disk, place: DVec2| {
+            disk.with_motion(place, disk.velocity(), disk.angle(), disk.angular_velocity())
+        };
+        let met = collide(&self.rule, &placed(one, contact * normal), &placed(other, DVec2::ZERO));
+        for (disk, met) in [(first, met.first), (second, met.second)] {
+            self.disks[disk] = met;
+            self.fastest = self.fastest.max(met.velocity().length());
+        }
+        self.collisions += 1;
+    }
+
+    /// Returns the largest diameter times the largest closing speed of any pair.
+    fn largest_rate(&self) -> f64 {
+        self.widest * 2.0 * self.fastest
+    }
+
+    fn index(&mut self, count: usize) -> usize {
+        (uniform(&mut self.generator) * count as f64) as usize
+    }
+}

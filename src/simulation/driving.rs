@@ -1,0 +1,121 @@
+//! Driving in the bulk: all disks are changed at set times, between which the run goes on as usual.
+//!
+//! | driving | change |
+//! |---|---|
+//! | [`WhiteNoise`] | random kicks, which keep the total momentum |
+//! | [`Rescaling`] | all velocities and spins, by one factor, to a temperature |
+//!
+//! A driving of your own implements [`Driving`]. The event loop knows nothing of it.
+
+mod noise;
+mod rescaling;
+
+pub use noise::WhiteNoise;
+pub use rescaling::Rescaling;
+
+use std::time::Instant;
+
+use super::events::RunEnd;
+use super::limits::{Limits, collisions};
+use super::{RunError, Simulation};
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::observable::{Observer, SampleTimes};
+use crate::scheduler::EventScheduler;
+use crate::{Disk, ParameterError};
+
+/// A driving in the bulk: a change of all disks at set times.
+///
+/// It is lent to a run, as observers are, and keeps its clock and its random numbers. With the feature
+/// `serde`, write it with the state (`Checkpoint::write_with`): a run that is resumed between two kicks then
+/// has the bits of one that was not interrupted.
+///
+/// ```
+/// use granular_edmd::observable::SampleTimes;
+/// use granular_edmd::prelude::*;
+/// use granular_edmd::simulation::Driving;
+///
+/// /// Takes a tenth of the spin of every disk each unit of time.
+/// struct Bearings(SampleTimes);
+///
+/// impl Driving for Bearings {
+///     fn times(&mut self) -> &mut SampleTimes {
+///         &mut self.0
+///     }
+///     fn kick(&mut self, disks: &mut [Disk]) -> Result<(), ParameterError> {
+///         for disk in disks {
+///             *disk = disk.with_angular_velocity(0.9 * disk.angular_velocity())?;
+///         }
+///         Ok(())
+///     }
+/// }
+///
+/// let disk = Disk::new(DVec2::new(2.0, 2.0), 0.5)?.with_angular_velocity(1.0)?;
+/// let mut run = Simulation::builder(Elastic, Container::periodic(4.0, 4.0)?).disks([disk]).build()?;
+/// let mut bearings = Bearings(SampleTimes::every(1.0)?);
+/// run.run_driven(&Limits::until(2.5), &mut bearings, &mut ())?;
+/// assert!((run.disks()[0].angular_velocity() - 0.81).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub trait Driving {
+    /// Returns the clock of the kicks.
+    fn times(&mut self) -> &mut SampleTimes;
+
+    /// Changes the disks at a kick.
+    ///
+    /// # Errors
+    /// If it cannot.
+    fn kick(&mut self, disks: &mut [Disk]) -> Result<(), ParameterError>;
+}
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
+    /// Runs up to the first of the `limits`, as [`Self::run`] does, with kicks at the times of `driving`.
+    ///
+    /// A kick comes after all events and samples of its time, also at the end of the run. The bits do not
+    /// depend on how a run is cut into pieces.
+    ///
+    /// # Errors
+    /// The same as for [`Self::run`], and those of kicks: [`RunError::Driving`].
+    pub fn run_driven<D: Driving + ?Sized, O: Observer + ?Sized>(
+        &mut self,
+        limits: &Limits,
+        driving: &mut D,
+        observer: &mut O,
+    ) -> Result<RunEnd, RunError> {
+        let (start, before) = (Instant::now(), collisions(self.counters()));
+        driving.times().start_at(self.time());
+        loop {
+            let next = driving.times().upcoming();
+            let left = limits.rest(collisions(self.counters()) - before, start.elapsed());
+            let failed = |time, source| RunError::Driving { time, source: Box::new(source) };
+            if next.is_nan() {
+                let error =
+                    ParameterError::new("time of the next kick", "a number that is not too late", next);
+                return Err(failed(self.time(), error.into()));
+            }
+            if next > limits.end() {
+                return self.run(&left, observer);
+            }
+            let end = self.run(&left.ending_at(next), observer)?;
+            if end != RunEnd::Time {
+                return Ok(end);
+            }
+            let mut disks = self.disks();
+            let kicked = driving.kick(&mut disks).map_err(Into::into);
+            kicked.and_then(|()| self.replace_disks(&disks)).map_err(|error| failed(self.time(), error))?;
+            driving.times().advance_past(next);
+        }
+    }
+}
+
+/// Returns the kinetic energy of disks.
+fn energy_of(disks: &[Disk]) -> f64 {
+    disks.iter().map(|disk| disk.translational_energy() + disk.rotational_energy()).sum()
+}
+
+/// Returns the velocity of the center of mass; 0 without disks.
+fn drift_of(disks: &[Disk]) -> glam::DVec2 {
+    let mass: f64 = disks.iter().map(Disk::mass).sum();
+    let momentum: glam::DVec2 = disks.iter().map(|disk| disk.mass() * disk.velocity()).sum();
+    if mass > 0.0 { momentum / mass } else { momentum }
+}

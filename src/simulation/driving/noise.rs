@@ -1,0 +1,120 @@
+//! White noise: random kicks that keep the total momentum.
+
+use glam::DVec2;
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::{Driving, drift_of, energy_of};
+use crate::observable::SampleTimes;
+use crate::quantity::{finite, non_negative};
+use crate::random::normal;
+use crate::{Disk, ParameterError};
+
+/// White noise: at each beat of a clock, every disk gets a random kick, and the total momentum is kept.
+///
+/// Each component of each velocity gains, in a time $`t`$, a normal variable of variance $`\xi_0^2 t`$, and
+/// the mean of all kicks, in proportion to the masses, is taken away. So $`N`$ equal disks of mass $`m`$
+/// gain the temperature
+///
+/// ```math
+/// \dot T = m\,\xi_0^2\left(1-\tfrac1N\right),
+/// ```
+///
+/// and, with [rotational noise](Self::with_rotational_noise), $`\dot T_r = I\,\xi_r^2`$. The noise is white
+/// if the kicks are more frequent than collisions. At each kick, all events are predicted anew, so a kick
+/// takes about as long as a collision of each disk.
+///
+/// The random numbers are those of the seed alone, and the clock and they are part of what serde writes.
+///
+/// ```
+/// use granular_edmd::observable::SampleTimes;
+/// use granular_edmd::prelude::*;
+/// use granular_edmd::simulation::WhiteNoise;
+///
+/// let container = Container::periodic(20.0, 20.0)?;
+/// let disks = initial::lattice(&container, 100, 0.5)?;
+/// let mut run = Simulation::builder(Smooth::from_restitution(0.9)?, container).disks(disks).build()?;
+/// let mut noise = WhiteNoise::new(0.1, SampleTimes::every(0.1)?, 7)?;
+/// let mut lost = EnergyChange::default();
+/// run.run_driven(&Limits::until(20.0), &mut noise, &mut lost)?;
+/// // The grains keep what they got and did not lose.
+/// let lost = lost.disks().count() as f64 * lost.disks().mean();
+/// let energy: f64 = run.disks().iter().map(Disk::translational_energy).sum();
+/// assert!((noise.energy() + lost - energy).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// Source: D. R. M. Williams and F. C. MacKintosh, Phys. Rev. E 54, R9 (1996); T. P. C. van Noije and M. H.
+/// Ernst, Granular Matter 1, 57 (1998).
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct WhiteNoise {
+    noise: f64,
+    rotational_noise: f64,
+    times: SampleTimes,
+    generator: Xoshiro256PlusPlus,
+    energy: f64,
+}
+
+impl WhiteNoise {
+    /// Creates noise of this strength $`\xi_0^2`$, the variance that a component of a velocity gains in a
+    /// unit of time.
+    ///
+    /// # Errors
+    /// If the strength is negative or not finite.
+    pub fn new(noise: f64, times: SampleTimes, seed: u64) -> Result<Self, ParameterError> {
+        let noise = non_negative("noise", noise)?;
+        let generator = Xoshiro256PlusPlus::seed_from_u64(seed);
+        Ok(Self { noise, rotational_noise: 0.0, times, generator, energy: 0.0 })
+    }
+
+    /// Returns the same noise, which also kicks the spins: $`\xi_r^2`$ is the variance that an angular
+    /// velocity gains in a unit of time.
+    ///
+    /// # Errors
+    /// If the strength is negative or not finite.
+    pub fn with_rotational_noise(self, noise: f64) -> Result<Self, ParameterError> {
+        Ok(Self { rotational_noise: non_negative("rotational noise", noise)?, ..self })
+    }
+
+    /// Returns the kinetic energy that all kicks have fed so far.
+    pub const fn energy(&self) -> f64 {
+        self.energy
+    }
+}
+
+impl Driving for WhiteNoise {
+    fn times(&mut self) -> &mut SampleTimes {
+        &mut self.times
+    }
+
+    fn kick(&mut self, disks: &mut [Disk]) -> Result<(), ParameterError> {
+        let before = energy_of(disks);
+        let [speed, spin] =
+            [self.noise, self.rotational_noise].map(|noise| (noise * self.times.interval()).sqrt());
+        let drift = drift_of(disks);
+        for disk in &mut *disks {
+            let kick = DVec2::new(normal(&mut self.generator), normal(&mut self.generator));
+            let turn = if spin > 0.0 { spin * normal(&mut self.generator) } else { 0.0 };
+            *disk = disk.with_velocity(disk.velocity() + speed * kick)?;
+            *disk = disk.with_angular_velocity(disk.angular_velocity() + turn)?;
+        }
+        let gained = drift_of(disks) - drift;
+        for disk in &mut *disks {
+            *disk = disk.with_velocity(disk.velocity() - gained)?;
+        }
+        self.energy += energy_of(disks) - before;
+        Ok(())
+    }
+}
+
+crate::gate::from_file! {
+    WhiteNoise {
+        noise: f64, rotational_noise: f64, times: SampleTimes, generator: Xoshiro256PlusPlus, energy: f64
+    } => {
+        non_negative("noise", noise)?;
+        non_negative("rotational noise", rotational_noise)?;
+        finite("energy of the kicks", energy)?;
+        Ok(Self { noise, rotational_noise, times, generator, energy })
+    }
+}

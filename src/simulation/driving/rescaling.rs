@@ -1,0 +1,81 @@
+//! Rescaling of all velocities to a temperature.
+
+use super::{Driving, drift_of, energy_of};
+use crate::observable::SampleTimes;
+use crate::quantity::{accept, finite, positive};
+use crate::{Disk, ParameterError};
+
+/// Rescaling: at each beat of a clock, all velocities about their mean, and all spins, are multiplied by one
+/// factor, so that the translational temperature is $`T = \tfrac12\langle m v'^2\rangle`$.
+///
+/// Under a rule without a speed scale, this changes nothing but the unit of time: a gas that is rescaled is
+/// one that cools, with the same $`T_r/T`$ and cumulants, and never becomes slow.
+///
+/// ```
+/// use granular_edmd::observable::SampleTimes;
+/// use granular_edmd::prelude::*;
+/// use granular_edmd::simulation::Rescaling;
+///
+/// let container = Container::periodic(20.0, 20.0)?;
+/// let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 100, 0.5)?, 1.0, 1)?;
+/// let mut run = Simulation::builder(Smooth::from_restitution(0.8)?, container).disks(disks).build()?;
+/// let mut rescaling = Rescaling::new(2.0, SampleTimes::every(0.5)?)?;
+/// run.run_driven(&Limits::until(50.0), &mut rescaling, &mut ())?;
+/// assert!((run.measure(&Temperatures).translational() - 2.0).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Rescaling {
+    temperature: f64,
+    times: SampleTimes,
+    energy: f64,
+}
+
+impl Rescaling {
+    /// Creates a rescaling to this translational temperature.
+    ///
+    /// # Errors
+    /// If the temperature is not finite and positive.
+    pub fn new(temperature: f64, times: SampleTimes) -> Result<Self, ParameterError> {
+        Ok(Self { temperature: positive("temperature", temperature)?, times, energy: 0.0 })
+    }
+
+    /// Returns the kinetic energy that all rescalings have fed so far.
+    pub const fn energy(&self) -> f64 {
+        self.energy
+    }
+}
+
+impl Driving for Rescaling {
+    fn times(&mut self) -> &mut SampleTimes {
+        &mut self.times
+    }
+
+    fn kick(&mut self, disks: &mut [Disk]) -> Result<(), ParameterError> {
+        if disks.is_empty() {
+            return Ok(());
+        }
+        let (before, drift) = (energy_of(disks), drift_of(disks));
+        let squares: f64 =
+            disks.iter().map(|disk| disk.mass() * (disk.velocity() - drift).length_squared()).sum();
+        let present = 0.5 * squares / disks.len() as f64;
+        accept(present > 0.0, "temperature before a rescaling", "positive", present)?;
+        let factor = (self.temperature / present).sqrt();
+        for disk in &mut *disks {
+            let velocity = drift + factor * (disk.velocity() - drift);
+            *disk = disk.with_velocity(velocity)?;
+            *disk = disk.with_angular_velocity(factor * disk.angular_velocity())?;
+        }
+        self.energy += energy_of(disks) - before;
+        Ok(())
+    }
+}
+
+crate::gate::from_file! {
+    Rescaling { temperature: f64, times: SampleTimes, energy: f64 } => {
+        positive("temperature", temperature)?;
+        finite("energy of the rescalings", energy)?;
+        Ok(Self { temperature, times, energy })
+    }
+}

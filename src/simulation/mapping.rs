@@ -1,0 +1,62 @@
+//! Changes of disks between runs.
+
+use super::Simulation;
+use super::builder::{check_epoch, check_speeds, fit};
+use super::errors::BuildError;
+use super::state::Clock;
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::scheduler::EventScheduler;
+use crate::{Disk, ParameterError};
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
+    /// Replaces each disk by what `change` makes of its index and its present state.
+    ///
+    /// The order, the [ids](Disk::id) and the times of the last collisions stay. All events are predicted
+    /// anew. For the bits, see [`insert`](Self::insert).
+    ///
+    /// # Errors
+    /// If `change` fails, a disk that has moved or grown does not fit, or a disk becomes so fast that times
+    /// as late as the present are too coarse. The simulation then stays as it was.
+    ///
+    /// ```
+    /// # use granular_edmd::{Simulation, boundary::Container, collision::Elastic, initial};
+    /// # let container = Container::closed(20.0, 20.0)?;
+    /// # let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 50, 0.5)?, 1.0, 1)?;
+    /// # let mut run = Simulation::builder(Elastic, container).disks(disks).build()?;
+    /// use granular_edmd::observable::Energies;
+    /// let before = run.measure(&Energies).translational;
+    /// run.map_disks(|_, disk| disk.with_velocity(2.0 * disk.velocity()))?;
+    /// assert!((run.measure(&Energies).translational / before - 4.0).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn map_disks(
+        &mut self,
+        mut change: impl FnMut(usize, Disk) -> Result<Disk, ParameterError>,
+    ) -> Result<(), BuildError> {
+        let disks = self.disks().into_iter().enumerate().map(|(index, disk)| change(index, disk));
+        self.replace_disks(&disks.collect::<Result<Vec<_>, _>>()?)
+    }
+
+    /// Takes these disks for those that there are.
+    pub(super) fn replace_disks(&mut self, disks: &[Disk]) -> Result<(), BuildError> {
+        check_speeds(disks)?;
+        let stay = |(index, disk): (usize, &Disk)| {
+            disk.position() == self.bodies.position(index, self.clock.now)
+                && disk.radius() == self.bodies.radius(index)
+        };
+        let all_stay = disks.iter().enumerate().all(stay);
+        let fitted = (!all_stay).then(|| fit(&self.boundary, disks, self.clock.now)).transpose()?;
+        let mut bodies = self.bodies.clone();
+        bodies.replace(disks, self.clock.now);
+        check_epoch(&Clock { epoch_length: bodies.epoch_length(), ..self.clock }, self.clock.now)?;
+        // The place of a fast disk at a far epoch would lack digits, so the epoch moves first.
+        self.shift_epoch(self.clock.exact_offset());
+        self.bodies.replace(disks, self.clock.now);
+        if let Some((wall_count, cells)) = fitted {
+            (self.wall_count, self.cells) = (wall_count, cells);
+        }
+        self.begin_anew();
+        Ok(())
+    }
+}
