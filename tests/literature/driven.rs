@@ -6,7 +6,7 @@ use granular_edmd::boundary::Container;
 use granular_edmd::collision::{CollisionRule, Frictional, Rough, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::DirectSimulation;
-use granular_edmd::observable::{EnergyChange, SampleTimes};
+use granular_edmd::observable::{EnergyChange, SampleTimes, Snapshot, on_sample};
 use granular_edmd::simulation::{Driving, Limits, WhiteNoise};
 use granular_edmd::{Disk, Simulation, initial};
 
@@ -55,14 +55,15 @@ fn by_events<R: CollisionRule>(rule: R, noise: f64, count: usize, packing: f64, 
     gas.run_driven(&Limits::until(gas.time() + 30.0 / rate), &mut noise, &mut ())?;
     let mut moments = Moments::default();
     let (mut lost, energy, fed) = (EnergyChange::default(), energy_of(&gas.disks()), noise.energy());
-    for _ in 0..(2.0 * times) as u32 {
-        gas.run_driven(&Limits::until(gas.time() + 0.5 / rate), &mut noise, &mut lost)?;
-        moments.add(&gas.disks());
-    }
+    // Samples lie in the middle between two kicks, where the temperature has its mean.
+    let middles = SampleTimes::every(0.5 / rate)?.starting_at(0.05 / rate)?;
+    let mut sample = on_sample(middles, |snapshot: &Snapshot<'_>| moments.add(snapshot.disks()));
+    let limits = Limits::until(gas.time() + times / rate);
+    gas.run_driven(&limits, &mut noise, &mut (&mut lost, &mut sample))?;
     // What is fed and not lost is kept, to rounding.
     let fed = noise.energy() - fed;
     let kept = energy_of(&gas.disks()) - energy;
-    let lost = lost.disks().count() as f64 * lost.disks().mean();
+    let lost = lost.disks().sum();
     assert!((fed + lost - kept).abs() < 1e-9 * fed, "{fed} {lost} {kept}");
     Ok(moments.means())
 }
@@ -76,11 +77,12 @@ fn by_direct_simulation<R: CollisionRule>(rule: R, noise: f64, count: usize, tim
     let mut noise = WhiteNoise::new(noise, SampleTimes::every(0.1)?, 4)?;
     let mut moments = Moments::default();
     for step in 1..=(10.0 * times) as u32 {
-        gas.run_until(0.1 * f64::from(step));
-        noise.kick(gas.disks_mut())?;
+        gas.run_until(0.1 * (f64::from(step) - 0.5));
         if step > 300 && step.is_multiple_of(5) {
             moments.add(gas.disks());
         }
+        gas.run_until(0.1 * f64::from(step));
+        noise.kick(gas.disks_mut())?;
     }
     Ok(moments.means())
 }
@@ -142,11 +144,11 @@ fn rough_disks_share_what_they_are_driven_with() -> Outcome {
         let rule = Rough::from_restitution(0.9, tangential)?;
         let eta = (1.0 + tangential) / 6.0;
         let expected = eta / (1.0 - 2.0 * eta);
-        // The scatter of 200 disks and 300 mean free times is 1 %, that of theory 2 %.
+        // The scatter of 200 disks and 300 mean free times is 1 %. Theory is of Maxwellian spins.
         let [.., events] = by_events(rule, 1.0, 200, 0.02, 300.0)?;
         assert!(agrees(&format!("T_rot/T by events, {tangential}"), events, expected, 0.06));
         let [.., direct] = by_direct_simulation(rule, 1.0, 4000, 100.0)?;
-        assert!(agrees(&format!("T_rot/T by direct simulation, {tangential}"), direct, expected, 0.03));
+        assert!(agrees(&format!("T_rot/T by direct simulation, {tangential}"), direct, expected, 0.05));
     }
     Ok(())
 }
@@ -180,8 +182,8 @@ fn noise_keeps_the_momentum() -> Outcome {
     run.run_driven(&Limits::until(20.0), &mut noise, &mut ())?;
     let momentum: DVec2 = run.disks().iter().map(|disk| disk.mass() * disk.velocity()).sum();
     assert!(momentum.length() < 1e-9, "{momentum}");
-    // Smooth disks keep all of their spin: 60 · ½ I ξ_r² t on average, with I = m/8.
+    // Smooth disks keep all of their spin: ½ I ξ_r² t on average, with I = m/8. It scatters by a fifth.
     let spin: f64 = run.disks().iter().map(Disk::rotational_energy).sum();
-    assert!(agrees("rotational energy", spin, 0.5 * 0.5 * 20.0 * 1830.0 / 8.0, 0.8));
+    assert!(agrees("rotational energy", spin, 0.5 * 0.5 * 20.0 * 1830.0 / 8.0, 0.5));
     Ok(())
 }

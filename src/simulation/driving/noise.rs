@@ -38,7 +38,7 @@ use crate::{Disk, ParameterError};
 /// let mut lost = EnergyChange::default();
 /// run.run_driven(&Limits::until(20.0), &mut noise, &mut lost)?;
 /// // The grains keep what they got and did not lose.
-/// let lost = lost.disks().count() as f64 * lost.disks().mean();
+/// let lost = lost.disks().sum();
 /// let energy: f64 = run.disks().iter().map(Disk::translational_energy).sum();
 /// assert!((noise.energy() + lost - energy).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
