@@ -6,7 +6,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::{Driving, drift_of, energy_of};
 use crate::observable::SampleTimes;
-use crate::quantity::{finite, non_negative};
+use crate::quantity::non_negative;
 use crate::random::normal;
 use crate::{Disk, ParameterError};
 
@@ -114,7 +114,7 @@ crate::gate::from_file! {
     } => {
         non_negative("noise", noise)?;
         non_negative("rotational noise", rotational_noise)?;
-        finite("energy of the kicks", energy)?;
+        crate::quantity::finite("energy of the kicks", energy)?;
         Ok(Self { noise, rotational_noise, times, generator, energy })
     }
 }

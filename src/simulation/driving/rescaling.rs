@@ -2,7 +2,7 @@
 
 use super::{Driving, drift_of, energy_of};
 use crate::observable::SampleTimes;
-use crate::quantity::{accept, finite, positive};
+use crate::quantity::{accept, positive};
 use crate::{Disk, ParameterError};
 
 /// Rescaling: at each beat of a clock, all velocities about their mean, and all spins, are multiplied by one
@@ -75,7 +75,7 @@ impl Driving for Rescaling {
 crate::gate::from_file! {
     Rescaling { temperature: f64, times: SampleTimes, energy: f64 } => {
         positive("temperature", temperature)?;
-        finite("energy of the rescalings", energy)?;
+        crate::quantity::finite("energy of the rescalings", energy)?;
         Ok(Self { temperature, times, energy })
     }
 }
