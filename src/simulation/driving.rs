@@ -51,7 +51,7 @@ use crate::{Disk, ParameterError};
 /// }
 ///
 /// let disk = Disk::new(DVec2::new(2.0, 2.0), 0.5)?.with_angular_velocity(1.0)?;
-/// let mut run = Simulation::builder(Elastic, Container::periodic(4.0, 4.0)?).disks([disk]).build()?;
+/// let mut run = Simulation::builder(Elastic, Container::periodic(8.0, 8.0)?).disks([disk]).build()?;
 /// let mut bearings = Bearings(SampleTimes::every(1.0)?);
 /// run.run_driven(&Limits::until(2.5), &mut bearings, &mut ())?;
 /// assert!((run.disks()[0].angular_velocity() - 0.81).abs() < 1e-15);
