@@ -51,8 +51,8 @@ const PITCH: f64 = 1.35;
 const WIDTH: f64 = BUMPS as f64 * PITCH;
 
 /// Height of the picture and of the profiles, and their number of layers.
-const TOP: f64 = 20.0;
-const LAYERS: usize = 20;
+const TOP: f64 = 24.0;
+const LAYERS: usize = 24;
 
 struct Flow {
     angle: f64,
@@ -152,6 +152,6 @@ fn draw(flows: &[Flow]) -> Sheet {
     }
     let names: Vec<_> = flows.iter().map(|flow| format!("slope of {}°", flow.angle)).collect();
     let names: Vec<_> = names.iter().enumerate().map(|(k, name)| (look(k), name.as_str())).collect();
-    sheet.legend((panel.place.x + 280.0, panel.place.y + 250.0), &names);
+    sheet.legend((panel.place.x + 16.0, panel.place.y + 24.0), &names);
     sheet
 }
