@@ -110,7 +110,8 @@ function make(path) {
   const place = made.get(path);
   if (GUIDE.test(path)) return;
   if (path.endsWith('.md')) {
-    const html = markdown.render(readFileSync(path, 'utf8')).replace(/<table>[^]*?<\/table>/g, '<div class="wide">$&</div>');
+    const html = markdown.render(readFileSync(path, 'utf8'))
+      .replace(/<table>[^]*?<\/table>/g, '<div class="wide" tabindex="0" role="region" aria-label="table">$&</div>').replace(/<th[^>]*><\/th>/g, '<td></td>');
     const title = /<h1[^>]*>([^]*?)<\/h1>/.exec(html)?.[1].replace(/<[^>]*>/g, '') ?? path;
     write(place, framed(place, unescape(title), linked(html, path)));
   } else if (statSync(path).isDirectory()) {
@@ -148,6 +149,7 @@ function document() {
     const drawn = text
       .replace(/<div class="example-wrap"><pre class="language-math"><code>([^]*?)<\/code><\/pre><\/div>/g, (_, source) => { count += 1; return formula(unescape(source), true); })
       .replace(/\$<code>([^<]*)<\/code>\$/g, (_, source) => { count += 1; return formula(unescape(source), false); })
+      .replace('<section id="main-content" class="content">', (whole) => `${whole}<a href="${posix.relative(posix.dirname(posix.join('api', file)), 'index.html')}">← site</a>`)
       .replace(/src="data:image\/png,#([^"]+)"/g, shown(file));
     if (drawn !== text) writeFileSync(path, drawn);
   }
