@@ -102,7 +102,7 @@ impl<E: Experiment> Study<E> {
     pub fn transitions(&self, ramp: usize) -> Result<Vec<Bracket>, StudyError> {
         let seen: Vec<Seen> = self
             .ramp_records(ramp)
-            .map(|record| Ok(Seen::of(&record?)))
+            .map(|record| Ok(self.plan.seen(&record?)))
             .collect::<Result<_, StudyError>>()?;
         Ok(self.brackets(&seen))
     }
@@ -233,7 +233,7 @@ impl<E: Experiment> Study<E> {
             for record in self.ramp_records(ramp) {
                 let record = record?;
                 tables.add(&record)?;
-                seen.push(Seen::of(&record));
+                seen.push(self.plan.seen(&record));
                 finished += 1;
             }
             // A table that lacks a row must not look complete.

@@ -70,7 +70,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
             summary.failed += usize::from(is_failed);
             summary.warned += usize::from(!record.counters().warnings().is_empty());
         });
-        self.seen.push(Seen::of(&record));
+        self.seen.push(self.shift.study.plan().seen(&record));
         self.last = Some(record);
         Ok(true)
     }

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::Plan;
 use super::ramp::{Ramp, Width};
 use crate::study::experiment::Experiment;
 use crate::study::experiment::record::Record;
@@ -15,10 +16,12 @@ pub(in crate::study) struct Seen {
     pub(in crate::study) state: Option<String>,
 }
 
-impl Seen {
-    /// Returns the parts of a record on which the path depends.
-    pub(in crate::study) fn of<E: Experiment>(record: &Record<E>) -> Self {
-        Self { leg: record.leg(), at: record.ramped_value(), state: E::state(record) }
+impl<E: Experiment> Plan<E> {
+    /// Returns the parts of a record on which the path depends. A state may take long to tell, and only a
+    /// refined ramp asks for it.
+    pub(in crate::study) fn seen(&self, record: &Record<E>) -> Seen {
+        let state = if self.is_refined() { E::state(record) } else { None };
+        Seen { leg: record.leg(), at: record.ramped_value(), state }
     }
 }
 
