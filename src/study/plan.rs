@@ -34,12 +34,12 @@ use refinement::{Seen, Step};
 /// names of the groups that contain it (`base.bi_parabolic.amplitude`). The name after the last dot is enough
 /// if no other parameter has it.
 ///
-/// A ramp is a function of its parameters, its repeat and the seed, not of the rest of the plan: a larger plan
-/// has the same ramps, and so do the parts of a sweep
-/// ([`Control::with_earlier_studies`](super::Control::with_earlier_studies)). Its seed is the first eight bytes
-/// of $`\mathrm{BLAKE3}(\text{seed of the point}, \text{repeat})`$. The seed of a point follows in the same
-/// way from that of the plan, and the name and value of each parameter of the sweep. In the index of a ramp,
-/// the repeat counts fastest.
+/// A ramp is a function of its parameters, its repeat and the seed, not of the rest of the plan: a larger
+/// plan has the same ramps, and so do the parts of a sweep
+/// ([`Control::with_earlier_studies`](super::Control::with_earlier_studies)). Its seed is the first eight
+/// bytes of $`\mathrm{BLAKE3}(\text{seed of the point}, \text{repeat})`$. The seed of a point follows in the
+/// same way from that of the plan, and the name and value of each parameter of the sweep. In the index of a
+/// ramp, the repeat counts fastest.
 ///
 /// ```
 /// use granular_edmd::study::{Plan, Scalar, vibrated_box::VibratedBox};

@@ -18,8 +18,8 @@ fn taken<E: Experiment>(study: &Study<E>) -> usize {
     (0..study.plan().ramp_count()).map(|ramp| log(ramp).matches("taken_over").count()).sum()
 }
 
-/// Does these plans, then a larger one after them, and checks that it is as if it had done everything. Returns
-/// the number of values that it took over.
+/// Does these plans, then a larger one after them, and checks that it is as if it had done everything.
+/// Returns the number of values that it took over.
 fn grown<E: Experiment>(name: &str, before: &[Plan<E>], larger: &Plan<E>) -> Result<usize, AnyError> {
     let scratch = Scratch::new(name);
     let run = |plan: &Plan<E>, folder: &str, earlier: &[PathBuf]| -> Result<Study<E>, AnyError> {

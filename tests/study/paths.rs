@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 use crate::mixture::Sticky;
 use crate::support::{AnyError, Scratch};
 
-/// A disk whose state is a letter, which follows from `x` alone: `a` below the first transition of the leg, `b`
-/// from there on, and so on.
+/// A disk whose state is a letter, which follows from `x` alone: `a` below the first transition of the leg,
+/// `b` from there on, and so on.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Known {

@@ -13,8 +13,8 @@ use crate::study::opening::Study;
 /// Longest time until a thread checks whether it must stop.
 pub(super) const LOOK: Duration = Duration::from_millis(200);
 
-/// Number of ramps up to which the state of each is asked for alone, and the share of all ramps. A list of all
-/// costs more: a call of the system tells of some hundred.
+/// Number of ramps up to which the state of each is asked for alone, and the share of all ramps. A list of
+/// all costs more: a call of the system tells of some hundred.
 const FEW: (usize, usize) = (16, 128);
 
 /// A run of a study.
