@@ -2,7 +2,7 @@
 //!
 //! ```sh
 //! LAMMPS=path/to/lmp cargo run --release -p tools --bin peers           # soft disks, some three minutes
-//! SMALLENBURG=path/to/EDMD cargo run --release -p tools --bin peers     # hard ones, some twenty minutes
+//! SMALLENBURG=path/to/EDMD cargo run --release -p tools --bin peers     # hard ones, an hour on a busy machine
 //! ```
 //!
 //! `ROUNDS` changes the number of pairs of runs with the second one, and `OSCILLATIONS` how long LAMMPS is
