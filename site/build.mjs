@@ -149,7 +149,7 @@ function document() {
     const drawn = text
       .replace(/<div class="example-wrap"><pre class="language-math"><code>([^]*?)<\/code><\/pre><\/div>/g, (_, source) => { count += 1; return formula(unescape(source), true); })
       .replace(/\$<code>([^<]*)<\/code>\$/g, (_, source) => { count += 1; return formula(unescape(source), false); })
-      .replace('<section id="main-content" class="content">', (whole) => `${whole}<a href="${posix.relative(posix.dirname(posix.join('api', file)), 'index.html')}">← site</a>`)
+      .replace(/<section id="main-content"[^>]*>/, (whole) => `${whole}<a href="${posix.relative(posix.dirname(posix.join('api', file)), 'index.html')}">← site</a>`)
       .replace(/src="data:image\/png,#([^"]+)"/g, shown(file));
     if (drawn !== text) writeFileSync(path, drawn);
   }
