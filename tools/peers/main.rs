@@ -1,8 +1,8 @@
 //! The cost of the same physics by other codes and by this crate, each on one thread.
 //!
 //! ```sh
-//! LAMMPS=path/to/lmp cargo run --release -p tools --bin peers           # soft disks, some three minutes
-//! SMALLENBURG=path/to/EDMD cargo run --release -p tools --bin peers     # hard ones, an hour on a busy machine
+//! LAMMPS=path/to/lmp cargo run --release -p tools --bin peers         # soft disks, some three minutes
+//! SMALLENBURG=path/to/EDMD cargo run --release -p tools --bin peers   # hard ones, an hour on a busy machine
 //! ```
 //!
 //! `ROUNDS` changes the number of pairs of runs with the second one, and `OSCILLATIONS` how long LAMMPS is
