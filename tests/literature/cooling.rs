@@ -6,11 +6,13 @@
 use std::f64::consts::PI;
 
 use granular_edmd::collision::{CollisionRule, Frictional, Rough, Smooth};
-use granular_edmd::kinetic::{Maxwellian, mean_energy_change};
+use granular_edmd::glam::DVec2;
+use granular_edmd::kinetic::{DirectSimulation, Maxwellian, mean_energy_change};
 use granular_edmd::observable::Temperatures;
 use granular_edmd::statistics::RunningMean;
+use granular_edmd::{Disk, initial};
 
-use crate::gas::{Gas, run_for};
+use crate::gas::{Gas, run_for, with_spins};
 use crate::{Outcome, agrees, measured};
 
 /// Translational and rotational temperature.
@@ -39,6 +41,52 @@ fn cool<R: CollisionRule + Copy>(
         }
     }
     Ok(means.iter().map(|[time, t, r]| (time.mean(), [t.mean(), r.mean()])).collect())
+}
+
+/// Lets 20 000 disks without correlations cool for some more than this many collisions each, and returns the
+/// number of these, both temperatures, and the fourth cumulant.
+fn cool_directly<R: CollisionRule>(
+    rule: R,
+    rotational_temperature: f64,
+    collisions: f64,
+) -> Result<(f64, Pair, f64), Box<dyn std::error::Error>> {
+    let disks = vec![Disk::new(DVec2::ZERO, 0.5)?; 20_000];
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
+    let count = disks.len() as f64;
+    let mut gas = DirectSimulation::new(rule, with_spins(disks, rotational_temperature, 1)?, 1.0, 2)?;
+    let mean = |disks: &[Disk], of: fn(&Disk) -> f64| disks.iter().map(of).sum::<f64>() / count;
+    loop {
+        let collided = 2.0 * gas.collisions() as f64 / count;
+        let temperature = mean(gas.disks(), Disk::translational_energy);
+        if collided >= collisions {
+            let fourth = mean(gas.disks(), |disk| disk.velocity().length_squared().powi(2));
+            let rotational = 2.0 * mean(gas.disks(), Disk::rotational_energy);
+            return Ok((collided, [temperature, rotational], fourth / (8.0 * temperature.powi(2)) - 1.0));
+        }
+        gas.run_until(gas.time() + 0.02 / temperature.sqrt());
+    }
+}
+
+/// Direct simulation has the values of others, and the rates of temperatures are those of Maxwellians.
+#[test]
+fn disks_without_correlations_cool_as_theory_and_other_programs_say() -> Outcome {
+    // 20 000 disks know a_2 to 0.01 and the ratio to 1.2 %.
+    for (restitution, expected) in [(0.8, -0.026), (0.6, 0.0329)] {
+        let (.., a_2) = cool_directly(Smooth::from_restitution(restitution)?, 0.0, 15.0)?;
+        measured(&format!("a_2, {restitution}"), a_2);
+        assert!((a_2 - expected).abs() < 0.035, "{a_2} {expected}");
+    }
+    let (_, [t, r], _) = cool_directly(Rough::from_restitution(0.9, 0.5)?, 1.0, 15.0)?;
+    assert!(agrees("T_rot/T", r / t, 0.771, 0.04));
+    for friction in [0.3, 1.0] {
+        let rates = frictional_rates(0.05, friction);
+        let rule = Frictional::from_inelasticity(0.05, 0.05, friction)?;
+        let (tau, now, _) = cool_directly(rule, 1.0, 8.0)?;
+        let expected = integrate(rates, [1.0, 1.0], tau);
+        assert!(agrees(&format!("ln T, {friction}"), now[0].ln(), expected[0].ln(), 0.03));
+        assert!(agrees(&format!("T_rot/T, {friction}"), now[1] / now[0], expected[1] / expected[0], 0.04));
+    }
+    Ok(())
 }
 
 /// Returns both temperatures after this many collisions per disk, from rates per collision (Runge and Kutta).

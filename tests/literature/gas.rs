@@ -89,7 +89,7 @@ pub(crate) fn collision_rate(packing_fraction: f64) -> f64 {
 }
 
 /// Gives the disks the spins of a Maxwellian, from the velocities of another gas.
-fn with_spins(disks: Vec<Disk>, temperature: f64, seed: u64) -> Result<Vec<Disk>, ParameterError> {
+pub(crate) fn with_spins(disks: Vec<Disk>, temperature: f64, seed: u64) -> Result<Vec<Disk>, ParameterError> {
     let other = initial::with_maxwellian_velocities(disks.clone(), temperature, seed + 1000)?;
     let spin = |(disk, other): (Disk, Disk)| {
         disk.with_angular_velocity(other.velocity().x / disk.moment_of_inertia().sqrt())
