@@ -67,7 +67,6 @@ pub use delayed::Delayed;
 pub use finite::check_finite;
 pub use first_touch::{Approach, FirstTouch, first_touch};
 pub use fixed::Fixed;
-pub(crate) use jumps::jumps;
 pub(crate) use motion::Motion;
 pub use sawtooth::Sawtooth;
 pub use scaled::Scaled;
@@ -232,6 +231,14 @@ pub trait WallMotion {
     /// Returns the period, finite and positive, if the motion has one.
     fn period(&self) -> Option<f64> {
         None
+    }
+
+    /// Tells whether the displacement jumps where a piece ends, as that of a [`Sawtooth`] does.
+    ///
+    /// Unless given, the answer comes from a look at the first period, or at the first thousand pieces if
+    /// they are over earlier.
+    fn jumps(&self) -> bool {
+        jumps::seen(self)
     }
 
     /// Returns the fingerprint of the motion: its name and all numbers that decide how it moves.

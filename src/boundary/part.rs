@@ -18,7 +18,7 @@ use super::vector::{finite_point, unit};
 use super::{Surface, Thermal, VesselError};
 use crate::collision::CollisionRule;
 use crate::quantity::{accept, finite};
-use crate::wall::{Motion, WallMotion, jumps};
+use crate::wall::{Motion, WallMotion};
 use crate::{Fingerprint, Kind};
 
 /// A part of a [`Vessel`](super::Vessel): bricks that share a rule, a kind, the motion of their surface and
@@ -247,7 +247,7 @@ impl Part {
             return Ok(self);
         };
         let faces = turning.is_none() && self.bricks.iter().all(|brick| brick.faces(*direction));
-        if faces || !jumps(&**motion) { Ok(self) } else { Err(VesselError::Jump) }
+        if faces || !motion.jumps() { Ok(self) } else { Err(VesselError::Jump) }
     }
 
     /// Returns all bricks, with the corners.

@@ -1,7 +1,7 @@
 //! A motion that begins late.
 
-use super::starting_at::{late_bounds, late_state};
-use super::{AccelerationBounds, Motion, WallMotion, WallState, jumps};
+use super::starting_at::{late, late_bounds};
+use super::{AccelerationBounds, Motion, WallMotion, WallState};
 use crate::quantity::finite;
 use crate::{Fingerprint, ParameterError};
 
@@ -28,8 +28,6 @@ use crate::{Fingerprint, ParameterError};
 pub struct Delayed {
     motion: Motion,
     start: f64,
-    #[cfg_attr(feature = "serde", serde(skip))]
-    jumps: bool,
 }
 
 impl Delayed {
@@ -42,7 +40,7 @@ impl Delayed {
     }
 
     fn of(motion: Motion, start: f64) -> Result<Self, ParameterError> {
-        Ok(Self { jumps: jumps(&*motion), motion, start: finite("start of a motion", start)? })
+        Ok(Self { motion, start: finite("start of a motion", start)? })
     }
 
     /// Returns the time at which the motion begins.
@@ -56,7 +54,7 @@ impl WallMotion for Delayed {
         if phase < self.start {
             return WallState::new(self.motion.state(0.0).displacement, 0.0);
         }
-        late_state(&*self.motion, phase, -self.start, self.jumps)
+        self.motion.state(late(&*self.motion, phase, -self.start))
     }
 
     fn acceleration(&self, phase: f64) -> AccelerationBounds {
@@ -68,6 +66,10 @@ impl WallMotion for Delayed {
 
     fn reach(&self) -> (f64, f64) {
         self.motion.reach()
+    }
+
+    fn jumps(&self) -> bool {
+        self.motion.jumps()
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {

@@ -11,5 +11,6 @@ forward! { WallMotion for [&T, Box<T>, Arc<T>] {
     fn acceleration(&self, phase: f64) -> AccelerationBounds;
     fn reach(&self) -> (f64, f64);
     fn period(&self) -> Option<f64>;
+    fn jumps(&self) -> bool;
     fn fingerprint(&self) -> Option<Fingerprint>;
 }}

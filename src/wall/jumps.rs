@@ -2,9 +2,9 @@
 
 use super::WallMotion;
 
-/// Tells whether the motion jumps at the end of a piece. The function looks at the first period, or at
-/// the first thousand pieces if they are over earlier.
-pub(crate) fn jumps<M: WallMotion + ?Sized>(motion: &M) -> bool {
+/// Tells whether the motion is seen to jump at the end of a piece: it is not where its velocity shortly
+/// before the end leads.
+pub(super) fn seen<M: WallMotion + ?Sized>(motion: &M) -> bool {
     const PIECES: usize = 1000;
     let (low, high) = motion.reach();
     let end = motion.period().unwrap_or(f64::INFINITY);
@@ -14,8 +14,10 @@ pub(crate) fn jumps<M: WallMotion + ?Sized>(motion: &M) -> bool {
         if !(until.is_finite() && until > phase) {
             return false;
         }
-        let (before, after) = (motion.state(until.next_down()), motion.state(until));
-        if (after.displacement - before.displacement).abs() > 1e-6 * (high - low) {
+        let just_before = until - 1e-6 * (until - phase);
+        let (before, after) = (motion.state(just_before), motion.state(until));
+        let expected = before.displacement + (until - just_before) * before.velocity;
+        if (after.displacement - expected).abs() > 1e-6 * (high - low) {
             return true;
         }
         if until >= end {

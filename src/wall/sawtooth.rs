@@ -35,5 +35,9 @@ impl WallMotion for Sawtooth {
         steady(phase, self.oscillation.period())
     }
 
+    fn jumps(&self) -> bool {
+        true
+    }
+
     periodic_answers!("Sawtooth");
 }

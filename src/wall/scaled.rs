@@ -1,6 +1,6 @@
 //! A motion, larger, smaller or in the opposite direction.
 
-use super::{AccelerationBounds, Motion, WallMotion, WallState, jumps};
+use super::{AccelerationBounds, Motion, WallMotion, WallState};
 use crate::quantity::{accept, finite};
 use crate::{Fingerprint, ParameterError};
 
@@ -34,7 +34,7 @@ impl Scaled {
 
     pub(crate) fn of(motion: Motion, factor: f64) -> Result<Self, ParameterError> {
         finite("factor of a motion", factor)?;
-        accept(factor >= 0.0 || !jumps(&*motion), "factor of a motion that jumps", "not negative", factor)?;
+        accept(factor >= 0.0 || !motion.jumps(), "factor of a motion that jumps", "not negative", factor)?;
         let scaled = Self { motion, factor };
         finite("smallest displacement of a scaled motion", scaled.reach().0)?;
         finite("largest displacement of a scaled motion", scaled.reach().1)?;
@@ -78,6 +78,10 @@ impl WallMotion for Scaled {
 
     fn period(&self) -> Option<f64> {
         self.motion.period()
+    }
+
+    fn jumps(&self) -> bool {
+        self.factor != 0.0 && self.motion.jumps()
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {

@@ -1,6 +1,6 @@
 //! A motion whose phase counts from a given time.
 
-use super::{AccelerationBounds, WallMotion, WallState, jumps};
+use super::{AccelerationBounds, WallMotion, WallState};
 use crate::quantity::finite;
 use crate::{Fingerprint, ParameterError};
 
@@ -23,7 +23,6 @@ pub struct StartingAt<M> {
     start: f64,
     /// Phase of the motion at time 0.
     lead: f64,
-    jumps: bool,
 }
 
 impl<M: WallMotion> StartingAt<M> {
@@ -40,8 +39,7 @@ impl<M: WallMotion> StartingAt<M> {
             Some(_) => 0.0,
             None => -start,
         };
-        let jumps = jumps(&motion);
-        Ok(Self { motion, start, lead, jumps })
+        Ok(Self { motion, start, lead })
     }
 
     /// Returns the motion.
@@ -57,7 +55,7 @@ impl<M: WallMotion> StartingAt<M> {
 
 impl<M: WallMotion> WallMotion for StartingAt<M> {
     fn state(&self, phase: f64) -> WallState {
-        late_state(&self.motion, phase, self.lead, self.jumps)
+        self.motion.state(late(&self.motion, phase, self.lead))
     }
 
     fn acceleration(&self, phase: f64) -> AccelerationBounds {
@@ -72,32 +70,34 @@ impl<M: WallMotion> WallMotion for StartingAt<M> {
         self.motion.period()
     }
 
+    fn jumps(&self) -> bool {
+        self.motion.jumps()
+    }
+
     fn fingerprint(&self) -> Option<Fingerprint> {
         Some(Fingerprint::of("StartingAt").number(self.start).part(self.motion.fingerprint()?))
     }
 }
 
-/// Returns the state at a phase of a motion that is ahead by `lead`.
-pub(super) fn late_state<M: WallMotion + ?Sized>(
-    motion: &M,
-    phase: f64,
-    lead: f64,
-    jumps: bool,
-) -> WallState {
-    let late = phase + lead;
-    // As in `late_bounds`. A motion that does not jump has almost the same state in both pieces.
-    let until = if jumps { motion.acceleration(late).until } else { f64::INFINITY };
-    motion.state(if until - lead > phase { late } else { until })
-}
+/// Largest number of pieces that may end in the rounding of one phase.
+const PIECES: u32 = 8;
 
 /// Returns the bounds at a phase of a motion that is ahead by `lead`.
 pub(super) fn late_bounds<M: WallMotion + ?Sized>(motion: &M, phase: f64, lead: f64) -> AccelerationBounds {
-    let bounds = motion.acceleration(phase + lead);
-    let until = bounds.until - lead;
-    if until > phase {
-        return AccelerationBounds::new(until, bounds.min, bounds.max);
+    let bounds = motion.acceleration(late(motion, phase, lead));
+    AccelerationBounds::new(bounds.until - lead, bounds.min, bounds.max)
+}
+
+/// Returns the phase of a motion that is ahead by `lead`. Where the sum was rounded to just before the end of
+/// a piece, but the phase belongs to the next piece, this is where the next piece begins.
+pub(super) fn late<M: WallMotion + ?Sized>(motion: &M, phase: f64, lead: f64) -> f64 {
+    let mut late = phase + lead;
+    for _ in 0..PIECES {
+        let until = motion.acceleration(late).until;
+        if until - lead > phase {
+            break;
+        }
+        late = until;
     }
-    // The sum was rounded to just before the end of a piece, but the phase belongs to the next piece.
-    let next = motion.acceleration(bounds.until);
-    AccelerationBounds::new(next.until - lead, next.min, next.max)
+    late
 }

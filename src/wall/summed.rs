@@ -74,6 +74,10 @@ impl WallMotion for Summed {
         (long > 0.0 && (short == 0.0 || long % short == 0.0)).then_some(long)
     }
 
+    fn jumps(&self) -> bool {
+        self.first.jumps() || self.second.jumps()
+    }
+
     fn fingerprint(&self) -> Option<Fingerprint> {
         let sum = Fingerprint::of("Summed").part(self.first.fingerprint()?);
         Some(sum.part(self.second.fingerprint()?))

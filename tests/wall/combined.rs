@@ -3,8 +3,8 @@
 use granular_edmd::ParameterError;
 use granular_edmd::wall::laws::check;
 use granular_edmd::wall::{
-    BiParabolic, Delayed, Fixed, Sawtooth, Scaled, Sinusoidal, StartingAt, Summed, Tabulated, Triangular,
-    WallMotion, check_finite,
+    Approach, BiParabolic, Delayed, Fixed, Sawtooth, Scaled, Sinusoidal, StartingAt, Summed, Tabulated,
+    Triangular, WallMotion, check_finite, first_touch,
 };
 use proptest::prelude::*;
 
@@ -34,6 +34,7 @@ fn all_keep_the_contract() {
         keeps_its_contract(&Delayed::new(gate(), start).unwrap());
         keeps_its_contract(&StartingAt::new(gate(), start).unwrap());
         keeps_its_contract(&StartingAt::new(saw, start).unwrap());
+        keeps_its_contract(&Delayed::new(Triangular::new(0.1, 3.0).unwrap(), start).unwrap());
     }
     for factor in [-1.0, 0.0, 1e-3, 2.5] {
         keeps_its_contract(&Scaled::new(sine(10.0), factor).unwrap());
@@ -47,6 +48,73 @@ fn all_keep_the_contract() {
     keeps_its_contract(&gate());
     keeps_its_contract(&Tabulated::from_to(-1.0, 2.0, 0.3).unwrap());
     keeps_its_contract(&Tabulated::from_to(0.5, 0.5, 0.3).unwrap());
+}
+
+/// Follows the pieces of a motion at constant speeds, and checks that each goes on as it begins.
+fn goes_on_as_it_begins(motion: &impl WallMotion) {
+    let mut phase = 0.0;
+    for _ in 0..400 {
+        let until = motion.acceleration(phase).until;
+        assert!(until > phase, "{phase}");
+        let (begin, middle) = (motion.state(phase), motion.state(0.5 * (phase + until)));
+        let expected = begin.displacement + 0.5 * (until - phase) * begin.velocity;
+        assert!((middle.displacement - expected).abs() < 1e-9, "{phase}: {middle:?}, not {expected}");
+        phase = until;
+    }
+}
+
+#[test]
+fn late_kinks_and_jumps_are_where_pieces_end() {
+    let triangular = |frequency| Triangular::new(0.3, frequency).unwrap();
+    for k in 0..200 {
+        let start = -5.0 + 0.173 * f64::from(k);
+        let of = triangular(1.0 + 0.07 * f64::from(k));
+        goes_on_as_it_begins(&StartingAt::new(of, start).unwrap());
+        goes_on_as_it_begins(&Delayed::new(of, start).unwrap());
+        // The pieces of both end at almost the same times.
+        let both = Summed::new(of, triangular(3.0 * of.angular_frequency())).unwrap();
+        goes_on_as_it_begins(&Delayed::new(both, start).unwrap());
+        goes_on_as_it_begins(
+            &StartingAt::new(Sawtooth::new(0.3, of.angular_frequency()).unwrap(), start).unwrap(),
+        );
+    }
+}
+
+#[test]
+fn a_disk_meets_a_late_wall_that_turns_at_once() {
+    // Rounding has put the end of a fall before the rise that follows, and the search passed over the rise.
+    let wall = StartingAt::new(
+        Triangular::new(0.446_825_572_013_631_04, 4.063_886_831_113_892_5).unwrap(),
+        19.858_224_823_536_09,
+    );
+    let wall = wall.unwrap();
+    for k in 0..2000 {
+        let (height, velocity) = (0.45 + 1e-4 * f64::from(k), -0.03 - 1e-4 * f64::from(k % 97));
+        let approach = Approach::new(0.0, height, velocity, 0.0);
+        let touch = first_touch(&wall, &approach, 20.0).touch().unwrap_or(20.0);
+        let gap = |time: f64| height + velocity * time - wall.state(time).displacement;
+        for step in 0..1000 {
+            let time = touch * f64::from(step) / 1000.0;
+            assert!(
+                gap(time) > -1e-9,
+                "{height} {velocity}: {} at {time}, first touch at {touch}",
+                gap(time)
+            );
+        }
+    }
+}
+
+#[test]
+fn jumps_are_found_behind_starts_and_fast_oscillations() {
+    let saw = Sawtooth::new(0.1, 3.0).unwrap();
+    for k in 0..200 {
+        let start = -3.0 + 0.171 * f64::from(k);
+        assert!(Scaled::new(StartingAt::new(saw, start).unwrap(), -1.0).is_err(), "{start}");
+        assert!(Scaled::new(Delayed::new(saw, start).unwrap(), -1.0).is_err(), "{start}");
+    }
+    let sum = Summed::new(sine(1e6), saw).unwrap();
+    assert!(Scaled::new(Delayed::new(sum, 50.0).unwrap(), -1.0).is_err());
+    assert!(Scaled::new(Summed::new(sine(10.0), Triangular::new(0.1, 3.0).unwrap()).unwrap(), -1.0).is_ok());
 }
 
 #[test]
