@@ -16,7 +16,7 @@ pub(crate) const TOUCHING: f64 = 1e-10;
 pub(crate) const MOST_DISKS: usize = 1 << 28;
 
 /// Largest id that a caller may give. All whole numbers up to it are floating-point numbers.
-const LARGEST_ID: u64 = 1 << 53;
+pub(crate) const LARGEST_ID: u64 = 1 << 53;
 
 /// Largest magnitude of a component of a position or velocity, and of an angular velocity.
 pub(crate) const LARGEST: f64 = 1e60;

@@ -375,11 +375,36 @@ fn bench_tells_the_standard_states_compares_tables_and_the_hours_of_a_plan() {
         let said = String::from_utf8(output.stdout).unwrap();
         assert_eq!(said.matches(&format!("{found}; the same events")).count(), 7, "{said}");
     }
-    table["states"] = "none".into();
-    fs::write(scratch.0.join("other.json"), table.to_string()).unwrap();
+    // Tables with which nothing can be compared are refused before anything is measured.
+    let refused = |table: &serde_json::Value, reason: &str| {
+        fs::write(scratch.0.join("other.json"), table.to_string()).unwrap();
+        let output = scratch.runs(&["bench", "--quick", "--against", "other.json"]);
+        assert_eq!(code(&output), Some(2), "{output:?}");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(said.contains("other.json is no table of") && said.contains(reason), "{said}");
+    };
+    for times in [[0.0; 3], [-1.0, 2.0, 3.0], [3.0, 2.0, 1.0]] {
+        let mut other = table.clone();
+        let quartiles = &mut other["states"][2]["nanoseconds_per_collision"];
+        for (name, time) in ["low", "median", "high"].into_iter().zip(times) {
+            quartiles[name] = time.into();
+        }
+        refused(&other, "gas at 0.1");
+    }
+    let mut other = table.clone();
+    other["states"] = serde_json::json!([]);
+    refused(&other, "it has none of the standard states");
+    // A state that is missing, and another build, are told.
+    let mut other = table.clone();
+    other["states"].as_array_mut().unwrap().truncate(6);
+    other["circumstances"]["build"] = "by hand".into();
+    fs::write(scratch.0.join("other.json"), other.to_string()).unwrap();
     let output = scratch.runs(&["bench", "--quick", "--against", "other.json"]);
-    assert_eq!(code(&output), Some(2));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("other.json is no table of"));
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.contains("vessel: not in the earlier table"), "{told}");
+    assert!(told.contains("another machine or build") && told.contains("by hand"), "{told}");
+    table["states"] = "none".into();
+    refused(&table, "");
     scratch.small_plan();
     let output = scratch.runs(&["bench", "plan.toml", "--quick", "--json"]);
     assert_eq!(code(&output), Some(0), "{output:?}");

@@ -1,6 +1,8 @@
 //! Errors of means, against the true scatter over seeds, for series of known correlation.
 
-use granular_edmd::statistics::{BlockedMean, Estimate, RunningMean, autocorrelation, block_average};
+use granular_edmd::statistics::{
+    BlockedMean, Estimate, Histogram, RunningMean, autocorrelation, block_average,
+};
 use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -286,4 +288,13 @@ fn repeats_without_samples_are_left_out() {
     );
     assert!(many.is_converged() && many.standard_error() > 0.1, "{many}");
     assert!((many.independent_samples() - 7.0).abs() < 1.1, "{}", many.independent_samples());
+}
+
+#[test]
+fn bins_below_rounding_are_refused() {
+    for (low, high, bins) in [(1e16, 1e16 + 2.0, 7), (0.0, 1e-320, 1000), (-1.0, -1.0 + 1e-15, 100)] {
+        let error = Histogram::new(low, high, bins).unwrap_err().to_string();
+        assert!(error.starts_with("width of a bin must be above the rounding of its edges"), "{error}");
+    }
+    assert!(Histogram::new(1e16, 1e16 + 16.0, 4).is_ok());
 }

@@ -9,7 +9,7 @@ use super::cells::{CellSize, Cells};
 use super::errors::BuildError;
 use super::events::Counters;
 use super::lookahead::Lookahead;
-use super::state::{Bodies, Clock};
+use super::state::{Bodies, Clock, Identities};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::disk::{MOST_DISKS, TOUCHING};
@@ -122,6 +122,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         finite("start time", self.start_time)?;
         bounded_count(self.disks.len())?;
         check_speeds(&self.disks)?;
+        Identities::default().check_room(&self.disks)?;
         let mut boundary = self.boundary;
         boundary.set_time_origin(self.start_time);
         let (wall_count, cells) = fit(&boundary, &self.disks, 0.0)?;

@@ -49,6 +49,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let indices = self.len()..self.len() + new.len();
         bounded_count(indices.end)?;
         check_speeds(&new)?;
+        self.bodies.identities.check_room(&new)?;
         let mut all = self.disks();
         all.extend_from_slice(&new);
         let (wall_count, cells) = fit(&self.boundary, &all, self.clock.now)?;

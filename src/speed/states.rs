@@ -8,6 +8,7 @@ use glam::DVec2;
 use crate::boundary::{Boundary, Container, Part, Vessel, Wall};
 use crate::collision::{ContactDuration, Elastic, Frictional};
 use crate::initial::{even_lattice, homogeneous, lattice, placed_at_random, with_maxwellian_velocities};
+use crate::quantity::accept;
 use crate::simulation::Limits;
 use crate::wall::BiParabolic;
 use crate::{Disk, Simulation};
@@ -50,8 +51,10 @@ pub fn dense() -> Result<PaperBox, StateError> {
 /// 0.1, 0.3 and 0.65.
 ///
 /// # Errors
-/// If the area fraction is not in a range in which a square lattice has room: above 0 and up to 0.78.
+/// If the area fraction is not in `1e-4..=0.78`. A square lattice has room for no more disks, and fewer would
+/// take hours to settle.
 pub fn gas(area_fraction: f64) -> Result<Simulation<Elastic>, StateError> {
+    accept((1e-4..=0.78).contains(&area_fraction), "area fraction", "in 1e-4..=0.78", area_fraction)?;
     let side = side(DISKS as f64, area_fraction);
     let container = Container::periodic(side, side)?;
     let disks = even_lattice(&container, DISKS, 0.5)?;

@@ -33,6 +33,9 @@ impl Bins {
         accept((1..=MOST_BINS).contains(&count), "number of bins", "in 1..=2^20", count as f64)?;
         positive("width of a bin", width)?;
         finite("upper end of the bins", self.edge(count))?;
+        let is_resolved = self.edge(1) > low && self.edge(count) > self.edge(count - 1);
+        let is_usable = is_resolved && (1.0 / width).is_finite();
+        accept(is_usable, "width of a bin", "above the rounding of its edges", width)?;
         Ok(self)
     }
 

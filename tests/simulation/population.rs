@@ -174,3 +174,25 @@ fn ids_stay_with_their_disks() -> Result<(), Box<dyn std::error::Error>> {
     assert!(at(1.0)?.with_id(u64::MAX).is_err());
     Ok(())
 }
+
+#[test]
+fn ids_above_the_largest_are_not_given() {
+    let at = |x: f64| Disk::new(DVec2::new(x, 1.0), 0.5).unwrap();
+    let last = at(1.0).with_id((1 << 53) - 1).unwrap();
+    let refused = |error: BuildError| {
+        assert_eq!(
+            error.to_string(),
+            "largest id so far must be so small that new disks get one of at most 2^53, but is 9.007199254740991e15"
+        );
+    };
+    let container = || Container::closed(9.0, 9.0).unwrap();
+    let build = |disks: Vec<Disk>| Simulation::builder(Elastic, container()).disks(disks).build();
+    refused(build(vec![last, at(3.0), at(5.0)]).unwrap_err());
+    let mut run = build(vec![last]).unwrap();
+    refused(run.insert([at(3.0), at(5.0)]).unwrap_err());
+    run.insert([at(3.0)]).unwrap();
+    assert_eq!(run.disk(1).unwrap().id(), 1 << 53);
+    // The id of a disk that was removed is not given again.
+    run.remove(|index, _| index == 1).unwrap();
+    assert!(run.insert([at(3.0)]).is_err());
+}

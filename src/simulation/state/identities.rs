@@ -1,6 +1,8 @@
 //! The ids of disks, which stay as they are while indices change.
 
-use crate::Disk;
+use crate::disk::LARGEST_ID;
+use crate::quantity::accept;
+use crate::{Disk, ParameterError};
 
 /// The id of each disk. Ids are given from 1 on, and none is given twice.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -21,6 +23,14 @@ impl Identities {
 
     pub(super) fn of(&self, disk: usize) -> u64 {
         self.ids.get(disk).copied().unwrap_or(disk as u64 + 1)
+    }
+
+    /// Checks that the ids of disks that have none will not be too large.
+    pub(in crate::simulation) fn check_room(&self, disks: &[Disk]) -> Result<(), ParameterError> {
+        let last = disks.iter().map(Disk::id).fold(self.last, u64::max);
+        let new = disks.iter().filter(|disk| disk.id() == 0).count() as u64;
+        let requirement = "so small that new disks get one of at most 2^53";
+        accept(new == 0 || last + new <= LARGEST_ID, "largest id so far", requirement, last as f64).map(drop)
     }
 
     /// Adds disks after these `count` ones. Those without an id get one after all that were ever given.
@@ -51,7 +61,7 @@ impl Identities {
         let differ = ids.windows(2).all(|pair| pair[0] < pair[1]);
         let is_complete = [0, count].contains(&ids.len()) && self.last >= count as u64;
         let known = ids.first() != Some(&0) && ids.last().is_none_or(|&largest| largest <= self.last);
-        is_complete && differ && known && self.last <= u64::MAX / 2
+        is_complete && differ && known && self.last <= LARGEST_ID
     }
 
     fn list(&mut self, count: usize) {

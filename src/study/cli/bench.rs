@@ -18,6 +18,9 @@ use crate::study::experiment::Experiment;
 /// Largest number of ramps whose first values are run for the core hours of a plan.
 const RAMPS: usize = 4;
 
+/// The standard states, in the order in which they are measured.
+const NAMES: [&str; 7] = ["dilute", "dense", "gas at 0.1", "gas at 0.3", "gas at 0.65", "mixture", "vessel"];
+
 /// The standard table: what a collision takes in each of the standard states.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -38,11 +41,23 @@ struct State {
 /// less. A [`Comparison`](speed::Comparison) in one sitting has no such drift.
 const DRIFT: f64 = 1.05;
 
+impl State {
+    /// Tells whether these can be times.
+    fn is_possible(&self) -> bool {
+        let Quartiles { low, median, high } = self.nanoseconds_per_collision;
+        0.0 < low && low <= median && median <= high && high < f64::INFINITY
+    }
+}
+
 type Stretch = Box<dyn Fn(u64) -> Result<RunReport, RunError>>;
 
 /// Measures the standard table and prints it, against an earlier one if there is a file with it.
 pub(super) fn table(json: bool, quick: bool, against: Option<&Path>) -> Result<End, Failure> {
     let earlier = against.map(earlier).transpose()?;
+    if let Some(earlier) = earlier.as_ref().filter(|earlier| !json && !earlier.circumstances.is_comparable())
+    {
+        say(&format!("the earlier table is of another machine or build: {}", earlier.circumstances))?;
+    }
     let (rounds, collisions) = if quick { (5, 20_000) } else { (31, 100_000) };
     let table = measured(rounds, collisions).map_err(|error| -> Failure { error })?;
     if json {
@@ -55,37 +70,41 @@ pub(super) fn table(json: bool, quick: bool, against: Option<&Path>) -> Result<E
     for change in changes.iter().filter(|_| !json) {
         say(&change.to_string())?;
     }
+    for state in table.states.iter().filter(|state| !json && earlier.change(state).is_none()) {
+        say(&format!("{}: not in the earlier table", state.name))?;
+    }
     Ok(if changes.iter().any(|change| change.finding() == "slower") { End::Slower } else { End::Done })
 }
 
 fn earlier(path: &Path) -> Result<Table, Failure> {
-    let table = serde_json::from_str(&read(path)?);
-    Ok(table.map_err(|source| {
-        PlanError::Toml(format!("{} is no table of `bench --json`: {source}", path.display()))
+    let read_back: Result<Table, String> =
+        serde_json::from_str(&read(path)?).map_err(|source| source.to_string());
+    Ok(read_back.and_then(Table::checked).map_err(|reason| {
+        PlanError::Toml(format!("{} is no table of `bench --json`: {reason}", path.display()))
     })?)
 }
 
 /// Runs all states in turn, so that a slow moment of the machine slows one stretch of each.
 fn measured(rounds: usize, collisions: u64) -> Result<Table, StateError> {
-    let states: [(&str, Stretch); 7] = [
-        ("dilute", stretches(speed::dilute()?)),
-        ("dense", stretches(speed::dense()?)),
-        ("gas at 0.1", stretches(speed::gas(0.1)?)),
-        ("gas at 0.3", stretches(speed::gas(0.3)?)),
-        ("gas at 0.65", stretches(speed::gas(0.65)?)),
-        ("mixture", stretches(speed::mixture()?)),
-        ("vessel", stretches(speed::vessel()?)),
+    let states: [Stretch; 7] = [
+        stretches(speed::dilute()?),
+        stretches(speed::dense()?),
+        stretches(speed::gas(0.1)?),
+        stretches(speed::gas(0.3)?),
+        stretches(speed::gas(0.65)?),
+        stretches(speed::mixture()?),
+        stretches(speed::vessel()?),
     ];
     let mut times = states.each_ref().map(|_| Vec::with_capacity(rounds));
     let mut events = [0.0; 7];
     for _ in 0..rounds {
-        for (k, (_, stretch)) in states.iter().enumerate() {
+        for (k, stretch) in states.iter().enumerate() {
             let report = stretch(collisions)?;
             times[k].push(report.nanoseconds_per_collision);
             events[k] = report.events_per_collision;
         }
     }
-    let states = states.into_iter().zip(times).zip(events).map(|(((name, _), times), events)| State {
+    let states = NAMES.into_iter().zip(times).zip(events).map(|((name, times), events)| State {
         name: name.to_owned(),
         nanoseconds_per_collision: Quartiles::of(times),
         events_per_collision: events,
@@ -122,7 +141,26 @@ struct Change<'a> {
     now: &'a State,
 }
 
+impl Circumstances {
+    /// Tells whether times now can be compared with those of then: the machine and the build are the same.
+    fn is_comparable(&self) -> bool {
+        let of = |it: &Self| (it.processor.clone(), it.processors, it.system.clone(), it.build.clone());
+        of(self) == of(&Self::present())
+    }
+}
+
 impl Table {
+    /// Returns the table if a later one can be compared with it, or the reason why it cannot.
+    fn checked(self) -> Result<Self, String> {
+        if let Some(State { name, nanoseconds_per_collision: time, .. }) =
+            self.states.iter().find(|state| !state.is_possible())
+        {
+            return Err(format!("a collision in \"{name}\" takes {time} ns"));
+        }
+        let has_any = self.states.iter().any(|state| NAMES.contains(&state.name.as_str()));
+        if has_any { Ok(self) } else { Err("it has none of the standard states".to_owned()) }
+    }
+
     /// Returns the change of a state since this table.
     fn change<'a>(&'a self, now: &'a State) -> Option<Change<'a>> {
         let before = self.states.iter().find(|before| before.name == now.name)?;
