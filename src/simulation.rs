@@ -3,13 +3,14 @@
 //! [`Simulation::builder`] checks disks, gravity and boundary and makes a [`Simulation`].
 //! [`Simulation::run_until`], [`Simulation::run`] with its [`Limits`] and [`Simulation::step_until`] advance
 //! it. Between runs, you can change the rule, the boundary and gravity, insert disks ([`Simulation::insert`])
-//! and remove them ([`Simulation::remove`]).
+//! and remove them ([`Simulation::remove`]). During a run, [sinks](crate::boundary::Part::absorbing) take disks
+//! out, and [inlets](Simulation::add_inlet) let them in.
 //!
 //! # Promises
 //! 1. The same inputs give the same bits, under every scheduler, with any observer, and however a run is cut
 //!    into pieces.
 //! 2. Equal times are ordered by the smaller disk index, then by the smaller partner index, with disks before
-//!    walls.
+//!    walls. Inlets come after all events of disks, in the order in which they were added.
 //! 3. A sample at time $`t`$ has seen all events up to and at $`t`$.
 //! 4. A run that hardly progresses ends with [`RunError::Stalled`], within seconds. Progress is the simulated
 //!    time per event, over windows of 200 000 events and 20 more for each disk. The caller sets how much
@@ -35,6 +36,7 @@ mod events;
 mod exchange;
 mod footprint;
 mod forecasting;
+mod inlet;
 mod limits;
 mod lookahead;
 mod mapping;
@@ -45,6 +47,7 @@ mod resolution;
 mod running;
 mod stall;
 mod state;
+mod traffic;
 mod warnings;
 
 pub use builder::SimulationBuilder;
@@ -54,6 +57,7 @@ pub use driving::{Driving, Rescaling, WhiteNoise};
 pub use errors::{BoundaryFault, BuildError, FailedCollision, Remedy, RunError};
 pub use events::{Counters, Event, RunEnd};
 pub use footprint::Footprint;
+pub use inlet::Inlet;
 pub use limits::Limits;
 pub use warnings::Warning;
 
@@ -111,6 +115,7 @@ pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     /// Instructions that predictions may use; the bits do not depend on them.
     instructions: Instructions,
     scratch: Scratch,
+    inlets: Vec<Inlet>,
 }
 
 /// A rule that is chosen when the program runs.
@@ -165,6 +170,8 @@ struct Scratch {
     due: Vec<f64>,
     /// The disks of one snapshot.
     copies: Vec<Disk>,
+    /// Number of disks that the scheduler has room for.
+    seats: usize,
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {

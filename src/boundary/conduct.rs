@@ -18,6 +18,10 @@ pub(super) enum Conduct {
     Shared,
     Rule(OwnRule),
     Thermal(Thermal),
+    /// Takes out disks at their first touch.
+    Absorbing,
+    /// Takes out disks when their centers arrive.
+    AbsorbingCenters,
 }
 
 impl Conduct {
@@ -31,6 +35,7 @@ impl Conduct {
             Self::Shared => Response::Shared,
             Self::Rule(own) => Response::Rule(&*own.0),
             Self::Thermal(thermal) => Response::Thermal(*thermal),
+            Self::Absorbing | Self::AbsorbingCenters => Response::Absorbing,
         }
     }
 
@@ -39,6 +44,8 @@ impl Conduct {
             Self::Shared => Fingerprint::of("Shared"),
             Self::Rule(own) => Fingerprint::of("Rule").part(own.0.fingerprint()?),
             Self::Thermal(thermal) => thermal.fingerprint(),
+            Self::Absorbing => Fingerprint::of("Absorbing"),
+            Self::AbsorbingCenters => Fingerprint::of("AbsorbingCenters"),
         })
     }
 }

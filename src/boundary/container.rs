@@ -166,6 +166,16 @@ impl Container {
         Ok(self)
     }
 
+    /// Returns the same container with a wall that takes each disk out of the run at its first touch, as an
+    /// [absorbing part](super::Part::absorbing) does.
+    ///
+    /// # Errors
+    /// If the container has no such wall.
+    pub fn with_absorbing(mut self, wall: Wall) -> Result<Self, WallError> {
+        self.plane_mut(wall)?.set_conduct(Conduct::Absorbing);
+        Ok(self)
+    }
+
     /// Returns the same container with a wall of this kind, as rules find it in the contact.
     ///
     /// # Errors

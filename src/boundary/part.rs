@@ -75,6 +75,44 @@ impl Part {
         Self { conduct: Conduct::Thermal(thermal), ..self }
     }
 
+    /// Returns the same part as a sink that takes a disk out of the run at its first touch.
+    ///
+    /// Observers see the touch as a last collision with the wall ([`Response::Absorbing`]).
+    /// [`Arrivals`](crate::observable::Arrivals) counts them, and an [`Inlet`](crate::simulation::Inlet) puts
+    /// disks in. A removal takes the same time however many disks there are: the last disk gets the index of
+    /// the one that leaves.
+    ///
+    /// [`Response::Absorbing`]: super::Response::Absorbing
+    #[must_use]
+    pub fn absorbing(self) -> Self {
+        Self { conduct: Conduct::Absorbing, ..self }
+    }
+
+    /// Returns the same part as a sink that takes a disk out of the run when its center arrives at a brick.
+    ///
+    /// Disks may overlap such a part: it is a line that their centers must not pass.
+    ///
+    /// ```
+    /// use granular_edmd::prelude::*;
+    ///
+    /// // Grains that fall out of an open silo leave the run at the height 1.
+    /// let line = Part::polyline([(-1.0, 1.0), (5.0, 1.0)].map(DVec2::from))?;
+    /// let vessel = Vessel::new(Container::open(4.0)?).with("exit", line.absorbing_centers())?;
+    /// let disk = |y: f64| Disk::new(DVec2::new(2.0, y), 0.5);
+    /// let disks = [disk(1.25)?, disk(9.0)?];
+    /// let mut run = Simulation::builder(Elastic, vessel).disks(disks).gravity(1.0).build()?;
+    /// run.run_until(0.7, &mut ())?;
+    /// assert_eq!(run.len(), 2);
+    /// // The first center falls by 0.25 in the square root of 1/2.
+    /// run.run_until(0.71, &mut ())?;
+    /// assert_eq!((run.len(), run.disks()[0].id(), run.counters().removals), (1, 2, 1));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn absorbing_centers(self) -> Self {
+        self.with_conduct(Conduct::AbsorbingCenters)
+    }
+
     /// Returns the same part with this kind, as rules find it in the contact.
     #[must_use]
     pub fn with_kind(self, kind: Kind) -> Self {
@@ -236,6 +274,20 @@ impl Part {
 }
 
 impl Part {
+    /// Gives the part this conduct. Centers are points, so they need no corners where bricks end.
+    fn with_conduct(mut self, conduct: Conduct) -> Self {
+        self.conduct = conduct;
+        if self.takes_centers() {
+            self.bricks.truncate(self.given);
+        }
+        self
+    }
+
+    /// Tells whether the part is a line for centers, which disks may overlap.
+    pub(super) fn takes_centers(&self) -> bool {
+        matches!(self.conduct, Conduct::AbsorbingCenters)
+    }
+
     /// Gives the part a motion along a direction, if the part can move in this way.
     fn moving(self, along: Along) -> Result<Self, VesselError> {
         Self { travel: Travel { along: Some(along), ..self.travel }, ..self }.safe()

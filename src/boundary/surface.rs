@@ -83,6 +83,11 @@ pub enum Response<'a> {
     Rule(&'a dyn CollisionRule),
     /// The wall re-emits the disk thermally.
     Thermal(Thermal),
+    /// The wall takes the disk out of the run.
+    ///
+    /// Observers see a last collision that leaves the disk at the velocity of the wall, without a spin. So the
+    /// wall receives all of the momentum.
+    Absorbing,
 }
 
 impl fmt::Debug for Response<'_> {
@@ -91,6 +96,7 @@ impl fmt::Debug for Response<'_> {
             Self::Shared => formatter.write_str("Shared"),
             Self::Rule(_) => formatter.write_str("Rule(..)"),
             Self::Thermal(thermal) => formatter.debug_tuple("Thermal").field(thermal).finish(),
+            Self::Absorbing => formatter.write_str("Absorbing"),
         }
     }
 }

@@ -81,7 +81,7 @@ pub struct Vessel {
     parts: Vec<Placed>,
     walls: Vec<Wall>,
     index: Index,
-    /// The parts that move.
+    /// The parts that move and that disks may not overlap.
     moving: Vec<u32>,
     /// For each cell of the index, the parts at rest that fill it.
     filled: Vec<Vec<u32>>,
@@ -300,13 +300,16 @@ impl Vessel {
             |wall| travel(wall).bounds(&wall.brick),
             |wall, region| travel(wall).may_reach(&wall.brick, region, 0.0),
         );
-        let moves = |part: &u32| !self.parts[*part as usize].part.travel().is_at_rest();
+        let moves = |part: &u32| {
+            let part = &self.parts[*part as usize].part;
+            !part.travel().is_at_rest() && !part.takes_centers()
+        };
         self.moving = (0..self.parts.len() as u32).filter(moves).collect();
         self.filled = self.filled_cells();
-        let hollows =
-            self.walls.iter().enumerate().filter_map(|(number, wall)| {
-                Some((wall.brick.hollow()?, number + self.container.wall_count()))
-            });
+        let hollows = self.walls.iter().enumerate().filter_map(|(number, wall)| {
+            let hollow = wall.brick.hollow().filter(|_| !self.parts[wall.part].part.takes_centers())?;
+            Some((hollow, number + self.container.wall_count()))
+        });
         self.hollows = hollows.collect();
         self.hollows.sort_by(|a, b| a.0.total_cmp(&b.0));
     }

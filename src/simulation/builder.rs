@@ -144,6 +144,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
             lookahead: Lookahead::default(),
             instructions: Instructions::detected(),
             scratch: Scratch::default(),
+            inlets: Vec::new(),
         };
         simulation.predict_all();
         Ok(simulation)
@@ -222,7 +223,7 @@ pub(super) fn cells_around<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -
     }
     let too_small = BuildError::DomainTooSmall { width: domain.width(), height: domain.height(), diameter };
     let places = disks.iter().map(|disk| (disk.position(), disk.radius()));
-    Cells::new(boundary, CellSize::Medium, places).ok_or(too_small)
+    Cells::new(boundary, CellSize::Medium, places, None).ok_or(too_small)
 }
 
 /// Checks that all disks are inside the domain and none overlaps a wall at this time offset.

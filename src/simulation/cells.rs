@@ -34,7 +34,11 @@ use layers::{Layers, layouts};
 #[cfg(feature = "serde")]
 pub(super) use layout::FEWEST;
 pub(super) use layout::{CELLS_PER_DISK, Layout, SPARE_CELLS};
-use size_class::SizeClass;
+pub(super) use size_class::SizeClass;
+use size_class::{class_of, count, together};
+
+/// Number of disks that may come or go before they are compared with those for which the cells were made.
+pub(super) const SPARE_DISKS: usize = 64;
 
 /// The disks in the cells of a grid.
 ///
@@ -48,27 +52,33 @@ pub(super) struct Cells {
     /// Column and row of each disk, in the grid of its class.
     pub(super) places: Vec<Place>,
     layers: Option<Box<Layers>>,
+    /// The classes of disks for which the cells were made, and their numbers at that time.
+    classes: Vec<SizeClass>,
 }
 
 impl Cells {
     /// Creates cells for disks at these positions, with these radii; `None` if the domain is too small for
-    /// them.
+    /// them. The cells suit a disk of one `further` diameter, too, and any below it if it is the largest.
     pub(super) fn new<B: Boundary + ?Sized>(
         boundary: &B,
         cell_size: CellSize,
         disks: impl ExactSizeIterator<Item = (DVec2, f64)> + Clone,
+        further: Option<f64>,
     ) -> Option<Self> {
         let domain = boundary.domain();
         let diameters = disks.clone().map(|(_, radius)| 2.0 * radius);
         let highest = disks.clone().map(|(position, _)| position.y).fold(domain.bottom, f64::max);
-        let classes = classes(diameters.clone());
+        let classes = classes(diameters.clone().chain(further));
         let largest =
             classes.last().map_or_else(|| SizeClass::of_nobody(&domain).largest, |class| class.largest);
         let most = CELLS_PER_DISK * disks.len() as f64 + SPARE_CELLS;
         let single = Layout::new(&domain, largest, cell_size, most, highest)?;
         // All disks share the cells of the largest if periodic sides or ends are too close for layers.
         let layered = if classes.len() > 1 { layouts(&domain, &classes, cell_size, highest) } else { None };
-        let layouts = layered.unwrap_or(Layouts { smallest: single, larger: Vec::new() });
+        let layouts = layered.unwrap_or_else(|| {
+            let together = together(&classes).unwrap_or_else(|| SizeClass::of_nobody(&domain));
+            Layouts { smallest: single, larger: Vec::new(), classes: vec![together] }
+        });
         let mut cells = Self::empty(boundary, &layouts, diameters)?;
         cells.places =
             (0..).zip(disks).map(|(disk, (position, _))| cells.grid_of(disk).place_of(position)).collect();
@@ -96,16 +106,17 @@ impl Cells {
         diameters: impl Iterator<Item = f64> + Clone,
     ) -> Option<Self> {
         let domain = boundary.domain();
-        let classes = layouts.classes(&domain, diameters.clone())?;
-        let grid = Grid::new(&domain, layouts.smallest, classes[0].largest);
+        let classes = layouts.classes.clone();
+        let grid = Grid::new(&domain, layouts.smallest, classes.first()?.largest);
         let contents = Contents::empty(grid.len());
         let layers = (!layouts.larger.is_empty()).then(|| {
             let mut layers = Layers::empty(&domain, &grid, &classes, &layouts.larger, diameters);
             layers.mark_walls(boundary, &classes);
             Box::new(layers)
         });
-        let mut cells = Self { grid, contents, places: Vec::new(), layers };
-        cells.mark_walls(boundary, 0.5 * classes[0].largest);
+        let largest_radius = 0.5 * classes[0].largest;
+        let mut cells = Self { grid, contents, places: Vec::new(), layers, classes };
+        cells.mark_walls(boundary, largest_radius);
         Some(cells)
     }
 
@@ -127,7 +138,57 @@ impl Cells {
     #[cfg(feature = "serde")]
     pub(super) fn layouts(&self) -> Layouts {
         let larger = self.layers.as_ref().map_or_else(Vec::new, |layers| layers.layouts());
-        Layouts { smallest: self.grid.layout, larger }
+        Layouts { smallest: self.grid.layout, larger, classes: self.classes.clone() }
+    }
+
+    /// Tells whether a disk of this diameter is of one of the classes for which the cells were made.
+    pub(super) fn suit(&self, diameter: f64) -> bool {
+        let class = self.classes.get(usize::from(class_of(&self.classes, diameter)));
+        class.is_some_and(|class| self.layers.is_none() || diameter >= class.smallest)
+    }
+
+    /// Tells whether there are far more or far fewer disks than when the cells were made.
+    pub(super) fn are_outgrown(&self) -> bool {
+        let (before, now) = (count(&self.classes), self.places.len());
+        now > 2 * before + SPARE_DISKS || before > 2 * now + SPARE_DISKS
+    }
+
+    /// Adds a disk after all others.
+    pub(super) fn put_in(&mut self, position: DVec2, diameter: f64) {
+        if let Some(layers) = &mut self.layers {
+            layers.push(class_of(&self.classes, diameter));
+        }
+        let disk = self.places.len();
+        self.places.push(self.grid_of(disk).place_of(position));
+        self.enter(disk);
+    }
+
+    /// Removes a disk. The last one takes its index.
+    pub(super) fn take_out(&mut self, disk: usize) {
+        let last = self.places.len() - 1;
+        self.leave_any(disk);
+        if disk != last {
+            self.leave_any(last);
+        }
+        self.places.swap_remove(disk);
+        if let Some(layers) = &mut self.layers {
+            layers.swap_remove(disk);
+        }
+        if disk != last {
+            self.enter(disk);
+        }
+    }
+
+    /// Writes to `found` the disks that one of this diameter at this place would overlap, and others near it.
+    /// Returns their number.
+    pub(super) fn near(&self, position: DVec2, diameter: f64, found: &mut [u32]) -> usize {
+        let class = class_of(&self.classes, diameter);
+        match self.layers.as_ref().and_then(|layers| Some((layers, layers.of_class(class)?))) {
+            Some((layers, layer)) => {
+                layers.gather_all(&self.contents, class, layer.grid.place_of(position), found)
+            }
+            None => self.around_cell_in_layers(self.grid.place_of(position), found),
+        }
     }
 
     /// Tells whether a disk is of a larger class than the smallest.
@@ -189,6 +250,14 @@ impl Cells {
             for ghost in self.grid.mirrors(place) {
                 self.contents.push(self.grid.index(ghost), disk);
             }
+        }
+    }
+
+    /// Takes a disk of any class out of its cell.
+    fn leave_any(&mut self, disk: usize) {
+        match self.layers.as_mut().filter(|layers| layers.of(disk).is_some()) {
+            None => self.leave(disk),
+            Some(layers) => layers.leave(disk, self.places[disk]),
         }
     }
 
@@ -261,7 +330,13 @@ impl Cells {
         if layers.of(disk).is_some() {
             return layers.gather(&self.contents, disk, place, None, found);
         }
+        self.around_cell_in_layers(place, found)
+    }
+
+    /// Writes the disks in the nine cells around a place, and the larger ones within reach.
+    fn around_cell_in_layers(&self, place: Place, found: &mut [u32]) -> usize {
         let count = self.around_cell(place, found);
+        let Some(layers) = &self.layers else { return count };
         layers.gather_visitors(self.grid.index(place), found, count)
     }
 

@@ -18,10 +18,10 @@ use thiserror::Error;
 
 pub use resumption::Resumption;
 
-use super::Simulation;
 use super::cells::{Layouts, Place};
 use super::events::Counters;
 use super::state::{Forecast, Guard, Identities, Spin, Tally, Trajectory};
+use super::{Inlet, Simulation};
 use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
 use crate::file::{Broken, Seal, write_whole};
@@ -80,6 +80,9 @@ struct Saved {
     /// Numbers of periods that each disk has passed; empty if none has passed any.
     images: Vec<[i32; 2]>,
     identities: Identities,
+    typical_diameter: f64,
+    fresh_count: u32,
+    inlets: Vec<Inlet>,
     forecasts: Vec<Forecast>,
     layouts: Layouts,
     places: Vec<Place>,
@@ -291,6 +294,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             spins: self.bodies.spins.clone(),
             images: self.bodies.images().to_vec(),
             identities: self.bodies.identities.clone(),
+            typical_diameter: self.bodies.typical_diameter,
+            fresh_count: self.bodies.fresh_count,
+            inlets: self.inlets.clone(),
             forecasts: particles.iter().map(|particle| particle.forecast).collect(),
             layouts: self.cells.layouts(),
             places: self.cells.places.clone(),

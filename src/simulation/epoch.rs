@@ -1,7 +1,7 @@
 //! Changes for all disks at once: a new epoch, cells of another size, new predictions of all events.
 
 use super::Simulation;
-use super::cells::Cells;
+use super::cells::{CellSize, Cells, SPARE_DISKS};
 use super::errors::Outcome;
 use super::state::Tally;
 use crate::boundary::Boundary;
@@ -23,6 +23,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let mut due = std::mem::take(&mut self.scratch.due);
         due.clear();
         due.extend(self.bodies.particles.iter().map(|particle| particle.forecast.due()));
+        if !self.inlets.is_empty() {
+            // Seats for disks that are still to come.
+            due.resize(due.len() + due.len() / 4 + SPARE_DISKS, f64::INFINITY);
+        }
+        self.scratch.seats = due.len();
         self.scheduler.reset(&due);
         // The memory is kept, so that nothing is allocated again. In large systems it is given back, since
         // there the memory itself counts for more.
@@ -40,6 +45,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let by = self.clock.whole_epochs(due);
         self.clock.now = due;
         self.shift_epoch(by);
+        self.bodies.settle();
         self.clock.epoch_length = self.bodies.epoch_length();
         Ok(())
     }
@@ -67,12 +73,19 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         if suitable == size {
             return;
         }
+        if self.renew_cells(suitable, None) {
+            self.counters.cell_resizes += 1;
+        }
+    }
+
+    /// Makes new cells for the present disks, and for one of a `further` diameter, and predicts all events
+    /// anew. Tells whether the domain has room for such cells; if not, everything stays as it was.
+    pub(super) fn renew_cells(&mut self, size: CellSize, further: Option<f64>) -> bool {
         let (bodies, now) = (&self.bodies, self.clock.now);
         let disks = (0..bodies.len()).map(|disk| (bodies.position(disk, now), bodies.radius(disk)));
-        if let Some(cells) = Cells::new(&self.boundary, suitable, disks) {
-            self.cells = cells;
-            self.counters.cell_resizes += 1;
-            self.predict_all();
-        }
+        let Some(cells) = Cells::new(&self.boundary, size, disks, further) else { return false };
+        self.cells = cells;
+        self.predict_all();
+        true
     }
 }

@@ -7,6 +7,8 @@
 //! partners approaching after a collision, `parting.rs` makes them part. All answers of the parts are checked
 //! in `checking.rs`. None of these files calls back into the event loop.
 
+use glam::DVec2;
+
 use super::Simulation;
 use super::errors::{BoundaryFault, Outcome};
 use super::events::Event;
@@ -52,7 +54,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.look_ahead();
         if forecast.is_collision() {
             let partner = forecast.partner as usize;
-            if self.forecast(partner).collisions == forecast.partner_collisions {
+            // The partner may be gone.
+            let collisions = self.bodies.forecast(partner).map(|partner| partner.collisions);
+            if collisions == Some(forecast.partner_collisions) {
                 return self.collide(disk, partner, observer).map(Some);
             }
             self.counters.repredictions += 1;
@@ -135,6 +139,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             };
             return Err(error.into());
         }
+        if let Response::Absorbing = surface.response {
+            return Ok(self.absorb(&collision, disk, wall, observer));
+        }
         self.check_touch(disk, wall, position)?;
         if !self.is_tame(&kick) {
             self.begin_epoch_for(&[kick])?;
@@ -149,6 +156,25 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
         self.schedule(disk);
         Ok(Event::WallCollision { disk, wall })
+    }
+
+    /// Takes a disk out of the run that has come to a sink.
+    #[cold]
+    #[inline(never)]
+    fn absorb<O: Observer + ?Sized>(
+        &mut self,
+        collision: &Collision,
+        disk: usize,
+        wall: usize,
+        observer: &mut O,
+    ) -> Event {
+        self.counters.wall_collisions += 1;
+        self.counters.removals += 1;
+        observer.on_collision(collision);
+        let gone = self.bodies.disk(disk, self.clock.now);
+        self.take_out(disk);
+        self.take_back(&gone);
+        Event::WallCollision { disk, wall }
     }
 
     fn count_regime(&mut self, collision: &Collision) {
@@ -181,13 +207,18 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Begins a shorter epoch for disks that are about to become very fast.
+    fn begin_epoch_for(&mut self, kicks: &[Kick]) -> Outcome<()> {
+        self.begin_epoch_at(kicks.iter().map(|kick| kick.after.velocity))
+    }
+
+    /// Begins a shorter epoch for disks of these velocities in the free-fall frame.
     ///
     /// The place of a fast disk at the epoch would be so far away that it would lack digits. For this reason,
     /// the epoch moves before the kick and not after it.
     #[cold]
     #[inline(never)]
-    fn begin_epoch_for(&mut self, kicks: &[Kick]) -> Outcome<()> {
-        let lengths = kicks.iter().map(|kick| self.bodies.epoch_length_for(kick.after.velocity));
+    pub(super) fn begin_epoch_at(&mut self, velocities: impl Iterator<Item = DVec2>) -> Outcome<()> {
+        let lengths = velocities.map(|velocity| self.bodies.epoch_length_for(velocity));
         let epoch_length = lengths.fold(self.clock.epoch_length, f64::min);
         // Very late times are so coarse that no epoch can begin near the present. The kick would then lose
         // the digits of the disk's place.

@@ -68,6 +68,10 @@ pub struct Counters {
     pub max_overlap: f64,
     /// Largest overlap of a disk and a wall at a collision. A larger one than rounding ends the run.
     pub max_wall_overlap: f64,
+    /// Disks that sinks took out.
+    pub removals: u64,
+    /// Disks that inlets let in.
+    pub insertions: u64,
     /// Walls that were elsewhere at once when the boundary was set between runs.
     pub wall_jumps: u64,
     /// Farthest way of such a wall.
@@ -92,6 +96,8 @@ impl Counters {
             repredictions: self.repredictions.saturating_sub(earlier.repredictions),
             horizons: self.horizons.saturating_sub(earlier.horizons),
             cell_resizes: self.cell_resizes.saturating_sub(earlier.cell_resizes),
+            removals: self.removals.saturating_sub(earlier.removals),
+            insertions: self.insertions.saturating_sub(earlier.insertions),
             wall_jumps: self.wall_jumps.saturating_sub(earlier.wall_jumps),
             ..*self
         }

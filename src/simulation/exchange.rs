@@ -54,7 +54,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Exchanges parts, and leaves the rest as it is.
     fn exchanged<R2, B2, S2>(self, new: impl FnOnce(R, B, S) -> (R2, B2, S2)) -> Simulation<R2, B2, S2> {
         let Self { wall_count, bodies, cells, clock, generator, .. } = self;
-        let Self { counters, lookahead, instructions, scratch, .. } = self;
+        let Self { counters, lookahead, instructions, scratch, inlets, .. } = self;
         let (rule, boundary, scheduler) = new(self.rule, self.boundary, self.scheduler);
         Simulation {
             rule,
@@ -69,6 +69,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             lookahead,
             instructions,
             scratch,
+            inlets,
         }
     }
 }

@@ -45,6 +45,11 @@ impl Lookahead {
         self.fresh = fresh;
     }
 
+    /// Forgets all disks, since one of them has left.
+    pub(super) fn forget(&mut self) {
+        self.disks = [0; 2 * LATER];
+    }
+
     /// Notes a disk. Returns the disk that was named [`LATER`] disks before, and the one that was named twice
     /// as many before.
     #[inline]

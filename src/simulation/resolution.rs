@@ -108,8 +108,11 @@ pub(super) fn resolve_wall<R: CollisionRule + ?Sized>(
         collide_bodies(rule, surface.normal, since, (&arriving, &material), (partner, wall))
     };
     let (leaving, contact, impulse) = match surface.response {
-        Response::Thermal(thermal) => {
-            let leaving = emitted(&thermal, &arriving, surface, mass, inertia, generator);
+        Response::Thermal(_) | Response::Absorbing => {
+            let leaving = match surface.response {
+                Response::Thermal(thermal) => emitted(&thermal, &arriving, surface, mass, inertia, generator),
+                _ => *partner,
+            };
             let kick = (leaving.velocity - arriving.velocity) * mass;
             let impulse = Impulse::new(kick.dot(surface.normal), kick.dot(surface.normal.perp()));
             (leaving, against(&Elastic).contact, impulse)

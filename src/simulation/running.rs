@@ -117,7 +117,14 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     fn watched_step<O: Observer + ?Sized>(&mut self, end: f64, observer: &mut O) -> Outcome<Option<Event>> {
         self.check_end(end)?;
         let limits = Limits::until(end);
-        let reached = self.collide_until(end, &Watch::new(&limits, &self.counters), observer)?;
+        let watch = Watch::new(&limits, &self.counters);
+        let reached = loop {
+            let opening = self.next_opening()?;
+            match self.collide_until(end.min(opening), &watch, observer)? {
+                Reached::Time if opening <= end => self.open_inlets(opening)?,
+                reached => break reached,
+            }
+        };
         // A verdict to stop has no effect: the caller of single steps can stop at any of them.
         let _: ControlFlow<()> = self.verdict_of(observer)?;
         Ok(if let Reached::Collision(event) = reached { Some(event) } else { None })
@@ -135,7 +142,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             if sample.is_nan() {
                 return Err(Box::new(RunError::SampleTime { next: sample, time: self.time() }));
             }
-            let stop = end.min(sample.max(self.time()));
+            let opening = self.next_opening()?;
+            let stop = end.min(sample.max(self.time())).min(opening);
             loop {
                 match self.collide_until(stop, watch, observer)? {
                     Reached::Collision(_) => {}
@@ -145,6 +153,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 if self.verdict_of(observer)?.is_break() {
                     return Ok(RunEnd::Observer);
                 }
+            }
+            if opening <= stop {
+                self.open_inlets(opening)?;
+                continue;
             }
             if sample > stop {
                 return Ok(RunEnd::Time);

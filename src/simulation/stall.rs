@@ -64,7 +64,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                     resolve_wall(&self.bodies, &self.rule, &mut generator, &surface, &clock, disk, wall);
                 match surface.response {
                     Response::Rule(own) => self.remedy_for(&collision.contact, own),
-                    Response::Thermal(_) => Remedy::FasterDisks,
+                    Response::Thermal(_) | Response::Absorbing => Remedy::FasterDisks,
                     Response::Shared => self.remedy_for(&collision.contact, &self.rule),
                 }
             }

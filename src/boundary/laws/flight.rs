@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::trial::Trial;
 use super::violation::Violation;
 use crate::Flight;
-use crate::boundary::{Boundary, Surface, Touch};
+use crate::boundary::{Boundary, Response, Surface, Touch};
 
 /// Number of samples along a flight.
 const SAMPLES: u32 = 200;
@@ -66,6 +66,9 @@ fn check_flight<B: Boundary + ?Sized>(
         check_touch(trial, flight, touch, until)?;
     }
     check_way(trial, flight, found.map_or(until, |touch| touch.time), found)?;
+    if found.is_some_and(|touch| is_absorbed(trial, flight, touch)) {
+        return Ok(None);
+    }
     let meeting = found.map(|touch| check_place(trial, flight, touch)).transpose()?;
     check_origin(trial, flight, until, meeting.as_ref())?;
     let Some(meeting) = meeting else { return Ok(None) };
@@ -100,6 +103,12 @@ fn longest<B: Boundary + ?Sized>(trial: &Trial<'_, B>, flight: &Flight) -> f64 {
 fn shortest_wait(way: f64, velocity: f64, pull: f64) -> f64 {
     let (way, speed) = (way.max(0.0), velocity.abs());
     2.0 * way / (speed + (speed * speed + 2.0 * pull.abs() * way).sqrt())
+}
+
+/// Tells whether the flight ends at a sink. It may take a disk out without a touch, when the center arrives.
+fn is_absorbed<B: Boundary + ?Sized>(trial: &Trial<'_, B>, flight: &Flight, touch: Touch) -> bool {
+    let place = flight.position(touch.time);
+    matches!(trial.boundary.surface(touch.wall, place, touch.time).response, Response::Absorbing)
 }
 
 fn check_touch<B: Boundary + ?Sized>(

@@ -84,7 +84,7 @@ impl TryFrom<Record> for Part {
 
     fn try_from(record: Record) -> Result<Self, VesselError> {
         let Record { bricks, travel, conduct, kind, surface_speed, start } = record;
-        let part = Part { conduct, kind, ..Part::new(bricks)? };
+        let part = Part { kind, ..Part::new(bricks)?.with_conduct(conduct) };
         travel.of(part.with_surface_speed(surface_speed)?.starting_at(start)?)
     }
 }

@@ -34,7 +34,10 @@ impl Vessel {
     fn near_at_rest(&self, position: DVec2, radius: f64) -> impl Iterator<Item = (usize, Entry)> {
         let near = self.index.near(position - radius, position + radius);
         let with_part = near.map(|entry| (self.walls[entry.wall as usize].part, entry));
-        with_part.filter(|(part, _)| self.parts[*part].part.travel().is_at_rest())
+        with_part.filter(|(part, _)| {
+            let part = &self.parts[*part].part;
+            part.travel().is_at_rest() && !part.takes_centers()
+        })
     }
 
     /// Returns the nearest of some bricks at rest, with the index of its wall.
@@ -66,7 +69,7 @@ impl Vessel {
         for (number, placed) in self.parts.iter().enumerate() {
             let has_back =
                 placed.part.all_bricks().iter().any(|brick| !brick.is_two_sided() && !brick.is_point());
-            if placed.part.travel().is_at_rest() && has_back {
+            if placed.part.travel().is_at_rest() && !placed.part.takes_centers() && has_back {
                 for cell in self.cells_filled_by(number, placed) {
                     filled[cell].push(number as u32);
                 }

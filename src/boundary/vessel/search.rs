@@ -61,12 +61,24 @@ impl Vessel {
                     moving.push(entry);
                 }
             } else if let Some(time) =
-                wall.brick.first_touch(&shifted(flight, entry), until.min(first.time()))
+                wall.brick.first_touch(&self.seen_from(entry, flight), until.min(first.time()))
             {
                 first = first.or(FirstTouch::At(self.touch(entry, time)));
             }
         }
         if moving.is_empty() { first } else { self.search(&moving, flight, until, first) }
+    }
+
+    /// Returns the flight as seen from a periodic image of a brick; the flight of a point, if the brick takes
+    /// centers.
+    fn seen_from(&self, entry: Entry, flight: &Flight) -> Flight {
+        let is_line = self.parts[self.walls[entry.wall as usize].part].part.takes_centers();
+        if entry.image == DVec2::ZERO && !is_line {
+            return *flight;
+        }
+        let (time, radius) = (flight.time(), if is_line { 0.0 } else { flight.radius() });
+        let (place, velocity) = (flight.position(time), flight.velocity(time));
+        Flight::new(time, place - entry.image, velocity, flight.acceleration(), radius)
     }
 
     fn touch(&self, entry: Entry, time: f64) -> Touch {
@@ -91,7 +103,7 @@ impl Vessel {
                 let search = Search {
                     wall,
                     placed: &self.parts[wall.part],
-                    flight: &shifted(flight, entry),
+                    flight: &self.seen_from(entry, flight),
                     until: until.min(first.time()),
                 };
                 first = first.or(search.run(from, &mut steps).map(|time| self.touch(entry, time)));
@@ -253,14 +265,4 @@ fn rectangle(flight: &Flight, until: f64) -> (DVec2, DVec2) {
     let sagitta = 0.125 * flight.acceleration().length() * wait * wait;
     let reach = 1.001 * (flight.radius() + sagitta);
     (from.min(to) - reach, from.max(to) + reach)
-}
-
-/// Returns the flight as seen from a periodic image of a brick.
-fn shifted(flight: &Flight, entry: Entry) -> Flight {
-    if entry.image == DVec2::ZERO {
-        return *flight;
-    }
-    let time = flight.time();
-    let (place, velocity) = (flight.position(time), flight.velocity(time));
-    Flight::new(time, place - entry.image, velocity, flight.acceleration(), flight.radius())
 }

@@ -214,6 +214,10 @@ impl Layer {
         self.contents.push(self.home(place), disk);
     }
 
+    pub(super) fn leave(&mut self, disk: usize, place: Place) {
+        self.contents.remove(self.home(place), disk);
+    }
+
     /// Takes a disk from one cell to another.
     pub(super) fn cross(&mut self, disk: usize, from: Place, to: Place) {
         let (old, new) = (self.home(from), self.home(to));

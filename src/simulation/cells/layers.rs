@@ -32,12 +32,11 @@ use glam::DVec2;
 
 use super::cell_size::{CellSize, SPARE_SMALL_CELLS};
 use super::contents::Contents;
-use super::division::classes;
 use super::grid::{Grid, Place};
 use super::layer::{Layer, LayerLayout, widest};
 use super::layout::{LEAST_PITCH, Layout};
 use super::reach::{Distances, Homes, Reach};
-use super::size_class::{SizeClass, class_of, together};
+use super::size_class::{SizeClass, class_of};
 use crate::boundary::{Boundary, Domain};
 
 /// Returns the largest number of cells for each disk of the smallest class.
@@ -84,7 +83,7 @@ pub(super) fn layouts(
     // If one class has no room for cells that are narrow enough, no class gets a layer: all disks then share
     // the cells of the largest, which is slow but right.
     let larger: Option<Vec<LayerLayout>> = (1..classes.len()).map(layout).collect();
-    Some(Layouts { smallest, larger: larger? })
+    Some(Layouts { smallest, larger: larger?, classes: classes.to_vec() })
 }
 
 impl Layers {
@@ -140,7 +139,13 @@ impl Layers {
     /// Returns the layer of a disk; `None` for the smallest class.
     #[inline]
     pub(super) fn of(&self, disk: usize) -> Option<&Layer> {
-        self.larger.get(usize::from(self.classes[disk]).wrapping_sub(1))
+        self.of_class(self.classes[disk])
+    }
+
+    /// Returns the layer of a class; `None` for the smallest one.
+    #[inline]
+    pub(super) fn of_class(&self, class: u8) -> Option<&Layer> {
+        self.larger.get(usize::from(class).wrapping_sub(1))
     }
 
     /// Tells whether a disk that enters another cell must look at all partners again.
@@ -157,6 +162,27 @@ impl Layers {
         for (visitors, reach) in self.visitors.iter_mut().zip(layer.reaches().0) {
             reach.for_each_run(place, |first, count| visitors.push_to_run(first, count, disk));
         }
+    }
+
+    /// Takes a disk of a larger class out of its home, and out of all homes that it reaches.
+    pub(super) fn leave(&mut self, disk: usize, place: Place) {
+        let Some(layer) = self.larger.get_mut(usize::from(self.classes[disk]).wrapping_sub(1)) else {
+            return;
+        };
+        layer.leave(disk, place);
+        for (visitors, reach) in self.visitors.iter_mut().zip(layer.reaches().0) {
+            reach.for_each_run(place, |first, count| visitors.remove_from_run(first, count, disk));
+        }
+    }
+
+    /// Adds a disk of this class, which has yet to enter its cell.
+    pub(super) fn push(&mut self, class: u8) {
+        self.classes.push(class);
+    }
+
+    /// Removes a disk that has left its cell. The last one takes its index.
+    pub(super) fn swap_remove(&mut self, disk: usize) {
+        self.classes.swap_remove(disk);
     }
 
     /// Takes a disk of a larger class from one cell to another.
@@ -217,6 +243,27 @@ impl Layers {
         // Disks of larger classes come to this disk's home as visitors, as large disks do to small ones.
         self.visitors[class].gather_cell(layer.home(place), found, count)
     }
+
+    /// Writes to `found` all disks that one of this larger class at this place may overlap, also those that
+    /// would lie inside it. Returns their number.
+    pub(super) fn gather_all(
+        &self,
+        smallest: &Contents,
+        class: u8,
+        place: Place,
+        found: &mut [u32],
+    ) -> usize {
+        let Some(layer) = self.of_class(class) else { return 0 };
+        let mut count = 0;
+        let contents = std::iter::once(smallest).chain(self.larger.iter().map(|layer| &layer.contents));
+        let (smaller, own) = layer.reaches();
+        for (contents, reach) in contents.zip(smaller.iter().chain(own)) {
+            reach.for_each_run_and_hole(place, |first, homes| {
+                count = contents.gather_run(first, homes, found, count);
+            });
+        }
+        self.visitors[usize::from(class)].gather_cell(layer.home(place), found, count)
+    }
 }
 
 /// Tells whether a disk in its home and a disk of a larger class in its cell are less than half a period
@@ -244,22 +291,8 @@ pub(in crate::simulation) struct Layouts {
     pub(in crate::simulation) smallest: Layout,
     /// The layers of the larger classes; none if all disks share the same cells.
     pub(in crate::simulation) larger: Vec<LayerLayout>,
-}
-
-impl Layouts {
-    /// Returns the classes of disks that have cells of their own; `None` if their number does not match that
-    /// of the layers.
-    pub(in crate::simulation) fn classes(
-        &self,
-        domain: &Domain,
-        diameters: impl Iterator<Item = f64>,
-    ) -> Option<Vec<SizeClass>> {
-        let classes = classes(diameters);
-        if self.larger.is_empty() {
-            return Some(vec![together(&classes).unwrap_or_else(|| SizeClass::of_nobody(domain))]);
-        }
-        (classes.len() == self.larger.len() + 1).then_some(classes)
-    }
+    /// The classes of disks that have cells of their own.
+    pub(in crate::simulation) classes: Vec<SizeClass>,
 }
 
 /// The grids of all classes of disks, and the class of each.

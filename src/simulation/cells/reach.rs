@@ -113,6 +113,13 @@ impl Reach {
         }
     }
 
+    /// Calls `act` in the same way for the homes within reach of a place and for those of the hole.
+    pub(super) fn for_each_run_and_hole(&self, place: Place, mut act: impl FnMut(usize, usize)) {
+        for column in self.columns_of(place) {
+            self.act_on(column, self.rows[place.row as usize - 1][0], &mut act);
+        }
+    }
+
     /// Calls `act` in the same way for the homes within reach of `place`, but not of `other`.
     pub(super) fn for_each_run_beyond(&self, place: Place, other: Place, mut act: impl FnMut(usize, usize)) {
         for column in self.columns_of(place) {

@@ -4,13 +4,14 @@ use crate::boundary::Domain;
 
 /// Disks of similar size.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct SizeClass {
     /// The largest diameter.
     pub(in crate::simulation) largest: f64,
     /// The smallest diameter.
-    pub(super) smallest: f64,
+    pub(in crate::simulation) smallest: f64,
     /// Number of disks.
-    pub(super) count: usize,
+    pub(in crate::simulation) count: usize,
 }
 
 impl SizeClass {
@@ -30,6 +31,11 @@ impl SizeClass {
 /// Returns the class of all disks together; `None` without disks.
 pub(super) fn together(classes: &[SizeClass]) -> Option<SizeClass> {
     classes.iter().copied().reduce(|together, class| together.with(&class))
+}
+
+/// Returns the number of disks in all classes.
+pub(super) fn count(classes: &[SizeClass]) -> usize {
+    classes.iter().map(|class| class.count).sum()
 }
 
 /// Returns the class of disks of this diameter.

@@ -137,13 +137,15 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
             lookahead: Lookahead::default(),
             instructions: Instructions::detected(),
             scratch: Scratch::default(),
+            inlets: saved.inlets.clone(),
         }
     }
 }
 
 fn bodies_of(saved: &Saved) -> Bodies {
     let Saved { models, gravity, trajectories, forecasts, spins, images, identities, .. } = saved;
+    let population = (saved.typical_diameter, saved.fresh_count);
     let (spins, images, identities) = (spins.clone(), images.clone(), identities.clone());
     let gravity = Gravity::from(*gravity);
-    Bodies::restored(models, gravity, trajectories, forecasts, spins, images, identities)
+    Bodies::restored(models, gravity, trajectories, forecasts, spins, images, identities, population)
 }

@@ -8,8 +8,10 @@ use std::collections::HashMap;
 
 use super::{CheckpointError, Saved};
 use crate::boundary::Domain;
-use crate::disk::LARGEST;
-use crate::simulation::cells::{CELLS_PER_DISK, FEWEST, Grid, Grids, Layout, Place, SPARE_CELLS};
+use crate::disk::{LARGEST, MOST_DISKS};
+use crate::simulation::cells::{
+    CELLS_PER_DISK, FEWEST, Grid, Grids, Layout, Place, SPARE_CELLS, SPARE_DISKS, SizeClass,
+};
 use crate::simulation::events::Counters;
 use crate::simulation::state::{Bodies, Exit, Forecast, Guard, Spin, Trajectory};
 use glam::DVec2;
@@ -36,6 +38,9 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     check([0, count].contains(&saved.images.len()), "the number of images is not the number of disks")?;
     check(saved.identities.suits(count), "its ids are not those of so many disks")?;
     check([1, count].contains(&saved.models.len()), "its disks have too many models, or none")?;
+    let diameter = saved.typical_diameter;
+    let is_diameter = if count == 0 { diameter >= 0.0 } else { diameter > 0.0 };
+    check(is_diameter && diameter <= LARGEST, "its typical diameter is beyond all bounds")?;
     let times = [saved.origin, saved.now, saved.epoch_length];
     check(times.iter().all(|time| time.is_finite()), "a time is not finite")?;
     check(is_bounded(saved.gravity), "its gravity is beyond all bounds")?;
@@ -70,7 +75,10 @@ pub(super) fn check_places(saved: &Saved, grids: &Grids, bodies: &Bodies) -> Res
 pub(super) fn grids(saved: &Saved, bodies: &Bodies) -> Option<Grids> {
     let layouts = &saved.layouts;
     let diameters = (0..bodies.len()).map(|disk| 2.0 * bodies.radius(disk));
-    let classes = layouts.classes(&saved.domain, diameters.clone())?;
+    let classes = &layouts.classes;
+    if !are_classes(classes, layouts.larger.len() + 1, diameters.clone()) {
+        return None;
+    }
     let smallest = classes[0].largest;
     let suits = suits(saved, &layouts.smallest, smallest)
         && layouts.larger.iter().zip(&classes[1..]).all(|(layer, class)| {
@@ -80,15 +88,34 @@ pub(super) fn grids(saved: &Saved, bodies: &Bodies) -> Option<Grids> {
     if !suits {
         return None;
     }
-    let grids = Grids::new(&saved.domain, layouts, &classes, diameters);
+    let grids = Grids::new(&saved.domain, layouts, classes, diameters);
     let is_placed = |(disk, &place)| is_cell(&grids.of(disk).layout, place);
     saved.places.iter().enumerate().all(is_placed).then_some(grids)
+}
+
+/// Tells whether these are so many classes, in order, and there is one for each disk. There cannot be far more
+/// or far fewer disks than in the classes, since new cells would have been made.
+fn are_classes(classes: &[SizeClass], number: usize, diameters: impl ExactSizeIterator<Item = f64>) -> bool {
+    let are_sizes = classes
+        .iter()
+        .all(|class| class.smallest > 0.0 && class.smallest <= class.largest && class.largest <= LARGEST);
+    let are_ordered = classes.windows(2).all(|pair| pair[0].largest < pair[1].smallest);
+    let (now, before) =
+        (diameters.len(), classes.iter().fold(0, |sum: usize, class| sum.saturating_add(class.count)));
+    let are_as_many = now <= 2 * before.min(MOST_DISKS) + SPARE_DISKS && before <= 2 * now + SPARE_DISKS;
+    let mut diameters = diameters;
+    let have_a_class = diameters.all(|diameter| {
+        let class = classes.iter().find(|class| diameter <= class.largest);
+        class.is_some_and(|class| number == 1 || diameter >= class.smallest)
+    });
+    classes.len() == number && are_sizes && are_ordered && are_as_many && have_a_class
 }
 
 /// Tells whether the cells suit the domain and disks of at most this diameter.
 fn suits(saved: &Saved, layout: &Layout, diameter: f64) -> bool {
     let Layout { columns, rows, pitch, .. } = *layout;
-    let most = 2.0 * (CELLS_PER_DISK * saved.places.len() as f64 + SPARE_CELLS);
+    let disks = 2 * saved.places.len() + SPARE_DISKS;
+    let most = 2.0 * (CELLS_PER_DISK * disks as f64 + SPARE_CELLS);
     let covers = |count: u32, pitch: f64, length: f64| {
         length.is_infinite() || (f64::from(count) * pitch / length - 1.0).abs() < SLACK
     };
@@ -134,10 +161,11 @@ fn is_guard(guard: &Guard) -> bool {
 
 fn are_counted(counters: &Counters) -> bool {
     let Counters { disk_collisions, wall_collisions, contact_duration_collisions, .. } = *counters;
-    let Counters { cell_crossings, repredictions, horizons, cell_resizes, .. } = *counters;
+    let Counters { cell_crossings, repredictions, horizons, cell_resizes, removals, insertions, .. } =
+        *counters;
     let physics = [disk_collisions, wall_collisions, contact_duration_collisions];
-    let bookkeeping = [cell_crossings, repredictions, horizons, cell_resizes, counters.wall_jumps];
-    physics.iter().chain(&bookkeeping).all(|&count| count <= MOST_COUNTED)
+    let bookkeeping = [cell_crossings, repredictions, horizons, cell_resizes, removals, insertions];
+    physics.iter().chain(&bookkeeping).chain([&counters.wall_jumps]).all(|&count| count <= MOST_COUNTED)
         && [counters.max_overlap, counters.max_wall_overlap, counters.farthest_jump]
             .iter()
             .all(|&way| way >= 0.0)
@@ -146,9 +174,12 @@ fn are_counted(counters: &Counters) -> bool {
 fn are_forecasts(saved: &Saved, walls: usize) -> bool {
     let count = saved.forecasts.len();
     saved.forecasts.iter().enumerate().all(|(disk, forecast)| {
-        let Forecast { collision_due, exit_due, partner, exit, wall, .. } = *forecast;
+        let Forecast { collision_due, exit_due, partner, partner_collisions, collisions, exit, wall } =
+            *forecast;
         let is_alone = collision_due == f64::INFINITY;
-        (is_alone || ((partner as usize) < count && partner as usize != disk))
+        // A partner that is gone may leave a forecast of another index, or of the own one.
+        let is_old = partner as usize >= count || partner_collisions != collisions;
+        (is_alone || partner as usize != disk || is_old)
             && (exit != Exit::Wall || usize::from(wall) < walls)
             && collision_due >= saved.now
             && exit_due >= saved.now

@@ -85,6 +85,11 @@ pub(in crate::simulation) struct Bodies {
     /// Typical diameter, in which the length of an epoch is measured.
     pub(in crate::simulation) typical_diameter: f64,
     pub(in crate::simulation) identities: Identities,
+    /// The count of collisions with which the next new disk begins, larger than those of all disks whose index
+    /// it may get.
+    pub(in crate::simulation) fresh_count: u32,
+    /// True if disks have come or gone since the typical diameter was measured.
+    pub(super) has_changed: bool,
 }
 
 impl Bodies {
@@ -97,7 +102,17 @@ impl Bodies {
         let properties = Properties::of(disks);
         let typical_diameter = properties.typical_diameter();
         let identities = Identities::new(disks);
-        Self { particles, spins, gravity, properties, images, typical_diameter, identities }
+        Self {
+            particles,
+            spins,
+            gravity,
+            properties,
+            images,
+            typical_diameter,
+            identities,
+            fresh_count: 0,
+            has_changed: false,
+        }
     }
 
     /// Creates bodies as they were saved. Disks that are all alike have a single model.
@@ -110,12 +125,22 @@ impl Bodies {
         spins: Vec<Spin>,
         images: Vec<[i32; 2]>,
         identities: Identities,
+        (typical_diameter, fresh_count): (f64, u32),
     ) -> Self {
         let particle = |(&trajectory, &forecast)| Particle { trajectory, forecast };
         let particles = trajectories.iter().zip(forecasts).map(particle).collect();
         let properties = Properties::of(models);
-        let typical_diameter = properties.typical_diameter();
-        Self { particles, spins, gravity, properties, images, typical_diameter, identities }
+        Self {
+            particles,
+            spins,
+            gravity,
+            properties,
+            images,
+            typical_diameter,
+            identities,
+            fresh_count,
+            has_changed: true,
+        }
     }
 
     /// Returns the images that [`Self::restored`] takes.

@@ -45,6 +45,22 @@ impl Identities {
         self.forget_the_obvious();
     }
 
+    /// Adds a disk after these `count` ones, in a time that does not grow with their number.
+    pub(super) fn push(&mut self, count: usize, id: u64) {
+        let id = if id == 0 { self.last + 1 } else { id };
+        self.last = self.last.max(id);
+        if !self.ids.is_empty() || id != count as u64 + 1 {
+            self.list(count);
+            self.ids.push(id);
+        }
+    }
+
+    /// Removes a disk. The last of these `count` disks takes its index.
+    pub(super) fn swap_remove(&mut self, count: usize, disk: usize) {
+        self.list(count);
+        self.ids.swap_remove(disk);
+    }
+
     /// Removes those of these disks for which `leaves` is true.
     pub(super) fn remove(&mut self, leaves: &[bool]) {
         self.list(leaves.len());

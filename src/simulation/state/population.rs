@@ -16,14 +16,61 @@ impl Bodies {
             self.images.resize(self.len(), [0; 2]);
             self.images.extend(disks.iter().map(Disk::image));
         }
-        let (fallen, gained) = self.fall(offset);
         for disk in disks {
-            let velocity = disk.velocity() - gained;
-            let position = disk.position() - fallen - velocity * offset;
-            self.particles.push(Particle::new(Trajectory { position, velocity }));
-            let spin = Spin::of(disk);
-            self.spins.push(Spin { angle: spin.angle - spin.angular_velocity * offset, ..spin });
+            self.add(disk, offset);
         }
+    }
+
+    /// Adds a disk as it is at this time offset, in a time that does not grow with the number of disks.
+    ///
+    /// The typical diameter, a median, stays until the epoch moves.
+    pub(in crate::simulation) fn push_disk(&mut self, disk: &Disk, offset: f64) {
+        let count = self.len();
+        self.identities.push(count, disk.id());
+        self.properties.push(count, disk);
+        if !self.images.is_empty() || disk.image() != [0; 2] {
+            self.images.resize(count, [0; 2]);
+            self.images.push(disk.image());
+        }
+        self.add(disk, offset);
+        self.particles[count].forecast.collisions = self.fresh_count;
+        self.has_changed = true;
+    }
+
+    /// Removes a disk, in a time that does not grow with the number of disks. The last one takes its index.
+    ///
+    /// No disk will have one of these two indices together with a count of collisions that a forecast knows.
+    pub(in crate::simulation) fn swap_remove(&mut self, disk: usize) {
+        let last = self.len() - 1;
+        let count = |disk: usize| self.particles[disk].forecast.collisions.wrapping_add(1);
+        self.fresh_count = self.fresh_count.max(count(disk)).max(count(last));
+        self.particles[last].forecast.collisions = self.fresh_count;
+        self.identities.swap_remove(last + 1, disk);
+        self.properties.swap_remove(disk);
+        if !self.images.is_empty() {
+            self.images.swap_remove(disk);
+        }
+        self.particles.swap_remove(disk);
+        self.spins.swap_remove(disk);
+        self.has_changed = true;
+    }
+
+    /// Measures the typical diameter anew if disks have come or gone since the last time.
+    pub(in crate::simulation) fn settle(&mut self) {
+        if std::mem::take(&mut self.has_changed) {
+            let models: Vec<Disk> = (0..self.len()).map(|disk| self.properties.model(disk)).collect();
+            self.properties = Properties::of(&models);
+            self.typical_diameter = self.properties.typical_diameter();
+        }
+    }
+
+    fn add(&mut self, disk: &Disk, offset: f64) {
+        let (fallen, gained) = self.fall(offset);
+        let velocity = disk.velocity() - gained;
+        let position = disk.position() - fallen - velocity * offset;
+        self.particles.push(Particle::new(Trajectory { position, velocity }));
+        let spin = Spin::of(disk);
+        self.spins.push(Spin { angle: spin.angle - spin.angular_velocity * offset, ..spin });
     }
 
     /// Removes the disks for which `leaves` is true. The others stay in their order.

@@ -61,6 +61,35 @@ impl Properties {
         }
     }
 
+    /// Adds a disk after these `count` ones. Only the first one that differs costs a time that grows with their
+    /// number.
+    pub(super) fn push(&mut self, count: usize, disk: &Disk) {
+        if let Self::Same { model, .. } = *self {
+            if is_alike(disk, &model) {
+                return;
+            }
+            let (radius, others) = (model.radius(), Others::of(&model));
+            *self = Self::Each {
+                radii: vec![radius; count],
+                common_diameter: Some(2.0 * radius),
+                others: vec![others; count],
+            };
+        }
+        if let Self::Each { radii, common_diameter, others } = self {
+            *common_diameter = common_diameter.filter(|&diameter| diameter == 2.0 * disk.radius());
+            radii.push(disk.radius());
+            others.push(Others::of(disk));
+        }
+    }
+
+    /// Removes a disk. The last one takes its index.
+    pub(super) fn swap_remove(&mut self, disk: usize) {
+        if let Self::Each { radii, others, .. } = self {
+            radii.swap_remove(disk);
+            others.swap_remove(disk);
+        }
+    }
+
     /// Returns the median diameter, which does not depend on the order of the disks; 0 without disks.
     ///
     /// If there is a disk more than [`LARGEST_RATIO`] times as large, the result is the diameter of the
@@ -84,7 +113,13 @@ impl Properties {
     pub(super) fn models(&self) -> Vec<Disk> {
         match self {
             Self::Same { model, .. } => vec![*model],
-            Self::Each { radii, .. } => (0..radii.len()).map(|disk| self.model(disk)).collect(),
+            Self::Each { radii, .. } => {
+                let mut models: Vec<Disk> = (0..radii.len()).map(|disk| self.model(disk)).collect();
+                if models.windows(2).all(|pair| is_alike(&pair[0], &pair[1])) {
+                    models.truncate(1);
+                }
+                models
+            }
         }
     }
 

@@ -1,0 +1,179 @@
+//! Inlets, which let disks into a run.
+
+use std::collections::VecDeque;
+
+use glam::DVec2;
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use crate::observable::SampleTimes;
+use crate::quantity::{accept, finite};
+use crate::random::uniform;
+use crate::{Disk, Kind, ParameterError};
+
+/// An inlet: it lets disks into a run, at set times and at random places of a rectangle.
+///
+/// Each time it opens, [`new`](Self::new) lets in one disk, and [`refill`](Self::refill) all disks that sinks
+/// have taken out since. A disk for which it finds no room waits until the inlet opens again, and the others
+/// wait behind it. A disk that comes in has a new [id](Disk::id) and the largest index, and has collided with
+/// nothing yet. This takes the same time however many disks there are.
+///
+/// An inlet is a part of the state of a run, and so of its checkpoints, with the disks that wait.
+///
+/// ```
+/// use granular_edmd::prelude::*;
+/// use granular_edmd::simulation::Inlet;
+///
+/// // A shower of four grains for each unit of time, onto a floor that takes them out.
+/// let container = Container::open(10.0)?.with_absorbing(Wall::Floor)?;
+/// let mut run = Simulation::builder(Elastic, container).gravity(1.0).build()?;
+/// let grain = Disk::new(DVec2::ZERO, 0.5)?.with_velocity(DVec2::new(0.0, -2.0))?;
+/// let places = [DVec2::new(1.0, 8.0), DVec2::new(9.0, 9.0)];
+/// run.add_inlet(Inlet::new(places, [grain], SampleTimes::every(0.25)?, 7)?)?;
+/// run.run_until(100.0, &mut ())?;
+/// let counters = run.counters();
+/// assert_eq!(counters.insertions, 400);
+/// assert_eq!(counters.insertions - counters.removals, run.len() as u64);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Inlet {
+    /// Lower left and upper right corner of the rectangle.
+    places: [DVec2; 2],
+    source: Source,
+    pub(super) times: SampleTimes,
+    generator: Xoshiro256PlusPlus,
+    pub(super) waiting: VecDeque<Disk>,
+}
+
+/// The disks that come in.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+enum Source {
+    New(Vec<Disk>),
+    TakenOut { velocity: DVec2, kind: Option<Kind> },
+}
+
+crate::gate::from_file! {
+    Inlet {
+        places: [DVec2; 2], source: Source, times: SampleTimes, generator: Xoshiro256PlusPlus,
+        waiting: VecDeque<Disk>
+    } => Self { places, source, times, generator, waiting }.checked()
+}
+
+impl Inlet {
+    /// Creates an inlet that lets in one disk at each of these times: a copy of one of the models, drawn at
+    /// random.
+    ///
+    /// Its center is in the rectangle between the two places, the lower left and the upper right corner. The
+    /// copy has the radius, mass, inertia, kind, velocity and spin of its model; the positions of models have
+    /// no meaning. So a distribution is a list of as many disks as it takes, with radii of
+    /// [`Radii`](crate::initial::Radii), for example.
+    ///
+    /// # Errors
+    /// If there are no models, or the places are not finite or not in this order.
+    pub fn new(
+        places: [DVec2; 2],
+        models: impl IntoIterator<Item = Disk>,
+        times: SampleTimes,
+        seed: u64,
+    ) -> Result<Self, ParameterError> {
+        Self::of(places, Source::New(models.into_iter().collect()), times, seed)
+    }
+
+    /// Creates an inlet that puts back what sinks have taken out, at each of these times.
+    ///
+    /// A disk comes back at the given velocity and without a spin, and keeps its radius, mass, inertia and
+    /// kind. Of several such inlets, the one with the fewest disks that wait gets the next.
+    ///
+    /// # Errors
+    /// If the velocity is not one that a disk may have, or the places are not finite or not in this order.
+    pub fn refill(
+        places: [DVec2; 2],
+        velocity: DVec2,
+        times: SampleTimes,
+        seed: u64,
+    ) -> Result<Self, ParameterError> {
+        Self::of(places, Source::TakenOut { velocity, kind: None }, times, seed)
+    }
+
+    /// Returns the same inlet for disks of this kind, whatever kind they had.
+    #[must_use]
+    pub fn with_kind(mut self, new: Kind) -> Self {
+        match &mut self.source {
+            Source::New(models) => models.iter_mut().for_each(|model| *model = model.with_kind(new)),
+            Source::TakenOut { kind, .. } => *kind = Some(new),
+        }
+        self
+    }
+
+    /// Returns the number of disks that wait for room, or for the next time.
+    pub fn waiting(&self) -> usize {
+        self.waiting.len()
+    }
+
+    /// Returns the corners of the rectangle.
+    pub const fn places(&self) -> [DVec2; 2] {
+        self.places
+    }
+
+    fn of(places: [DVec2; 2], source: Source, times: SampleTimes, seed: u64) -> Result<Self, ParameterError> {
+        let generator = Xoshiro256PlusPlus::seed_from_u64(seed);
+        Self { places, source, times, generator, waiting: VecDeque::new() }.checked()
+    }
+
+    fn checked(self) -> Result<Self, ParameterError> {
+        let [low, high] = self.places;
+        for (from, to) in [(low.x, high.x), (low.y, high.y)] {
+            finite("place of an inlet", from)?;
+            accept(to.is_finite() && to >= from, "end of an inlet", "finite, and not before its start", to)?;
+        }
+        match &self.source {
+            Source::New(models) => {
+                let count = models.len();
+                accept(count > 0, "number of models of an inlet", "positive", count as f64)?;
+            }
+            Source::TakenOut { velocity, .. } => {
+                Disk::new(DVec2::ZERO, 1.0)?.with_velocity(*velocity)?;
+            }
+        }
+        Ok(self)
+    }
+
+    /// Returns the disks of which copies come in.
+    pub(super) fn models(&self) -> &[Disk] {
+        if let Source::New(models) = &self.source { models } else { &[] }
+    }
+
+    /// Tells whether the inlet puts back what sinks take out.
+    pub(super) fn takes_back(&self) -> bool {
+        matches!(self.source, Source::TakenOut { .. })
+    }
+
+    /// Takes a disk that a sink has taken out.
+    pub(super) fn take_back(&mut self, gone: &Disk) {
+        if let Source::TakenOut { velocity, kind } = self.source {
+            let model = Disk::at_rest(gone.radius(), gone.mass(), gone.inertia_factor(), gone.kind());
+            let model = model.with_kind(kind.unwrap_or(gone.kind()));
+            self.waiting.extend(model.with_velocity(velocity));
+        }
+    }
+
+    /// Begins to let disks in at this time, and goes on to the next one.
+    pub(super) fn open(&mut self, time: f64) {
+        self.times.advance_past(time);
+        if let Source::New(models) = &self.source {
+            let drawn = (uniform(&mut self.generator) * models.len() as f64) as usize;
+            self.waiting.extend(models.get(drawn));
+        }
+    }
+
+    /// Returns a disk at a random place of the inlet, as one that has no id yet.
+    pub(super) fn placed(&mut self, disk: &Disk) -> Option<Disk> {
+        let [low, high] = self.places;
+        let mut along = |low: f64, high: f64| low + (high - low) * uniform(&mut self.generator);
+        let place = DVec2::new(along(low.x, high.x), along(low.y, high.y));
+        disk.with_image([0; 2]).identified(0).with_position(place).ok()
+    }
+}

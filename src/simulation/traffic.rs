@@ -1,0 +1,180 @@
+//! Disks that come and go during a run, one at a time.
+//!
+//! A removal or an insertion takes the same time however many disks there are. The last disk gets the index
+//! of the one that leaves, so no other index changes. Predictions of others that name one of the two are out
+//! of date: their count of collisions is not that of the disk which has this index now. They are made anew
+//! when they come up, like those with a partner that has collided meanwhile.
+
+use super::builder::check_speeds;
+use super::errors::{BuildError, Outcome, RunError};
+use super::{Inlet, Simulation};
+use crate::Disk;
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::quantity::accept;
+use crate::scheduler::EventScheduler;
+
+/// Number of places that an inlet tries for a disk each time it opens.
+const TRIES: u32 = 32;
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
+    /// Adds an inlet, which lets disks in from now on.
+    ///
+    /// At equal times, it does so after all events of disks and before a sample. Inlets take turns in the
+    /// order in which they were added.
+    ///
+    /// # Errors
+    /// If the inlet is not in the domain, or a model does not fit into the boundary, just fills a hollow of a
+    /// wall, or moves at a speed below 1e-100. The simulation then stays as it was.
+    pub fn add_inlet(&mut self, mut inlet: Inlet) -> Result<(), BuildError> {
+        let domain = self.boundary.domain();
+        for place in inlet.places() {
+            let is_inside = (domain.left..=domain.right).contains(&place.x);
+            accept(is_inside, "place of an inlet", "within the sides of the domain", place.x)?;
+            let is_inside = (domain.bottom..=domain.top).contains(&place.y);
+            accept(is_inside, "place of an inlet", "within the ends of the domain", place.y)?;
+        }
+        check_speeds(inlet.models())?;
+        for (disk, model) in inlet.models().iter().enumerate() {
+            if let Some(wall) = self.boundary.tight_fit(model.radius()) {
+                let wall = self.boundary.wall_name(wall).into_owned();
+                return Err(BuildError::TightFit { disk, radius: model.radius(), wall });
+            }
+        }
+        let diameter = 2.0 * inlet.models().iter().map(Disk::radius).fold(0.0, f64::max);
+        if diameter > 0.0 && !self.make_cells_suit(diameter) {
+            let (width, height) = (domain.width(), domain.height());
+            return Err(BuildError::DomainTooSmall { width, height, diameter });
+        }
+        inlet.times.start_at(self.time());
+        self.inlets.push(inlet);
+        self.reset_scheduler();
+        Ok(())
+    }
+
+    /// Returns the inlets, in the order in which they were added.
+    pub fn inlets(&self) -> &[Inlet] {
+        &self.inlets
+    }
+
+    /// Takes all inlets away, and returns them with the disks that wait.
+    pub fn remove_inlets(&mut self) -> Vec<Inlet> {
+        std::mem::take(&mut self.inlets)
+    }
+
+    /// Returns the absolute time at which an inlet opens next; infinite without inlets.
+    pub(super) fn next_opening(&self) -> Outcome<f64> {
+        let mut next = f64::INFINITY;
+        for opening in self.inlets.iter().map(|inlet| inlet.times.upcoming()) {
+            if opening.is_nan() {
+                return Err(RunError::SampleTime { next: opening, time: self.time() }.into());
+            }
+            next = next.min(opening);
+        }
+        Ok(next)
+    }
+
+    /// Opens all inlets whose absolute time this is.
+    pub(super) fn open_inlets(&mut self, time: f64) -> Outcome<()> {
+        for number in 0..self.inlets.len() {
+            if self.inlets[number].times.upcoming() > time {
+                continue;
+            }
+            self.inlets[number].open(time);
+            while let Some(disk) = self.inlets[number].waiting.front().copied()
+                && let Some(placed) = self.place_for(number, &disk)
+            {
+                self.put_in(&placed)?;
+                self.inlets[number].waiting.pop_front();
+                self.counters.insertions += 1;
+            }
+        }
+        Ok(())
+    }
+
+    /// Finds room for a disk at an inlet.
+    fn place_for(&mut self, inlet: usize, disk: &Disk) -> Option<Disk> {
+        if self.len() >= crate::disk::MOST_DISKS || !self.make_cells_suit(2.0 * disk.radius()) {
+            return None;
+        }
+        (0..TRIES).find_map(|_| {
+            let placed = self.inlets[inlet].placed(disk)?;
+            self.has_room(&placed).then_some(placed)
+        })
+    }
+
+    fn has_room(&mut self, disk: &Disk) -> bool {
+        let (position, radius, now) = (disk.position(), disk.radius(), self.clock.now);
+        let found = &mut self.scratch.found;
+        let count = self.cells.near(position, 2.0 * radius, found);
+        let domain = self.boundary.domain();
+        let is_free = |other: usize| {
+            let apart = domain.separation(position, self.bodies.position(other, now)).length();
+            apart >= radius + self.bodies.radius(other)
+        };
+        found[..count].iter().all(|&other| is_free(other as usize))
+            && self.boundary.overlap(position, radius, now).is_none()
+    }
+
+    /// Gives a disk that a sink took out to the inlet that puts such disks back.
+    pub(super) fn take_back(&mut self, gone: &Disk) {
+        let inlets = self.inlets.iter_mut().filter(|inlet| inlet.takes_back());
+        if let Some(inlet) = inlets.min_by_key(|inlet| inlet.waiting()) {
+            inlet.take_back(gone);
+        }
+    }
+
+    /// Takes a disk out. The last one gets its index.
+    pub(super) fn take_out(&mut self, disk: usize) {
+        let last = self.len() - 1;
+        self.cells.take_out(disk);
+        self.bodies.swap_remove(disk);
+        self.lookahead.forget();
+        self.make_room();
+        self.scheduler.set(last, f64::INFINITY);
+        if disk != last {
+            self.schedule(disk);
+        }
+        self.keep_cells_suitable();
+    }
+
+    /// Puts a disk in where there is room for it, into cells that suit it.
+    fn put_in(&mut self, disk: &Disk) -> Outcome<()> {
+        // The place of a disk at an epoch long ago would lack digits, and so would that of a fast one.
+        if self.clock.now > self.clock.epoch_length {
+            self.move_epoch(self.clock.now)?;
+        }
+        let velocity = disk.velocity() - self.bodies.fall(self.clock.now).1;
+        if self.is_empty() {
+            self.bodies.typical_diameter = 2.0 * disk.radius();
+        }
+        if self.is_empty() || !self.bodies.keeps_pace(velocity, self.clock.epoch_length) {
+            self.begin_epoch_at(std::iter::once(velocity))?;
+        }
+        let new = self.len();
+        self.bodies.push_disk(disk, self.clock.now);
+        self.cells.put_in(disk.position(), 2.0 * disk.radius());
+        self.make_room();
+        self.find_next(new);
+        if new < self.scratch.seats {
+            self.schedule(new)
+        } else {
+            self.reset_scheduler()
+        }
+        self.keep_cells_suitable();
+        Ok(())
+    }
+
+    /// Makes new cells if these do not suit disks of this diameter. Tells whether the domain has room for
+    /// such disks.
+    fn make_cells_suit(&mut self, diameter: f64) -> bool {
+        self.cells.suit(diameter) || self.renew_cells(self.cells.grid().cell_size(), Some(diameter))
+    }
+
+    /// Makes new cells if there are far more or far fewer disks than these suit.
+    fn keep_cells_suitable(&mut self) {
+        if self.cells.are_outgrown() {
+            self.renew_cells(self.cells.grid().cell_size(), None);
+        }
+    }
+}
