@@ -38,6 +38,7 @@
 //! | [`TimeCorrelation`] | correlation function of an observable in time, of velocities for example |
 //! | [`TransportCoefficients`] | shear and bulk viscosity, thermal conductivity |
 //! | [`Stress`] | stress tensor of the disks, kinetic and collisional |
+//! | [`Arrivals`] | disks that come to walls, by time: the flow into a sink |
 //! | [`WallStress`] | pressure and shear stress on walls |
 //! | [`CollisionHistograms`] | histograms of obliqueness, closing speed and impulse |
 //! | [`OfKind`], [`BetweenKinds`] | what another observer keeps, for one kind or for collisions of two |
@@ -97,6 +98,7 @@
 //! the resumed run, they have the same bits in the end as in a run without interruption. Text formats may
 //! lose bits: JSON has no NaN, and its reader must round correctly (serde_json's `float_roundtrip`).
 
+mod arrivals;
 mod by_kind;
 mod center_of_mass;
 mod collision_counts;
@@ -134,6 +136,8 @@ mod transport;
 mod velocity_distribution;
 mod wall_stress;
 
+#[doc(alias("flow", "flux", "discharge"))]
+pub use arrivals::Arrivals;
 pub use by_kind::{BetweenKinds, OfKind};
 pub use center_of_mass::CenterOfMass;
 #[doc(alias("collision rate", "collision frequency"))]

@@ -35,3 +35,4 @@ mod slopes;
 mod steps;
 mod stopping;
 mod thermal;
+mod traffic;

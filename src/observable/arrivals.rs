@@ -1,0 +1,129 @@
+//! The arrivals of disks at walls.
+
+use super::stretch::Stretch;
+use super::table::Table;
+use super::wall_stress::check_wall;
+use super::{Collision, Heading, Moment, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
+use crate::ParameterError;
+use crate::statistics::{Estimate, block_average};
+
+/// An observer that counts the disks that arrive at some walls, over intervals of time: the flow into a sink.
+///
+/// The rate of an interval of length $`\Delta t`$ with $`n`$ arrivals is $`n/\Delta t`$. An interval counts
+/// only if it was watched from its start to its end. At a wall that is no sink, each bounce is an arrival. In
+/// an [`OfKind`](super::OfKind), only disks of one kind count.
+///
+/// ```
+/// use granular_edmd::observable::Arrivals;
+/// use granular_edmd::prelude::*;
+///
+/// let exit = Part::polyline([(-1.0, 1.0), (5.0, 1.0)].map(DVec2::from))?.absorbing_centers();
+/// let vessel = Vessel::new(Container::open(4.0)?).with("exit", exit)?;
+/// // The centers come to the line every 1/4.
+/// let grain = |k: f64| Disk::new(DVec2::new(2.0, 1.5 + k), 0.4)?.with_velocity(DVec2::new(0.0, -4.0));
+/// let grains = (0..40).map(|k| grain(f64::from(k))).collect::<Result<Vec<_>, _>>()?;
+/// let mut flow = Arrivals::at(vessel.walls("exit").unwrap(), SampleTimes::every(1.0)?);
+/// Simulation::builder(Elastic, vessel).disks(grains).build()?.run_until(10.0, &mut flow)?;
+/// assert_eq!(flow.counts(), [4; 10]);
+/// assert_eq!(flow.rate()?.mean(), 4.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct Arrivals {
+    walls: Vec<usize>,
+    stretch: Stretch,
+    present: u64,
+    times: Vec<f64>,
+    counts: Vec<u64>,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    fault: Option<ParameterError>,
+}
+
+impl Arrivals {
+    /// Creates an observer of these walls with the intervals of this clock.
+    ///
+    /// A run with a boundary that has no such wall ends with an error.
+    pub fn at(walls: impl IntoIterator<Item = usize>, times: SampleTimes) -> Self {
+        let (walls, stretch) = (walls.into_iter().collect(), Stretch::new(times));
+        Self { walls, stretch, present: 0, times: Vec::new(), counts: Vec::new(), fault: None }
+    }
+
+    /// Returns the ends of the intervals.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Returns the number of arrivals in each interval.
+    pub fn counts(&self) -> &[u64] {
+        &self.counts
+    }
+
+    /// Returns the mean number of arrivals for each unit of time, with its error.
+    ///
+    /// # Errors
+    /// If no interval is complete yet.
+    pub fn rate(&self) -> Result<Estimate, ParameterError> {
+        block_average(&self.rates().collect::<Vec<_>>())
+    }
+
+    /// Forgets all arrivals.
+    pub fn clear(&mut self) {
+        self.times.clear();
+        self.counts.clear();
+        self.present = 0;
+    }
+
+    fn rates(&self) -> impl Iterator<Item = f64> {
+        self.counts.iter().map(|&count| count as f64 / self.stretch.sample_times.interval())
+    }
+}
+
+impl Observer for Arrivals {
+    fn on_start(&mut self, moment: &Moment) {
+        self.fault = self.walls.iter().find_map(|&wall| check_wall(wall, moment).err());
+        if self.stretch.begin(moment.time()) {
+            self.present = 0;
+        }
+    }
+
+    #[inline]
+    fn on_collision(&mut self, collision: &Collision) {
+        let Partner::Wall(wall) = collision.partner else { return };
+        self.present += u64::from(self.walls.contains(&wall));
+    }
+
+    fn next_sample(&self) -> f64 {
+        self.stretch.sample_times.upcoming()
+    }
+
+    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
+        let count = std::mem::take(&mut self.present);
+        if self.stretch.finish(snapshot.time()).is_some() {
+            self.times.push(snapshot.time());
+            self.counts.push(count);
+        }
+    }
+
+    fn on_end(&mut self, moment: &Moment) {
+        self.stretch.pause(moment.time());
+    }
+
+    #[inline]
+    fn verdict(&mut self) -> Verdict {
+        contract::verdict(&mut self.fault)
+    }
+}
+
+/// The columns are the end of each interval, the number of arrivals in it, and their rate.
+impl Table for Arrivals {
+    fn headings(&self) -> Vec<Heading> {
+        [("time", "time"), ("arrivals", "1"), ("rate", "1/time")].map(Heading::from).into()
+    }
+
+    fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
+        let counts = self.counts.iter().map(|&count| count as f64);
+        let rows = self.times.iter().zip(counts).zip(self.rates());
+        Box::new(rows.map(|((&time, count), rate)| vec![time, count, rate]))
+    }
+}

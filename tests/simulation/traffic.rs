@@ -1,0 +1,261 @@
+//! Disks that come and go during runs: sinks and inlets.
+
+use std::collections::BTreeSet;
+
+use granular_edmd::boundary::{Container, Part, Vessel, Wall, laws};
+use granular_edmd::collision::{Elastic, Frictional, LeastRebound};
+use granular_edmd::glam::DVec2;
+use granular_edmd::initial;
+use granular_edmd::observable::{Arrivals, OfKind, SampleTimes};
+#[cfg(feature = "serde")]
+use granular_edmd::simulation::Checkpoint;
+use granular_edmd::simulation::Inlet;
+use granular_edmd::{Disk, Kind, Simulation};
+
+use crate::schedulers::{SCHEDULERS, Scheduler};
+
+type Silo = Simulation<LeastRebound<Frictional>, Vessel, Scheduler>;
+
+fn line(y: f64, width: f64) -> Part {
+    Part::polyline([DVec2::new(-1.0, y), DVec2::new(width + 1.0, y)]).unwrap()
+}
+
+fn rule() -> LeastRebound<Frictional> {
+    LeastRebound::new(Frictional::from_inelasticity(0.1, 0.1, 0.4).unwrap(), 0.2).unwrap()
+}
+
+/// Returns a silo with an outlet and a sink below it.
+fn vessel(width: f64, outlet: f64) -> Vessel {
+    let half = |side: f64| {
+        let x = |away: f64| 0.5 * width + side * away;
+        Part::polyline([DVec2::new(x(0.5 * outlet), 4.0), DVec2::new(x(0.5 * width + 1.0), 4.0)])
+    };
+    Vessel::new(Container::open(width).unwrap())
+        .with("left half", half(-1.0).unwrap())
+        .and_then(|vessel| vessel.with("right half", half(1.0)?))
+        .and_then(|vessel| vessel.with("exit", line(1.0, width).absorbing_centers()))
+        .unwrap()
+}
+
+/// Returns a silo whose grains, of three sizes and two kinds, come back above when they have left.
+fn silo(width: f64, rows: usize, scheduler: Scheduler) -> Silo {
+    let columns = width as usize;
+    let grain = |k: usize| {
+        let place = DVec2::new(0.5 + (k % columns) as f64, 5.0 + (k / columns) as f64);
+        let moving = DVec2::new(0.1 * libm::sin(k as f64), 0.0);
+        let grain = Disk::new(place, [0.3, 0.4, 0.45][k % 3]).unwrap();
+        grain.with_kind(Kind::new(u16::from(k % 3 == 2))).with_velocity(moving).unwrap()
+    };
+    let builder = Simulation::builder(rule(), vessel(width, 4.0)).gravity(1.0).scheduler(scheduler);
+    let mut silo = builder.disks((0..columns * rows).map(grain)).build().unwrap();
+    let top = 8.0 + rows as f64;
+    let places = [DVec2::new(1.0, top), DVec2::new(width - 1.0, top + 6.0)];
+    let times = SampleTimes::every(0.25).unwrap();
+    silo.add_inlet(Inlet::refill(places, DVec2::new(0.0, -2.0), times, 5).unwrap()).unwrap();
+    silo
+}
+
+/// Checks that no grain is lost, doubled or in another: by numbers, masses, ids and distances.
+fn check_balance(silo: &Silo, grains: usize, mass: f64) {
+    let (inside, counters) = (silo.disks(), silo.counters());
+    let waiting = silo.inlets()[0].waiting();
+    assert_eq!(inside.len() + waiting, grains);
+    assert_eq!(counters.removals - counters.insertions, waiting as u64);
+    let ids: BTreeSet<u64> = inside.iter().map(Disk::id).collect();
+    assert_eq!(ids.len(), inside.len(), "ids are unique");
+    assert!(*ids.last().unwrap() <= grains as u64 + counters.insertions);
+    if waiting == 0 {
+        let now: f64 = inside.iter().map(Disk::mass).sum();
+        assert!((now - mass).abs() < 1e-9 * mass, "{now} {mass}");
+    }
+    assert_eq!(deepest(&inside), 0.0);
+}
+
+/// Returns the depth of the deepest overlap, by brute force; 0 for rounding.
+fn deepest(disks: &[Disk]) -> f64 {
+    let depth = |a: &Disk, b: &Disk| a.radius() + b.radius() - a.position().distance(b.position());
+    let all = disks.iter().enumerate();
+    let deepest = all.flat_map(|(k, a)| disks[k + 1..].iter().map(move |b| depth(a, b))).fold(0.0, f64::max);
+    if deepest < 1e-9 { 0.0 } else { deepest }
+}
+
+/// Runs a silo for so many removals, in looks of this duration.
+fn refilled(mut silo: Silo, removals: u64, look: f64) -> Silo {
+    let (grains, mass) = (silo.len(), silo.disks().iter().map(Disk::mass).sum());
+    let mut memory = Vec::new();
+    while silo.counters().removals < removals {
+        silo.run_until(silo.time() + look, &mut ()).unwrap();
+        check_balance(&silo, grains, mass);
+        let footprint = silo.footprint();
+        memory.push(footprint.bytes_per_disk * silo.len() as f64);
+    }
+    let (first, most) = (memory[memory.len() / 4], memory.iter().copied().fold(0.0, f64::max));
+    assert!(most <= 2.0 * first, "the memory is bounded: {first} {most}");
+    silo
+}
+
+#[test]
+fn a_silo_that_is_refilled_keeps_ids_numbers_and_mass() {
+    let silo = refilled(silo(12.0, 8, SCHEDULERS[0]()), 3000, 20.0);
+    assert!(silo.counters().max_overlap < 1e-9);
+}
+
+#[test]
+#[ignore = "long: an hour"]
+fn a_silo_of_a_thousand_is_refilled_a_million_times() {
+    let started = std::time::Instant::now();
+    let silo = refilled(silo(25.0, 40, SCHEDULERS[0]()), 1_000_000, 1000.0);
+    let (counters, footprint) = (silo.counters(), silo.footprint());
+    println!("{counters:?}\n{footprint:?}\n{:.0} s", started.elapsed().as_secs_f64());
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn the_bits_are_those_of_every_scheduler_checkpoint_and_cut() {
+    let mut whole = silo(12.0, 8, SCHEDULERS[0]());
+    whole.run_until(60.0, &mut ()).unwrap();
+    assert!(whole.counters().removals > 200);
+    for (number, scheduler) in SCHEDULERS.iter().enumerate() {
+        let mut cut = silo(12.0, 8, scheduler());
+        for piece in 1..=60 {
+            let end = f64::from(piece);
+            if number == 0 {
+                while cut.step_until(end, &mut ()).unwrap().is_some() {}
+            } else {
+                cut.run_until(end, &mut ()).unwrap();
+            }
+            if piece % 7 == 3 {
+                let bytes = cut.checkpoint().to_bytes().unwrap();
+                let checkpoint = Checkpoint::from_bytes(&bytes).unwrap();
+                let next = SCHEDULERS[(number + piece as usize) % SCHEDULERS.len()];
+                let resumed = Simulation::resume(&checkpoint, rule(), vessel(12.0, 4.0)).scheduler(next());
+                cut = resumed.build().unwrap();
+                assert_eq!(cut.checkpoint().to_bytes().unwrap(), bytes);
+            }
+        }
+        assert_eq!(cut.disks(), whole.disks());
+        assert_eq!(cut.counters(), whole.counters());
+        assert_eq!(cut.inlets(), whole.inlets());
+    }
+}
+
+/// Disks of very different sizes come and go through all layers of cells, where sides are periodic, too.
+#[test]
+fn large_and_small_disks_come_and_go() {
+    for is_periodic in [false, true] {
+        let container = Container::closed(40.0, 40.0).unwrap().with_absorbing(Wall::Floor).unwrap();
+        let container = if is_periodic { container.with_periodic_sides().unwrap() } else { container };
+        let model = |k: u32| {
+            let radius = [0.2, 0.25, 3.0, 0.2, 1.0][k as usize % 5];
+            let speed = DVec2::new(f64::from(k % 7) - 3.0, -1.0);
+            Disk::new(DVec2::ZERO, radius).unwrap().with_velocity(speed).unwrap()
+        };
+        let mut run = Simulation::builder(Elastic, container).gravity(0.1).build().unwrap();
+        for (y, interval) in [(20.0, 0.03), (36.0, 0.05)] {
+            let places = [DVec2::new(3.5, y), DVec2::new(36.5, y + 0.5)];
+            let times = SampleTimes::every(interval).unwrap();
+            run.add_inlet(Inlet::new(places, (0..35).map(model), times, 8).unwrap()).unwrap();
+        }
+        for piece in 1..=30 {
+            run.run_until(2.0 * f64::from(piece), &mut ()).unwrap();
+            assert_eq!(deepest(&run.disks()), 0.0);
+        }
+        let counters = run.counters();
+        assert!(counters.removals > 150 && run.len() > 50, "{} {}", counters.removals, run.len());
+        assert_eq!(counters.insertions - counters.removals, run.len() as u64);
+        // The inlets go, and all disks fall out.
+        assert_eq!(run.remove_inlets().len(), 2);
+        run.run_until(2000.0, &mut ()).unwrap();
+        assert!(run.is_empty());
+    }
+}
+
+/// By time t, an ideal gas at rest loses n √(T/2πm) t disks for each length of an absorbing wall.
+#[test]
+fn an_absorbing_wall_takes_the_flux_of_kinetic_theory() {
+    const COUNT: usize = 10_000;
+    let container = Container::closed(100.0, 100.0).unwrap().with_absorbing(Wall::Right).unwrap();
+    let disks = initial::random(&container, COUNT, 1e-3, 100.0, 2).unwrap();
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 3).unwrap();
+    let mut run = Simulation::builder(Elastic, container).disks(disks).build().unwrap();
+    let right = run.boundary().index(Wall::Right);
+    let mut flow = Arrivals::at(right, SampleTimes::every(5.0).unwrap());
+    run.run_until(10.0, &mut flow).unwrap();
+    let lost = COUNT - run.len();
+    assert_eq!(flow.counts().iter().sum::<u64>(), lost as u64);
+    // Of 399 disks, the standard deviation is 20; the bound is five of them.
+    let expected = COUNT as f64 / 100.0 * (1.0 / std::f64::consts::TAU).sqrt() * 10.0;
+    assert!((lost as f64 - expected).abs() < 100.0, "{lost} {expected}");
+}
+
+#[test]
+fn kinds_are_counted_apart_and_a_sink_receives_all_of_the_momentum() {
+    let mut silo = silo(12.0, 8, SCHEDULERS[0]());
+    let walls = silo.boundary().walls("exit").unwrap();
+    let count = |kind| OfKind::new(kind, Arrivals::at(walls.clone(), SampleTimes::every(1.0).unwrap()));
+    let mut flows = (count(Kind::new(0)), count(Kind::new(1)));
+    let mut received = DVec2::ZERO;
+    let mut sum =
+        granular_edmd::observable::on_collision(|collision: &granular_edmd::observable::Collision| {
+            if collision.partner == granular_edmd::observable::Partner::Wall(walls.start) {
+                received += collision.impulse.normal() * collision.normal;
+            }
+        });
+    silo.run_until(40.0, &mut (&mut flows, &mut sum)).unwrap();
+    let sums: [u64; 2] = [flows.0.inner(), flows.1.inner()].map(|flow| flow.counts().iter().sum());
+    assert_eq!(sums[0] + sums[1], silo.counters().removals);
+    // A third of the grains are of the second kind.
+    assert!(sums[0] > sums[1] && sums[1] > 20, "{sums:?}");
+    assert!(flows.0.inner().rate().unwrap().mean() > 1.0);
+    // Grains fall onto the line from above, so its impulses on them point upward.
+    assert!(received.y > 2.0 * silo.counters().removals as f64 * 0.1);
+}
+
+/// A part takes disks out at the touch, or when the center arrives.
+#[test]
+fn a_sink_takes_disks_at_the_touch_or_by_their_centers() {
+    for (part, times) in
+        [(line(3.0, 8.0).absorbing(), [2.5, 2.75]), (line(3.0, 8.0).absorbing_centers(), [3.0; 2])]
+    {
+        let mut vessel = Vessel::new(Container::closed(8.0, 20.0).unwrap()).with("sink", part).unwrap();
+        laws::check(&mut vessel, 0.25, 1.0, 3).unwrap();
+        let disk = |x: f64, radius: f64| Disk::new(DVec2::new(x, 6.0), radius).unwrap();
+        let disks = [disk(2.0, 0.5), disk(5.0, 0.25)].map(|disk| disk.with_velocity(DVec2::NEG_Y).unwrap());
+        let mut run = Simulation::builder(Elastic, vessel).disks(disks).build().unwrap();
+        for (left, time) in [2, 1].into_iter().zip(times) {
+            run.run_until(time - 1e-9, &mut ()).unwrap();
+            assert!(run.len() >= left - usize::from(times[0] == times[1]) && run.len() > 0);
+            run.run_until(time, &mut ()).unwrap();
+        }
+        assert!(run.is_empty());
+        run.run_until(1e6, &mut ()).unwrap();
+    }
+}
+
+#[test]
+fn what_an_inlet_cannot_do_is_an_error() {
+    let container = Container::closed(8.0, 8.0).unwrap();
+    let mut run = Simulation::builder(Elastic, container).build().unwrap();
+    let places = |x: f64, y: f64| [DVec2::new(1.0, 1.0), DVec2::new(x, y)];
+    let times = SampleTimes::every(1.0).unwrap();
+    let inlet = |places| Inlet::refill(places, DVec2::ZERO, times, 0);
+    assert!(inlet(places(0.5, 2.0)).is_err());
+    assert!(inlet(places(f64::NAN, 2.0)).is_err());
+    assert!(Inlet::new(places(2.0, 2.0), [], times, 0).is_err());
+    assert!(Inlet::refill(places(2.0, 2.0), DVec2::NAN, times, 0).is_err());
+    let error = run.add_inlet(inlet(places(2.0, 9.0)).unwrap()).unwrap_err();
+    assert_eq!(error.to_string(), "place of an inlet must be within the ends of the domain, but is 9");
+    let slow = Disk::new(DVec2::ZERO, 0.5).unwrap().with_velocity(DVec2::splat(1e-200)).unwrap();
+    assert!(run.add_inlet(Inlet::new(places(2.0, 2.0), [slow], times, 0).unwrap()).is_err());
+    // Where there is no room, disks wait.
+    let large = Disk::new(DVec2::ZERO, 3.0).unwrap();
+    run.add_inlet(Inlet::new(places(7.0, 7.0), [large], times, 0).unwrap()).unwrap();
+    run.run_until(10.0, &mut ()).unwrap();
+    assert_eq!((run.len(), run.inlets()[0].waiting()), (1, 9));
+    // Late times are too coarse for an inlet that opens so often.
+    let container = Container::closed(8.0, 8.0).unwrap();
+    let mut late = Simulation::builder(Elastic, container).start_time(1e15).build().unwrap();
+    late.add_inlet(Inlet::new(places(7.0, 7.0), [large], SampleTimes::every(0.5).unwrap(), 0).unwrap())
+        .unwrap();
+    assert!(late.run_until(1e15 + 10.0, &mut ()).is_err());
+}
