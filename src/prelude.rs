@@ -14,13 +14,14 @@ pub use crate::collision::{
 pub use crate::glam::DVec2;
 pub use crate::initial::{self, Radii};
 pub use crate::observable::{
-    BetweenKinds, CenterOfMass, Collision, CollisionCounts, Energies, EnergyChange, Fields, Grid, Moment,
-    Observable, Observer, OfKind, OrderParameters, Partner, SampleTimes, Sampled, Series, Snapshot, Table,
-    Tabular, Temperatures, Verdict, on_collision, on_sample, stop_when, stop_when_sampled,
+    Arrivals, BetweenKinds, CenterOfMass, Collision, CollisionCounts, Energies, EnergyChange, Fields, Grid,
+    Moment, Observable, Observer, OfKind, OrderParameters, Partner, SampleTimes, Sampled, Series, Snapshot,
+    Table, Tabular, Temperatures, Verdict, on_collision, on_sample, stop_when, stop_when_sampled,
 };
 pub use crate::scheduler::EventScheduler;
 pub use crate::simulation::{
-    BoxedBoundary, BoxedRule, BoxedScheduler, BoxedSimulation, Event, Limits, RunEnd, RunError, Simulation,
+    BoxedBoundary, BoxedRule, BoxedScheduler, BoxedSimulation, Event, Inlet, Limits, RunEnd, RunError,
+    Simulation,
 };
 pub use crate::statistics::Estimate;
 pub use crate::trajectory::{ExtendedXyz, LammpsDump, Recorder};

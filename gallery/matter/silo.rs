@@ -1,7 +1,8 @@
 //! A silo: how fast grains flow through an outlet, over its width.
 //!
-//! 600 grains stand on the floor of a silo, with an outlet that is shut by a gate. The gate is taken out, and
-//! grains that have left are put in again on top, so that the flow goes on at a constant filling. In two
+//! 600 grains stand on the floor of a silo, with an outlet that is shut by a gate. The gate is taken out. A
+//! sink below takes the grains out that have left, and an inlet puts them in again on top, so that the flow
+//! goes on at a constant filling. In two
 //! dimensions, Beverloo's law says `W = C √g (D - kd)^{3/2}` for an outlet of width `D` and grains of
 //! diameter `d`.
 //!
@@ -64,10 +65,12 @@ const BEGIN: f64 = 20.0;
 /// Time between two refills.
 const REFILL: f64 = 0.25;
 
-/// Height at which grains are put in again, their distance there, and their speed.
-const TOP: f64 = 36.0;
-const PITCH: f64 = 1.1;
+/// Heights between which grains are put in again, and their speed.
+const TOP: [f64; 2] = [36.0, 38.0];
 const FALL: f64 = 2.0;
+
+/// Number of intervals in which the grains that leave are counted.
+const INTERVALS: f64 = 40.0;
 
 /// Time after the gate opens at which the picture is taken.
 const SHOT: f64 = 6.0;
@@ -86,7 +89,7 @@ const LEAST: f64 = 0.05;
 struct Flow {
     outlet: f64,
     /// Grains for each unit of time.
-    rate: f64,
+    rate: Estimate,
     shot: Vec<Disk>,
 }
 
@@ -111,7 +114,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut flows = Vec::new();
     for &outlet in &arguments.outlets {
         let flow = measured(arguments, outlet).map_err(Failure::run)?;
-        gallery::say!("outlet {outlet}: {:.2} grains for each unit of time", flow.rate);
+        gallery::say!("outlet {outlet}: {} grains for each unit of time", flow.rate);
         flows.push(flow);
     }
     let law = Law::of(&flows);
@@ -125,10 +128,12 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn silo(outlet: f64) -> Result<Vessel, Box<dyn Error>> {
     let (from, to) = (0.5 * (WIDTH - outlet), 0.5 * (WIDTH + outlet));
     let floor = |from: f64, to: f64| Part::polyline([DVec2::new(from, FLOOR), DVec2::new(to, FLOOR)]);
+    let exit = Part::polyline([DVec2::new(-1.0, EXIT), DVec2::new(WIDTH + 1.0, EXIT)])?;
     let gate = [(0.0, 0.0), (WIDTH, 0.0), (WIDTH, FLOOR), (0.0, FLOOR)].map(DVec2::from);
     Ok(Vessel::new(Container::open(WIDTH)?)
         .with("left half of the silo's floor", floor(-1.0, from)?)?
         .with("right half of the silo's floor", floor(to, WIDTH + 1.0)?)?
+        .with("exit", exit.absorbing_centers())?
         .with("gate", Part::block(gate)?)?)
 }
 
@@ -150,51 +155,24 @@ fn measured(arguments: &Arguments, outlet: f64) -> Result<Flow, Box<dyn Error>> 
     run.insert(settled.into_iter().map(layer))?;
     vessel.remove("gate")?;
     run.set_boundary(vessel)?;
-    let (mut outside, mut left, mut shot) = (Vec::new(), 0, Vec::new());
-    let refills = ((begin + time) / REFILL).ceil() as u32;
-    for refill in 1..=refills {
-        let elapsed = f64::from(refill) * REFILL;
-        run.run_until(SETTLE + elapsed, &mut progress)?;
-        let gone = refilled(&mut run, &mut outside)?;
-        left += if elapsed > begin { gone } else { 0 };
-        if shot.is_empty() && elapsed >= SHOT.min(begin + time) {
-            shot = run.disks();
-        }
-    }
+    let places = [DVec2::new(0.6, TOP[0]), DVec2::new(WIDTH - 0.6, TOP[1])];
+    let refill = Inlet::refill(places, DVec2::new(0.0, -FALL), SampleTimes::every(REFILL)?, arguments.seed)?;
+    run.add_inlet(refill.with_kind(AGAIN))?;
+    run.run_until(SETTLE + SHOT.min(begin), &mut progress)?;
+    let shot = run.disks();
+    run.run_until(SETTLE + begin, &mut progress)?;
+    let times = SampleTimes::every(time / INTERVALS)?.starting_at(run.time())?;
+    let mut flow = Arrivals::at(run.boundary().walls("exit").into_iter().flatten(), times);
+    run.run_until(SETTLE + begin + time, &mut (&mut flow, &mut progress))?;
     gallery::output::warn(&run.warnings());
-    let counted = f64::from(refills) * REFILL - (begin / REFILL).floor() * REFILL;
-    Ok(Flow { outlet, rate: left as f64 / counted, shot })
-}
-
-/// Takes out the grains that have left the silo, puts as many in again on top as find room there, and returns
-/// how many have left.
-fn refilled(run: &mut Run, outside: &mut Vec<Disk>) -> Result<usize, Box<dyn Error>> {
-    let gone = run.remove(|_, disk| disk.position().y < EXIT)?;
-    let count = gone.len();
-    outside.extend(gone);
-    let high: Vec<DVec2> =
-        run.disks().iter().map(Disk::position).filter(|place| place.y > TOP - 2.0).collect();
-    // Two rows, in an order that leaves no side out.
-    let columns = (WIDTH / PITCH) as usize;
-    let places = (0..2 * columns).map(|k| {
-        let column = (8 * k + run.counters().wall_collisions as usize) % columns;
-        DVec2::new(PITCH * (0.5 + column as f64), TOP + PITCH * (k / columns) as f64)
-    });
-    let mut again = Vec::new();
-    for place in places.filter(|place| high.iter().all(|other| other.distance(*place) >= 0.999 * PITCH)) {
-        let Some(disk) = outside.pop() else { break };
-        let falling = Disk::new(place, disk.radius())?.with_velocity(DVec2::new(0.0, -FALL))?;
-        again.push(falling.with_kind(AGAIN));
-    }
-    run.insert(again)?;
-    Ok(count)
+    Ok(Flow { outlet, rate: flow.rate()?, shot })
 }
 
 impl Law {
     /// Fits a line to `W^{2/3}` over `D`.
     fn of(flows: &[Flow]) -> Option<Self> {
         let points: Vec<(f64, f64)> =
-            flows.iter().map(|flow| (flow.outlet, flow.rate.powf(2.0 / 3.0))).collect();
+            flows.iter().map(|flow| (flow.outlet, flow.rate.mean().powf(2.0 / 3.0))).collect();
         let count = points.len() as f64;
         let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;
         let (x, y) = (mean(|point| point.0), mean(|point| point.1));
@@ -205,7 +183,7 @@ impl Law {
             return None;
         }
         let law = Self { prefactor: slope.powf(1.5), lost: x - y / slope, scatter: 0.0 };
-        let deviation = |flow: &Flow| (flow.rate / law.rate(flow.outlet) - 1.0).powi(2);
+        let deviation = |flow: &Flow| (flow.rate.mean() / law.rate(flow.outlet) - 1.0).powi(2);
         Some(Self { scatter: (flows.iter().map(deviation).sum::<f64>() / count).sqrt(), ..law })
     }
 
@@ -215,12 +193,12 @@ impl Law {
 }
 
 fn write(arguments: &Arguments, flows: &[Flow], law: Option<Law>) -> Result<(), Box<dyn Error>> {
-    let mut table = arguments.results.table("silo", &["outlet", "flow"])?;
+    let mut table = arguments.results.table("silo", &["outlet", "flow", "flow_error"])?;
     for flow in flows {
-        table.serialize((flow.outlet, flow.rate))?;
+        table.serialize((flow.outlet, flow.rate.mean(), flow.rate.standard_error()))?;
     }
     let picture = draw(flows, law)?;
-    let flows: Vec<_> = flows.iter().map(|flow| [flow.outlet, flow.rate]).collect();
+    let flows: Vec<_> = flows.iter().map(|flow| [flow.outlet, flow.rate.mean()]).collect();
     let law = law.map(|law| serde_json::json!({ "C": law.prefactor, "k": law.lost, "scatter": law.scatter }));
     arguments.results.finish("silo", table, &picture, &serde_json::json!({ "flows": flows, "law": law }))
 }
@@ -262,7 +240,7 @@ fn draw(flows: &[Flow], law: Option<Law>) -> Result<Sheet, Box<dyn Error>> {
 
 fn draw_flows(sheet: &mut Sheet, place: Place, flows: &[Flow], law: Option<Law>) {
     let widest = flows.iter().map(|flow| flow.outlet).fold(0.0, f64::max) + 1.0;
-    let fastest = 1.15 * flows.iter().map(|flow| flow.rate).fold(1.0, f64::max);
+    let fastest = 1.15 * flows.iter().map(|flow| flow.rate.mean()).fold(1.0, f64::max);
     let layout = panel::axes((0.0, widest), (0.0, fastest));
     let layout = layout.with_x_label("width D of the outlet, in diameters d");
     let layout = layout.with_y_label("flow W, in grains per √(d/g)");
@@ -271,7 +249,7 @@ fn draw_flows(sheet: &mut Sheet, place: Place, flows: &[Flow], law: Option<Law>)
         LAW.curve((0..=200).map(at).map(|outlet| (outlet, law.rate(outlet))))
     });
     let panel = sheet.panel(place, MARGINS, curve.into_iter().collect(), layout);
-    sheet.marks(&panel, MEASURED, flows.iter().map(|flow| (flow.outlet, flow.rate)));
+    sheet.marks(&panel, MEASURED, flows.iter().map(|flow| (flow.outlet, flow.rate.mean())));
     let text = law.map(|Law { prefactor, lost, scatter }| {
         format!("W = {prefactor:.2} (D − {lost:.2})¹·⁵, scatter {:.1} %", 100.0 * scatter)
     });

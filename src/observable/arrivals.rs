@@ -14,7 +14,6 @@ use crate::statistics::{Estimate, block_average};
 /// an [`OfKind`](super::OfKind), only disks of one kind count.
 ///
 /// ```
-/// use granular_edmd::observable::Arrivals;
 /// use granular_edmd::prelude::*;
 ///
 /// let exit = Part::polyline([(-1.0, 1.0), (5.0, 1.0)].map(DVec2::from))?.absorbing_centers();

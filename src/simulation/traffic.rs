@@ -157,9 +157,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.make_room();
         self.find_next(new);
         if new < self.scratch.seats {
-            self.schedule(new)
+            self.schedule(new);
         } else {
-            self.reset_scheduler()
+            self.reset_scheduler();
         }
         self.keep_cells_suitable();
         Ok(())

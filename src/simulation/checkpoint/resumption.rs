@@ -144,8 +144,9 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
 
 fn bodies_of(saved: &Saved) -> Bodies {
     let Saved { models, gravity, trajectories, forecasts, spins, images, identities, .. } = saved;
-    let population = (saved.typical_diameter, saved.fresh_count);
     let (spins, images, identities) = (spins.clone(), images.clone(), identities.clone());
     let gravity = Gravity::from(*gravity);
-    Bodies::restored(models, gravity, trajectories, forecasts, spins, images, identities, population)
+    let mut bodies = Bodies::restored(models, gravity, trajectories, forecasts, spins, images, identities);
+    (bodies.typical_diameter, bodies.fresh_count) = (saved.typical_diameter, saved.fresh_count);
+    bodies
 }

@@ -125,11 +125,11 @@ impl Bodies {
         spins: Vec<Spin>,
         images: Vec<[i32; 2]>,
         identities: Identities,
-        (typical_diameter, fresh_count): (f64, u32),
     ) -> Self {
         let particle = |(&trajectory, &forecast)| Particle { trajectory, forecast };
         let particles = trajectories.iter().zip(forecasts).map(particle).collect();
         let properties = Properties::of(models);
+        let typical_diameter = properties.typical_diameter();
         Self {
             particles,
             spins,
@@ -138,7 +138,7 @@ impl Bodies {
             images,
             typical_diameter,
             identities,
-            fresh_count,
+            fresh_count: 0,
             has_changed: true,
         }
     }
