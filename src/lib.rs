@@ -47,6 +47,7 @@
 //! | [`kinetic`] | ⟨dE⟩ by closed form and Monte Carlo, effective inelasticity; needs no simulation |
 //! | [`speed`] | reports of runs, standard states, comparisons of parts |
 //! | [`initial`] | initial states: lattices, random places, dense packings, radii |
+//! | [`replay`] | runs played back: any collision, and where two runs differ |
 //! | [`simulation`] | the engine: builder, event loop, checkpoints |
 //! | [`trajectory`] | files of disks, frame by frame, and readers |
 //! | [`observable`] | measures, and the times at which they are taken |
@@ -93,6 +94,7 @@ mod prefetch;
 pub mod prelude;
 pub mod quantity;
 mod random;
+pub mod replay;
 pub mod roots;
 pub mod scheduler;
 pub mod simulation;

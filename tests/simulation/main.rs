@@ -25,6 +25,7 @@ mod order;
 mod parting;
 mod periodic;
 mod population;
+mod replays;
 mod rest;
 #[cfg(feature = "serde")]
 mod resuming;

@@ -102,10 +102,10 @@ fn a_silo_that_is_refilled_keeps_ids_numbers_and_mass() {
 }
 
 #[test]
-#[ignore = "long: an hour"]
+#[ignore = "long: minutes"]
 fn a_silo_of_a_thousand_is_refilled_a_million_times() {
     let started = Instant::now();
-    let silo = refilled(silo(25.0, 10.0, 40, SCHEDULERS[0]()), 1_000_000, 1000.0);
+    let silo = refilled(silo(25.0, 18.0, 40, SCHEDULERS[0]()), 1_000_000, 100.0);
     let (counters, footprint) = (silo.counters(), silo.footprint());
     println!("{counters:?}\n{footprint:?}\n{:.0} s", started.elapsed().as_secs_f64());
 }

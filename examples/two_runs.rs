@@ -1,0 +1,49 @@
+//! Two runs that differ by the last bit of one velocity: when they part, and what stays the same.
+//!
+//! ```text
+//! cargo run --release --example two_runs
+//! ```
+//!
+//! Some seconds. You learn how a run is played back, how chaos shows, and why a result is a mean with an error
+//! and not a trajectory.
+
+use granular_edmd::prelude::*;
+use granular_edmd::replay::Replay;
+
+const DISKS: usize = 150;
+const BEAT: f64 = std::f64::consts::TAU / 10.0;
+
+fn main() -> anyhow::Result<()> {
+    let container = Container::open(40.0)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?;
+    let disks = initial::with_maxwellian_velocities(initial::lattice(&container, DISKS, 0.5)?, 0.1, 1)?;
+    let mut others = disks.clone();
+    let velocity = disks[0].velocity();
+    others[0] = disks[0].with_velocity(DVec2::new(velocity.x.next_up(), velocity.y))?;
+
+    let play = |disks: Vec<Disk>| -> anyhow::Result<_> {
+        let rule = ContactDuration::new(Frictional::from_inelasticity(0.05, 0.05, 0.3)?, 1e-4)?;
+        let run = Simulation::builder(rule, container.clone()).disks(disks).gravity(0.0156).build()?;
+        let mut replay = Replay::new(run, BEAT)?;
+        replay.run_until(200.0 * BEAT)?;
+        Ok(replay)
+    };
+    let (first, second) = (play(disks)?, play(others)?);
+    for (name, tolerance) in [("a billionth", 1e-9), ("a thousandth", 1e-3), ("a radius", 0.5)] {
+        let Some(found) = first.differences(&second, tolerance)? else { continue };
+        if let Some(apart) = found.apart {
+            println!("t = {:6.2}: disk {} is {name} away from itself", apart.time, apart.id);
+        }
+        if let (Some(other), 0.5..) = (found.partners, tolerance) {
+            println!("t = {:6.2}: disk {} meets another partner", other.times[0], other.id);
+        }
+    }
+
+    // The roll is the same in both as far as its fluctuations tell.
+    for (name, replay) in [("first", first), ("second", second)] {
+        let mut series = Series::new(OrderParameters, SampleTimes::every(BEAT)?);
+        let mut run = replay.present().clone();
+        run.run_until(1200.0 * BEAT, &mut series)?;
+        println!("Ψ1 of the {name} run: {}", series.mean(|order| order.one_roll.abs())?);
+    }
+    Ok(())
+}

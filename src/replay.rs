@@ -1,0 +1,238 @@
+//! Runs played back: the state before any collision, the last collisions of a disk, and where two runs differ.
+//!
+//! Nothing is recorded but the state of the run now and then. All in between follows from these states, bit
+//! for bit, so any collision can be looked at as if one had waited for it. A state may come from a
+//! [checkpoint](Simulation::resume), from a start file or from a plan and a seed.
+//!
+//! ```
+//! use granular_edmd::prelude::*;
+//! use granular_edmd::replay::Replay;
+//!
+//! let container = Container::closed(12.0, 12.0)?;
+//! let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 40, 0.5)?, 1.0, 1)?;
+//! let run = Simulation::builder(Elastic, container).disks(disks).build()?;
+//!
+//! let mut replay = Replay::new(run, 2.0)?;
+//! replay.run_until(30.0)?;
+//! // Something went wrong with disk 7 at the end: what has it met?
+//! let last = replay.last_collisions_of(7, 30.0, 3)?;
+//! assert_eq!(last.len(), 3);
+//! // The state before the last of these collisions, which then comes next.
+//! let mut before = replay.before_collision(last[2].number)?.unwrap();
+//! let same = on_collision(|collision: &Collision| assert_eq!(*collision, last[2].collision));
+//! before.step_until(30.0, &mut { same })?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod differences;
+mod steps;
+
+pub use differences::{Differences, OtherPartner, TooFarApart};
+pub use steps::Replayed;
+
+use crate::ParameterError;
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::quantity::positive;
+use crate::scheduler::EventScheduler;
+use crate::simulation::{Limits, RunError, Simulation};
+use steps::{Steps, collisions};
+
+/// Largest number of states that are kept, unless the caller sets another.
+const MOST_STATES: usize = 64;
+
+/// A run that can be played back; [the module](self) has an example.
+///
+/// It keeps copies of the run at equal intervals of time. When there are too many of them, it drops every
+/// second one and doubles the interval.
+#[derive(Debug, Clone)]
+pub struct Replay<R, B, S> {
+    /// States in the order of time; the first one is the start.
+    states: Vec<Simulation<R, B, S>>,
+    present: Simulation<R, B, S>,
+    interval: f64,
+    most: usize,
+    has_failed: bool,
+}
+
+impl<R, B, S> Replay<R, B, S>
+where
+    R: CollisionRule + Clone,
+    B: Boundary + Clone,
+    S: EventScheduler + Clone,
+{
+    /// Creates a replay that starts with this state, and keeps one at the end of each interval.
+    ///
+    /// # Errors
+    /// If the interval is not finite and positive.
+    pub fn new(start: Simulation<R, B, S>, interval: f64) -> Result<Self, ParameterError> {
+        let interval = positive("interval between two states", interval)?;
+        let (present, most) = (start.clone(), MOST_STATES);
+        Ok(Self { states: vec![start], present, interval, most, has_failed: false })
+    }
+
+    /// Returns the same replay with at most this number of states, or 2; 64 unless given.
+    #[must_use]
+    pub fn with_most_states(self, most: usize) -> Self {
+        Self { most: most.max(2), ..self }
+    }
+
+    /// Returns the run as far as it has come.
+    pub const fn present(&self) -> &Simulation<R, B, S> {
+        &self.present
+    }
+
+    /// Returns the states that are kept, in the order of time.
+    pub fn states(&self) -> &[Simulation<R, B, S>] {
+        &self.states
+    }
+
+    /// Runs on until the absolute time `end`.
+    ///
+    /// # Errors
+    /// The same as for [`Simulation::run_until`]. What happened up to the error can be played back.
+    pub fn run_until(&mut self, end: f64) -> Result<(), RunError> {
+        let start = self.states[0].time();
+        loop {
+            let beat = ((self.present.time() - start) / self.interval).floor() + 1.0;
+            let next = start + beat * self.interval;
+            let ended = self.present.run_until(end.min(next), &mut ());
+            self.has_failed = ended.is_err();
+            ended?;
+            if next > end {
+                return Ok(());
+            }
+            self.states.push(self.present.clone());
+            if self.states.len() > self.most {
+                let mut number = 0_usize;
+                self.states.retain(|_| (number % 2 == 0, number += 1).0);
+                self.interval *= 2.0;
+            }
+        }
+    }
+
+    /// Returns the state at an absolute time, after all events up to and at it; `None` if the run does not
+    /// cover the time.
+    ///
+    /// # Errors
+    /// If the parts of the run do not answer as they did the first time.
+    pub fn at(&self, time: f64) -> Result<Option<Simulation<R, B, S>>, RunError> {
+        let Some(state) = self.states.iter().rfind(|state| state.time() <= time) else { return Ok(None) };
+        if time > self.present.time() {
+            return Ok(None);
+        }
+        let mut run = state.clone();
+        run.run_until(time, &mut ())?;
+        Ok(Some(run))
+    }
+
+    /// Returns the state just before a collision, which comes next; `None` if the run had no such collision.
+    ///
+    /// Collisions with disks and walls are counted together from 1 on, as the
+    /// [counters](Simulation::counters) do.
+    ///
+    /// # Errors
+    /// If the parts of the run do not answer as they did the first time.
+    pub fn before_collision(&self, number: u64) -> Result<Option<Simulation<R, B, S>>, RunError> {
+        if number > collisions(&self.present) + u64::from(self.has_failed) {
+            return Ok(None);
+        }
+        let Some(state) = self.states.iter().rfind(|state| collisions(state) < number) else {
+            return Ok(None);
+        };
+        let mut run = state.clone();
+        let left = number - 1 - collisions(state);
+        run.run(&Limits::until(self.present.time()).with_most_collisions(left), &mut ())?;
+        Ok(Some(run))
+    }
+
+    /// Returns the collisions after the absolute time `from`, up to and at `to`.
+    ///
+    /// # Errors
+    /// If the parts of the run do not answer as they did the first time.
+    pub fn collisions(&self, from: f64, to: f64) -> Result<Vec<Replayed>, RunError> {
+        match self.at(from.max(self.states[0].time()))? {
+            Some(run) => self.played(run, to),
+            None => Ok(Vec::new()),
+        }
+    }
+
+    /// Returns the last collisions of a disk, up to and at an absolute time, at most `count` of them, in their
+    /// order. The disk is known by its [id](crate::Disk::id).
+    ///
+    /// # Errors
+    /// If the parts of the run do not answer as they did the first time.
+    pub fn last_collisions_of(&self, id: u64, until: f64, count: usize) -> Result<Vec<Replayed>, RunError> {
+        let (mut last, mut end) = (Vec::new(), until);
+        for state in self.states.iter().rev().filter(|state| state.time() < until) {
+            let mut own = self.played(state.clone(), end)?;
+            own.retain(|replayed| replayed.id == id || replayed.partner_id == Some(id));
+            last.splice(0..0, own);
+            end = state.time();
+            if last.len() >= count {
+                break;
+            }
+        }
+        Ok(last.split_off(last.len().saturating_sub(count)))
+    }
+
+    /// Plays a state on, and returns its collisions.
+    fn played(&self, run: Simulation<R, B, S>, until: f64) -> Result<Vec<Replayed>, RunError> {
+        let (mut steps, mut all) = (Steps::new(run), Vec::new());
+        let end = until.min(self.present.time());
+        loop {
+            match steps.next(end) {
+                Ok(Some(replayed)) => all.push(replayed),
+                Ok(None) => return Ok(all),
+                // The run ended with this error.
+                Err(_) if self.has_failed => return Ok(all),
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    /// Compares two runs, state by state and collision by collision.
+    ///
+    /// A bisection finds the last state that is the same in both, and the collisions are compared from there
+    /// on, disk by disk. So two runs that differ in a rounding have the same partners for a while, although
+    /// their times differ. The result is `None` if the two keep no states of the same times.
+    ///
+    /// # Errors
+    /// If the parts of a run do not answer as they did the first time.
+    ///
+    /// ```
+    /// use granular_edmd::prelude::*;
+    /// use granular_edmd::replay::Replay;
+    ///
+    /// let container = Container::closed(12.0, 12.0)?;
+    /// let disks = initial::with_maxwellian_velocities(initial::lattice(&container, 40, 0.5)?, 1.0, 1)?;
+    /// let replay = |disks: Vec<Disk>| -> Result<_, Box<dyn std::error::Error>> {
+    ///     let run = Simulation::builder(Elastic, container.clone()).disks(disks).build()?;
+    ///     let mut replay = Replay::new(run, 1.0)?;
+    ///     replay.run_until(40.0)?;
+    ///     Ok(replay)
+    /// };
+    /// // The other run differs by the last bit of a velocity.
+    /// let mut others = disks.clone();
+    /// let velocity = disks[0].velocity();
+    /// others[0] = disks[0].with_velocity(DVec2::new(velocity.x.next_up(), velocity.y))?;
+    /// let found = replay(disks)?.differences(&replay(others)?, 1e-6)?.unwrap();
+    /// let (apart, other) = (found.apart.unwrap(), found.partners.unwrap());
+    /// assert!(0.0 < apart.time && apart.time < other.times[0], "a millionth comes first");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn differences(&self, other: &Self, tolerance: f64) -> Result<Option<Differences>, RunError> {
+        let ends = std::iter::once((&self.present, &other.present));
+        let mut pairs: Vec<_> = self.states.iter().zip(&other.states).chain(ends).collect();
+        pairs.retain(|(first, second)| first.time() == second.time());
+        if pairs.is_empty() {
+            return Ok(None);
+        }
+        let differ = pairs.partition_point(|(first, second)| first.disks() == second.disks());
+        let pairs = &pairs[differ.saturating_sub(1)..];
+        let end = self.present.time().min(other.present.time());
+        let partners = differences::other_partners(pairs[0], end)?;
+        let apart = differences::first_apart(pairs, tolerance)?;
+        Ok(Some(Differences { partners, apart }))
+    }
+}

@@ -1,0 +1,142 @@
+//! The first differences of two runs.
+
+use std::collections::{HashMap, VecDeque};
+
+use super::steps::{Replayed, Steps};
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::observable::Partner;
+use crate::scheduler::EventScheduler;
+use crate::simulation::{RunError, Simulation};
+
+/// Number of halvings of the interval in which two runs come apart.
+const HALVINGS: u32 = 40;
+
+/// The first differences of two runs.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Differences {
+    /// The first collision of a disk with other partners; `None` if all partners are the same.
+    pub partners: Option<OtherPartner>,
+    /// The time at which a disk is first farther from its place in the other run than the tolerance; `None`
+    /// if none ever is at the end of an interval.
+    pub apart: Option<TooFarApart>,
+}
+
+/// A collision of a disk, and the one of as many before that it has in the other run.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct OtherPartner {
+    /// Id of the disk.
+    pub id: u64,
+    /// Times of both collisions.
+    pub times: [f64; 2],
+    /// The collisions.
+    pub collisions: [Replayed; 2],
+}
+
+/// A disk that is far from its place in the other run.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct TooFarApart {
+    /// Id of the disk.
+    pub id: u64,
+    /// Absolute time.
+    pub time: f64,
+    /// Distance between both places.
+    pub distance: f64,
+}
+
+/// A pair of states at the same time.
+type Pair<'a, R, B, S> = (&'a Simulation<R, B, S>, &'a Simulation<R, B, S>);
+
+/// Compares the partners of each disk, in turn a collision of one run and of the other.
+pub(super) fn other_partners<R, B, S>(
+    pair: Pair<'_, R, B, S>,
+    end: f64,
+) -> Result<Option<OtherPartner>, RunError>
+where
+    R: CollisionRule + Clone,
+    B: Boundary + Clone,
+    S: EventScheduler + Clone,
+{
+    let mut runs = [Steps::new(pair.0.clone()), Steps::new(pair.1.clone())];
+    // For each disk, the collisions of the run that is ahead, and which of the two that is.
+    let mut ahead: HashMap<u64, (usize, VecDeque<Replayed>)> = HashMap::new();
+    loop {
+        let mut is_over = true;
+        for (which, run) in runs.iter_mut().enumerate() {
+            let Some(collision) = run.next(end)? else { continue };
+            is_over = false;
+            for id in [Some(collision.id), collision.partner_id].into_iter().flatten() {
+                let (leader, waiting) = ahead.entry(id).or_default();
+                if waiting.is_empty() || *leader == which {
+                    *leader = which;
+                    waiting.push_back(collision.clone());
+                } else if let Some(other) = waiting.pop_front()
+                    && partner_of(&other, id) != partner_of(&collision, id)
+                {
+                    let mut collisions = [other, collision];
+                    collisions.rotate_left(1 - which);
+                    let times = collisions.each_ref().map(|replayed| replayed.collision.time);
+                    return Ok(Some(OtherPartner { id, times, collisions }));
+                }
+            }
+        }
+        if is_over {
+            return Ok(None);
+        }
+    }
+}
+
+/// Returns the disk or wall that this disk has met: the id of the disk, or else the wall.
+fn partner_of(replayed: &Replayed, id: u64) -> (Option<u64>, Option<Partner>) {
+    match replayed.partner_id {
+        Some(partner) => (Some(if partner == id { replayed.id } else { partner }), None),
+        None => (None, Some(replayed.collision.partner)),
+    }
+}
+
+/// Finds the first interval at whose end a disk is too far away, and halves it again and again.
+pub(super) fn first_apart<R, B, S>(
+    pairs: &[Pair<'_, R, B, S>],
+    tolerance: f64,
+) -> Result<Option<TooFarApart>, RunError>
+where
+    R: CollisionRule + Clone,
+    B: Boundary + Clone,
+    S: EventScheduler + Clone,
+{
+    let found = pairs.windows(2).find_map(|window| Some((window[0], farthest(window[1], tolerance)?)));
+    let Some((start, mut apart)) = found else { return Ok(None) };
+    let mut near = (start.0.clone(), start.1.clone());
+    for _ in 0..HALVINGS {
+        let time = near.0.time() + 0.5 * (apart.time - near.0.time());
+        let mut middle = near.clone();
+        middle.0.run_until(time, &mut ())?;
+        middle.1.run_until(time, &mut ())?;
+        match farthest((&middle.0, &middle.1), tolerance) {
+            Some(earlier) => apart = earlier,
+            None => near = middle,
+        }
+    }
+    Ok(Some(apart))
+}
+
+/// Returns the disk that is farthest from its place in the other run, if it is farther than the tolerance.
+fn farthest<R, B, S>((first, second): Pair<'_, R, B, S>, tolerance: f64) -> Option<TooFarApart>
+where
+    R: CollisionRule,
+    B: Boundary,
+    S: EventScheduler,
+{
+    let domain = first.boundary().domain();
+    let others: HashMap<u64, _> = second.disks().iter().map(|disk| (disk.id(), disk.position())).collect();
+    let apart = |disk: &crate::Disk| {
+        let distance = domain.separation(disk.position(), *others.get(&disk.id())?).length();
+        Some(TooFarApart { id: disk.id(), time: first.time(), distance })
+    };
+    let all = first.disks();
+    let far = all.iter().filter_map(apart).filter(|apart| apart.distance > tolerance);
+    far.max_by(|a, b| a.distance.total_cmp(&b.distance))
+}

@@ -1,0 +1,73 @@
+//! A run taken collision by collision, with the ids of its disks.
+
+use crate::boundary::Boundary;
+use crate::collision::CollisionRule;
+use crate::observable::{Collision, Partner, on_collision};
+use crate::scheduler::EventScheduler;
+use crate::simulation::{RunError, Simulation};
+
+/// A collision that was played back.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Replayed {
+    /// Number of the collision, counted from 1 on.
+    pub number: u64,
+    /// Id of the disk whose event it was.
+    pub id: u64,
+    /// Id of the other disk; `None` if the partner is a wall.
+    pub partner_id: Option<u64>,
+    /// The collision. Its indices are those of that time.
+    pub collision: Collision,
+}
+
+/// Returns the number of collisions so far.
+pub(super) fn collisions<R, B, S>(run: &Simulation<R, B, S>) -> u64
+where
+    R: CollisionRule,
+    B: Boundary,
+    S: EventScheduler,
+{
+    run.counters().disk_collisions + run.counters().wall_collisions
+}
+
+/// A run, and the ids of its disks before the next collision.
+pub(super) struct Steps<R, B, S> {
+    run: Simulation<R, B, S>,
+    ids: Vec<u64>,
+    /// Numbers of disks that have come and gone.
+    population: [u64; 2],
+}
+
+impl<R: CollisionRule, B: Boundary, S: EventScheduler> Steps<R, B, S> {
+    pub(super) fn new(run: Simulation<R, B, S>) -> Self {
+        let mut steps = Self { run, ids: Vec::new(), population: [u64::MAX; 2] };
+        steps.name();
+        steps
+    }
+
+    /// Names the disks, if any have come or gone.
+    fn name(&mut self) {
+        let counters = self.run.counters();
+        let population = [counters.insertions, counters.removals];
+        if std::mem::replace(&mut self.population, population) != population {
+            self.ids = self.run.disks().iter().map(crate::Disk::id).collect();
+        }
+    }
+
+    /// Goes to the next collision, if it is not after `end`.
+    pub(super) fn next(&mut self, end: f64) -> Result<Option<Replayed>, RunError> {
+        let mut last = None;
+        self.run.step_until(end, &mut on_collision(|collision: &Collision| last = Some(*collision)))?;
+        let replayed = last.map(|collision| {
+            // A disk that came in since the last collision, and has gone already, has no name.
+            let id = |disk: usize| self.ids.get(disk).copied().unwrap_or(0);
+            let partner_id = match collision.partner {
+                Partner::Disk(partner) => Some(id(partner)),
+                Partner::Wall(_) => None,
+            };
+            Replayed { number: collisions(&self.run), id: id(collision.disk), partner_id, collision }
+        });
+        self.name();
+        Ok(replayed)
+    }
+}
