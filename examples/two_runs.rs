@@ -34,7 +34,8 @@ fn main() -> anyhow::Result<()> {
             println!("t = {:6.2}: disk {} is {name} away from itself", apart.time, apart.id);
         }
         if let (Some(other), 0.5..) = (found.partners, tolerance) {
-            println!("t = {:6.2}: disk {} meets another partner", other.times[0], other.id);
+            let time = other.collisions[0].collision.time;
+            println!("t = {time:6.2}: disk {} meets another partner", other.id);
         }
     }
 

@@ -82,11 +82,6 @@ where
         &self.present
     }
 
-    /// Returns the states that are kept, in the order of time.
-    pub fn states(&self) -> &[Simulation<R, B, S>] {
-        &self.states
-    }
-
     /// Runs on until the absolute time `end`.
     ///
     /// # Errors
@@ -218,7 +213,7 @@ where
     /// others[0] = disks[0].with_velocity(DVec2::new(velocity.x.next_up(), velocity.y))?;
     /// let found = replay(disks)?.differences(&replay(others)?, 1e-6)?.unwrap();
     /// let (apart, other) = (found.apart.unwrap(), found.partners.unwrap());
-    /// assert!(0.0 < apart.time && apart.time < other.times[0], "a millionth comes first");
+    /// assert!(0.0 < apart.time && apart.time < other.collisions[0].collision.time);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn differences(&self, other: &Self, tolerance: f64) -> Result<Option<Differences>, RunError> {

@@ -29,8 +29,6 @@ pub struct Differences {
 pub struct OtherPartner {
     /// Id of the disk.
     pub id: u64,
-    /// Times of both collisions.
-    pub times: [f64; 2],
     /// The collisions.
     pub collisions: [Replayed; 2],
 }
@@ -78,8 +76,7 @@ where
                 {
                     let mut collisions = [other, collision];
                     collisions.rotate_left(1 - which);
-                    let times = collisions.each_ref().map(|replayed| replayed.collision.time);
-                    return Ok(Some(OtherPartner { id, times, collisions }));
+                    return Ok(Some(OtherPartner { id, collisions }));
                 }
             }
         }

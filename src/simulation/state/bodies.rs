@@ -128,19 +128,7 @@ impl Bodies {
     ) -> Self {
         let particle = |(&trajectory, &forecast)| Particle { trajectory, forecast };
         let particles = trajectories.iter().zip(forecasts).map(particle).collect();
-        let properties = Properties::of(models);
-        let typical_diameter = properties.typical_diameter();
-        Self {
-            particles,
-            spins,
-            gravity,
-            properties,
-            images,
-            typical_diameter,
-            identities,
-            fresh_count: 0,
-            has_changed: true,
-        }
+        Self { particles, spins, images, identities, has_changed: true, ..Self::new(models, gravity) }
     }
 
     /// Returns the images that [`Self::restored`] takes.

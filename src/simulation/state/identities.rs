@@ -17,7 +17,8 @@ pub(in crate::simulation) struct Identities {
 impl Identities {
     pub(super) fn new(disks: &[Disk]) -> Self {
         let mut identities = Self::default();
-        identities.insert(0, disks);
+        identities.reserve(disks);
+        (0..).zip(disks).for_each(|(place, disk)| identities.push(place, disk.id()));
         identities
     }
 
@@ -33,19 +34,12 @@ impl Identities {
         accept(new == 0 || last + new <= LARGEST_ID, "largest id so far", requirement, last as f64).map(drop)
     }
 
-    /// Adds disks after these `count` ones. Those without an id get one after all that were ever given.
-    pub(super) fn insert(&mut self, count: usize, disks: &[Disk]) {
+    /// Gives no id from now on that one of these disks has.
+    pub(super) fn reserve(&mut self, disks: &[Disk]) {
         self.last = disks.iter().map(Disk::id).fold(self.last, u64::max);
-        self.list(count);
-        for disk in disks {
-            let is_new = disk.id() == 0;
-            self.last += u64::from(is_new);
-            self.ids.push(if is_new { self.last } else { disk.id() });
-        }
-        self.forget_the_obvious();
     }
 
-    /// Adds a disk after these `count` ones, in a time that does not grow with their number.
+    /// Adds a disk after these `count` ones. One without an id gets one after all that were ever given.
     pub(super) fn push(&mut self, count: usize, id: u64) {
         let id = if id == 0 { self.last + 1 } else { id };
         self.last = self.last.max(id);

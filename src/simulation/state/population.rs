@@ -6,24 +6,9 @@ use super::properties::Properties;
 use crate::Disk;
 
 impl Bodies {
-    /// Adds disks as they are at this time offset.
-    pub(in crate::simulation) fn insert(&mut self, disks: &[Disk], offset: f64) {
-        self.identities.insert(self.len(), disks);
-        let models = (0..self.len()).map(|disk| self.properties.model(disk)).chain(disks.iter().copied());
-        self.properties = Properties::of(&models.collect::<Vec<_>>());
-        self.typical_diameter = self.properties.typical_diameter();
-        if !self.images.is_empty() || disks.iter().any(|disk| disk.image() != [0; 2]) {
-            self.images.resize(self.len(), [0; 2]);
-            self.images.extend(disks.iter().map(Disk::image));
-        }
-        for disk in disks {
-            self.add(disk, offset);
-        }
-    }
-
     /// Adds a disk as it is at this time offset, in a time that does not grow with the number of disks.
     ///
-    /// The typical diameter, a median, stays until the epoch moves.
+    /// The typical diameter, a median, stays until [`Self::settle`].
     pub(in crate::simulation) fn push_disk(&mut self, disk: &Disk, offset: f64) {
         let count = self.len();
         self.identities.push(count, disk.id());
@@ -32,9 +17,24 @@ impl Bodies {
             self.images.resize(count, [0; 2]);
             self.images.push(disk.image());
         }
-        self.add(disk, offset);
-        self.particles[count].forecast.collisions = self.fresh_count;
+        let (fallen, gained) = self.fall(offset);
+        let velocity = disk.velocity() - gained;
+        let position = disk.position() - fallen - velocity * offset;
+        let mut particle = Particle::new(Trajectory { position, velocity });
+        particle.forecast.collisions = self.fresh_count;
+        self.particles.push(particle);
+        let spin = Spin::of(disk);
+        self.spins.push(Spin { angle: spin.angle - spin.angular_velocity * offset, ..spin });
         self.has_changed = true;
+    }
+
+    /// Adds disks as they are at this time offset.
+    pub(in crate::simulation) fn insert(&mut self, disks: &[Disk], offset: f64) {
+        self.identities.reserve(disks);
+        for disk in disks {
+            self.push_disk(disk, offset);
+        }
+        self.settle();
     }
 
     /// Removes a disk, in a time that does not grow with the number of disks. The last one takes its index.
@@ -62,15 +62,6 @@ impl Bodies {
             self.properties = Properties::of(&models);
             self.typical_diameter = self.properties.typical_diameter();
         }
-    }
-
-    fn add(&mut self, disk: &Disk, offset: f64) {
-        let (fallen, gained) = self.fall(offset);
-        let velocity = disk.velocity() - gained;
-        let position = disk.position() - fallen - velocity * offset;
-        self.particles.push(Particle::new(Trajectory { position, velocity }));
-        let spin = Spin::of(disk);
-        self.spins.push(Spin { angle: spin.angle - spin.angular_velocity * offset, ..spin });
     }
 
     /// Removes the disks for which `leaves` is true. The others stay in their order.
