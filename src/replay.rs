@@ -99,8 +99,11 @@ where
             }
             self.states.push(self.present.clone());
             if self.states.len() > self.most {
-                let mut number = 0_usize;
-                self.states.retain(|_| (number % 2 == 0, number += 1).0);
+                let mut stays = false;
+                self.states.retain(|_| {
+                    stays = !stays;
+                    stays
+                });
                 self.interval *= 2.0;
             }
         }
