@@ -41,6 +41,9 @@ use steps::{Steps, collisions};
 /// Largest number of states that are kept, unless the caller sets another.
 const MOST_STATES: usize = 64;
 
+/// Difference of two times, relative to the interval between states, that is rounding.
+const SAME: f64 = 1e-9;
+
 /// A run that can be played back; [the module](self) has an example.
 ///
 /// It keeps copies of the run at equal intervals of time. When there are too many of them, it drops every
@@ -89,8 +92,7 @@ where
     pub fn run_until(&mut self, end: f64) -> Result<(), RunError> {
         let start = self.states[0].time();
         loop {
-            let beat = ((self.present.time() - start) / self.interval).floor() + 1.0;
-            let next = start + beat * self.interval;
+            let next = start + self.states.len() as f64 * self.interval;
             let ended = self.present.run_until(end.min(next), &mut ());
             self.has_failed = ended.is_err();
             ended?;
@@ -149,10 +151,10 @@ where
     /// # Errors
     /// If the parts of the run do not answer as they did the first time.
     pub fn collisions(&self, from: f64, to: f64) -> Result<Vec<Replayed>, RunError> {
-        match self.at(from.max(self.states[0].time()))? {
-            Some(run) => self.played(run, to),
-            None => Ok(Vec::new()),
-        }
+        let start = &self.states[0];
+        // Disks that touch at the start collide at once.
+        let run = if from < start.time() { Some(start.clone()) } else { self.at(from)? };
+        run.map_or(Ok(Vec::new()), |run| self.played(run, to))
     }
 
     /// Returns the last collisions of a disk, up to and at an absolute time, at most `count` of them, in their
@@ -222,7 +224,9 @@ where
     pub fn differences(&self, other: &Self, tolerance: f64) -> Result<Option<Differences>, RunError> {
         let ends = std::iter::once((&self.present, &other.present));
         let mut pairs: Vec<_> = self.states.iter().zip(&other.states).chain(ends).collect();
-        pairs.retain(|(first, second)| first.time() == second.time());
+        // Times may differ by rounding, since a run counts them from its own epochs.
+        let rounding = SAME * self.interval;
+        pairs.retain(|(first, second)| (first.time() - second.time()).abs() <= rounding);
         if pairs.is_empty() {
             return Ok(None);
         }
