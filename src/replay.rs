@@ -209,7 +209,7 @@ where
     /// let replay = |disks: Vec<Disk>| -> Result<_, Box<dyn std::error::Error>> {
     ///     let run = Simulation::builder(Elastic, container.clone()).disks(disks).build()?;
     ///     let mut replay = Replay::new(run, 1.0)?;
-    ///     replay.run_until(40.0)?;
+    ///     replay.run_until(80.0)?;
     ///     Ok(replay)
     /// };
     /// // The other run differs by the last bit of a velocity.
