@@ -212,10 +212,9 @@ where
     ///     replay.run_until(80.0)?;
     ///     Ok(replay)
     /// };
-    /// // The other run differs by the last bit of a velocity.
+    /// // In the other run, a disk begins aside by 1e-12.
     /// let mut others = disks.clone();
-    /// let velocity = disks[0].velocity();
-    /// others[0] = disks[0].with_velocity(DVec2::new(velocity.x.next_up(), velocity.y))?;
+    /// others[0] = disks[0].with_position(disks[0].position() + DVec2::splat(1e-12))?;
     /// let found = replay(disks)?.differences(&replay(others)?, 1e-6)?.unwrap();
     /// let (apart, other) = (found.apart.unwrap(), found.partners.unwrap());
     /// assert!(0.0 < apart.time && apart.time < other.collisions[0].collision.time);
