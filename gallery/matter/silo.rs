@@ -79,8 +79,6 @@ const SHOT: f64 = 6.0;
 const LAYER: f64 = 3.0;
 const AGAIN: Kind = Kind::new(99);
 
-type Run = Simulation<LeastRebound<Frictional>, Vessel>;
-
 /// Least speed at which surfaces part, so that grains at rest do not collide ever faster. The flow does not
 /// depend on it: docs/rest.md has the table, also of what a contact duration would do.
 const LEAST: f64 = 0.05;
