@@ -11,6 +11,7 @@ use super::{Inlet, Simulation};
 use crate::Disk;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
+use crate::disk::MOST_DISKS;
 use crate::quantity::accept;
 use crate::scheduler::EventScheduler;
 
@@ -94,7 +95,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Finds room for a disk at an inlet.
     fn place_for(&mut self, inlet: usize, disk: &Disk) -> Option<Disk> {
-        if self.len() >= crate::disk::MOST_DISKS || !self.make_cells_suit(2.0 * disk.radius()) {
+        let is_full =
+            self.len() >= MOST_DISKS || self.bodies.identities.check_room(&[disk.identified(0)]).is_err();
+        if is_full || !self.make_cells_suit(2.0 * disk.radius()) {
             return None;
         }
         (0..TRIES).find_map(|_| {
