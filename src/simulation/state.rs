@@ -17,6 +17,5 @@ pub(super) use forecast::{Earliest, Exit, Forecast};
 #[cfg(feature = "serde")]
 pub(super) use guard::Guard;
 pub(super) use guard::{Standstill, effort, least_progress};
-#[cfg(feature = "serde")]
 pub(super) use identities::Identities;
 pub(super) use pace::FARTHEST;
