@@ -147,7 +147,11 @@ impl Boundary for Spoilt {
 }
 
 fn verdict(fault: Fault) -> Violation {
-    check(&mut spoilt(fault), 0.5, 1.0, 1).expect_err(&format!("{fault:?}"))
+    verdict_of(fault, 1)
+}
+
+fn verdict_of(fault: Fault, seed: u64) -> Violation {
+    check(&mut spoilt(fault), 0.5, 1.0, seed).expect_err(&format!("{fault:?}"))
 }
 
 #[test]
@@ -158,7 +162,13 @@ fn a_sound_boundary_passes() {
 #[test]
 fn holes_are_caught() {
     assert!(matches!(verdict(Fault::Hole), Violation::LetThrough { wall: 0, .. }));
-    assert!(matches!(verdict(Fault::OpenHole), Violation::LeftDomain { .. }));
+    // A disk that falls out of the hole aside is deep in the floor beside it before it is outside.
+    for seed in 1..=10 {
+        let found = verdict_of(Fault::OpenHole, seed);
+        let is_caught = matches!(found, Violation::LeftDomain { .. } | Violation::LetThrough { wall: 0, .. });
+        assert!(is_caught, "{found}");
+    }
+    assert!((1..=10).any(|seed| matches!(verdict_of(Fault::OpenHole, seed), Violation::LeftDomain { .. })));
     assert!(matches!(verdict(Fault::DomainTooSmall), Violation::LeftDomain { .. }));
 }
 
