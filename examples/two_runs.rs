@@ -4,8 +4,8 @@
 //! cargo run --release --example two_runs
 //! ```
 //!
-//! Some seconds. You learn how a run is played back, how chaos shows, and why a result is a mean with an error
-//! and not a trajectory.
+//! Some seconds. You learn how a run is played back, how chaos shows, and why a result is a mean with an
+//! error and not a trajectory.
 
 use granular_edmd::prelude::*;
 use granular_edmd::replay::Replay;
@@ -16,7 +16,8 @@ const BEAT: f64 = std::f64::consts::TAU / 10.0;
 fn main() -> anyhow::Result<()> {
     let container = Container::open(40.0)?.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0)?)?;
     let disks = initial::with_maxwellian_velocities(initial::lattice(&container, DISKS, 0.5)?, 0.1, 1)?;
-    // The last bit of the place of a grain on the right. On the left, numbers have bits that no sum would notice.
+    // The last bit of the place of a grain on the right. On the left, numbers have bits that no sum would
+    // notice.
     let mut others = disks.clone();
     if let Some(grain) = others.iter_mut().max_by(|a, b| a.position().x.total_cmp(&b.position().x)) {
         let place = grain.position();

@@ -1,4 +1,5 @@
-//! Runs played back: the state before any collision, the last collisions of a disk, and where two runs differ.
+//! Runs played back: the state before any collision, the last collisions of a disk, and where two runs
+//! differ.
 //!
 //! Nothing is recorded but the state of the run now and then. All in between follows from these states, bit
 //! for bit, so any collision can be looked at as if one had waited for it. A state may come from a
@@ -157,8 +158,8 @@ where
         run.map_or(Ok(Vec::new()), |run| self.played(run, to))
     }
 
-    /// Returns the last collisions of a disk, up to and at an absolute time, at most `count` of them, in their
-    /// order. The disk is known by its [id](crate::Disk::id).
+    /// Returns the last collisions of a disk, up to and at an absolute time, at most `count` of them, in
+    /// their order. The disk is known by its [id](crate::Disk::id).
     ///
     /// # Errors
     /// If the parts of the run do not answer as they did the first time.

@@ -3,8 +3,8 @@
 //! [`Simulation::builder`] checks disks, gravity and boundary and makes a [`Simulation`].
 //! [`Simulation::run_until`], [`Simulation::run`] with its [`Limits`] and [`Simulation::step_until`] advance
 //! it. Between runs, you can change the rule, the boundary and gravity, insert disks ([`Simulation::insert`])
-//! and remove them ([`Simulation::remove`]). During a run, [sinks](crate::boundary::Part::absorbing) take disks
-//! out, and [inlets](Simulation::add_inlet) let them in.
+//! and remove them ([`Simulation::remove`]). During a run, [sinks](crate::boundary::Part::absorbing) take
+//! disks out, and [inlets](Simulation::add_inlet) let them in.
 //!
 //! # Promises
 //! 1. The same inputs give the same bits, under every scheduler, with any observer, and however a run is cut

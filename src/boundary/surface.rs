@@ -85,8 +85,8 @@ pub enum Response<'a> {
     Thermal(Thermal),
     /// The wall takes the disk out of the run.
     ///
-    /// Observers see a last collision that leaves the disk at the velocity of the wall, without a spin. So the
-    /// wall receives all of the momentum.
+    /// Observers see a last collision that leaves the disk at the velocity of the wall, without a spin. So
+    /// the wall receives all of the momentum.
     Absorbing,
 }
 

@@ -81,7 +81,8 @@ pub fn packed_at_random<B: Boundary + ?Sized>(
     Ok(packed.collect::<Result<_, _>>()?)
 }
 
-/// Replaces the initial radius in an error by the full radius of the disk that finds no room. The largest disks are placed first.
+/// Replaces the initial radius in an error by the full radius of the disk that finds no room. The largest
+/// disks are placed first.
 fn with_full_radius(error: PlacementError, disks: &[Disk]) -> PlacementError {
     let PlacementError::NoRoom { count, placed, radius, interior } = error else { return error };
     let mut radii: Vec<f64> = disks.iter().map(Disk::radius).collect();

@@ -25,8 +25,8 @@ use crate::{Disk, ParameterError};
 /// simulation with events that differs has velocities that are correlated, or a gas that is not homogeneous.
 /// With $`N\to\infty`$, the distribution of velocities is the solution of the equation, without an expansion.
 ///
-/// The density with the contact value, $`n\chi`$, sets the unit of time alone. Disks of several radii have one
-/// $`\chi`$.
+/// The density with the contact value, $`n\chi`$, sets the unit of time alone. Disks of several radii have
+/// one $`\chi`$.
 ///
 /// ```
 /// use granular_edmd::collision::Smooth;

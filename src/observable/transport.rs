@@ -235,8 +235,8 @@ impl TransportCoefficients {
         }
     }
 
-    /// Replaces the kept velocities by those of a snapshot. If they are not the ones that the collisions gave, the disks have
-    /// been changed between two runs.
+    /// Replaces the kept velocities by those of a snapshot. If they are not the ones that the collisions
+    /// gave, the disks have been changed between two runs.
     fn take_motions(&mut self, disks: &[Disk]) {
         let mass: f64 = disks.iter().map(Disk::mass).sum();
         let frame = disks.iter().map(|disk| disk.mass() * disk.velocity()).sum::<DVec2>() / mass;

@@ -1,5 +1,5 @@
-//! The command line of a study: `new`, `check`, `run`, `status`, `tables`, `trajectory`, `accept` and `bench`,
-//! for any experiment.
+//! The command line of a study: `new`, `check`, `run`, `status`, `tables`, `trajectory`, `accept` and
+//! `bench`, for any experiment.
 //!
 //! In a program of your own, `main` is one call of [`main`]. The binary `granular-edmd` is such a program for
 //! the paper's box.

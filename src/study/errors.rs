@@ -49,8 +49,8 @@ pub enum PlanError {
         /// The parameters that the name may stand for.
         known: Vec<String>,
     },
-    /// A parameter cannot vary in this way: its values are missing, not finite, given twice or out of order, it
-    /// varies twice, or it is ramped and cannot change with the disks in place.
+    /// A parameter cannot vary in this way: its values are missing, not finite, given twice or out of order,
+    /// it varies twice, or it is ramped and cannot change with the disks in place.
     #[error("{parameter} {reason}")]
     Varied {
         /// The parameter.

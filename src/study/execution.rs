@@ -134,8 +134,8 @@ fn work_in_parallel<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Resul
 /// Does ramps of the queue until it is empty.
 ///
 /// Where it meets another process, it goes elsewhere. A list of what others have done costs more, the more
-/// ramps there are, so it takes no more than a thirtieth of the time; between lists, done ramps are passed one
-/// by one.
+/// ramps there are, so it takes no more than a thirtieth of the time; between lists, done ramps are passed
+/// one by one.
 fn work<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Result<(), StudyError> {
     let mut next_list = Instant::now();
     while !shift.must_stop()

@@ -27,9 +27,8 @@ use crate::{Disk, Gravity};
 /// | `unwrapped` | position from [`Domain::unwrapped`] |
 ///
 /// The keys are `Lattice`, `Origin` and `pbc`, which OVITO knows, and `Time`, `Gravity` and `Domain`
-/// (left, right, bottom and top, where an open top is `inf`). Gravity is a number that points down, or the two
-/// components of the acceleration. The lattice of an open box ends above the
-/// highest disk.
+/// (left, right, bottom and top, where an open top is `inf`). Gravity is a number that points down, or the
+/// two components of the acceleration. The lattice of an open box ends above the highest disk.
 ///
 /// [`XyzFrames`] reads the disks back to the same bits.
 ///

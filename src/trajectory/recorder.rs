@@ -18,8 +18,9 @@ use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
 /// full, the run ends with the error ([`verdict`](Observer::verdict)), and the file ends with its last whole
 /// frame. The next run with the same recorder takes the frame that was missed.
 ///
-/// [`OfKind`](crate::observable::OfKind) around a recorder records only the disks of one kind. Files hold the box. Files for ParaView also hold the walls of the run's boundary as they
-/// are at each frame ([`Snapshot::wall_lines`]).
+/// [`OfKind`](crate::observable::OfKind) around a recorder records only the disks of one kind. Files hold the
+/// box. Files for ParaView also hold the walls of the run's boundary as they are at each frame
+/// ([`Snapshot::wall_lines`]).
 ///
 /// # Going on in a file
 /// After a kill, resume the run from its checkpoint, and [`append`](Self::append) to its file. The run makes

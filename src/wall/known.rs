@@ -1,4 +1,5 @@
-//! The motions that can be written to files: one list. A new motion is entered here, and exported in `wall.rs`.
+//! The motions that can be written to files: one list. A new motion is entered here, and exported in
+//! `wall.rs`.
 
 use std::any::Any;
 

@@ -6,9 +6,9 @@ use crate::{Fingerprint, ParameterError};
 
 /// The sum of two motions.
 ///
-/// Displacements, velocities and bounds of the acceleration add. A piece ends where that of either motion does. The
-/// sum has a period if one period is a whole multiple of the other, to the last bit, or one of the two never
-/// moves.
+/// Displacements, velocities and bounds of the acceleration add. A piece ends where that of either motion
+/// does. The sum has a period if one period is a whole multiple of the other, to the last bit, or one of the
+/// two never moves.
 ///
 /// ```
 /// use granular_edmd::wall::{Sinusoidal, Summed, WallMotion};

@@ -160,8 +160,8 @@ fn few(stage: &mut Stage) -> Operation {
     extreme(stage, disks)
 }
 
-/// Makes the operations of a run: the disk whose event is due gets a later time. Now and then another disk gets one, or
-/// returns to its previous time.
+/// Makes the operations of a run: the disk whose event is due gets a later time. Now and then another disk
+/// gets one, or returns to its previous time.
 fn run(stage: &mut Stage, first: usize, now: f64) -> Operation {
     if !now.is_finite() {
         return to_and_fro(stage, first, now);

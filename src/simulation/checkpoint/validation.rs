@@ -93,8 +93,8 @@ pub(super) fn grids(saved: &Saved, bodies: &Bodies) -> Option<Grids> {
     saved.places.iter().enumerate().all(is_placed).then_some(grids)
 }
 
-/// Tells whether these are so many classes, in order, and there is one for each disk. There cannot be far more
-/// or far fewer disks than in the classes, since new cells would have been made.
+/// Tells whether these are so many classes, in order, and there is one for each disk. There cannot be far
+/// more or far fewer disks than in the classes, since new cells would have been made.
 fn are_classes(classes: &[SizeClass], number: usize, diameters: impl ExactSizeIterator<Item = f64>) -> bool {
     let are_sizes = classes
         .iter()

@@ -85,8 +85,8 @@ pub(in crate::simulation) struct Bodies {
     /// Typical diameter, in which the length of an epoch is measured.
     pub(in crate::simulation) typical_diameter: f64,
     pub(in crate::simulation) identities: Identities,
-    /// The count of collisions with which the next new disk begins, larger than those of all disks whose index
-    /// it may get.
+    /// The count of collisions with which the next new disk begins, larger than those of all disks whose
+    /// index it may get.
     pub(in crate::simulation) fresh_count: u32,
     /// True if disks have come or gone since the typical diameter was measured.
     pub(super) has_changed: bool,

@@ -71,7 +71,8 @@ impl<'a, E: Experiment> Value<'a, E> {
         Ok(Active { value: self, work, run })
     }
 
-    /// Returns whether a record of the same ramp in another study has all that the record of this value needs.
+    /// Returns whether a record of the same ramp in another study has all that the record of this value
+    /// needs.
     pub(super) fn is_finished_by(&self, Record { contents, .. }: &Record<E>) -> bool {
         let (samples, all) = (contents.measured.samples.len() as u64, self.plan.protocol().samples());
         let is_whole = if contents.outcome == Outcome::Completed { samples == all } else { samples < all };

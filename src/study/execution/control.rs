@@ -75,12 +75,12 @@ impl<'a> Control<'a> {
 
     /// Returns the same control, which takes over the values that earlier studies in these folders have done.
     ///
-    /// So a study grows into a new folder, and so the parts of a sweep become one study. The plans may differ in
-    /// the values of their axes and in repeats. A ramp may have more values at its end. With more samples, a
-    /// value goes on where it ended, if its record keeps the state
-    /// ([`Plan::with_end_states`](crate::study::Plan::with_end_states)). Anything else that differs is an error.
-    /// The study gets the same bytes as without the earlier ones. Values of code that was accepted there are
-    /// done again.
+    /// So a study grows into a new folder, and so the parts of a sweep become one study. The plans may differ
+    /// in the values of their axes and in repeats. A ramp may have more values at its end. With more samples,
+    /// a value goes on where it ended, if its record keeps the state
+    /// ([`Plan::with_end_states`](crate::study::Plan::with_end_states)). Anything else that differs is an
+    /// error. The study gets the same bytes as without the earlier ones. Values of code that was accepted
+    /// there are done again.
     #[doc(alias("grow", "merge", "extend"))]
     pub fn with_earlier_studies(self, folders: &'a [PathBuf]) -> Self {
         Self { earlier: folders, ..self }
