@@ -39,6 +39,9 @@ const F64: u8 = 10;
 /// Bytes of the name of a kind: its number and a zero.
 const NAME: usize = 6;
 
+/// Numbers in double precision at the end of a frame; the first is its time.
+const LOG: usize = 5;
+
 /// The chunks of each frame in their order: name, type, numbers in a row, rows.
 const CHUNKS: [(&str, u8, u32, Rows); 18] = [
     ("configuration/step", U64, 1, Rows::One),
@@ -119,7 +122,7 @@ impl Format for HoomdSchema {
         }
         numbered(disks).try_for_each(|(id, _)| out.write_all(&id.to_le_bytes()))?;
         let gravity = snapshot.gravity().acceleration();
-        let log = [snapshot.time(), gravity.x, gravity.y, center[0], center[1]];
+        let log: [f64; LOG] = [snapshot.time(), gravity.x, gravity.y, center[0], center[1]];
         log.iter().try_for_each(|number| out.write_all(&number.to_le_bytes()))
     }
 }

@@ -124,20 +124,25 @@ fn engine() -> Vec<Case> {
     ]
 }
 
+/// A width of a bin whose inverse is a number, too.
+fn resolved(value: f64) -> bool {
+    positive(value) && (1.0 / value).is_finite()
+}
+
 fn watching() -> Vec<Case> {
     vec![
         ("sampling interval", |value| told(SampleTimes::every(value)), positive),
         ("first sampling time", |value| told(times().starting_at(value)), f64::is_finite),
-        ("upper end of the bins", |value| told(HeightProfile::new(0.0, value, 1)), positive),
+        ("upper end of the bins", |value| told(HeightProfile::new(0.0, value, 1)), resolved),
         (
             "lower end of the bins",
             |value| told(HeightProfile::new(value, 2.0, 1)),
             |value| value.is_finite() && value < 2.0,
         ),
-        ("upper end of the bins", |value| told(EnergyChangeProfile::new(0.0, value, 1)), positive),
-        ("range of the correlation", |value| told(PairCorrelation::new(value, 1)), positive),
+        ("upper end of the bins", |value| told(EnergyChangeProfile::new(0.0, value, 1)), resolved),
+        ("range of the correlation", |value| told(PairCorrelation::new(value, 1)), resolved),
         ("length of a wall", |value| told(WallStress::new(times()).with_wall(0, value)), positive),
-        ("upper end of the bins", |value| told(Histogram::new(0.0, value, 1)), positive),
+        ("upper end of the bins", |value| told(Histogram::new(0.0, value, 1)), resolved),
         ("edge of the region", |value| told(grid(value)), |value| value > 1.0 && value.is_finite()),
         ("translational temperature", |value| told(Maxwellian::new(value)), scale),
         (
@@ -175,7 +180,7 @@ fn each_number_is_taken_or_named() {
                 Ok(()) => assert!(takes(value), "{name} {value:e} was taken"),
                 Err(error) => {
                     assert!(!takes(value), "{value:e} was refused: {error}");
-                    let derived = ["area of", "peak", "period", "upper end of"];
+                    let derived = ["area of", "peak", "period", "upper end of", "width of a bin"];
                     let said = error.rsplit(' ').next().unwrap().parse::<f64>();
                     let by_itself = error.starts_with(name)
                         && said.is_ok_and(|said| said == value || said.is_nan() && value.is_nan());

@@ -109,9 +109,9 @@ fn sizes_are_those_of_the_table() {
     let empty = size();
     let domain = Domain::new(0.0, 10.0, 0.0, f64::INFINITY);
     recorder.record(&Snapshot::new(1.0, &[], domain, 1.0)).unwrap();
-    assert_eq!(size() - empty, 8 + 1 + 24 + 4 + 6 + 32);
+    assert_eq!(size() - empty, 8 + 1 + 24 + 4 + 6 + 40);
     let disks = random_disks(1, &domain);
     let kinds = disks.iter().map(|disk| u64::from(disk.kind().number()) + 1).max().unwrap();
     recorder.record(&Snapshot::new(2.0, &disks, domain, 1.0)).unwrap();
-    assert_eq!(size() - empty, 2 * 69 + 6 * (1 + kinds) + 100 * disks.len() as u64);
+    assert_eq!(size() - empty, 2 * 77 + 6 * (1 + kinds) + 100 * disks.len() as u64);
 }

@@ -5,7 +5,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::{CHUNKS, F64, I8, Shape, U8, U64};
+use super::{CHUNKS, F64, I8, LOG, Shape, U8, U64};
 use crate::file::Locked;
 use crate::observable::Snapshot;
 use crate::trajectory::errors::RecordError;
@@ -186,8 +186,7 @@ impl Found {
             else {
                 return Err(no_frame("a whole frame", "a damaged one"));
             };
-            // The time is the first of four numbers at the end of a frame.
-            let time = f64::from_bits(number(&read_at(file, end - 32, 8)?, 0));
+            let time = f64::from_bits(number(&read_at(file, end - (8 * LOG) as u64, 8)?, 0));
             if !time.is_finite() || found.times.last().is_some_and(|&last| last >= time) {
                 return Err(no_frame("a frame after the one before", &format!("time {time:?}")));
             }
