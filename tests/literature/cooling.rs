@@ -77,7 +77,7 @@ fn disks_without_correlations_cool_as_theory_and_other_programs_say() -> Outcome
         assert!((a_2 - expected).abs() < 0.035, "{a_2} {expected}");
     }
     let (_, [t, r], _) = cool_directly(Rough::from_restitution(0.9, 0.5)?, 1.0, 15.0)?;
-    assert!(agrees("T_rot/T", r / t, 0.771, 0.04));
+    assert!(agrees("T_rot/T of rough disks", r / t, 0.771, 0.04));
     for friction in [0.3, 1.0] {
         let rates = frictional_rates(0.05, friction);
         let rule = Frictional::from_inelasticity(0.05, 0.05, friction)?;
