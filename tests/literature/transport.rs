@@ -80,9 +80,6 @@ fn transport_agrees(
     gas.run_until(gas.time() + mean_free_times * mean_free_time, &mut transport)?;
     let thermal = transport.temperature().sqrt();
     let [eta, zeta, lambda] = enskog(packing);
-    // The flux of heat of a dilute gas forgets itself in two mean free times, that of momentum in one. So the
-    // slope of its moment is not quite complete in this window: by 3 %.
-    let lambda = lambda * (1.0 - 0.4 * (f64::exp(-2.5) - f64::exp(-5.0)));
     let measured = [
         ("eta / eta_E", transport.shear_viscosity(), eta),
         ("zeta / zeta_E", transport.bulk_viscosity(), zeta),
@@ -107,8 +104,10 @@ fn viscosities_and_conductivity_are_about_those_of_enskog() -> Outcome {
 
 #[test]
 #[ignore = "some minutes"]
-// Few disks at a known energy lack about another 1 % of the conductivity. Measured over Enskog's values for
-// this window: 0.998(8), 0.96(3) and 0.977(8).
+// Falls short: measured once over Enskog's values, 0.998(8), 0.963(30) and 0.948(7), so the conductivity is
+// outside of its 3 %. Its flux forgets itself more slowly than that of momentum, so a window from 5 to 10 mean
+// free times should lack some 3 %, and so few disks at a known energy some 1 %. A wider window and more disks
+// would tell; the expected value is not corrected by an estimate made afterwards.
 fn long_viscosities_and_conductivity_are_those_of_enskog() -> Outcome {
     assert!(transport_agrees(0.05, 200_000.0, [0.03, 0.3, 0.03])?);
     Ok(())

@@ -24,7 +24,7 @@ pub(super) struct Shift<'a, E: Experiment> {
     pub(super) earlier: Earlier<E>,
     /// Number of steps that are done, and of those in all values.
     steps: [AtomicU64; 2],
-    /// What all threads have done.
+    /// The work that all threads have done.
     summary: Mutex<Summary>,
     /// True once a thread has met an error.
     ///
