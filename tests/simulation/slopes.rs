@@ -106,8 +106,8 @@ fn a_chute_flows_steadily_and_its_ground_carries_the_weight() -> Outcome {
         speeds.push(speed);
     }
     println!("speed of the lower and upper third: {} {}", below / 6000.0, above / 6000.0);
-    // The flow of so few grains varies slowly, by a tenth, so the ratio of two parts by 0.14: the bound is three
-    // of these. Without the ground, they would be 60 faster.
+    // The flow of so few grains varies slowly, by a tenth, so the ratio of two parts by 0.14: the bound is
+    // three of these. Without the ground, they would be 60 faster.
     assert!((speeds[0] / speeds[1] - 1.0).abs() < 0.4, "{speeds:?}");
     assert!(below > 0.0 && above > 1.5 * below, "{below} {above}");
     Ok(())
