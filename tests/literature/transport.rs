@@ -106,8 +106,8 @@ fn viscosities_and_conductivity_are_about_those_of_enskog() -> Outcome {
 #[ignore = "some minutes"]
 // Falls short: measured once over Enskog's values, 0.998(8), 0.963(30) and 0.948(7), so the conductivity is
 // outside of its 3 %. Its flux forgets itself more slowly than that of momentum, so a window from 5 to 10
-// mean free times should lack some 3 %, and so few disks at a known energy some 1 %. A wider window and more disks
-// would tell; the expected value is not corrected by an estimate made afterwards.
+// mean free times should lack some 3 %, and so few disks at a known energy some 1 %. A wider window and
+// more disks would tell; the expected value is not corrected by an estimate made afterwards.
 fn long_viscosities_and_conductivity_are_those_of_enskog() -> Outcome {
     assert!(transport_agrees(0.05, 200_000.0, [0.03, 0.3, 0.03])?);
     Ok(())
