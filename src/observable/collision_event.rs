@@ -77,6 +77,15 @@ impl Collision {
         Self { time, disk, partner, normal, position, distance, contact, impulse, energy_change }
     }
 
+    /// Adds the impulse and the work of a push along the normal that changes the disk's velocity from
+    /// `before` to `after`.
+    pub(crate) fn add_push(&mut self, before: DVec2, after: DVec2, inverse_mass: f64) {
+        let momentum = (after - before) / inverse_mass;
+        self.energy_change += momentum.dot(0.5 * (before + after));
+        let normal = self.impulse.normal() + momentum.dot(self.normal);
+        self.impulse = Impulse::new(normal, self.impulse.tangential()).with_regime(self.impulse.regime());
+    }
+
     /// Returns the position of the partner: the center of a disk, or the point where a wall is touched.
     ///
     /// At periodic sides, the disk may touch an image of the partner. The position is then that of the image.

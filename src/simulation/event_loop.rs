@@ -129,7 +129,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             return Err(self.boundary_fault(disk, BoundaryFault::Surface { wall, normal, velocity }).into());
         }
         let parts = (self.bodies.velocity(disk, now) - surface.velocity).dot(surface.normal) > 0.0;
-        let (collision, kick) =
+        let (mut collision, kick) =
             resolve_wall(&self.bodies, &self.rule, &mut self.generator, &surface, &self.clock, disk, wall);
         if !kick.is_possible() {
             let name = self.name_of(Partner::Wall(wall));
@@ -149,11 +149,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.counters.wall_collisions += 1;
         self.count_regime(&collision);
         self.kick(disk, &kick);
-        observer.on_collision(&collision);
         self.find_next(disk);
         if parts {
-            self.leave_wall(disk, wall, &collision);
+            self.leave_wall(disk, wall, &mut collision);
         }
+        observer.on_collision(&collision);
         self.schedule(disk);
         Ok(Event::WallCollision { disk, wall })
     }

@@ -50,20 +50,28 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Makes a disk leave a wall if engine and boundary disagree about its motion.
     ///
     /// Because its speed is rounded, a disk can part from the wall in the engine's arithmetic and approach it
-    /// in the boundary's. A disk that rests on a wall does not part from it, and is left as it is.
+    /// in the boundary's. A disk that rests on a wall does not part from it, and is left as it is. The pushes
+    /// are added to the collision, so that its impulse and energy are what the disk receives.
     #[cold]
     #[inline(never)]
-    pub(super) fn leave_wall(&mut self, disk: usize, wall: usize, collision: &Collision) {
+    pub(super) fn leave_wall(&mut self, disk: usize, wall: usize, collision: &mut Collision) {
+        let now = self.clock.now;
         for doubling in 0..MOST_NUDGES {
             let Forecast { exit, exit_due, wall: next, .. } = *self.forecast(disk);
-            if exit != Exit::Wall || exit_due > self.clock.now || usize::from(next) != wall {
+            if exit != Exit::Wall || exit_due > now || usize::from(next) != wall {
                 return;
             }
             // The speed relative to the wall is a difference of speeds, so its rounding error is that of
             // these speeds.
-            let fallen = self.bodies.fall(self.clock.now).1.length();
+            let fallen = self.bodies.fall(now).1.length();
             let scale = f64::EPSILON * (self.bodies.speed(disk) + fallen);
-            self.bodies.push(disk, collision.normal * (f64::from(1_u32 << doubling) * scale), self.clock.now);
+            let before = self.bodies.velocity(disk, now);
+            self.bodies.push(disk, collision.normal * (f64::from(1_u32 << doubling) * scale), now);
+            collision.add_push(
+                before,
+                self.bodies.velocity(disk, now),
+                self.bodies.material(disk).inverse_mass,
+            );
             self.find_next(disk);
         }
     }

@@ -5,6 +5,7 @@ use std::cell::Cell;
 use granular_edmd::boundary::{Boundary, Container, Wall};
 use granular_edmd::collision::{ContactDuration, Elastic, Smooth};
 use granular_edmd::glam::DVec2;
+use granular_edmd::observable::{Collision, on_collision};
 use granular_edmd::simulation::RunError;
 use granular_edmd::wall::{
     AccelerationBounds, Approach, BiParabolic, Sawtooth, Sinusoidal, Triangular, WallMotion, WallState,
@@ -100,4 +101,42 @@ fn a_search_takes_some_periods_of_a_wall_however_fast_it_is() {
             assert!(touch > 3.9 && wall.1.get() < 200, "{frequency:e}: {} looks", wall.1.get());
         }
     }
+}
+
+/// A disk that moves with a wall parts from it at the turn. If rounding lets it approach in the boundary's
+/// arithmetic, the engine pushes it, and the collision reports this push, too.
+#[test]
+fn a_push_away_from_a_wall_is_part_of_the_collision() {
+    let mut pushed = 0;
+    for seed in 0..200 {
+        let shake = |wall: u32| {
+            let size = f64::from(seed * 4 + wall);
+            Triangular::new(0.05 + 0.1 * size.sin().abs(), 4.0 + (1.7 * size).cos().abs() * 10.0).unwrap()
+        };
+        let walls = [Wall::Floor, Wall::Lid, Wall::Left, Wall::Right].into_iter().zip(0..);
+        let container = walls.fold(Container::closed(6.0, 5.0).unwrap(), |container, (wall, index)| {
+            container.with_motion(wall, shake(index)).unwrap()
+        });
+        let rule = Smooth::from_restitution(0.0).unwrap();
+        let disks = [disk(2.0, 2.0, DVec2::new(0.3, 1.0 + 0.01 * f64::from(seed)))];
+        let mut run = Simulation::builder(rule, container).disks(disks).build().unwrap();
+        let told = Cell::new(None);
+        for _ in 0..200 {
+            let before = run.disks()[0];
+            told.set(None);
+            let mut hear = on_collision(|collision: &Collision| told.set(Some(*collision)));
+            if run.step_until(run.time() + 10.0, &mut hear).is_err() {
+                break;
+            }
+            let Some(collision) = told.take() else { continue };
+            let after = run.disks()[0];
+            let change = after.translational_energy() - before.translational_energy();
+            let (rounding, told) = (1e-14 * after.translational_energy(), collision.energy_change);
+            assert!((change - told).abs() <= rounding, "{change:e}, not {told:e}: {collision:?}");
+            let impulse = (after.velocity() - before.velocity()).dot(collision.normal) * after.mass();
+            assert!((impulse - collision.impulse.normal()).abs() <= 1e-14, "{impulse:e}: {collision:?}");
+            pushed += u32::from(collision.contact.closing_speed() <= 0.0 && change != 0.0);
+        }
+    }
+    assert!(pushed > 0);
 }
