@@ -22,6 +22,7 @@ mod mixtures;
 mod order_parameters;
 mod plate;
 mod reversal;
+mod rough_transport;
 mod stress;
 mod structure;
 mod superball;
