@@ -194,7 +194,8 @@ impl Disk {
     /// Returns the numbers of periods that the disk has passed to the right and up, less those to the left
     /// and down.
     ///
-    /// Each passage counts one, also if the period has changed since.
+    /// Each passage counts one, also if the period has changed since. After 2³¹ passages the count goes on at
+    /// −2³¹.
     ///
     /// At periodic sides and ends, [`Domain::unwrapped`](crate::boundary::Domain::unwrapped) turns these
     /// numbers into a position that does not jump.

@@ -90,7 +90,7 @@ impl<E: Experiment> Study<E> {
     /// If the folder holds no study, or cannot be read or written.
     pub fn accept_changes(folder: impl AsRef<Path>) -> Result<Vec<Difference>, StudyError> {
         let study = Self::found_in(folder.as_ref())?;
-        let before = study.folder.provenance()?;
+        let before = study.read_provenance()?;
         let differences = before.differences(&study.plan);
         if !differences.is_empty() {
             let now = Provenance::here(&study.plan, &study.hash, &before.keys());
@@ -105,12 +105,7 @@ impl<E: Experiment> Study<E> {
             return Err(StudyError::Missing { path: folder.root().to_owned() });
         }
         let plan = Self::plan_in(&folder)?;
-        let study = Self::in_folder(folder, plan)?;
-        let provenance = study.folder.provenance()?;
-        if provenance.is_there() && !provenance.is_of(&study.hash) {
-            return Err(StudyError::Foreign { path: study.folder.provenance_file() });
-        }
-        Ok(study)
+        Self::in_folder(folder, plan)
     }
 
     /// Reads the plan in a folder. Its experiments were tried when it was put there.
@@ -142,8 +137,17 @@ impl<E: Experiment> Study<E> {
         Ok(self)
     }
 
-    fn check_code(&self) -> Result<Provenance, StudyError> {
+    /// Reads the provenance, which must be that of this plan, whole.
+    fn read_provenance(&self) -> Result<Provenance, StudyError> {
         let provenance = self.folder.provenance()?;
+        if provenance.is_there() && !provenance.is_of(&self.hash) {
+            return Err(StudyError::Foreign { path: self.folder.provenance_file() });
+        }
+        Ok(provenance)
+    }
+
+    fn check_code(&self) -> Result<Provenance, StudyError> {
+        let provenance = self.read_provenance()?;
         let differences = provenance.differences(&self.plan);
         if differences.is_empty() {
             return Ok(provenance);

@@ -20,7 +20,8 @@ impl Oscillation {
             angular_frequency: positive("angular frequency", angular_frequency)?,
         };
         positive("period", oscillation.period())?;
-        positive("peak acceleration", amplitude * angular_frequency * angular_frequency)?;
+        // In the form in which the motions use it, so that no square of a period vanishes there.
+        positive("peak acceleration", amplitude / (oscillation.period() * oscillation.period()))?;
         Ok(oscillation)
     }
 

@@ -140,3 +140,11 @@ fn a_push_away_from_a_wall_is_part_of_the_collision() {
     }
     assert!(pushed > 0);
 }
+
+/// The acceleration 8A/H² of a motion whose squared period vanishes is no number, though Aω² is one.
+#[test]
+fn motions_whose_squared_periods_vanish_are_refused() {
+    assert!(BiParabolic::new(1e-320, 1e300).is_err());
+    assert!(Sinusoidal::new(1e-320, 1e300).is_err());
+    assert!(BiParabolic::new(1e-300, 1e150).is_ok());
+}

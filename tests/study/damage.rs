@@ -75,3 +75,27 @@ fn a_changed_plan_takes_no_old_records() -> Result<(), AnyError> {
     assert!(contents(&scratch.0) == before, "nothing was lost");
     Ok(())
 }
+
+#[test]
+fn a_torn_provenance_is_refused_wherever_it_is_torn() -> Result<(), AnyError> {
+    let (scratch, _) = done(&small_plan(), "torn");
+    let path = scratch.0.join("provenance.json");
+    let text = fs::read_to_string(&path)?;
+    // The hash of the plan comes last among the fields that are checked.
+    let checked = text.find("\"accepted\"").ok_or("no field of earlier makers")?;
+    for length in 1..checked {
+        if !text.is_char_boundary(length)
+            || text[length..checked].trim_matches([' ', ',', '\n', '"']).is_empty()
+        {
+            continue;
+        }
+        fs::write(&path, &text[..length])?;
+        let opened = Study::<VibratedBox>::open(&scratch.0);
+        assert!(opened.is_err(), "{}", &text[..length]);
+        let opened = Study::open_or_create(&scratch.0, &small_plan());
+        assert!(opened.is_err(), "{}", &text[..length]);
+    }
+    fs::write(&path, &text)?;
+    Study::<VibratedBox>::open(&scratch.0)?;
+    Ok(())
+}
