@@ -7,7 +7,8 @@ use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::collision::{CollisionRule, collide};
-use crate::quantity::{accept, positive};
+use crate::disk::LARGEST;
+use crate::quantity::{accept, finite, positive};
 use crate::random::uniform;
 use crate::{Disk, ParameterError};
 
@@ -37,7 +38,7 @@ use crate::{Disk, ParameterError};
 /// let disks = vec![Disk::new(DVec2::ZERO, 0.5)?; 2000];
 /// let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
 /// let mut gas = DirectSimulation::new(Smooth::from_restitution(0.9)?, disks, 0.1, 1)?;
-/// gas.run_until(40.0);
+/// gas.run_until(40.0)?;
 /// let temperature = gas.disks().iter().map(Disk::translational_energy).sum::<f64>() / 2000.0;
 /// // Haff's law, with the rate of collisions of a Maxwellian.
 /// let rate = 2.0 * std::f64::consts::PI.sqrt() * 0.1;
@@ -70,10 +71,9 @@ impl<R: CollisionRule> DirectSimulation<R> {
     pub fn new(rule: R, disks: Vec<Disk>, density: f64, seed: u64) -> Result<Self, ParameterError> {
         accept(disks.len() > 1, "number of disks", "at least 2", disks.len() as f64)?;
         let density = positive("density", density)?;
-        let widest = 2.0 * disks.iter().map(Disk::radius).fold(0.0, f64::max);
         let generator = Xoshiro256PlusPlus::seed_from_u64(seed);
         let (time, collisions) = (0.0, 0);
-        Ok(Self { rule, disks, density, generator, time, collisions, widest, fastest: 0.0 })
+        Ok(Self { rule, disks, density, generator, time, collisions, widest: 0.0, fastest: 0.0 })
     }
 
     /// Returns the disks.
@@ -97,11 +97,16 @@ impl<R: CollisionRule> DirectSimulation<R> {
     }
 
     /// Lets the disks collide until this time.
-    pub fn run_until(&mut self, end: f64) {
+    ///
+    /// # Errors
+    /// If the time is not finite, or the rule makes a disk faster than 1e60 or its velocity NaN.
+    pub fn run_until(&mut self, end: f64) -> Result<(), ParameterError> {
+        finite("time", end)?;
         while self.time < end {
-            // The bound of the speeds is found anew now and then, since a gas that cools becomes slow.
-            let speeds = self.disks.iter().map(|disk| disk.velocity().length());
-            self.fastest = speeds.fold(0.0, f64::max);
+            // The bounds are found anew now and then: a gas that cools becomes slow, and drivings change disks.
+            let largest = |of: fn(&Disk) -> f64| self.disks.iter().map(of).fold(0.0, f64::max);
+            (self.widest, self.fastest) =
+                (2.0 * largest(Disk::radius), largest(|disk| disk.velocity().length()));
             for _ in 0..self.disks.len() {
                 // Pairs are tried as often as the fastest and widest ones collide.
                 let pairs = self.density * (self.disks.len() - 1) as f64 * PI;
@@ -109,15 +114,16 @@ impl<R: CollisionRule> DirectSimulation<R> {
                 if self.time >= end {
                     // The waits have no memory, so that of the next run begins anew.
                     self.time = end;
-                    return;
+                    return Ok(());
                 }
-                self.attempt();
+                self.attempt()?;
             }
         }
+        Ok(())
     }
 
     /// Draws a pair and a direction, and lets it collide with its share of the largest rate.
-    fn attempt(&mut self) {
+    fn attempt(&mut self) -> Result<(), ParameterError> {
         let count = self.disks.len();
         let first = self.index(count);
         let second = (first + 1 + self.index(count - 1)) % count;
@@ -127,17 +133,20 @@ impl<R: CollisionRule> DirectSimulation<R> {
         let contact = one.radius() + other.radius();
         let closing = (other.velocity() - one.velocity()).dot(normal);
         if uniform(&mut self.generator) * self.largest_rate() >= contact * closing {
-            return;
+            return Ok(());
         }
         let placed = |disk: Disk, place: DVec2| {
             disk.with_motion(place, disk.velocity(), disk.angle(), disk.angular_velocity())
         };
         let met = collide(&self.rule, &placed(one, contact * normal), &placed(other, DVec2::ZERO));
         for (disk, met) in [(first, met.first), (second, met.second)] {
+            let speed = met.velocity().length();
+            accept(speed <= LARGEST, "speed of a disk after a collision", "at most 1e60", speed)?;
             self.disks[disk] = met;
-            self.fastest = self.fastest.max(met.velocity().length());
+            self.fastest = self.fastest.max(speed);
         }
         self.collisions += 1;
+        Ok(())
     }
 
     /// Returns the largest diameter times the largest closing speed of any pair.

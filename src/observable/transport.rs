@@ -48,7 +48,9 @@ type Moments = [DVec2; MOMENTS];
 /// is 1). In two dimensions the slopes grow slowly with the longest lag, so report it, and the number of
 /// disks. Choose lags from a few mean free times up to the time in which sound crosses the box.
 ///
-/// A run ends with an error if the domain is not periodic in both directions, or if there is gravity. The
+/// A run ends with an error if the domain is not periodic in both directions, if there is gravity, if a disk
+/// meets a wall, if a collision of disks changes the energy by more than 1e-6 of theirs, or if disks change
+/// otherwise than by collisions. The
 /// first stretch, as long as the longest lag, only finds the pressure. A run that does not continue the
 /// previous one, and disks that changed between runs, begin anew: the measurements so far stay. The
 /// errors come from blocks of origins.
@@ -91,6 +93,9 @@ pub struct TransportCoefficients {
     /// Growth of the moment of compression beyond the drift, over the longest lag.
     excess: RunningMean,
     temperature: RunningMean,
+    /// Whether the disks may have been changed since the sample before: a run has begun.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    may_differ: bool,
     /// The reason why nothing can be measured in this run.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
@@ -174,6 +179,7 @@ impl TransportCoefficients {
             slopes: std::array::from_fn(|_| BlockedMean::new()),
             excess: RunningMean::default(),
             temperature: RunningMean::default(),
+            may_differ: false,
             fault: None,
         })
     }
@@ -246,8 +252,13 @@ impl TransportCoefficients {
         let is_same = |(one, other): (&Mover, &Mover)| one.velocity.distance(other.velocity) <= rounding;
         let goes_on = self.movers.len() == movers.len() && self.movers.iter().zip(&movers).all(is_same);
         if !goes_on {
+            if !self.movers.is_empty() && !self.may_differ {
+                let name = "time by which disks have changed otherwise than in collisions";
+                self.fault = Some(ParameterError::new(name, "between two runs", self.time));
+            }
             self.begin_anew();
         }
+        self.may_differ = false;
         self.rates = [DVec2::ZERO; MOMENTS];
         for mover in &movers {
             add(&mut self.rates, &mover.rates(), 1.0);
@@ -301,10 +312,15 @@ impl Observer for TransportCoefficients {
             self.begin_anew();
         }
         self.domain = Some(moment.domain());
+        self.may_differ = true;
     }
 
     fn on_collision(&mut self, collision: &Collision) {
-        let Partner::Disk(partner) = collision.partner else { return };
+        let Partner::Disk(partner) = collision.partner else {
+            let (name, never) = ("time of a collision with a wall", "never, for transport coefficients");
+            self.fault = Some(ParameterError::new(name, never, collision.time));
+            return;
+        };
         let pair = (self.movers.get(collision.disk).copied(), self.movers.get(partner).copied());
         let (Some(mut first), Some(mut second)) = pair else { return };
         self.advance(collision.time);
@@ -312,6 +328,11 @@ impl Observer for TransportCoefficients {
         let kick = normal * impulse.normal() + normal.perp() * impulse.tangential();
         for mover in [&first, &second] {
             add(&mut self.rates, &mover.rates(), -1.0);
+        }
+        let energy = first.energy() + second.energy();
+        if collision.energy_change.abs() > ROUNDING * energy {
+            let (name, lost) = ("energy lost in a collision", -collision.energy_change);
+            self.fault = Some(ParameterError::new(name, "0 for transport coefficients", lost));
         }
         let gained = first.kick(kick, impulse.tangential());
         let lost = second.kick(-kick, impulse.tangential());

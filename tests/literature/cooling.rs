@@ -63,7 +63,7 @@ fn cool_directly<R: CollisionRule>(
             let rotational = 2.0 * mean(gas.disks(), Disk::rotational_energy);
             return Ok((collided, [temperature, rotational], fourth / (8.0 * temperature.powi(2)) - 1.0));
         }
-        gas.run_until(gas.time() + 0.02 / temperature.sqrt());
+        gas.run_until(gas.time() + 0.02 / temperature.sqrt())?;
     }
 }
 

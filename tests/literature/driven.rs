@@ -77,11 +77,11 @@ fn by_direct_simulation<R: CollisionRule>(rule: R, noise: f64, count: usize, tim
     let mut noise = WhiteNoise::new(noise, SampleTimes::every(0.1)?, 4)?;
     let mut moments = Moments::default();
     for step in 1..=(10.0 * times) as u32 {
-        gas.run_until(0.1 * (f64::from(step) - 0.5));
+        gas.run_until(0.1 * (f64::from(step) - 0.5))?;
         if step > 300 && step.is_multiple_of(5) {
             moments.add(gas.disks());
         }
-        gas.run_until(0.1 * f64::from(step));
+        gas.run_until(0.1 * f64::from(step))?;
         noise.kick(gas.disks_mut())?;
     }
     Ok(moments.means())

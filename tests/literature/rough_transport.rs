@@ -49,7 +49,7 @@ fn slopes<R: CollisionRule>(
     let (mut moments, mut flux, mut path) = ([DVec2::ZERO; 2], fluxes(gas.disks()), Vec::new());
     for _ in 0..(measurement.mean_free_times / measurement.interval) as usize {
         for _ in 0..(measurement.interval / STEP).round() as usize {
-            gas.run_until(gas.time() + step);
+            gas.run_until(gas.time() + step)?;
             let now = fluxes(gas.disks());
             moments = [0, 1].map(|index| moments[index] + 0.5 * step * (flux[index] + now[index]));
             flux = now;
@@ -73,7 +73,7 @@ fn agrees_with_direct_simulation<R: CollisionRule + Clone>(
     tolerance: f64,
 ) -> Result<bool, Box<dyn std::error::Error>> {
     let mut gas = periodic_gas(measurement.count, PACKING, rule.clone(), 7)?;
-    let expected = slopes(measurement, rule, gas.disks().to_vec())?;
+    let expected = slopes(measurement, rule, gas.disks())?;
     let transport = measurement.of(&mut gas)?;
     let (area, temperature) = (0.25 * PI * measurement.count as f64 / PACKING, transport.temperature());
     let shear = ("eta / eta_B", transport.shear_viscosity(), expected[0], 2.0 * area * temperature);

@@ -10,3 +10,4 @@ mod observers;
 mod profiles_and_fields;
 mod stress_and_velocities;
 mod tables;
+mod transport;

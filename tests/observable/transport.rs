@@ -1,0 +1,61 @@
+//! Transport coefficients refuse runs whose numbers would not be those of an elastic gas.
+
+use std::error::Error;
+
+use granular_edmd::boundary::{Boundary, Container, Part, Vessel};
+use granular_edmd::collision::{CollisionRule, Elastic, Rough, Smooth};
+use granular_edmd::glam::DVec2;
+use granular_edmd::observable::{SampleTimes, TransportCoefficients};
+use granular_edmd::simulation::{Inlet, RunError};
+use granular_edmd::{Disk, Simulation, initial};
+
+type Result<T = ()> = std::result::Result<T, Box<dyn std::error::Error>>;
+
+fn gas<R: CollisionRule, B: Boundary>(rule: R, walls: B) -> Result<Simulation<R, B>> {
+    let disks = initial::lattice(&walls, 20, 0.4)?;
+    let disks = initial::with_maxwellian_velocities(disks, 1.0, 1)?;
+    Ok(Simulation::builder(rule, walls).disks(disks).build()?)
+}
+
+fn empty() -> Result<Container> {
+    Ok(Container::periodic(12.0, 12.0)?)
+}
+
+fn coefficients() -> Result<TransportCoefficients> {
+    Ok(TransportCoefficients::new(4, SampleTimes::every(1.0)?)?)
+}
+
+fn refusal<R: CollisionRule, B: Boundary>(mut gas: Simulation<R, B>) -> Result<String> {
+    reason(gas.run_until(200.0, &mut coefficients()?))
+}
+
+/// Returns the observer's own error.
+fn reason(refused: std::result::Result<impl std::fmt::Debug, RunError>) -> Result<String> {
+    let error = refused.expect_err("such a run is refused");
+    Ok(error.source().ok_or("no source")?.to_string())
+}
+
+#[test]
+fn a_gas_that_is_not_elastic_or_has_walls_is_refused() -> Result {
+    let error = refusal(gas(Smooth::from_restitution(0.9)?, empty()?)?)?;
+    assert!(error.contains("energy lost in a collision must be 0"), "{error}");
+    let peg = Vessel::new(empty()?).with("peg", Part::peg(DVec2::splat(11.0), 0.3)?)?;
+    let error = refusal(gas(Elastic, peg)?)?;
+    assert!(error.contains("time of a collision with a wall must be never"), "{error}");
+    gas(Rough::from_inelasticity(0.0, 0.0)?, empty()?)?.run_until(200.0, &mut coefficients()?)?;
+    Ok(())
+}
+
+#[test]
+fn disks_may_change_between_runs_and_not_within_one() -> Result {
+    let (mut transport, mut run) = (coefficients()?, gas(Elastic, empty()?)?);
+    run.run_until(50.0, &mut transport)?;
+    run.map_disks(|_, disk| disk.with_velocity(-2.0 * disk.velocity()))?;
+    run.run_until(100.0, &mut transport)?;
+    let newcomer = Disk::new(DVec2::ZERO, 0.2)?;
+    let places = [DVec2::ZERO, DVec2::splat(12.0)];
+    run.add_inlet(Inlet::new(places, [newcomer], SampleTimes::every(7.0)?, 1)?)?;
+    let error = reason(run.run_until(200.0, &mut transport))?;
+    assert!(error.contains("must be between two runs"), "{error}");
+    Ok(())
+}
