@@ -30,6 +30,8 @@ mod steps;
 
 pub use differences::{Differences, OtherPartner, TooFarApart};
 pub use steps::Replayed;
+#[cfg(feature = "cli")]
+pub(crate) use steps::{Steps, collisions};
 
 use crate::ParameterError;
 use crate::boundary::Boundary;
@@ -37,6 +39,7 @@ use crate::collision::CollisionRule;
 use crate::quantity::positive;
 use crate::scheduler::EventScheduler;
 use crate::simulation::{Limits, RunError, Simulation};
+#[cfg(not(feature = "cli"))]
 use steps::{Steps, collisions};
 
 /// Largest number of states that are kept, unless the caller sets another.
@@ -192,11 +195,18 @@ where
         }
     }
 
+    /// Returns the state at this time, or the last one if the run ends before it.
+    fn last_before(&self, time: f64) -> Result<Simulation<R, B, S>, RunError> {
+        let before = if time < self.present.time() { self.at(time)? } else { None };
+        Ok(before.unwrap_or_else(|| self.present.clone()))
+    }
+
     /// Compares two runs, state by state and collision by collision.
     ///
     /// A bisection finds the last state that is the same in both, and the collisions are compared from there
     /// on, disk by disk. So two runs that differ in a rounding have the same partners for a while, although
-    /// their times differ. The result is `None` if the two keep no states of the same times.
+    /// their times differ. A run that ended with an error is compared up to there. The result is `None` if the
+    /// two keep no states of the same times.
     ///
     /// # Errors
     /// If the parts of a run do not answer as they did the first time.
@@ -222,18 +232,21 @@ where
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn differences(&self, other: &Self, tolerance: f64) -> Result<Option<Differences>, RunError> {
-        let ends = std::iter::once((&self.present, &other.present));
-        let mut pairs: Vec<_> = self.states.iter().zip(&other.states).chain(ends).collect();
+        let end = self.present.time().min(other.present.time());
+        let ends = [self.last_before(end)?, other.last_before(end)?];
         // Times may differ by rounding, since a run counts them from its own epochs.
-        let rounding = SAME * self.interval;
-        pairs.retain(|(first, second)| (first.time() - second.time()).abs() <= rounding);
+        let is_same = |first: f64, second: f64| (first - second).abs() <= SAME * self.interval;
+        let at = |time| other.states.iter().find(|state| is_same(state.time(), time));
+        let pairs = self.states.iter().filter_map(|state| Some((state, at(state.time())?)));
+        let mut pairs: Vec<_> = pairs.collect();
         if pairs.is_empty() {
             return Ok(None);
         }
+        pairs.push((&ends[0], &ends[1]));
         let differ = pairs.partition_point(|(first, second)| first.disks() == second.disks());
         let pairs = &pairs[differ.saturating_sub(1)..];
-        let end = self.present.time().min(other.present.time());
-        let partners = differences::other_partners(pairs[0], end)?;
+        let failed = [self, other].map(|replay| replay.has_failed);
+        let partners = differences::other_partners(pairs[0], end, failed)?;
         let apart = differences::first_apart(pairs, tolerance)?;
         Ok(Some(Differences { partners, apart }))
     }

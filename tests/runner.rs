@@ -206,7 +206,7 @@ fn a_study_grows() {
     assert!(said(&output).contains("protocol.settle is 10 there and 20 here"), "{}", said(&output));
 }
 
-/// Each row of the table of exit codes, but 130 and that of `bench`, which have tests of their own.
+/// Each row of the table of exit codes, but 130 and those of `bench` and `diff`, which have tests of their own.
 #[test]
 fn exit_codes_say_how_a_command_ended() {
     let scratch = Scratch::new("codes");
@@ -429,4 +429,191 @@ fn a_trajectory_has_a_frame_after_each_cycle() {
     let output = scratch.runs(&["trajectory", "plan.toml", "--out", "other.xyz", "--ramp", "4"]);
     assert_eq!(code(&output), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("the plan has 4, from 0 on"));
+}
+
+/// Returns the lines of a table after its headings.
+fn lines(output: &Output) -> Vec<String> {
+    assert_eq!(code(output), Some(0), "{}", said(output));
+    String::from_utf8_lossy(&output.stdout).lines().skip(1).map(str::to_owned).collect()
+}
+
+/// Each value of a ramp is made again from its start, with as many collisions as it had, and any collision
+/// again from the state before it.
+#[test]
+fn a_value_is_played_back_and_any_collision_of_it() {
+    let scratch = Scratch::new("replay");
+    let ramp = "[ramp]\nparameter = \"friction\"\nvalues = [0.0, 0.2]\ncourse = \"up\"\n";
+    let (head, _) = SMALL.split_once("[[sweep]]").unwrap();
+    let plan = head.replace("samples = 5", "samples = 40") + ramp;
+    fs::write(scratch.0.join("plan.toml"), plan).unwrap();
+    assert_eq!(code(&scratch.runs(&["run", "plan.toml", "--out", "study", "--ramp", "1"])), Some(0));
+    assert_eq!(code(&scratch.runs(&["tables", "study"])), Some(0));
+    let values = fs::read_to_string(scratch.0.join("study/values.csv")).unwrap();
+    let column = |name: &str| {
+        let place = values.lines().next().unwrap().split(',').position(|found| found == name).unwrap();
+        let cells = values.lines().skip(1).map(|line| line.split(',').nth(place).unwrap().parse().unwrap());
+        cells.collect::<Vec<usize>>()
+    };
+    let counts: Vec<usize> = column("collisions")
+        .iter()
+        .zip(column("wall_collisions"))
+        .map(|(disks, walls)| disks + walls)
+        .collect();
+    let of = |arguments: &[&str]| scratch.runs(&[&["replay", "study", "--ramp", "1"], arguments].concat());
+    let all = lines(&of(&["--from", "-1"]));
+    let second = lines(&of(&["--value", "1", "--from", "-1"]));
+    assert!([all.len(), second.len()] == [counts[0], counts[1]] && counts[1] > 100, "{counts:?}");
+    assert!(second[0].starts_with(&format!("{},", counts[0] + 1)), "{}", second[0]);
+    assert!(
+        second.iter().any(|line| line.ends_with("Sliding")) && second.iter().any(|l| l.contains(",floor,"))
+    );
+    // The plan alone has the start of the first value.
+    assert_eq!(lines(&scratch.runs(&["replay", "plan.toml", "--ramp", "1", "--from", "-1"])), all);
+    assert_eq!(lines(&of(&[])), all[counts[0] - 10..]);
+    let cell = |line: &str, place: usize| line.split(',').nth(place).unwrap().to_owned();
+    let is_own = |line: &&String| [2, 3].iter().any(|&place| cell(line, place) == "7");
+    let own: Vec<String> = all.iter().filter(is_own).cloned().collect();
+    assert_eq!(lines(&of(&["--disk", "7", "--last", "3"])), own[own.len() - 3..]);
+    let objects = of(&["--value", "1", "--from", "-1", "--json"]).stdout;
+    let objects = String::from_utf8(objects).unwrap();
+    assert_eq!(objects.lines().count(), counts[1]);
+    let first: serde_json::Value = serde_json::from_str(objects.lines().next().unwrap()).unwrap();
+    assert_eq!(first["time"].as_f64().unwrap().to_string(), cell(&second[0], 1));
+    // A window has the times after its start and up to its end.
+    let [from, until] = [100, 120].map(|row| cell(&all[row], 1));
+    assert_eq!(lines(&of(&["--from", &from, "--until", &until, "--out", "window.csv"])), [""; 0]);
+    let window = fs::read_to_string(scratch.0.join("window.csv")).unwrap();
+    assert_eq!(window.lines().skip(1).collect::<Vec<_>>(), all[101..=120]);
+    // From the state before a collision, it comes next, and all is as it was.
+    assert_eq!(lines(&of(&["--before", "51", "--out", "before.checkpoint"])), [""; 0]);
+    let rest = ["replay", "study", "--ramp", "1", "--start", "before.checkpoint", "--from", "-1"];
+    assert_eq!(lines(&scratch.runs(&[rest.as_slice(), &["--until", &until]].concat())), all[50..=120]);
+    for name in ["before.xyz", "before.csv", "before.data"] {
+        assert_eq!(code(&of(&["--before", "51", "--out", name])), Some(0));
+        let rest = lines(&of(&["--start", name, "--from", "-1"]));
+        // Only the first one has the time, and so the phase of the base.
+        let is_next = [2, 3, 4].iter().all(|&place| cell(&rest[0], place) == cell(&all[50], place));
+        assert!(is_next || name != "before.xyz", "{rest:?}");
+    }
+}
+
+/// A run that ended with an error is played back up to it, and compared up to it.
+#[test]
+fn the_collisions_before_an_error_are_played_back() {
+    let scratch = Scratch::new("before-error");
+    let (head, _) = SMALL.split_once("[[sweep]]").unwrap();
+    let falls = |inelasticity: &str| {
+        head.replace("0.02", "0.5")
+            .replace("contact_duration = 1e-4", &format!("inelasticity = {inelasticity}"))
+    };
+    fs::write(scratch.0.join("plan.toml"), falls("0.4")).unwrap();
+    fs::write(scratch.0.join("other.toml"), falls("0.41")).unwrap();
+    let output = scratch.runs(&["replay", "plan.toml", "--last", "2"]);
+    let told = said(&output);
+    let [lines @ .., note] = &told.lines().collect::<Vec<_>>()[..] else { panic!("{told}") };
+    assert!(code(&output) == Some(0) && lines.len() == 3, "{told}");
+    let id = note.rsplit_once("has the id ").unwrap().1;
+    assert!(
+        note.contains("the run ended: the run stalled at time ") && note.contains("with the wall \"floor\"")
+    );
+    assert!(lines.iter().any(|line| line.split(',').nth(2) == Some(id)), "{told}");
+    // The next one would be the collision that did not come.
+    let number: u64 = lines[2].split(',').next().unwrap().parse().unwrap();
+    let before = |number: u64| scratch.runs(&["replay", "plan.toml", "--before", &number.to_string()]);
+    assert!([number, number + 1].iter().all(|&number| code(&before(number)) == Some(0)));
+    assert!(code(&before(number + 2)) == Some(1) && said(&before(number + 2)).contains("stalled"));
+    let output = scratch.runs(&["diff", "plan.toml", "other.toml"]);
+    assert_eq!(code(&output), Some(6), "{}", said(&output));
+    assert_eq!(said(&output).matches("the run ended").count(), 2);
+}
+
+#[test]
+fn two_runs_are_compared() {
+    let scratch = Scratch::new("diff");
+    scratch.small_plan();
+    let of = |arguments: &[&str]| scratch.runs(&[&["diff", "plan.toml"], arguments].concat());
+    let same = of(&[]);
+    assert_eq!(code(&same), Some(0), "{}", said(&same));
+    assert!(said(&same).contains("all disks meet the same partners\n"), "{}", said(&same));
+    fs::write(scratch.0.join("other.toml"), SMALL.replace("[0.0, 0.1]", "[0.01, 0.1]")).unwrap();
+    // The seed of a ramp depends on its parameters, so another friction begins elsewhere, unless both begin
+    // with the same file.
+    assert_eq!(code(&of(&["other.toml"])), Some(6));
+    assert_eq!(code(&scratch.runs(&["replay", "plan.toml", "--before", "9", "--out", "start.xyz"])), Some(0));
+    let output = of(&["other.toml", "--start", "start.xyz", "--other-start", "start.xyz"]);
+    assert_eq!(code(&output), Some(6), "{}", said(&output));
+    let told = said(&output);
+    let [partners, _, first, second, apart] = told.lines().collect::<Vec<_>>()[..] else { panic!("{told}") };
+    let (distance, time) = apart.split_once(" away from its place in the other run at ").unwrap();
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    assert!((number(distance.rsplit_once(' ').unwrap().1) - 1e-3).abs() < 1e-9, "{told}");
+    let disk = partners.split(' ').nth(1).unwrap();
+    for row in [first, second] {
+        let cells: Vec<&str> = row.split(',').collect();
+        assert!(number(cells[1]) > number(time) && cells[2..4].contains(&disk), "{told}");
+    }
+    // The checkpoint of a run is of the same run.
+    let out = ["replay", "plan.toml", "--before", "20", "--out", "run.checkpoint"];
+    assert_eq!(code(&scratch.runs(&out)), Some(0));
+    assert_eq!(code(&of(&["--other-start", "run.checkpoint"])), Some(0));
+    let output = of(&["other.toml", "--other-start", "run.checkpoint"]);
+    assert!(code(&output) == Some(1) && said(&output).contains("another rule"), "{}", said(&output));
+    fs::write(scratch.0.join("none.xyz"), "0\nProperties=pos:R:2:radius:R:1\n").unwrap();
+    assert_eq!(code(&of(&["--other-start", "none.xyz"])), Some(1));
+}
+
+/// Wishes that no run can grant are refused by name, and no file is left or overwritten.
+#[test]
+fn wishes_that_cannot_be_are_refused() {
+    let scratch = Scratch::new("wishes");
+    scratch.small_plan();
+    fs::write(scratch.0.join("mine.csv"), "mine").unwrap();
+    for (arguments, status, reason) in [
+        (["--disk", "21"].as_slice(), 2, "there is no disk 21 among the 20 of the run"),
+        (&["--from", "7", "--until", "7"], 2, "no time is after 7 and until 7"),
+        (&["--from", "nan"], 2, "no time is after NaN"),
+        (&["--until", "1e6"], 2, "it cannot go until 1000000"),
+        (&["--until", "-1"], 2, "it cannot go until -1"),
+        (&["--before", "0"], 2, "the first collision of this run has the number 1, not 0"),
+        (&["--before", "1000000"], 1, "there is no collision 1000000 until"),
+        (&["--ramp", "4"], 2, "index of a ramp must be below the number of ramps, but is 4"),
+        (&["--value", "1"], 2, "index of a value"),
+        (&["--start", "none.xyz"], 1, "cannot open none.xyz"),
+        (&["--start", "plan.toml"], 1, "this is not a checkpoint"),
+        (&["--out", "mine.csv"], 1, "cannot write mine.csv"),
+        (&["--out", "no/where.csv"], 1, "cannot write no/where.csv"),
+    ] {
+        let out = if arguments[0] == "--out" { [].as_slice() } else { &["--out", "new.csv"] };
+        let output = scratch.runs(&[&["replay", "plan.toml"], arguments, out].concat());
+        assert_eq!(code(&output), Some(status), "{arguments:?} {}", said(&output));
+        assert!(said(&output).contains(reason), "{arguments:?} {}", said(&output));
+    }
+    assert!(!scratch.0.join("new.csv").exists());
+    assert_eq!(fs::read_to_string(scratch.0.join("mine.csv")).unwrap(), "mine");
+    assert_eq!(code(&scratch.runs(&["run", "plan.toml", "--out", "study", "--ramp", "0"])), Some(0));
+    let output = scratch.runs(&["replay", "study", "--value", "1"]);
+    assert!(
+        code(&output) == Some(1) && said(&output).contains("only 1 values are in the ramp"),
+        "{output:?}"
+    );
+    assert_eq!(code(&scratch.runs(&["diff", "plan.toml", "--tolerance", "-1"])), Some(2));
+}
+
+/// A signal ends both commands at once, without a file half done.
+#[test]
+#[cfg(unix)]
+fn a_signal_ends_replay_and_diff() {
+    let scratch = Scratch::new("replay-signal");
+    fs::write(scratch.0.join("plan.toml"), SMALL.replace("every = 2", "every = 10000000")).unwrap();
+    for arguments in [
+        ["replay", "plan.toml", "--out", "new.csv"].as_slice(),
+        &["replay", "plan.toml", "--from", "3e7", "--out", "new.csv"],
+        &["diff", "plan.toml"],
+    ] {
+        let mut child = scratch.command(arguments).stdout(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(600));
+        assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
+        assert_eq!(child.wait().unwrap().code(), Some(130));
+        assert!(!scratch.0.join("new.csv").exists());
+    }
 }

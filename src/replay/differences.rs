@@ -48,10 +48,12 @@ pub struct TooFarApart {
 /// A pair of states at the same time.
 type Pair<'a, R, B, S> = (&'a Simulation<R, B, S>, &'a Simulation<R, B, S>);
 
-/// Compares the partners of each disk, in turn a collision of one run and of the other.
+/// Compares the partners of each disk, in turn a collision of one run and of the other. The errors of runs
+/// that `failed` are their ends.
 pub(super) fn other_partners<R, B, S>(
     pair: Pair<'_, R, B, S>,
     end: f64,
+    failed: [bool; 2],
 ) -> Result<Option<OtherPartner>, RunError>
 where
     R: CollisionRule + Clone,
@@ -61,11 +63,20 @@ where
     let mut runs = [Steps::new(pair.0.clone()), Steps::new(pair.1.clone())];
     // For each disk, the collisions of the run that is ahead, and which of the two that is.
     let mut ahead: HashMap<u64, (usize, VecDeque<Replayed>)> = HashMap::new();
-    loop {
-        let mut is_over = true;
+    let mut are_over = [false; 2];
+    while are_over != [true; 2] {
         for (which, run) in runs.iter_mut().enumerate() {
-            let Some(collision) = run.next(end)? else { continue };
-            is_over = false;
+            if are_over[which] {
+                continue;
+            }
+            let next = match run.next(end) {
+                Err(_) if failed[which] => None,
+                next => next?,
+            };
+            let Some(collision) = next else {
+                are_over[which] = true;
+                continue;
+            };
             for id in [Some(collision.id), collision.partner_id].into_iter().flatten() {
                 let (leader, waiting) = ahead.entry(id).or_default();
                 if waiting.is_empty() || *leader == which {
@@ -80,10 +91,8 @@ where
                 }
             }
         }
-        if is_over {
-            return Ok(None);
-        }
     }
+    Ok(None)
 }
 
 /// Returns the disk or wall that this disk has met: the id of the disk, or else the wall.
@@ -104,6 +113,9 @@ where
     B: Boundary + Clone,
     S: EventScheduler + Clone,
 {
+    if let Some(apart) = pairs.first().and_then(|&start| farthest(start, tolerance)) {
+        return Ok(Some(apart));
+    }
     let found = pairs.windows(2).find_map(|window| Some((window[0], farthest(window[1], tolerance)?)));
     let Some((start, mut apart)) = found else { return Ok(None) };
     let mut near = (start.0.clone(), start.1.clone());

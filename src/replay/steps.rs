@@ -21,7 +21,7 @@ pub struct Replayed {
 }
 
 /// Returns the number of collisions so far.
-pub(super) fn collisions<R, B, S>(run: &Simulation<R, B, S>) -> u64
+pub(crate) fn collisions<R, B, S>(run: &Simulation<R, B, S>) -> u64
 where
     R: CollisionRule,
     B: Boundary,
@@ -31,7 +31,7 @@ where
 }
 
 /// A run, and the ids of its disks before the next collision.
-pub(super) struct Steps<R, B, S> {
+pub(crate) struct Steps<R, B, S> {
     run: Simulation<R, B, S>,
     ids: Vec<u64>,
     /// Numbers of disks that have come and gone.
@@ -39,10 +39,15 @@ pub(super) struct Steps<R, B, S> {
 }
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Steps<R, B, S> {
-    pub(super) fn new(run: Simulation<R, B, S>) -> Self {
+    pub(crate) fn new(run: Simulation<R, B, S>) -> Self {
         let mut steps = Self { run, ids: Vec::new(), population: [u64::MAX; 2] };
         steps.name();
         steps
+    }
+
+    #[cfg(feature = "cli")]
+    pub(crate) const fn run(&self) -> &Simulation<R, B, S> {
+        &self.run
     }
 
     /// Names the disks, if any have come or gone.
@@ -55,7 +60,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Steps<R, B, S> {
     }
 
     /// Goes to the next collision, if it is not after `end`.
-    pub(super) fn next(&mut self, end: f64) -> Result<Option<Replayed>, RunError> {
+    pub(crate) fn next(&mut self, end: f64) -> Result<Option<Replayed>, RunError> {
         let mut last = None;
         self.run.step_until(end, &mut on_collision(|collision: &Collision| last = Some(*collision)))?;
         let replayed = last.map(|collision| {

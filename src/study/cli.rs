@@ -1,5 +1,5 @@
-//! The command line of a study: `new`, `check`, `run`, `status`, `tables`, `trajectory`, `accept` and
-//! `bench`, for any experiment.
+//! The command line of a study: `new`, `check`, `run`, `status`, `tables`, `trajectory`, `replay`, `diff`,
+//! `accept` and `bench`, for any experiment.
 //!
 //! In a program of your own, `main` is one call of [`main`]. The binary `granular-edmd` is such a program for
 //! the paper's box.
@@ -28,9 +28,14 @@
 //! | 3 | other processes do the rest (`--no-wait`); from `status`: not all ramps are done |
 //! | 4 | from `status`: all ramps are done, but there are no tables of them |
 //! | 5 | from `bench --against`: a standard state is slower, beyond the noise |
-//! | 130 | stopped by Ctrl-C or SIGTERM with all work saved; the same command goes on |
+//! | 6 | from `diff`: the two runs differ |
+//! | 130 | stopped by Ctrl-C or SIGTERM with all work saved; the same command goes on. `replay` and `diff` leave no file |
 
 mod bench;
+mod collision_rows;
+mod diff;
+mod replay;
+mod source;
 mod template;
 mod trajectory;
 mod watch;
@@ -55,7 +60,7 @@ use watch::Watch;
 /// Plans, runs and reads studies: many runs of one experiment, by any number of processes.
 ///
 /// Exit codes: 0 done, 1 failed, 2 wrong command line or plan, 3 others do the rest, 4 no tables yet, 5
-/// slower than before, 130 stopped with all saved.
+/// slower than before, 6 the runs differ, 130 stopped with all saved.
 #[derive(Debug, Parser)]
 #[command(version)]
 struct Arguments {
@@ -119,6 +124,15 @@ enum Command {
         #[arg(long, default_value_t = 100)]
         cycles: u32,
     },
+    /// Runs a value again, to the bit, and writes its last collisions, those in a window of time, or the state
+    /// before one of them.
+    ///
+    /// Columns: number of the collision in the ramp, time, id of the disk, id of the other disk or name of the
+    /// wall, place of the disk, speeds of closing and of slip before, impulse on the disk, change of energy.
+    Replay(replay::Wishes),
+    /// Finds the first differences of two runs: a disk that meets another partner, and a disk that is farther
+    /// from its place in the other run than a tolerance.
+    Diff(diff::Wishes),
     /// Lets this program continue a study that other code began. Records keep the mark of the code that made
     /// them.
     Accept {
@@ -192,6 +206,8 @@ enum End {
     NoTables = 4,
     /// A standard state is slower than in an earlier table, beyond the noise.
     Slower = 5,
+    /// Two runs differ.
+    Different = 6,
     Interrupted = 130,
 }
 
@@ -200,8 +216,11 @@ type Failure = Box<dyn Error>;
 
 /// Runs the command line of a program, with plans of this experiment.
 ///
-/// The command `new` writes the plan that `example` returns.
-pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>) -> ExitCode {
+/// The command `new` writes the plan that `example` returns. `diff` copies runs, so rule and boundary must be
+/// `Clone`.
+pub fn main<E: Experiment<Rule: Clone, Boundary: Clone>>(
+    example: impl FnOnce() -> Result<Plan<E>, PlanError>,
+) -> ExitCode {
     let ended = match Arguments::parse().command {
         Command::New { file } => new(example, file.as_deref()),
         Command::Check { plan } => check::<E>(&plan),
@@ -209,6 +228,8 @@ pub fn main<E: Experiment>(example: impl FnOnce() -> Result<Plan<E>, PlanError>)
         Command::Status { folder, json } => status::<E>(&folder, json),
         Command::Tables { folder, out } => tables::<E>(&folder, out.as_deref()),
         Command::Trajectory { plan, out, ramp, cycles } => trajectory::write::<E>(&plan, ramp, cycles, &out),
+        Command::Replay(wishes) => replay::replay::<E>(&wishes),
+        Command::Diff(wishes) => diff::diff::<E>(&wishes),
         Command::Accept { folder } => accept::<E>(&folder),
         Command::Bench { plan: Some(plan), json, quick, .. } => bench::plan::<E>(&plan, json, quick),
         Command::Bench { plan: None, json, quick, against } => bench::table(json, quick, against.as_deref()),
@@ -227,14 +248,18 @@ fn report(error: &(dyn Error + 'static)) -> ExitCode {
     ExitCode::from(if is_of_plan || error.is::<PlanError>() { 2 } else { 1 })
 }
 
-/// Prints a line. A closed pipe is no error, since its reader has seen enough; a full disk is one.
+/// Prints a line.
 fn say(line: &str) -> Result<(), Failure> {
     let mut out = io::stdout();
-    match writeln!(out, "{line}").and_then(|()| out.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(StudyError::io("write", Path::new("standard output"))(error).into())
-        }
-        _ => Ok(()),
+    told(writeln!(out, "{line}").and_then(|()| out.flush()), Path::new("standard output")).map(drop)
+}
+
+/// Judges an attempt to write. A closed pipe is no error, since its reader has seen enough: the result is
+/// then false. A full disk is one.
+fn told(written: io::Result<()>, path: &Path) -> Result<bool, Failure> {
+    match written {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(false),
+        written => Ok(written.map(|()| true).map_err(StudyError::io("write", path))?),
     }
 }
 
@@ -293,7 +318,8 @@ fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Man
         }
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(manner.threads.map_or(0, usize::from)).build()?;
-    let watch = Watch::new()?;
+    watch::listen()?;
+    let watch = Watch::new();
     let show = |progress: &Progress| watch.show(progress);
     let control = manner.of(Control::default().with_progress(&show).with_interrupt(watch::stop()));
     let summary = pool.install(|| match ramp {

@@ -110,7 +110,7 @@ fn the_collisions_before_an_error_can_be_played_back() {
     let rule = Smooth::from_restitution(0.5).unwrap();
     let container = Container::open(4.0).unwrap();
     let ball = Simulation::builder(rule, container).disks([disk]).gravity(1.0).build().unwrap();
-    let mut replay = Replay::new(ball.with_scheduler(LinearScan::default()), 1.0).unwrap();
+    let mut replay = Replay::new(ball.clone().with_scheduler(LinearScan::default()), 1.0).unwrap();
     assert!(matches!(replay.run_until(100.0), Err(RunError::Stalled { .. })));
     // The bounces come ever faster until the time 3 √5.
     let last = replay.last_collisions_of(1, f64::INFINITY, 3).unwrap();
@@ -118,4 +118,17 @@ fn the_collisions_before_an_error_can_be_played_back() {
     assert!(last.iter().all(|replayed| (replayed.collision.time - collapse).abs() < 1e-6), "{last:?}");
     let before = replay.before_collision(5).unwrap().unwrap();
     assert_eq!(before.counters().wall_collisions, 4);
+    // The other ball goes on, and is compared until the first one ends. Their last common states lie far
+    // before the difference.
+    let mut first = Replay::new(ball.clone(), 1.0).unwrap();
+    assert!(first.run_until(100.0).is_err());
+    let mut other = Replay::new(ball.with_rule(Smooth::from_restitution(0.501).unwrap()), 1.0).unwrap();
+    assert!(other.run_until(100.0).is_err());
+    for (one, two) in [(&first, &other), (&other, &first)] {
+        let found = one.differences(two, 1e-3).unwrap().unwrap();
+        assert!(found.partners.is_none());
+        // The first bounce, at √5, is the same; afterwards, the speeds differ by 0.001 √5.
+        let time = found.apart.unwrap().time - 5.0_f64.sqrt();
+        assert!((time - 1e-3 / (1e-3 * 5.0_f64.sqrt())).abs() < 1e-6, "{time}");
+    }
 }

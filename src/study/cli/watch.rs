@@ -1,6 +1,5 @@
 //! The display of progress, as a bar on a terminal or else in lines, and the signals that stop a study.
 
-use std::error::Error;
 use std::io::{IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -24,6 +23,20 @@ pub(super) fn is_stopped() -> bool {
     STOP.load(Ordering::Relaxed)
 }
 
+/// Lets Ctrl-C or SIGTERM stop a study. A second signal ends the process at once; only saved work is kept.
+pub(super) fn listen() -> Result<(), ctrlc::Error> {
+    ctrlc::set_handler(|| {
+        if STOP.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    })
+}
+
+/// Lets Ctrl-C or SIGTERM end a process that has nothing to save.
+pub(super) fn end_at_once() -> Result<(), ctrlc::Error> {
+    ctrlc::set_handler(|| std::process::exit(130))
+}
+
 /// Display of a running study.
 pub(super) struct Watch {
     /// The bar, if there is a terminal.
@@ -32,18 +45,14 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Creates the display, and lets Ctrl-C or SIGTERM stop the study. A second signal ends the process at
-    /// once; only saved work is kept.
-    pub(super) fn new() -> Result<Self, Box<dyn Error>> {
-        ctrlc::set_handler(|| {
-            if STOP.swap(true, Ordering::Relaxed) {
-                std::process::exit(130);
-            }
-        })?;
+    /// Creates the display.
+    pub(super) fn new() -> Self {
         let style =
-            ProgressStyle::with_template("{elapsed_precise} {wide_bar} {percent}% {per_sec}, {eta} left")?;
+            ProgressStyle::with_template("{elapsed_precise} {wide_bar} {percent}% {per_sec}, {eta} left");
+        // The template is valid.
+        let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
         let bar = std::io::stderr().is_terminal().then(|| ProgressBar::new(0).with_style(style));
-        Ok(Self { bar, told: Mutex::new(Instant::now()) })
+        Self { bar, told: Mutex::new(Instant::now()) }
     }
 
     pub(super) fn show(&self, progress: &Progress) {

@@ -11,6 +11,8 @@ use crate::study::experiment::record::{
     Contents, Cycles, Measured, Origin, Outcome, Record, check, check_state,
 };
 use crate::study::experiment::{Experiment, Run};
+#[cfg(feature = "cli")]
+use crate::study::opening::Study;
 use crate::study::plan::Plan;
 use crate::study::plan::protocol::Protocol;
 use crate::study::plan::refinement::Step;
@@ -126,6 +128,35 @@ impl<'a, E: Experiment> Value<'a, E> {
 
     fn cannot_start(&self, source: ExperimentError) -> StudyError {
         StudyError::Build { ramp: self.origin.ramp, value: self.origin.value, source }
+    }
+}
+
+#[cfg(feature = "cli")]
+impl<E: Experiment> Study<E> {
+    /// Returns the experiment of a value, the simulation at its start, and the time of its end.
+    pub(in crate::study) fn start_of(
+        &self,
+        ramp: usize,
+        value: usize,
+    ) -> Result<(E, Run<E>, f64), StudyError> {
+        let before = self.ramp_records(ramp).take(value).map(|record| Ok(self.plan.seen(&record?)));
+        let seen: Vec<_> = before.collect::<Result<_, StudyError>>()?;
+        let next = self.plan.next(&seen);
+        let reason = if next.is_some() { "values before it are finished" } else { "values are in the ramp" };
+        let absent = || format!("only {} {reason}", seen.len()).into();
+        let step = next.filter(|_| seen.len() == value);
+        let step = step.ok_or_else(|| StudyError::Build { ramp, value, source: absent() })?;
+        // Other code would not do the same.
+        if self.record(ramp, value)?.is_some_and(|record| !self.is_ours(&record.contents.origin)) {
+            return Err(StudyError::Changed { path: self.folder.record(ramp, value), part: "revision" });
+        }
+        let before = step.before.map(|before| self.record(ramp, before)).transpose()?.flatten();
+        let experiment = self.plan.experiment_at(ramp, step.at)?;
+        let (plan, origin, before) = (&self.plan, self.origin(ramp, value), before.as_ref());
+        let value = Value { plan, origin, experiment, step, before };
+        let (run, end) = (value.first_state()?, plan.protocol().cycles() as f64);
+        let end = value.start().time(end, value.experiment.cycle());
+        Ok((value.experiment, run, end))
     }
 }
 
