@@ -66,25 +66,3 @@ impl fmt::Display for Fingerprint {
         write!(formatter, "{:016x}", self.0)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::Fingerprint;
-
-    /// Checkpoints keep these numbers. If the hash changed, every old checkpoint would seem to belong to
-    /// other parts.
-    #[test]
-    fn fingerprints_keep_their_bits() {
-        let part = Fingerprint::of("Frictional").number(0.1).text("sliding");
-        assert_eq!(Fingerprint::of("Outer").part(part).0, GOLDEN);
-    }
-
-    const GOLDEN: u64 = 18_339_886_672_060_197_689;
-
-    #[test]
-    fn texts_are_not_joined() {
-        let cut = |a: &str, b: &str| Fingerprint::of("x").text(a).text(b);
-        assert_ne!(cut("ab", "c"), cut("a", "bc"));
-        assert_ne!(Fingerprint::of("a").number(0.0), Fingerprint::of("a").number(-0.0));
-    }
-}

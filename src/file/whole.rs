@@ -135,31 +135,8 @@ fn sync_folder(path: &Path) {
 #[cfg(test)]
 mod tests {
     use std::collections::HashSet;
-    use std::thread;
 
     use super::*;
-
-    /// A folder of one test, removed when the test ends.
-    struct Scratch(PathBuf);
-
-    impl Scratch {
-        fn new(name: &str) -> Self {
-            let folder = std::env::temp_dir().join(format!("granular-edmd-{name}-{}", std::process::id()));
-            let _ = fs::remove_dir_all(&folder);
-            fs::create_dir_all(&folder).unwrap();
-            Self(folder)
-        }
-
-        fn names(&self) -> Vec<std::ffi::OsString> {
-            fs::read_dir(&self.0).unwrap().map(|entry| entry.unwrap().file_name()).collect()
-        }
-    }
-
-    impl Drop for Scratch {
-        fn drop(&mut self) {
-            let _ = fs::remove_dir_all(&self.0);
-        }
-    }
 
     #[test]
     fn names_are_unique_and_recognized() {
@@ -186,58 +163,5 @@ mod tests {
             "my granular-edmd-12-0-0123456789abcdef.tmp",
         ];
         assert!(others.iter().all(|name| !is_temporary(OsStr::new(name))));
-    }
-
-    #[test]
-    fn a_failure_leaves_nothing_and_takes_nothing() {
-        let scratch = Scratch::new("failure");
-        let folder = scratch.0.join("folder");
-        fs::create_dir(&folder).unwrap();
-        assert!(write_whole(&folder, b"a file cannot take the place of a folder").is_err());
-        for path in ["", "..", "/"] {
-            let error = write_whole(Path::new(path), b"").unwrap_err();
-            assert_eq!(error.kind(), io::ErrorKind::InvalidInput, "{path:?}");
-        }
-        assert_eq!(scratch.names(), ["folder"]);
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn a_name_of_the_greatest_length_is_written() {
-        let scratch = Scratch::new("length");
-        let path = scratch.0.join("n".repeat(255));
-        write_whole(&path, b"whole").unwrap();
-        assert_eq!(fs::read(path).unwrap(), b"whole");
-    }
-
-    /// Returns contents whose parts are all alike, so that a file made of parts of two writes is noticed.
-    fn contents(writer: u8, count: u32) -> Vec<u8> {
-        [vec![writer; 1], count.to_le_bytes().to_vec()].concat().repeat(3000)
-    }
-
-    fn is_whole(bytes: &[u8]) -> bool {
-        bytes.len() == 15_000 && bytes.chunks(5).all(|chunk| chunk == &bytes[..5])
-    }
-
-    #[test]
-    fn two_writers_of_one_file_do_not_disturb_each_other_nor_a_reader() {
-        const WRITES: u32 = 1500;
-        let scratch = Scratch::new("writers");
-        let path = &scratch.0.join("file");
-        write_whole(path, &contents(0, 0)).unwrap();
-        let write =
-            |writer: u8| (0..WRITES).try_for_each(|count| write_whole(path, &contents(writer, count)));
-        thread::scope(|scope| {
-            let writers = [1, 2].map(|writer| scope.spawn(move || write(writer)));
-            let mut reads = 0;
-            while writers.iter().any(|writer| !writer.is_finished()) {
-                assert!(is_whole(&fs::read(path).unwrap()), "read {reads} is torn");
-                reads += 1;
-            }
-            for writer in writers {
-                writer.join().unwrap().unwrap();
-            }
-        });
-        assert_eq!(scratch.names(), ["file"], "nothing is left");
     }
 }

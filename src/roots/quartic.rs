@@ -171,6 +171,3 @@ fn change_of_sign(polynomial: &Coefficients, mut low: f64, mut high: f64) -> f64
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

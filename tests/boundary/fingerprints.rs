@@ -1,5 +1,7 @@
-//! The fingerprint of a container depends on its geometry, its motions, its rules and its temperatures.
+//! Fingerprints keep their bits; that of a container depends on its geometry, its motions, its rules and its
+//! temperatures.
 
+use granular_edmd::Fingerprint;
 use granular_edmd::boundary::{Boundary, Container, Thermal, Wall};
 use granular_edmd::collision::Impulse;
 use granular_edmd::collision::{CollisionRule, Elastic, Smooth, from_fn};
@@ -70,4 +72,19 @@ fn a_part_without_a_fingerprint_leaves_the_container_without_one() {
     assert_eq!(closed().with_motion(Wall::Floor, Nameless).unwrap().fingerprint(), None);
     let closure = from_fn(|contact| Impulse::new(contact.normal_mass() * contact.closing_speed(), 0.0));
     assert_eq!(ruled(closure).fingerprint(), None);
+}
+
+/// Checkpoints keep these numbers. If the hash changed, every old checkpoint would seem to belong to other
+/// parts.
+#[test]
+fn fingerprints_keep_their_bits() {
+    let part = Fingerprint::of("Frictional").number(0.1).text("sliding");
+    assert_eq!(Fingerprint::of("Outer").part(part).to_string(), "fe845dc26511ab39");
+}
+
+#[test]
+fn texts_are_not_joined() {
+    let cut = |a: &str, b: &str| Fingerprint::of("x").text(a).text(b);
+    assert_ne!(cut("ab", "c"), cut("a", "bc"));
+    assert_ne!(Fingerprint::of("a").number(0.0), Fingerprint::of("a").number(-0.0));
 }

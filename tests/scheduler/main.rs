@@ -22,6 +22,30 @@ fn every_scheduler_keeps_the_laws() {
     }
 }
 
+/// Asserts that it is told of times for disks that are there.
+#[derive(Default)]
+struct Wary(LinearScan, usize);
+
+impl EventScheduler for Wary {
+    fn reset(&mut self, due: &[f64]) {
+        assert!(!due.iter().any(|due| due.is_nan()));
+        self.0.reset(due);
+        self.1 = due.len();
+    }
+    fn set(&mut self, disk: usize, due: f64) {
+        assert!(disk < self.1 && !due.is_nan(), "{disk} of {}: {due}", self.1);
+        self.0.set(disk, due);
+    }
+    fn earliest(&self) -> (usize, f64) {
+        self.0.earliest()
+    }
+}
+
+#[test]
+fn no_law_sets_nan_or_a_disk_that_is_not_there() {
+    assert_eq!(laws::check(Wary::default), Ok(()));
+}
+
 /// References and boxes forward all four methods, including the optional one.
 #[test]
 fn a_borrowed_or_boxed_scheduler_is_the_same() {

@@ -29,6 +29,9 @@ mod replays;
 mod rest;
 #[cfg(feature = "serde")]
 mod resuming;
+#[cfg(feature = "serde")]
+#[path = "../trajectory/scratch.rs"]
+mod scratch;
 #[path = "../support/schedulers.rs"]
 mod schedulers;
 mod setups;
@@ -37,3 +40,5 @@ mod steps;
 mod stopping;
 mod thermal;
 mod traffic;
+#[cfg(feature = "serde")]
+mod whole_files;

@@ -212,33 +212,3 @@ fn reset_to_few(stage: &mut Stage, first: usize, now: f64) -> Operation {
         _ => run(stage, first, now),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scheduler::{EventScheduler, LinearScan};
-
-    /// The contract of schedulers promises this.
-    #[test]
-    fn no_script_sets_nan_or_a_disk_that_is_not_there() {
-        for script in &SCRIPTS {
-            let mut stage = Stage::new(1);
-            let mut oracle = LinearScan::new();
-            let mut operation = (script.start)(&mut stage, script.disks[script.disks.len() - 1]);
-            for _ in 0..script.steps {
-                match &operation {
-                    Operation::Reset(due) => {
-                        assert!(!due.iter().any(|due| due.is_nan()), "{}", script.name);
-                        oracle.reset(due);
-                    }
-                    &Operation::Set(disk, due) => {
-                        assert!(disk < stage.due.len() && !due.is_nan(), "{}: {operation}", script.name);
-                        oracle.set(disk, due);
-                    }
-                }
-                stage.note(&operation);
-                operation = stage.next(script, oracle.earliest());
-            }
-        }
-    }
-}

@@ -1,10 +1,52 @@
+//! First descents of parabolas and quartics, which steps along the gap, known zeros and flights confirm.
+
+use granular_edmd::glam::DVec2;
+use granular_edmd::roots::{first_descent, first_descent_of_quartic};
 use proptest::prelude::*;
-use rand::SeedableRng;
+use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::{derivative, first_descent_of_quartic, value};
-use crate::random::uniform;
-use crate::roots::first_descent;
+use crate::cases::config;
+
+#[test]
+fn closed_parabolas_count_only_while_they_close() {
+    assert_eq!(first_descent(-1e-16, -1.0, 0.0), Some(0.0));
+    assert_eq!(first_descent(-1e-16, 1.0, 0.0), None);
+    assert_eq!(first_descent(0.0, 0.0, 1.0), None);
+    assert_eq!(first_descent(0.0, 0.0, -1.0), Some(0.0));
+    assert_eq!(first_descent(0.0, 1.0, -1.0), Some(2.0));
+    assert_eq!(first_descent(-1.0, 1.0, -1.0), Some(2.0), "it never opens: it counts when it is back");
+    assert_eq!(first_descent(-1.0, 1.0, -2.0), Some(1.0), "and that is sooner the stronger the pull");
+}
+
+proptest! {
+    #![proptest_config(config(256))]
+
+    #[test]
+    fn the_root_of_a_parabola_is_the_first(
+        value in 0.0..100.0f64, rate in -10.0..10.0f64, acceleration in -5.0..5.0f64,
+    ) {
+        let f = |t: f64| value + rate * t + 0.5 * acceleration * t * t;
+        let end = first_descent(value, rate, acceleration).unwrap_or(1e3);
+        for k in 0..1000 {
+            let t = end * f64::from(k) / 1000.0;
+            prop_assert!(f(t) >= -1e-9 * (value + rate.abs() * t + acceleration.abs() * t * t));
+        }
+        if let Some(t) = first_descent(value, rate, acceleration) {
+            prop_assert!(f(t).abs() <= 1e-12 * (value + rate.abs() * t + acceleration.abs() * t * t));
+            prop_assert!(rate + acceleration * t <= 1e-6);
+        }
+    }
+}
+
+/// Returns the value of a polynomial, given by its coefficients from the constant term up.
+fn value(coefficients: &[f64; 5], time: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, c| sum * time + c)
+}
+
+fn derivative(&[_, c1, c2, c3, c4]: &[f64; 5]) -> [f64; 5] {
+    [c1, 2.0 * c2, 3.0 * c3, 4.0 * c4, 0.0]
+}
 
 /// Returns `scale` times the product of `(t - zero)`, and of `(t - zero)² + width²` for each pair of zeros
 /// that are not real.
@@ -64,7 +106,7 @@ fn compare(coefficients: &[f64; 5], end: f64) -> Option<f64> {
 }
 
 fn between(generator: &mut Xoshiro256PlusPlus, low: f64, high: f64) -> f64 {
-    low + (high - low) * uniform(generator)
+    generator.random_range(low..high)
 }
 
 #[test]
@@ -87,7 +129,7 @@ fn known_zeros_are_found_in_order() {
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(2);
     for case in 0..6000 {
         let mut zeros: Vec<f64> =
-            (0..=generator_index(&mut generator, 4)).map(|_| between(&mut generator, -1.0, 5.0)).collect();
+            (0..=generator.random_range(0..4_u32)).map(|_| between(&mut generator, -1.0, 5.0)).collect();
         zeros.sort_by(f64::total_cmp);
         if zeros.windows(2).any(|pair| pair[1] - pair[0] < 1e-3) || zeros.iter().any(|zero| zero.abs() < 1e-3)
         {
@@ -112,19 +154,15 @@ fn known_zeros_are_found_in_order() {
     }
 }
 
-fn generator_index(generator: &mut Xoshiro256PlusPlus, count: u32) -> u32 {
-    (uniform(generator) * f64::from(count)) as u32
-}
-
 /// Disks fly inside a circle and are pulled down. The gap that remains at the touch is no more than rounding.
 #[test]
 fn flights_in_a_circle_end_at_its_wall() {
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(3);
     let mut draw = |size: f64| {
-        glam::DVec2::new(between(&mut generator, -size, size), between(&mut generator, -size, size))
+        DVec2::new(between(&mut generator, -size, size), between(&mut generator, -size, size))
     };
     for case in 0..5000 {
-        let (r, v, a) = (draw(0.7), draw(3.0), glam::DVec2::new(0.0, draw(1.0).x));
+        let (r, v, a) = (draw(0.7), draw(3.0), DVec2::new(0.0, draw(1.0).x));
         let gap = [
             1.0 - r.length_squared(),
             -2.0 * r.dot(v),
@@ -143,7 +181,7 @@ fn flights_in_a_circle_end_at_its_wall() {
 }
 
 #[test]
-fn closed_gaps_count_only_while_they_close() {
+fn closed_quartics_count_only_while_they_close() {
     let descent = |c: [f64; 5]| first_descent_of_quartic(&c, f64::INFINITY);
     assert_eq!(descent([-1e-16, -1.0, 0.0, 0.0, 1.0]), Some(0.0));
     assert_eq!(descent([0.0, 0.0, 0.0, 0.0, -1.0]), Some(0.0));
@@ -188,6 +226,8 @@ fn hostile_numbers_end() {
 }
 
 proptest! {
+    #![proptest_config(config(256))]
+
     /// The quartic is of degree two in disguise: a tiny quartic term must not move the descent of a parabola.
     #[test]
     fn tiny_terms_do_not_matter(value in -1.0..10.0f64, rate in -3.0..3.0f64, acceleration in -3.0..-0.1f64) {
