@@ -1,7 +1,7 @@
 //! Files under a lock.
 
 use std::fs::{File, TryLockError};
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io;
 
 /// A file whose lock this process holds; dropping it gives the lock back.
 #[derive(Debug)]
@@ -33,28 +33,6 @@ impl Locked {
 
     pub(crate) const fn file(&self) -> &File {
         &self.0
-    }
-}
-
-impl Read for Locked {
-    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        self.0.read(bytes)
-    }
-}
-
-impl Write for Locked {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.0.flush()
-    }
-}
-
-impl Seek for Locked {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.0.seek(to)
     }
 }
 

@@ -22,7 +22,7 @@ const NAMES: usize = 8;
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut draft = Draft::of(path)?;
     // One call instead of a buffer: the bytes are all there.
-    draft.file.get_mut().write_all(bytes)?;
+    draft.write_all(bytes)?;
     draft.finish()
 }
 
@@ -48,6 +48,11 @@ impl Draft {
         Ok(Self { path: path.to_owned(), temporary, file: BufWriter::new(file) })
     }
 
+    /// Adds bytes to the file.
+    pub(crate) fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.file.write_all(bytes)
+    }
+
     /// Puts the file in its place.
     pub(crate) fn finish(mut self) -> io::Result<()> {
         self.file.flush()?;
@@ -57,16 +62,6 @@ impl Draft {
         // Nothing is left to remove.
         self.temporary.clear();
         Ok(())
-    }
-}
-
-impl Write for Draft {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.file.write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
     }
 }
 

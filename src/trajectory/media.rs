@@ -7,13 +7,21 @@ use std::path::Path;
 use super::errors::RecordError;
 use crate::file::Locked;
 
-/// Bytes that can be appended and cut off: a file, or its stand-in for tests.
-pub(super) trait Medium: Write + Seek {
+/// Bytes that can be written and cut off: a file, or its stand-in for tests.
+pub(super) trait Medium {
+    /// Writes bytes from a place on.
+    fn write_at(&mut self, place: u64, bytes: &[u8]) -> io::Result<()>;
     /// Cuts the bytes to this length.
     fn cut(&mut self, length: u64) -> io::Result<()>;
 }
 
 impl Medium for Locked {
+    fn write_at(&mut self, place: u64, bytes: &[u8]) -> io::Result<()> {
+        let mut file = self.file();
+        file.seek(SeekFrom::Start(place))?;
+        file.write_all(bytes)
+    }
+
     fn cut(&mut self, length: u64) -> io::Result<()> {
         self.file().set_len(length)
     }
@@ -22,8 +30,8 @@ impl Medium for Locked {
 /// A file that grows by whole pieces. If a write fails, the piece is cut off again.
 #[derive(Debug)]
 pub(super) struct Growing<M: Medium> {
-    medium: M,
-    length: u64,
+    pub(super) medium: M,
+    pub(super) length: u64,
     /// The ending that follows the last whole piece.
     ending: Vec<u8>,
 }
@@ -33,14 +41,6 @@ impl<M: Medium> Growing<M> {
     /// all other bytes.
     pub(super) const fn new(medium: M, length: u64, ending: Vec<u8>) -> Self {
         Self { medium, length, ending }
-    }
-
-    pub(super) const fn length(&self) -> u64 {
-        self.length
-    }
-
-    pub(super) const fn medium(&self) -> &M {
-        &self.medium
     }
 
     /// Adds a piece, and replaces the last ending by a new one. If that fails, the medium is as before.
@@ -58,16 +58,9 @@ impl<M: Medium> Growing<M> {
         Ok(())
     }
 
-    /// Writes into the pieces that are there already.
-    pub(super) fn overwrite(&mut self, place: u64, bytes: &[u8]) -> io::Result<()> {
-        self.medium.seek(SeekFrom::Start(place))?;
-        self.medium.write_all(bytes)
-    }
-
     /// Writes after the last whole piece, and cuts off what may follow.
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.medium.seek(SeekFrom::Start(self.length))?;
-        self.medium.write_all(bytes)?;
+        self.medium.write_at(self.length, bytes)?;
         self.medium.cut(self.length + bytes.len() as u64)
     }
 }
@@ -95,38 +88,25 @@ fn locked(file: File, path: &Path) -> Result<Locked, RecordError> {
 
 #[cfg(test)]
 mod tests {
-    use std::io::Cursor;
-
     use super::*;
 
     /// A drive with room for this many bytes.
     struct Small {
-        bytes: Cursor<Vec<u8>>,
+        bytes: Vec<u8>,
         room: usize,
     }
 
-    impl Seek for Small {
-        fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-            self.bytes.seek(to)
-        }
-    }
-
-    impl Write for Small {
-        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            let left = self.room.saturating_sub(self.bytes.position() as usize);
-            if left == 0 && !bytes.is_empty() {
-                return Err(io::ErrorKind::StorageFull.into());
-            }
-            self.bytes.write(&bytes[..left.min(bytes.len())])
-        }
-        fn flush(&mut self) -> io::Result<()> {
-            Ok(())
-        }
-    }
-
     impl Medium for Small {
+        fn write_at(&mut self, place: u64, bytes: &[u8]) -> io::Result<()> {
+            let place = place as usize;
+            let fitting = &bytes[..bytes.len().min(self.room.saturating_sub(place))];
+            self.bytes.truncate(place);
+            self.bytes.extend(fitting);
+            if fitting == bytes { Ok(()) } else { Err(io::ErrorKind::StorageFull.into()) }
+        }
+
         fn cut(&mut self, length: u64) -> io::Result<()> {
-            self.bytes.get_mut().truncate(length as usize);
+            self.bytes.truncate(length as usize);
             Ok(())
         }
     }
@@ -136,21 +116,21 @@ mod tests {
     #[test]
     fn a_full_disk_keeps_whole_pieces() {
         for room in 0..60 {
-            let mut file = Growing::new(Small { bytes: Cursor::default(), room }, 0, Vec::new());
+            let mut file = Growing::new(Small { bytes: Vec::new(), room }, 0, Vec::new());
             let mut whole = Vec::new();
             for piece in b'0'.. {
-                let before = file.medium().bytes.get_ref().clone();
+                let before = file.medium.bytes.clone();
                 if file.push(&[piece; 10], &[piece; 2]).is_err() {
-                    assert_eq!(file.medium().bytes.get_ref(), &before, "{room}");
+                    assert_eq!(file.medium.bytes, before, "{room}");
                     assert_eq!(usize::from(piece - b'0'), room.saturating_sub(2) / 10);
                     file.medium.room = 1000;
                     file.push(&[piece; 10], &[piece; 2]).unwrap();
                     whole.extend([piece; 12]);
-                    assert_eq!(file.medium().bytes.get_ref(), &whole);
+                    assert_eq!(file.medium.bytes, whole);
                     break;
                 }
                 whole.extend([piece; 10]);
-                assert_eq!(file.length(), whole.len() as u64);
+                assert_eq!(file.length, whole.len() as u64);
             }
         }
     }

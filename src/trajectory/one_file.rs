@@ -73,7 +73,7 @@ impl Store for OneFile {
 
     fn append(&mut self, snapshot: &Snapshot<'_>, bytes: &[u8]) -> Result<(), RecordError> {
         self.push(bytes).map_err(RecordError::io("write to", &self.path))?;
-        self.frames.push(snapshot.time(), bytes, self.file.length());
+        self.frames.push(snapshot.time(), bytes, self.file.length);
         Ok(())
     }
 
@@ -82,7 +82,7 @@ impl Store for OneFile {
     }
 
     fn sync(&mut self) -> Result<(), RecordError> {
-        self.file.medium().file().sync_all().map_err(RecordError::io("write to", &self.path))
+        self.file.medium.file().sync_all().map_err(RecordError::io("write to", &self.path))
     }
 
     fn path(&self) -> &Path {

@@ -53,7 +53,7 @@ impl Lock {
     /// If a kill or a full drive has cut the last line short, it is removed first, so that every line is
     /// whole. Only the holder of the lock writes, so appending is safe on network file systems, too.
     pub(in crate::study) fn append(&mut self, line: &str) {
-        let _ = to_last_line_end(&mut self.0).and_then(|()| self.0.write_all(format!("{line}\n").as_bytes()));
+        let _ = to_last_line_end(self.0.file()).and_then(|mut end| end.write_all(format!("{line}\n").as_bytes()));
     }
 }
 
@@ -69,7 +69,7 @@ fn open(path: &Path) -> Result<File, StudyError> {
 }
 
 /// Goes to the end of the last whole line, and removes what follows it.
-fn to_last_line_end(file: &mut Locked) -> io::Result<()> {
+fn to_last_line_end(mut file: &File) -> io::Result<&File> {
     let end = file.seek(SeekFrom::End(0))?;
     let mut last = [b'\n'];
     if end > 0 {
@@ -81,10 +81,10 @@ fn to_last_line_end(file: &mut Locked) -> io::Result<()> {
         file.rewind()?;
         file.read_to_end(&mut bytes)?;
         let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1);
-        file.file().set_len(whole as u64)?;
+        file.set_len(whole as u64)?;
         file.seek(SeekFrom::End(0))?;
     }
-    Ok(())
+    Ok(file)
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! Rows of cells, written to a file one after the other.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use crate::file::Draft;

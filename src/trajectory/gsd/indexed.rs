@@ -77,15 +77,15 @@ impl Indexed {
         if self.index.entries.len() / ENTRY + CHUNKS.len() > self.index.room {
             self.enlarge_index()?;
         }
-        let start = self.file.length();
+        let start = self.file.length;
         self.file.push(bytes, &[])?;
         let (entries, end) = entries(shape, start);
         let place = self.index.location + self.index.entries.len() as u64;
         // A frame that was not finished may have left more entries than this one has.
         let mut others = entries[ENTRY..].to_vec();
         others.resize((CHUNKS.len() - 1) * ENTRY, 0);
-        self.file.overwrite(place + ENTRY as u64, &others)?;
-        self.file.overwrite(place, &entries[..ENTRY])?;
+        self.file.medium.write_at(place + ENTRY as u64, &others)?;
+        self.file.medium.write_at(place, &entries[..ENTRY])?;
         self.index.entries.extend(entries);
         self.places.push(start..end);
         Ok(())
@@ -93,12 +93,12 @@ impl Indexed {
 
     /// Writes the index again after the chunks, with twice the room. The header then points to it.
     fn enlarge_index(&mut self) -> io::Result<()> {
-        let (location, room) = (self.file.length(), 2 * self.index.room);
+        let (location, room) = (self.file.length, 2 * self.index.room);
         let entries = self.index.entries.clone();
         let zeros = vec![0; room * ENTRY - entries.len()];
         self.file.push(&[entries.as_slice(), &zeros].concat(), &[])?;
         let larger = Index { location, room, entries };
-        self.file.overwrite(0, &larger.header())?;
+        self.file.medium.write_at(0, &larger.header())?;
         self.index = larger;
         Ok(())
     }
@@ -118,12 +118,12 @@ impl Store for Indexed {
 
     fn has(&mut self, number: usize, bytes: &[u8]) -> Result<bool, RecordError> {
         let place = self.places[number].clone();
-        let there = read_at(self.file.medium().file(), place.start, place.end - place.start);
+        let there = read_at(self.file.medium.file(), place.start, place.end - place.start);
         Ok(there.map_err(RecordError::io("read", &self.path))? == bytes)
     }
 
     fn sync(&mut self) -> Result<(), RecordError> {
-        self.file.medium().file().sync_all().map_err(RecordError::io("write to", &self.path))
+        self.file.medium.file().sync_all().map_err(RecordError::io("write to", &self.path))
     }
 
     fn path(&self) -> &Path {

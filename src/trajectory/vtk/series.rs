@@ -106,7 +106,7 @@ impl Store for Series {
     }
 
     fn sync(&mut self) -> Result<(), RecordError> {
-        self.file.medium().file().sync_all().map_err(RecordError::io("write to", &self.path))
+        self.file.medium.file().sync_all().map_err(RecordError::io("write to", &self.path))
     }
 
     fn path(&self) -> &Path {
