@@ -148,6 +148,7 @@ pub use collision_histograms::CollisionHistograms;
 pub use contract::Observable;
 #[doc(alias("callback", "hook", "fix"))]
 pub use contract::Observer;
+pub(crate) use contract::verdict;
 pub use contract::{ObserverError, Verdict};
 pub use energies::{Energies, EnergyPerDisk};
 #[doc(alias("dissipation", "energy loss", "dE"))]

@@ -22,67 +22,36 @@ forward! { Observer for [&mut T, Box<T>] {
     fn verdict(&mut self) -> Verdict;
 }}
 
-impl<T: Observer> Observer for [T] {
-    fn on_start(&mut self, moment: &Moment) {
-        for observer in self {
-            observer.on_start(moment);
-        }
-    }
-    #[inline]
-    fn on_collision(&mut self, collision: &Collision) {
-        for observer in self {
-            observer.on_collision(collision);
-        }
-    }
-    fn next_sample(&self) -> f64 {
-        self.iter().map(Observer::next_sample).fold(f64::INFINITY, earlier)
-    }
-    fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-        for observer in self {
-            sample_if_due(observer, snapshot);
-        }
-    }
-    fn on_end(&mut self, moment: &Moment) {
-        for observer in self {
-            observer.on_end(moment);
-        }
-    }
-    #[inline]
-    fn verdict(&mut self) -> Verdict {
-        self.iter_mut()
-            .try_fold(ControlFlow::Continue(()), |before, observer| Ok(either(before, observer.verdict()?)))
-    }
-}
-
-/// Makes observers of the types that hold a slice of observers: of many, and of one that may be absent.
-macro_rules! compose_slice {
+/// Makes observers of the types that hold a number of observers, or one that may be absent.
+macro_rules! compose_all {
     ($($holder:ty),+) => {
         $(impl<T: Observer> Observer for $holder {
             fn on_start(&mut self, moment: &Moment) {
-                self.as_mut_slice().on_start(moment);
+                self.iter_mut().for_each(|observer| observer.on_start(moment));
             }
             #[inline]
             fn on_collision(&mut self, collision: &Collision) {
-                self.as_mut_slice().on_collision(collision);
+                self.iter_mut().for_each(|observer| observer.on_collision(collision));
             }
             fn next_sample(&self) -> f64 {
-                self.as_slice().next_sample()
+                self.iter().map(Observer::next_sample).fold(f64::INFINITY, earlier)
             }
             fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-                self.as_mut_slice().on_sample(snapshot);
+                self.iter_mut().for_each(|observer| sample_if_due(observer, snapshot));
             }
             fn on_end(&mut self, moment: &Moment) {
-                self.as_mut_slice().on_end(moment);
+                self.iter_mut().for_each(|observer| observer.on_end(moment));
             }
             #[inline]
             fn verdict(&mut self) -> Verdict {
-                self.as_mut_slice().verdict()
+                let goes_on = ControlFlow::Continue(());
+                self.iter_mut().try_fold(goes_on, |before, observer| Ok(either(before, observer.verdict()?)))
             }
         })+
     };
 }
 
-compose_slice!(Vec<T>, Option<T>);
+compose_all!([T], Vec<T>, Option<T>);
 
 /// Shows the snapshot to an observer that asked for it, but not to its neighbors that wait for later times.
 fn sample_if_due<T: Observer>(observer: &mut T, snapshot: &Snapshot<'_>) {

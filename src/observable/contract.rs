@@ -3,7 +3,6 @@
 use std::ops::ControlFlow;
 
 use super::{Collision, Moment, Snapshot};
-use crate::ParameterError;
 
 /// A quantity that a snapshot determines.
 ///
@@ -109,9 +108,9 @@ pub trait Observer {
     }
 }
 
-/// Returns the verdict of an observer that may have noticed at the start of a run that it cannot measure.
+/// Returns the verdict of an observer that may have noticed that it cannot go on.
 #[inline]
-pub(super) fn verdict(fault: &mut Option<ParameterError>) -> Verdict {
+pub(crate) fn verdict<E: Into<ObserverError>>(fault: &mut Option<E>) -> Verdict {
     // The engine asks after each collision, so the usual answer comes first and writes nothing.
     if fault.is_none() {
         return Ok(ControlFlow::Continue(()));

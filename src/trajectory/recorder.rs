@@ -1,7 +1,6 @@
 //! The observer that records a run.
 
 use std::fmt;
-use std::ops::ControlFlow;
 use std::path::Path;
 
 use super::errors::RecordError;
@@ -10,7 +9,7 @@ use super::gsd::{HoomdSchema, Indexed};
 use super::one_file::OneFile;
 use super::store::Store;
 use super::vtk::{PolyData, Series};
-use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict};
+use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict, verdict};
 
 /// An observer that writes a frame to a file at set times.
 ///
@@ -286,11 +285,7 @@ impl Observer for Recorder {
 
     #[inline]
     fn verdict(&mut self) -> Verdict {
-        // The engine asks after each collision, so the usual answer comes first.
-        if self.failure.is_none() {
-            return Ok(ControlFlow::Continue(()));
-        }
-        self.failure.take().map_or(Ok(ControlFlow::Continue(())), |error| Err(error.into()))
+        verdict(&mut self.failure)
     }
 }
 
