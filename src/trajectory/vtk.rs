@@ -9,7 +9,7 @@ use std::io::{self, Write};
 
 use glam::DVec2;
 
-use self::array::{write_array, write_numbers};
+use self::array::{write_field, write_integers, write_numbers};
 use super::extended_xyz::shown_top;
 use super::format::{Format, Frame};
 use super::state::State;
@@ -62,8 +62,8 @@ fn write_disks(
     writeln!(out, "<Piece NumberOfPoints=\"{count}\" NumberOfVerts=\"{count}\">\n<PointData>")?;
     let whole = |of: fn(&Disk) -> i64| disks.iter().map(of);
     let number = |of: fn(&Disk) -> f64| disks.iter().map(of);
-    write_array(out, "Int64", "id", 1, numbered(disks).map(|(id, _)| id.cast_signed()))?;
-    write_array(out, "Int64", "kind", 1, whole(|disk| disk.kind().number().into()))?;
+    write_integers(out, "id", 1, numbered(disks).map(|(id, _)| id.cast_signed()))?;
+    write_integers(out, "kind", 1, whole(|disk| disk.kind().number().into()))?;
     write_numbers(out, "velocity", 3, disks.iter().flat_map(|disk| in_space(disk.velocity())))?;
     write_numbers(out, "angle", 1, number(Disk::angle))?;
     write_numbers(out, "angular_velocity", 1, number(Disk::angular_velocity))?;
@@ -71,14 +71,14 @@ fn write_disks(
     write_numbers(out, "mass", 1, number(Disk::mass))?;
     write_numbers(out, "inertia_factor", 1, number(Disk::inertia_factor))?;
     let images = disks.iter().flat_map(|disk| disk.image().map(i64::from));
-    write_array(out, "Int64", "image", 2, images)?;
+    write_integers(out, "image", 2, images)?;
     let unwrapped = |disk| domain.map_or(Disk::position(disk), |domain| domain.unwrapped(disk));
     write_numbers(out, "unwrapped", 3, disks.iter().flat_map(|disk| in_space(unwrapped(disk))))?;
     out.write_all(b"</PointData>\n<Points>\n")?;
     write_numbers(out, "Points", 3, disks.iter().flat_map(|disk| in_space(disk.position())))?;
     out.write_all(b"</Points>\n<Verts>\n")?;
-    write_array(out, "Int64", "connectivity", 1, (0_i64..).take(count))?;
-    write_array(out, "Int64", "offsets", 1, (1_i64..).take(count))?;
+    write_integers(out, "connectivity", 1, (0_i64..).take(count))?;
+    write_integers(out, "offsets", 1, (1_i64..).take(count))?;
     out.write_all(b"</Verts>\n")?;
     out.write_all(TAIL.as_bytes())
 }
@@ -98,19 +98,19 @@ fn write_box(out: &mut dyn Write, snapshot: &Snapshot<'_>) -> io::Result<()> {
     writeln!(out, "<Piece NumberOfPoints=\"{points_count}\" NumberOfLines=\"{lines}\">\n<CellData>")?;
     let periodic = [domain.periodic_sides, domain.periodic_ends].map(i64::from);
     let periodic = periodic.into_iter().cycle().take(edges).chain(walls.iter().map(|_| 0));
-    write_array(out, "Int64", "periodic", 1, periodic)?;
-    write_array(out, "Int64", "part", 1, (0..lines).map(|line| i64::from(line >= edges)))?;
+    write_integers(out, "periodic", 1, periodic)?;
+    write_integers(out, "part", 1, (0..lines).map(|line| i64::from(line >= edges)))?;
     out.write_all(b"</CellData>\n<Points>\n")?;
     write_numbers(out, "Points", 3, points().flat_map(in_space))?;
     out.write_all(b"</Points>\n<Lines>\n")?;
     let ends = (0_i64..).take(edges).flat_map(|line| [line, (line + 1) % 4]);
-    write_array(out, "Int64", "connectivity", 1, ends.chain((4_i64..).take(points_count - 4)))?;
+    write_integers(out, "connectivity", 1, ends.chain((4_i64..).take(points_count - 4)))?;
     let sizes = (0..edges).map(|_| 2).chain(walls.iter().map(Vec::len));
     let offsets = sizes.scan(0, |sum, size| {
         *sum += i64::try_from(size).unwrap_or(i64::MAX);
         Some(*sum)
     });
-    write_array(out, "Int64", "offsets", 1, offsets)?;
+    write_integers(out, "offsets", 1, offsets)?;
     out.write_all(b"</Lines>\n")?;
     out.write_all(TAIL.as_bytes())
 }
@@ -118,7 +118,7 @@ fn write_box(out: &mut dyn Write, snapshot: &Snapshot<'_>) -> io::Result<()> {
 fn write_time(out: &mut dyn Write, time: Option<f64>) -> io::Result<()> {
     let Some(time) = time else { return Ok(()) };
     out.write_all(b"<FieldData>\n")?;
-    array::write_field(out, "TimeValue", time)?;
+    write_field(out, "TimeValue", time)?;
     out.write_all(b"</FieldData>\n")
 }
 

@@ -2,23 +2,6 @@
 
 use std::io::{self, Write};
 
-/// A number as eight bytes.
-pub(super) trait Eight {
-    fn bytes(self) -> [u8; 8];
-}
-
-impl Eight for f64 {
-    fn bytes(self) -> [u8; 8] {
-        self.to_le_bytes()
-    }
-}
-
-impl Eight for i64 {
-    fn bytes(self) -> [u8; 8] {
-        self.to_le_bytes()
-    }
-}
-
 /// Writes an array of floating-point numbers.
 pub(super) fn write_numbers(
     out: &mut dyn Write,
@@ -26,35 +9,35 @@ pub(super) fn write_numbers(
     components: usize,
     numbers: impl Iterator<Item = f64>,
 ) -> io::Result<()> {
-    write_array(out, "Float64", name, components, numbers)
+    let attributes = format!("NumberOfComponents=\"{components}\"");
+    write_array(out, "Float64", name, &attributes, numbers.map(f64::to_le_bytes))
 }
 
-/// Writes an array of numbers of this type.
-pub(super) fn write_array<T: Eight>(
+/// Writes an array of whole numbers.
+pub(super) fn write_integers(
     out: &mut dyn Write,
-    kind: &str,
     name: &str,
     components: usize,
-    numbers: impl Iterator<Item = T>,
+    numbers: impl Iterator<Item = i64>,
 ) -> io::Result<()> {
     let attributes = format!("NumberOfComponents=\"{components}\"");
-    write_with(out, kind, name, &attributes, numbers)
+    write_array(out, "Int64", name, &attributes, numbers.map(i64::to_le_bytes))
 }
 
 /// Writes a number that belongs to the whole file.
 pub(super) fn write_field(out: &mut dyn Write, name: &str, number: f64) -> io::Result<()> {
-    write_with(out, "Float64", name, "NumberOfTuples=\"1\"", std::iter::once(number))
+    write_array(out, "Float64", name, "NumberOfTuples=\"1\"", std::iter::once(number.to_le_bytes()))
 }
 
-fn write_with<T: Eight>(
+fn write_array(
     out: &mut dyn Write,
     kind: &str,
     name: &str,
     attributes: &str,
-    numbers: impl Iterator<Item = T>,
+    numbers: impl Iterator<Item = [u8; 8]>,
 ) -> io::Result<()> {
     let mut bytes = vec![0; 8];
-    numbers.for_each(|number| bytes.extend(number.bytes()));
+    bytes.extend(numbers.flatten());
     let length = (bytes.len() - 8) as u64;
     bytes[..8].copy_from_slice(&length.to_le_bytes());
     write!(out, "<DataArray type=\"{kind}\" Name=\"{name}\" {attributes} format=\"binary\">")?;
