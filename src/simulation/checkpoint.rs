@@ -7,7 +7,6 @@ mod resumption;
 mod together;
 mod validation;
 
-use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -246,37 +245,13 @@ fn contents(source: postcard::Error) -> CheckpointError {
 /// lose infinities, and any format could be read without the check of the version.
 impl Serialize for Checkpoint {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_bytes(&self.to_bytes().map_err(serde::ser::Error::custom)?)
+        self.to_bytes().map_err(serde::ser::Error::custom)?.serialize(serializer)
     }
 }
 
 impl<'de> Deserialize<'de> for Checkpoint {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_byte_buf(Sealed)
-    }
-}
-
-/// A visitor that takes the bytes of a checkpoint from formats that have bytes, and from formats that write
-/// bytes as a list of numbers.
-struct Sealed;
-
-impl<'de> de::Visitor<'de> for Sealed {
-    type Value = Checkpoint;
-
-    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str("the bytes of a checkpoint")
-    }
-
-    fn visit_bytes<E: de::Error>(self, bytes: &[u8]) -> Result<Checkpoint, E> {
-        Checkpoint::from_bytes(bytes).map_err(E::custom)
-    }
-
-    fn visit_seq<A: de::SeqAccess<'de>>(self, mut numbers: A) -> Result<Checkpoint, A::Error> {
-        let mut bytes = Vec::new();
-        while let Some(byte) = numbers.next_element()? {
-            bytes.push(byte);
-        }
-        self.visit_bytes(&bytes)
+        Self::from_bytes(&Vec::<u8>::deserialize(deserializer)?).map_err(de::Error::custom)
     }
 }
 
