@@ -26,10 +26,11 @@ use std::fmt;
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(into = "serial::Raw", try_from = "serial::Raw"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Estimate {
+    #[cfg_attr(feature = "serde", serde(serialize_with = "unless_nan"))]
     mean: f64,
+    #[cfg_attr(feature = "serde", serde(serialize_with = "unless_nan"))]
     standard_error: f64,
     samples: u64,
     correlated_samples: f64,
@@ -160,68 +161,28 @@ impl fmt::Display for Estimate {
     }
 }
 
-/// The form of an estimate in files. Numbers that are NaN are absent, since not all formats know NaN.
+/// Writes a number that can be NaN. It is absent then, since not all formats know NaN.
 #[cfg(feature = "serde")]
-mod serial {
-    use super::{Basis, Estimate};
-    use crate::ParameterError;
-    use crate::quantity::{accept, finite, non_negative};
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn unless_nan<S: serde::Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    serde::Serialize::serialize(&Some(*number).filter(|number| !number.is_nan()), serializer)
+}
 
-    #[derive(serde::Serialize, serde::Deserialize)]
-    #[serde(deny_unknown_fields, rename = "Estimate")]
-    pub(super) struct Raw {
-        mean: Option<f64>,
-        standard_error: Option<f64>,
-        samples: u64,
-        correlated_samples: f64,
-        basis: Basis,
-    }
-
-    impl From<Estimate> for Raw {
-        fn from(estimate: Estimate) -> Self {
-            let Estimate { mean, standard_error, samples, correlated_samples, basis } = estimate;
-            Self {
-                mean: (samples > 0).then_some(mean),
-                standard_error: (samples > 1).then_some(standard_error),
-                samples,
-                correlated_samples,
-                basis,
-            }
-        }
-    }
-
-    impl TryFrom<Raw> for Estimate {
-        type Error = ParameterError;
-
-        fn try_from(raw: Raw) -> Result<Self, ParameterError> {
-            let Raw { mean, standard_error, samples, correlated_samples, basis } = raw;
-            let count = samples as f64;
-            accept(
-                mean.is_some() == (samples > 0),
-                "samples of an estimate",
-                "consistent with its mean and its error",
-                count,
-            )?;
-            let has_error = standard_error.is_some();
-            accept(
-                has_error == (samples > 1),
-                "samples of an estimate",
-                "consistent with its mean and its error",
-                count,
-            )?;
-            finite("mean", mean.unwrap_or(0.0))?;
-            non_negative("standard error", standard_error.unwrap_or(0.0))?;
-            non_negative("number of correlated samples", correlated_samples)?;
-            let independent = basis == Basis::Independent;
-            let alone = !independent || correlated_samples == 1.0;
-            accept(
-                alone,
-                "number of correlated samples of an independent estimate",
-                "1",
-                correlated_samples,
-            )?;
-            let (mean, standard_error) = (mean.unwrap_or(f64::NAN), standard_error.unwrap_or(f64::NAN));
-            Ok(Self { mean, standard_error, samples, correlated_samples, basis })
-        }
+crate::gate::from_file! {
+    Estimate {
+        mean: Option<f64>, standard_error: Option<f64>, samples: u64, correlated_samples: f64, basis: Basis
+    } => {
+        use crate::quantity::{accept, finite, non_negative};
+        let fits = mean.is_some() == (samples > 0) && standard_error.is_some() == (samples > 1);
+        let requirement = "consistent with its mean and its error";
+        accept(fits, "samples of an estimate", requirement, samples as f64)?;
+        finite("mean", mean.unwrap_or(0.0))?;
+        non_negative("standard error", standard_error.unwrap_or(0.0))?;
+        non_negative("number of correlated samples", correlated_samples)?;
+        let alone = basis != Basis::Independent || correlated_samples == 1.0;
+        let name = "number of correlated samples of an independent estimate";
+        accept(alone, name, "1", correlated_samples)?;
+        let (mean, standard_error) = (mean.unwrap_or(f64::NAN), standard_error.unwrap_or(f64::NAN));
+        Ok(Self { mean, standard_error, samples, correlated_samples, basis })
     }
 }
