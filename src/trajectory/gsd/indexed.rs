@@ -10,7 +10,7 @@ use crate::file::Locked;
 use crate::observable::Snapshot;
 use crate::trajectory::errors::RecordError;
 use crate::trajectory::format::no_frame;
-use crate::trajectory::media::{self, Growing};
+use crate::trajectory::media::{self, Growing, Medium as _};
 use crate::trajectory::open::is_gzip;
 use crate::trajectory::store::Store;
 
