@@ -270,6 +270,12 @@ fn scale(name: &'static str, value: f64) -> Result<f64, ParameterError> {
     accept(SCALE.contains(&value), name, "in [1e-30, 1e30]", value)
 }
 
+/// Checks that the engine can number this many disks. An open container has room for any number, and a
+/// mistyped number must not fill the memory.
+pub(crate) fn countable(count: usize) -> Result<(), ParameterError> {
+    accept(count <= MOST_DISKS, "number of disks", "at most 2^28", count as f64).map(drop)
+}
+
 pub(crate) fn bounded(name: &'static str, value: f64) -> Result<f64, ParameterError> {
     accept(value.abs() <= LARGEST, name, "finite and at most 1e60 in magnitude", value)
 }

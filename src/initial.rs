@@ -34,7 +34,7 @@ use thiserror::Error;
 
 use crate::ParameterError;
 use crate::boundary::Domain;
-use crate::disk::MOST_DISKS;
+use crate::disk::countable;
 use crate::error::Readable;
 use crate::quantity::accept;
 use crate::simulation::BuildError;
@@ -75,12 +75,6 @@ pub enum PlacementError {
         /// Message of the engine.
         reason: String,
     },
-}
-
-/// Checks that the engine can number this many disks. An open container has room for any number, and a
-/// mistyped number must not fill the memory.
-fn countable(count: usize) -> Result<(), ParameterError> {
-    accept(count <= MOST_DISKS, "number of disks", "at most 2^28", count as f64).map(|_| ())
 }
 
 /// Smallest distance of neighbors, in diameters.

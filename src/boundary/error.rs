@@ -22,14 +22,6 @@ pub enum VesselError {
     /// A parameter is out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// There are too few points or bricks.
-    #[error("{count} points or bricks are too few: there must be at least {least}")]
-    TooFewPoints {
-        /// Number of points or bricks.
-        count: usize,
-        /// Least number.
-        least: usize,
-    },
     /// Two neighboring points of a polygon are equal. The first point has the number 0.
     #[error("the points {first} and {second} of the polygon are equal")]
     EqualPoints {
@@ -123,14 +115,6 @@ pub enum VesselError {
         stroke: f64,
         /// Least distance.
         least: f64,
-    },
-    /// The vessel has more walls than the engine can number.
-    #[error("the vessel would have {count} walls, but it can have {most} at most")]
-    TooManyWalls {
-        /// Number of walls.
-        count: usize,
-        /// Largest number.
-        most: usize,
     },
 }
 

@@ -15,6 +15,7 @@ use glam::DVec2;
 use super::brick::Brick;
 use super::part::{Part, Phase, Travel};
 use super::{Boundary, Container, Domain, FirstTouch, Region, Surface, Touch, VesselError};
+use crate::quantity::accept;
 use crate::{Fingerprint, Flight};
 use index::Index;
 
@@ -245,9 +246,7 @@ impl Vessel {
     /// Checks that a part can be in this vessel, in place of one with `less` walls.
     fn check(&self, placed: &Placed, less: usize) -> Result<(), VesselError> {
         let count = self.wall_count() - less + placed.part.all_bricks().len();
-        if count > MOST_WALLS {
-            return Err(VesselError::TooManyWalls { count, most: MOST_WALLS });
-        }
+        accept(count <= MOST_WALLS, "number of walls of the vessel", "at most 2^16", count as f64)?;
         let (low, high) = placed.bounds;
         let periods = self.container.domain().periods();
         let count = |length: f64, period: f64| if period > 0.0 { length / period } else { 0.0 };

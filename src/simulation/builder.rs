@@ -12,9 +12,9 @@ use super::lookahead::Lookahead;
 use super::state::{Bodies, Clock, Identities};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
-use crate::disk::{MOST_DISKS, TOUCHING};
+use crate::disk::{TOUCHING, countable};
 use crate::instructions::Instructions;
-use crate::quantity::finite;
+use crate::quantity::{accept, finite};
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, Gravity, ParameterError};
 
@@ -120,7 +120,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
     pub fn build(self) -> Result<Simulation<R, B, S>, BuildError> {
         let gravity = self.gravity.checked()?;
         finite("start time", self.start_time)?;
-        bounded_count(self.disks.len())?;
+        countable(self.disks.len())?;
         check_speeds(&self.disks)?;
         Identities::default().check_room(&self.disks)?;
         let mut boundary = self.boundary;
@@ -166,11 +166,6 @@ pub(super) fn fit<B: Boundary + ?Sized>(
     Ok((wall_count, cells))
 }
 
-/// Checks that the engine can number this many disks.
-pub(super) fn bounded_count(count: usize) -> Result<(), BuildError> {
-    if count > MOST_DISKS { Err(BuildError::TooManyDisks { count, most: MOST_DISKS }) } else { Ok(()) }
-}
-
 /// Checks that no disk is so slow that the square of its speed vanishes.
 pub(super) fn check_speeds(disks: &[Disk]) -> Result<(), ParameterError> {
     let mut speeds = disks.iter().map(|disk| disk.velocity().abs().max_element());
@@ -201,9 +196,7 @@ pub(super) fn check_epoch(clock: &Clock, offset: f64) -> Result<(), BuildError> 
 /// Returns the number of walls, if the engine can number them.
 pub(super) fn count_walls<B: Boundary + ?Sized>(boundary: &B) -> Result<usize, BuildError> {
     let count = boundary.wall_count();
-    if count > MOST_WALLS {
-        return Err(BuildError::TooManyWalls { count, most: MOST_WALLS });
-    }
+    accept(count <= MOST_WALLS, "number of walls", "at most 2^16", count as f64)?;
     Ok(count)
 }
 

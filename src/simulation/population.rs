@@ -3,13 +3,14 @@
 use std::ops::Range;
 
 use super::Simulation;
-use super::builder::{bounded_count, cells_around, check_epoch, check_speeds, fit};
+use super::builder::{cells_around, check_epoch, check_speeds, fit};
 use super::errors::BuildError;
 use super::lookahead::Lookahead;
 use super::state::Clock;
 use crate::Disk;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
+use crate::disk::countable;
 use crate::scheduler::EventScheduler;
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
@@ -47,7 +48,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     pub fn insert(&mut self, disks: impl IntoIterator<Item = Disk>) -> Result<Range<usize>, BuildError> {
         let new: Vec<Disk> = disks.into_iter().collect();
         let indices = self.len()..self.len() + new.len();
-        bounded_count(indices.end)?;
+        countable(indices.end)?;
         check_speeds(&new)?;
         self.bodies.identities.check_room(&new)?;
         let mut all = self.disks();

@@ -9,6 +9,7 @@ use crate::Kind;
 use crate::boundary::VesselError;
 use crate::boundary::brick::Brick;
 use crate::boundary::conduct::Conduct;
+use crate::quantity::accept;
 
 impl Part {
     /// Creates a part of these bricks, and adds points at the ends that disks can touch.
@@ -21,9 +22,7 @@ impl Part {
     pub fn new(bricks: impl IntoIterator<Item = Brick>) -> Result<Self, VesselError> {
         let mut bricks: Vec<Brick> = bricks.into_iter().collect();
         let given = bricks.len();
-        if given == 0 {
-            return Err(VesselError::TooFewPoints { count: 0, least: 1 });
-        }
+        accept(given > 0, "number of bricks", "at least 1", 0.0)?;
         bricks.extend(corners::corners(&bricks));
         let (conduct, kind) = (Conduct::Shared, Kind::WALL);
         Ok(Self { bricks, given, travel: Travel::default(), conduct, kind, surface_speed: 0.0, start: 0.0 })
@@ -68,9 +67,7 @@ impl Part {
     /// If there are fewer than two points, a coordinate is not finite, or neighboring points are equal.
     pub fn polyline(points: impl IntoIterator<Item = DVec2>) -> Result<Self, VesselError> {
         let points: Vec<DVec2> = points.into_iter().collect();
-        if points.len() < 2 {
-            return Err(VesselError::TooFewPoints { count: points.len(), least: 2 });
-        }
+        accept(points.len() >= 2, "number of points", "at least 2", points.len() as f64)?;
         let bricks = points.windows(2).map(|pair| Ok(Brick::segment(pair[0], pair[1])?.two_sided()));
         Self::new(bricks.collect::<Result<Vec<_>, VesselError>>()?)
     }

@@ -5,12 +5,11 @@ use glam::DVec2;
 use crate::boundary::VesselError;
 use crate::boundary::brick::Brick;
 use crate::boundary::vector::finite_point;
+use crate::quantity::accept;
 
 /// Returns the sides of a polygon with the disks inside or outside, each from one point to the next.
 pub(super) fn sides(mut points: Vec<DVec2>, inside: bool) -> Result<Vec<Brick>, VesselError> {
-    if points.len() < 3 {
-        return Err(VesselError::TooFewPoints { count: points.len(), least: 3 });
-    }
+    accept(points.len() >= 3, "number of points", "at least 3", points.len() as f64)?;
     for point in &points {
         finite_point(*point)?;
     }

@@ -34,22 +34,6 @@ pub enum BuildError {
         /// The domain.
         domain: Domain,
     },
-    /// There are more disks than the engine can number.
-    #[error("{count} disks are too many: at most {most} are possible")]
-    TooManyDisks {
-        /// Number of disks.
-        count: usize,
-        /// Largest number possible.
-        most: usize,
-    },
-    /// The boundary has more walls than the engine can number.
-    #[error("{count} walls are too many: at most {most} are possible")]
-    TooManyWalls {
-        /// Number of walls.
-        count: usize,
-        /// Largest number possible.
-        most: usize,
-    },
     /// A disk is outside the boundary's domain.
     #[error("disk {disk} at ({}, {}) is outside the domain: {domain}", Readable(*.x), Readable(*.y))]
     Outside {
