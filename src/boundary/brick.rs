@@ -114,7 +114,7 @@ pub(super) struct Nearest {
 /// Geometry.
 impl Brick {
     pub(super) fn is_point(&self) -> bool {
-        matches!(self.shape, Shape::Arc(arc) if arc.radius() == 0.0)
+        matches!(self.shape, Shape::Arc(arc) if arc.radius == 0.0)
     }
 
     pub(super) fn is_two_sided(&self) -> bool {
@@ -124,22 +124,22 @@ impl Brick {
     /// Returns the radius of an arc with disks inside.
     pub(super) fn hollow(&self) -> Option<f64> {
         match self.shape {
-            Shape::Arc(arc) if self.free.has(Side::Left) && arc.radius() > 0.0 => Some(arc.radius()),
+            Shape::Arc(arc) if self.free.has(Side::Left) && arc.radius > 0.0 => Some(arc.radius),
             _ => None,
         }
     }
 
     /// Tells whether the brick is a whole circle about this point.
     pub(super) fn is_circle_about(&self, place: DVec2) -> bool {
-        matches!(self.shape, Shape::Arc(arc) if arc.is_whole() && arc.center() == place)
+        matches!(self.shape, Shape::Arc(arc) if arc.sector.is_none() && arc.center == place)
     }
 
     /// Tells whether a direction leads to the only free side of the brick, or along the brick. If the brick
     /// jumps the other way, it hits no disk.
     pub(super) fn faces(&self, direction: DVec2) -> bool {
         match (self.shape, self.free) {
-            (Shape::Segment(segment), Free::Left) => segment.direction().perp_dot(direction) >= 0.0,
-            (Shape::Segment(segment), Free::Right) => segment.direction().perp_dot(direction) <= 0.0,
+            (Shape::Segment(segment), Free::Left) => segment.direction.perp_dot(direction) >= 0.0,
+            (Shape::Segment(segment), Free::Right) => segment.direction.perp_dot(direction) <= 0.0,
             _ => false,
         }
     }
@@ -149,8 +149,8 @@ impl Brick {
     pub(super) fn ends(&self) -> [Option<(DVec2, DVec2)>; 2] {
         let forward = match self.shape {
             Shape::Segment(segment) => {
-                let direction = segment.direction();
-                [Some((segment.from(), direction)), segment.to().map(|to| (to, direction))]
+                let direction = segment.direction;
+                [Some((segment.from, direction)), segment.to().map(|to| (to, direction))]
             }
             Shape::Arc(arc) => arc.ends().map_or([None; 2], |ends| ends.map(Some)),
         };
@@ -170,8 +170,8 @@ impl Brick {
         const STEP: f64 = std::f64::consts::PI / 60.0;
         match self.shape {
             Shape::Segment(segment) => {
-                let end = segment.from() + length * segment.direction();
-                vec![segment.from(), segment.to().unwrap_or(end)]
+                let end = segment.from + length * segment.direction;
+                vec![segment.from, segment.to().unwrap_or(end)]
             }
             Shape::Arc(arc) => arc.points(STEP),
         }
@@ -180,8 +180,8 @@ impl Brick {
     /// Returns the points that fix the place of the brick.
     pub(super) fn landmarks(&self) -> impl Iterator<Item = DVec2> {
         let places = match self.shape {
-            Shape::Segment(segment) => [segment.from(), segment.to().unwrap_or(segment.from())],
-            Shape::Arc(arc) => [arc.center(), arc.center() + arc.radius()],
+            Shape::Segment(segment) => [segment.from, segment.to().unwrap_or(segment.from)],
+            Shape::Arc(arc) => [arc.center, arc.center + arc.radius],
         };
         places.into_iter()
     }
@@ -226,7 +226,7 @@ impl Brick {
         };
         let brick = match self.shape {
             Shape::Segment(segment) => {
-                let direction = segment.direction();
+                let direction = segment.direction;
                 let brick = Fingerprint::of("Segment").number(direction.x).number(direction.y);
                 brick.text(if segment.to().is_some() { "finite" } else { "endless" })
             }

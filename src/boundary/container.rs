@@ -153,7 +153,7 @@ impl Container {
         wall: Wall,
         rule: impl CollisionRule + Send + Sync + 'static,
     ) -> Result<Self, WallError> {
-        self.plane_mut(wall)?.set_conduct(Conduct::rule(rule));
+        self.plane_mut(wall)?.conduct = Conduct::rule(rule);
         Ok(self)
     }
 
@@ -162,7 +162,7 @@ impl Container {
     /// # Errors
     /// If the container has no such wall.
     pub fn with_temperature(mut self, wall: Wall, thermal: Thermal) -> Result<Self, WallError> {
-        self.plane_mut(wall)?.set_conduct(Conduct::Thermal(thermal));
+        self.plane_mut(wall)?.conduct = Conduct::Thermal(thermal);
         Ok(self)
     }
 
@@ -172,7 +172,7 @@ impl Container {
     /// # Errors
     /// If the container has no such wall.
     pub fn with_absorbing(mut self, wall: Wall) -> Result<Self, WallError> {
-        self.plane_mut(wall)?.set_conduct(Conduct::Absorbing);
+        self.plane_mut(wall)?.conduct = Conduct::Absorbing;
         Ok(self)
     }
 
@@ -181,7 +181,7 @@ impl Container {
     /// # Errors
     /// If the container has no such wall.
     pub fn with_kind(mut self, wall: Wall, kind: Kind) -> Result<Self, WallError> {
-        self.plane_mut(wall)?.set_kind(kind);
+        self.plane_mut(wall)?.kind = kind;
         Ok(self)
     }
 
@@ -246,12 +246,12 @@ impl Container {
 
     /// Returns how far a wall can move outward.
     fn retreat(&self, wall: Wall) -> f64 {
-        self.index(wall).map_or(0.0, |index| -self.planes[index].reach().0.min(0.0))
+        self.index(wall).map_or(0.0, |index| -self.planes[index].motion.reach().0.min(0.0))
     }
 
     /// Returns how far a wall can move inward.
     fn advance(&self, wall: Wall) -> f64 {
-        self.index(wall).map_or(0.0, |index| self.planes[index].reach().1.max(0.0))
+        self.index(wall).map_or(0.0, |index| self.planes[index].motion.reach().1.max(0.0))
     }
 }
 

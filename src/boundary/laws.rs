@@ -108,22 +108,22 @@ impl Random {
 
     /// Returns a time origin, and a flight that begins at a free place soon after it.
     fn flight<B: Boundary + ?Sized>(&mut self, trial: &mut Trial<'_, B>) -> Result<(f64, Flight), Violation> {
-        let crossing = trial.length() / trial.speed();
+        let crossing = trial.length() / trial.speed;
         let origin = self.between(0.0, LATEST * crossing);
         let time = self.between(0.0, crossing);
         trial.set_origin(origin);
         let position = self.place(trial, time)?;
-        let speed = trial.speed() * self.between(0.1, 3.0);
+        let speed = trial.speed * self.between(0.1, 3.0);
         // The direction comes from a point in a square, not from an angle: sine and cosine differ
         // between platforms.
         let direction = DVec2::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0)).normalize_or(DVec2::X);
-        let pull = trial.speed() * trial.speed() / trial.length();
+        let pull = trial.speed * trial.speed / trial.length();
         let choice = self.between(0.0, 4.0);
         let gravity = [0.0, 0.5 * pull, 4.0 * pull, -pull][choice as usize];
         // A third of the pulls are not vertical.
         let down = if choice.fract() < 1.0 / 3.0 { DVec2::new(0.6, -0.8) } else { DVec2::NEG_Y };
         let acceleration = gravity * down;
-        Ok((origin, Flight::new(time, position, speed * direction, acceleration, trial.radius())))
+        Ok((origin, Flight::new(time, position, speed * direction, acceleration, trial.radius)))
     }
 
     /// Returns a place in the domain where a disk overlaps no wall.
@@ -132,6 +132,6 @@ impl Random {
         let place = (0..PLACES)
             .map(|_| DVec2::new(self.between(low.x, high.x), self.between(low.y, high.y)))
             .find(|&place| trial.depth(place, 0.0, time).is_none());
-        place.ok_or(Violation::NoRoom { radius: trial.radius(), time })
+        place.ok_or(Violation::NoRoom { radius: trial.radius, time })
     }
 }

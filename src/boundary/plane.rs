@@ -1,7 +1,5 @@
 //! A straight wall that may move along its normal.
 
-use std::fmt;
-
 use glam::DVec2;
 
 use super::Region;
@@ -11,20 +9,20 @@ use crate::wall::{Approach, FirstTouch, Motion, first_touch};
 use crate::{Fingerprint, Flight, Kind};
 
 /// A straight wall: the disks stay on one side of a line.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub(super) struct Plane {
     /// Unit vector from the wall to the disks.
     normal: DVec2,
     /// Place of the wall at rest, along its normal.
     place: f64,
-    motion: Motion,
+    pub(super) motion: Motion,
     /// Largest displacement of the motion.
     highest: f64,
-    conduct: Conduct,
-    kind: Kind,
+    pub(super) conduct: Conduct,
+    pub(super) kind: Kind,
     /// Phase of the motion at the time origin.
     phase: f64,
-    slide: Option<Slide>,
+    pub(super) slide: Option<Slide>,
 }
 
 /// The motion of a wall along itself: to the right, or up. It sets disks spinning and carries them along, but
@@ -65,17 +63,6 @@ impl Slide {
     }
 }
 
-impl fmt::Debug for Plane {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter
-            .debug_struct("Plane")
-            .field("normal", &self.normal)
-            .field("place", &self.place)
-            .field("reach", &self.motion.reach())
-            .finish_non_exhaustive()
-    }
-}
-
 impl Plane {
     pub(super) fn new(normal: DVec2, place: f64) -> Self {
         let (motion, conduct, kind) = (Motion::none(), Conduct::Shared, Kind::WALL);
@@ -97,33 +84,11 @@ impl Plane {
         self.motion = motion;
     }
 
-    pub(super) fn set_conduct(&mut self, conduct: Conduct) {
-        self.conduct = conduct;
-    }
-
-    pub(super) fn set_kind(&mut self, kind: Kind) {
-        self.kind = kind;
-    }
-
-    pub(super) fn set_slide(&mut self, slide: Option<Slide>) {
-        self.slide = slide;
-    }
-
-    /// Returns everything that has a setter.
-    #[cfg(feature = "serde")]
-    pub(super) fn into_parts(self) -> (Motion, Conduct, Kind, Option<Slide>) {
-        (self.motion, self.conduct, self.kind, self.slide)
-    }
-
     pub(super) fn set_time_origin(&mut self, origin: f64) {
         self.phase = self.motion.phase(origin);
         if let Some(slide) = &mut self.slide {
             slide.set_time_origin(origin);
         }
-    }
-
-    pub(super) fn reach(&self) -> (f64, f64) {
-        self.motion.reach()
     }
 
     /// Tells whether a disk with its center in `region` can touch the wall at any time.

@@ -29,11 +29,11 @@ mod replays;
 mod rest;
 #[cfg(feature = "serde")]
 mod resuming;
+#[path = "../support/schedulers.rs"]
+mod schedulers;
 #[cfg(feature = "serde")]
 #[path = "../trajectory/scratch.rs"]
 mod scratch;
-#[path = "../support/schedulers.rs"]
-mod schedulers;
 mod setups;
 mod slopes;
 mod steps;

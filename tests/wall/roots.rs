@@ -158,9 +158,8 @@ fn known_zeros_are_found_in_order() {
 #[test]
 fn flights_in_a_circle_end_at_its_wall() {
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(3);
-    let mut draw = |size: f64| {
-        DVec2::new(between(&mut generator, -size, size), between(&mut generator, -size, size))
-    };
+    let mut draw =
+        |size: f64| DVec2::new(between(&mut generator, -size, size), between(&mut generator, -size, size));
     for case in 0..5000 {
         let (r, v, a) = (draw(0.7), draw(3.0), DVec2::new(0.0, draw(1.0).x));
         let gap = [

@@ -13,32 +13,22 @@ use crate::boundary::vector::direction;
 /// radius 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Arc {
-    center: DVec2,
-    radius: f64,
-    sector: Option<Sector>,
+    pub(super) center: DVec2,
+    pub(super) radius: f64,
+    pub(super) sector: Option<Sector>,
 }
 
 /// The directions from the center to an arc.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Sector {
     /// Unit vectors to both ends of the arc.
-    start: DVec2,
-    end: DVec2,
+    pub(super) start: DVec2,
+    pub(super) end: DVec2,
     /// True if the arc is longer than half of the circle.
-    is_wide: bool,
+    pub(super) is_wide: bool,
 }
 
 impl Sector {
-    pub(super) const fn new(start: DVec2, end: DVec2, is_wide: bool) -> Self {
-        Self { start, end, is_wide }
-    }
-
-    /// Returns the directions of both ends, and whether the arc is longer than half of the circle.
-    #[cfg(feature = "serde")]
-    pub(super) const fn parts(&self) -> (DVec2, DVec2, bool) {
-        (self.start, self.end, self.is_wide)
-    }
-
     fn contains(&self, direction: DVec2) -> bool {
         let (after, before) = (self.start.perp_dot(direction) >= 0.0, direction.perp_dot(self.end) >= 0.0);
         if self.is_wide { after || before } else { after && before }
@@ -46,27 +36,6 @@ impl Sector {
 }
 
 impl Arc {
-    pub(super) const fn new(center: DVec2, radius: f64, sector: Option<Sector>) -> Self {
-        Self { center, radius, sector }
-    }
-
-    pub(super) const fn center(&self) -> DVec2 {
-        self.center
-    }
-
-    pub(super) const fn radius(&self) -> f64 {
-        self.radius
-    }
-
-    #[cfg(feature = "serde")]
-    pub(super) const fn sector(&self) -> Option<Sector> {
-        self.sector
-    }
-
-    pub(super) const fn is_whole(&self) -> bool {
-        self.sector.is_none()
-    }
-
     /// Returns the start and the end, with the directions of the arc there.
     pub(super) fn ends(&self) -> Option<[(DVec2, DVec2); 2]> {
         let end = |direction: DVec2| (self.center + self.radius * direction, direction.perp());
@@ -89,8 +58,9 @@ impl Arc {
 
     /// Returns the same arc after a rotation about the origin by the angle of this unit vector, and a shift.
     pub(super) fn moved(&self, turn: DVec2, shift: DVec2) -> Self {
-        let turned = |Sector { start, end, is_wide }| {
-            Sector::new(turn.rotate(start).normalize(), turn.rotate(end).normalize(), is_wide)
+        let turned = |sector: Sector| {
+            let [start, end] = [sector.start, sector.end].map(|side| turn.rotate(side).normalize());
+            Sector { start, end, ..sector }
         };
         Self { center: turn.rotate(self.center) + shift, sector: self.sector.map(turned), ..*self }
     }

@@ -38,7 +38,7 @@ impl Brick {
     /// If a coordinate is not finite, or the radius is not finite and positive.
     pub fn circle(center: DVec2, radius: f64) -> Result<Self, VesselError> {
         let (center, radius) = (finite_point(center)?, positive("radius of a circle", radius)?);
-        Ok(Self::left_of(Shape::Arc(Arc::new(center, radius, None))))
+        Ok(Self::left_of(Shape::Arc(Arc { center, radius, sector: None })))
     }
 
     /// Creates an arc, counterclockwise from the angle `from` to the angle `to`.
@@ -62,8 +62,9 @@ impl Brick {
         let (center, radius) = (finite_point(center)?, positive("radius of an arc", radius)?);
         let angle = finite("angle of an arc", to)? - finite("angle of an arc", from)?;
         accept(angle > 0.0 && angle < TURN, "angle of an arc", "above 0 and less than 2π", angle)?;
-        let sector = Sector::new(direction(from), direction(to), angle > 0.5 * TURN);
-        Ok(Self::left_of(Shape::Arc(Arc::new(center, radius, Some(sector)))))
+        let is_wide = angle > 0.5 * TURN;
+        let sector = Some(Sector { start: direction(from), end: direction(to), is_wide });
+        Ok(Self::left_of(Shape::Arc(Arc { center, radius, sector })))
     }
 
     /// Creates a point, with disks around it.
@@ -82,7 +83,7 @@ impl Brick {
 
     /// Creates a circle with the disks outside.
     pub(in crate::boundary) const fn round(center: DVec2, radius: f64) -> Self {
-        Self { shape: Shape::Arc(Arc::new(center, radius, None)), free: Free::Right }
+        Self { shape: Shape::Arc(Arc { center, radius, sector: None }), free: Free::Right }
     }
 
     const fn left_of(shape: Shape) -> Self {
@@ -136,7 +137,7 @@ impl Brick {
         }
         if let Shape::Segment(segment) = shape {
             // Far from the origin, rounding may make both ends equal.
-            let length = segment.to().map_or(1.0, |to| to.distance(segment.from()));
+            let length = segment.to().map_or(1.0, |to| to.distance(segment.from));
             positive("length of a segment", length)?;
         }
         Ok(Self { shape, ..self })

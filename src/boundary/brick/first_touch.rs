@@ -120,8 +120,8 @@ impl Brick {
     /// Returns the distance from the line or the circle on which the brick lies.
     pub(super) fn distance_from_line(&self, place: DVec2) -> f64 {
         match self.shape {
-            Shape::Segment(segment) => segment.direction().perp_dot(place - segment.from()).abs(),
-            Shape::Arc(arc) => (place.distance(arc.center()) - arc.radius()).abs(),
+            Shape::Segment(segment) => segment.direction.perp_dot(place - segment.from).abs(),
+            Shape::Arc(arc) => (place.distance(arc.center) - arc.radius).abs(),
         }
     }
 
@@ -129,9 +129,9 @@ impl Brick {
     /// infinite for a segment or a corner, which has no radius.
     pub(in crate::boundary) fn radius_at(&self, place: DVec2) -> f64 {
         match self.shape {
-            Shape::Arc(arc) if arc.radius() > 0.0 => match arc.side(place) {
-                Side::Left => -arc.radius(),
-                Side::Right => arc.radius(),
+            Shape::Arc(arc) if arc.radius > 0.0 => match arc.side(place) {
+                Side::Left => -arc.radius,
+                Side::Right => arc.radius,
             },
             _ => f64::INFINITY,
         }

@@ -9,11 +9,11 @@ use crate::boundary::Region;
 /// A straight brick. Its left side is on the left of its direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Segment {
-    from: DVec2,
+    pub(super) from: DVec2,
     /// End; not used if the length is infinite.
     to: DVec2,
     /// Unit vector.
-    direction: DVec2,
+    pub(super) direction: DVec2,
     /// Length; infinite for a half-line.
     length: f64,
 }
@@ -28,17 +28,9 @@ impl Segment {
         Self { from, to: from, direction, length: f64::INFINITY }
     }
 
-    pub(super) const fn from(&self) -> DVec2 {
-        self.from
-    }
-
     /// Returns the end, if there is one.
     pub(super) fn to(&self) -> Option<DVec2> {
         self.length.is_finite().then_some(self.to)
-    }
-
-    pub(super) const fn direction(&self) -> DVec2 {
-        self.direction
     }
 
     /// Returns the same segment after a rotation about the origin by the angle of this unit vector, and a

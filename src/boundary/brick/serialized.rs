@@ -25,16 +25,15 @@ impl From<Brick> for Record {
     fn from(Brick { shape, free }: Brick) -> Self {
         match shape {
             Shape::Segment(segment) => match segment.to() {
-                Some(to) => Self::Segment { from: segment.from(), to, free },
-                None => Self::HalfLine { from: segment.from(), direction: segment.direction(), free },
+                Some(to) => Self::Segment { from: segment.from, to, free },
+                None => Self::HalfLine { from: segment.from, direction: segment.direction, free },
             },
-            Shape::Arc(arc) => match arc.sector() {
-                Some(sector) => {
-                    let (start, end, is_wide) = sector.parts();
-                    Self::Arc { center: arc.center(), radius: arc.radius(), start, end, is_wide, free }
+            Shape::Arc(arc) => match arc.sector {
+                Some(Sector { start, end, is_wide }) => {
+                    Self::Arc { center: arc.center, radius: arc.radius, start, end, is_wide, free }
                 }
-                None if arc.radius() == 0.0 => Self::Point { place: arc.center() },
-                None => Self::Circle { center: arc.center(), radius: arc.radius(), free },
+                None if arc.radius == 0.0 => Self::Point { place: arc.center },
+                None => Self::Circle { center: arc.center, radius: arc.radius, free },
             },
         }
     }
@@ -55,8 +54,8 @@ impl TryFrom<Record> for Brick {
                 Self::circle(center, radius)?;
                 let (start, end) = (unit_vector(start)?, unit_vector(end)?);
                 accept(start != end, "angle of an arc", "above 0 and less than 2π", 0.0)?;
-                let sector = Sector::new(start, end, is_wide);
-                Ok(Self { shape: Shape::Arc(Arc::new(center, radius, Some(sector))), free })
+                let sector = Some(Sector { start, end, is_wide });
+                Ok(Self { shape: Shape::Arc(Arc { center, radius, sector }), free })
             }
             Record::Point { place } => Self::point(place),
         }

@@ -24,7 +24,7 @@ impl Brick {
     ) -> Option<f64> {
         let (across, beside) = match self.shape {
             Shape::Segment(segment) => {
-                let across = segment.direction().perp_dot(stroke).abs();
+                let across = segment.direction.perp_dot(stroke).abs();
                 (across, Some(segment.beside(path, stroke.length())))
             }
             Shape::Arc(arc) => (stroke.length(), arc.beside(path, stroke.length())),
@@ -59,9 +59,9 @@ impl Brick {
         let (nearest, farthest) = self.distances(about);
         let distance = path.place.distance(about);
         let gap = if distance > farthest + path.radius {
-            Arc::new(about, farthest, None).gap(path, Side::Right)
+            Arc { center: about, radius: farthest, sector: None }.gap(path, Side::Right)
         } else if distance < nearest - path.radius {
-            Arc::new(about, nearest, None).gap(path, Side::Left)
+            Arc { center: about, radius: nearest, sector: None }.gap(path, Side::Left)
         } else {
             return Some(0.0);
         };

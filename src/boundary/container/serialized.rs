@@ -1,12 +1,14 @@
 //! Containers in files.
 
+use std::error::Error;
+
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::{Container, Wall};
 use crate::Kind;
 use crate::boundary::conduct::Conduct;
-use crate::boundary::plane::Slide;
+use crate::boundary::plane::{Plane, Slide};
 use crate::quantity::finite;
 use crate::wall::Motion;
 
@@ -35,7 +37,7 @@ struct WallRecord {
 impl From<Container> for Record {
     fn from(container: Container) -> Self {
         let walls = container.walls.into_iter().zip(container.planes).map(|(wall, plane)| {
-            let (motion, conduct, kind, slide) = plane.into_parts();
+            let Plane { motion, conduct, kind, slide, .. } = plane;
             WallRecord { wall, motion, conduct, kind, slide }
         });
         let height = container.height.is_finite().then_some(container.height);
@@ -44,35 +46,33 @@ impl From<Container> for Record {
 }
 
 impl TryFrom<Record> for Container {
-    type Error = String;
+    type Error = Box<dyn Error>;
 
-    fn try_from(record: Record) -> Result<Self, String> {
+    fn try_from(record: Record) -> Result<Self, Box<dyn Error>> {
         let Record { corner, width, height, walls } = record;
         let has = |wall: Wall| walls.iter().any(|record| record.wall == wall);
         let mut container = match height {
-            Some(height) => Self::closed(width, height),
-            None => Self::open(width),
-        }
-        .map_err(|error| error.to_string())?;
+            Some(height) => Self::closed(width, height)?,
+            None => Self::open(width)?,
+        };
         if !has(Wall::Left) {
-            container = container.with_periodic_sides().map_err(|error| error.to_string())?;
+            container = container.with_periodic_sides()?;
         }
         if !has(Wall::Floor) {
-            container = container.with_periodic_ends().map_err(|error| error.to_string())?;
+            container = container.with_periodic_ends()?;
         }
         // The walls must be those of the container as it is now, in their order.
         if !walls.iter().map(|record| record.wall).eq(container.walls.iter().copied()) {
-            return Err("no container has just these walls in this order".to_owned());
+            return Err("no container has just these walls in this order".into());
         }
         for (plane, record) in container.planes.iter_mut().zip(walls) {
             plane.set_motion(record.motion);
-            plane.set_conduct(record.conduct);
-            plane.set_kind(record.kind);
+            (plane.conduct, plane.kind) = (record.conduct, record.kind);
             if let Some(Slide::Speed(speed)) = record.slide {
-                finite("surface speed", speed).map_err(|error| error.to_string())?;
+                finite("surface speed", speed)?;
             }
-            plane.set_slide(record.slide);
+            plane.slide = record.slide;
         }
-        container.shifted(corner).map_err(|error| error.to_string())
+        Ok(container.shifted(corner)?)
     }
 }

@@ -25,7 +25,7 @@ impl Container {
     /// ```
     pub fn with_surface_speed(mut self, wall: Wall, speed: f64) -> Result<Self, WallError> {
         let speed = finite("surface speed", speed)?;
-        self.plane_mut(wall)?.set_slide(Some(Slide::Speed(speed)));
+        self.plane_mut(wall)?.slide = Some(Slide::Speed(speed));
         Ok(self)
     }
 
@@ -42,7 +42,7 @@ impl Container {
         motion: impl WallMotion + Send + Sync + 'static,
     ) -> Result<Self, WallError> {
         let motion = Motion::new(motion).map_err(|violation| WallError::Motion { wall, violation })?;
-        self.plane_mut(wall)?.set_slide(Some(Slide::Motion { motion, phase: 0.0 }));
+        self.plane_mut(wall)?.slide = Some(Slide::Motion { motion, phase: 0.0 });
         Ok(self)
     }
 
@@ -102,7 +102,7 @@ impl Container {
         }
         for wall in others {
             if let Ok(plane) = self.plane_mut(wall) {
-                plane.set_slide(Some(Slide::Motion { motion: motion.clone(), phase: 0.0 }));
+                plane.slide = Some(Slide::Motion { motion: motion.clone(), phase: 0.0 });
             }
         }
         Ok(self)

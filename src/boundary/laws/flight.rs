@@ -80,8 +80,8 @@ fn check_flight<B: Boundary + ?Sized>(
 /// Returns how long a flight may last. Like flights of the engine, it ends at a periodic side or end at
 /// the latest.
 fn longest<B: Boundary + ?Sized>(trial: &Trial<'_, B>, flight: &Flight) -> f64 {
-    let longest = LONGEST * trial.length() / trial.speed();
-    let (domain, start) = (trial.domain(), flight.time());
+    let longest = LONGEST * trial.length() / trial.speed;
+    let (domain, start) = (trial.domain, flight.time());
     let (place, velocity) = (flight.position(start), flight.velocity(start));
     let pull = flight.acceleration();
     let mut longest = longest;
@@ -120,7 +120,7 @@ fn check_touch<B: Boundary + ?Sized>(
     if !(touch.time >= flight.time() && touch.time <= until) {
         return Err(Violation::TouchTime { time: touch.time, until, flight: *flight });
     }
-    let count = trial.wall_count();
+    let count = trial.wall_count;
     if touch.wall >= count {
         return Err(Violation::TouchWall { wall: touch.wall, count, flight: *flight });
     }
@@ -134,7 +134,7 @@ fn check_way<B: Boundary + ?Sized>(
     end: f64,
     found: Option<Touch>,
 ) -> Result<(), Violation> {
-    let (domain, rounding) = (trial.domain(), trial.rounding());
+    let (domain, rounding) = (trial.domain, trial.rounding());
     for k in 0..=SAMPLES {
         let time = (flight.time() + (end - flight.time()) * f64::from(k) / f64::from(SAMPLES)).min(end);
         let place = flight.position(time);
@@ -189,7 +189,7 @@ fn check_surface<B: Boundary + ?Sized>(
     if !surface.velocity.is_finite() {
         return Err(Violation::Velocity { wall, velocity: surface.velocity, time });
     }
-    let step = STEP * trial.radius();
+    let step = STEP * trial.radius;
     let depth = |place: DVec2| trial.depth(place, 2.0 * step, time).map_or((wall, 0.0), |deepest| deepest);
     let (here, inward, outward) = (depth(place), depth(place - step * normal), depth(place + step * normal));
     // In a corner, another wall may be the deepest one, before the step and after it.
@@ -239,7 +239,7 @@ fn check_origin<B: Boundary + ?Sized>(
     until: f64,
     meeting: Option<&Meeting>,
 ) -> Result<(), Violation> {
-    let (origin, start) = (trial.origin(), flight.time());
+    let (origin, start) = (trial.origin, flight.time());
     // The other origin is earlier, so that no offset is negative.
     let shift = 0.37 * origin;
     let (position, velocity) = (flight.position(start), flight.velocity(start));

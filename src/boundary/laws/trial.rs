@@ -19,37 +19,17 @@ const REGIONS: [f64; 3] = [0.0, 0.5, 5.0];
 /// A boundary, and the numbers of its trial.
 pub(super) struct Trial<'a, B: ?Sized> {
     pub(super) boundary: &'a mut B,
-    domain: Domain,
-    wall_count: usize,
-    radius: f64,
-    speed: f64,
-    origin: f64,
+    pub(super) domain: Domain,
+    pub(super) wall_count: usize,
+    pub(super) radius: f64,
+    pub(super) speed: f64,
+    pub(super) origin: f64,
 }
 
 impl<'a, B: Boundary + ?Sized> Trial<'a, B> {
     pub(super) fn new(boundary: &'a mut B, domain: Domain, radius: f64, speed: f64) -> Self {
         let wall_count = boundary.wall_count();
         Self { boundary, domain, wall_count, radius, speed, origin: 0.0 }
-    }
-
-    pub(super) fn radius(&self) -> f64 {
-        self.radius
-    }
-
-    pub(super) fn speed(&self) -> f64 {
-        self.speed
-    }
-
-    pub(super) fn origin(&self) -> f64 {
-        self.origin
-    }
-
-    pub(super) fn wall_count(&self) -> usize {
-        self.wall_count
-    }
-
-    pub(super) fn domain(&self) -> &Domain {
-        &self.domain
     }
 
     /// Returns the size of the domain. If the domain is open above, this is its width.

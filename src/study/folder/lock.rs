@@ -53,7 +53,8 @@ impl Lock {
     /// If a kill or a full drive has cut the last line short, it is removed first, so that every line is
     /// whole. Only the holder of the lock writes, so appending is safe on network file systems, too.
     pub(in crate::study) fn append(&mut self, line: &str) {
-        let _ = to_last_line_end(self.0.file()).and_then(|mut end| end.write_all(format!("{line}\n").as_bytes()));
+        let _ =
+            to_last_line_end(self.0.file()).and_then(|mut end| end.write_all(format!("{line}\n").as_bytes()));
     }
 }
 
