@@ -54,14 +54,14 @@ impl WallMotion for Delayed {
         if phase < self.start {
             return WallState::new(self.motion.state(0.0).displacement, 0.0);
         }
-        self.motion.state(late(&*self.motion, phase, -self.start))
+        self.motion.state(late(&self.motion, phase, -self.start))
     }
 
     fn acceleration(&self, phase: f64) -> AccelerationBounds {
         if phase < self.start {
             return AccelerationBounds::new(self.start, 0.0, 0.0);
         }
-        late_bounds(&*self.motion, phase, -self.start)
+        late_bounds(&self.motion, phase, -self.start)
     }
 
     fn reach(&self) -> (f64, f64) {

@@ -41,12 +41,6 @@ impl Scaled {
         Ok(scaled)
     }
 
-    /// Returns the motion, if the factor only mirrors it.
-    #[cfg(feature = "serde")]
-    pub(super) fn mirrored(&self) -> Option<&Motion> {
-        (self.factor == -1.0).then_some(&self.motion)
-    }
-
     /// Returns the factor.
     pub const fn factor(&self) -> f64 {
         self.factor

@@ -1,6 +1,6 @@
 //! A motion whose phase counts from a given time.
 
-use super::{AccelerationBounds, WallMotion, WallState};
+use super::{AccelerationBounds, Motion, WallMotion, WallState};
 use crate::quantity::finite;
 use crate::{Fingerprint, ParameterError};
 
@@ -17,20 +17,26 @@ use crate::{Fingerprint, ParameterError};
 /// assert!(base.state(30.0).velocity > 0.0);
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StartingAt<M> {
-    motion: M,
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct StartingAt {
+    motion: Motion,
     start: f64,
     /// Phase of the motion at time 0.
+    #[cfg_attr(feature = "serde", serde(skip))]
     lead: f64,
 }
 
-impl<M: WallMotion> StartingAt<M> {
+impl StartingAt {
     /// Creates the motion that has phase 0 at this absolute time.
     ///
     /// # Errors
     /// If the time is not finite.
-    pub fn new(motion: M, start: f64) -> Result<Self, ParameterError> {
+    pub fn new(motion: impl WallMotion + Send + Sync + 'static, start: f64) -> Result<Self, ParameterError> {
+        Self::of(Motion::of(motion), start)
+    }
+
+    fn of(motion: Motion, start: f64) -> Result<Self, ParameterError> {
         let start = finite("start of a motion", start)?;
         let lead = match motion.period() {
             // The remainder is exact, however late the start is. If it is 0, the phases are those of the
@@ -42,18 +48,13 @@ impl<M: WallMotion> StartingAt<M> {
         Ok(Self { motion, start, lead })
     }
 
-    /// Returns the motion.
-    pub const fn motion(&self) -> &M {
-        &self.motion
-    }
-
     /// Returns the absolute time at which the motion has phase 0.
     pub const fn start(&self) -> f64 {
         self.start
     }
 }
 
-impl<M: WallMotion> WallMotion for StartingAt<M> {
+impl WallMotion for StartingAt {
     fn state(&self, phase: f64) -> WallState {
         self.motion.state(late(&self.motion, phase, self.lead))
     }
@@ -79,18 +80,22 @@ impl<M: WallMotion> WallMotion for StartingAt<M> {
     }
 }
 
+crate::gate::from_file! {
+    StartingAt { motion: Motion, start: f64 } => Self::of(motion, start)
+}
+
 /// Largest number of pieces that may end in the rounding of one phase.
 const PIECES: u32 = 8;
 
 /// Returns the bounds at a phase of a motion that is ahead by `lead`.
-pub(super) fn late_bounds<M: WallMotion + ?Sized>(motion: &M, phase: f64, lead: f64) -> AccelerationBounds {
+pub(super) fn late_bounds(motion: &Motion, phase: f64, lead: f64) -> AccelerationBounds {
     let bounds = motion.acceleration(late(motion, phase, lead));
     AccelerationBounds::new(bounds.until - lead, bounds.min, bounds.max)
 }
 
 /// Returns the phase of a motion that is ahead by `lead`. Where the sum was rounded to just before the end of
 /// a piece, but the phase belongs to the next piece, this is where the next piece begins.
-pub(super) fn late<M: WallMotion + ?Sized>(motion: &M, phase: f64, lead: f64) -> f64 {
+pub(super) fn late(motion: &Motion, phase: f64, lead: f64) -> f64 {
     let mut late = phase + lead;
     for _ in 0..PIECES {
         let until = motion.acceleration(late).until;
