@@ -16,6 +16,7 @@ const PIECES: f64 = 16.0;
 
 /// The motion of a part: along a direction, about a point, both, or none.
 #[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(in crate::boundary) struct Travel {
     pub(super) along: Option<Along>,
     pub(super) turning: Option<Turning>,
@@ -23,6 +24,7 @@ pub(in crate::boundary) struct Travel {
 
 /// A motion along a direction, which is a unit vector.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(super) struct Along {
     pub(super) direction: DVec2,
     pub(super) motion: Motion,
@@ -30,10 +32,12 @@ pub(super) struct Along {
 
 /// Turning about a point, which moves with the part.
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(in crate::boundary) struct Turning {
     pub(in crate::boundary) about: DVec2,
     pub(in crate::boundary) angular_velocity: f64,
-    /// True if all bricks are circles about the point, so only the surface turns.
+    /// True if all bricks are circles about the point, so only the surface turns. Files do not tell.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) is_round: bool,
 }
 
