@@ -93,6 +93,12 @@ impl Domain {
         columns.flat_map(move |x| rows.clone().map(move |y| DVec2::new(x, y) * periods))
     }
 
+    /// Tells whether a place is in the rectangle, or beyond it by no more than `slack`.
+    pub(crate) fn contains(&self, place: DVec2, slack: f64) -> bool {
+        (self.left - slack..=self.right + slack).contains(&place.x)
+            && (self.bottom - slack..=self.top + slack).contains(&place.y)
+    }
+
     /// Returns the shortest vector from `from` to `to`, across periodic sides where that is shorter.
     pub fn separation(&self, from: DVec2, to: DVec2) -> DVec2 {
         let mut separation = to - from;

@@ -225,10 +225,7 @@ fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk], offset: f64)
     for (disk, state) in disks.iter().enumerate() {
         let (position, radius) = (state.position(), state.radius());
         // A disk that is about to pass a periodic side may be beyond that side by rounding.
-        let slack = TOUCHING * radius;
-        let inside = (domain.left - slack..=domain.right + slack).contains(&position.x)
-            && (domain.bottom - slack..=domain.top + slack).contains(&position.y);
-        if !inside {
+        if !domain.contains(position, TOUCHING * radius) {
             return Err(BuildError::Outside { disk, x: position.x, y: position.y, domain });
         }
         if let Some((wall, depth)) = boundary.overlap(position, radius, offset)

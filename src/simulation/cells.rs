@@ -156,7 +156,7 @@ impl Cells {
     /// Adds a disk after all others.
     pub(super) fn put_in(&mut self, position: DVec2, diameter: f64) {
         if let Some(layers) = &mut self.layers {
-            layers.push(class_of(&self.classes, diameter));
+            layers.classes.push(class_of(&self.classes, diameter));
         }
         let disk = self.places.len();
         self.places.push(self.grid_of(disk).place_of(position));
@@ -172,7 +172,7 @@ impl Cells {
         }
         self.places.swap_remove(disk);
         if let Some(layers) = &mut self.layers {
-            layers.swap_remove(disk);
+            layers.classes.swap_remove(disk);
         }
         if disk != last {
             self.enter(disk);
@@ -346,7 +346,7 @@ impl Cells {
         let Some(layers) = &self.layers else { return 0 };
         let (place, (right, up)) = (self.places[disk], exit.direction());
         let (before, _) = self.grid_of(disk).neighbor(place, (-right, -up));
-        layers.gather(&self.contents, disk, place, (!layers.is_narrow()).then_some(before), found)
+        layers.gather(&self.contents, disk, place, (!layers.is_narrow).then_some(before), found)
     }
 
     /// Writes to `found` the disks that come within reach of a disk of the smallest class when it enters its

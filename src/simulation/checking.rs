@@ -135,13 +135,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 let due = self.clock.origin + particle.forecast.due();
                 return Err(RunError::Overdue { disk, due, time: self.time() }.into());
             }
-            let DVec2 { x, y } = self.bodies.position(disk, offset);
-            let slack = rounding + self.bodies.radius(disk);
-            let is_inside = x >= domain.left - slack
-                && x <= domain.right + slack
-                && y >= domain.bottom - slack
-                && y <= domain.top + slack;
-            if !is_inside {
+            let position = self.bodies.position(disk, offset);
+            if !domain.contains(position, rounding + self.bodies.radius(disk)) {
+                let DVec2 { x, y } = position;
                 return Err(self.boundary_fault(disk, BoundaryFault::Outside { x, y }).into());
             }
         }

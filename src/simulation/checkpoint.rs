@@ -267,7 +267,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             gravity: self.bodies.gravity.acceleration(),
             trajectories: particles.iter().map(|particle| particle.trajectory).collect(),
             spins: self.bodies.spins.clone(),
-            images: self.bodies.images().to_vec(),
+            images: self.bodies.images.clone(),
             identities: self.bodies.identities.clone(),
             typical_diameter: self.bodies.typical_diameter,
             fresh_count: self.bodies.fresh_count,

@@ -219,9 +219,6 @@ impl Entry {
 
     /// Returns true if the center is outside a box by more than rounding.
     fn is_outside(&self, domain: &Domain) -> bool {
-        let (DVec2 { x, y }, slack) = (self.disk.position(), TOUCHING * self.disk.radius());
-        let is_inside = (domain.left - slack..=domain.right + slack).contains(&x)
-            && (domain.bottom - slack..=domain.top + slack).contains(&y);
-        !is_inside
+        !domain.contains(self.disk.position(), TOUCHING * self.disk.radius())
     }
 }

@@ -61,7 +61,7 @@ pub(super) fn first(disks: &[Disk], domain: Option<&Domain>) -> Option<(usize, u
         for (class, shift) in classes.iter().flat_map(|class| shifts.iter().map(move |shift| (class, shift)))
         {
             let place = disk.position() + shift;
-            if *shift != DVec2::ZERO && !domain.is_some_and(|domain| is_near(place, class.side, domain)) {
+            if *shift != DVec2::ZERO && !domain.is_some_and(|domain| domain.contains(place, class.side)) {
                 continue;
             }
             for other in class.near(place).filter(|&other| other != index) {
@@ -81,10 +81,4 @@ pub(super) fn first(disks: &[Disk], domain: Option<&Domain>) -> Option<(usize, u
         }
     }
     None
-}
-
-/// Tells whether a place is no farther than this from a box.
-fn is_near(place: DVec2, reach: f64, domain: &Domain) -> bool {
-    (domain.left - reach..=domain.right + reach).contains(&place.x)
-        && (domain.bottom - reach..=domain.top + reach).contains(&place.y)
 }

@@ -9,8 +9,8 @@ use crate::{Fingerprint, ParameterError};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub(super) struct Oscillation {
-    amplitude: f64,
-    angular_frequency: f64,
+    pub(super) amplitude: f64,
+    pub(super) angular_frequency: f64,
 }
 
 impl Oscillation {
@@ -23,14 +23,6 @@ impl Oscillation {
         // In the form in which the motions use it, so that no square of a period vanishes there.
         positive("peak acceleration", amplitude / (oscillation.period() * oscillation.period()))?;
         Ok(oscillation)
-    }
-
-    pub(super) const fn amplitude(&self) -> f64 {
-        self.amplitude
-    }
-
-    pub(super) const fn angular_frequency(&self) -> f64 {
-        self.angular_frequency
     }
 
     pub(super) fn period(&self) -> f64 {
@@ -80,12 +72,12 @@ macro_rules! periodic {
 
             /// Returns the amplitude.
             pub const fn amplitude(&self) -> f64 {
-                self.oscillation.amplitude()
+                self.oscillation.amplitude
             }
 
             /// Returns the angular frequency.
             pub const fn angular_frequency(&self) -> f64 {
-                self.oscillation.angular_frequency()
+                self.oscillation.angular_frequency
             }
         }
     };

@@ -42,7 +42,7 @@ fn every_motion_goes_round() {
         moving("Sawtooth", Sawtooth::new(0.1, 3.0).unwrap()),
         moving("Scaled", Scaled::new(Scaled::new(sine(), -1.0).unwrap(), -1.0).unwrap()),
         moving("Sinusoidal", Sinusoidal::new(0.1, 3.0).unwrap()),
-        moving("StartingAt", Sinusoidal::new(0.1, 3.0).unwrap()),
+        moving("StartingAt", StartingAt::new(sine(), 0.3).unwrap()),
         moving("Summed", Summed::new(StartingAt::new(sine(), 0.3).unwrap(), gate()).unwrap()),
         moving("Tabulated", gate()),
         moving("Triangular", Triangular::new(0.1, 3.0).unwrap()),

@@ -221,7 +221,7 @@ fn a_missing_wall_is_named() {
 /// A motion with a start keeps the contract, and begins when it should, however late that is.
 #[test]
 fn motions_begin_at_their_start() {
-    fn check_one(motion: impl WallMotion + Copy + std::fmt::Debug) {
+    fn check_one(motion: impl WallMotion + Copy + Send + Sync + 'static) {
         for start in [0.0, 1e-9, 0.7, -3.0, 628.318_530_7, 12_345.678, 1e9] {
             let late = StartingAt::new(motion, start).unwrap();
             check(&late, 0.0, 20.0).unwrap();

@@ -142,9 +142,7 @@ fn check_way<B: Boundary + ?Sized>(
             let (found, flight) = (found.map(|touch| touch.time), *flight);
             return Err(Violation::LetThrough { wall, depth, time, found, flight });
         }
-        let is_inside = (domain.left - rounding..=domain.right + rounding).contains(&place.x)
-            && (domain.bottom - rounding..=domain.top + rounding).contains(&place.y);
-        if !is_inside {
+        if !domain.contains(place, rounding) {
             return Err(Violation::LeftDomain { place, time, flight: *flight });
         }
     }

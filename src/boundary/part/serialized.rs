@@ -34,7 +34,8 @@ impl TryFrom<Record> for Part {
     type Error = VesselError;
 
     fn try_from(record: Record) -> Result<Self, VesselError> {
-        let Record { bricks, travel: Travel { along, turning }, conduct, kind, surface_speed, start } = record;
+        let Record { bricks, travel: Travel { along, turning }, conduct, kind, surface_speed, start } =
+            record;
         let part = Part { kind, ..Part::new(bricks)?.with_conduct(conduct) };
         let mut part = part.with_surface_speed(surface_speed)?.starting_at(start)?;
         if let Some(Turning { about, angular_velocity, .. }) = turning {

@@ -18,7 +18,7 @@ use crate::collision::{CollisionRule, Contact, Impulse};
 /// check(&Rough::from_inelasticity(0.2, 0.1)?, &Promises::new().with_opposed_slip())?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Promises {
     energy_gain: bool,
     opposed_slip: bool,
@@ -57,12 +57,6 @@ impl Promises {
             check_friction_cone(contact, impulse, static_friction)?;
         }
         if self.opposed_slip { check_friction_opposes_slip(contact, impulse) } else { Ok(()) }
-    }
-}
-
-impl Default for Promises {
-    fn default() -> Self {
-        Self::new()
     }
 }
 

@@ -23,7 +23,7 @@ pub(in crate::simulation) struct Grid {
     row_edges: Vec<f64>,
     /// Distance beyond its edges up to which a cell keeps its disks, so that fewer of them pass from one cell
     /// to another.
-    margin: DVec2,
+    pub(super) margin: DVec2,
     /// Horizontal and vertical period of the domain; 0 where it is not periodic.
     periods: DVec2,
     /// True if one of the periods is not 0: a flag that is cheap to test.
@@ -82,11 +82,6 @@ impl Grid {
             edges.windows(2).map(|pair| (pair[0] - margin, pair[1] + margin)).collect()
         };
         [range(&self.column_edges, self.margin.x), range(&self.row_edges, self.margin.y)]
-    }
-
-    /// Returns the distance beyond its edges up to which a cell keeps its disks.
-    pub(super) fn margin(&self) -> DVec2 {
-        self.margin
     }
 
     /// Iterates over all cells but those of the ring.

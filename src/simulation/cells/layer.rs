@@ -143,7 +143,7 @@ pub(super) fn widest(domain: &Domain, grid: &Grid, smallest: f64, diameter: f64)
     // Equal disks are both somewhere in their cells, so each cell may take half of what a touch leaves of
     // half a period. Beside a small disk, the margin of its cell counts, too: it may be that far outside.
     let half = 0.5 * domain.periods();
-    let small_cell = grid.layout.pitch + 2.0 * grid.margin();
+    let small_cell = grid.layout.pitch + 2.0 * grid.margin;
     let beside_equal = 0.5 * (half - LEAST_PITCH * diameter);
     let beside_small = half - 0.5 * LEAST_PITCH * (diameter + smallest) - small_cell;
     DVec2::select(half.cmpgt(DVec2::ZERO), beside_equal.min(beside_small), DVec2::INFINITY)
@@ -157,19 +157,15 @@ pub(super) struct Layer {
     pub(super) contents: Contents,
     /// The homes whose disks a disk of this class may touch: those of each smaller class, from the smallest
     /// class on, and last those of its own class.
-    reaches: Vec<Reach>,
+    pub(super) reaches: Vec<Reach>,
 }
 
 impl Layer {
-    /// Creates a layer without disks. It knows no other homes until [`Self::set_reaches`].
+    /// Creates a layer without disks. It knows no other homes until it is given its reaches.
     pub(super) fn empty(domain: &Domain, layout: LayerLayout) -> Self {
         let grid = Grid::without_margin(domain, layout.cells);
         let homes = (layout.cells.columns as usize * layout.cells.rows as usize) >> (2 * layout.doublings);
         Self { layout, grid, contents: Contents::empty(homes), reaches: Vec::new() }
-    }
-
-    pub(super) fn set_reaches(&mut self, reaches: Vec<Reach>) {
-        self.reaches = reaches;
     }
 
     /// Returns the number of homes.
@@ -208,14 +204,6 @@ impl Layer {
 
     pub(super) fn is_at_wall(&self, place: Place) -> bool {
         self.contents.is_at_wall(self.home(place))
-    }
-
-    pub(super) fn enter(&mut self, disk: usize, place: Place) {
-        self.contents.push(self.home(place), disk);
-    }
-
-    pub(super) fn leave(&mut self, disk: usize, place: Place) {
-        self.contents.remove(self.home(place), disk);
     }
 
     /// Takes a disk from one cell to another.

@@ -53,14 +53,14 @@ const fn cells_per_small_disk(cell_size: CellSize) -> f64 {
 /// The layers of all classes but the smallest.
 #[derive(Debug, Clone)]
 pub(super) struct Layers {
-    /// Class of each disk.
-    classes: Vec<u8>,
+    /// Class of each disk. A disk that is added has yet to enter its cell, and one that goes has left it.
+    pub(super) classes: Vec<u8>,
     larger: Vec<Layer>,
     /// For each home of each class, the smallest class first: the larger disks that reach it from their
     /// cells.
     visitors: Vec<Contents>,
     /// True if a disk that enters another cell must look at all partners again.
-    is_narrow: bool,
+    pub(super) is_narrow: bool,
 }
 
 /// Returns the layouts of the cells of these classes; `None` if the domain is too narrow for them.
@@ -119,7 +119,7 @@ impl Layers {
         let visitors = visitors.collect();
         let is_narrow = !are_homes_narrow(domain, &larger, classes);
         for (layer, reaches) in larger.iter_mut().zip(reaches) {
-            layer.set_reaches(reaches);
+            layer.reaches = reaches;
         }
         let classes = diameters.map(|diameter| class_of(classes, diameter)).collect();
         Self { classes, larger, visitors, is_narrow }
@@ -148,17 +148,12 @@ impl Layers {
         self.larger.get(usize::from(class).wrapping_sub(1))
     }
 
-    /// Tells whether a disk that enters another cell must look at all partners again.
-    pub(super) fn is_narrow(&self) -> bool {
-        self.is_narrow
-    }
-
     /// Writes a disk of a larger class into its home, and into all homes that it reaches.
     pub(super) fn enter(&mut self, disk: usize, place: Place) {
         let Some(layer) = self.larger.get_mut(usize::from(self.classes[disk]).wrapping_sub(1)) else {
             return;
         };
-        layer.enter(disk, place);
+        layer.contents.push(layer.home(place), disk);
         for (visitors, reach) in self.visitors.iter_mut().zip(layer.reaches().0) {
             reach.for_each_run(place, |first, count| visitors.push_to_run(first, count, disk));
         }
@@ -169,20 +164,10 @@ impl Layers {
         let Some(layer) = self.larger.get_mut(usize::from(self.classes[disk]).wrapping_sub(1)) else {
             return;
         };
-        layer.leave(disk, place);
+        layer.contents.remove(layer.home(place), disk);
         for (visitors, reach) in self.visitors.iter_mut().zip(layer.reaches().0) {
             reach.for_each_run(place, |first, count| visitors.remove_from_run(first, count, disk));
         }
-    }
-
-    /// Adds a disk of this class, which has yet to enter its cell.
-    pub(super) fn push(&mut self, class: u8) {
-        self.classes.push(class);
-    }
-
-    /// Removes a disk that has left its cell. The last one takes its index.
-    pub(super) fn swap_remove(&mut self, disk: usize) {
-        self.classes.swap_remove(disk);
     }
 
     /// Takes a disk of a larger class from one cell to another.

@@ -70,7 +70,7 @@ impl Reach {
     /// Finds the homes whose disks may touch disks in the cells of `from`.
     pub(super) fn new(from: &Grid, homes: &Homes<'_>, distances: Distances) -> Self {
         let [columns, rows] = homes.grid.edges().map(|edges| every(homes.cells, &edges));
-        let margin = homes.grid.margin();
+        let margin = homes.grid.margin;
         let [from_columns, from_rows] = from.ranges();
         let periods = homes.grid.periods();
         // Half the width of the square in the circle on which the nearest possible centers lie. A home in

@@ -7,7 +7,6 @@
 use std::collections::HashMap;
 
 use super::{CheckpointError, Saved};
-use crate::boundary::Domain;
 use crate::disk::{LARGEST, MOST_DISKS};
 use crate::simulation::cells::{
     CELLS_PER_DISK, FEWEST, Grid, Grids, Layout, Place, SPARE_CELLS, SPARE_DISKS, SizeClass,
@@ -60,7 +59,8 @@ pub(super) fn check_places(saved: &Saved, grids: &Grids, bodies: &Bodies) -> Res
     let inside = |(disk, (_, &place))| holds(grids.of(disk), place, bodies.position(disk, saved.now));
     check(disks().all(inside), "a disk is outside its neighbor cell")?;
     // The cells at walls extend to infinity.
-    let within = |disk| is_within(&saved.domain, bodies.position(disk, saved.now), bodies.radius(disk));
+    // Rounding needs much less than a radius.
+    let within = |disk| saved.domain.contains(bodies.position(disk, saved.now), bodies.radius(disk));
     check((0..saved.places.len()).all(within), "a disk is outside the domain")?;
     check(has_room(saved, grids, bodies), "the disks of a cell overlap")?;
     let ends =
@@ -184,13 +184,6 @@ fn are_forecasts(saved: &Saved, walls: usize) -> bool {
             && collision_due >= saved.now
             && exit_due >= saved.now
     })
-}
-
-/// Tells whether a disk at this position is in the domain, or beyond it by no more than its radius. This is
-/// much more than rounding needs.
-fn is_within(domain: &Domain, position: DVec2, radius: f64) -> bool {
-    let (low, high) = (DVec2::new(domain.left, domain.bottom), DVec2::new(domain.right, domain.top));
-    position.cmpge(low - radius).all() && position.cmple(high + radius).all()
 }
 
 /// Tells whether a disk at this position belongs in this cell.

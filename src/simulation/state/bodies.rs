@@ -81,7 +81,7 @@ pub(in crate::simulation) struct Bodies {
     pub(in crate::simulation) gravity: Gravity,
     pub(super) properties: Properties,
     /// Numbers of periods that each disk has passed; empty as long as none has passed any.
-    pub(super) images: Vec<[i32; 2]>,
+    pub(in crate::simulation) images: Vec<[i32; 2]>,
     /// Typical diameter, in which the length of an epoch is measured.
     pub(in crate::simulation) typical_diameter: f64,
     pub(in crate::simulation) identities: Identities,
@@ -129,12 +129,6 @@ impl Bodies {
         let particle = |(&trajectory, &forecast)| Particle { trajectory, forecast };
         let particles = trajectories.iter().zip(forecasts).map(particle).collect();
         Self { particles, spins, images, identities, has_changed: true, ..Self::new(models, gravity) }
-    }
-
-    /// Returns the images that [`Self::restored`] takes.
-    #[cfg(feature = "serde")]
-    pub(in crate::simulation) fn images(&self) -> &[[i32; 2]] {
-        &self.images
     }
 
     /// Returns the models that [`Self::restored`] takes.

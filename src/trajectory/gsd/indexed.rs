@@ -30,16 +30,18 @@ pub(in crate::trajectory) struct Indexed {
     /// All but the entries of the present index, which are written in place.
     file: Growing<Locked>,
     index: Index,
-    times: Vec<f64>,
-    /// The chunks of each frame.
-    places: Vec<Range<u64>>,
 }
 
-/// The index: its place and the number of entries for which it has room, and the entries.
+/// The index: its place and the number of entries for which it has room, the entries, and the frames that
+/// they list.
+#[derive(Default)]
 struct Index {
     location: u64,
     room: usize,
     entries: Vec<u8>,
+    times: Vec<f64>,
+    /// The chunks of each frame.
+    places: Vec<Range<u64>>,
 }
 
 impl Indexed {
@@ -51,26 +53,25 @@ impl Indexed {
             return Err(RecordError::io("use", path)(error));
         }
         let mut file = Growing::new(media::create(path)?, 0, Vec::new());
-        let index = Index { location: HEADER as u64, room: ROOM, entries: Vec::new() };
-        let head = [index.header(), vec![0; ROOM * ENTRY], names()].concat();
+        let index = Index { location: HEADER as u64, room: ROOM, ..Index::default() };
+        let head = [header(index.location, ROOM as u64), vec![0; ROOM * ENTRY], names()].concat();
         file.push(&head, &[]).map_err(|error| {
             // The file is new, and has nothing that could be lost.
             let _ = fs::remove_file(path);
             RecordError::io("write to", path)(error)
         })?;
-        Ok(Self { path: path.to_owned(), file, index, times: Vec::new(), places: Vec::new() })
+        Ok(Self { path: path.to_owned(), file, index })
     }
 
     /// Goes on after the last whole frame of a file.
     pub(in crate::trajectory) fn reopen(path: &Path) -> Result<Self, RecordError> {
         let medium = media::reopen(path)?;
-        let found = Found::read(medium.file()).map_err(RecordError::io("go on in", path))?;
-        if found.times.is_empty() {
+        let found = Index::read(medium.file()).map_err(RecordError::io("go on in", path))?;
+        let (index, length) = found;
+        if index.times.is_empty() {
             return Err(RecordError::NoFrame { path: path.to_owned() });
         }
-        let Found { index, times, places, length } = found;
-        let file = Growing::new(medium, length, Vec::new());
-        Ok(Self { path: path.to_owned(), file, index, times, places })
+        Ok(Self { path: path.to_owned(), file: Growing::new(medium, length, Vec::new()), index })
     }
 
     fn push(&mut self, shape: Shape, bytes: &[u8]) -> io::Result<()> {
@@ -87,37 +88,36 @@ impl Indexed {
         self.file.medium.write_at(place + ENTRY as u64, &others)?;
         self.file.medium.write_at(place, &entries[..ENTRY])?;
         self.index.entries.extend(entries);
-        self.places.push(start..end);
+        self.index.places.push(start..end);
         Ok(())
     }
 
     /// Writes the index again after the chunks, with twice the room. The header then points to it.
     fn enlarge_index(&mut self) -> io::Result<()> {
         let (location, room) = (self.file.length, 2 * self.index.room);
-        let entries = self.index.entries.clone();
-        let zeros = vec![0; room * ENTRY - entries.len()];
-        self.file.push(&[entries.as_slice(), &zeros].concat(), &[])?;
-        let larger = Index { location, room, entries };
-        self.file.medium.write_at(0, &larger.header())?;
-        self.index = larger;
+        let mut larger = self.index.entries.clone();
+        larger.resize(room * ENTRY, 0);
+        self.file.push(&larger, &[])?;
+        self.file.medium.write_at(0, &header(location, room as u64))?;
+        (self.index.location, self.index.room) = (location, room);
         Ok(())
     }
 }
 
 impl Store for Indexed {
     fn times(&self) -> &[f64] {
-        &self.times
+        &self.index.times
     }
 
     fn append(&mut self, snapshot: &Snapshot<'_>, bytes: &[u8]) -> Result<(), RecordError> {
-        let shape = Shape::of(self.times.len(), snapshot.disks());
+        let shape = Shape::of(self.index.times.len(), snapshot.disks());
         self.push(shape, bytes).map_err(RecordError::io("write to", &self.path))?;
-        self.times.push(snapshot.time());
+        self.index.times.push(snapshot.time());
         Ok(())
     }
 
     fn has(&mut self, number: usize, bytes: &[u8]) -> Result<bool, RecordError> {
-        let place = self.places[number].clone();
+        let place = self.index.places[number].clone();
         let there = read_at(self.file.medium.file(), place.start, place.end - place.start);
         Ok(there.map_err(RecordError::io("read", &self.path))? == bytes)
     }
@@ -132,70 +132,61 @@ impl Store for Indexed {
 }
 
 impl Index {
-    fn header(&self) -> Vec<u8> {
-        let numbers = [
-            0x65DF_65DF_65DF_65DF,
-            self.location,
-            self.room as u64,
-            (HEADER + ROOM * ENTRY) as u64,
-            (names().len() / 64) as u64,
-            // Version 1.4 of the schema, and 2.0 of the file.
-            1 << 16 | 4 | 2 << 48,
-        ];
-        let mut header: Vec<u8> = numbers.iter().flat_map(|number: &u64| number.to_le_bytes()).collect();
-        for (text, end) in [("granular-edmd", 112), ("hoomd", HEADER)] {
-            header.extend(text.as_bytes());
-            header.resize(end, 0);
-        }
-        header
-    }
-}
-
-/// What a file has.
-struct Found {
-    index: Index,
-    times: Vec<f64>,
-    places: Vec<Range<u64>>,
-    /// Bytes that the next frame must not overwrite.
-    length: u64,
-}
-
-impl Found {
-    fn read(file: &File) -> io::Result<Self> {
+    /// Reads the index of a file, and the number of bytes that the next frame must not overwrite.
+    fn read(file: &File) -> io::Result<(Self, u64)> {
         let size = file.metadata()?.len();
         let head = read_at(file, 0, HEADER as u64)?;
         let (location, room) = (number(&head, 8), number(&head, 16));
-        let index = Index { location, room: usize::try_from(room).unwrap_or(0), entries: Vec::new() };
+        let mut index = Self { location, room: usize::try_from(room).unwrap_or(0), ..Self::default() };
         let end = room.checked_mul(ENTRY as u64).and_then(|bytes| bytes.checked_add(location));
-        let Some(end) = end.filter(|&end| end <= size && head == index.header()) else {
+        let Some(end) = end.filter(|&end| end <= size && head == header(location, room)) else {
             return Err(no_frame("a file of GSD by granular-edmd", "another"));
         };
         let entries = read_at(file, location, end - location)?;
         let least = (HEADER + ROOM * ENTRY + names().len()) as u64;
-        let mut found = Self { index, times: Vec::new(), places: Vec::new(), length: end.max(least) };
+        let mut length = end.max(least);
         loop {
-            let rest = &entries[found.index.entries.len()..];
+            let rest = &entries[index.entries.len()..];
             // The first entry of a frame is written last, so a frame that has it was whole once.
             if rest.len() < ENTRY || number(rest, 16) == 0 {
-                return Ok(found);
+                return Ok((index, length));
             }
             let start = number(rest, 16);
-            let shape = shape_at(rest, found.times.len());
+            let shape = shape_at(rest, index.times.len());
             let known = shape.map(|shape| self::entries(shape, start));
             let Some((known, end)) = known.filter(|(known, end)| rest.starts_with(known) && *end <= size)
             else {
                 return Err(no_frame("a whole frame", "a damaged one"));
             };
             let time = f64::from_bits(number(&read_at(file, end - (8 * LOG) as u64, 8)?, 0));
-            if !time.is_finite() || found.times.last().is_some_and(|&last| last >= time) {
+            if !time.is_finite() || index.times.last().is_some_and(|&last| last >= time) {
                 return Err(no_frame("a frame after the one before", &format!("time {time:?}")));
             }
-            found.index.entries.extend(known);
-            found.times.push(time);
-            found.places.push(start..end);
-            found.length = found.length.max(end);
+            index.entries.extend(known);
+            index.times.push(time);
+            index.places.push(start..end);
+            length = length.max(end);
         }
     }
+}
+
+/// Returns the header of a file whose index is here, and has room for so many entries.
+fn header(location: u64, room: u64) -> Vec<u8> {
+    let numbers = [
+        0x65DF_65DF_65DF_65DF,
+        location,
+        room,
+        (HEADER + ROOM * ENTRY) as u64,
+        (names().len() / 64) as u64,
+        // Version 1.4 of the schema, and 2.0 of the file.
+        1 << 16 | 4 | 2 << 48,
+    ];
+    let mut header: Vec<u8> = numbers.iter().flat_map(|number: &u64| number.to_le_bytes()).collect();
+    for (text, end) in [("granular-edmd", 112), ("hoomd", HEADER)] {
+        header.extend(text.as_bytes());
+        header.resize(end, 0);
+    }
+    header
 }
 
 /// Returns the shape of the frame whose entries come next, if they can be those of a frame.
