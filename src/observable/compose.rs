@@ -27,20 +27,28 @@ macro_rules! compose_all {
     ($($holder:ty),+) => {
         $(impl<T: Observer> Observer for $holder {
             fn on_start(&mut self, moment: &Moment) {
-                self.iter_mut().for_each(|observer| observer.on_start(moment));
+                for observer in self.iter_mut() {
+                    observer.on_start(moment);
+                }
             }
             #[inline]
             fn on_collision(&mut self, collision: &Collision) {
-                self.iter_mut().for_each(|observer| observer.on_collision(collision));
+                for observer in self.iter_mut() {
+                    observer.on_collision(collision);
+                }
             }
             fn next_sample(&self) -> f64 {
                 self.iter().map(Observer::next_sample).fold(f64::INFINITY, earlier)
             }
             fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
-                self.iter_mut().for_each(|observer| sample_if_due(observer, snapshot));
+                for observer in self.iter_mut() {
+                    sample_if_due(observer, snapshot);
+                }
             }
             fn on_end(&mut self, moment: &Moment) {
-                self.iter_mut().for_each(|observer| observer.on_end(moment));
+                for observer in self.iter_mut() {
+                    observer.on_end(moment);
+                }
             }
             #[inline]
             fn verdict(&mut self) -> Verdict {
