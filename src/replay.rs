@@ -94,6 +94,9 @@ where
     /// # Errors
     /// The same as for [`Simulation::run_until`]. What happened up to the error can be played back.
     pub fn run_until(&mut self, end: f64) -> Result<(), RunError> {
+        if !end.is_finite() {
+            return self.present.run_until(end, &mut ()).map(drop);
+        }
         let start = self.states[0].time();
         loop {
             let next = start + self.states.len() as f64 * self.interval;
@@ -122,8 +125,9 @@ where
     /// If the parts of the run do not answer as they did the first time.
     pub fn at(&self, time: f64) -> Result<Option<Simulation<R, B, S>>, RunError> {
         let Some(state) = self.states.iter().rfind(|state| state.time() <= time) else { return Ok(None) };
-        if time > self.present.time() {
-            return Ok(None);
+        if time >= self.present.time() {
+            // The run may have ended with an error there, and would do so again.
+            return Ok((time == self.present.time()).then(|| self.present.clone()));
         }
         let mut run = state.clone();
         run.run_until(time, &mut ())?;

@@ -313,10 +313,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// is a [`Warning`].
     ///
     /// # Errors
-    /// If the disks do not fit into the new walls, or there are too many walls. The simulation then stays as
+    /// If the disks or the inlets do not fit into the new walls, or there are too many walls. The simulation then stays as
     /// it was.
     pub fn set_boundary(&mut self, mut boundary: B) -> Result<(), BuildError> {
         boundary.set_time_origin(self.clock.origin);
+        traffic::check_inlets(&boundary, &self.inlets)?;
         let (wall_count, cells) = fit(&boundary, &self.disks(), self.clock.now)?;
         self.count_jumps(&boundary);
         (self.boundary, self.wall_count, self.cells) = (boundary, wall_count, cells);

@@ -22,8 +22,9 @@ use index::Index;
 /// Largest number of walls of a vessel.
 const MOST_WALLS: usize = 1 << 16;
 
-/// Largest number of periods that a part may extend over. Each brick has an image for each of them.
-const MOST_PERIODS: f64 = 64.0;
+/// Largest numbers of periods that a part may extend over, in one direction and in all. Each brick has an image
+/// for each of them, and may come into a good part of as many cells.
+const MOST_PERIODS: [f64; 2] = [64.0, 256.0];
 
 /// Least stroke of a part, relative to its coordinates. Places of a part with a smaller one are lost in
 /// rounding.
@@ -196,8 +197,8 @@ impl Vessel {
     ///
     /// # Errors
     /// If a part or a wall of the container already has this name, or the vessel would have more than 2¹⁶
-    /// walls. If the part extends over more than 64 periods of the container, or its motion is lost in the
-    /// rounding of its coordinates. The vessel then stays as it was.
+    /// walls. If the part extends over more than 64 periods of the container in one direction, or 256 in
+    /// both, or its motion is lost in the rounding of its coordinates. The vessel then stays as it was.
     pub fn put(&mut self, name: impl Into<String>, part: Part) -> Result<(), VesselError> {
         let name = name.into();
         let mut walls = (0..self.container.wall_count()).map(|wall| self.container.wall_name(wall));
@@ -249,11 +250,13 @@ impl Vessel {
         accept(count <= MOST_WALLS, "number of walls of the vessel", "at most 2^16", count as f64)?;
         let (low, high) = placed.bounds;
         let periods = self.container.domain().periods();
-        let count = |length: f64, period: f64| if period > 0.0 { length / period } else { 0.0 };
-        let periods = count(high.x - low.x, periods.x).max(count(high.y - low.y, periods.y));
+        let count = |length: f64, period: f64| if period > 0.0 { (length / period).max(1.0) } else { 1.0 };
+        let [across, up] = [count(high.x - low.x, periods.x), count(high.y - low.y, periods.y)];
         let name = placed.name.clone();
-        if periods > MOST_PERIODS {
-            return Err(VesselError::TooManyPeriods { name, periods, most: MOST_PERIODS });
+        for (periods, most) in [across.max(up), across * up].into_iter().zip(MOST_PERIODS) {
+            if periods > most {
+                return Err(VesselError::TooManyPeriods { name, periods, most });
+            }
         }
         let (stroke, least) = (placed.part.travel().stroke(), LEAST_STROKE * placed.size);
         if stroke > 0.0 && stroke < least {

@@ -1,5 +1,6 @@
 //! The builder, which checks all inputs once and makes a simulation of them.
 
+use glam::DVec2;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -121,7 +122,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
         let gravity = self.gravity.checked()?;
         finite("start time", self.start_time)?;
         countable(self.disks.len())?;
-        check_speeds(&self.disks)?;
+        check_speeds(self.disks.iter().map(Disk::velocity))?;
         Identities::default().check_room(&self.disks)?;
         let mut boundary = self.boundary;
         boundary.set_time_origin(self.start_time);
@@ -167,8 +168,8 @@ pub(super) fn fit<B: Boundary + ?Sized>(
 }
 
 /// Checks that no disk is so slow that the square of its speed vanishes.
-pub(super) fn check_speeds(disks: &[Disk]) -> Result<(), ParameterError> {
-    let mut speeds = disks.iter().map(|disk| disk.velocity().abs().max_element());
+pub(super) fn check_speeds(velocities: impl IntoIterator<Item = DVec2>) -> Result<(), ParameterError> {
+    let mut speeds = velocities.into_iter().map(|velocity| velocity.abs().max_element());
     let slow = speeds.find(|&speed| speed > 0.0 && speed < SLOWEST);
     slow.map_or(Ok(()), |speed| Err(ParameterError::new("speed of a disk", "0 or at least 1e-100", speed)))
 }

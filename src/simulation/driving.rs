@@ -82,6 +82,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         driving: &mut D,
         observer: &mut O,
     ) -> Result<RunEnd, RunError> {
+        self.check_end(limits.end()).map_err(|error| *error)?;
         let (start, before) = (Instant::now(), collisions(self.counters()));
         driving.times().start_at(self.time());
         loop {
@@ -104,6 +105,12 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             let kicked = driving.kick(&mut disks).map_err(Into::into);
             kicked.and_then(|()| self.replace_disks(&disks)).map_err(|error| failed(self.time(), error))?;
             driving.times().advance_past(next);
+            let following = driving.times().upcoming();
+            if following <= next {
+                let error =
+                    ParameterError::new("time of the next kick", "after that of the last kick", following);
+                return Err(failed(self.time(), error.into()));
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The same disks with another rule, boundary or scheduler, which may be of another type.
 
 use super::builder::fit;
+use super::traffic::check_inlets;
 use super::{BuildError, Simulation};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
@@ -40,9 +41,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// It goes on as after [`set_boundary`](Self::set_boundary).
     ///
     /// # Errors
-    /// If the disks do not fit into the new walls, or there are too many walls.
+    /// If the disks or the inlets do not fit into the new walls, or there are too many walls.
     pub fn with_boundary<T: Boundary>(mut self, mut boundary: T) -> Result<Simulation<R, T, S>, BuildError> {
         boundary.set_time_origin(self.clock.origin);
+        check_inlets(&boundary, &self.inlets)?;
         let (wall_count, cells) = fit(&boundary, &self.disks(), self.clock.now)?;
         self.count_jumps(&boundary);
         (self.wall_count, self.cells) = (wall_count, cells);

@@ -145,6 +145,16 @@ impl Inlet {
         if let Source::New(models) = &self.source { models } else { &[] }
     }
 
+    /// Returns the diameter of the largest model; 0 without models.
+    pub(super) fn largest_diameter(&self) -> f64 {
+        2.0 * self.models().iter().map(Disk::radius).fold(0.0, f64::max)
+    }
+
+    /// Returns the velocity at which disks come back, if the inlet puts back what sinks take out.
+    pub(super) fn velocity_of_return(&self) -> Option<DVec2> {
+        if let Source::TakenOut { velocity, .. } = self.source { Some(velocity) } else { None }
+    }
+
     /// Tells whether the inlet puts back what sinks take out.
     pub(super) fn takes_back(&self) -> bool {
         matches!(self.source, Source::TakenOut { .. })

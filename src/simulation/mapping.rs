@@ -40,7 +40,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Takes these disks for those that there are.
     pub(super) fn replace_disks(&mut self, disks: &[Disk]) -> Result<(), BuildError> {
-        check_speeds(disks)?;
+        check_speeds(disks.iter().map(Disk::velocity))?;
         let stay = |(index, disk): (usize, &Disk)| {
             disk.position() == self.bodies.position(index, self.clock.now)
                 && disk.radius() == self.bodies.radius(index)

@@ -49,7 +49,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let new: Vec<Disk> = disks.into_iter().collect();
         let indices = self.len()..self.len() + new.len();
         countable(indices.end)?;
-        check_speeds(&new)?;
+        check_speeds(new.iter().map(Disk::velocity))?;
         self.bodies.identities.check_room(&new)?;
         let mut all = self.disks();
         all.extend_from_slice(&new);

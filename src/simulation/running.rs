@@ -218,7 +218,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         Ok(None)
     }
 
-    fn check_end(&self, end: f64) -> Outcome<()> {
+    pub(super) fn check_end(&self, end: f64) -> Outcome<()> {
         let is_ahead = end.is_finite() && end >= self.time() - self.clock.rounding();
         if is_ahead { Ok(()) } else { Err(Box::new(RunError::End { end, time: self.time() })) }
     }

@@ -8,12 +8,12 @@
 use super::builder::check_speeds;
 use super::errors::{BuildError, Outcome, RunError};
 use super::{Inlet, Simulation};
-use crate::Disk;
-use crate::boundary::Boundary;
+use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
 use crate::disk::MOST_DISKS;
 use crate::quantity::accept;
 use crate::scheduler::EventScheduler;
+use crate::{Disk, ParameterError};
 
 /// Number of places that an inlet tries for a disk each time it opens.
 const TRIES: u32 = 32;
@@ -28,24 +28,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// If the inlet is not in the domain, or a model does not fit into the boundary, just fills a hollow of a
     /// wall, or moves at a speed below 1e-100. The simulation then stays as it was.
     pub fn add_inlet(&mut self, mut inlet: Inlet) -> Result<(), BuildError> {
-        let domain = self.boundary.domain();
-        for place in inlet.places() {
-            let is_inside = (domain.left..=domain.right).contains(&place.x);
-            accept(is_inside, "place of an inlet", "within the sides of the domain", place.x)?;
-            let is_inside = (domain.bottom..=domain.top).contains(&place.y);
-            accept(is_inside, "place of an inlet", "within the ends of the domain", place.y)?;
-        }
-        check_speeds(inlet.models())?;
-        for (disk, model) in inlet.models().iter().enumerate() {
-            if let Some(wall) = self.boundary.tight_fit(model.radius()) {
-                let wall = self.boundary.wall_name(wall).into_owned();
-                return Err(BuildError::TightFit { disk, radius: model.radius(), wall });
-            }
-        }
-        let diameter = 2.0 * inlet.models().iter().map(Disk::radius).fold(0.0, f64::max);
+        check_inlets(&self.boundary, std::slice::from_ref(&inlet))?;
+        check_speeds(inlet.models().iter().map(Disk::velocity).chain(inlet.velocity_of_return()))?;
+        let diameter = inlet.largest_diameter();
         if diameter > 0.0 && !self.make_cells_suit(diameter) {
-            let (width, height) = (domain.width(), domain.height());
-            return Err(BuildError::DomainTooSmall { width, height, diameter });
+            return Err(too_small(&self.boundary.domain(), diameter));
         }
         inlet.times.start_at(self.time());
         self.inlets.push(inlet);
@@ -68,7 +55,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let mut next = f64::INFINITY;
         for opening in self.inlets.iter().map(|inlet| inlet.times.upcoming()) {
             if opening.is_nan() {
-                return Err(RunError::SampleTime { next: opening, time: self.time() }.into());
+                let late =
+                    ParameterError::new("time of the next opening", "a number that is not too late", opening);
+                return Err(RunError::Inlet { time: self.time(), source: late }.into());
             }
             next = next.min(opening);
         }
@@ -83,7 +72,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             }
             self.inlets[number].open(time);
             while let Some(disk) = self.inlets[number].waiting.front().copied()
-                && let Some(placed) = self.place_for(number, &disk)
+                && let Some(placed) = self.place_for(number, &disk)?
             {
                 self.put_in(&placed)?;
                 self.inlets[number].waiting.pop_front();
@@ -94,16 +83,16 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Finds room for a disk at an inlet.
-    fn place_for(&mut self, inlet: usize, disk: &Disk) -> Option<Disk> {
-        let is_full =
-            self.len() >= MOST_DISKS || self.bodies.identities.check_room(&[disk.identified(0)]).is_err();
-        if is_full || !self.make_cells_suit(2.0 * disk.radius()) {
-            return None;
+    fn place_for(&mut self, inlet: usize, disk: &Disk) -> Outcome<Option<Disk>> {
+        let numbered = self.bodies.identities.check_room(&[disk.identified(0)]);
+        numbered.map_err(|source| RunError::Inlet { time: self.time(), source })?;
+        if self.len() >= MOST_DISKS || !self.make_cells_suit(2.0 * disk.radius()) {
+            return Ok(None);
         }
-        (0..TRIES).find_map(|_| {
+        Ok((0..TRIES).find_map(|_| {
             let placed = self.inlets[inlet].placed(disk)?;
             self.has_room(&placed).then_some(placed)
-        })
+        }))
     }
 
     fn has_room(&mut self, disk: &Disk) -> bool {
@@ -180,4 +169,32 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             self.renew_cells(self.cells.grid().cell_size(), None);
         }
     }
+}
+
+/// Checks that inlets are in the domain of a boundary, and that it has room for their models.
+pub(super) fn check_inlets<B: Boundary + ?Sized>(boundary: &B, inlets: &[Inlet]) -> Result<(), BuildError> {
+    let domain = boundary.domain();
+    for inlet in inlets {
+        for place in inlet.places() {
+            let is_inside = (domain.left..=domain.right).contains(&place.x);
+            accept(is_inside, "place of an inlet", "within the sides of the domain", place.x)?;
+            let is_inside = (domain.bottom..=domain.top).contains(&place.y);
+            accept(is_inside, "place of an inlet", "within the ends of the domain", place.y)?;
+        }
+        for (disk, model) in inlet.models().iter().enumerate() {
+            if let Some(wall) = boundary.tight_fit(model.radius()) {
+                let wall = boundary.wall_name(wall).into_owned();
+                return Err(BuildError::TightFit { disk, radius: model.radius(), wall });
+            }
+        }
+        let diameter = inlet.largest_diameter();
+        if diameter > domain.width().min(domain.height()) {
+            return Err(too_small(&domain, diameter));
+        }
+    }
+    Ok(())
+}
+
+fn too_small(domain: &Domain, diameter: f64) -> BuildError {
+    BuildError::DomainTooSmall { width: domain.width(), height: domain.height(), diameter }
 }

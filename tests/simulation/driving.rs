@@ -1,11 +1,12 @@
 //! Kicks at set times do not depend on how a run is cut, or on the scheduler.
 
 use granular_edmd::boundary::Container;
-use granular_edmd::collision::Frictional;
+use granular_edmd::collision::{Elastic, Frictional};
+use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{SampleTimes, Series, Temperatures};
 use granular_edmd::scheduler::{EventScheduler, LinearScan};
 use granular_edmd::simulation::{BuildError, Driving, Limits, Rescaling, RunEnd, RunError, WhiteNoise};
-use granular_edmd::{Disk, Simulation, initial};
+use granular_edmd::{Disk, ParameterError, Simulation, initial};
 
 type Outcome<T = ()> = Result<T, Box<dyn std::error::Error>>;
 type Run = Simulation<Frictional>;
@@ -100,4 +101,45 @@ fn disks_that_cannot_be_changed_so_are_refused_and_stay() -> Outcome {
     let error = run.run_driven(&Limits::until(3.0), &mut error?, &mut ()).unwrap_err();
     assert!(matches!(error, RunError::Driving { .. }), "{error}");
     Ok(())
+}
+
+/// A driving whose clock begins anew each time.
+struct Stuck(SampleTimes);
+impl Driving for Stuck {
+    fn times(&mut self) -> &mut SampleTimes {
+        self.0 = SampleTimes::every(1.0).unwrap();
+        self.0.start_at(0.0);
+        &mut self.0
+    }
+    fn kick(&mut self, _: &mut [Disk]) -> Result<(), ParameterError> {
+        Ok(())
+    }
+}
+
+#[test]
+fn what_a_driving_cannot_do_is_an_error() -> Outcome {
+    // All velocities are equal, so what differs from their mean is rounding.
+    let disks = (0..5).map(|k| Disk::new(DVec2::new(2.0 + 3.0 * f64::from(k), 2.0), 0.5));
+    let disks: Vec<Disk> =
+        disks.map(|disk| disk?.with_velocity(DVec2::new(0.9, 0.1))).collect::<Result<_, _>>()?;
+    let run = Simulation::builder(Elastic, Container::periodic(20.0, 20.0)?).disks(disks).build()?;
+    let mut by = Rescaling::new(1.0, SampleTimes::every(1.0)?)?;
+    let error = run.clone().run_driven(&Limits::until(3.0), &mut by, &mut ()).unwrap_err();
+    assert!(chain(&error).contains("above the rounding of velocities"), "{}", chain(&error));
+
+    for end in [f64::NAN, f64::INFINITY] {
+        let error = run.clone().run_driven(&Limits::until(end), &mut by, &mut ()).unwrap_err();
+        assert!(matches!(error, RunError::End { .. }), "{error}");
+    }
+
+    let mut stuck = Stuck(SampleTimes::every(1.0)?);
+    let error = run.clone().run_driven(&Limits::until(3.0), &mut stuck, &mut ()).unwrap_err();
+    assert!(chain(&error).contains("after that of the last kick, but is 1"), "{}", chain(&error));
+    Ok(())
+}
+
+/// Returns an error with its causes.
+fn chain(error: &dyn std::error::Error) -> String {
+    let causes = std::iter::successors(Some(error), |error| error.source());
+    causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
 }

@@ -118,6 +118,10 @@ fn the_collisions_before_an_error_can_be_played_back() {
     assert!(last.iter().all(|replayed| (replayed.collision.time - collapse).abs() < 1e-6), "{last:?}");
     let before = replay.before_collision(5).unwrap().unwrap();
     assert_eq!(before.counters().wall_collisions, 4);
+    // The state in which it ended is there, too, and times without an end are refused.
+    let present = replay.present();
+    assert_eq!(replay.at(present.time()).unwrap().unwrap().disks(), present.disks());
+    assert!(matches!(replay.clone().run_until(f64::NAN), Err(RunError::End { .. })));
     // The other ball goes on, and is compared until the first one ends. Their last common states lie far
     // before the difference.
     let mut first = Replay::new(ball.clone(), 1.0).unwrap();

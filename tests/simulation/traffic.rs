@@ -1,6 +1,7 @@
 //! Disks that come and go during runs: sinks and inlets.
 
 use std::collections::BTreeSet;
+use std::error::Error;
 use std::time::Instant;
 
 use granular_edmd::boundary::{Container, Part, Vessel, Wall, laws};
@@ -10,7 +11,7 @@ use granular_edmd::initial;
 use granular_edmd::observable::{Arrivals, OfKind, SampleTimes};
 #[cfg(feature = "serde")]
 use granular_edmd::simulation::Checkpoint;
-use granular_edmd::simulation::Inlet;
+use granular_edmd::simulation::{BuildError, Inlet, RunError};
 use granular_edmd::{Disk, Kind, Simulation};
 
 use crate::schedulers::{SCHEDULERS, Scheduler};
@@ -275,4 +276,48 @@ fn what_an_inlet_cannot_do_is_an_error() {
     late.add_inlet(Inlet::new(places(7.0, 7.0), [large], SampleTimes::every(0.5).unwrap(), 0).unwrap())
         .unwrap();
     assert!(late.run_until(1e15 + 10.0, &mut ()).is_err());
+}
+
+#[test]
+fn an_inlet_that_could_never_let_in_is_refused() {
+    let times = SampleTimes::every(1.0).unwrap();
+    let room = |size: f64| Container::closed(size, size).unwrap();
+    let box_of_ten = || Simulation::builder(Elastic, room(10.0)).build().unwrap();
+    let places = [DVec2::splat(2.0), DVec2::splat(8.0)];
+    let giant = Disk::new(DVec2::ZERO, 1e30).unwrap();
+    let error = box_of_ten().add_inlet(Inlet::new(places, [giant], times, 1).unwrap()).unwrap_err();
+    assert!(matches!(error, BuildError::DomainTooSmall { .. }), "{error}");
+    let slow = Inlet::refill(places, DVec2::new(1e-120, 0.0), times, 1).unwrap();
+    let error = box_of_ten().add_inlet(slow).unwrap_err().to_string();
+    assert!(error.contains("1e-120"), "{error}");
+
+    let mut run = box_of_ten();
+    let small = Disk::new(DVec2::ZERO, 0.1).unwrap();
+    run.add_inlet(Inlet::new(places, [small], times, 1).unwrap()).unwrap();
+    let error = run.set_boundary(room(5.0)).unwrap_err().to_string();
+    assert!(error.contains("place of an inlet must be within the sides of the domain, but is 8"), "{error}");
+    assert!(run.clone().with_boundary(room(5.0)).is_err());
+    run.run_until(3.5, &mut ()).unwrap();
+    assert_eq!(run.len(), 3);
+}
+
+#[test]
+fn an_inlet_without_ids_or_times_ends_the_run() {
+    let places = [DVec2::splat(2.0), DVec2::splat(8.0)];
+    let small = Disk::new(DVec2::ZERO, 0.1).unwrap();
+    let walls = || Container::closed(10.0, 10.0).unwrap();
+    let cause = |error: RunError| format!("{error}: {}", error.source().unwrap());
+
+    let last = small.with_id(1 << 53).unwrap().with_position(DVec2::splat(9.0)).unwrap();
+    let mut run = Simulation::builder(Elastic, walls()).disks([last]).build().unwrap();
+    let times = SampleTimes::every(1.0).unwrap();
+    run.add_inlet(Inlet::new(places, [small], times, 1).unwrap()).unwrap();
+    let error = cause(run.run_until(5.0, &mut ()).unwrap_err());
+    assert!(error.contains("an inlet failed at time 1: largest id so far"), "{error}");
+
+    let mut late = Simulation::builder(Elastic, walls()).start_time(1e9).build().unwrap();
+    let times = SampleTimes::every(1e-8).unwrap();
+    late.add_inlet(Inlet::new(places, [small], times, 1).unwrap()).unwrap();
+    let error = cause(late.run_until(2e9, &mut ()).unwrap_err());
+    assert!(error.contains("time of the next opening"), "{error}");
 }

@@ -75,6 +75,7 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         if !self.another_rule && saved.rule != self.rule.fingerprint() {
             return Err(CheckpointError::AnotherRule);
         }
+        crate::simulation::traffic::check_inlets(&self.boundary, &saved.inlets)?;
         if self.another_boundary {
             return self.build_anew();
         }

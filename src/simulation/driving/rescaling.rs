@@ -1,9 +1,15 @@
 //! Rescaling of all velocities to a temperature.
 
+use glam::DVec2;
+
 use super::{Driving, drift_of, energy_of};
 use crate::observable::SampleTimes;
 use crate::quantity::{accept, positive};
 use crate::{Disk, ParameterError};
+
+/// Least velocity about the mean, relative to all velocities. Below it, differences of velocities are mostly
+/// rounding, which a rescaling would turn into the motion of the gas.
+const LEAST: f64 = 1e-10;
 
 /// Rescaling: at each beat of a clock, all velocities about their mean, and all spins, are multiplied by one
 /// factor, so that the translational temperature is $`T = \tfrac12\langle m v'^2\rangle`$.
@@ -57,10 +63,18 @@ impl Driving for Rescaling {
             return Ok(());
         }
         let (before, drift) = (energy_of(disks), drift_of(disks));
-        let squares: f64 =
-            disks.iter().map(|disk| disk.mass() * (disk.velocity() - drift).length_squared()).sum();
+        let about = |mean: DVec2| -> f64 {
+            disks.iter().map(|disk| disk.mass() * (disk.velocity() - mean).length_squared()).sum()
+        };
+        let (squares, whole) = (about(drift), about(DVec2::ZERO));
         let present = 0.5 * squares / disks.len() as f64;
-        accept(present > 0.0, "temperature before a rescaling", "positive", present)?;
+        let is_known = present > 0.0 && squares > LEAST * LEAST * whole;
+        accept(
+            is_known,
+            "temperature before a rescaling",
+            "positive, and above the rounding of velocities",
+            present,
+        )?;
         let factor = (self.temperature / present).sqrt();
         for disk in &mut *disks {
             let velocity = drift + factor * (disk.velocity() - drift);

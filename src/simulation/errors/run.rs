@@ -7,6 +7,7 @@ use thiserror::Error;
 use super::BuildError;
 use super::answers::{BoundaryFault, FailedCollision, Named};
 use super::remedy::Remedy;
+use crate::ParameterError;
 use crate::error::{Readable, Rounded};
 use crate::observable::{ObserverError, Partner};
 
@@ -151,6 +152,14 @@ pub enum RunError {
         time: f64,
         /// The cause.
         source: Box<BuildError>,
+    },
+    /// An inlet cannot go on: its next opening is too late to be told apart, or there are no ids left.
+    #[error("an inlet failed at time {}", Rounded(*.time))]
+    Inlet {
+        /// The present.
+        time: f64,
+        /// The cause.
+        source: ParameterError,
     },
     /// An observer failed.
     #[error("an observer failed at time {}", Rounded(*.time))]
