@@ -3,10 +3,12 @@
 use std::process::ExitCode;
 
 use benches::Outcome;
-use granular_edmd::boundary::Boundary;
-use granular_edmd::collision::CollisionRule;
-use granular_edmd::simulation::Limits;
-use granular_edmd::{Simulation, speed};
+use granular_edmd::boundary::{Boundary, Container, Wall};
+use granular_edmd::collision::{CollisionRule, Elastic};
+use granular_edmd::glam::DVec2;
+use granular_edmd::observable::SampleTimes;
+use granular_edmd::simulation::{Inlet, Limits};
+use granular_edmd::{Disk, Simulation, initial, speed};
 
 /// Number of collisions, with disks or walls, in the part that is counted.
 const COLLISIONS: u64 = 100_000;
@@ -24,16 +26,37 @@ fn run() -> Outcome<()> {
         Some("gas_0.65") => count(speed::gas(0.65)?),
         Some("mixture") => count(speed::mixture()?),
         Some("vessel") => count(speed::vessel()?),
-        _ => Err("which state: dilute, dense, gas_0.1, gas_0.3, gas_0.65, mixture or vessel?".into()),
+        Some("shower_1e3") => count(shower(1e3)?),
+        Some("shower_1e5") => count(shower(1e5)?),
+        _ => Err("which state: dilute, dense, gas_0.1, gas_0.3, gas_0.65, mixture, vessel, shower_1e3 or \
+                  shower_1e5?"
+            .into()),
     }
 }
 
-/// Prints the number of collisions of two disks in the part that is counted.
+/// Prints the number of collisions of two disks, or of removals, in the part that is counted.
 fn count<R: CollisionRule, B: Boundary>(mut run: Simulation<R, B>) -> Outcome<()> {
-    let before = run.counters().disk_collisions;
+    let before = *run.counters();
     counted_part(&mut run)?;
-    println!("{}", run.counters().disk_collisions - before);
+    let counters = run.counters().since(&before);
+    println!("{}", counters.disk_collisions + counters.removals);
     Ok(())
+}
+
+/// Creates a shower of about this many drops onto a floor that takes them out: as many come as go. A drop
+/// meets no other, and its way is the same however many there are.
+fn shower(drops: f64) -> Outcome<Simulation<Elastic, Container>> {
+    const TOP: f64 = 2.0;
+    let width = (drops / TOP).round();
+    let container = Container::open(width)?.with_absorbing(Wall::Floor)?;
+    let at_rest = initial::random(&container, drops as usize, 0.1, TOP, 1)?;
+    let falling: Vec<Disk> =
+        at_rest.iter().map(|drop| drop.with_velocity(DVec2::NEG_Y)).collect::<Result<_, _>>()?;
+    let (drop, places) = (falling[0].with_id(0)?, [DVec2::new(1.0, TOP), DVec2::new(width - 1.0, TOP)]);
+    let mut run = Simulation::builder(Elastic, container).disks(falling).build()?;
+    run.add_inlet(Inlet::new(places, [drop], SampleTimes::every(1.0 / width)?, 1)?)?;
+    run.run_until(0.2, &mut ())?;
+    Ok(run)
 }
 
 /// Runs the part that is counted. Callgrind finds it by this name.
