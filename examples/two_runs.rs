@@ -6,6 +6,10 @@
 //!
 //! Some seconds. You learn how a run is played back, how chaos shows, and why a result is a mean with an
 //! error and not a trajectory.
+//!
+//! It prints when a disk is first a billionth, a thousandth and a radius away from itself (t = 16, 49, 68),
+//! when a disk first meets another partner (68), the mean |Ψ1| of both runs, and when their Ψ1 first differ by
+//! more than Ψ1 fluctuates in one run (99).
 
 use granular_edmd::prelude::*;
 use granular_edmd::replay::Replay;
@@ -43,12 +47,26 @@ fn main() -> anyhow::Result<()> {
         }
     }
 
-    // The roll is the same in both as far as its fluctuations tell.
-    for (name, replay) in [("first", first), ("second", second)] {
+    // The roll is the same in both as far as its fluctuations tell, and they differ by as much as these.
+    let mut fluctuation: f64 = 0.0;
+    for (name, replay) in [("first", &first), ("second", &second)] {
         let mut series = Series::new(OrderParameters, SampleTimes::every(BEAT)?);
         let mut run = replay.present().clone();
         run.run_until(1200.0 * BEAT, &mut series)?;
         println!("Ψ1 of the {name} run: {}", series.mean(|order| order.one_roll.abs())?);
+        let [mean, square] = [1, 2].map(|power| series.mean(|order| order.one_roll.powi(power)));
+        fluctuation = fluctuation.max((square?.mean() - mean?.mean().powi(2)).sqrt());
+    }
+    for time in (1..=200).map(|beat| f64::from(beat) * BEAT) {
+        let (Some(one), Some(other)) = (first.at(time)?, second.at(time)?) else { break };
+        let [one, other] = [one, other].map(|run| run.measure(&OrderParameters).one_roll);
+        if (one - other).abs() > fluctuation {
+            println!(
+                "t = {time:6.2}: the rolls differ by {:.3}, more than one fluctuates",
+                (one - other).abs()
+            );
+            break;
+        }
     }
     Ok(())
 }
