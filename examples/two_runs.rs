@@ -8,8 +8,8 @@
 //! error and not a trajectory.
 //!
 //! It prints when a disk is first a billionth, a thousandth and a radius away from itself (t = 16, 49, 68),
-//! when a disk first meets another partner (68), the mean |Ψ1| of both runs, and when their Ψ1 first differ by
-//! more than Ψ1 fluctuates in one run (99).
+//! when a disk first meets another partner (68), the mean |Ψ1| of both runs, and when their Ψ1 first differ
+//! by more than Ψ1 fluctuates in one run (99).
 
 use granular_edmd::prelude::*;
 use granular_edmd::replay::Replay;

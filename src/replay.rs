@@ -209,8 +209,8 @@ where
     ///
     /// A bisection finds the last state that is the same in both, and the collisions are compared from there
     /// on, disk by disk. So two runs that differ in a rounding have the same partners for a while, although
-    /// their times differ. A run that ended with an error is compared up to there. The result is `None` if the
-    /// two keep no states of the same times.
+    /// their times differ. A run that ended with an error is compared up to there. The result is `None` if
+    /// the two keep no states of the same times.
     ///
     /// # Errors
     /// If the parts of a run do not answer as they did the first time.

@@ -206,7 +206,8 @@ fn a_study_grows() {
     assert!(said(&output).contains("protocol.settle is 10 there and 20 here"), "{}", said(&output));
 }
 
-/// Each row of the table of exit codes, but 130 and those of `bench` and `diff`, which have tests of their own.
+/// Each row of the table of exit codes, but 130 and those of `bench` and `diff`, which have tests of their
+/// own.
 #[test]
 fn exit_codes_say_how_a_command_ended() {
     let scratch = Scratch::new("codes");

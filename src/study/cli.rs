@@ -29,7 +29,9 @@
 //! | 4 | from `status`: all ramps are done, but there are no tables of them |
 //! | 5 | from `bench --against`: a standard state is slower, beyond the noise |
 //! | 6 | from `diff`: the two runs differ |
-//! | 130 | stopped by Ctrl-C or SIGTERM with all work saved; the same command goes on. `replay` and `diff` leave no file |
+//! | 130 | stopped by Ctrl-C or SIGTERM with all work saved; the same command goes on |
+//!
+//! `replay` and `diff` have nothing to save: stopped, they leave no file.
 
 mod bench;
 mod collision_rows;
@@ -124,11 +126,12 @@ enum Command {
         #[arg(long, default_value_t = 100)]
         cycles: u32,
     },
-    /// Runs a value again, to the bit, and writes its last collisions, those in a window of time, or the state
-    /// before one of them.
+    /// Runs a value again, to the bit, and writes its last collisions, those in a window of time, or the
+    /// state before one of them.
     ///
-    /// Columns: number of the collision in the ramp, time, id of the disk, id of the other disk or name of the
-    /// wall, place of the disk, speeds of closing and of slip before, impulse on the disk, change of energy.
+    /// Columns: number of the collision in the ramp, time, id of the disk, id of the other disk or name of
+    /// the wall, place of the disk, speeds of closing and of slip before, impulse on the disk, change of
+    /// energy.
     Replay(replay::Wishes),
     /// Finds the first differences of two runs: a disk that meets another partner, and a disk that is farther
     /// from its place in the other run than a tolerance.
