@@ -295,7 +295,7 @@ fn refused(path: &Path) -> impl Fn(PlanError) -> StudyError {
 /// Opens or creates the study of a plan in a folder.
 fn study<E: Experiment>(path: &Path, folder: &Path) -> Result<Study<E>, Failure> {
     let plan = Plan::from_toml_unproven(&read(path)?).map_err(refused(path))?;
-    Ok(Study::open_or_create_unproven(folder, plan).map_err(|error| match error {
+    Ok(Study::open_or_put(folder, plan, Plan::check_experiments).map_err(|error| match error {
         StudyError::Plan(source) => refused(path)(source),
         error => error,
     })?)
@@ -315,9 +315,10 @@ fn check<E: Experiment>(path: &Path) -> Result<End, Failure> {
 fn run<E: Experiment>(path: &Path, out: &Path, ramp: Option<usize>, manner: &Manner) -> Result<End, Failure> {
     let study = study::<E>(path, out)?;
     if manner.retry {
-        let ramps = ramp.map_or(0..study.plan().ramp_count(), |ramp| ramp..ramp + 1);
-        for ramp in ramps {
-            study.forget_failed(ramp)?;
+        for [failed, _] in study.failed()? {
+            if ramp.is_none_or(|ramp| ramp == failed) {
+                study.forget_failed(failed)?;
+            }
         }
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(manner.threads.map_or(0, usize::from)).build()?;
@@ -361,10 +362,7 @@ fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
         ("begun", of(RampStatus::Begun)),
         ("waiting", of(RampStatus::Waiting)),
     ];
-    let done = found[0].1.iter();
-    let failed = done.map(|&ramp| Ok(study.failed(ramp)?.into_iter().map(move |value| [ramp, value])));
-    let failed: Vec<[usize; 2]> =
-        failed.collect::<Result<Vec<_>, StudyError>>()?.into_iter().flatten().collect();
+    let failed = study.failed()?;
     let (spent, left) = study.seconds(&all);
     if json {
         let object = Object::default().with("ramps", ramps);

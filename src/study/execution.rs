@@ -9,10 +9,12 @@ mod shift;
 mod sliced;
 mod value;
 
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use super::errors::StudyError;
 use super::experiment::Experiment;
+use super::folder::Mark;
 use super::opening::Study;
 use control::{Control, Summary};
 use queue::Queue;
@@ -38,7 +40,7 @@ impl<E: Experiment> Study<E> {
     /// If plan or code of the study have changed, files cannot be read or written, or a value cannot be
     /// started.
     pub fn run(&self, control: &Control<'_>) -> Result<Summary, StudyError> {
-        self.run_ramps((0..self.plan().ramp_count()).collect(), control)
+        self.run_ramps(0..self.plan().ramp_count(), control)
     }
 
     /// Runs the values of one ramp that have no record yet, and writes the tables if all other ramps are
@@ -48,32 +50,23 @@ impl<E: Experiment> Study<E> {
     /// The same as for [`Self::run`], and if there is no such ramp.
     pub fn run_ramp(&self, ramp: usize, control: &Control<'_>) -> Result<Summary, StudyError> {
         self.check_ramp(ramp)?;
-        self.run_ramps(vec![ramp], control)
+        self.run_ramps(ramp..ramp + 1, control)
     }
 
-    fn run_ramps(&self, ramps: Vec<usize>, control: &Control<'_>) -> Result<Summary, StudyError> {
+    fn run_ramps(&self, ramps: Range<usize>, control: &Control<'_>) -> Result<Summary, StudyError> {
         self.check_unchanged()?;
-        let last = ramps.last().copied().unwrap_or(0);
-        let is_whole = ramps.len() == self.plan().ramp_count();
+        let count = self.plan().ramp_count();
+        let is_whole = ramps.len() == count;
         let shift = Shift::new(self, control, ramps.len())?;
         let elsewhere = all(&shift, ramps)?;
         let summary = shift.summary(elsewhere);
-        let is_done = summary.is_complete() && (is_whole || self.is_done(last)?);
-        if is_done && control.writes_tables {
+        if control.writes_tables
+            && summary.is_complete()
+            && !self.folder.marks(0..count)?.contains(&Mark::Open)
+        {
             self.write_tables_once(is_whole)?;
         }
         Ok(summary)
-    }
-
-    /// Returns whether all ramps are done. It looks at a few ramps first: a list of all takes a call of the
-    /// system for each hundred ramps, and each of many tasks asks.
-    fn is_done(&self, ramp: usize) -> Result<bool, StudyError> {
-        const PROBES: usize = 64;
-        let ramps = self.plan().ramp_count();
-        let stride = (ramps / PROBES).max(1);
-        let mut probed = (0..PROBES.min(ramps)).map(|probe| (ramp + 1 + probe * stride) % ramps);
-        Ok(probed.all(|ramp| self.folder.is_done(ramp))
-            && self.folder.all_done(ramps)?.into_iter().all(|done| done))
     }
 
     /// Writes the tables, unless another process has done so meanwhile. A run of the whole study also writes
@@ -94,12 +87,14 @@ impl<E: Experiment> Study<E> {
 
 /// Runs ramps until each of them is done, here or elsewhere. If it need not wait, it returns the ramps of
 /// other processes.
-fn all<E: Experiment>(shift: &Shift<'_, E>, ramps: Vec<usize>) -> Result<Vec<usize>, StudyError> {
-    let queue = Queue::new(shift.without_done(ramps)?);
+fn all<E: Experiment>(shift: &Shift<'_, E>, ramps: Range<usize>) -> Result<Vec<usize>, StudyError> {
+    let queue = Queue::new(ramps);
+    shift.strike_done(&queue)?;
     let mut patience = PATIENCE[0];
     loop {
         work_in_parallel(shift, &queue)?;
-        let elsewhere = shift.without_done(queue.elsewhere())?;
+        shift.strike_done(&queue)?;
+        let elsewhere = queue.elsewhere();
         if elsewhere.is_empty() || !shift.control.waits || shift.must_stop() {
             return Ok(elsewhere);
         }
@@ -133,11 +128,10 @@ fn work_in_parallel<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Resul
 
 /// Does ramps of the queue until it is empty.
 ///
-/// Where it meets another process, it goes elsewhere. A list of what others have done costs more, the more
-/// ramps there are, so it takes no more than a thirtieth of the time; between lists, done ramps are passed
-/// one by one.
+/// Where it meets another process, it looks at what others have done, which takes no more than a thirtieth of
+/// the time.
 fn work<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Result<(), StudyError> {
-    let mut next_list = Instant::now();
+    let mut next_look = Instant::now();
     while !shift.must_stop()
         && let Some(ramp) = queue.next()
     {
@@ -145,14 +139,11 @@ fn work<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Result<(), StudyE
             continue;
         }
         queue.leave(ramp);
-        // Other processes are at work around here.
         let begun = Instant::now();
-        if begun < next_list {
-            queue.put_back(queue.rest());
-            continue;
+        if begun > next_look {
+            shift.strike_done(queue)?;
+            next_look = Instant::now() + 30 * begun.elapsed();
         }
-        queue.put_back(shift.without_done(queue.rest())?);
-        next_list = Instant::now() + 30 * begun.elapsed();
     }
     Ok(())
 }

@@ -4,16 +4,18 @@
 //! holds the lock next knows that the writer of a temporary file there is dead.
 
 mod lock;
+mod marks;
 pub(super) mod sealed;
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::errors::StudyError;
+use super::errors::{PlanError, StudyError};
 use super::provenance::Provenance;
 use crate::file::{Draft, is_temporary};
 pub(super) use lock::Lock;
+pub(super) use marks::Mark;
 
 /// Text of the README in the folder of a study.
 const ABOUT: &str = "\
@@ -30,7 +32,7 @@ ramps/R/V.record      value V of ramp R (0000/0000.record is the first): samples
 ramps/R/V.partial     a value half done
 ramps/R/log.jsonl     when values were finished, and the seconds that they took; not a result. It is locked while
                       a process does ramp R
-done/R                there once all values of ramp R have a record; names the values that stalled or failed
+done                  a letter for each ramp: d once all its values have a record, f if some of these stalled or failed
 complete              there once all ramps are done and in the tables
 lock                  locked while a process makes the plan or the tables
 
@@ -42,7 +44,6 @@ const PLAN: &str = "plan.toml";
 const PROVENANCE: &str = "provenance.json";
 const README: &str = "README.txt";
 const RAMPS: &str = "ramps";
-const DONE: &str = "done";
 const LOCK: &str = "lock";
 
 /// The folder of a study.
@@ -81,10 +82,6 @@ impl Folder {
         self.ramp(ramp).join("log.jsonl")
     }
 
-    fn done(&self, ramp: usize) -> PathBuf {
-        self.root.join(DONE).join(format!("{ramp:04}"))
-    }
-
     /// Returns whether the folder holds a study. A plan alone is not a study: somebody may keep plans there,
     /// among other files. A study has a lock beside its plan from the first moment, soon a README, and then
     /// ramps. A copy of a study may lack some of these.
@@ -94,11 +91,20 @@ impl Folder {
         self.plan().exists() && (has_lock || has_others())
     }
 
-    /// Puts a plan into the folder, which it creates if needed; returns false if there is a plan already.
-    pub(super) fn create(&self, plan: &str, provenance: &Provenance) -> Result<bool, StudyError> {
+    /// Puts a plan into the folder, which it creates if needed; returns false if there is a plan already. The
+    /// plan is checked under the lock: of many processes that start together, one checks, and the others wait.
+    pub(super) fn create(
+        &self,
+        plan: &str,
+        provenance: &Provenance,
+        check: impl FnOnce() -> Result<(), PlanError>,
+    ) -> Result<bool, StudyError> {
         self.check_free()?;
         fs::create_dir_all(&self.root).map_err(StudyError::io("create", &self.root))?;
         let _lock = Lock::take(&self.root.join(LOCK))?;
+        if !self.plan().exists() {
+            check()?;
+        }
         sealed::remove_temporaries(&self.root)?;
         let is_new = sealed::publish(&self.plan(), plan.as_bytes())?;
         // If a process was killed here, there is a plan without a provenance, and no ramps. If there are
@@ -196,59 +202,19 @@ impl Folder {
         self.log_of(ramp).exists()
     }
 
-    pub(super) fn is_done(&self, ramp: usize) -> bool {
-        self.done(ramp).exists()
-    }
-
-    /// Returns for each of this many ramps whether it is done.
-    pub(super) fn all_done(&self, ramps: usize) -> Result<Vec<bool>, StudyError> {
-        self.listed(DONE, ramps)
-    }
-
-    /// Returns for each of this many ramps whether a process has ever looked into it.
-    pub(super) fn all_begun(&self, ramps: usize) -> Result<Vec<bool>, StudyError> {
-        self.listed(RAMPS, ramps)
-    }
-
-    /// Returns for each of this many ramps whether a folder has an entry of its name. One call of the system
+    /// Returns for each of this many ramps whether a process has ever looked into it. One call of the system
     /// tells of hundreds of them.
-    fn listed(&self, folder: &str, ramps: usize) -> Result<Vec<bool>, StudyError> {
+    pub(super) fn all_begun(&self, ramps: usize) -> Result<Vec<bool>, StudyError> {
         let mut all = vec![false; ramps];
-        let folder = self.root.join(folder);
+        let folder = self.root.join(RAMPS);
         for entry in sealed::if_there("read", &folder, fs::read_dir(&folder))?.into_iter().flatten() {
             let name = entry.map_err(StudyError::io("read", &folder))?.file_name();
             let ramp = name.to_str().and_then(|name| name.parse::<usize>().ok());
-            if let Some(is_listed) = ramp.and_then(|ramp| all.get_mut(ramp)) {
-                *is_listed = true;
+            if let Some(is_begun) = ramp.and_then(|ramp| all.get_mut(ramp)) {
+                *is_begun = true;
             }
         }
         Ok(all)
-    }
-
-    /// Marks a ramp as done, with the values that stalled or failed.
-    ///
-    /// The mark need not survive a loss of power, so it is not synced: a ramp that lost it is looked at
-    /// again.
-    pub(super) fn mark_done(&self, ramp: usize, failed: &[usize]) -> Result<(), StudyError> {
-        let path = self.done(ramp);
-        let text = failed.iter().map(|value| format!("{value:04}\n")).collect::<Vec<_>>().concat();
-        if sealed::if_there("write", &path, fs::write(&path, &text))?.is_none() {
-            create(&self.root.join(DONE))?;
-            fs::write(&path, text).map_err(StudyError::io("write", &path))?;
-        }
-        Ok(())
-    }
-
-    /// Returns the values of a ramp that stalled or failed, as its mark names them; none if it is not done.
-    pub(super) fn failed(&self, ramp: usize) -> Result<Vec<usize>, StudyError> {
-        let path = self.done(ramp);
-        // This is one call of the system; most marks are empty.
-        if path.metadata().is_ok_and(|mark| mark.len() == 0) {
-            return Ok(Vec::new());
-        }
-        let text = sealed::if_there("read", &path, fs::read_to_string(&path))?.unwrap_or_default();
-        let values = text.lines().map(str::parse).collect::<Result<_, _>>();
-        values.map_err(|_| sealed::damaged(&path, "a line is not the index of a value"))
     }
 
     /// Removes the records of a ramp from this value on, the last one first, so that no gap remains if the
@@ -266,11 +232,6 @@ impl Folder {
             rest.split([',', '}']).next()?.parse::<f64>().ok()
         };
         text.lines().filter(|line| line.contains(r#""value":"#)).map(seconds).collect()
-    }
-
-    /// Removes the mark that a ramp is done.
-    pub(super) fn mark_undone(&self, ramp: usize) -> Result<(), StudyError> {
-        sealed::remove(&self.done(ramp))
     }
 
     /// Returns whether all ramps are done and in the tables.

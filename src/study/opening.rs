@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::errors::{Difference, StudyError};
+use super::errors::{Difference, PlanError, StudyError};
 use super::experiment::Experiment;
 use super::experiment::record::Origin;
 use super::folder::{Folder, sealed};
@@ -36,7 +36,7 @@ impl<E: Experiment> Study<E> {
     /// If the folder holds a study or anything else, or cannot be written.
     pub fn create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
         let study = Self::in_folder(Folder::new(folder.as_ref())?, plan.clone())?;
-        if study.folder.holds_study() || !study.put_plan()? {
+        if study.folder.holds_study() || !study.put_plan(|_| Ok(()))? {
             return Err(StudyError::Exists { path: study.folder.root().to_owned() });
         }
         study.checked()
@@ -59,24 +59,24 @@ impl<E: Experiment> Study<E> {
     /// If the folder holds a study with another plan or by other code ([`StudyError::Code`]), or other files
     /// and no study, or cannot be read or written.
     pub fn open_or_create(folder: impl AsRef<Path>, plan: &Plan<E>) -> Result<Self, StudyError> {
-        let study = Self::in_folder(Folder::new(folder.as_ref())?, plan.clone())?;
-        if !study.is_begun() {
-            study.put_plan()?;
+        Self::open_or_put(folder.as_ref(), plan.clone(), |_| Ok(()))
+    }
+
+    /// Opens the study in a folder, or puts a plan there that passes a check.
+    ///
+    /// A plan that is there was checked then: the check takes seconds in large studies, and each of many
+    /// processes would repeat it.
+    pub(super) fn open_or_put(
+        folder: &Path,
+        plan: Plan<E>,
+        check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>,
+    ) -> Result<Self, StudyError> {
+        let study = Self::in_folder(Folder::new(folder)?, plan)?;
+        if !study.folder.holds_study() || !study.folder.provenance_file().exists() {
+            study.put_plan(check)?;
         }
         study.check_plan()?;
         study.checked()
-    }
-
-    /// Opens or creates the study of a plan whose experiments have not been checked yet. They are checked
-    /// now, unless the folder holds the same plan: then they were checked when that plan was put there. The
-    /// check takes seconds in large studies, and each of many processes would repeat it.
-    #[cfg(feature = "cli")]
-    pub(super) fn open_or_create_unproven(folder: &Path, plan: Plan<E>) -> Result<Self, StudyError> {
-        let study = Self::in_folder(Folder::new(folder)?, plan)?;
-        if study.is_begun() && study.folder.read_plan()? == study.text {
-            return study.checked();
-        }
-        Self::open_or_create(folder, &study.plan.proven()?)
     }
 
     /// Lets this program continue a study that other code made, and returns the names of the differences;
@@ -121,14 +121,10 @@ impl<E: Experiment> Study<E> {
         Ok(Self { folder, plan, text, hash, provenance, maker })
     }
 
-    /// Returns whether plan and provenance are in the folder.
-    fn is_begun(&self) -> bool {
-        self.folder.holds_study() && self.folder.provenance_file().exists()
-    }
-
-    /// Puts the plan into the folder; returns false if there is one.
-    fn put_plan(&self) -> Result<bool, StudyError> {
-        self.folder.create(&self.text, &Provenance::here(&self.plan, &self.hash, ""))
+    /// Puts the plan into the folder, if it passes a check; returns false if there is one.
+    fn put_plan(&self, check: impl FnOnce(&Plan<E>) -> Result<(), PlanError>) -> Result<bool, StudyError> {
+        let provenance = Provenance::here(&self.plan, &self.hash, "");
+        self.folder.create(&self.text, &provenance, || check(&self.plan))
     }
 
     /// Returns the study, if this program may go on with it.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::errors::StudyError;
 use super::experiment::Experiment;
 use super::experiment::record::{Contents, Outcome, Record, check, check_state};
-use super::folder::{self, sealed};
+use super::folder::{self, Mark, sealed};
 use super::opening::Study;
 use super::plan::Plan;
 use super::plan::refinement::{Bracket, Seen};
@@ -117,7 +117,8 @@ impl<E: Experiment> Study<E> {
     /// If there is no such ramp.
     pub fn status(&self, ramp: usize) -> Result<RampStatus, StudyError> {
         self.check_ramp(ramp)?;
-        Ok(self.status_of(ramp, self.folder.is_done(ramp), self.folder.is_begun(ramp)))
+        let mark = self.folder.marks(ramp..ramp + 1)?[0];
+        Ok(self.status_of(ramp, mark, self.folder.is_begun(ramp)))
     }
 
     /// Returns the progress of all ramps.
@@ -128,26 +129,34 @@ impl<E: Experiment> Study<E> {
     /// If the folder cannot be read.
     pub fn all_status(&self) -> Result<Vec<RampStatus>, StudyError> {
         let ramps = self.plan.ramp_count();
-        let (done, begun) = (self.folder.all_done(ramps)?, self.folder.all_begun(ramps)?);
-        Ok((0..ramps).map(|ramp| self.status_of(ramp, done[ramp], begun[ramp])).collect())
+        let (marks, begun) = (self.folder.marks(0..ramps)?, self.folder.all_begun(ramps)?);
+        Ok((0..ramps).map(|ramp| self.status_of(ramp, marks[ramp], begun[ramp])).collect())
     }
 
-    fn status_of(&self, ramp: usize, is_done: bool, is_begun: bool) -> RampStatus {
-        match (is_done, is_begun) {
-            (true, _) => RampStatus::Done,
-            (false, false) => RampStatus::Waiting,
-            (false, true) if self.folder.is_taken(ramp) => RampStatus::Running,
-            (false, true) => RampStatus::Begun,
+    fn status_of(&self, ramp: usize, mark: Mark, is_begun: bool) -> RampStatus {
+        match (mark, is_begun) {
+            (Mark::Done | Mark::Failed, _) => RampStatus::Done,
+            (Mark::Open, false) => RampStatus::Waiting,
+            (Mark::Open, true) if self.folder.is_taken(ramp) => RampStatus::Running,
+            (Mark::Open, true) => RampStatus::Begun,
         }
     }
 
-    /// Returns the indices of the values of a ramp that stalled or failed; none before the ramp is done.
+    /// Returns ramp and value of those values that stalled or failed, in the ramps that are done.
     ///
     /// # Errors
-    /// If there is no such ramp, or its mark cannot be read.
-    pub fn failed(&self, ramp: usize) -> Result<Vec<usize>, StudyError> {
-        self.check_ramp(ramp)?;
-        self.folder.failed(ramp)
+    /// If a record of such a ramp is damaged, or files cannot be read.
+    pub fn failed(&self) -> Result<Vec<[usize; 2]>, StudyError> {
+        let marks = self.folder.marks(0..self.plan.ramp_count())?.into_iter().enumerate();
+        let ramps = marks.filter(|(_, mark)| *mark == Mark::Failed).map(|(ramp, _)| ramp);
+        ramps.flat_map(|ramp| self.failed_in(ramp)).collect()
+    }
+
+    fn failed_in(&self, ramp: usize) -> impl Iterator<Item = Result<[usize; 2], StudyError>> {
+        let all = self.ramp_records(ramp);
+        let failed =
+            all.filter(|record| !record.as_ref().is_ok_and(|record| record.outcome().reason().is_none()));
+        failed.map(|record| record.map(|record| [record.ramp_index(), record.value_index()]))
     }
 
     /// Removes the failed values of a ramp that is done, and all values after the first of them, since they
@@ -159,15 +168,15 @@ impl<E: Experiment> Study<E> {
     /// # Errors
     /// If there is no such ramp, plan or code of the study have changed, or files cannot be read or removed.
     pub fn forget_failed(&self, ramp: usize) -> Result<bool, StudyError> {
-        if self.failed(ramp)?.is_empty() {
-            return Ok(false);
-        }
+        self.check_ramp(ramp)?;
         self.check_unchanged()?;
         let Some((_lock, _)) = self.folder.take(ramp)? else { return Ok(false) };
-        // Another process may have begun the ramp again since.
-        let Some(first) = self.failed(ramp)?.first().copied() else { return Ok(false) };
+        if self.folder.marks(ramp..ramp + 1)? != [Mark::Failed] {
+            return Ok(false);
+        }
+        let Some([_, first]) = self.failed_in(ramp).next().transpose()? else { return Ok(false) };
         self.folder.mark_incomplete()?;
-        self.folder.mark_undone(ramp)?;
+        self.folder.mark(ramp, Mark::Open)?;
         self.folder.remove_records(ramp, first).map(|()| true)
     }
 
@@ -225,10 +234,10 @@ impl<E: Experiment> Study<E> {
 
     /// Writes tables, and returns the number of records in them.
     pub(super) fn tables(&self, folder: &Path) -> Result<usize, StudyError> {
-        let done = self.folder.all_done(self.plan.ramp_count())?;
+        let marks = self.folder.marks(0..self.plan.ramp_count())?;
         let mut tables = Tables::new(&self.plan, folder)?;
         let mut finished = 0;
-        for (ramp, is_done) in done.into_iter().enumerate() {
+        for (ramp, mark) in marks.into_iter().enumerate() {
             let mut seen = Vec::new();
             for record in self.ramp_records(ramp) {
                 let record = record?;
@@ -237,7 +246,7 @@ impl<E: Experiment> Study<E> {
                 finished += 1;
             }
             // A table that lacks a row must not look complete.
-            if is_done && seen.len() < self.plan.value_count() {
+            if mark != Mark::Open && seen.len() < self.plan.value_count() {
                 let path = self.folder.record(ramp, seen.len());
                 return Err(sealed::damaged(&path, "a record of a ramp that is done is missing"));
             }

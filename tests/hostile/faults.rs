@@ -188,7 +188,7 @@ fn a_disk_that_turns_read_only_keeps_what_it_has() {
     let folder = disk.folder().join("study");
     assert_eq!(run(&folder, &plan()), Ok(true));
     fs::remove_file(folder.join("ramps/0001/0000.record")).unwrap();
-    fs::remove_file(folder.join("done/0001")).unwrap();
+    fs::remove_file(folder.join("done")).unwrap();
     let path = disk.folder().join("state");
     let [old, new] = two_states();
     old.write(&path).unwrap();
@@ -210,7 +210,7 @@ fn a_folder_of_somebody_else_is_an_error() {
     let folder = scratch.0.join("study");
     assert_eq!(run(&folder, &plan()), Ok(true));
     // There is something to do again.
-    fs::remove_file(folder.join("done/0001")).unwrap();
+    fs::remove_file(folder.join("done")).unwrap();
     let before = contents(&folder);
     let executable = std::env::current_exe().unwrap();
     let output = Command::new("setpriv")

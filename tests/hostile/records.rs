@@ -131,7 +131,7 @@ fn a_value_half_done_that_cannot_be_is_started_again() {
         assert!(fs::read(&finished).unwrap() == expected.file);
         fs::remove_file(&finished).unwrap();
     }
-    fs::remove_file(partial.study.folder().join("done/0000")).unwrap();
+    fs::remove_file(partial.study.folder().join("done")).unwrap();
     // The unfinished value goes on in its original form.
     fs::write(&partial.path, &partial.file).unwrap();
     assert!(run_steps(&partial.study, u64::MAX).unwrap().redone.is_empty());

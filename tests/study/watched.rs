@@ -124,7 +124,7 @@ fn names_of_columns_may_be_made_when_the_program_runs() -> Result<(), AnyError> 
     );
     // A file that the experiment refuses, for whatever reason, is logged in a line of JSON, and done again.
     REFUSED.store(1, Ordering::Relaxed);
-    fs::remove_file(scratch.0.join("done/0000"))?;
+    fs::remove_file(scratch.0.join("done"))?;
     assert_eq!(study.run(&Control::default())?.redone.len(), 1);
     let log = fs::read_to_string(scratch.0.join("ramps/0000/log.jsonl"))?;
     let lines: Vec<serde_json::Value> = log.lines().map(serde_json::from_str).collect::<Result<_, _>>()?;

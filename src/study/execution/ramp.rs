@@ -5,7 +5,7 @@ use super::shift::Shift;
 use crate::study::errors::StudyError;
 use crate::study::experiment::Experiment;
 use crate::study::experiment::record::Record;
-use crate::study::folder::Lock;
+use crate::study::folder::{Lock, Mark};
 use crate::study::plan::refinement::{Seen, Step};
 
 /// The way through a ramp.
@@ -18,28 +18,26 @@ pub(super) struct Walk<'a, 's, E: Experiment> {
     pub(super) earlier: SameRamps<'a, E>,
     pub(super) seen: Vec<Seen>,
     last: Option<Record<E>>,
-    /// Indices of the values that the engine could not finish.
-    failed: Vec<usize>,
+    /// [`Mark::Failed`] once the engine could not finish a value.
+    mark: Mark,
 }
 
-/// Runs a ramp, unless it is done, until it is done or must stop. Returns false if another process runs it.
+/// Runs a ramp until it is done or must stop. Returns false if another process runs it or has done it.
 pub(super) fn attempt<E: Experiment>(shift: &Shift<'_, E>, ramp: usize) -> Result<bool, StudyError> {
     let (folder, plan) = (&shift.study.folder, shift.study.plan());
-    // This costs less than the lock, which somebody else may need.
-    if !shift.control.verifies && folder.is_done(ramp) {
-        shift.count_done(1);
-        return Ok(true);
-    }
     let Some((lock, is_fresh)) = folder.take(ramp)? else { return Ok(false) };
+    if !is_fresh && shift.marks(ramp..ramp + 1)? != [Mark::Open] {
+        return Ok(false);
+    }
     let earlier = shift.earlier.ramps(plan.ramp_seed(ramp));
-    let (seen, failed) = (Vec::new(), Vec::new());
-    let mut walk = Walk { shift, ramp, is_fresh, lock, earlier, seen, last: None, failed };
+    let (seen, mark) = (Vec::new(), Mark::Done);
+    let mut walk = Walk { shift, ramp, is_fresh, lock, earlier, seen, last: None, mark };
     while let Some(step) = plan.next(&walk.seen) {
         if !walk.take(step)? {
             return Ok(true);
         }
     }
-    folder.mark_done(ramp, &walk.failed)?;
+    folder.mark(ramp, walk.mark)?;
     Ok(true)
 }
 
@@ -64,7 +62,9 @@ impl<E: Experiment> Walk<'_, '_, E> {
         };
         let Some(record) = found else { return Ok(false) };
         let is_failed = record.outcome().reason().is_some();
-        self.failed.extend(is_failed.then_some(value));
+        if is_failed {
+            self.mark = Mark::Failed;
+        }
         self.shift.count(|summary| {
             summary.finished += 1;
             summary.failed += usize::from(is_failed);

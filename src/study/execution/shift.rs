@@ -1,21 +1,20 @@
 //! Data that all threads of a running study share.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::control::{Control, Progress, Summary};
 use super::earlier::Earlier;
+use super::queue::Queue;
 use crate::study::errors::StudyError;
 use crate::study::experiment::Experiment;
+use crate::study::folder::Mark;
 use crate::study::opening::Study;
 
 /// Longest time until a thread checks whether it must stop.
 pub(super) const LOOK: Duration = Duration::from_millis(200);
-
-/// Number of ramps up to which the state of each is asked for alone, and the share of all ramps. A list of
-/// all costs more: a call of the system tells of some hundred.
-const FEW: (usize, usize) = (16, 128);
 
 /// A run of a study.
 pub(super) struct Shift<'a, E: Experiment> {
@@ -52,28 +51,21 @@ impl<'a, E: Experiment> Shift<'a, E> {
         })
     }
 
-    /// Returns those of these ramps that are not done, and counts the others as finished.
-    pub(super) fn without_done(&self, ramps: Vec<usize>) -> Result<Vec<usize>, StudyError> {
-        if self.control.verifies || ramps.is_empty() {
-            return Ok(ramps);
+    /// Returns the marks of these ramps; those of ramps that are to be looked at whatever they are.
+    pub(super) fn marks(&self, ramps: Range<usize>) -> Result<Vec<Mark>, StudyError> {
+        if self.control.verifies {
+            return Ok(vec![Mark::Open; ramps.len()]);
         }
-        let (folder, before, all) = (&self.study.folder, ramps.len(), self.study.plan().ramp_count());
-        let left: Vec<usize> = if before <= FEW.0.max(all / FEW.1) {
-            ramps.into_iter().filter(|&ramp| !folder.is_done(ramp)).collect()
-        } else {
-            let done = folder.all_done(all)?;
-            ramps.into_iter().filter(|&ramp| !done[ramp]).collect()
-        };
-        self.count_done(before - left.len());
-        Ok(left)
+        self.study.folder.marks(ramps)
     }
 
-    /// Counts ramps that were done elsewhere.
-    pub(super) fn count_done(&self, ramps: usize) {
+    /// Strikes out the ramps of a queue that are done, and counts them as finished.
+    pub(super) fn strike_done(&self, queue: &Queue) -> Result<(), StudyError> {
         let plan = self.study.plan();
-        let values = ramps * plan.value_count();
+        let values = queue.strike(&self.marks(queue.ramps())?) * plan.value_count();
         self.count(|summary| summary.finished += values);
         self.steps[0].fetch_add(values as u64 * plan.protocol().steps(), Ordering::Relaxed);
+        Ok(())
     }
 
     /// Counts a value that a refinement adds.

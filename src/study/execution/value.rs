@@ -10,7 +10,7 @@ use crate::simulation::{RunEnd, RunError};
 use crate::study::errors::StudyError;
 use crate::study::experiment::Experiment;
 use crate::study::experiment::record::{Contents, Record};
-use crate::study::folder::sealed;
+use crate::study::folder::{Mark, sealed};
 use crate::study::json::Object;
 use crate::study::plan::refinement::Step;
 
@@ -105,7 +105,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
     fn if_sound<T>(&mut self, read: Result<Option<T>, StudyError>) -> Result<Option<T>, StudyError> {
         match read {
             Err(StudyError::Damaged { path, reason }) => {
-                self.shift.study.folder.mark_undone(self.ramp)?;
+                self.shift.study.folder.mark(self.ramp, Mark::Open)?;
                 let line = Object::default().text("damaged", &name(&path)).text("reason", &reason);
                 self.lock.append(&line.line());
                 self.shift.count(|summary| summary.redone.push(path));

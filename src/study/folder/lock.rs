@@ -42,6 +42,12 @@ impl Lock {
         }
     }
 
+    /// Writes a byte at this place of the file of the lock.
+    pub(super) fn put(&mut self, place: u64, byte: u8) -> io::Result<()> {
+        self.0.seek(SeekFrom::Start(place))?;
+        self.0.write_all(&[byte])
+    }
+
     /// Returns whether nothing was ever logged under this lock.
     pub(in crate::study) fn is_fresh(&self) -> bool {
         self.0.file().metadata().is_ok_and(|file| file.len() == 0)

@@ -23,7 +23,7 @@ impl<E: Experiment> Plan<E> {
     }
 
     /// Returns the plan, if the experiment takes the parameters of those values that are tried.
-    pub(in crate::study) fn proven(self) -> Result<Self, PlanError> {
+    pub(super) fn proven(self) -> Result<Self, PlanError> {
         self.check_experiments()?;
         Ok(self)
     }
@@ -82,7 +82,7 @@ impl<E: Experiment> Plan<E> {
     }
 
     /// Checks that the experiment takes the parameters of each value, or of some if there are many.
-    fn check_experiments(&self) -> Result<(), PlanError> {
+    pub(in crate::study) fn check_experiments(&self) -> Result<(), PlanError> {
         self.experiment.check().map_err(|source| Self::refused(&[], source))?;
         let values = self.value_count();
         let all = tried(self.point_count() * values);
