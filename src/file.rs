@@ -10,4 +10,4 @@ pub(crate) use locked::Locked;
 #[cfg(feature = "serde")]
 pub(crate) use seal::{Broken, Seal};
 #[cfg(feature = "serde")]
-pub(crate) use whole::{Draft, is_temporary, unique_name, write_whole};
+pub(crate) use whole::{Draft, is_temporary, unique_name, write_unsynced, write_whole};

@@ -20,10 +20,12 @@ const NAMES: usize = 8;
 /// threads, processes and hosts may write the same file at a time: each has its own temporary file, and the
 /// last one to rename it wins.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut draft = Draft::of(path)?;
-    // One call instead of a buffer: the bytes are all there.
-    draft.write_all(bytes)?;
-    draft.finish()
+    Draft::with(path, bytes)?.finish()
+}
+
+/// Writes a file as [`write_whole`] does, but in a loss of power it may be lost or torn.
+pub(crate) fn write_unsynced(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    Draft::with(path, bytes)?.place()
 }
 
 /// A file that is written piece by piece, and takes its name when it is whole. A draft that is dropped leaves
@@ -53,12 +55,25 @@ impl Draft {
         self.file.write_all(bytes)
     }
 
-    /// Puts the file in its place.
+    fn with(path: &Path, bytes: &[u8]) -> io::Result<Self> {
+        let mut draft = Self::of(path)?;
+        draft.write_all(bytes)?;
+        Ok(draft)
+    }
+
+    /// Puts the file in its place, where it outlasts a loss of power.
     pub(crate) fn finish(mut self) -> io::Result<()> {
         self.file.flush()?;
         self.file.get_ref().sync_all()?;
+        let path = self.path.clone();
+        self.place()?;
+        sync_folder(&path);
+        Ok(())
+    }
+
+    fn place(mut self) -> io::Result<()> {
+        self.file.flush()?;
         fs::rename(&self.temporary, &self.path)?;
-        sync_folder(&self.path);
         // Nothing is left to remove.
         self.temporary.clear();
         Ok(())

@@ -10,7 +10,7 @@ mod sliced;
 mod value;
 
 use std::ops::Range;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::errors::StudyError;
 use super::experiment::Experiment;
@@ -26,6 +26,9 @@ const PATIENCE: [Duration; 2] = [Duration::from_millis(50), Duration::from_secs(
 
 /// Largest number of ramps of other processes that one look tries to take over.
 const TRIED: usize = 8;
+
+/// Number of marks that are read in the time that a vain try of a ramp takes.
+const MARKS: usize = 10_000;
 
 impl<E: Experiment> Study<E> {
     /// Runs all values that have no record yet, and writes the tables.
@@ -101,7 +104,7 @@ fn all<E: Experiment>(shift: &Shift<'_, E>, ramps: Range<usize>) -> Result<Vec<u
         shift.sleep(patience);
         patience = PATIENCE[1].min(2 * patience);
         // Their process may have been killed.
-        queue.refill(elsewhere, TRIED);
+        queue.retry(TRIED);
     }
 }
 
@@ -126,12 +129,9 @@ fn work_in_parallel<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Resul
     work(shift, queue)
 }
 
-/// Does ramps of the queue until it is empty.
-///
-/// Where it meets another process, it looks at what others have done, which takes no more than a thirtieth of
-/// the time.
+/// Does ramps of the queue until it is empty. Where it meets other processes, it looks at what they have done.
 fn work<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Result<(), StudyError> {
-    let mut next_look = Instant::now();
+    let mut met = 0;
     while !shift.must_stop()
         && let Some(ramp) = queue.next()
     {
@@ -139,10 +139,10 @@ fn work<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Result<(), StudyE
             continue;
         }
         queue.leave(ramp);
-        let begun = Instant::now();
-        if begun > next_look {
+        met += 1;
+        if met * MARKS >= queue.ramps.len() {
             shift.strike_done(queue)?;
-            next_look = Instant::now() + 30 * begun.elapsed();
+            met = 0;
         }
     }
     Ok(())

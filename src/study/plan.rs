@@ -69,7 +69,7 @@ pub struct Plan<E> {
     seed: u64,
     #[serde(skip_serializing_if = "is_one")]
     repeats: usize,
-    #[serde(skip_serializing_if = "is_false")]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
     end_states: bool,
     pub(super) experiment: E,
     protocol: Protocol,
@@ -92,11 +92,6 @@ pub struct Plan<E> {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 const fn is_one(count: &usize) -> bool {
     *count == 1
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
-const fn is_false(flag: &bool) -> bool {
-    !*flag
 }
 
 impl<E: Experiment> Plan<E> {

@@ -1,17 +1,20 @@
 //! The results of a study: records, points, transitions and progress, and tables of the records.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::errors::StudyError;
 use super::experiment::Experiment;
 use super::experiment::record::{Contents, Outcome, Record, check, check_state};
-use super::folder::{self, Mark, sealed};
+use super::folder::{self, Lock, Mark, sealed};
 use super::opening::Study;
 use super::plan::Plan;
 use super::plan::refinement::{Bracket, Seen};
 use super::plan::values::tried;
 use super::point::Point;
 use super::tables::{self, Tables};
+
+/// Number of ramps whose first records are read ahead of a table.
+const AHEAD: usize = 4096;
 
 /// Progress of a ramp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -118,7 +121,7 @@ impl<E: Experiment> Study<E> {
     pub fn status(&self, ramp: usize) -> Result<RampStatus, StudyError> {
         self.check_ramp(ramp)?;
         let mark = self.folder.marks(ramp..ramp + 1)?[0];
-        Ok(self.status_of(ramp, mark, self.folder.is_begun(ramp)))
+        Ok(self.status_of(ramp, mark, self.folder.log_of(ramp).exists()))
     }
 
     /// Returns the progress of all ramps.
@@ -129,7 +132,9 @@ impl<E: Experiment> Study<E> {
     /// If the folder cannot be read.
     pub fn all_status(&self) -> Result<Vec<RampStatus>, StudyError> {
         let ramps = self.plan.ramp_count();
-        let (marks, begun) = (self.folder.marks(0..ramps)?, self.folder.all_begun(ramps)?);
+        // In this order, a ramp that is done meanwhile is done.
+        let begun = self.folder.all_begun(ramps)?;
+        let marks = self.folder.marks(0..ramps)?;
         Ok((0..ramps).map(|ramp| self.status_of(ramp, marks[ramp], begun[ramp])).collect())
     }
 
@@ -137,7 +142,7 @@ impl<E: Experiment> Study<E> {
         match (mark, is_begun) {
             (Mark::Done | Mark::Failed, _) => RampStatus::Done,
             (Mark::Open, false) => RampStatus::Waiting,
-            (Mark::Open, true) if self.folder.is_taken(ramp) => RampStatus::Running,
+            (Mark::Open, true) if Lock::is_taken(&self.folder.log_of(ramp)) => RampStatus::Running,
             (Mark::Open, true) => RampStatus::Begun,
         }
     }
@@ -198,8 +203,7 @@ impl<E: Experiment> Study<E> {
 
     /// Returns whether the folder has tables of all values.
     pub fn has_tables(&self) -> bool {
-        let names = tables::names::<E>(&self.plan);
-        self.folder.is_complete() && names.iter().all(|name| folder::table(self.folder(), name).exists())
+        self.folder.is_complete() && tables::files(&self.plan, self.folder()).all(|file| file.exists())
     }
 
     /// Writes the tables of all finished records into the folder of the study, and returns the number of
@@ -223,10 +227,7 @@ impl<E: Experiment> Study<E> {
     pub fn write_tables_to(&self, folder: impl AsRef<Path>) -> Result<usize, StudyError> {
         let folder = folder.as_ref();
         folder::create(folder)?;
-        let table = |name: &String| folder::table(folder, name);
-        if let Some(path) =
-            tables::names::<E>(&self.plan).iter().map(table).find(|path: &PathBuf| path.exists())
-        {
+        if let Some(path) = tables::files(&self.plan, folder).find(|path| path.exists()) {
             return Err(StudyError::Taken { path });
         }
         self.tables(folder)
@@ -238,6 +239,9 @@ impl<E: Experiment> Study<E> {
         let mut tables = Tables::new(&self.plan, folder)?;
         let mut finished = 0;
         for (ramp, mark) in marks.into_iter().enumerate() {
+            if ramp.is_multiple_of(AHEAD) {
+                self.folder.read_ahead(ramp..self.plan.ramp_count().min(ramp + AHEAD));
+            }
             let mut seen = Vec::new();
             for record in self.ramp_records(ramp) {
                 let record = record?;

@@ -94,30 +94,6 @@ impl fmt::Display for Scalar {
     }
 }
 
-impl From<bool> for Scalar {
-    fn from(flag: bool) -> Self {
-        Self::Flag(flag)
-    }
-}
-
-impl From<f64> for Scalar {
-    fn from(number: f64) -> Self {
-        Self::Number(number)
-    }
-}
-
-impl From<i32> for Scalar {
-    fn from(number: i32) -> Self {
-        Self::Integer(number.into())
-    }
-}
-
-impl From<i64> for Scalar {
-    fn from(number: i64) -> Self {
-        Self::Integer(number)
-    }
-}
-
 /// Numbers too large for a table become the largest number that it takes.
 impl From<u64> for Scalar {
     fn from(number: u64) -> Self {
@@ -132,14 +108,14 @@ impl From<usize> for Scalar {
     }
 }
 
-impl From<&str> for Scalar {
-    fn from(text: &str) -> Self {
-        Self::Text(text.to_owned())
-    }
+macro_rules! from {
+    ($($value:ty => $kind:ident),*) => {$(
+        impl From<$value> for Scalar {
+            fn from(value: $value) -> Self {
+                Self::$kind(value.into())
+            }
+        }
+    )*};
 }
 
-impl From<String> for Scalar {
-    fn from(text: String) -> Self {
-        Self::Text(text)
-    }
-}
+from! { bool => Flag, i32 => Integer, i64 => Integer, f64 => Number, &str => Text, String => Text }

@@ -4,7 +4,7 @@ mod leading;
 mod points;
 mod rows;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::errors::StudyError;
 use super::experiment::Experiment;
@@ -31,11 +31,16 @@ pub(super) struct Tables<'a, E: Experiment> {
     repeats: Repeats,
 }
 
-/// Returns the names of all tables of a plan.
-pub(super) fn names<E: Experiment>(plan: &Plan<E>) -> Vec<String> {
+/// Returns the files of all tables of a plan in a folder.
+pub(super) fn files<E: Experiment>(plan: &Plan<E>, folder: &Path) -> impl Iterator<Item = PathBuf> {
     let refined = plan.is_refined().then_some("transitions");
     let names = ["values", "samples", "points", "columns"].into_iter().chain(refined);
-    names.map(str::to_owned).chain(E::tables().iter().map(|table| table.name().to_owned())).collect()
+    let own = E::tables().into_iter().map(|table| table.name().to_owned());
+    names.map(str::to_owned).chain(own).map(move |name| file(folder, &name))
+}
+
+fn file(folder: &Path, name: &str) -> PathBuf {
+    folder.join(format!("{name}.csv"))
 }
 
 impl<'a, E: Experiment> Tables<'a, E> {

@@ -11,6 +11,7 @@ mod sample;
 
 pub use base::{Base, Sides};
 pub use rule::BoxRule;
+use rule::Kind;
 pub use sample::{Measurement, Sample};
 
 use super::errors::ExperimentError;
@@ -182,29 +183,6 @@ impl VibratedBox {
     pub const fn with_initial_temperature(self, temperature: f64) -> Self {
         Self { initial_temperature: temperature, ..self }
     }
-
-    fn container(&self) -> Result<Container, ExperimentError> {
-        let mut container = match self.height {
-            Some(height) => Container::closed(self.width, height)?,
-            None => Container::open(self.width)?,
-        };
-        if let Some(rule) = self.wall_rule(self.wall_inelasticity, None)? {
-            for wall in [Wall::Left, Wall::Right].into_iter().chain(self.height.map(|_| Wall::Lid)) {
-                container = container.with_rule(wall, rule)?;
-            }
-        }
-        let base = self.base_inelasticity.or(self.wall_inelasticity);
-        if let Some(rule) = self.wall_rule(base, self.base_tangential_inelasticity)? {
-            container = container.with_rule(Wall::Floor, rule)?;
-        }
-        let container = match self.sides {
-            Sides::Hard => container,
-            Sides::Elastic => container.with_rule(Wall::Left, Elastic)?.with_rule(Wall::Right, Elastic)?,
-            Sides::Periodic => container.with_periodic_sides()?,
-        };
-        self.base.under(container)
-    }
-
     /// Returns the rule of walls of these inelasticities, if it is not that of the disks.
     fn wall_rule(
         &self,
@@ -214,16 +192,9 @@ impl VibratedBox {
         if normal.or(tangential).or(self.wall_friction).is_none() {
             return Ok(None);
         }
-        let mut walls = self.clone();
-        if let Some(normal) = normal {
-            walls = walls.with_inelasticity(normal);
-        }
-        if let Some(tangential) = tangential {
-            walls = walls.with_tangential_inelasticity(tangential);
-        }
-        if let Some(friction) = self.wall_friction {
-            walls = walls.with_friction(friction);
-        }
+        let walls = normal.into_iter().fold(self.clone(), Self::with_inelasticity);
+        let walls = tangential.into_iter().fold(walls, Self::with_tangential_inelasticity);
+        let walls = self.wall_friction.into_iter().fold(walls, Self::with_friction);
         walls.rule().map(Some)
     }
 }
@@ -245,13 +216,31 @@ impl Experiment for VibratedBox {
         let rule = Frictional::from_inelasticity(self.inelasticity, tangential, self.friction)?
             .with_dynamic_friction(dynamic)?;
         Ok(match self.contact_duration {
-            None => BoxRule::plain(rule),
-            Some(duration) => BoxRule::lasting(ContactDuration::new(rule, duration)?),
+            None => BoxRule(Kind::Plain(rule)),
+            Some(duration) => BoxRule(Kind::Lasting(ContactDuration::new(rule, duration)?)),
         })
     }
 
     fn boundary(&self) -> Result<Container, ExperimentError> {
-        self.container()
+        let mut container = match self.height {
+            Some(height) => Container::closed(self.width, height)?,
+            None => Container::open(self.width)?,
+        };
+        if let Some(rule) = self.wall_rule(self.wall_inelasticity, None)? {
+            for wall in [Wall::Left, Wall::Right].into_iter().chain(self.height.map(|_| Wall::Lid)) {
+                container = container.with_rule(wall, rule)?;
+            }
+        }
+        let base = self.base_inelasticity.or(self.wall_inelasticity);
+        if let Some(rule) = self.wall_rule(base, self.base_tangential_inelasticity)? {
+            container = container.with_rule(Wall::Floor, rule)?;
+        }
+        let container = match self.sides {
+            Sides::Hard => container,
+            Sides::Elastic => container.with_rule(Wall::Left, Elastic)?.with_rule(Wall::Right, Elastic)?,
+            Sides::Periodic => container.with_periodic_sides()?,
+        };
+        self.base.under(container)
     }
 
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
@@ -260,7 +249,7 @@ impl Experiment for VibratedBox {
         }
         // An open box has room for any number, so a mistyped number must not take all memory.
         accept(self.disks <= MOST_DISKS, "number of disks", "at most 2^24", self.disks as f64)?;
-        let disks = initial::lattice(&self.container()?, self.disks, RADIUS)?;
+        let disks = initial::lattice(&self.boundary()?, self.disks, RADIUS)?;
         Ok(initial::with_maxwellian_velocities(disks, self.initial_temperature, seed)?)
     }
 

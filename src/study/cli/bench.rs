@@ -41,14 +41,6 @@ struct State {
 /// less. A [`Comparison`](speed::Comparison) in one sitting has no such drift.
 const DRIFT: f64 = 1.05;
 
-impl State {
-    /// Tells whether these can be times.
-    fn is_possible(&self) -> bool {
-        let Quartiles { low, median, high } = self.nanoseconds_per_collision;
-        0.0 < low && low <= median && median <= high && high < f64::INFINITY
-    }
-}
-
 type Stretch = Box<dyn Fn(u64) -> Result<RunReport, RunError>>;
 
 /// Measures the standard table and prints it, against an earlier one if there is a file with it.
@@ -122,11 +114,8 @@ where
 
 impl fmt::Display for Table {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            formatter,
-            "| state | ns a collision (quartiles) | million a second | events a collision |"
-        )?;
-        writeln!(formatter, "|---|---|---|---|")?;
+        let names = "| state | ns a collision (quartiles) | million a second | events a collision |";
+        writeln!(formatter, "{names}\n|---|---|---|---|")?;
         for State { name, nanoseconds_per_collision: time, events_per_collision } in &self.states {
             let rate = 1e3 / time.median;
             writeln!(formatter, "| {name} | {time} | {rate:.2} | {events_per_collision:.3} |")?;
@@ -152,9 +141,11 @@ impl Circumstances {
 impl Table {
     /// Returns the table if a later one can be compared with it, or the reason why it cannot.
     fn checked(self) -> Result<Self, String> {
-        if let Some(State { name, nanoseconds_per_collision: time, .. }) =
-            self.states.iter().find(|state| !state.is_possible())
-        {
+        let is_possible = |Quartiles { low, median, high }: Quartiles| {
+            0.0 < low && low <= median && median <= high && high < f64::INFINITY
+        };
+        let mut times = self.states.iter().map(|state| (&state.name, state.nanoseconds_per_collision));
+        if let Some((name, time)) = times.find(|(_, time)| !is_possible(*time)) {
             return Err(format!("a collision in \"{name}\" takes {time} ns"));
         }
         let has_any = self.states.iter().any(|state| NAMES.contains(&state.name.as_str()));

@@ -45,13 +45,11 @@ impl Default for Control<'_> {
     /// Creates the control of a study that is neither watched nor stopped. The study saves unfinished values
     /// every minute, and waits for ramps that other processes run.
     fn default() -> Self {
-        let save_interval = Duration::from_secs(60);
-        let (progress, interrupt) = (None, None);
         Self {
-            progress,
-            interrupt,
+            progress: None,
+            interrupt: None,
             earlier: &[],
-            save_interval,
+            save_interval: Duration::from_secs(60),
             waits: true,
             writes_tables: true,
             verifies: false,
@@ -129,7 +127,7 @@ impl fmt::Debug for Control<'_> {
 }
 
 /// The summary of a run of a study.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct Summary {
     /// Number of values that have a record now.
@@ -151,11 +149,6 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Returns the summary of a run of this many values before its start.
-    pub(super) const fn of(total: usize) -> Self {
-        Self { finished: 0, failed: 0, warned: 0, total, elsewhere: Vec::new(), redone: Vec::new() }
-    }
-
     /// Returns true if all ramps that were to be run are complete.
     pub const fn is_complete(&self) -> bool {
         self.finished == self.total

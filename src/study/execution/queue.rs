@@ -6,85 +6,88 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::study::folder::Mark;
 
-/// Ramps that are free as far as is known, and ramps of other processes.
+/// A ramp, as far as is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Ramp {
+    Free,
+    /// Another process does it, or has done it.
+    Elsewhere,
+    /// It was taken from the queue, or is done.
+    Gone,
+}
+
+/// A ring of ramps.
 ///
 /// Processes begin at random places and go on in order from there. So they seldom meet, and each runs the
 /// ramps ahead of it. One that meets another goes to a new place.
 #[derive(Debug)]
 pub(super) struct Queue {
-    ramps: Range<usize>,
-    left: Mutex<Left>,
+    pub(super) ramps: Range<usize>,
+    ring: Mutex<Ring>,
 }
 
 #[derive(Debug)]
-struct Left {
-    free: Vec<bool>,
-    /// The place from which the next free ramp is looked for.
+struct Ring {
+    ramps: Vec<Ramp>,
+    /// The place from which the next ramp is looked for.
     place: usize,
-    elsewhere: Vec<usize>,
 }
 
 impl Queue {
     pub(super) fn new(ramps: Range<usize>) -> Self {
-        let (free, place) = (vec![true; ramps.len()], anywhere(ramps.len()));
-        Self { ramps, left: Mutex::new(Left { free, place, elsewhere: Vec::new() }) }
+        let (all, place) = (vec![Ramp::Free; ramps.len()], anywhere(ramps.len()));
+        Self { ramps, ring: Mutex::new(Ring { ramps: all, place }) }
     }
 
-    pub(super) fn ramps(&self) -> Range<usize> {
-        self.ramps.clone()
-    }
-
-    /// Takes the next free ramp around the ring of all.
+    /// Takes the next free ramp.
     pub(super) fn next(&self) -> Option<usize> {
-        let mut left = self.left();
-        let (before, after) = left.free.split_at(left.place);
-        let first = |part: &[bool]| part.iter().position(|is_free| *is_free);
-        let found = first(after).map(|index| left.place + index).or_else(|| first(before))?;
-        left.free[found] = false;
-        left.place = found + 1;
-        Some(self.ramps.start + found)
+        self.ring().turn(Ramp::Free, Ramp::Gone).map(|index| self.ramps.start + index)
     }
 
-    /// Notes a ramp that another process does or has done, and goes to a new place.
+    /// Notes that a ramp is elsewhere, and goes to a new place.
     pub(super) fn leave(&self, ramp: usize) {
-        let mut left = self.left();
-        left.elsewhere.push(ramp);
-        left.place = anywhere(left.free.len());
+        let mut ring = self.ring();
+        ring.ramps[ramp - self.ramps.start] = Ramp::Elsewhere;
+        ring.place = anywhere(ring.ramps.len());
     }
 
-    /// Strikes out ramps that are done, and returns their number.
+    /// Strikes out ramps that are done, and returns the number of those that were free or elsewhere.
     pub(super) fn strike(&self, marks: &[Mark]) -> usize {
-        let Left { free, elsewhere, .. } = &mut *self.left();
-        let mut struck = elsewhere.len();
-        elsewhere.retain(|ramp| marks[ramp - self.ramps.start] == Mark::Open);
-        struck -= elsewhere.len();
-        for (is_free, mark) in free.iter_mut().zip(marks) {
-            if *is_free && *mark != Mark::Open {
-                *is_free = false;
-                struck += 1;
-            }
-        }
-        struck
+        let mut ring = self.ring();
+        let all = ring.ramps.iter_mut().zip(marks);
+        let done = all.filter(|(ramp, mark)| **ramp != Ramp::Gone && **mark != Mark::Open);
+        done.map(|(ramp, _)| *ramp = Ramp::Gone).count()
     }
 
-    /// Takes the ramps that other processes do.
+    /// Returns the ramps that are elsewhere.
     pub(super) fn elsewhere(&self) -> Vec<usize> {
-        std::mem::take(&mut self.left().elsewhere)
+        let ring = self.ring();
+        let all = self.ramps.clone().zip(&ring.ramps);
+        all.filter(|(_, state)| **state == Ramp::Elsewhere).map(|(ramp, _)| ramp).collect()
     }
 
-    /// Puts back ramps of other processes: some to try, the others to wait for.
-    pub(super) fn refill(&self, mut ramps: Vec<usize>, tried: usize) {
-        let start = anywhere(ramps.len());
-        ramps.rotate_left(start);
-        let mut left = self.left();
-        left.elsewhere = ramps.split_off(tried.min(ramps.len()));
-        for ramp in ramps {
-            left.free[ramp - self.ramps.start] = true;
+    /// Lets this many ramps that are elsewhere be tried.
+    pub(super) fn retry(&self, count: usize) {
+        let mut ring = self.ring();
+        ring.place = anywhere(ring.ramps.len());
+        for _ in 0..count {
+            ring.turn(Ramp::Elsewhere, Ramp::Free);
         }
     }
 
-    fn left(&self) -> MutexGuard<'_, Left> {
-        self.left.lock().unwrap_or_else(PoisonError::into_inner)
+    fn ring(&self) -> MutexGuard<'_, Ring> {
+        self.ring.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Ring {
+    /// Finds the next ramp of a kind, changes its kind, and returns its index.
+    fn turn(&mut self, from: Ramp, to: Ramp) -> Option<usize> {
+        let mut ring = (self.place..self.ramps.len()).chain(0..self.place);
+        let found = ring.find(|index| self.ramps[*index] == from)?;
+        self.ramps[found] = to;
+        self.place = found + 1;
+        Some(found)
     }
 }
 

@@ -26,7 +26,7 @@ pub(super) struct Walk<'a, 's, E: Experiment> {
 pub(super) fn attempt<E: Experiment>(shift: &Shift<'_, E>, ramp: usize) -> Result<bool, StudyError> {
     let (folder, plan) = (&shift.study.folder, shift.study.plan());
     let Some((lock, is_fresh)) = folder.take(ramp)? else { return Ok(false) };
-    if !is_fresh && shift.marks(ramp..ramp + 1)? != [Mark::Open] {
+    if !is_fresh && !shift.control.verifies && folder.marks(ramp..ramp + 1)? != [Mark::Open] {
         return Ok(false);
     }
     let earlier = shift.earlier.ramps(plan.ramp_seed(ramp));
@@ -62,9 +62,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         };
         let Some(record) = found else { return Ok(false) };
         let is_failed = record.outcome().reason().is_some();
-        if is_failed {
-            self.mark = Mark::Failed;
-        }
+        self.mark = if is_failed { Mark::Failed } else { self.mark };
         self.shift.count(|summary| {
             summary.finished += 1;
             summary.failed += usize::from(is_failed);

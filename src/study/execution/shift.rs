@@ -1,6 +1,5 @@
 //! Data that all threads of a running study share.
 
-use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -10,7 +9,6 @@ use super::earlier::Earlier;
 use super::queue::Queue;
 use crate::study::errors::StudyError;
 use crate::study::experiment::Experiment;
-use crate::study::folder::Mark;
 use crate::study::opening::Study;
 
 /// Longest time until a thread checks whether it must stop.
@@ -45,24 +43,20 @@ impl<'a, E: Experiment> Shift<'a, E> {
             control,
             earlier: Earlier::open(control.earlier, study.plan())?,
             steps: [0, values as u64 * study.plan().protocol().steps()].map(AtomicU64::new),
-            summary: Mutex::new(Summary::of(values)),
+            summary: Mutex::new(Summary { total: values, ..Summary::default() }),
             broken: AtomicBool::new(false),
             is_opened: AtomicBool::new(false),
         })
     }
 
-    /// Returns the marks of these ramps; those of ramps that are to be looked at whatever they are.
-    pub(super) fn marks(&self, ramps: Range<usize>) -> Result<Vec<Mark>, StudyError> {
-        if self.control.verifies {
-            return Ok(vec![Mark::Open; ramps.len()]);
-        }
-        self.study.folder.marks(ramps)
-    }
-
-    /// Strikes out the ramps of a queue that are done, and counts them as finished.
+    /// Strikes out the ramps of a queue that are done, and counts them as finished. A verification looks at
+    /// all ramps, whatever their marks say.
     pub(super) fn strike_done(&self, queue: &Queue) -> Result<(), StudyError> {
+        if self.control.verifies {
+            return Ok(());
+        }
         let plan = self.study.plan();
-        let values = queue.strike(&self.marks(queue.ramps())?) * plan.value_count();
+        let values = queue.strike(&self.study.folder.marks(queue.ramps.clone())?) * plan.value_count();
         self.count(|summary| summary.finished += values);
         self.steps[0].fetch_add(values as u64 * plan.protocol().steps(), Ordering::Relaxed);
         Ok(())
@@ -117,7 +111,6 @@ impl<'a, E: Experiment> Shift<'a, E> {
     pub(super) fn summary(self, elsewhere: Vec<usize>) -> Summary {
         let mut summary = self.summary.into_inner().unwrap_or_else(PoisonError::into_inner);
         summary.elsewhere = elsewhere;
-        summary.elsewhere.sort_unstable();
         summary.redone.sort();
         summary
     }

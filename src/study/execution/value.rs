@@ -17,6 +17,9 @@ use crate::study::plan::refinement::Step;
 /// Shortest piece of a run, so that it advances even if it is saved all the time.
 const SHORTEST: Duration = Duration::from_millis(20);
 
+/// Time below which a value is done again in less time than a disk takes to sync its record.
+const CHEAP: Duration = Duration::from_millis(20);
+
 /// The reason why a value stopped.
 enum Pause {
     Done,
@@ -78,7 +81,8 @@ impl<E: Experiment> Walk<'_, '_, E> {
         };
         self.shift.open_study()?;
         let path = study.folder.record(self.ramp, value);
-        sealed::write_sealed::<Contents<E::Sample, E::Observer>>(&path, &record.contents)?;
+        let is_cheap = started.elapsed() < CHEAP;
+        sealed::write_sealed::<Contents<E::Sample, E::Observer>>(&path, &record.contents, is_cheap)?;
         if has_partial {
             sealed::remove(&study.folder.partial(self.ramp, value))?;
         }
@@ -136,7 +140,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
             (self.shift.control, self.shift.study.folder.partial(self.ramp, self.seen.len()));
         let mut save = |active: &Active<'_, E>| {
             *has_partial = true;
-            sealed::write_sealed::<Partial<E>>(&path, &active.partial())
+            sealed::write_sealed::<Partial<E>>(&path, &active.partial(), false)
         };
         let mut saved = Instant::now();
         while !active.is_done() {

@@ -30,7 +30,7 @@ impl Lock {
     }
 
     /// Returns whether a process has the lock of a file; false if the system does not tell.
-    pub(super) fn is_taken(path: &Path) -> bool {
+    pub(in crate::study) fn is_taken(path: &Path) -> bool {
         let Ok(file) = File::open(path) else { return false };
         match file.try_lock_shared() {
             Ok(()) => {

@@ -4,8 +4,9 @@
 //! a loss of power, so it is not synced: a ramp that lost its mark is looked at again.
 
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io::{self, Read};
 use std::ops::Range;
+use std::path::Path;
 
 use super::{Folder, Lock, sealed};
 use crate::study::errors::StudyError;
@@ -27,15 +28,13 @@ impl Folder {
     /// Returns the marks of these ramps.
     pub(in crate::study) fn marks(&self, ramps: Range<usize>) -> Result<Vec<Mark>, StudyError> {
         let path = self.root.join(DONE);
-        let letters = File::open(&path).and_then(|file| read(file, &ramps));
-        let mut letters = sealed::if_there("read", &path, letters)?.unwrap_or_default();
-        letters.resize(ramps.len(), 0);
-        let mark = |letter| match letter {
-            b'd' => Mark::Done,
-            b'f' => Mark::Failed,
+        let letters = sealed::if_there("read", &path, read(&path))?.unwrap_or_default();
+        let mark = |ramp| match letters.get(ramp) {
+            Some(b'd') => Mark::Done,
+            Some(b'f') => Mark::Failed,
             _ => Mark::Open,
         };
-        Ok(letters.into_iter().map(mark).collect())
+        Ok(ramps.map(mark).collect())
     }
 
     /// Marks a ramp.
@@ -47,12 +46,10 @@ impl Folder {
     }
 }
 
-fn read(mut file: File, ramps: &Range<usize>) -> io::Result<Vec<u8>> {
+fn read(path: &Path) -> io::Result<Vec<u8>> {
+    let (mut file, mut letters) = (File::open(path)?, Vec::new());
     // This waits for a writer, which keeps readers out on some systems. Without locks, letters may be old.
     let _ = file.lock_shared();
-    let mut letters = Vec::with_capacity(ramps.len());
-    file.seek(SeekFrom::Start(ramps.start as u64))?;
-    let read = (&file).take(ramps.len() as u64).read_to_end(&mut letters);
-    let _ = file.unlock();
-    read.map(|_| letters)
+    file.read_to_end(&mut letters)?;
+    Ok(letters)
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::file::{Broken, Seal, is_temporary, unique_name, write_whole};
+use crate::file::{Broken, Seal, is_temporary, unique_name, write_unsynced, write_whole};
 use crate::study::errors::StudyError;
 
 /// Mark of a record, and the version of the format that this crate writes and reads.
@@ -41,15 +41,18 @@ pub(in crate::study) fn publish(path: &Path, bytes: &[u8]) -> Result<bool, Study
 }
 
 /// Writes data with a magic number, a version and a checksum. The data must read back as they were written.
+/// Unless they are cheap, they outlast a loss of power.
 pub(in crate::study) fn write_sealed<T: DeserializeOwned + Serialize>(
     path: &Path,
     data: &impl Serialize,
+    are_cheap: bool,
 ) -> Result<(), StudyError> {
     let cannot = |source| StudyError::Encode { path: path.to_owned(), source };
     let contents = postcard::to_stdvec(data).map_err(|error| cannot(Box::new(error)))?;
     let again = postcard::from_bytes::<T>(&contents).and_then(|read| postcard::to_stdvec(&read));
     if again.is_ok_and(|again| again == contents) {
-        return write(path, &SEAL.seal(&contents));
+        let write = if are_cheap { write_unsynced } else { write_whole };
+        return write(path, &SEAL.seal(&contents)).map_err(StudyError::io("write", path));
     }
     Err(cannot(
         "a sample or observer does not read back as it is written: its type must not have `#[serde(untagged)]`, \

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use crate::file::Draft;
 use crate::statistics::Estimate;
 use crate::study::errors::StudyError;
-use crate::study::folder;
 use crate::study::scalar::Scalar;
 
 /// A table on its way to its file.
@@ -17,8 +16,9 @@ pub(super) struct Rows {
 impl Rows {
     /// Begins the table of this name in a folder.
     pub(super) fn begin(folder: &Path, name: &str) -> Result<Self, StudyError> {
-        let path = folder::table(folder, name);
-        Ok(Self { draft: folder::draft(&path)?, path })
+        let path = super::file(folder, name);
+        let draft = Draft::of(&path).map_err(StudyError::io("write", &path))?;
+        Ok(Self { path, draft })
     }
 
     /// Adds a row.

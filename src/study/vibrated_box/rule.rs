@@ -5,22 +5,12 @@ use crate::collision::{CollisionRule, Contact, ContactDuration, Frictional, Impu
 
 /// The paper's rule, with or without the contact-duration model.
 #[derive(Debug, Clone, Copy)]
-pub struct BoxRule(Kind);
+pub struct BoxRule(pub(super) Kind);
 
 #[derive(Debug, Clone, Copy)]
-enum Kind {
+pub(super) enum Kind {
     Plain(Frictional),
     Lasting(ContactDuration<Frictional>),
-}
-
-impl BoxRule {
-    pub(super) const fn plain(rule: Frictional) -> Self {
-        Self(Kind::Plain(rule))
-    }
-
-    pub(super) const fn lasting(rule: ContactDuration<Frictional>) -> Self {
-        Self(Kind::Lasting(rule))
-    }
 }
 
 impl CollisionRule for BoxRule {
