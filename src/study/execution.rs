@@ -129,7 +129,8 @@ fn work_in_parallel<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Resul
     work(shift, queue)
 }
 
-/// Does ramps of the queue until it is empty. Where it meets other processes, it looks at what they have done.
+/// Does ramps of the queue until it is empty. Where it meets other processes, it looks at what they have
+/// done.
 fn work<E: Experiment>(shift: &Shift<'_, E>, queue: &Queue) -> Result<(), StudyError> {
     let mut met = 0;
     while !shift.must_stop()

@@ -93,8 +93,9 @@ impl Folder {
         self.plan().exists() && (has_lock || has_others())
     }
 
-    /// Puts a plan into the folder, which it creates if needed; returns false if there is a plan already. The
-    /// plan is checked under the lock: of many processes that start together, one checks, and the others wait.
+    /// Puts a plan into the folder, which it creates if needed; returns false if there is a plan already.
+    ///
+    /// The plan is checked under the lock: of processes that start together, one checks, and the others wait.
     pub(super) fn create(
         &self,
         plan: &str,
