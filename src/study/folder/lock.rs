@@ -43,9 +43,10 @@ impl Lock {
     }
 
     /// Writes a byte at this place of the file of the lock.
-    pub(super) fn put(&mut self, place: u64, byte: u8) -> io::Result<()> {
-        self.0.seek(SeekFrom::Start(place))?;
-        self.0.write_all(&[byte])
+    pub(super) fn put(&self, place: u64, byte: u8) -> io::Result<()> {
+        let mut file = self.0.file();
+        file.seek(SeekFrom::Start(place))?;
+        file.write_all(&[byte])
     }
 
     /// Returns whether nothing was ever logged under this lock.

@@ -41,7 +41,7 @@ impl Folder {
     pub(in crate::study) fn mark(&self, ramp: usize, mark: Mark) -> Result<(), StudyError> {
         let path = self.root.join(DONE);
         // Without a lock, a client of NFS may write old letters of other hosts beside this one.
-        let mut lock = Lock::take(&path)?;
+        let lock = Lock::take(&path)?;
         lock.put(ramp as u64, mark as u8).map_err(StudyError::io("write", &path))
     }
 }
