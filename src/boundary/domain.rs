@@ -94,9 +94,12 @@ impl Domain {
     }
 
     /// Tells whether a place is in the rectangle, or beyond it by no more than `slack`.
+    #[inline]
     pub(crate) fn contains(&self, place: DVec2, slack: f64) -> bool {
-        (self.left - slack..=self.right + slack).contains(&place.x)
-            && (self.bottom - slack..=self.top + slack).contains(&place.y)
+        place.x >= self.left - slack
+            && place.x <= self.right + slack
+            && place.y >= self.bottom - slack
+            && place.y <= self.top + slack
     }
 
     /// Returns the shortest vector from `from` to `to`, across periodic sides where that is shorter.
