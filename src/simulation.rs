@@ -313,8 +313,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// is a [`Warning`].
     ///
     /// # Errors
-    /// If the disks or the inlets do not fit into the new walls, or there are too many walls. The simulation then stays as
-    /// it was.
+    /// If the disks or the inlets do not fit into the new walls, or there are too many walls. The simulation
+    /// then stays as it was.
     pub fn set_boundary(&mut self, mut boundary: B) -> Result<(), BuildError> {
         boundary.set_time_origin(self.clock.origin);
         traffic::check_inlets(&boundary, &self.inlets)?;

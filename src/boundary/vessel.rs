@@ -22,8 +22,8 @@ use index::Index;
 /// Largest number of walls of a vessel.
 const MOST_WALLS: usize = 1 << 16;
 
-/// Largest numbers of periods that a part may extend over, in one direction and in all. Each brick has an image
-/// for each of them, and may come into a good part of as many cells.
+/// Largest numbers of periods that a part may extend over, in one direction and in all. Each brick has an
+/// image for each of them, and may come into a good part of as many cells.
 const MOST_PERIODS: [f64; 2] = [64.0, 256.0];
 
 /// Least stroke of a part, relative to its coordinates. Places of a part with a smaller one are lost in

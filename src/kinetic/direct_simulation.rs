@@ -103,7 +103,8 @@ impl<R: CollisionRule> DirectSimulation<R> {
     pub fn run_until(&mut self, end: f64) -> Result<(), ParameterError> {
         finite("time", end)?;
         while self.time < end {
-            // The bounds are found anew now and then: a gas that cools becomes slow, and drivings change disks.
+            // The bounds are found anew now and then: a gas that cools becomes slow, and drivings change
+            // disks.
             let largest = |of: fn(&Disk) -> f64| self.disks.iter().map(of).fold(0.0, f64::max);
             (self.widest, self.fastest) =
                 (2.0 * largest(Disk::radius), largest(|disk| disk.velocity().length()));

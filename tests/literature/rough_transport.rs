@@ -100,8 +100,8 @@ fn smooth_and_rough_disks_have_about_the_transport_of_boltzmann() -> Outcome {
 #[ignore = "half an hour"]
 fn long_rough_disks_have_the_transport_of_boltzmann() -> Outcome {
     // Each slope is known to 1 %. The tolerance is three errors of their ratio. Direct simulation lacks the
-    // fluxes over the diameter: for smooth disks, Enskog's viscosity here is 0.5 % above that of Boltzmann, and
-    // his conductivity 1.5 %.
+    // fluxes over the diameter: for smooth disks, Enskog's viscosity here is 0.5 % above that of Boltzmann,
+    // and his conductivity 1.5 %.
     let long = Measurement { count: 1000, packing: PACKING, interval: 1.0, mean_free_times: 400_000.0 };
     assert!(agrees_with_direct_simulation("rough", Rough::from_inelasticity(0.0, 0.0)?, long, 0.045)?);
     Ok(())
