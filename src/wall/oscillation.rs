@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::quantity::positive;
+use crate::quantity::{finite, positive};
 use crate::{Fingerprint, ParameterError};
 
 /// The amplitude and period of a motion that is cut into equal pieces of time.
@@ -20,8 +20,9 @@ impl Oscillation {
             angular_frequency: positive("angular frequency", angular_frequency)?,
         };
         positive("period", oscillation.period())?;
-        // In the form in which the motions use it, so that no square of a period vanishes there.
-        positive("peak acceleration", amplitude / (oscillation.period() * oscillation.period()))?;
+        positive("peak acceleration", amplitude * angular_frequency * angular_frequency)?;
+        // Also in the form in which arcs have it: the square of a period may vanish.
+        finite("peak acceleration", amplitude / (oscillation.period() * oscillation.period()))?;
         Ok(oscillation)
     }
 
