@@ -187,8 +187,10 @@ pub(super) fn check_inlets<B: Boundary + ?Sized>(boundary: &B, inlets: &[Inlet])
                 return Err(BuildError::TightFit { disk, radius: model.radius(), wall });
             }
         }
-        let diameter = inlet.largest_diameter();
-        if diameter > domain.width().min(domain.height()) {
+        let (diameter, periods) = (inlet.largest_diameter(), domain.periods());
+        // Cells need four diameters where the domain is periodic.
+        let room = |length: f64, period: f64| if period > 0.0 { 0.25 * period } else { length };
+        if diameter > room(domain.width(), periods.x).min(room(domain.height(), periods.y)) {
             return Err(too_small(&domain, diameter));
         }
     }

@@ -297,6 +297,13 @@ fn an_inlet_that_could_never_let_in_is_refused() {
     let error = run.set_boundary(room(5.0)).unwrap_err().to_string();
     assert!(error.contains("place of an inlet must be within the sides of the domain, but is 8"), "{error}");
     assert!(run.clone().with_boundary(room(5.0)).is_err());
+    // A domain that holds the places may be too small for the models.
+    let mut large = box_of_ten();
+    let model = Disk::new(DVec2::ZERO, 0.9).unwrap();
+    large.add_inlet(Inlet::new([DVec2::splat(1.0); 2], [model], times, 1).unwrap()).unwrap();
+    let narrow = Container::closed(3.0, 10.0).unwrap().with_periodic_sides().unwrap();
+    let error = large.set_boundary(narrow).unwrap_err();
+    assert!(matches!(error, BuildError::DomainTooSmall { .. }), "{error}");
     run.run_until(3.5, &mut ()).unwrap();
     assert_eq!(run.len(), 3);
 }
