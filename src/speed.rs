@@ -1,4 +1,4 @@
-//! How fast runs are, and what their parts cost.
+//! The speed of runs, and the cost of their parts.
 //!
 //! A [`Meter`] is started before a run and makes a [`RunReport`] after it. [`dilute`], [`dense`], [`gas`],
 //! [`mixture`] and [`vessel`] are standard states, in which a part of your own is measured beside the

@@ -52,7 +52,7 @@ type Moments = [DVec2; MOMENTS];
 /// meets a wall, if a collision of disks changes the energy by more than 1e-6 of theirs, or if disks change
 /// otherwise than by collisions. The
 /// first stretch, as long as the longest lag, only finds the pressure. A run that does not continue the
-/// previous one, and disks that changed between runs, begin anew: the measurements so far stay. The
+/// previous one, and disks that changed between runs or by a driving, begin anew: the measurements so far stay. The
 /// errors come from blocks of origins.
 ///
 /// ```
@@ -93,7 +93,7 @@ pub struct TransportCoefficients {
     /// Growth of the moment of compression beyond the drift, over the longest lag.
     excess: RunningMean,
     temperature: RunningMean,
-    /// Whether the disks may have been changed since the sample before: a run has begun.
+    /// Set when a run begins: the disks may have been changed since the sample before.
     #[cfg_attr(feature = "serde", serde(skip))]
     may_differ: bool,
     /// The reason why nothing can be measured in this run.

@@ -1,4 +1,4 @@
-//! What a simulation takes: memory, cells, and the instructions that it runs with.
+//! Memory and cells of a simulation, and the instructions with which it runs.
 
 use std::fmt;
 

@@ -18,7 +18,7 @@ pub struct Circumstances {
     pub load: String,
     /// Version of this crate.
     pub version: String,
-    /// Whether the crate was compiled with optimization and for which vector instructions.
+    /// Optimization and vector instructions with which the crate was compiled.
     pub build: String,
 }
 

@@ -82,7 +82,7 @@ pub struct Comparison {
     events: [f64; 2],
 }
 
-/// What a comparison has found.
+/// The result of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Finding {
     /// The other run is faster.

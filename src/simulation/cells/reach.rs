@@ -126,7 +126,7 @@ impl Reach {
             let beyond = self.rows_of(other, column).map(|rows| self.aligned(rows, place, other));
             for rows in self.rows_of(place, column) {
                 let mut first = rows.first;
-                // What is left of an interval without two others, which lie in order: the pieces before each
+                // The rest of an interval without two others, which lie in order: the pieces before each
                 // of them, and the piece after the last.
                 for inside in beyond.into_iter().filter(|inside| inside.count > 0) {
                     let before = Span::between(first, rows.behind().min(inside.first));
