@@ -183,6 +183,7 @@ impl VibratedBox {
     pub const fn with_initial_temperature(self, temperature: f64) -> Self {
         Self { initial_temperature: temperature, ..self }
     }
+
     /// Returns the rule of walls of these inelasticities, if it is not that of the disks.
     fn wall_rule(
         &self,
