@@ -50,10 +50,9 @@ type Moments = [DVec2; MOMENTS];
 ///
 /// A run ends with an error if the domain is not periodic in both directions, if there is gravity, if a disk
 /// meets a wall, if a collision of disks changes the energy by more than 1e-6 of theirs, or if disks change
-/// otherwise than by collisions. The
-/// first stretch, as long as the longest lag, only finds the pressure. A run that does not continue the
-/// previous one, and disks that changed between runs or by a driving, begin anew: the measurements so far stay. The
-/// errors come from blocks of origins.
+/// otherwise than by collisions. The first stretch, as long as the longest lag, only finds the pressure. A run
+/// that does not continue the previous one, and disks that changed between runs or by a driving, begin anew:
+/// the measurements so far stay. The errors come from blocks of origins.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
