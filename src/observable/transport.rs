@@ -50,9 +50,10 @@ type Moments = [DVec2; MOMENTS];
 ///
 /// A run ends with an error if the domain is not periodic in both directions, if there is gravity, if a disk
 /// meets a wall, if a collision of disks changes the energy by more than 1e-6 of theirs, or if disks change
-/// otherwise than by collisions. The first stretch, as long as the longest lag, only finds the pressure. A run
-/// that does not continue the previous one, and disks that changed between runs or by a driving, begin anew:
-/// the measurements so far stay. The errors come from blocks of origins.
+/// otherwise than by collisions, be it by an inlet, by a driving, or between two runs: measure the changed gas
+/// with another observer. The first stretch, as long as the longest lag, only finds the pressure. A run that
+/// does not continue the previous one begins anew: the measurements so far stay. The errors come from blocks
+/// of origins.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -92,9 +93,6 @@ pub struct TransportCoefficients {
     /// Growth of the moment of compression beyond the drift, over the longest lag.
     excess: RunningMean,
     temperature: RunningMean,
-    /// Set when a run begins: the disks may have been changed since the sample before.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    may_differ: bool,
     /// The reason why nothing can be measured in this run.
     #[cfg_attr(feature = "serde", serde(skip))]
     fault: Option<ParameterError>,
@@ -178,7 +176,6 @@ impl TransportCoefficients {
             slopes: std::array::from_fn(|_| BlockedMean::new()),
             excess: RunningMean::default(),
             temperature: RunningMean::default(),
-            may_differ: false,
             fault: None,
         })
     }
@@ -240,8 +237,8 @@ impl TransportCoefficients {
         }
     }
 
-    /// Replaces the kept velocities by those of a snapshot. If they are not the ones that the collisions
-    /// gave, the disks have been changed between two runs.
+    /// Replaces the kept velocities by those of a snapshot, which are the same but for rounding if only
+    /// collisions have changed them.
     fn take_motions(&mut self, disks: &[Disk]) {
         let mass: f64 = disks.iter().map(Disk::mass).sum();
         let frame = disks.iter().map(|disk| disk.mass() * disk.velocity()).sum::<DVec2>() / mass;
@@ -249,15 +246,13 @@ impl TransportCoefficients {
         let energy: f64 = movers.iter().map(|mover| mover.mass * mover.velocity.length_squared()).sum();
         let rounding = ROUNDING * (energy / mass).sqrt();
         let is_same = |(one, other): (&Mover, &Mover)| one.velocity.distance(other.velocity) <= rounding;
-        let goes_on = self.movers.len() == movers.len() && self.movers.iter().zip(&movers).all(is_same);
-        if !goes_on {
-            if !self.movers.is_empty() && !self.may_differ {
-                let name = "time by which disks have changed otherwise than in collisions";
-                self.fault = Some(ParameterError::new(name, "between two runs", self.time));
-            }
+        let are_same = self.movers.len() == movers.len() && self.movers.iter().zip(&movers).all(is_same);
+        if self.movers.is_empty() {
             self.begin_anew();
+        } else if !are_same {
+            let name = "time by which disks have changed otherwise than in collisions";
+            self.fault = Some(ParameterError::new(name, "never, for transport coefficients", self.time));
         }
-        self.may_differ = false;
         self.rates = [DVec2::ZERO; MOMENTS];
         for mover in &movers {
             add(&mut self.rates, &mover.rates(), 1.0);
@@ -311,7 +306,6 @@ impl Observer for TransportCoefficients {
             self.begin_anew();
         }
         self.domain = Some(moment.domain());
-        self.may_differ = true;
     }
 
     fn on_collision(&mut self, collision: &Collision) {

@@ -6,7 +6,7 @@ use granular_edmd::boundary::{Boundary, Container, Part, Vessel};
 use granular_edmd::collision::{CollisionRule, Elastic, Rough, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{SampleTimes, TransportCoefficients};
-use granular_edmd::simulation::{Inlet, RunError};
+use granular_edmd::simulation::{Inlet, Limits, RunError, WhiteNoise};
 use granular_edmd::{Disk, Simulation, initial};
 
 type Result<T = ()> = std::result::Result<T, Box<dyn std::error::Error>>;
@@ -47,15 +47,31 @@ fn a_gas_that_is_not_elastic_or_has_walls_is_refused() -> Result {
 }
 
 #[test]
-fn disks_may_change_between_runs_and_not_within_one() -> Result {
+fn disks_that_change_otherwise_than_by_collisions_are_refused() -> Result {
+    let changed = "changed otherwise than in collisions must be never";
     let (mut transport, mut run) = (coefficients()?, gas(Elastic, empty()?)?);
     run.run_until(50.0, &mut transport)?;
     run.map_disks(|_, disk| disk.with_velocity(-2.0 * disk.velocity()))?;
-    run.run_until(100.0, &mut transport)?;
+    let error = reason(run.run_until(100.0, &mut transport))?;
+    assert!(error.contains(changed), "{error}");
+
+    let mut transport = coefficients()?;
+    run.run_until(150.0, &mut transport)?;
     let newcomer = Disk::new(DVec2::ZERO, 0.2)?;
     let places = [DVec2::ZERO, DVec2::splat(12.0)];
     run.add_inlet(Inlet::new(places, [newcomer], SampleTimes::every(7.0)?, 1)?)?;
     let error = reason(run.run_until(200.0, &mut transport))?;
-    assert!(error.contains("must be between two runs"), "{error}");
+    assert!(error.contains(changed), "{error}");
+    Ok(())
+}
+
+#[test]
+fn driven_runs_are_refused_however_rare_the_kicks() -> Result {
+    for interval in [0.3, 1.0, 7.0, 150.0] {
+        let mut run = gas(Elastic, empty()?)?;
+        let mut noise = WhiteNoise::new(0.5, SampleTimes::every(interval)?, 1)?;
+        let error = reason(run.run_driven(&Limits::until(200.0), &mut noise, &mut coefficients()?))?;
+        assert!(error.contains("changed otherwise than in collisions"), "{interval}: {error}");
+    }
     Ok(())
 }
