@@ -1,78 +1,22 @@
-//! The command line of the examples, and errors in one line.
+//! The command line of the examples, and its errors in one line.
 
-use std::error::Error;
-use std::fmt::{self, Display, Formatter};
 use std::fs;
 use std::path::Path;
 use std::process::{ExitCode, exit};
 
 use clap::Parser;
-use granular_edmd::ParameterError;
-use granular_edmd::simulation::RunError;
 
+pub use crate::failure::Failure;
 use crate::output;
-
-/// The reason why an example ends early.
-#[derive(Debug)]
-pub enum Failure {
-    /// The flags cannot be used; the exit code is 2.
-    Usage(String),
-    /// The flags can be used, but the run failed; the exit code is 1.
-    Run(String),
-}
-
-impl Failure {
-    /// Creates the failure of flags that cannot be used.
-    pub fn usage(message: impl Display) -> Self {
-        Self::Usage(message.to_string())
-    }
-
-    /// Creates the failure of a run, or of writing its results.
-    pub fn run(message: impl Display) -> Self {
-        Self::Run(message.to_string())
-    }
-
-    /// Reports the failure in one line on standard error, and returns the exit code.
-    pub fn report(&self) -> ExitCode {
-        output::complain(format_args!("error: {self}"));
-        ExitCode::from(if matches!(self, Self::Usage(_)) { 2 } else { 1 })
-    }
-}
-
-impl Display for Failure {
-    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
-        let (Self::Usage(message) | Self::Run(message)) = self;
-        formatter.write_str(message)
-    }
-}
-
-impl Error for Failure {}
-
-impl From<ParameterError> for Failure {
-    fn from(error: ParameterError) -> Self {
-        Self::usage(error)
-    }
-}
-
-impl From<RunError> for Failure {
-    fn from(error: RunError) -> Self {
-        Self::run(error)
-    }
-}
-
-/// Tells an error of a run with its sources.
-impl From<Box<dyn Error>> for Failure {
-    fn from(error: Box<dyn Error>) -> Self {
-        let chain = std::iter::successors(Some(&*error), |&error| error.source());
-        Self::Run(chain.map(ToString::to_string).collect::<Vec<_>>().join(": "))
-    }
-}
 
 /// Parses the command line, runs an example and reports its failure, if any.
 pub fn main<A: Parser, E: Into<Failure>>(run: impl FnOnce(&A) -> Result<(), E>) -> ExitCode {
     match run(&parse()).map_err(Into::into).and_then(|()| output::end()) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
+        Err(failure) => {
+            output::complain(format_args!("error: {failure}"));
+            failure.exit_code()
+        }
     }
 }
 

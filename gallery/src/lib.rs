@@ -4,6 +4,7 @@
 
 pub mod command_line;
 pub mod faces;
+pub mod failure;
 pub mod flow;
 pub mod letters;
 pub mod look;

@@ -10,7 +10,7 @@ use std::sync::{Mutex, PoisonError};
 
 use granular_edmd::simulation::Warning;
 
-use crate::command_line::Failure;
+use crate::failure::Failure;
 
 /// Why nothing is printed any more.
 static FAILED: Mutex<Option<io::Error>> = Mutex::new(None);

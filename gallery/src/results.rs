@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Map, Value};
 
-use crate::command_line::{Failure, make_folder};
+use crate::command_line::make_folder;
+use crate::failure::{Failure, named};
 use crate::output;
 use crate::sheet::Sheet;
 
@@ -129,11 +130,6 @@ impl Results {
 /// Begins a table.
 pub fn table(path: &Path) -> io::Result<csv::Writer<File>> {
     Ok(csv::Writer::from_writer(named(path, File::create(path))?))
-}
-
-/// Names the file in an error about it.
-pub fn named<T>(path: &Path, result: io::Result<T>) -> io::Result<T> {
-    result.map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", path.display())))
 }
 
 /// Returns the rows of a table as objects. An empty cell is `null`.

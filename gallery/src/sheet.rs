@@ -7,10 +7,10 @@ use kuva::backend::svg::SvgBackend;
 use kuva::prelude::{Layout, LinePlot, Plot};
 use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
 
+use crate::failure::named;
 use crate::look::{INK, Look, QUIET};
 use crate::panel::{self, LARGE, MEDIUM, Margins, Panel, Place, SMALL};
 use crate::raster;
-use crate::results::named;
 
 /// Pixels of the PNG file to a unit of the sheet.
 const PIXELS: f32 = 2.0;

@@ -10,6 +10,7 @@ use granular_edmd::simulation::Limits;
 use granular_edmd::speed::{Circumstances, Meter, Quartiles};
 use granular_edmd::{Disk, Simulation, initial};
 
+use super::measured::{Measured, Speed, Start};
 use super::smallenburg::{Smallenburg, compiler};
 use benches::{Outcome, ask};
 
@@ -25,26 +26,6 @@ const COLLISIONS: u64 = 300_000;
 
 /// Largest difference between the collision rates and pressures of two programs in the same state.
 const ALIKE: f64 = 0.02;
-
-/// The start of another program.
-pub(crate) struct Start {
-    pub(crate) side: f64,
-    pub(crate) disks: Vec<Disk>,
-    /// Time of a stretch at the temperature 1.
-    pub(crate) time: f64,
-}
-
-/// What a stretch of a program took.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Speed {
-    /// Time on the processor of a collision.
-    pub(crate) nanoseconds: f64,
-    /// Collisions of a disk in the time σ√(m/T).
-    pub(crate) rate: f64,
-}
-
-/// The speed of another program, and PA/(NT) of its disks.
-pub(crate) type Measured = (Speed, f64);
 
 /// A gas of this crate, which goes on from stretch to stretch.
 struct Gas {

@@ -6,10 +6,25 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use granular_edmd::Disk;
+use granular_edmd::statistics::{Estimate, block_average};
 
-use super::soft::Means;
 use benches::Outcome;
 use benches::state::State;
+
+/// The result of a program, and the time that it took.
+pub(crate) struct Means {
+    /// Seconds for an oscillation of the base.
+    pub(crate) seconds: f64,
+    /// Height of the center of mass, translational and rotational energy per disk.
+    pub(crate) values: [Estimate; 3],
+}
+
+impl Means {
+    pub(crate) fn of(seconds: f64, samples: &[[f64; 3]]) -> Outcome<Self> {
+        let mean = |k: usize| block_average(&samples.iter().map(|sample| sample[k]).collect::<Vec<_>>());
+        Ok(Self { seconds, values: [mean(0)?, mean(1)?, mean(2)?] })
+    }
+}
 
 /// The stiffness of the disks.
 #[derive(Debug, Clone, Copy)]

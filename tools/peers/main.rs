@@ -10,6 +10,7 @@
 
 mod elastic;
 mod lammps;
+mod measured;
 mod smallenburg;
 mod soft;
 

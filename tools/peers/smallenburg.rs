@@ -12,7 +12,7 @@ use std::process::Command;
 
 use granular_edmd::Disk;
 
-use super::elastic::{Measured, Speed, Start};
+use super::measured::{Measured, Speed, Start};
 use benches::Outcome;
 
 /// The flags of the makefiles.

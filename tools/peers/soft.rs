@@ -10,11 +10,10 @@ use std::time::Instant;
 use granular_edmd::boundary::{Container, Wall};
 use granular_edmd::collision::{ContactDuration, Frictional};
 use granular_edmd::observable::{CenterOfMass, Energies, SampleTimes, Series};
-use granular_edmd::statistics::{Estimate, block_average};
 use granular_edmd::wall::Sinusoidal;
 use granular_edmd::{Simulation, initial};
 
-use super::lammps::{CONTACTS, Lammps};
+use super::lammps::{CONTACTS, Lammps, Means};
 use benches::state::{
     AMPLITUDE, ANGULAR_FREQUENCY, CONTACT_DURATION, DENSE, DILUTE, DISKS, HEIGHT, OSCILLATION,
 };
@@ -32,21 +31,6 @@ const LONGER: u32 = 100;
 
 /// Interval of samples in oscillations. They go through all phases of the base.
 const INTERVAL: f64 = 0.26;
-
-/// The result of a program, and the time that it took.
-pub(crate) struct Means {
-    /// Seconds for an oscillation of the base.
-    seconds: f64,
-    /// Height of the center of mass, translational and rotational energy per disk.
-    values: [Estimate; 3],
-}
-
-impl Means {
-    pub(crate) fn of(seconds: f64, samples: &[[f64; 3]]) -> Outcome<Self> {
-        let mean = |k: usize| block_average(&samples.iter().map(|sample| sample[k]).collect::<Vec<_>>());
-        Ok(Self { seconds, values: [mean(0)?, mean(1)?, mean(2)?] })
-    }
-}
 
 type Run = Simulation<ContactDuration<Frictional>, Container>;
 

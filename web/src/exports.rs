@@ -10,8 +10,8 @@
 use std::cell::RefCell;
 
 use crate::plan::Setting;
-use crate::run::{Advance, Failure, Run};
-use crate::scene::Scene;
+use crate::run::{Advance, Run};
+use crate::scene::{Failure, Scene};
 
 #[derive(Default)]
 struct Page {

@@ -13,5 +13,5 @@ mod scene;
 mod watch;
 
 pub use plan::{Mistake, Plan, Setting};
-pub use run::{Advance, Failure, Run};
-pub use scene::Scene;
+pub use run::{Advance, Run};
+pub use scene::{Failure, Scene};

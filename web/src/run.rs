@@ -9,11 +9,8 @@ use granular_edmd::wall::WallMotion;
 use granular_edmd::{Disk, Simulation};
 
 use crate::plan::{Plan, Rule, Setting};
-use crate::scene::Scene;
+use crate::scene::{Failure, Scene};
 use crate::watch::{Mark, Watch};
-
-/// An error of any part of the library, for people.
-pub type Failure = Box<dyn std::error::Error>;
 
 /// How far a run should go.
 #[derive(Debug, Clone, Copy, PartialEq)]

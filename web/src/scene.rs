@@ -8,7 +8,9 @@ use granular_edmd::wall::StartingAt;
 use granular_edmd::{Disk, Kind};
 
 use crate::plan::Setting;
-use crate::run::Failure;
+
+/// An error of any part of the library, for people.
+pub type Failure = Box<dyn std::error::Error>;
 
 const RADIUS: f64 = 0.5;
 

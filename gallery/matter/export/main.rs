@@ -28,9 +28,9 @@ use granular_edmd::trajectory::{ExtendedXyz, LammpsDump, RecordError, Recorder, 
 use serde_json::{Value, json};
 
 use gallery::command_line::{self, Failure, whole};
+use gallery::failure::named;
 use gallery::output;
 use gallery::progress::Progress;
-use gallery::results::named;
 
 /// A run in files that other programs open.
 #[derive(Parser)]

@@ -5,16 +5,7 @@ use std::error::Error;
 use granular_edmd::observable::{EnergyChangeProfile, SampleTimes, Sampled};
 use granular_edmd::study::Experiment;
 
-use crate::ramps::{Crossing, Ramp};
-
-/// Means over the collisions of a run.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Local {
-    /// Energy change over the temperature of the layer.
-    pub(crate) energy_change: f64,
-    /// Rotational over translational temperature of the layer.
-    pub(crate) temperature_ratio: f64,
-}
+use crate::ramps::{Crossing, Local, Ramp};
 
 /// Runs the box of a ramp at one of its crossings, from a lattice, and measures it by layers two diameters
 /// high. It settles for this number of oscillations, and is measured for as many.

@@ -10,7 +10,6 @@ use granular_edmd::statistics::RunningMean;
 use granular_edmd::study::Plan;
 use granular_edmd::study::vibrated_box::VibratedBox;
 
-use crate::local::Local;
 use crate::phase_diagram;
 
 /// Friction between the two branches of the lines: the loss is largest near it.
@@ -70,6 +69,15 @@ pub(crate) struct Ramp {
     /// True if friction grows, false if inelasticity does.
     pub(crate) along_friction: bool,
     pub(crate) observations: Vec<Observation>,
+}
+
+/// Means over the collisions of a run.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Local {
+    /// Energy change over the temperature of the layer.
+    pub(crate) energy_change: f64,
+    /// Rotational over translational temperature of the layer.
+    pub(crate) temperature_ratio: f64,
 }
 
 /// A transition on a ramp, seen from below and from above, with the means over the values next to it.
