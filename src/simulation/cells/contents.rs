@@ -110,7 +110,7 @@ impl Contents {
     pub(super) fn gather(&self, first: usize, step: usize, found: &mut [u32], count: usize) -> usize {
         // One bounds check serves all three cells, and one serves all that is written: the compiler knows that
         // the counts of two blocks leave room for a third one in the window.
-        let blocks = &self.blocks[first..first + 2 * step + 1];
+        let blocks = &self.blocks[first..=first + 2 * step];
         let window = &mut found[count..count + WINDOW];
         let mut taken = 0;
         for cell in [0, step, 2 * step] {
@@ -182,7 +182,7 @@ mod tests {
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
 
-    use super::{Contents, SLOTS};
+    use super::Contents;
 
     const DISKS: usize = 80;
 
