@@ -23,8 +23,9 @@ use granular_edmd::statistics::RunningMean;
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
 use gallery::command_line::{self, Failure, non_negative, positive, whole};
+use gallery::failure::named;
 use gallery::progress::Progress;
-use gallery::results::{Results, named};
+use gallery::results::Results;
 
 /// A movie of disks in a vibrated box.
 #[derive(Parser)]

@@ -8,7 +8,7 @@ use granular_edmd::collision::Elastic;
 use granular_edmd::observable::{SampleTimes, Stress, Temperatures};
 use granular_edmd::simulation::Limits;
 use granular_edmd::speed::{Circumstances, Meter, Quartiles};
-use granular_edmd::{Disk, Simulation, initial};
+use granular_edmd::{Simulation, initial};
 
 use super::measured::{Measured, Speed, Start};
 use super::smallenburg::{Smallenburg, compiler};

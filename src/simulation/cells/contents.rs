@@ -110,7 +110,7 @@ impl Contents {
     pub(super) fn gather(&self, first: usize, step: usize, found: &mut [u32], count: usize) -> usize {
         // One bounds check serves all three cells, and one serves all that is written: the compiler knows that
         // the counts of two blocks leave room for a third one in the window.
-        let blocks = &self.blocks[first..=first + 2 * step];
+        let blocks = &self.blocks[first..][..=2 * step];
         let window = &mut found[count..count + WINDOW];
         let mut taken = 0;
         for cell in [0, step, 2 * step] {
