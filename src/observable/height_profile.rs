@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use super::grid::check_heights;
 use super::table::{Table, headings};
 use super::{Accumulator, Heading, Moment, Snapshot};
+use crate::ParameterError;
 use crate::statistics::Bins;
-use crate::{Disk, ParameterError};
 
 /// The bin with the largest packing fraction, and the least packing fraction below it; made by
 /// [`HeightProfile::densest_layer`].
@@ -122,8 +122,7 @@ impl HeightProfile {
         self.samples = 0;
     }
 
-    fn add_disk(&mut self, disk: &Disk, width: f64) {
-        let (height, radius) = (disk.position().y, disk.radius());
+    fn add_disk(&mut self, height: f64, radius: f64, width: f64) {
         // A disk outside the profile counts in the first or the last bin, to which it adds no area.
         let first = self.bins.at_or_above(height - radius);
         let last = self.bins.at_or_above(height + radius).min(self.bins.count() - 1);
@@ -144,8 +143,14 @@ fn area_below(height: f64, radius: f64) -> f64 {
 
 impl Accumulator for HeightProfile {
     fn add(&mut self, snapshot: &Snapshot<'_>) {
-        let width = snapshot.domain().width();
-        snapshot.disks().iter().for_each(|disk| self.add_disk(disk, width));
+        let (width, period) = (snapshot.domain().width(), snapshot.domain().periods().y);
+        for disk in snapshot.disks() {
+            self.add_disk(disk.position().y, disk.radius(), width);
+            // The images hold what extends beyond a periodic end.
+            for shift in [-period, period].into_iter().filter(|_| period > 0.0) {
+                self.add_disk(disk.position().y + shift, disk.radius(), width);
+            }
+        }
         self.samples += 1;
     }
 

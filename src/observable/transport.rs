@@ -48,11 +48,11 @@ type Moments = [DVec2; MOMENTS];
 /// is 1). In two dimensions the slopes grow slowly with the longest lag, so report it, and the number of
 /// disks. Choose lags from a few mean free times up to the time in which sound crosses the box.
 ///
-/// A run ends with an error if the domain is not periodic in both directions, if there is gravity, if a disk
-/// meets a wall, if a collision of disks changes the energy by more than 1e-6 of theirs, or if disks change
-/// otherwise than by collisions, be it by an inlet, by a driving, or between two runs: measure the changed gas
-/// with another observer. The first stretch, as long as the longest lag, only finds the pressure. A run that
-/// does not continue the previous one begins anew: the measurements so far stay. The errors come from blocks
+/// One observer measures one gas, in one run or in runs that continue each other. A run ends with an error if
+/// it does not continue the previous one, if the domain is not periodic in both directions or another one, if
+/// there is gravity, if a disk meets a wall, if a collision of disks changes the energy by more than 1e-6 of
+/// theirs, or if disks change otherwise than by collisions, be it by an inlet, by a driving, or between two
+/// runs. The first stretch, as long as the longest lag, only finds the pressure. The errors come from blocks
 /// of origins.
 ///
 /// ```
@@ -118,6 +118,15 @@ impl Mover {
             moment_of_inertia: disk.moment_of_inertia(),
             radius: disk.radius(),
         }
+    }
+
+    /// Tells whether this is another disk's motion but for this rounding of speeds.
+    fn is(&self, other: &Self, rounding: f64) -> bool {
+        let spin = (self.radius * (self.angular_velocity - other.angular_velocity)).abs();
+        (self.mass, self.moment_of_inertia, self.radius)
+            == (other.mass, other.moment_of_inertia, other.radius)
+            && self.velocity.distance(other.velocity) <= rounding
+            && spin <= rounding
     }
 
     fn energy(&self) -> f64 {
@@ -226,30 +235,17 @@ impl TransportCoefficients {
         self.time = time;
     }
 
-    /// Forgets the path so far, so that the next sample is a new origin.
-    fn begin_anew(&mut self) {
-        self.movers.clear();
-        self.rates = [DVec2::ZERO; MOMENTS];
-        self.moments = [DVec2::ZERO; MOMENTS];
-        self.origin = None;
-        for lags in &mut self.lags {
-            lags.forget_samples();
-        }
-    }
-
-    /// Replaces the kept velocities by those of a snapshot, which are the same but for rounding if only
+    /// Replaces the kept motions by those of a snapshot, which are the same but for rounding if only
     /// collisions have changed them.
     fn take_motions(&mut self, disks: &[Disk]) {
         let mass: f64 = disks.iter().map(Disk::mass).sum();
         let frame = disks.iter().map(|disk| disk.mass() * disk.velocity()).sum::<DVec2>() / mass;
         let movers: Vec<Mover> = disks.iter().map(|disk| Mover::new(disk, frame)).collect();
         let energy: f64 = movers.iter().map(|mover| mover.mass * mover.velocity.length_squared()).sum();
-        let rounding = ROUNDING * (energy / mass).sqrt();
-        let is_same = |(one, other): (&Mover, &Mover)| one.velocity.distance(other.velocity) <= rounding;
-        let are_same = self.movers.len() == movers.len() && self.movers.iter().zip(&movers).all(is_same);
-        if self.movers.is_empty() {
-            self.begin_anew();
-        } else if !are_same {
+        let thermal = 2.0 * movers.iter().map(Mover::energy).sum::<f64>() / mass;
+        let same = |(one, other): (&Mover, &Mover)| one.is(other, ROUNDING * thermal.sqrt());
+        let are_same = self.movers.len() == movers.len() && self.movers.iter().zip(&movers).all(same);
+        if !self.movers.is_empty() && !are_same {
             let name = "time by which disks have changed otherwise than in collisions";
             self.fault = Some(ParameterError::new(name, "never, for transport coefficients", self.time));
         }
@@ -301,11 +297,15 @@ impl Observer for TransportCoefficients {
             accept(periods.min_element() > 0.0, "period of the domain", "positive", periods.min_element());
         let gravity = moment.gravity().larger();
         let weightless = accept(gravity == 0.0, "gravity", "0 for transport coefficients", gravity);
-        self.fault = periodic.and(weightless).err();
-        if self.stretch.begin(moment.time()) | (self.domain != Some(moment.domain())) {
-            self.begin_anew();
-        }
-        self.domain = Some(moment.domain());
+        let (begins, is_first) = (self.stretch.begin(moment.time()), self.domain.is_none());
+        let (name, previous) =
+            ("start of the run", "the end of the previous one, for transport coefficients");
+        let goes_on = accept(is_first || !begins, name, previous, moment.time());
+        let area = moment.domain().width() * moment.domain().height();
+        let domain = *self.domain.get_or_insert(moment.domain());
+        let (name, same) = ("area of the domain", "that of the previous run, for transport coefficients");
+        let stays = accept(domain == moment.domain(), name, same, area);
+        self.fault = periodic.and(weightless).and(goes_on).and(stays).err();
     }
 
     fn on_collision(&mut self, collision: &Collision) {

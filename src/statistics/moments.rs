@@ -20,7 +20,9 @@ impl Moments {
         self.weight += weight;
         let before = value - self.mean;
         self.mean += before * weight / self.weight;
-        self.squares += weight * before * (value - self.mean);
+        let squares = weight * before * (value - self.mean);
+        // Both factors have one sign, but for rounding among numbers that are nearly equal.
+        self.squares += if squares < 0.0 { 0.0 } else { squares };
     }
 }
 

@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-use granular_edmd::boundary::{Container, Domain, Region};
+use granular_edmd::boundary::{Boundary, Container, Domain, Region};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    DenseLayer, Fields, Grid, HeightProfile, Observer, SampleTimes, Sampled, Snapshot,
+    Accumulator, DenseLayer, Fields, Grid, HeightProfile, Observer, SampleTimes, Sampled, Snapshot,
 };
 use granular_edmd::{Disk, ParameterError, initial};
 
@@ -35,6 +35,17 @@ fn a_profile_holds_the_area_of_all_disks() -> Result<(), Box<dyn std::error::Err
         assert!((area / (1000.0 * PI / 4.0) - 1.0).abs() < 1e-12, "{bins} bins: {area}");
         assert_eq!((profile.samples(), profile.next_sample()), (3, 4.0));
     }
+    Ok(())
+}
+
+#[test]
+fn a_disk_across_a_periodic_end_is_on_both_sides() -> Result<(), ParameterError> {
+    let mut profile = Sampled::new(HeightProfile::new(0.0, 10.0, 10)?, times()?);
+    let domain = Container::periodic(4.0, 10.0)?.domain();
+    profile.on_sample(&Snapshot::new(1.0, &[disk(1.0, 0.0)?, disk(3.0, 9.75)?], domain, 0.0));
+    let values: Vec<f64> = profile.iter().map(|(_, packing)| packing).collect();
+    assert!((values.iter().sum::<f64>() - PI / 8.0).abs() < 1e-15, "{values:?}");
+    assert!(values[0] > PI / 32.0 && values[9] > PI / 32.0, "{values:?}");
     Ok(())
 }
 
@@ -170,6 +181,21 @@ fn a_mixture_has_the_flow_and_the_temperatures_of_its_masses() -> Result<(), Par
     assert!((cell.rotational_temperature - rotational).abs() < 1e-13);
     assert_eq!(cell.number_density, 3.0 / 8.0);
     assert!((cell.packing_fraction - PI * 21.0 / 16.0 / 8.0).abs() < 1e-14);
+    Ok(())
+}
+
+/// Rounding would make some temperatures negative, and a file of them could not be read.
+#[test]
+fn a_disk_alone_has_no_negative_temperature() -> Result<(), Box<dyn std::error::Error>> {
+    for k in 1..2000_u32 {
+        let mut fields = Fields::new(Grid::new(Region::new(DVec2::ZERO, DVec2::splat(10.0)), 1, 1)?);
+        let (mass, angle) = (0.3 + 0.0013 * f64::from(k), f64::from(k));
+        let velocity = DVec2::new(libm::sin(angle), libm::cos(2.0 * angle));
+        let disk = disk(5.0, 5.0)?.with_mass(mass)?.with_velocity(velocity)?.with_angular_velocity(angle)?;
+        fields.add(&Snapshot::new(1.0, &[disk], DOMAIN, 0.0));
+        let cell = fields.cell(0, 0).ok_or("no cell")?;
+        assert!(cell.translational_temperature >= 0.0 && cell.rotational_temperature >= 0.0, "{cell:?}");
+    }
     Ok(())
 }
 

@@ -7,7 +7,7 @@ use granular_edmd::collision::{CollisionRule, Elastic, Rough, Smooth};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{SampleTimes, TransportCoefficients};
 use granular_edmd::simulation::{Inlet, Limits, RunError, WhiteNoise};
-use granular_edmd::{Disk, Simulation, initial};
+use granular_edmd::{Disk, ParameterError, Simulation, initial};
 
 type Result<T = ()> = std::result::Result<T, Box<dyn std::error::Error>>;
 
@@ -46,22 +46,46 @@ fn a_gas_that_is_not_elastic_or_has_walls_is_refused() -> Result {
     Ok(())
 }
 
+/// The changes are of a velocity, a spin, a radius, and the number of disks.
 #[test]
 fn disks_that_change_otherwise_than_by_collisions_are_refused() -> Result {
     let changed = "changed otherwise than in collisions must be never";
-    let (mut transport, mut run) = (coefficients()?, gas(Elastic, empty()?)?);
-    run.run_until(50.0, &mut transport)?;
-    run.map_disks(|_, disk| disk.with_velocity(-2.0 * disk.velocity()))?;
-    let error = reason(run.run_until(100.0, &mut transport))?;
-    assert!(error.contains(changed), "{error}");
-
-    let mut transport = coefficients()?;
-    run.run_until(150.0, &mut transport)?;
+    let changes: [fn(Disk) -> std::result::Result<Disk, ParameterError>; 3] = [
+        |disk| disk.with_velocity(-2.0 * disk.velocity()),
+        |disk| disk.with_angular_velocity(7.0),
+        |disk| Disk::new(disk.position(), 0.3)?.with_velocity(disk.velocity()),
+    ];
+    for change in changes {
+        let (mut transport, mut run) = (coefficients()?, gas(Elastic, empty()?)?);
+        run.run_until(50.0, &mut transport)?;
+        run.map_disks(|_, disk| change(disk))?;
+        let error = reason(run.run_until(100.0, &mut transport))?;
+        assert!(error.contains(changed), "{error}");
+    }
+    let mut run = gas(Elastic, empty()?)?;
     let newcomer = Disk::new(DVec2::ZERO, 0.2)?;
     let places = [DVec2::ZERO, DVec2::splat(12.0)];
     run.add_inlet(Inlet::new(places, [newcomer], SampleTimes::every(7.0)?, 1)?)?;
-    let error = reason(run.run_until(200.0, &mut transport))?;
+    let error = reason(run.run_until(200.0, &mut coefficients()?))?;
     assert!(error.contains(changed), "{error}");
+    Ok(())
+}
+
+/// The pressure and the area belong to one gas. So an observer of several would mix them.
+#[test]
+fn one_observer_measures_one_gas() -> Result {
+    let (mut transport, mut run) = (coefficients()?, gas(Elastic, empty()?)?);
+    run.run_until(50.0, &mut transport)?;
+    run.run_until(99.5, &mut transport)?;
+    let mut resumed = Simulation::resume(&run.checkpoint(), Elastic, empty()?).build()?;
+    resumed.run_until(120.0, &mut transport)?;
+
+    let error = reason(gas(Elastic, empty()?)?.run_until(50.0, &mut transport.clone()))?;
+    assert!(error.contains("start of the run must be the end of the previous one"), "{error}");
+    let mut wider = gas(Elastic, Container::periodic(14.0, 12.0)?)?;
+    wider.run_until(120.0, &mut ())?;
+    let error = reason(wider.run_until(200.0, &mut transport))?;
+    assert!(error.contains("area of the domain must be that of the previous run"), "{error}");
     Ok(())
 }
 
