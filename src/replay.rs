@@ -162,7 +162,7 @@ where
         let start = &self.states[0];
         // Disks that touch at the start collide at once.
         let run = if from < start.time() { Some(start.clone()) } else { self.at(from)? };
-        run.map_or(Ok(Vec::new()), |run| self.played(run, to))
+        run.filter(|run| run.time() <= to).map_or(Ok(Vec::new()), |run| self.played(run, to))
     }
 
     /// Returns the last collisions of a disk, up to and at an absolute time, at most `count` of them, in

@@ -68,6 +68,7 @@ impl Arrivals {
 
     /// Forgets all arrivals.
     pub fn clear(&mut self) {
+        self.stretch.forget();
         self.times.clear();
         self.counts.clear();
         self.present = 0;

@@ -10,9 +10,6 @@ use crate::statistics::{BlockedMean, Estimate};
 /// Largest number of lags.
 const MOST_LAGS: usize = 1 << 20;
 
-/// Rounding of a sample time, relative to the sum of the time and the interval.
-const ROUNDING: f64 = 1e-9;
-
 /// The last samples of a run, and means over pairs of a sample and a later one: every sample is an origin.
 ///
 /// Samples are equally spaced. After a gap, or before another run, it forgets the samples so far and keeps
@@ -49,7 +46,7 @@ impl<V> Lags<V> {
     /// Adds a sample and its pairs with the earlier ones. It leaves out pairs whose value is NaN.
     pub(super) fn push(&mut self, time: f64, sample: V, pair: impl Fn(&V, &V) -> f64) {
         let interval = self.sample_times.interval();
-        let rounding = ROUNDING * (time.abs() + interval);
+        let rounding = self.sample_times.rounding(time);
         if self.latest.is_none_or(|latest| (time - latest - interval).abs() > rounding) {
             self.forget_samples();
         }

@@ -12,6 +12,9 @@ use crate::quantity::{accept, positive};
 use crate::statistics::{Bins, BlockedMean, Estimate, RunningMean};
 use crate::{Disk, Kind, ParameterError};
 
+/// Number of walls that a domain can have at its sides and ends.
+const SIDES: usize = 4;
+
 /// The pair correlation function g(r), also called radial distribution function.
 ///
 /// It is the number of disks at a distance $`r`$ from a disk, divided by that number in a gas without
@@ -26,16 +29,18 @@ use crate::{Disk, Kind, ParameterError};
 /// of their centers, to the nearest image. $`N_i`$ and $`N_j`$ count the disks in the region, whose area is
 /// $`A`$. A disk is not its own partner: if $`i`$ and $`j`$ are of one kind, it has $`N - 1`$ partners among
 /// the $`N`$ disks of that kind in the box. Shells have their exact areas. In a periodic box, the region is
-/// the whole domain. The region keeps a distance of the range from walls, so that all shells lie inside the
-/// domain. A region given by [`within`](Self::within) should keep that distance, too. Where the density
-/// varies, under gravity for example, choose a thin layer.
+/// the whole domain. The region keeps a distance of the range from the sides and ends of the domain, so that
+/// all shells lie inside. It knows of no walls between them: if there are parts, give a region by
+/// [`within`](Self::within) that keeps that distance from all walls. Where the density varies, under gravity
+/// for example, choose a thin layer.
 ///
 /// The errors are those of the numbers of pairs, from blocks of samples. The numbers of disks in the region
 /// are taken as exact, which is nearly true if the region holds many disks. If it holds only a few, take the
 /// error from the scatter of several runs. The cost of a sample is proportional to the number of disks.
 ///
 /// A run ends with an error if the range is more than half of a period, if no finite region is left between
-/// the walls, or if the region is not inside the domain.
+/// the walls, if there are more walls than four and no region is given, or if the region is not inside the
+/// domain.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;
@@ -183,6 +188,9 @@ impl PairCorrelation {
 
 impl Accumulator for PairCorrelation {
     fn check(&self, moment: &Moment) -> Result<(), ParameterError> {
+        let (has_room, walls) = (self.region.is_some() || moment.wall_count() <= SIDES, moment.wall_count());
+        let requirement = "at most 4, or the correlation within a region away from them";
+        accept(has_room, "number of walls", requirement, walls as f64)?;
         self.counted(&moment.domain()).map(|_| ())
     }
 

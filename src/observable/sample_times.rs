@@ -115,7 +115,7 @@ impl SampleTimes {
         if !time.is_finite() {
             return;
         }
-        let rounding = ROUNDING * (time.abs() + self.interval);
+        let rounding = self.rounding(time);
         if !self.started || time < self.time_of(self.beat.saturating_sub(1)) - rounding {
             self.begin_anew(time, rounding);
         } else if self.time_of(self.beat) < time - rounding {
@@ -136,6 +136,11 @@ impl SampleTimes {
         if first < time - rounding {
             self.advance_past(time + rounding);
         }
+    }
+
+    /// Returns the difference up to which times near this one count as the same.
+    pub(super) fn rounding(&self, time: f64) -> f64 {
+        ROUNDING * (time.abs() + self.interval)
     }
 
     fn time_of(&self, beat: i64) -> f64 {

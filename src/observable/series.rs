@@ -12,7 +12,8 @@ use crate::statistics::{Estimate, block_average};
 /// older than the series.
 ///
 /// With the feature `serde`, a series can be written to a file and read back if its observable and its values
-/// can.
+/// can. JSON knows no NaN, so a series with values that are not defined cannot be read back from it; from a
+/// [checkpoint](crate::simulation::Checkpoint::write_with) it can.
 ///
 /// ```
 /// use granular_edmd::observable::{OrderParameters, SampleTimes, Series};

@@ -135,6 +135,7 @@ impl Stress {
 
     /// Forgets all measurements so far.
     pub fn clear(&mut self) {
+        self.stretch.forget();
         self.transferred = [0.0; 4];
         for tensor in [&mut self.kinetic, &mut self.collisional, &mut self.total] {
             *tensor = Tensor::default();
@@ -176,7 +177,9 @@ fn share_in(region: &Region, from: DVec2, to: DVec2) -> f64 {
 
 impl Observer for Stress {
     fn on_start(&mut self, moment: &Moment) {
-        self.domain = Some(moment.domain());
+        if self.domain.replace(moment.domain()) != Some(moment.domain()) {
+            self.stretch.forget();
+        }
         let area = self.area(&moment.domain());
         let requirement = "finite: choose a region";
         let finite = accept(area.is_finite(), "area of the domain", requirement, area);

@@ -2,9 +2,6 @@
 
 use super::SampleTimes;
 
-/// Rounding of a time, relative to the sum of the time and the interval.
-const ROUNDING: f64 = 1e-9;
-
 /// The stretch of time since the latest sample.
 ///
 /// A stretch counts if it is a whole interval of the clock. If a run begins off the beat, its first stretch
@@ -25,7 +22,7 @@ impl Stretch {
     }
 
     fn is_near(&self, one: f64, other: f64) -> bool {
-        (one - other).abs() <= ROUNDING * (other.abs() + self.sample_times.interval())
+        (one - other).abs() <= self.sample_times.rounding(other)
     }
 
     /// Notes that a run starts at this time, and returns true if the run begins a new stretch.
@@ -36,6 +33,11 @@ impl Stretch {
             self.start = Some(time);
         }
         !goes_on
+    }
+
+    /// Forgets the start of the stretch. It then does not count.
+    pub(super) const fn forget(&mut self) {
+        self.start = None;
     }
 
     /// Notes that a run ends at this time.

@@ -8,6 +8,9 @@ use super::{Accumulator, Grid, Heading, Moment, Snapshot};
 use crate::statistics::{BlockedMean, Estimate, Histogram};
 use crate::{Disk, ParameterError};
 
+/// Least ratio of the thermal speed to the speed of all that counts as temperature. Below it is rounding.
+const LEAST: f64 = 1e-10;
+
 /// The distribution of velocities: histograms of both components and of the speed, cumulants
 /// and kurtosis.
 ///
@@ -22,7 +25,7 @@ use crate::{Disk, ParameterError};
 /// Moments of a few disks are smaller than the moments of their distribution, since the sample itself defines
 /// $`T`$ and the mean. The moments are therefore divided by the moments of a Maxwellian gas of as many disks.
 /// All cumulants of a Maxwellian gas are therefore 0, for any number of disks. Errors come from blocks of
-/// samples.
+/// samples. A sample is left out if its disks all move alike, but for rounding.
 ///
 /// Velocities are taken in the frame of the container, unless [`about_mean`](Self::about_mean) or
 /// [`about_flow`](Self::about_flow) subtracts a mean velocity.
@@ -193,7 +196,9 @@ impl Accumulator for VelocityDistribution {
         let (peculiar, freedom) = self.frame.peculiar(snapshot.disks());
         let sum = |term: &dyn Fn(DVec2, f64) -> f64| peculiar.iter().map(|&(v, left)| term(v, left)).sum();
         let squares: f64 = sum(&|v, _| v.length_squared());
-        if freedom < 1.0 || squares <= 0.0 {
+        let whole: f64 =
+            snapshot.disks().iter().map(|disk| disk.mass() * disk.velocity().length_squared()).sum();
+        if freedom < 1.0 || squares <= LEAST * LEAST * whole {
             return;
         }
         let thermal = (squares / freedom).sqrt();

@@ -99,6 +99,7 @@ impl WallStress {
 
     /// Forgets all that was measured so far.
     pub fn clear(&mut self) {
+        self.stretch.forget();
         for received in self.walls.values_mut() {
             (received.impulse, received.means) = ([0.0; 2], Default::default());
         }

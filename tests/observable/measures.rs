@@ -1,11 +1,12 @@
 //! Pairs, displacements and correlations in time of known states and of chance.
 
-use granular_edmd::boundary::{Container, Region};
+use granular_edmd::boundary::{Boundary, Container, Region};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    Accumulator, CollisionHistograms, MeanSquaredDisplacement, Observer, PairCorrelation, SampleTimes,
-    Sampled, Snapshot, Stress, TimeCorrelation, Velocities, VelocityDistribution, WallStress, from_fn,
+    Accumulator, CollisionHistograms, MeanSquaredDisplacement, Moment, Observer, PairCorrelation,
+    SampleTimes, Sampled, Snapshot, Stress, TimeCorrelation, Velocities, VelocityDistribution, WallStress,
+    from_fn,
 };
 use granular_edmd::statistics::Estimate;
 use granular_edmd::{Disk, Kind, ParameterError, Simulation, initial};
@@ -82,6 +83,9 @@ fn runs_in_which_no_pair_can_be_counted_end_with_the_reason() -> Outcome {
     let said = reason(Container::closed(20.0, 12.0)?, &mut pairs);
     assert!(said.contains("or have a region, but is 7"), "{said}");
     assert!(reason(Container::open(20.0)?, &mut pairs).contains("or have a region, but is 7"));
+    let moment = Moment::new(0.0, 0, 5, Container::periodic(20.0, 20.0)?.domain(), 0.0);
+    let said = PairCorrelation::new(1.0, 3)?.check(&moment).unwrap_err().to_string();
+    assert!(said.contains("number of walls must be at most 4, or the correlation within"), "{said}");
     let large = Region::new(DVec2::new(-1.0, 0.0), DVec2::new(5.0, 5.0));
     let said = reason(
         Container::closed(20.0, 12.0)?,
@@ -117,6 +121,26 @@ fn free_disks_move_by_their_speed() -> Outcome {
     let diffusion = displacement.diffusion_coefficient();
     assert!((diffusion.mean() - squared * 75.0 / 20.0).abs() < 1e-9 * squared);
     assert_eq!(diffusion.samples(), 80);
+    Ok(())
+}
+
+/// At late times, an interval of the clock is smaller than a billionth of the time.
+#[test]
+fn a_late_gap_is_a_gap() -> Outcome {
+    let disk = Disk::new(DVec2::splat(2.0), 0.5)?.with_velocity(DVec2::new(3.0, 4.0))?;
+    for (start, interval) in [(0.0, 1e-3), (1e6, 1e-3), (1e7, 1e-2), (1e9, 1e-5)] {
+        let container = Container::periodic(8.0, 8.0)?;
+        let mut run = Simulation::builder(Elastic, container).disks([disk]).start_time(start).build()?;
+        let mut squared = MeanSquaredDisplacement::new(2, SampleTimes::every(interval)?)?;
+        let at = |k: u32| start + f64::from(k) * interval;
+        for k in 0..50 {
+            run.run_until(at(3 * k + 1), &mut squared)?;
+            run.run_until(at(3 * k + 2) - 0.01 * interval, &mut ())?;
+            run.run_until(at(3 * k + 3), &mut squared)?;
+        }
+        let (_, lag) = squared.iter().nth(1).ok_or("no lag")?;
+        assert!((lag.mean() / (25.0 * interval * interval) - 1.0).abs() < 0.05, "{start}: {lag}");
+    }
     Ok(())
 }
 

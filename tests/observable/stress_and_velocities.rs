@@ -1,12 +1,12 @@
 //! Stress, histograms, and velocities about a flow, of known states and of chance.
 
-use granular_edmd::boundary::{Container, Region, Wall};
+use granular_edmd::boundary::{Boundary, Container, Region, Wall};
 use granular_edmd::collision::{Contact, Elastic, Impulse};
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
-    Accumulator, BetweenKinds, Collision, CollisionHistograms, Grid, Moment, Observable, Observer, OfKind,
-    PairCorrelation, Partner, SampleTimes, Sampled, Snapshot, Stress, Temperatures, TemperaturesAboutFlow,
-    VelocityDistribution, WallStress,
+    Accumulator, Arrivals, BetweenKinds, Collision, CollisionHistograms, Grid, Moment, Observable, Observer,
+    OfKind, PairCorrelation, Partner, SampleTimes, Sampled, Snapshot, Stress, Temperatures,
+    TemperaturesAboutFlow, VelocityDistribution, WallStress,
 };
 use granular_edmd::statistics::Histogram;
 use granular_edmd::{Disk, Kind, ParameterError, Simulation, initial};
@@ -68,6 +68,71 @@ fn a_run_in_pieces_has_the_stress_of_a_run_in_one() -> Outcome {
     // The run began within an interval, whose rest does not count.
     assert_eq!(whole.1.samples(), 9);
     assert_eq!(whole.0.pressure(floor + 1), None);
+    Ok(())
+}
+
+/// A ball meets the floor twice in each of ten intervals, the first half of one of which is cleared.
+#[test]
+fn an_interval_that_is_cleared_in_its_middle_does_not_count() -> Outcome {
+    let container = Container::closed(5.0, 3.0)?;
+    let floor = container.index(Wall::Floor).unwrap();
+    let ball = Disk::new(DVec2::new(2.0, 1.0), 0.5)?.with_velocity(DVec2::new(0.0, 8.0))?;
+    let mut run = Simulation::builder(Elastic, container).disks([ball]).build()?;
+    let walls = WallStress::new(times()?).with_wall(floor, 5.0)?;
+    let (mut stress, mut walls, mut arrivals) =
+        (Stress::new(times()?), walls, Arrivals::at([floor], times()?));
+    for end in [2.5, 3.0, 7.0] {
+        run.run_until(end, &mut (&mut stress, &mut walls, &mut arrivals))?;
+        if end < 3.0 {
+            stress.clear();
+            walls.clear();
+            arrivals.clear();
+        } else {
+            let counted = end as u64 - 3;
+            let pressure = walls.pressure(floor).ok_or("not watched")?;
+            assert_eq!((stress.samples(), pressure.samples()), (counted, counted));
+            assert_eq!(arrivals.counts(), vec![2; counted as usize]);
+        }
+    }
+    assert!((walls.pressure(floor).ok_or("not watched")?.mean() - 2.0 * 2.0 * 8.0 / 5.0).abs() < 1e-12);
+    Ok(())
+}
+
+/// The second run begins where the first ended, in another box: the interval between is of no box.
+#[test]
+fn an_interval_of_two_domains_does_not_count() -> Outcome {
+    let mut stress = Stress::new(times()?);
+    let other = Container::periodic(5.0, 3.0)?.domain();
+    stress.on_start(&Moment::new(0.0, 0, 4, BOX, 0.0));
+    stress.on_end(&Moment::new(0.5, 0, 4, BOX, 0.0));
+    stress.on_start(&Moment::new(0.5, 0, 4, other, 0.0));
+    stress.on_sample(&Snapshot::new(1.0, &[], other, 0.0));
+    assert_eq!(stress.samples(), 0);
+    stress.on_sample(&Snapshot::new(2.0, &[], other, 0.0));
+    assert_eq!(stress.samples(), 1);
+    Ok(())
+}
+
+/// What is left of the velocities is rounding, and no temperature.
+#[test]
+fn disks_that_all_move_alike_have_no_distribution() -> Outcome {
+    let grid = Grid::new(Region::new(DVec2::ZERO, DVec2::splat(10.0)), 2, 2)?;
+    for k in 1..200_u32 {
+        let velocity = DVec2::new(libm::sin(f64::from(k)), libm::cos(f64::from(3 * k)));
+        let disk = |place: u32| {
+            let at = DVec2::splat(0.5 + f64::from(place));
+            Disk::new(at, 0.5)?.with_mass(0.3 + 0.37 * f64::from(place))?.with_velocity(velocity)
+        };
+        let disks = (0..10).map(disk).collect::<Result<Vec<_>, _>>()?;
+        let snapshot = Snapshot::new(0.0, &disks, BOX, 0.0);
+        let new = || VelocityDistribution::new(4.0, 8);
+        for mut velocities in [new()?.about_mean(), new()?.about_flow(grid)] {
+            velocities.add(&snapshot);
+            assert_eq!(velocities.second_cumulant().samples(), 0, "{velocity}");
+        }
+        let alone = Snapshot::new(0.0, &disks[..1], BOX, 0.0);
+        assert!(TemperaturesAboutFlow::new(grid).measure(&alone).horizontal.is_nan());
+    }
     Ok(())
 }
 

@@ -42,6 +42,7 @@ fn any_collision_is_made_again() {
         assert!(played.iter().map(|replayed| replayed.collision).eq(all.iter().copied()));
         assert!(played.iter().map(|replayed| replayed.number).eq(1..=all.len() as u64));
         let window = replay.collisions(5.0, 9.0).unwrap();
+        assert!(replay.collisions(9.0, 5.0).unwrap().is_empty());
         let within = |replayed: &&Replayed| (5.0..=9.0).contains(&replayed.collision.time);
         assert!(window.iter().eq(played.iter().filter(within)));
         for number in [1, 2, 77, 400, all.len() as u64] {
