@@ -1,0 +1,103 @@
+//! The answers of a vessel to the engine.
+
+use std::borrow::Cow;
+
+use glam::DVec2;
+
+use super::{Vessel, Wall};
+use crate::boundary::{Boundary, Domain, FirstTouch, Region, Surface, Touch};
+use crate::{Fingerprint, Flight};
+
+/// Relative difference of radii below which a disk counts as large as a hollow.
+const TIGHT: f64 = 1e-9;
+
+impl Boundary for Vessel {
+    fn domain(&self) -> Domain {
+        self.container.domain()
+    }
+
+    fn interior(&self) -> Domain {
+        self.container.interior()
+    }
+
+    fn wall_count(&self) -> usize {
+        self.container.wall_count() + self.walls.len()
+    }
+
+    fn wall_name(&self, wall: usize) -> Cow<'_, str> {
+        let known = wall.checked_sub(self.container.wall_count()).and_then(|brick| self.walls.get(brick));
+        let Some(placed) = known.map(|known| &self.parts[known.part]) else {
+            return self.container.wall_name(wall);
+        };
+        match placed.part.bricks().len() {
+            1 => placed.name.as_str().into(),
+            bricks if wall - placed.first < bricks => {
+                format!("{}, brick {}", placed.name, wall - placed.first).into()
+            }
+            bricks => format!("{}, corner {}", placed.name, wall - placed.first - bricks).into(),
+        }
+    }
+
+    fn set_time_origin(&mut self, origin: f64) {
+        self.container.set_time_origin(origin);
+        self.origin = origin;
+        for placed in &mut self.parts {
+            placed.phase = placed.part.phase(origin);
+        }
+    }
+
+    fn may_touch(&self, region: &Region, radius: f64) -> bool {
+        // The region is one of centers. The margin keeps rounding from hiding a touch at its edge.
+        let reach = 1.001 * radius;
+        let mut near = self.index.near(region.min - reach, region.max + reach);
+        self.container.may_touch(region, radius)
+            || near.any(|entry| {
+                let region = Region::new(region.min - entry.image, region.max - entry.image);
+                let (wall, travel) = self.wall(entry.wall as usize);
+                travel.may_reach(&wall.brick, &region, reach)
+            })
+    }
+
+    fn first_touch(&self, flight: &Flight, until: f64) -> FirstTouch<Touch> {
+        self.first_touch_with_parts(flight, until, self.container.first_touch(flight, until))
+    }
+
+    fn surface(&self, wall: usize, position: DVec2, time: f64) -> Surface<'_> {
+        match wall.checked_sub(self.container.wall_count()) {
+            Some(brick) => self.surface_of_brick(brick, position, time),
+            None => self.container.surface(wall, position, time),
+        }
+    }
+
+    fn place(&self, wall: usize, time: f64) -> Option<DVec2> {
+        let Some(brick) = wall.checked_sub(self.container.wall_count()) else {
+            return self.container.place(wall, time);
+        };
+        let Wall { part, brick } = self.walls.get(brick)?;
+        let placed = &self.parts[*part];
+        Some(placed.part.travel().pose(placed.phase.after(time)).outward(brick.landmarks().next()?))
+    }
+
+    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+        let parts = self.overlap_with_parts(position, radius, time);
+        let all = self.container.overlap(position, radius, time).into_iter().chain(parts);
+        all.filter(|&(_, depth)| depth > 0.0).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    fn wall_lines(&self, time: f64) -> Vec<Vec<DVec2>> {
+        self.outline(self.origin + time).map(|(_, line)| line).collect()
+    }
+
+    fn tight_fit(&self, radius: f64) -> Option<usize> {
+        let first = self.hollows.partition_point(|&(hollow, _)| hollow < radius * (1.0 - TIGHT));
+        let &(hollow, wall) = self.hollows.get(first)?;
+        (hollow <= radius * (1.0 + TIGHT)).then_some(wall)
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        let vessel = Fingerprint::of("Vessel").part(self.container.fingerprint()?);
+        self.parts.iter().try_fold(vessel, |vessel, placed| {
+            Some(vessel.text(&placed.name).part(placed.part.fingerprint()?))
+        })
+    }
+}
