@@ -14,7 +14,8 @@ use crate::statistics::{BlockedMean, Estimate};
 /// Every sample is a time origin, and the lags are whole numbers of intervals. Positions are unwrapped at
 /// periodic sides and ends. A drift of all disks counts as displacement. Each lag takes the disks that
 /// are there at both of its ends. If the periods of the domain change, or time jumps, the observer begins
-/// with new origins. The errors come from blocks of origins.
+/// with new origins. Disks that are put elsewhere between two runs count as displaced: measure them with
+/// another observer. The errors come from blocks of origins.
 ///
 /// A sample costs time and memory in proportion to the number of disks and of lags.
 ///

@@ -8,13 +8,14 @@ use glam::DVec2;
 use super::Simulation;
 use super::errors::Named;
 use super::events::Counters;
+use super::inlet::Inlet;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::error::Rounded;
 use crate::observable::Partner;
 use crate::scheduler::EventScheduler;
 
-/// Fewest collisions of which a share says something.
+/// Fewest collisions of which a share says something, and fewest disks that wait too long at an inlet.
 const FEWEST: u64 = 1000;
 
 /// Way of a wall that counts as a jump, relative to a typical diameter.
@@ -22,7 +23,8 @@ const JUMP: f64 = 1e-6;
 
 /// A fact that a run noticed and survived, and that its caller may not have wanted.
 ///
-/// Warnings follow from the [`Counters`], so checkpoints and records of studies have them, too.
+/// Warnings follow from the [`Counters`], so checkpoints and records of studies have them, too; only those
+/// about inlets come from the simulation itself.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
@@ -47,6 +49,13 @@ pub enum Warning {
         /// Number of all collisions, with disks or walls.
         collisions: u64,
     },
+    /// A thousand disks or more wait at an inlet. It may have no room at all, as inside of a part.
+    DisksWait {
+        /// Index of the inlet.
+        inlet: usize,
+        /// Number of disks that wait there.
+        waiting: usize,
+    },
 }
 
 impl fmt::Display for Warning {
@@ -63,6 +72,10 @@ impl fmt::Display for Warning {
                 formatter,
                 "{elastic} of {collisions} collisions lost nothing, since they came within the contact duration: \
                  it is longer than the time between collisions, or matter is at rest"
+            ),
+            Self::DisksWait { inlet, waiting } => write!(
+                formatter,
+                "{waiting} disks wait at inlet {inlet}: disks or walls take its room, or it opens too often"
             ),
         }
     }
@@ -98,7 +111,7 @@ impl Counters {
 
 impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns what the simulation noticed and survived since it was built: the warnings of its
-    /// [`counters`](Self::counters), with the names of walls.
+    /// [`counters`](Self::counters), with the names of walls, and those about its inlets.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = self.counters.warnings();
         for warning in &mut warnings {
@@ -106,6 +119,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
                 *name = self.name_of(Partner::Wall(*wall));
             }
         }
+        let waiting = self.inlets.iter().map(Inlet::waiting).enumerate();
+        let crowded = waiting.filter(|&(_, waiting)| waiting as u64 >= FEWEST);
+        warnings.extend(crowded.map(|(inlet, waiting)| Warning::DisksWait { inlet, waiting }));
         warnings
     }
 

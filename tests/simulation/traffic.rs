@@ -11,7 +11,7 @@ use granular_edmd::initial;
 use granular_edmd::observable::{Arrivals, OfKind, SampleTimes};
 #[cfg(feature = "serde")]
 use granular_edmd::simulation::Checkpoint;
-use granular_edmd::simulation::{BuildError, Inlet, RunError};
+use granular_edmd::simulation::{BuildError, Inlet, RunError, Warning};
 use granular_edmd::{Disk, Kind, Simulation};
 
 use crate::schedulers::{SCHEDULERS, Scheduler};
@@ -306,6 +306,21 @@ fn an_inlet_that_could_never_let_in_is_refused() {
     assert!(matches!(error, BuildError::DomainTooSmall { .. }), "{error}");
     run.run_until(3.5, &mut ()).unwrap();
     assert_eq!(run.len(), 3);
+}
+
+/// The inlet lies inside of a block.
+#[test]
+fn disks_that_wait_at_an_inlet_are_warned_of() {
+    let corners = [(2.0, 2.0), (8.0, 2.0), (8.0, 8.0), (2.0, 8.0)];
+    let block = Part::block(corners.map(|(x, y)| DVec2::new(x, y))).unwrap();
+    let walls = Vessel::new(Container::closed(10.0, 10.0).unwrap()).with("block", block).unwrap();
+    let mut run = Simulation::builder(Elastic, walls).build().unwrap();
+    let (places, small) = ([DVec2::splat(4.0), DVec2::splat(6.0)], Disk::new(DVec2::ZERO, 0.1).unwrap());
+    run.add_inlet(Inlet::new(places, [small], SampleTimes::every(1.0).unwrap(), 1).unwrap()).unwrap();
+    run.run_until(999.0, &mut ()).unwrap();
+    assert_eq!(run.warnings(), []);
+    run.run_until(1000.0, &mut ()).unwrap();
+    assert_eq!(run.warnings(), [Warning::DisksWait { inlet: 0, waiting: 1000 }]);
 }
 
 #[test]
