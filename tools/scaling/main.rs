@@ -4,18 +4,20 @@
 //! RUSTFLAGS="-C target-cpu=native" cargo run --release -p tools --features picture --bin scaling
 //! ```
 //!
-//! The bench runs the same physical state in boxes of the same height and growing width, with at most
+//! The program runs the same physical state in boxes of the same height and growing width, with at most
 //! `LARGEST` (10⁶) disks. It measures `ROUNDS` times, and the medians of the time on a processor count. The
-//! disks are numbered once by their place, which is the best for the caches, and once at random. The picture
-//! goes to `PICTURE`, or to `out/scaling.png` if that is not set, and as SVG and as a table beside it. With
-//! `TABLE`, the path of such a table, nothing is measured: the picture shows the times of the table.
+//! disks are numbered once by their place, which is the best for the caches, and once at random. With the
+//! feature `picture`, the picture goes to `PICTURE`, or to `out/scaling.png` if that is not set, and as SVG
+//! and as a table beside it. With `TABLE`, the path of such a table, nothing is measured: the picture shows
+//! the times of the table.
 
 mod measurement;
+#[cfg(feature = "picture")]
 mod picture;
+#[cfg(feature = "picture")]
 mod table;
 mod tiles;
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use benches::Outcome;
@@ -24,7 +26,6 @@ use benches::state::{DILUTE, DISKS};
 use granular_edmd::scheduler::{BucketQueue, TournamentTree};
 use granular_edmd::speed::Quartiles;
 use measurement::{Measurement, asked_for, measure};
-use table::Time;
 use tiles::{Numbering, Tiles};
 
 type Measure = fn(&Tiles, usize, Numbering, u32) -> Outcome<Measurement>;
@@ -65,6 +66,7 @@ fn main() -> ExitCode {
 }
 
 fn run() -> Outcome<()> {
+    #[cfg(feature = "picture")]
     if let Some(table) = ask::path("TABLE") {
         return draw(&table::read(&table)?);
     }
@@ -81,7 +83,18 @@ fn run() -> Outcome<()> {
         }
     }
     print(&rows);
-    if ask::is_test() { Ok(()) } else { draw(&rows.iter().map(Time::of).collect::<Vec<_>>()) }
+    if ask::is_test() { Ok(()) } else { finish(&rows) }
+}
+
+#[cfg(feature = "picture")]
+fn finish(rows: &[Row]) -> Outcome<()> {
+    draw(&rows.iter().map(table::Time::of).collect::<Vec<_>>())
+}
+
+#[cfg(not(feature = "picture"))]
+fn finish(_: &[Row]) -> Outcome<()> {
+    println!("\nFor the picture, add `--features picture`.");
+    Ok(())
 }
 
 /// Measures this system in the present process, and prints the numbers.
@@ -151,8 +164,9 @@ fn bytes(row: &Row) -> String {
     if row.disks < 10_000 || bytes.is_nan() { "–".to_owned() } else { format!("{bytes:.0}") }
 }
 
-fn draw(times: &[Time]) -> Outcome<()> {
-    let path = ask::path("PICTURE").unwrap_or_else(|| PathBuf::from("out/scaling.png"));
+#[cfg(feature = "picture")]
+fn draw(times: &[table::Time]) -> Outcome<()> {
+    let path = ask::path("PICTURE").unwrap_or_else(|| std::path::PathBuf::from("out/scaling.png"));
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder)?;
     }

@@ -75,8 +75,9 @@ fn next(run: &mut Run) -> Outcome<Vec<Disk>> {
     Ok(run.disks())
 }
 
-/// Returns a disk of the box at this place in the row.
+/// Returns a disk of the box at this place in the row, with an id yet to be given.
 fn placed(disk: &Disk, place: usize) -> Outcome<Disk> {
+    let disk = disk.with_id(0)?;
     let (position, velocity, spin) = (disk.position(), disk.velocity(), disk.angular_velocity());
     let left = WIDTH * place as f64;
     if place.is_multiple_of(2) {
