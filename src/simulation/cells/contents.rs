@@ -108,8 +108,8 @@ impl Contents {
     /// Appends the disks of three cells, `step` apart, to the first `count` disks in `found`.
     #[inline(always)]
     pub(super) fn gather(&self, first: usize, step: usize, found: &mut [u32], count: usize) -> usize {
-        // One bounds check serves all three cells, and one serves all that is written: the compiler knows that
-        // the counts of two blocks leave room for a third one in the window.
+        // One bounds check serves all three cells, and one serves all that is written: the compiler knows
+        // that the counts of two blocks leave room for a third one in the window.
         let blocks = &self.blocks[first..][..=2 * step];
         let window = &mut found[count..count + WINDOW];
         let mut taken = 0;
