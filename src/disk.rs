@@ -8,6 +8,10 @@ use crate::{Kind, ParameterError};
 /// Range of a radius or a mass. Products of a few of them stay finite and normal.
 const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
+/// Least velocity about a mean, relative to all velocities, that counts as thermal. Below it, differences of
+/// velocities are mostly rounding.
+pub(crate) const LEAST_THERMAL: f64 = 1e-10;
+
 /// Largest overlap that still counts as touching, relative to the distance of the centers at a touch.
 /// Positions are rounded, so disks that touch can overlap by this much.
 pub(crate) const TOUCHING: f64 = 1e-10;

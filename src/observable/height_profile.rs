@@ -144,10 +144,10 @@ fn area_below(height: f64, radius: f64) -> f64 {
 impl Accumulator for HeightProfile {
     fn add(&mut self, snapshot: &Snapshot<'_>) {
         let (width, period) = (snapshot.domain().width(), snapshot.domain().periods().y);
+        // The images hold the area beyond a periodic end.
+        let shifts = [0.0, -period, period].into_iter().take(if period > 0.0 { 3 } else { 1 });
         for disk in snapshot.disks() {
-            self.add_disk(disk.position().y, disk.radius(), width);
-            // The images hold what extends beyond a periodic end.
-            for shift in [-period, period].into_iter().filter(|_| period > 0.0) {
+            for shift in shifts.clone() {
                 self.add_disk(disk.position().y + shift, disk.radius(), width);
             }
         }

@@ -120,8 +120,8 @@ impl Mover {
         }
     }
 
-    /// Tells whether this is another disk's motion but for this rounding of speeds.
-    fn is(&self, other: &Self, rounding: f64) -> bool {
+    /// Tells whether two motions are the same but for this rounding of speeds.
+    fn is_like(&self, other: &Self, rounding: f64) -> bool {
         let spin = (self.radius * (self.angular_velocity - other.angular_velocity)).abs();
         (self.mass, self.moment_of_inertia, self.radius)
             == (other.mass, other.moment_of_inertia, other.radius)
@@ -236,18 +236,19 @@ impl TransportCoefficients {
     }
 
     /// Replaces the kept motions by those of a snapshot, which are the same but for rounding if only
-    /// collisions have changed them.
+    /// collisions have changed them. Otherwise the kept ones stay, so that further runs are refused, too.
     fn take_motions(&mut self, disks: &[Disk]) {
         let mass: f64 = disks.iter().map(Disk::mass).sum();
         let frame = disks.iter().map(|disk| disk.mass() * disk.velocity()).sum::<DVec2>() / mass;
         let movers: Vec<Mover> = disks.iter().map(|disk| Mover::new(disk, frame)).collect();
         let energy: f64 = movers.iter().map(|mover| mover.mass * mover.velocity.length_squared()).sum();
         let thermal = 2.0 * movers.iter().map(Mover::energy).sum::<f64>() / mass;
-        let same = |(one, other): (&Mover, &Mover)| one.is(other, ROUNDING * thermal.sqrt());
+        let same = |(one, other): (&Mover, &Mover)| one.is_like(other, ROUNDING * thermal.sqrt());
         let are_same = self.movers.len() == movers.len() && self.movers.iter().zip(&movers).all(same);
         if !self.movers.is_empty() && !are_same {
             let name = "time by which disks have changed otherwise than in collisions";
             self.fault = Some(ParameterError::new(name, "never, for transport coefficients", self.time));
+            return;
         }
         self.rates = [DVec2::ZERO; MOMENTS];
         for mover in &movers {
@@ -344,7 +345,7 @@ impl Observer for TransportCoefficients {
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         self.advance(snapshot.time());
         self.take_motions(snapshot.disks());
-        if self.knows_pressure() {
+        if self.fault.is_none() && self.knows_pressure() {
             self.take_sample();
         }
         self.stretch.finish(snapshot.time());

@@ -5,11 +5,9 @@ use glam::DVec2;
 use super::grid::CellSums;
 use super::table::{Table, histogram_headings, histogram_rows};
 use super::{Accumulator, Grid, Heading, Moment, Snapshot};
+use crate::disk::LEAST_THERMAL;
 use crate::statistics::{BlockedMean, Estimate, Histogram};
 use crate::{Disk, ParameterError};
-
-/// Least ratio of the thermal speed to the speed of all that counts as temperature. Below it is rounding.
-const LEAST: f64 = 1e-10;
 
 /// The distribution of velocities: histograms of both components and of the speed, cumulants
 /// and kurtosis.
@@ -198,7 +196,7 @@ impl Accumulator for VelocityDistribution {
         let squares: f64 = sum(&|v, _| v.length_squared());
         let whole: f64 =
             snapshot.disks().iter().map(|disk| disk.mass() * disk.velocity().length_squared()).sum();
-        if freedom < 1.0 || squares <= LEAST * LEAST * whole {
+        if freedom < 1.0 || squares <= LEAST_THERMAL * LEAST_THERMAL * whole {
             return;
         }
         let thermal = (squares / freedom).sqrt();

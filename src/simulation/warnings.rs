@@ -15,8 +15,11 @@ use crate::error::Rounded;
 use crate::observable::Partner;
 use crate::scheduler::EventScheduler;
 
-/// Fewest collisions of which a share says something, and fewest disks that wait too long at an inlet.
+/// Fewest collisions of which a share says something.
 const FEWEST: u64 = 1000;
+
+/// Fewest disks at an inlet that count as a jam.
+const JAM: usize = 1000;
 
 /// Way of a wall that counts as a jump, relative to a typical diameter.
 const JUMP: f64 = 1e-6;
@@ -120,7 +123,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             }
         }
         let waiting = self.inlets.iter().map(Inlet::waiting).enumerate();
-        let crowded = waiting.filter(|&(_, waiting)| waiting as u64 >= FEWEST);
+        let crowded = waiting.filter(|&(_, waiting)| waiting >= JAM);
         warnings.extend(crowded.map(|(inlet, waiting)| Warning::DisksWait { inlet, waiting }));
         warnings
     }

@@ -3,13 +3,10 @@
 use glam::DVec2;
 
 use super::{Driving, drift_of, energy_of};
+use crate::disk::LEAST_THERMAL;
 use crate::observable::SampleTimes;
 use crate::quantity::{accept, positive};
 use crate::{Disk, ParameterError};
-
-/// Least velocity about the mean, relative to all velocities. Below it, differences of velocities are mostly
-/// rounding, which a rescaling would turn into the motion of the gas.
-const LEAST: f64 = 1e-10;
 
 /// Rescaling: at each beat of a clock, all velocities about their mean, and all spins, are multiplied by one
 /// factor, so that the translational temperature is $`T = \tfrac12\langle m v'^2\rangle`$.
@@ -68,7 +65,7 @@ impl Driving for Rescaling {
         };
         let (squares, whole) = (about(drift), about(DVec2::ZERO));
         let present = 0.5 * squares / disks.len() as f64;
-        let is_known = present > 0.0 && squares > LEAST * LEAST * whole;
+        let is_known = present > 0.0 && squares > LEAST_THERMAL * LEAST_THERMAL * whole;
         accept(
             is_known,
             "temperature before a rescaling",
