@@ -32,6 +32,7 @@ const COLLISIONS: u64 = 100;
 ///
 /// # Errors
 /// If the state cannot be made, which does not happen.
+#[inline]
 pub fn dilute() -> Result<PaperBox, StateError> {
     paper_box(0.0, 0.03)
 }
@@ -43,6 +44,7 @@ pub fn dilute() -> Result<PaperBox, StateError> {
 ///
 /// # Errors
 /// If the state cannot be made, which does not happen.
+#[inline]
 pub fn dense() -> Result<PaperBox, StateError> {
     paper_box(0.05, 0.1)
 }
@@ -53,6 +55,7 @@ pub fn dense() -> Result<PaperBox, StateError> {
 /// # Errors
 /// If the area fraction is not in `1e-4..=0.78`. A square lattice has room for no more disks, and fewer would
 /// take hours to settle.
+#[inline]
 pub fn gas(area_fraction: f64) -> Result<Simulation<Elastic>, StateError> {
     accept((1e-4..=0.78).contains(&area_fraction), "area fraction", "in 1e-4..=0.78", area_fraction)?;
     let side = side(DISKS as f64, area_fraction);
@@ -66,6 +69,7 @@ pub fn gas(area_fraction: f64) -> Result<Simulation<Elastic>, StateError> {
 ///
 /// # Errors
 /// If the state cannot be made, which does not happen.
+#[inline]
 pub fn mixture() -> Result<Simulation<Elastic>, StateError> {
     let large = DISKS / 101;
     let small = DISKS - large;
@@ -80,6 +84,7 @@ pub fn mixture() -> Result<Simulation<Elastic>, StateError> {
 ///
 /// # Errors
 /// If the state cannot be made, which does not happen.
+#[inline]
 pub fn vessel() -> Result<Simulation<Elastic, Vessel>, StateError> {
     let side = side(DISKS as f64, 0.4);
     let mut vessel = Vessel::new(Container::closed(side, side)?);
@@ -91,6 +96,7 @@ pub fn vessel() -> Result<Simulation<Elastic, Vessel>, StateError> {
     settled_gas(vessel, disks)
 }
 
+#[inline]
 fn paper_box(inelasticity: f64, friction: f64) -> Result<PaperBox, StateError> {
     let base = BiParabolic::new(0.1, 10.0)?;
     let container = Container::closed(60.0, 150.0)?.with_motion(Wall::Floor, base)?;
