@@ -139,6 +139,9 @@ pub trait Experiment: Clone + Serialize + DeserializeOwned + Send + Sync {
 
     /// Returns the disks at the start.
     ///
+    /// A plan can ask for any number of them. So refuse one that no memory holds before you make a vector of
+    /// that length.
+    ///
     /// # Errors
     /// If they do not fit.
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError>;

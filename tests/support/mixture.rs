@@ -63,6 +63,9 @@ impl Experiment for Mixture {
     }
 
     fn disks(&self, seed: u64) -> Result<Vec<Disk>, ExperimentError> {
+        // A mistyped number must not take all memory before the box is found too small for it.
+        let most = self.disks.small.max(self.disks.large);
+        quantity::accept(most <= 10_000, "number of disks", "at most 10000", most as f64)?;
         let (small, large) = (Disk::new(DVec2::ZERO, 0.3)?, Disk::new(DVec2::ZERO, 0.6)?);
         let disks = vec![small; self.disks.small].into_iter().chain(vec![large; self.disks.large]);
         let disks = initial::placed_at_random(&self.boundary()?, disks.collect::<Vec<_>>(), 12.0, seed)?;
