@@ -17,7 +17,8 @@ const DOCS = {
   physics: 'Every equation, its source, and the notation.', 'physics-kinetic': 'The closed form of the mean energy loss ⟨dE⟩.',
   reproduction: 'The figures and the table of the paper, beside those of this library.', validation: 'How the results were checked, and what that is worth.',
   'first-touch': 'A method: when a disk meets a wall that moves as it likes.', layers: 'A method: finding partners among disks of many sizes.',
-  rest: 'What to do with matter at rest, and what it costs.', performance: 'How fast it is, where the time goes, and how to measure it.',
+  rest: 'What to do with matter at rest, and what it costs.', performance: 'How fast it is, and how to measure it.',
+  'performance-details': 'What parts cost, where the time goes, and what was tried.',
   clusters: 'Studies on many processes and machines.', stability: 'What a new version may change.', architecture: 'Why the library is built as it is.',
 };
 const NAVIGATION = [['index.html', 'granular-edmd'], ['rolls/index.html', 'Try it'], [`${API}/guide/index.html`, 'Guide'], ['docs/index.html', 'Docs'],

@@ -96,14 +96,20 @@ pub mod rest {}
 pub mod validation {}
 
 #[doc(alias("Verlet", "neighbor", "cell list", "design"))]
-#[doc = "[performance.md]: crate::guide::performance"]
+#[doc = "[performance-details.md]: crate::guide::performance_details"]
 #[doc = include_str!("../docs/architecture.md")]
 pub mod architecture {}
 
 #[doc(alias("benchmark", "LAMMPS"))]
+#[doc = "[performance-details.md]: crate::guide::performance_details"]
 #[doc = "[images/scaling.png]: data:image/png,#docs/images/scaling.png"]
 #[doc = include_str!("../docs/performance.md")]
 pub mod performance {}
+
+#[doc(alias("profile", "optimization"))]
+#[doc = "[performance.md]: crate::guide::performance"]
+#[doc = include_str!("../docs/performance-details.md")]
+pub mod performance_details {}
 
 #[doc(alias("semver", "compatibility"))]
 #[doc = include_str!("../docs/stability.md")]
