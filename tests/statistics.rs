@@ -290,6 +290,21 @@ fn repeats_without_samples_are_left_out() {
     assert!((many.independent_samples() - 7.0).abs() < 1.1, "{}", many.independent_samples());
 }
 
+/// The quotient by the width and the edges round differently.
+#[test]
+fn a_number_on_an_edge_is_in_the_bin_that_begins_there() {
+    for (low, high, bins) in [(-1.0, 1.0, 20), (0.1, 0.7, 6), (-0.3, 1e3, 999), (1e9, 1e9 + 7.0, 1000)] {
+        let mut histogram = Histogram::new(low, high, bins).unwrap();
+        let edges: Vec<f64> = histogram.bins().map(|bin| bin.low).collect();
+        histogram.extend(edges.iter().copied());
+        assert!(histogram.bins().all(|bin| bin.count == 1), "{low} {high} {bins}");
+        histogram.extend(edges.iter().map(|edge| edge.next_down()));
+        let counts: Vec<u64> = histogram.bins().map(|bin| bin.count).collect();
+        assert!(counts[..bins - 1].iter().all(|&count| count == 2), "{low} {high} {bins}: {counts:?}");
+        assert_eq!((counts[bins - 1], histogram.below()), (1, 1), "{low} {high} {bins}");
+    }
+}
+
 #[test]
 fn bins_below_rounding_are_refused() {
     for (low, high, bins) in [(1e16, 1e16 + 2.0, 7), (0.0, 1e-320, 1000), (-1.0, -1.0 + 1e-15, 100)] {

@@ -67,7 +67,14 @@ impl Bins {
     /// give `count` or more.
     pub(crate) fn at_or_above(&self, value: f64) -> usize {
         // The cast saturates: a negative number becomes 0.
-        ((value - self.low) / self.width) as usize
+        let bin = ((value - self.low) / self.width) as usize;
+        // The quotient and the edges round differently, so a number on an edge may be one bin off.
+        match bin {
+            _ if bin > self.count => bin,
+            1.. if value < self.edge(bin) => bin - 1,
+            _ if value >= self.edge(bin + 1) => bin + 1,
+            _ => bin,
+        }
     }
 
     /// Returns the bin of a number, if there is one.

@@ -96,12 +96,22 @@ pub(super) fn frames(
     }
 }
 
-/// Checks that no more bytes follow the last whole frame than the ending has. They need not be the ending,
-/// since a process may have died after it wrote part of a frame over the ending.
+/// Checks what follows the last whole frame: the ending, or less, or part of a frame over the ending, which a
+/// process wrote that died.
+///
+/// An ending of another checksum tells that a frame is damaged. A new ending would hide that for ever.
 fn check_ending(mut packed: Vec<u8>, input: &mut impl BufRead, ending: &[u8]) -> io::Result<()> {
     let room = (ending.len() + 1).saturating_sub(packed.len());
     input.take(room as u64).read_to_end(&mut packed)?;
-    if packed.len() <= ending.len() { Ok(()) } else { Err(no_frame("a whole frame", "a damaged one")) }
+    // The first bit of a frame tells that its block is not the last.
+    let is_frame = packed.first().is_some_and(|first| first & 1 == 0);
+    if packed.len() > ending.len() {
+        Err(no_frame("a whole frame", "a damaged one"))
+    } else if is_frame || ending.starts_with(&packed) {
+        Ok(())
+    } else {
+        Err(no_frame("frames of the checksum that follows them", "others"))
+    }
 }
 
 /// Decompresses some bytes of a stream, and returns false at the end of the stream, or where it is damaged.

@@ -358,6 +358,28 @@ fn a_compressed_file_is_one_member_of_the_same_text() {
     assert_eq!(state.time(), Some(3.0));
 }
 
+/// A recorder that went on would write a checksum of the damaged frames, which no reader could tell from a
+/// sound one.
+#[cfg(feature = "gzip")]
+#[test]
+fn a_damaged_compressed_file_is_not_gone_on_with() {
+    let scratch = Scratch::new("damaged");
+    for name in ["a.xyz.gz", "a.dump.gz"] {
+        let path = scratch.path(name);
+        let (sound, _) = recorded(&path);
+        for place in (10..sound.len() - 10).step_by(131) {
+            let mut bytes = sound.clone();
+            bytes[place] ^= 4;
+            fs::write(&path, &bytes).unwrap();
+            assert!(append(&path).is_err(), "{name}, byte {place}");
+            assert!(fs::read(&path).unwrap() == bytes, "{name}, byte {place}");
+        }
+        fs::write(&path, sound).unwrap();
+        assert_eq!(append(&path).unwrap().times().len(), 6);
+        fs::remove_file(&path).unwrap();
+    }
+}
+
 /// Faults that a user's format may have.
 struct Faulty {
     time: f64,
