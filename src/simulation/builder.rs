@@ -230,7 +230,7 @@ fn check_inside<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk], offset: f64)
             return Err(BuildError::Outside { disk, x: position.x, y: position.y, domain });
         }
         if let Some((wall, depth)) = boundary.overlap(position, radius, offset)
-            && depth > TOUCHING * radius
+            && (depth.is_nan() || depth > TOUCHING * radius)
         {
             let wall = boundary.wall_name(wall).into_owned();
             return Err(BuildError::OverlapsWall { disk, x: position.x, y: position.y, wall, depth });

@@ -67,7 +67,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             Partner::Disk(other) => self.bodies.radius(disk).min(self.bodies.radius(other)),
             Partner::Wall(_) => self.bodies.radius(disk),
         };
-        if depth > DEEP * radius + self.rounding_at(disk, partner) {
+        // A depth that is not a number would stay the largest for ever.
+        if depth.is_nan() || depth > DEEP * radius + self.rounding_at(disk, partner) {
             return Err(self.false_contact(disk, inside, depth).into());
         }
         match partner {
@@ -119,7 +120,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     pub(super) fn check_passed(&self, disk: usize) -> Outcome<()> {
         let (position, radius) = (self.bodies.position(disk, self.clock.now), self.bodies.radius(disk));
         match self.boundary.overlap(position, radius, self.clock.now) {
-            Some((wall, depth)) if depth > DEEP * radius + self.rounding_at(disk, Partner::Wall(wall)) => {
+            Some((wall, depth))
+                if depth.is_nan() || depth > DEEP * radius + self.rounding_at(disk, Partner::Wall(wall)) =>
+            {
                 Err(self.false_contact(disk, Partner::Wall(wall), depth).into())
             }
             _ => Ok(()),

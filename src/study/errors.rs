@@ -66,12 +66,12 @@ pub enum PlanError {
         /// The largest possible number.
         most: usize,
     },
-    /// A column or a table of the experiment has a name that is taken or not valid.
+    /// A column, a table or a varied parameter has a name that is taken or not valid.
     #[error("{name:?} cannot be the name of a {what}: {reason}")]
     Name {
         /// The name.
         name: String,
-        /// The thing that has it: `column` or `table`.
+        /// The thing that has it: `column`, `table` or `varied parameter`.
         what: &'static str,
         /// The reason.
         reason: String,

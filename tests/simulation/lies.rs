@@ -49,6 +49,7 @@ enum Lie {
     Wall(usize),
     Normal(DVec2),
     Velocity(DVec2),
+    Depth,
 }
 
 /// A container that tells the truth this many times.
@@ -100,7 +101,10 @@ impl Boundary for Liar {
         }
     }
     fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
-        self.honest.overlap(position, radius, time)
+        match self.lie {
+            Lie::Depth if self.lies() => Some((2, f64::NAN)),
+            _ => self.honest.overlap(position, radius, time),
+        }
     }
 }
 
@@ -184,6 +188,20 @@ fn surfaces_that_cannot_be_are_named() {
             matches!(error, RunError::Boundary { fault: BoundaryFault::Surface { .. }, .. }),
             "{lie:?}: {error}"
         );
+        assert_whole(&run);
+    }
+}
+
+/// It would stay the largest depth, so that no later one would be noticed.
+#[test]
+fn a_depth_that_is_no_number_is_named() {
+    let liar = Liar { honest: walls(), truths: Rc::new(Cell::new(7)), lie: Lie::Depth };
+    let error = Simulation::builder(Elastic, liar).disks(disks()).build().err().unwrap();
+    assert!(matches!(error, BuildError::OverlapsWall { disk: 7, depth, .. } if depth.is_nan()), "{error}");
+    for truths in [20, 33] {
+        let (run, end) = run_among_liars(Lie::Depth, truths);
+        let error = end.unwrap_err();
+        assert!(matches!(error, RunError::FalseContact { depth, .. } if depth.is_nan()), "{error}");
         assert_whole(&run);
     }
 }

@@ -232,6 +232,22 @@ static ADDED: AtomicU32 = AtomicU32::new(0);
 struct Fall {
     count: usize,
     loss: f64,
+    labels: Labels,
+}
+
+/// Parameters that have the names of columns.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+struct Labels {
+    seed: f64,
+    time: f64,
+    samples: f64,
+    height_error: f64,
+    height_independent_samples: f64,
+    height: f64,
+}
+
+fn fall(count: usize, loss: f64) -> Fall {
+    Fall { count, loss, labels: Labels::default() }
 }
 
 impl Experiment for Fall {
@@ -275,9 +291,25 @@ impl Experiment for Fall {
     }
 }
 
+/// Otherwise a table would have two columns of one name, and readers by name would see only one.
+#[test]
+fn a_parameter_of_the_name_of_a_column_cannot_vary() -> Result<(), AnyError> {
+    let plan = Plan::new(fall(4, 0.0), Protocol::new(0, 2, 1)?, 1)?;
+    for name in ["seed", "time", "samples", "height_error", "height_independent_samples"] {
+        let expected =
+            format!("{name:?} cannot be the name of a varied parameter: a column of the tables has it");
+        let swept = plan.clone().with_axis(Axis::new(name, [0.0, 1.0])?);
+        let ramped = plan.clone().with_ramp(Ramp::new(name, [0.0, 1.0], Course::Up)?);
+        assert_eq!([swept, ramped].map(|plan| report(&plan.unwrap_err())), [expected.clone(), expected]);
+    }
+    let error = report(&plan.with_axis(Axis::new("height", [0.0, 1.0])?).unwrap_err());
+    assert_eq!(error, "\"height\" cannot be the name of a column: another one has it");
+    Ok(())
+}
+
 #[test]
 fn a_parameter_of_the_first_disks_alone_cannot_be_ramped() -> Result<(), AnyError> {
-    let plan = Plan::new(Fall { count: 4, loss: 0.0 }, Protocol::new(0, 2, 1)?, 1)?;
+    let plan = Plan::new(fall(4, 0.0), Protocol::new(0, 2, 1)?, 1)?;
     plan.clone().with_ramp(Ramp::new("loss", [0.0, 0.1], Course::Up)?)?;
     let error = plan.with_ramp(Ramp::new("count", [4.0, 8.0], Course::Up)?).unwrap_err();
     assert_eq!(report(&error), "count cannot be ramped with the disks in place; sweep it instead");
@@ -286,7 +318,7 @@ fn a_parameter_of_the_first_disks_alone_cannot_be_ramped() -> Result<(), AnyErro
 
 #[test]
 fn values_that_stall_are_counted_and_say_why() -> Result<(), AnyError> {
-    let plan = Plan::new(Fall { count: 12, loss: 0.4 }, Protocol::new(0, 200, 1)?, 1)?.with_repeats(3)?;
+    let plan = Plan::new(fall(12, 0.4), Protocol::new(0, 200, 1)?, 1)?.with_repeats(3)?;
     let scratch = Scratch::new("failed");
     let study = Study::create(&scratch.0, &plan)?;
     for summary in [study.run(&Control::default())?, study.run(&Control::default().with_verification())?] {
@@ -302,7 +334,7 @@ fn values_that_stall_are_counted_and_say_why() -> Result<(), AnyError> {
 
 #[test]
 fn records_of_changed_code_are_refused() -> Result<(), AnyError> {
-    let plan = Plan::new(Fall { count: 3, loss: 0.0 }, Protocol::new(0, 2, 1)?, 1)?;
+    let plan = Plan::new(fall(3, 0.0), Protocol::new(0, 2, 1)?, 1)?;
     let scratch = Scratch::new("changed");
     let study = Study::create(&scratch.0, &plan)?;
     study.run(&Control::default())?;

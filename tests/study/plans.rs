@@ -50,7 +50,7 @@ fn a_plan_is_read_as_it_is_written() -> Result<(), AnyError> {
 }
 
 /// A line of a plan, the line in its place, and the text of the error.
-const REFUSED: [(&str, &str, &str); 20] = [
+const REFUSED: [(&str, &str, &str); 24] = [
     ("seed = 1", "seed = 1\nsede = 2", "unknown field `sede`"),
     ("disks = 30", "disks = 30\nmass = 2", "unknown field `mass`"),
     ("disks = 30", "disks = 0", "number of disks must be at least 1, but is 0"),
@@ -78,6 +78,22 @@ const REFUSED: [(&str, &str, &str); 20] = [
     ("values = [0.01, 0.02]", "values = [0.02, 0.01]", "friction has 0.01 after 0.02"),
     ("values = [0.0, 0.01, 0.02]", "values = [0.7]", "normal inelasticity must be in [0, 0.5], but is 0.7"),
     ("values = [0.0, 0.01, 0.02]", "values = [0.01, 0.0, 0.01]", "inelasticity takes the value 0.01 twice"),
+    ("values = [0.0, 0.01, 0.02]", "values = [0, 0.0]", "inelasticity takes the value 0.0 twice"),
+    (
+        "values = [0.0, 0.01, 0.02]",
+        "values = { from = 0.1, to = 0.10000000000000002, step = 1e-18 }",
+        "step must be above the rounding of the values, but is 1e-18",
+    ),
+    (
+        "values = [0.0, 0.01, 0.02]",
+        "values = { from = 0.1, to = 0.10000000000000002, log = 9 }",
+        "number of values must be so small that neighbors differ, but is 9",
+    ),
+    (
+        "values = [0.0, 0.01, 0.02]",
+        "values = { from = 1e-300, to = 1e300, log = 3 }",
+        "last value over the first one must be finite, but is inf",
+    ),
     ("parameter = \"inelasticity\"", "parameter = \"friction\"", "friction varies twice"),
 ];
 

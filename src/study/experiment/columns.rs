@@ -196,7 +196,8 @@ pub(in crate::study) fn error_names(name: &str) -> [String; 2] {
     ["error", "independent_samples"].map(|ending| format!("{name}_{ending}"))
 }
 
-/// Checks that the names of an experiment's columns and tables are valid and all different.
+/// Checks that the names of an experiment's columns and tables are valid, and that they, those of the varied
+/// parameters and those of every table are all different.
 pub(in crate::study) fn check_names<E: Experiment>(varied: &[&str]) -> Result<(), PlanError> {
     let (columns, tables) = (E::columns(), E::tables());
     let taken = [PLACE.as_slice(), varied].concat();
@@ -208,6 +209,10 @@ pub(in crate::study) fn check_names<E: Experiment>(varied: &[&str]) -> Result<()
     let errors: Vec<String> = with_errors.flat_map(|column| error_names(column.name())).collect();
     let errors: Vec<&str> = errors.iter().map(String::as_str).collect();
     check("column", &of(|column| column.in_values), &[taken.as_slice(), &errors].concat())?;
+    let all = [PLACE.as_slice(), &["time"], &errors].concat();
+    if let Some(name) = varied.iter().find(|name| all.contains(name)) {
+        return Err(refused("varied parameter", name, "a column of the tables has it"));
+    }
     for table in &tables {
         check("column", &table.columns.iter().map(Heading::name).collect::<Vec<_>>(), &taken)?;
     }
@@ -216,15 +221,17 @@ pub(in crate::study) fn check_names<E: Experiment>(varied: &[&str]) -> Result<()
 
 fn check(what: &'static str, names: &[&str], taken: &[&str]) -> Result<(), PlanError> {
     for (index, name) in names.iter().enumerate() {
-        let refuse =
-            |reason: &str| Err(PlanError::Name { name: (*name).to_owned(), what, reason: reason.to_owned() });
         let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
         if name.is_empty() || !name.chars().all(is_plain) {
-            return refuse("it must be of letters, digits and underscores");
+            return Err(refused(what, name, "it must be of letters, digits and underscores"));
         }
         if taken.contains(name) || names[..index].contains(name) {
-            return refuse("another one has it");
+            return Err(refused(what, name, "another one has it"));
         }
     }
     Ok(())
+}
+
+fn refused(what: &'static str, name: &str, reason: &str) -> PlanError {
+    PlanError::Name { name: name.to_owned(), what, reason: reason.to_owned() }
 }

@@ -46,7 +46,11 @@ impl Axis {
 
     fn checked(self) -> Result<Self, PlanError> {
         self.values.check(&self.parameter)?;
-        let Some(value) = self.values.twice() else { return Ok(self) };
+        self.check_twice().map(|()| self)
+    }
+
+    fn check_twice(&self) -> Result<(), PlanError> {
+        let Some(value) = self.values.twice() else { return Ok(()) };
         let reason =
             format!("takes the value {value} twice; for several runs of each value give the plan repeats");
         Err(PlanError::varied(&self.parameter, reason))
@@ -72,12 +76,14 @@ impl Axis {
         self.values.tried()
     }
 
-    /// Turns the values of a list into the type of the parameter, so that equal plans have equal files.
-    pub(super) fn set_kind(&mut self, kind: &Scalar) {
+    /// Turns the values of a list into the type of the parameter, so that equal plans have equal files. Values
+    /// that differ may be one value of that type.
+    pub(super) fn set_kind(&mut self, kind: &Scalar) -> Result<(), PlanError> {
         if let Values::List(list) = &mut self.values {
             for value in list {
                 *value = value.clone().like(kind);
             }
         }
+        self.check_twice()
     }
 }

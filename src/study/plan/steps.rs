@@ -49,12 +49,15 @@ impl Steps {
     /// Creates values in equal steps from `from` on, up to `to` if a whole number of steps leads there.
     ///
     /// # Errors
-    /// If a number is not finite, the step is not positive, or `to` is below `from`.
+    /// If a number is not finite, the step is not positive or below the rounding of the values, or `to` is
+    /// below `from`.
     pub fn linear(from: f64, to: f64, step: f64) -> Result<Self, ParameterError> {
         finite("first value", from)?;
         finite("last value", to)?;
         positive("step", step)?;
         accept(to >= from, "last value", "at least the first one", to)?;
+        let largest = from.abs().max(to.abs());
+        accept(largest.next_up() - largest <= step, "step", "above the rounding of the values", step)?;
         let steps = libm::floor((to - from) / step + ROUNDING);
         accept(steps < MOST, "number of steps", "below 2^53", steps)?;
         Ok(Self { from, to, step: Some(step), log: None, count: steps as usize + 1 })
@@ -63,13 +66,17 @@ impl Steps {
     /// Creates this many values in equal ratios, the first and the last included.
     ///
     /// # Errors
-    /// If the first value is not positive, the last one is not finite or not above the first, or there are
-    /// fewer than two.
+    /// If the first value is not positive, the last one is not finite or not above the first, their ratio is
+    /// not finite, or there are fewer than two, or so many that neighbors would be equal.
     pub fn logarithmic(from: f64, to: f64, count: usize) -> Result<Self, ParameterError> {
         positive("first value", from)?;
         positive("last value", to)?;
         accept(to > from, "last value", "above the first one", to)?;
+        let ratio = to / from;
+        accept(ratio.is_finite(), "last value over the first one", "finite", ratio)?;
         accept(count >= 2, "number of values", "at least 2", count as f64)?;
+        let is_resolved = libm::log(ratio) / (count - 1) as f64 >= 4.0 * f64::EPSILON;
+        accept(is_resolved, "number of values", "so small that neighbors differ", count as f64)?;
         Ok(Self { from, to, step: None, log: Some(count), count })
     }
 

@@ -61,7 +61,7 @@ impl<E: Experiment> Plan<E> {
         for (axis, name) in self.sweep.iter_mut().zip(&self.varied) {
             let Some(first) = axis.value(0) else { continue };
             let kind = probe::<E>(&self.tree, axis.parameter(), name, &first)?;
-            axis.set_kind(&kind);
+            axis.set_kind(&kind)?;
             self.kinds.push(kind);
         }
         if let (Some(ramp), Some(name)) = (&self.ramp, self.varied.last())
