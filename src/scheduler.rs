@@ -111,7 +111,9 @@ pub trait EventScheduler {
     ///
     /// The answer is a hint: the engine fetches early what these events will need from memory. The call
     /// changes neither the order of events nor the disks that `disks` holds already. Disks may be missing, or
-    /// be named twice or in any order. The engine ignores disks that do not exist. The default names none.
+    /// be named twice or in any order. The engine ignores disks that do not exist. The default names none. A
+    /// scheduler that wraps another passes the call on: among 10⁵ disks, it would take half as long again
+    /// otherwise.
     fn upcoming(&mut self, disks: &mut Vec<usize>) {
         let _ = disks;
     }

@@ -5,29 +5,38 @@
 //! built-in one: [`Simulation::with_rule`](crate::Simulation::with_rule),
 //! [`with_boundary`](crate::Simulation::with_boundary) and
 //! [`with_scheduler`](crate::Simulation::with_scheduler) put it in, and a [`Comparison`] tells a difference
-//! from noise. [`stretch`] does the same inside criterion.
+//! from noise. In criterion, a [`stretch`] is one run alone, without its partner in turn.
 //!
 //! Times are those on the processor ([`Stopwatch`]). Measure builds with `--release` only.
 //!
 //! ```no_run
-//! use granular_edmd::collision::{CollisionRule, Contact, Impulse};
+//! use granular_edmd::collision::{CollisionRule, Contact, ContactDuration, Friction, Impulse};
+//! use granular_edmd::observable::EnergyChange;
+//! use granular_edmd::scheduler::TournamentTree;
 //! use granular_edmd::speed::{self, Comparison};
 //!
 //! #[derive(Clone)]
-//! struct Own;
+//! struct Own(Friction);
 //!
 //! impl CollisionRule for Own {
 //!     fn impulse(&self, contact: &Contact) -> Impulse {
-//!         Impulse::new(contact.normal_impulse(0.9), 0.0)
+//!         let restitution = 1.0 / (1.0 + 0.1 * contact.closing_speed());
+//!         self.0.impulse(contact, contact.normal_impulse(restitution))
 //!     }
 //! }
 //!
 //! let built_in = speed::dense()?;
-//! let own = built_in.clone().with_rule(Own);
-//! println!("{}", Comparison::between(
-//!     || speed::stretch(&built_in, 10_000, &mut ()),
-//!     || speed::stretch(&own, 10_000, &mut ()),
-//! )?);
+//! let bare = || speed::stretch(&built_in, 10_000, &mut ());
+//! // The state has a contact duration, so the own rule gets the same one: only the rules differ.
+//! let rule = ContactDuration::new(Own(Friction::from_inelasticity(0.05, 0.1)?), built_in.rule().duration())?;
+//! let own = built_in.clone().with_rule(rule);
+//! println!("{}", Comparison::between(bare, || speed::stretch(&own, 10_000, &mut ()))?);
+//!
+//! let tree = built_in.clone().with_scheduler(TournamentTree::new());
+//! println!("{}", Comparison::between(bare, || speed::stretch(&tree, 10_000, &mut ()))?);
+//!
+//! let mut observer = EnergyChange::default();
+//! println!("{}", Comparison::between(bare, || speed::stretch(&built_in, 10_000, &mut observer))?);
 //! # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
 //! ```
 

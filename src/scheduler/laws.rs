@@ -84,6 +84,9 @@ pub enum Violation {
 ///     fn earliest(&self) -> (usize, f64) {
 ///         self.0.earliest()
 ///     }
+///     fn upcoming(&mut self, disks: &mut Vec<usize>) {
+///         self.0.upcoming(disks);
+///     }
 /// }
 /// let violation = laws::check(Forgetful::default).unwrap_err();
 /// assert!(matches!(violation, laws::Violation::NotEarliest { .. }));

@@ -28,6 +28,8 @@ const COLLISIONS: u64 = 100;
 
 /// Returns the paper's box as a gas that fills it: $`g = 1/64`$, $`q = 0`$, $`\kappa = 0.03`$.
 ///
+/// Both inelasticities are q, both frictions κ, and the contact duration is 1e-5.
+///
 /// Most events are passages between cells.
 ///
 /// # Errors
@@ -38,7 +40,7 @@ pub fn dilute() -> Result<PaperBox, StateError> {
 }
 
 /// Returns the paper's box as a fluid a dozen diameters high: $`g = 1/64`$, $`q = 0.05`$,
-/// $`\kappa = 0.1`$.
+/// $`\kappa = 0.1`$, the rest as in [`dilute`].
 ///
 /// Most events are collisions.
 ///

@@ -242,8 +242,7 @@ fn status<E: Experiment>(folder: &Path, json: bool) -> Result<End, Failure> {
         let tables = if has_tables { "tables of all" } else { "no tables of all" };
         say(&format!("{ramps} ramps: {}; {tables}", counts.join(", ")))?;
         if left.is_finite() {
-            let hours = [spent, left].map(|seconds| seconds / 3600.0);
-            say(&format!("about {:.3} core hours are done, {:.3} are left", hours[0], hours[1]))?;
+            say(&format!("about {} are done, {} are left", core_time(spent), core_time(left)))?;
         }
         if !failed.is_empty() {
             let first: Vec<String> =
@@ -277,4 +276,13 @@ fn accept<E: Experiment>(folder: &Path) -> Result<End, Failure> {
         "from here on, records are of this code: the column made_by of values.csv tells them from those before"
     })?;
     Ok(End::Done)
+}
+
+/// Returns a time on one core as text.
+fn core_time(seconds: f64) -> String {
+    if seconds < 100.0 {
+        format!("{seconds:.2} core seconds")
+    } else {
+        format!("{:.3} core hours", seconds / 3600.0)
+    }
 }

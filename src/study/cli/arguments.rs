@@ -92,18 +92,20 @@ pub(super) enum Command {
         /// Folder of the study.
         folder: PathBuf,
     },
-    /// Measures the standard states, in a minute; for a plan, the core hours that it will take.
+    /// Measures the standard states, in some ten seconds; for a plan, the core hours that it will take.
     Bench {
         /// A plan, in TOML; `-` for standard input. Without one, the standard states are measured.
         plan: Option<PathBuf>,
         /// Prints JSON, for `--against`.
         #[arg(long)]
         json: bool,
-        /// Measures for a few seconds only.
+        /// Measures for a second only, by shorter stretches, whose times are some percent longer.
         #[arg(long)]
         quick: bool,
-        /// File with the JSON of an earlier table, to which the present one is compared.
-        #[arg(long, conflicts_with = "plan")]
+        /// File with the JSON of an earlier table, to which the present one is compared. A state is called
+        /// slower or faster if its quartiles lie more than 5 % beyond those of then. Other events mean that
+        /// a change of the code altered the trajectories.
+        #[arg(long, conflicts_with_all = ["plan", "json"])]
         against: Option<PathBuf>,
     },
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::{End, Failure, Plan, PlanError, StudyError, read, refused, say};
+use super::{End, Failure, Plan, PlanError, StudyError, core_time, read, refused, say};
 use crate::Simulation;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
@@ -26,6 +26,8 @@ const NAMES: [&str; 7] = ["dilute", "dense", "gas at 0.1", "gas at 0.3", "gas at
 #[serde(deny_unknown_fields)]
 struct Table {
     circumstances: Circumstances,
+    /// Number of collisions in a stretch. In short ones, caches that fill take a part of the time.
+    collisions: u64,
     states: Vec<State>,
 }
 
@@ -45,12 +47,11 @@ type Stretch = Box<dyn Fn(u64) -> Result<RunReport, RunError>>;
 
 /// Measures the standard table and prints it, against an earlier one if there is a file with it.
 pub(super) fn table(json: bool, quick: bool, against: Option<&Path>) -> Result<End, Failure> {
-    let earlier = against.map(earlier).transpose()?;
-    if let Some(earlier) = earlier.as_ref().filter(|earlier| !json && !earlier.circumstances.is_comparable())
-    {
+    let (rounds, collisions) = if quick { (5, 20_000) } else { (31, 100_000) };
+    let earlier = against.map(|path| earlier(path, collisions)).transpose()?;
+    if let Some(earlier) = earlier.as_ref().filter(|earlier| !earlier.circumstances.is_comparable()) {
         say(&format!("the earlier table is of another machine or build: {}", earlier.circumstances))?;
     }
-    let (rounds, collisions) = if quick { (5, 20_000) } else { (31, 100_000) };
     let table = measured(rounds, collisions).map_err(|error| -> Failure { error })?;
     if json {
         say(&serde_json::to_string_pretty(&table)?)?;
@@ -59,19 +60,19 @@ pub(super) fn table(json: bool, quick: bool, against: Option<&Path>) -> Result<E
     }
     let Some(earlier) = earlier else { return Ok(End::Done) };
     let changes: Vec<Change<'_>> = table.states.iter().filter_map(|state| earlier.change(state)).collect();
-    for change in changes.iter().filter(|_| !json) {
+    for change in &changes {
         say(&change.to_string())?;
     }
-    for state in table.states.iter().filter(|state| !json && earlier.change(state).is_none()) {
+    for state in table.states.iter().filter(|state| earlier.change(state).is_none()) {
         say(&format!("{}: not in the earlier table", state.name))?;
     }
     Ok(if changes.iter().any(|change| change.finding() == "slower") { End::Slower } else { End::Done })
 }
 
-fn earlier(path: &Path) -> Result<Table, Failure> {
+fn earlier(path: &Path, collisions: u64) -> Result<Table, Failure> {
     let read_back: Result<Table, String> =
         serde_json::from_str(&read(path)?).map_err(|source| source.to_string());
-    Ok(read_back.and_then(Table::checked).map_err(|reason| {
+    Ok(read_back.and_then(|table| table.checked(collisions)).map_err(|reason| {
         PlanError::Toml(format!("{} is no table of `bench --json`: {reason}", path.display()))
     })?)
 }
@@ -101,7 +102,7 @@ fn measured(rounds: usize, collisions: u64) -> Result<Table, StateError> {
         nanoseconds_per_collision: Quartiles::of(times),
         events_per_collision: events,
     });
-    Ok(Table { states: states.collect(), circumstances: Circumstances::present() })
+    Ok(Table { circumstances: Circumstances::present(), collisions, states: states.collect() })
 }
 
 fn stretches<R, B>(run: Simulation<R, B>) -> Stretch
@@ -140,7 +141,13 @@ impl Circumstances {
 
 impl Table {
     /// Returns the table if a later one can be compared with it, or the reason why it cannot.
-    fn checked(self) -> Result<Self, String> {
+    fn checked(self, collisions: u64) -> Result<Self, String> {
+        if self.collisions != collisions {
+            let stretches = self.collisions;
+            return Err(format!(
+                "its stretches have {stretches} collisions, not {collisions}: `--quick` as then"
+            ));
+        }
         let is_possible = |Quartiles { low, median, high }: Quartiles| {
             0.0 < low && low <= median && median <= high && high < f64::INFINITY
         };
@@ -195,10 +202,11 @@ pub(super) fn plan<E: Experiment>(path: &Path, json: bool, quick: bool) -> Resul
     say(&if json {
         format!(r#"{{"core_hours":{mean},"least":{least},"most":{most},"values":{values}}}"#)
     } else {
+        let [mean, least, most] = [mean, least, most].map(|hours| core_time(3600.0 * hours));
         let measured = chosen.len();
         format!(
-            "{mean:.3e} core hours for {values} values ({least:.3e} to {most:.3e} if all were as one of the \
-             {measured} first values that ran); denser or refined values add to it"
+            "{mean} for {values} values, from the first ones of {measured} ramps ({least} if all were as the \
+             cheapest of them, {most} if as the dearest); denser or refined values add to it"
         )
     })?;
     Ok(End::Done)
