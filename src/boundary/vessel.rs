@@ -228,7 +228,7 @@ impl Vessel {
     pub fn replace(&mut self, name: &str, part: Part) -> Result<Part, VesselError> {
         let place = self.place_of(name)?;
         let placed = Placed::new(name.to_owned(), part);
-        self.check(&placed, self.parts[place].part.all_bricks().len())?;
+        self.check(&placed, self.parts[place].part.all_bricks().count())?;
         let before = std::mem::replace(&mut self.parts[place], placed);
         self.number();
         Ok(before.part)
@@ -242,7 +242,7 @@ impl Vessel {
 
     /// Checks that a part can be in this vessel, in place of one with `less` walls.
     fn check(&self, placed: &Placed, less: usize) -> Result<(), VesselError> {
-        let count = self.wall_count() - less + placed.part.all_bricks().len();
+        let count = self.wall_count() - less + placed.part.all_bricks().count();
         accept(count <= MOST_WALLS, "number of walls of the vessel", "at most 2^16", count as f64)?;
         let (low, high) = placed.bounds;
         let periods = self.container.domain().periods();
@@ -274,7 +274,7 @@ impl Vessel {
     /// Returns the indices of the walls of a part, if there is one of this name.
     pub fn walls(&self, name: &str) -> Option<Range<usize>> {
         let placed = self.parts.iter().find(|placed| placed.name == name)?;
-        Some(placed.first..placed.first + placed.part.all_bricks().len())
+        Some(placed.first..placed.first + placed.part.all_bricks().count())
     }
 
     /// Returns the container.
@@ -288,7 +288,7 @@ impl Vessel {
         for (number, placed) in self.parts.iter_mut().enumerate() {
             placed.first = self.container.wall_count() + self.walls.len();
             placed.phase = placed.part.phase(self.origin);
-            let bricks = placed.part.all_bricks().iter();
+            let bricks = placed.part.all_bricks();
             self.walls.extend(bricks.map(|&brick| Wall { part: number, brick }));
         }
         let travel = |wall: &Wall| -> &Travel { self.parts[wall.part].part.travel() };
