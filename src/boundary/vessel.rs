@@ -5,8 +5,6 @@ mod index;
 mod outline;
 mod overlap;
 mod search;
-#[cfg(feature = "serde")]
-mod serialized;
 
 use std::ops::Range;
 
@@ -72,8 +70,6 @@ const LEAST_STROKE: f64 = 4096.0 * f64::EPSILON;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "serialized::Record", into = "serialized::Record"))]
 pub struct Vessel {
     container: Container,
     parts: Vec<Placed>,
@@ -171,11 +167,11 @@ impl Vessel {
         let room = DVec2::splat(ROOM * size.max_element());
         let corner = if parts.is_empty() { DVec2::ZERO } else { low - room };
         let (width, height) = (size.x + 2.0 * room.x, size.y + 2.0 * room.y);
-        let mut vessel = Self::new(Container::closed(width, height)?.shifted(corner)?);
-        for (name, part) in parts {
-            vessel.put(name, part)?;
-        }
-        Ok(vessel)
+        Self::of(Container::closed(width, height)?.shifted(corner)?, parts)
+    }
+
+    fn of(container: Container, parts: Vec<(String, Part)>) -> Result<Self, VesselError> {
+        parts.into_iter().try_fold(Self::new(container), |vessel, (name, part)| vessel.with(name, part))
     }
 
     /// Returns the same vessel with one more part.
@@ -310,5 +306,21 @@ impl Vessel {
         });
         self.hollows = hollows.collect();
         self.hollows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    }
+}
+
+crate::gate::from_file! {
+    Vessel { container: Container, parts: Vec<(String, Part)> } => Self::of(container, parts), VesselError
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for Vessel {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeStruct;
+        let parts: Vec<_> = self.parts.iter().map(|placed| (&placed.name, &placed.part)).collect();
+        let mut vessel = serializer.serialize_struct("Vessel", 2)?;
+        vessel.serialize_field("container", &self.container)?;
+        vessel.serialize_field("parts", &parts)?;
+        vessel.end()
     }
 }
