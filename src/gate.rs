@@ -32,3 +32,10 @@ macro_rules! from_file {
 }
 
 pub(crate) use from_file;
+
+/// Writes a number that can be infinite or NaN. It is absent then, since not all formats know these.
+#[cfg(feature = "serde")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+pub(crate) fn if_finite<S: serde::Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    serde::Serialize::serialize(&Some(*number).filter(|number| number.is_finite()), serializer)
+}
