@@ -29,8 +29,5 @@ pub(super) fn unit_vector(direction: DVec2) -> Result<DVec2, ParameterError> {
 }
 
 pub(super) fn finite_point(place: DVec2) -> Result<DVec2, ParameterError> {
-    /// Largest coordinate for which squares of distances, and the squares of those, stay finite.
-    const LARGEST: f64 = 1e60;
-    let check = |value: f64| accept(value.abs() <= LARGEST, "coordinate", "at most 1e60 in magnitude", value);
-    Ok(DVec2::new(check(place.x)?, check(place.y)?))
+    crate::disk::bounded_vector("coordinate", place)
 }

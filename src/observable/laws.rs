@@ -182,13 +182,8 @@ fn disk(index: usize, round: usize) -> Result<Disk, ParameterError> {
 
 /// Returns a collision, with each partner in turn.
 fn collision(time: f64, number: usize) -> Collision {
-    const REGIMES: [Regime; 5] = [
-        Regime::Sticking,
-        Regime::Sliding,
-        Regime::ContactDuration,
-        Regime::ElasticBelow,
-        Regime::Unspecified,
-    ];
+    use Regime::{ContactDuration, ElasticBelow, Sliding, Sticking, Unspecified};
+    const REGIMES: [Regime; 5] = [Sticking, Sliding, ContactDuration, ElasticBelow, Unspecified];
     let disk = number % DISKS;
     let partner = match number % (WALLS + 2) {
         wall if wall < WALLS => Partner::Wall(wall),
