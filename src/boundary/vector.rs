@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::ParameterError;
-use crate::quantity::{accept, positive};
+use crate::quantity::positive;
 
 /// Returns the unit vector at this angle from the `x` axis.
 pub(super) fn direction(angle: f64) -> DVec2 {
@@ -24,7 +24,7 @@ pub(super) fn unit(direction: DVec2) -> Result<DVec2, ParameterError> {
 #[cfg(feature = "serde")]
 pub(super) fn unit_vector(direction: DVec2) -> Result<DVec2, ParameterError> {
     let length = finite_point(direction)?.length();
-    accept((length - 1.0).abs() <= 1e-12, "length of a direction", "1", length)?;
+    crate::quantity::accept((length - 1.0).abs() <= 1e-12, "length of a direction", "1", length)?;
     Ok(direction)
 }
 

@@ -68,10 +68,6 @@ impl<R: CollisionRule> CollisionRule for ContactDuration<R> {
         }
     }
 
-    fn explain(&self, contact: &Contact) -> Option<String> {
-        self.rule.explain(contact)
-    }
-
     /// Returns `None` if the rule inside has no fingerprint: two such models could not be told apart.
     fn fingerprint(&self) -> Option<Fingerprint> {
         let (rule, response) = (self.rule.fingerprint()?, self.tangential_response.name());

@@ -65,10 +65,6 @@ impl<R: CollisionRule> CollisionRule for LeastRebound<R> {
         self.rule.impulse(contact).parting_at_least(self.speed, contact)
     }
 
-    fn explain(&self, contact: &Contact) -> Option<String> {
-        self.rule.explain(contact)
-    }
-
     /// Returns `None` if the rule inside has no fingerprint: two such remedies could not be told apart.
     fn fingerprint(&self) -> Option<Fingerprint> {
         Some(Fingerprint::of("LeastRebound").part(self.rule.fingerprint()?).number(self.speed))

@@ -88,10 +88,6 @@ impl<R: CollisionRule> CollisionRule for RulesByKind<R> {
         self.rule_of(contact).impulse(contact)
     }
 
-    fn explain(&self, contact: &Contact) -> Option<String> {
-        self.rule_of(contact).explain(contact)
-    }
-
     /// Returns `None` if one of the rules has no fingerprint: two such tables could not be told apart.
     fn fingerprint(&self) -> Option<Fingerprint> {
         let table = Fingerprint::of("RulesByKind").part(self.otherwise.fingerprint()?);
