@@ -77,11 +77,10 @@ impl Observable for Velocities {
 /// ```
 ///
 /// Every sample is a time origin, and the lags are whole numbers of intervals. The product is that of
-/// [`InnerProduct`]: the dot product of vectors, and the mean over the entries of lists. No mean is
-/// subtracted. For fluctuations, subtract the mean in the observable if it is known, or use
-/// [`autocorrelation`](crate::statistics::autocorrelation) of a series. After a gap in time, the observer
-/// begins with new origins. Pairs without a product, such as lists of different lengths, are left out. The
-/// errors come from blocks of origins.
+/// [`InnerProduct`]: the dot product of vectors, and the mean over the disks for values of disks. No mean is
+/// subtracted. For fluctuations, subtract the mean in the observable if it is known, or else its square from
+/// the correlation. After a gap in time, the observer begins with new origins. Pairs without a product, such
+/// as samples that have no disk in common, are left out. The errors come from blocks of origins.
 ///
 /// A sample costs time and memory in proportion to the number of lags.
 ///
