@@ -103,8 +103,7 @@ use crate::forward::forward;
 /// The rule guarantees:
 /// 1. The same contact gets the same impulse every time, to the bit; a rule that needs history finds it in
 ///    the contact. Otherwise, a run would depend on earlier calls, and a resumed run would differ.
-/// 2. The impulse is finite. Otherwise, the run ends with an error that names the partners and contains the
-///    text of [`Self::explain`].
+/// 2. The impulse is finite. Otherwise, the run ends with an error that names the partners and the contact.
 /// 3. The surfaces no longer close after the collision. Otherwise, they collide again at once, until the run
 ///    ends as stalled.
 /// 4. The collision gains no energy, unless the rule is meant to drive. Otherwise, the system heats up
@@ -119,14 +118,6 @@ use crate::forward::forward;
 pub trait CollisionRule {
     /// Returns the impulse on the first partner; the second receives its opposite.
     fn impulse(&self, contact: &Contact) -> Impulse;
-
-    /// Says why the rule has no answer for a contact.
-    ///
-    /// The engine asks only after an impulse that is not finite, and adds the text to its error.
-    fn explain(&self, contact: &Contact) -> Option<String> {
-        let _ = contact;
-        None
-    }
 
     /// Returns a number that identifies the rule, so that a checkpoint notices when a run is resumed under
     /// another rule.
@@ -146,7 +137,6 @@ pub trait CollisionRule {
 
 forward! { CollisionRule for [&T, Box<T>, Arc<T>] {
     fn impulse(&self, contact: &Contact) -> Impulse;
-    fn explain(&self, contact: &Contact) -> Option<String>;
     fn fingerprint(&self) -> Option<Fingerprint>;
     fn known(&self) -> Option<KnownRule>;
 }}

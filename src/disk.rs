@@ -5,8 +5,8 @@ use glam::DVec2;
 use crate::quantity::{accept, finite, positive};
 use crate::{Kind, ParameterError};
 
-/// Range of a radius or a mass. Products of a few of them stay finite and normal.
-const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
+/// Range of a radius, a mass or a temperature. Products and quotients of a few of them stay finite and normal.
+pub(crate) const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
 /// Least velocity about a mean, relative to all velocities, that counts as thermal. Below it, differences of
 /// velocities are mostly rounding.
@@ -68,18 +68,10 @@ impl Disk {
     /// If a component of the position is not finite, or is above 1e60 in magnitude. If the radius is not in
     /// `[1e-30, 1e30]`.
     pub fn new(position: DVec2, radius: f64) -> Result<Self, ParameterError> {
-        Ok(Self {
-            position: bounded_vector("position", position)?,
-            velocity: DVec2::ZERO,
-            angle: 0.0,
-            angular_velocity: 0.0,
-            radius: scale("radius", radius)?,
-            mass: 1.0,
-            inertia_factor: Self::HOMOGENEOUS_INERTIA_FACTOR,
-            kind: Kind::DEFAULT,
-            image: [0; 2],
-            id: 0,
-        })
+        let position = bounded_vector("position", position)?;
+        let disk =
+            Self::at_rest(scale("radius", radius)?, 1.0, Self::HOMOGENEOUS_INERTIA_FACTOR, Kind::DEFAULT);
+        Ok(Self { position, ..disk })
     }
 
     /// Returns the same disk at this position of its center.
@@ -269,7 +261,7 @@ impl Disk {
     }
 }
 
-fn scale(name: &'static str, value: f64) -> Result<f64, ParameterError> {
+pub(crate) fn scale(name: &'static str, value: f64) -> Result<f64, ParameterError> {
     positive(name, value)?;
     accept(SCALE.contains(&value), name, "in [1e-30, 1e30]", value)
 }
@@ -284,7 +276,7 @@ pub(crate) fn bounded(name: &'static str, value: f64) -> Result<f64, ParameterEr
     accept(value.abs() <= LARGEST, name, "finite and at most 1e60 in magnitude", value)
 }
 
-fn bounded_vector(name: &'static str, vector: DVec2) -> Result<DVec2, ParameterError> {
+pub(crate) fn bounded_vector(name: &'static str, vector: DVec2) -> Result<DVec2, ParameterError> {
     Ok(DVec2::new(bounded(name, vector.x)?, bounded(name, vector.y)?))
 }
 

@@ -5,22 +5,25 @@
 ///
 /// A derived `Deserialize` would fill private fields with numbers that no constructor accepts.
 macro_rules! from_file {
-    ($name:ident { $($fields:tt)+ } => $checked:expr) => {
-        crate::gate::from_file! { $name { $($fields)+ } => $checked, crate::ParameterError }
+    ($name:ident $(<$part:ident>)? { $($fields:tt)+ } => $checked:expr) => {
+        crate::gate::from_file! { $name $(<$part>)? { $($fields)+ } => $checked, crate::ParameterError }
     };
-    ($name:ident { $($(#[$attribute:meta])* $field:ident: $type:ty),+ } => $checked:expr, $error:ty) => {
+    (
+        $name:ident $(<$part:ident>)? { $($(#[$attribute:meta])* $field:ident: $type:ty),+ } => $checked:expr,
+        $error:ty
+    ) => {
         #[cfg(feature = "serde")]
-        impl<'de> serde::Deserialize<'de> for $name {
+        impl<'de $(, $part: serde::Deserialize<'de>)?> serde::Deserialize<'de> for $name $(<$part>)? {
             fn deserialize<D: serde::Deserializer<'de>>(file: D) -> Result<Self, D::Error> {
                 // The mirror has the name of the type, which stands in errors of formats.
                 #[derive(serde::Deserialize)]
                 #[serde(deny_unknown_fields)]
                 // The fields have the names that they have in the type, however alike.
                 #[allow(clippy::struct_field_names)]
-                struct $name {
+                struct $name $(<$part>)? {
                     $($(#[$attribute])* $field: $type,)+
                 }
-                let $name { $($field),+ } = serde::Deserialize::deserialize(file)?;
+                let $name { $($field),+ }: $name $(<$part>)? = serde::Deserialize::deserialize(file)?;
                 let checked = || -> Result<Self, $error> { $checked };
                 checked().map_err(serde::de::Error::custom)
             }
@@ -29,3 +32,10 @@ macro_rules! from_file {
 }
 
 pub(crate) use from_file;
+
+/// Writes a number that can be infinite or NaN. It is absent then, since not all formats know these.
+#[cfg(feature = "serde")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+pub(crate) fn if_finite<S: serde::Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    serde::Serialize::serialize(&Some(*number).filter(|number| number.is_finite()), serializer)
+}

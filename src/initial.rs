@@ -99,7 +99,6 @@ fn cut(interior: Domain, below: f64) -> Result<Domain, ParameterError> {
 fn room(interior: &Domain, radius: f64) -> Domain {
     let side = if interior.periodic_sides { 0.0 } else { radius };
     let end = if interior.periodic_ends { 0.0 } else { radius };
-    let room =
-        Domain::new(interior.left + side, interior.right - side, interior.bottom + end, interior.top - end);
-    Domain { periodic_sides: interior.periodic_sides, periodic_ends: interior.periodic_ends, ..room }
+    let Domain { left, right, bottom, top, .. } = *interior;
+    Domain { left: left + side, right: right - side, bottom: bottom + end, top: top - end, ..*interior }
 }

@@ -24,8 +24,6 @@
 //! ```
 
 use std::borrow::Cow;
-use std::fmt;
-use std::marker::PhantomData;
 
 use crate::ParameterError;
 
@@ -34,7 +32,7 @@ use crate::ParameterError;
 /// # Errors
 /// If it is zero, negative, infinite or NaN.
 pub fn positive(name: impl Into<Cow<'static, str>>, value: f64) -> Result<f64, ParameterError> {
-    Range::POSITIVE.check(name, value)
+    accept(value.is_finite() && value > 0.0, name, "finite and positive", value)
 }
 
 /// Returns `value` if it is finite and not below zero.
@@ -42,7 +40,7 @@ pub fn positive(name: impl Into<Cow<'static, str>>, value: f64) -> Result<f64, P
 /// # Errors
 /// If it is negative, infinite or NaN.
 pub fn non_negative(name: impl Into<Cow<'static, str>>, value: f64) -> Result<f64, ParameterError> {
-    Range::NON_NEGATIVE.check(name, value)
+    accept(value.is_finite() && value >= 0.0, name, "finite and not negative", value)
 }
 
 /// Returns `value` if it is neither infinite nor NaN.
@@ -71,118 +69,4 @@ pub fn accept(
     value: f64,
 ) -> Result<f64, ParameterError> {
     if valid { Ok(value) } else { Err(ParameterError::new(name, requirement, value)) }
-}
-
-/// A range of numbers that have a meaning, and its description in words.
-#[derive(Clone, Copy)]
-pub(crate) struct Range {
-    requirement: &'static str,
-    contains: fn(f64) -> bool,
-}
-
-impl Range {
-    pub(crate) const POSITIVE: Self =
-        Self::new("finite and positive", |value| value.is_finite() && value > 0.0);
-    pub(crate) const NON_NEGATIVE: Self =
-        Self::new("finite and not negative", |value| value.is_finite() && value >= 0.0);
-
-    pub(crate) const fn new(requirement: &'static str, contains: fn(f64) -> bool) -> Self {
-        Self { requirement, contains }
-    }
-
-    fn check(self, name: impl Into<Cow<'static, str>>, value: f64) -> Result<f64, ParameterError> {
-        accept((self.contains)(value), name, self.requirement, value)
-    }
-}
-
-/// A kind of number: its name in errors, and its range. Types without values implement it.
-pub(crate) trait Quantity {
-    const NAME: &'static str;
-    const RANGE: Range;
-}
-
-/// A number that has passed the check of its kind. In files it is a plain number, read through the same
-/// check.
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "f64", into = "f64", bound = "Q: Quantity"))]
-pub(crate) struct Checked<Q>(f64, PhantomData<Q>);
-
-impl<Q: Quantity> Checked<Q> {
-    pub(crate) fn new(value: f64) -> Result<Self, ParameterError> {
-        Q::RANGE.check(Q::NAME, value).map(|value| Self(value, PhantomData))
-    }
-}
-
-impl<Q> Checked<Q> {
-    #[inline]
-    pub(crate) const fn get(self) -> f64 {
-        self.0
-    }
-}
-
-// These traits are written out, because derived ones would require them of `Q`, which has no values to copy
-// or compare.
-
-impl<Q> Clone for Checked<Q> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<Q> Copy for Checked<Q> {}
-
-impl<Q> PartialEq for Checked<Q> {
-    fn eq(&self, other: &Self) -> bool {
-        self.0 == other.0
-    }
-}
-
-impl<Q> fmt::Debug for Checked<Q> {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(formatter)
-    }
-}
-
-impl<Q: Quantity> TryFrom<f64> for Checked<Q> {
-    type Error = ParameterError;
-
-    fn try_from(value: f64) -> Result<Self, ParameterError> {
-        Self::new(value)
-    }
-}
-
-impl<Q> From<Checked<Q>> for f64 {
-    fn from(checked: Checked<Q>) -> Self {
-        checked.0
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Checked, Quantity, Range};
-
-    enum Share {}
-
-    impl Quantity for Share {
-        const NAME: &'static str = "share";
-        const RANGE: Range = Range::new("in [0, 1]", |value| (0.0..=1.0).contains(&value));
-    }
-
-    #[test]
-    fn a_checked_number_is_a_number() {
-        let half = Checked::<Share>::new(0.5).unwrap();
-        assert_eq!((half.get(), f64::from(half), format!("{half:?}")), (0.5, 0.5, "0.5".into()));
-        let error = Checked::<Share>::try_from(1.5).unwrap_err();
-        assert_eq!(error.to_string(), "share must be in [0, 1], but is 1.5");
-        assert!(Checked::<Share>::new(f64::NAN).is_err());
-    }
-
-    #[cfg(feature = "serde")]
-    #[test]
-    fn a_file_passes_the_check() {
-        let half: Checked<Share> = serde_json::from_str("0.5").unwrap();
-        assert_eq!(serde_json::to_string(&half).unwrap(), "0.5");
-        let refused = serde_json::from_str::<Checked<Share>>("1.5").unwrap_err();
-        assert!(refused.to_string().starts_with("share must be in [0, 1], but is 1.5"));
-    }
 }

@@ -7,7 +7,6 @@
 //! | the same for a series in memory | [`block_average`] |
 //! | a mean, its error, and what the error rests on | [`Estimate`] |
 //! | the mean of several runs together | [`Estimate::over_repeats`] |
-//! | correlation of the samples of a series in memory | [`autocorrelation`] |
 //! | distribution of numbers over bins | [`Histogram`] |
 //!
 //! Collisions and samples of one run are correlated. A standard error that takes them as independent is too
@@ -25,7 +24,6 @@
 //! assert!(estimate.standard_error() > 3.0 * mean.ungrouped().standard_error());
 //! ```
 
-mod autocorrelation;
 mod bins;
 mod blocked_mean;
 mod blocking;
@@ -36,7 +34,6 @@ mod plateau;
 mod repeats;
 mod running_mean;
 
-pub use autocorrelation::autocorrelation;
 pub(crate) use bins::Bins;
 pub use blocked_mean::BlockedMean;
 pub use blocking::block_average;

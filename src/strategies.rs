@@ -41,11 +41,8 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 use proptest::prelude::*;
 
-use crate::boundary::{Container, Thermal, Wall};
-use crate::collision::{CollisionRule, Contact, Elastic, collide};
-use crate::simulation::BuildError;
-use crate::wall::{BiParabolic, Sinusoidal};
-use crate::{Disk, Gravity, Kind, Simulation, initial};
+use crate::collision::{Contact, Elastic, collide};
+use crate::{Disk, Kind};
 
 /// Returns positive numbers, spread evenly over the decades from 10 to the power `low` to 10 to the power
 /// `high`.
@@ -199,86 +196,4 @@ pub fn touching_pair() -> impl Strategy<Value = (Disk, Disk)> {
 /// ```
 pub fn disk_closing_on_wall() -> impl Strategy<Value = (Disk, DVec2, DVec2)> {
     touching_pair().prop_map(|(disk, wall)| (disk, disk.position().normalize(), wall.velocity()))
-}
-
-/// A small system without its rule: fewer than thirty disks in a box that may be shaken, heated, periodic or
-/// open.
-#[derive(Debug, Clone)]
-#[non_exhaustive]
-pub struct SetUp {
-    /// The walls.
-    pub container: Container,
-    /// The disks, with their velocities.
-    pub disks: Vec<Disk>,
-    /// Gravity.
-    pub gravity: Gravity,
-    /// The absolute time of the start.
-    pub start_time: f64,
-    /// Seed of a thermal floor.
-    pub seed: u64,
-}
-
-impl SetUp {
-    /// Makes the simulation of this system under a rule.
-    ///
-    /// # Errors
-    /// If the disks do not fit. Those of [`set_up`] fit.
-    pub fn simulation<R: CollisionRule>(&self, rule: R) -> Result<Simulation<R>, BuildError> {
-        Simulation::builder(rule, self.container.clone())
-            .disks(self.disks.iter().copied())
-            .gravity(self.gravity)
-            .start_time(self.start_time)
-            .seed(self.seed)
-            .build()
-    }
-}
-
-/// Returns small systems of all kinds, in which to run a rule of your own.
-///
-/// ```
-/// use granular_edmd::collision::Elastic;
-/// use granular_edmd::strategies;
-/// use proptest::prelude::*;
-///
-/// let config = ProptestConfig { cases: 16, failure_persistence: None, ..ProptestConfig::default() };
-/// proptest!(config, |(set_up in strategies::set_up())| {
-///     let mut run = set_up.simulation(Elastic)?;
-///     run.run_until(set_up.start_time + 2.0, &mut ())?;
-///     prop_assert!(run.counters().max_overlap < 1e-9);
-/// });
-/// ```
-pub fn set_up() -> impl Strategy<Value = SetUp> {
-    let gravity =
-        prop_oneof![Just(0.0.into()), Just(0.05.into()), Just(1.0.into()), Just(Gravity::tilted(1.0, 0.4))];
-    let start_time = prop_oneof![3 => Just(0.0), 1 => Just(-100.3), 1 => Just(1e7)];
-    (container(), 0..30_usize, any::<bool>(), gravity, start_time, any::<u64>()).prop_filter_map(
-        "the disks do not fit",
-        |(container, count, mixed, gravity, start_time, seed)| {
-            let disks = disks_in(&container, count, mixed, seed)?;
-            Some(SetUp { container, disks, gravity, start_time, seed })
-        },
-    )
-}
-
-/// Returns boxes with an area of some tens of disks and one of four floors.
-fn container() -> impl Strategy<Value = Container> {
-    (0..4_u8, any::<bool>(), any::<bool>()).prop_filter_map("no such box", |(floor, open, periodic)| {
-        let container = if open { Container::open(10.0) } else { Container::closed(10.0, 12.0) }.ok()?;
-        let container = if periodic { container.with_periodic_sides().ok()? } else { container };
-        match floor {
-            0 => Some(container),
-            1 => container.with_motion(Wall::Floor, BiParabolic::new(0.1, 10.0).ok()?).ok(),
-            2 => container.with_motion(Wall::Floor, Sinusoidal::new(0.1, 7.0).ok()?).ok(),
-            _ => container.with_temperature(Wall::Floor, Thermal::new(1.0).ok()?).ok(),
-        }
-    })
-}
-
-/// Returns disks of one size or of three, placed and set in motion by `seed`.
-fn disks_in(container: &Container, count: usize, mixed: bool, seed: u64) -> Option<Vec<Disk>> {
-    let radius = |index: usize| if mixed { [0.5, 0.25, 0.1][index % 3] } else { 0.5 };
-    let disk = |index| Disk::new(DVec2::ZERO, radius(index)).ok()?.with_mass(4.0 * radius(index)).ok();
-    let disks = (0..count).map(disk).collect::<Option<_>>()?;
-    let placed = initial::placed_at_random(container, disks, 11.0, seed).ok()?;
-    initial::with_maxwellian_velocities(placed, 1.0, seed).ok()
 }

@@ -99,11 +99,6 @@ impl Clusters {
         self.clusters.len()
     }
 
-    /// Returns the cluster of this number.
-    pub fn get(&self, cluster: usize) -> Option<&Cluster> {
-        self.clusters.get(cluster)
-    }
-
     /// Iterates over the clusters in their order.
     pub fn iter(&self) -> impl Iterator<Item = &Cluster> {
         self.clusters.iter()

@@ -1,7 +1,5 @@
 //! The rectangular container.
 
-#[cfg(feature = "serde")]
-mod serialized;
 mod shaken;
 mod wall;
 
@@ -45,16 +43,16 @@ use crate::{Fingerprint, Flight, Kind, ParameterError};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "serialized::Record", into = "serialized::Record"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Container {
     /// Lower left corner.
     corner: DVec2,
     width: f64,
     /// Height of the lid or period of the ends; infinite if the top is open.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::gate::if_finite"))]
     height: f64,
-    /// The walls that exist, and a plane for each of them.
-    walls: Vec<Wall>,
+    /// The walls that exist.
+    #[cfg_attr(feature = "serde", serde(rename = "walls"))]
     planes: Vec<Plane>,
 }
 
@@ -66,7 +64,7 @@ impl Container {
     pub fn closed(width: f64, height: f64) -> Result<Self, ParameterError> {
         let mut container = Self::open(width)?;
         container.height = positive("height", height)?;
-        container.add(Wall::Lid, Plane::new(DVec2::NEG_Y, -height));
+        container.planes.push(Plane::new(Wall::Lid, DVec2::NEG_Y, -height));
         Ok(container)
     }
 
@@ -76,12 +74,11 @@ impl Container {
     /// If the width is not finite and positive.
     pub fn open(width: f64) -> Result<Self, ParameterError> {
         let width = positive("width", width)?;
-        let (walls, planes) = (Vec::new(), Vec::new());
-        let mut container = Self { corner: DVec2::ZERO, width, height: f64::INFINITY, walls, planes };
-        container.add(Wall::Floor, Plane::new(DVec2::Y, 0.0));
-        container.add(Wall::Left, Plane::new(DVec2::X, 0.0));
-        container.add(Wall::Right, Plane::new(DVec2::NEG_X, -width));
-        Ok(container)
+        let floor = Plane::new(Wall::Floor, DVec2::Y, 0.0);
+        let left = Plane::new(Wall::Left, DVec2::X, 0.0);
+        let right = Plane::new(Wall::Right, DVec2::NEG_X, -width);
+        let planes = vec![floor, left, right];
+        Ok(Self { corner: DVec2::ZERO, width, height: f64::INFINITY, planes })
     }
 
     /// Creates a container without walls, which is periodic in both directions.
@@ -100,9 +97,7 @@ impl Container {
     /// # Ok::<(), granular_edmd::ParameterError>(())
     /// ```
     pub fn periodic(width: f64, height: f64) -> Result<Self, ParameterError> {
-        let width = positive("width", width)?;
-        let height = positive("height", height)?;
-        Ok(Self { corner: DVec2::ZERO, width, height, walls: Vec::new(), planes: Vec::new() })
+        Ok(Self { planes: Vec::new(), ..Self::closed(width, height)? })
     }
 
     /// Returns the same container with periodic sides: a disk that leaves on one side enters on the other.
@@ -219,19 +214,13 @@ impl Container {
 
     /// Returns the index of a wall, if the wall exists.
     pub fn index(&self, wall: Wall) -> Option<usize> {
-        self.walls.iter().position(|&kind| kind == wall)
-    }
-
-    fn add(&mut self, wall: Wall, plane: Plane) {
-        self.walls.push(wall);
-        self.planes.push(plane);
+        self.planes.iter().position(|plane| plane.wall == wall)
     }
 
     /// Takes away those of the walls that exist.
     fn without(mut self, walls: [Wall; 2]) -> Result<Self, WallError> {
         for wall in walls {
             let Some(index) = self.index(wall) else { continue };
-            self.walls.remove(index);
             if !self.planes.remove(index).is_plain() {
                 return Err(WallError::Lost { wall });
             }
@@ -240,8 +229,7 @@ impl Container {
     }
 
     fn plane_mut(&mut self, wall: Wall) -> Result<&mut Plane, WallError> {
-        let index = self.index(wall).ok_or(WallError::Missing { wall })?;
-        Ok(&mut self.planes[index])
+        self.planes.iter_mut().find(|plane| plane.wall == wall).ok_or(WallError::Missing { wall })
     }
 
     /// Returns how far a wall can move outward.
@@ -283,11 +271,12 @@ impl Boundary for Container {
     }
 
     fn wall_count(&self) -> usize {
-        self.walls.len()
+        self.planes.len()
     }
 
     fn wall_name(&self, wall: usize) -> Cow<'_, str> {
-        self.walls.get(wall).map_or_else(|| Cow::Owned(format!("wall {wall}")), |wall| wall.name().into())
+        let plane = self.planes.get(wall);
+        plane.map_or_else(|| Cow::Owned(format!("wall {wall}")), |plane| plane.wall.name().into())
     }
 
     fn set_time_origin(&mut self, origin: f64) {
@@ -329,8 +318,36 @@ impl Boundary for Container {
         let sizes = Fingerprint::of("Container").number(self.width).number(self.height);
         let DVec2 { x, y } = self.corner;
         let sizes = if self.corner == DVec2::ZERO { sizes } else { sizes.number(x).number(y) };
-        self.walls.iter().zip(&self.planes).try_fold(sizes, |container, (wall, plane)| {
-            Some(container.text(wall.name()).part(plane.fingerprint()?))
+        self.planes.iter().try_fold(sizes, |container, plane| {
+            Some(container.text(plane.wall.name()).part(plane.fingerprint()?))
         })
     }
+}
+
+crate::gate::from_file! {
+    Container { corner: DVec2, width: f64, height: Option<f64>, walls: Vec<Plane> } => {
+        let has = |wall: Wall| walls.iter().any(|plane| plane.wall == wall);
+        let mut container = match height {
+            Some(height) => Self::closed(width, height)?,
+            None => Self::open(width)?,
+        };
+        if !has(Wall::Left) {
+            container = container.with_periodic_sides()?;
+        }
+        if !has(Wall::Floor) {
+            container = container.with_periodic_ends()?;
+        }
+        // The walls must be those of the container as it is now, in their order.
+        if !walls.iter().map(|plane| plane.wall).eq(container.planes.iter().map(|plane| plane.wall)) {
+            return Err("no container has just these walls in this order".into());
+        }
+        for (plane, read) in container.planes.iter_mut().zip(walls) {
+            if let Some(super::plane::Slide::Speed(speed)) = read.slide {
+                crate::quantity::finite("surface speed", speed)?;
+            }
+            plane.set_motion(read.motion);
+            (plane.conduct, plane.kind, plane.slide) = (read.conduct, read.kind, read.slide);
+        }
+        Ok(container.shifted(corner)?)
+    }, Box<dyn std::error::Error>
 }

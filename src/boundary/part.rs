@@ -3,8 +3,6 @@
 mod constructors;
 mod corners;
 mod polygon;
-#[cfg(feature = "serde")]
-mod serialized;
 mod travel;
 
 use travel::Along;
@@ -46,13 +44,12 @@ use crate::{Fingerprint, Kind};
 /// # Ok::<(), granular_edmd::boundary::VesselError>(())
 /// ```
 #[derive(Debug, Clone)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "serialized::Record", into = "serialized::Record"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Part {
-    /// The bricks as given, then the corners.
     bricks: Vec<Brick>,
-    /// Number of bricks as given.
-    given: usize,
+    /// Points where the bricks end. They follow from the bricks, so files do not hold them.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    corners: Vec<Brick>,
     travel: Travel,
     conduct: Conduct,
     kind: Kind,
@@ -195,7 +192,7 @@ impl Part {
         let turn = std::f64::consts::TAU / angular_velocity.abs();
         let range = "such that a turn takes from 1e-60 to 1e60";
         accept((1e-60..=1e60).contains(&turn), "angular velocity", range, angular_velocity)?;
-        let is_round = self.bricks.iter().all(|brick| brick.is_circle_about(about));
+        let is_round = self.all_bricks().all(|brick| brick.is_circle_about(about));
         let turning = Some(Turning { about, angular_velocity, is_round });
         Self { travel: Travel { turning, ..self.travel }, ..self }.safe()
     }
@@ -233,7 +230,7 @@ impl Part {
     /// # Errors
     /// If a coordinate would not be finite.
     pub fn shifted(mut self, by: DVec2) -> Result<Self, VesselError> {
-        for brick in &mut self.bricks {
+        for brick in self.bricks.iter_mut().chain(&mut self.corners) {
             *brick = brick.shifted(by)?;
         }
         if let Some(Turning { about, .. }) = &mut self.travel.turning {
@@ -249,7 +246,7 @@ impl Part {
     /// # Errors
     /// If an argument is not finite, or a coordinate would not be.
     pub fn rotated(mut self, about: DVec2, angle: f64) -> Result<Self, VesselError> {
-        for brick in &mut self.bricks {
+        for brick in self.bricks.iter_mut().chain(&mut self.corners) {
             *brick = brick.rotated(about, angle)?;
         }
         let turn = super::vector::direction(angle);
@@ -264,7 +261,7 @@ impl Part {
 
     /// Returns the bricks, without the corners that were added.
     pub fn bricks(&self) -> &[Brick] {
-        &self.bricks[..self.given]
+        &self.bricks
     }
 
     /// Returns the distance of a place from the part as it was built, negative where no disk can be.
@@ -278,7 +275,7 @@ impl Part {
     fn with_conduct(mut self, conduct: Conduct) -> Self {
         self.conduct = conduct;
         if self.takes_centers() {
-            self.bricks.truncate(self.given);
+            self.corners.clear();
         }
         self
     }
@@ -298,13 +295,13 @@ impl Part {
         let Travel { along: Some(Along { direction, motion }), turning } = &self.travel else {
             return Ok(self);
         };
-        let faces = turning.is_none() && self.bricks.iter().all(|brick| brick.faces(*direction));
+        let faces = turning.is_none() && self.all_bricks().all(|brick| brick.faces(*direction));
         if faces || !motion.jumps() { Ok(self) } else { Err(VesselError::Jump) }
     }
 
-    /// Returns all bricks, with the corners.
-    pub(super) fn all_bricks(&self) -> &[Brick] {
-        &self.bricks
+    /// Iterates over all bricks: as given, then the corners.
+    pub(super) fn all_bricks(&self) -> impl Iterator<Item = &Brick> {
+        self.bricks.iter().chain(&self.corners)
     }
 
     pub(super) fn travel(&self) -> &Travel {
@@ -320,17 +317,17 @@ impl Part {
 
     /// Returns a rectangle around the part as it was built. Its edges may be infinite.
     pub(super) fn bounds(&self) -> (DVec2, DVec2) {
-        enclosing(self.bricks.iter().map(Brick::bounds))
+        enclosing(self.all_bricks().map(Brick::bounds))
     }
 
     /// Returns a rectangle that holds the part at all times. Its edges may be infinite.
     pub(super) fn swept_bounds(&self) -> (DVec2, DVec2) {
-        enclosing(self.bricks.iter().map(|brick| self.travel.bounds(brick)))
+        enclosing(self.all_bricks().map(|brick| self.travel.bounds(brick)))
     }
 
     /// Returns the number of the nearest brick and the distance from it, negative behind it.
     pub(super) fn nearest(&self, place: DVec2) -> Option<(usize, f64)> {
-        let sights = self.bricks.iter().map(|brick| Sighted::new(brick, place)).enumerate();
+        let sights = self.all_bricks().map(|brick| Sighted::new(brick, place)).enumerate();
         let nearest = sights.reduce(|a, b| if b.1.is_better_than(&a.1) { b } else { a });
         nearest.map(|(brick, sighted)| (brick, sighted.signed_distance()))
     }
@@ -345,8 +342,22 @@ impl Part {
         let kind = f64::from(self.kind.number());
         let part = Fingerprint::of("Part").number(self.surface_speed).number(self.start).number(kind);
         let part = part.part(self.travel.fingerprint()?).part(self.conduct.fingerprint()?);
-        Some(self.bricks.iter().fold(part, |part, brick| part.part(brick.fingerprint())))
+        Some(self.all_bricks().fold(part, |part, brick| part.part(brick.fingerprint())))
     }
+}
+
+crate::gate::from_file! {
+    Part {
+        bricks: Vec<Brick>, travel: Travel, conduct: Conduct, kind: Kind, surface_speed: f64, #[serde(default)] start: f64
+    } => {
+        let part = Self { kind, ..Self::new(bricks)?.with_conduct(conduct) };
+        let mut part = part.with_surface_speed(surface_speed)?.starting_at(start)?;
+        if let Some(Turning { about, angular_velocity, .. }) = travel.turning {
+            part = part.with_rotation(about, angular_velocity)?;
+        }
+        let Some(Along { direction, motion }) = travel.along else { return Ok(part) };
+        part.moving(Along { direction: super::vector::unit_vector(direction)?, motion })
+    }, VesselError
 }
 
 /// Returns the rectangle around some rectangles.

@@ -2,26 +2,36 @@
 
 use glam::DVec2;
 
-use super::Region;
 use super::conduct::Conduct;
 use super::surface::Surface;
+use super::{Region, Wall};
 use crate::wall::{Approach, FirstTouch, Motion, first_touch};
 use crate::{Fingerprint, Flight, Kind};
 
-/// A straight wall: the disks stay on one side of a line.
+/// A straight wall of a container: the disks stay on one side of a line.
+///
+/// Files do not hold where it is: that follows from the size of the container.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields, rename = "ContainerWall"))]
 pub(super) struct Plane {
+    pub(super) wall: Wall,
     /// Unit vector from the wall to the disks.
+    #[cfg_attr(feature = "serde", serde(skip))]
     normal: DVec2,
     /// Place of the wall at rest, along its normal.
+    #[cfg_attr(feature = "serde", serde(skip))]
     place: f64,
     pub(super) motion: Motion,
     /// Largest displacement of the motion.
+    #[cfg_attr(feature = "serde", serde(skip))]
     highest: f64,
     pub(super) conduct: Conduct,
     pub(super) kind: Kind,
     /// Phase of the motion at the time origin.
+    #[cfg_attr(feature = "serde", serde(skip))]
     phase: f64,
+    #[cfg_attr(feature = "serde", serde(default))]
     pub(super) slide: Option<Slide>,
 }
 
@@ -64,9 +74,9 @@ impl Slide {
 }
 
 impl Plane {
-    pub(super) fn new(normal: DVec2, place: f64) -> Self {
+    pub(super) fn new(wall: Wall, normal: DVec2, place: f64) -> Self {
         let (motion, conduct, kind) = (Motion::none(), Conduct::Shared, Kind::WALL);
-        Self { normal, place, motion, highest: 0.0, conduct, kind, phase: 0.0, slide: None }
+        Self { wall, normal, place, motion, highest: 0.0, conduct, kind, phase: 0.0, slide: None }
     }
 
     /// Tells whether nothing was set for the wall.

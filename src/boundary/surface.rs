@@ -5,7 +5,7 @@ use std::fmt;
 use glam::DVec2;
 
 use crate::collision::CollisionRule;
-use crate::quantity::{Checked, Quantity, Range};
+use crate::quantity::positive;
 use crate::{Fingerprint, Kind, ParameterError};
 
 /// The surface of a wall at the point of a touch.
@@ -115,20 +115,10 @@ impl fmt::Debug for Response<'_> {
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Thermal {
-    temperature: Checked<WallTemperature>,
+    temperature: f64,
     slip: bool,
-}
-
-/// The quantity "temperature of a wall".
-#[derive(Debug, Clone, Copy)]
-struct WallTemperature;
-
-impl Quantity for WallTemperature {
-    const NAME: &'static str = "wall temperature";
-    const RANGE: Range = Range::POSITIVE;
 }
 
 impl Thermal {
@@ -137,7 +127,7 @@ impl Thermal {
     /// # Errors
     /// If the temperature is not finite and positive.
     pub fn new(temperature: f64) -> Result<Self, ParameterError> {
-        Ok(Self { temperature: Checked::new(temperature)?, slip: false })
+        Ok(Self { temperature: positive("wall temperature", temperature)?, slip: false })
     }
 
     /// Returns the same wall with slip: tangential and angular velocity stay as they are.
@@ -147,7 +137,7 @@ impl Thermal {
 
     /// Returns the temperature, in units of energy.
     pub const fn temperature(&self) -> f64 {
-        self.temperature.get()
+        self.temperature
     }
 
     /// Tells whether tangential and angular velocity stay as they are.
@@ -158,4 +148,8 @@ impl Thermal {
     pub(super) fn fingerprint(&self) -> Fingerprint {
         Fingerprint::of(if self.slip { "Thermal with slip" } else { "Thermal" }).number(self.temperature())
     }
+}
+
+crate::gate::from_file! {
+    Thermal { temperature: f64, slip: bool } => Ok(Self { slip, ..Self::new(temperature)? })
 }

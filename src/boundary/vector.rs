@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::ParameterError;
-use crate::quantity::{accept, positive};
+use crate::quantity::positive;
 
 /// Returns the unit vector at this angle from the `x` axis.
 pub(super) fn direction(angle: f64) -> DVec2 {
@@ -24,13 +24,10 @@ pub(super) fn unit(direction: DVec2) -> Result<DVec2, ParameterError> {
 #[cfg(feature = "serde")]
 pub(super) fn unit_vector(direction: DVec2) -> Result<DVec2, ParameterError> {
     let length = finite_point(direction)?.length();
-    accept((length - 1.0).abs() <= 1e-12, "length of a direction", "1", length)?;
+    crate::quantity::accept((length - 1.0).abs() <= 1e-12, "length of a direction", "1", length)?;
     Ok(direction)
 }
 
 pub(super) fn finite_point(place: DVec2) -> Result<DVec2, ParameterError> {
-    /// Largest coordinate for which squares of distances, and the squares of those, stay finite.
-    const LARGEST: f64 = 1e60;
-    let check = |value: f64| accept(value.abs() <= LARGEST, "coordinate", "at most 1e60 in magnitude", value);
-    Ok(DVec2::new(check(place.x)?, check(place.y)?))
+    crate::disk::bounded_vector("coordinate", place)
 }

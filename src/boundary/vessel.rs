@@ -5,8 +5,6 @@ mod index;
 mod outline;
 mod overlap;
 mod search;
-#[cfg(feature = "serde")]
-mod serialized;
 
 use std::ops::Range;
 
@@ -72,8 +70,6 @@ const LEAST_STROKE: f64 = 4096.0 * f64::EPSILON;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "serialized::Record", into = "serialized::Record"))]
 pub struct Vessel {
     container: Container,
     parts: Vec<Placed>,
@@ -171,11 +167,11 @@ impl Vessel {
         let room = DVec2::splat(ROOM * size.max_element());
         let corner = if parts.is_empty() { DVec2::ZERO } else { low - room };
         let (width, height) = (size.x + 2.0 * room.x, size.y + 2.0 * room.y);
-        let mut vessel = Self::new(Container::closed(width, height)?.shifted(corner)?);
-        for (name, part) in parts {
-            vessel.put(name, part)?;
-        }
-        Ok(vessel)
+        Self::of(Container::closed(width, height)?.shifted(corner)?, parts)
+    }
+
+    fn of(container: Container, parts: Vec<(String, Part)>) -> Result<Self, VesselError> {
+        parts.into_iter().try_fold(Self::new(container), |vessel, (name, part)| vessel.with(name, part))
     }
 
     /// Returns the same vessel with one more part.
@@ -228,7 +224,7 @@ impl Vessel {
     pub fn replace(&mut self, name: &str, part: Part) -> Result<Part, VesselError> {
         let place = self.place_of(name)?;
         let placed = Placed::new(name.to_owned(), part);
-        self.check(&placed, self.parts[place].part.all_bricks().len())?;
+        self.check(&placed, self.parts[place].part.all_bricks().count())?;
         let before = std::mem::replace(&mut self.parts[place], placed);
         self.number();
         Ok(before.part)
@@ -242,7 +238,7 @@ impl Vessel {
 
     /// Checks that a part can be in this vessel, in place of one with `less` walls.
     fn check(&self, placed: &Placed, less: usize) -> Result<(), VesselError> {
-        let count = self.wall_count() - less + placed.part.all_bricks().len();
+        let count = self.wall_count() - less + placed.part.all_bricks().count();
         accept(count <= MOST_WALLS, "number of walls of the vessel", "at most 2^16", count as f64)?;
         let (low, high) = placed.bounds;
         let periods = self.container.domain().periods();
@@ -274,7 +270,7 @@ impl Vessel {
     /// Returns the indices of the walls of a part, if there is one of this name.
     pub fn walls(&self, name: &str) -> Option<Range<usize>> {
         let placed = self.parts.iter().find(|placed| placed.name == name)?;
-        Some(placed.first..placed.first + placed.part.all_bricks().len())
+        Some(placed.first..placed.first + placed.part.all_bricks().count())
     }
 
     /// Returns the container.
@@ -288,7 +284,7 @@ impl Vessel {
         for (number, placed) in self.parts.iter_mut().enumerate() {
             placed.first = self.container.wall_count() + self.walls.len();
             placed.phase = placed.part.phase(self.origin);
-            let bricks = placed.part.all_bricks().iter();
+            let bricks = placed.part.all_bricks();
             self.walls.extend(bricks.map(|&brick| Wall { part: number, brick }));
         }
         let travel = |wall: &Wall| -> &Travel { self.parts[wall.part].part.travel() };
@@ -310,5 +306,21 @@ impl Vessel {
         });
         self.hollows = hollows.collect();
         self.hollows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    }
+}
+
+crate::gate::from_file! {
+    Vessel { container: Container, parts: Vec<(String, Part)> } => Self::of(container, parts), VesselError
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for Vessel {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeStruct;
+        let parts: Vec<_> = self.parts.iter().map(|placed| (&placed.name, &placed.part)).collect();
+        let mut vessel = serializer.serialize_struct("Vessel", 2)?;
+        vessel.serialize_field("container", &self.container)?;
+        vessel.serialize_field("parts", &parts)?;
+        vessel.end()
     }
 }

@@ -1,7 +1,7 @@
 //! The contact-duration model: a remedy for inelastic collapse.
 
 use super::{CollisionRule, Contact, Impulse, KnownRule, Regime, TangentialResponse};
-use crate::quantity::{Checked, Quantity, Range};
+use crate::quantity::positive;
 use crate::{Fingerprint, ParameterError};
 
 /// The contact-duration (TC) model over any rule: a collision loses no energy if one of the bodies collided
@@ -24,20 +24,11 @@ use crate::{Fingerprint, ParameterError};
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ContactDuration<R> {
     rule: R,
-    duration: Checked<Duration>,
-    #[cfg_attr(feature = "serde", serde(default))]
+    duration: f64,
     tangential_response: TangentialResponse,
-}
-
-enum Duration {}
-
-impl Quantity for Duration {
-    const NAME: &'static str = "contact duration";
-    const RANGE: Range = Range::POSITIVE;
 }
 
 impl<R> ContactDuration<R> {
@@ -47,18 +38,13 @@ impl<R> ContactDuration<R> {
     /// # Errors
     /// If the duration is not finite and positive. To have no contact duration, use the rule alone.
     pub fn new(rule: R, duration: f64) -> Result<Self, ParameterError> {
-        let duration = Checked::new(duration)?;
+        positive("contact duration", duration)?;
         Ok(Self { rule, duration, tangential_response: TangentialResponse::default() })
     }
 
     /// Returns the same model with this tangential response.
     pub fn with_tangential_response(self, tangential_response: TangentialResponse) -> Self {
         Self { tangential_response, ..self }
-    }
-
-    /// Returns the same model over another rule.
-    fn around<Q>(&self, rule: Q) -> ContactDuration<Q> {
-        ContactDuration { rule, duration: self.duration, tangential_response: self.tangential_response }
     }
 
     /// Returns the rule inside, which decides all other collisions.
@@ -68,31 +54,33 @@ impl<R> ContactDuration<R> {
 
     /// Returns the contact duration t_c.
     pub const fn duration(&self) -> f64 {
-        self.duration.get()
+        self.duration
     }
 }
 
 impl<R: CollisionRule> CollisionRule for ContactDuration<R> {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        if contact.time_since_last_collision() < self.duration.get() {
+        if contact.time_since_last_collision() < self.duration {
             self.tangential_response.elastic(&self.rule, contact, Regime::ContactDuration)
         } else {
             self.rule.impulse(contact)
         }
     }
 
-    fn explain(&self, contact: &Contact) -> Option<String> {
-        self.rule.explain(contact)
-    }
-
     /// Returns `None` if the rule inside has no fingerprint: two such models could not be told apart.
     fn fingerprint(&self) -> Option<Fingerprint> {
         let (rule, response) = (self.rule.fingerprint()?, self.tangential_response.name());
-        Some(Fingerprint::of("ContactDuration").part(rule).number(self.duration.get()).text(response))
+        Some(Fingerprint::of("ContactDuration").part(rule).number(self.duration).text(response))
     }
 
     fn known(&self) -> Option<KnownRule> {
-        Some(Box::new(self.around(self.rule.known()?)).into())
+        let Self { duration, tangential_response, .. } = *self;
+        Some(Box::new(ContactDuration { rule: self.rule.known()?, duration, tangential_response }).into())
     }
+}
+
+crate::gate::from_file! {
+    ContactDuration<R> { rule: R, duration: f64, #[serde(default)] tangential_response: TangentialResponse } =>
+        Ok(Self::new(rule, duration)?.with_tangential_response(tangential_response))
 }

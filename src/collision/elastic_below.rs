@@ -1,7 +1,7 @@
 //! Slow collisions without loss: a remedy for matter at rest.
 
 use super::{CollisionRule, Contact, Impulse, KnownRule, Regime, TangentialResponse};
-use crate::quantity::{Checked, Quantity, Range};
+use crate::quantity::positive;
 use crate::{Fingerprint, ParameterError};
 
 /// A rule whose slow collisions are elastic: surfaces part at least at a speed v_c, or as fast as they
@@ -31,20 +31,11 @@ use crate::{Fingerprint, ParameterError};
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ElasticBelow<R> {
     rule: R,
-    speed: Checked<Speed>,
-    #[cfg_attr(feature = "serde", serde(default))]
+    speed: f64,
     tangential_response: TangentialResponse,
-}
-
-enum Speed {}
-
-impl Quantity for Speed {
-    const NAME: &'static str = "speed of elastic collisions";
-    const RANGE: Range = Range::POSITIVE;
 }
 
 impl<R> ElasticBelow<R> {
@@ -53,18 +44,13 @@ impl<R> ElasticBelow<R> {
     /// # Errors
     /// If the speed is not finite and positive. To have no such speed, use the rule alone.
     pub fn new(rule: R, speed: f64) -> Result<Self, ParameterError> {
-        let speed = Checked::new(speed)?;
+        positive("speed of elastic collisions", speed)?;
         Ok(Self { rule, speed, tangential_response: TangentialResponse::default() })
     }
 
     /// Returns the same remedy with this tangential response.
     pub fn with_tangential_response(self, tangential_response: TangentialResponse) -> Self {
         Self { tangential_response, ..self }
-    }
-
-    /// Returns the same remedy around another rule.
-    fn around<Q>(&self, rule: Q) -> ElasticBelow<Q> {
-        ElasticBelow { rule, speed: self.speed, tangential_response: self.tangential_response }
     }
 
     /// Returns the rule inside, which decides all other collisions.
@@ -74,30 +60,32 @@ impl<R> ElasticBelow<R> {
 
     /// Returns the closing speed v_c below which collisions are elastic.
     pub const fn speed(&self) -> f64 {
-        self.speed.get()
+        self.speed
     }
 }
 
 impl<R: CollisionRule> CollisionRule for ElasticBelow<R> {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        if contact.closing_speed() < self.speed.get() {
+        if contact.closing_speed() < self.speed {
             return self.tangential_response.elastic(&self.rule, contact, Regime::ElasticBelow);
         }
-        self.rule.impulse(contact).parting_at_least(self.speed.get(), contact)
-    }
-
-    fn explain(&self, contact: &Contact) -> Option<String> {
-        self.rule.explain(contact)
+        self.rule.impulse(contact).parting_at_least(self.speed, contact)
     }
 
     /// Returns `None` if the rule inside has no fingerprint: two such remedies could not be told apart.
     fn fingerprint(&self) -> Option<Fingerprint> {
         let (rule, response) = (self.rule.fingerprint()?, self.tangential_response.name());
-        Some(Fingerprint::of("ElasticBelow").part(rule).number(self.speed.get()).text(response))
+        Some(Fingerprint::of("ElasticBelow").part(rule).number(self.speed).text(response))
     }
 
     fn known(&self) -> Option<KnownRule> {
-        Some(Box::new(self.around(self.rule.known()?)).into())
+        let Self { speed, tangential_response, .. } = *self;
+        Some(Box::new(ElasticBelow { rule: self.rule.known()?, speed, tangential_response }).into())
     }
+}
+
+crate::gate::from_file! {
+    ElasticBelow<R> { rule: R, speed: f64, #[serde(default)] tangential_response: TangentialResponse } =>
+        Ok(Self::new(rule, speed)?.with_tangential_response(tangential_response))
 }

@@ -1,7 +1,6 @@
 //! Coulomb friction in a contact, for any behavior of the normal direction.
 
-use super::inelasticity::TangentialInelasticity;
-use super::{Contact, Impulse, Regime};
+use super::{Contact, Impulse, Regime, inelasticity};
 use crate::quantity::{accept, non_negative};
 use crate::{Fingerprint, ParameterError};
 
@@ -43,7 +42,7 @@ use crate::{Fingerprint, ParameterError};
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[expect(clippy::struct_field_names, reason = "a coefficient has one name in all rules and files")]
 pub struct Friction {
-    tangential_inelasticity: TangentialInelasticity,
+    tangential_inelasticity: f64,
     static_friction: f64,
     dynamic_friction: f64,
 }
@@ -54,7 +53,7 @@ impl Friction {
     /// # Errors
     /// If the inelasticity is out of its range, or the coefficient is negative or not finite.
     pub fn from_inelasticity(tangential: f64, friction: f64) -> Result<Self, ParameterError> {
-        Self::with_equal(TangentialInelasticity::new(tangential)?, friction)
+        Self::with_equal(inelasticity::tangential(tangential)?, friction)
     }
 
     /// Creates friction with the restitution r_t, in `[-1, 1]`, and one coefficient, κ = κ_s = κ_d.
@@ -62,13 +61,10 @@ impl Friction {
     /// # Errors
     /// If the restitution is out of its range, or the coefficient is negative or not finite.
     pub fn from_restitution(tangential: f64, friction: f64) -> Result<Self, ParameterError> {
-        Self::with_equal(TangentialInelasticity::from_restitution(tangential)?, friction)
+        Self::with_equal(inelasticity::of_tangential_restitution(tangential)?, friction)
     }
 
-    fn with_equal(
-        tangential_inelasticity: TangentialInelasticity,
-        friction: f64,
-    ) -> Result<Self, ParameterError> {
+    fn with_equal(tangential_inelasticity: f64, friction: f64) -> Result<Self, ParameterError> {
         let static_friction = non_negative("static friction", friction)?;
         Ok(Self { tangential_inelasticity, static_friction, dynamic_friction: static_friction })
     }
@@ -89,7 +85,7 @@ impl Friction {
     /// that it allows.
     #[inline]
     pub fn impulse(&self, contact: &Contact, normal: f64) -> Impulse {
-        let sticking = self.tangential_inelasticity.impulse(contact);
+        let sticking = inelasticity::tangential_impulse(self.tangential_inelasticity, contact);
         let sliding = (self.dynamic_friction * normal).copysign(sticking);
         // The code selects and does not branch: contacts stick or slide as if by a coin toss, which no branch
         // predictor learns.
@@ -106,7 +102,7 @@ impl Friction {
 
     /// Returns the tangential inelasticity q_t.
     pub const fn tangential_inelasticity(&self) -> f64 {
-        self.tangential_inelasticity.get()
+        self.tangential_inelasticity
     }
 
     /// Returns the static friction coefficient κ_s.

@@ -1,7 +1,6 @@
 //! The paper's rule: inelastic, rotating disks with static and dynamic friction.
 
-use super::inelasticity::NormalInelasticity;
-use super::{CollisionRule, Contact, Friction, Impulse, KnownRule};
+use super::{CollisionRule, Contact, Friction, Impulse, KnownRule, inelasticity};
 use crate::{Fingerprint, ParameterError};
 
 /// Inelastic collisions with Coulomb friction (paper, Eqs. (1)–(5); Jenkins & Zhang 2002), for any two
@@ -32,10 +31,9 @@ use crate::{Fingerprint, ParameterError};
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Frictional {
-    normal_inelasticity: NormalInelasticity,
+    normal_inelasticity: f64,
     friction: Friction,
 }
 
@@ -49,7 +47,7 @@ impl Frictional {
     /// If an inelasticity is out of its range, or the friction is negative or not finite.
     pub fn from_inelasticity(normal: f64, tangential: f64, friction: f64) -> Result<Self, ParameterError> {
         Ok(Self {
-            normal_inelasticity: NormalInelasticity::new(normal)?,
+            normal_inelasticity: inelasticity::normal(normal)?,
             friction: Friction::from_inelasticity(tangential, friction)?,
         })
     }
@@ -61,7 +59,7 @@ impl Frictional {
     /// If a restitution is out of its range, or the friction is negative or not finite.
     pub fn from_restitution(normal: f64, tangential: f64, friction: f64) -> Result<Self, ParameterError> {
         Ok(Self {
-            normal_inelasticity: NormalInelasticity::from_restitution(normal)?,
+            normal_inelasticity: inelasticity::of_normal_restitution(normal)?,
             friction: Friction::from_restitution(tangential, friction)?,
         })
     }
@@ -77,7 +75,7 @@ impl Frictional {
 
     /// Returns the normal inelasticity q_n.
     pub const fn normal_inelasticity(&self) -> f64 {
-        self.normal_inelasticity.get()
+        self.normal_inelasticity
     }
 
     /// Returns the tangential inelasticity q_t.
@@ -99,7 +97,8 @@ impl Frictional {
 impl CollisionRule for Frictional {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        self.friction.impulse(contact, self.normal_inelasticity.impulse(contact))
+        let normal = inelasticity::normal_impulse(self.normal_inelasticity, contact);
+        self.friction.impulse(contact, normal)
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
@@ -111,4 +110,9 @@ impl CollisionRule for Frictional {
     fn known(&self) -> Option<KnownRule> {
         Some((*self).into())
     }
+}
+
+crate::gate::from_file! {
+    Frictional { normal_inelasticity: f64, friction: Friction } =>
+        Ok(Self { normal_inelasticity: inelasticity::normal(normal_inelasticity)?, friction })
 }

@@ -73,10 +73,6 @@ impl CollisionRule for KnownRule {
         self.rule().impulse(contact)
     }
 
-    fn explain(&self, contact: &Contact) -> Option<String> {
-        self.rule().explain(contact)
-    }
-
     fn fingerprint(&self) -> Option<Fingerprint> {
         self.rule().fingerprint()
     }

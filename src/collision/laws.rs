@@ -8,13 +8,14 @@
 //! plain test:
 //!
 //! ```
-//! use granular_edmd::collision::laws::{self, Promises, Violation};
+//! use granular_edmd::collision::laws::{self, Fault, Promises};
 //! use granular_edmd::collision::{Contact, Frictional, Impulse, from_fn};
 //!
 //! laws::check(&Frictional::from_inelasticity(0.1, 0.1, 0.3)?, &Promises::new().with_friction(0.3))?;
 //!
 //! let glue = from_fn(|_: &Contact| Impulse::new(0.0, 0.0));
-//! assert!(matches!(laws::check(&glue, &Promises::new()), Err(Violation::StillClosing { .. })));
+//! let violation = laws::check(&glue, &Promises::new()).unwrap_err();
+//! assert!(matches!(violation.fault, Fault::StillClosing { .. }));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -28,7 +29,7 @@ mod violation;
 
 pub use hostile::hostile_contacts;
 pub use rule::{Promises, check};
-pub use violation::Violation;
+pub use violation::{Fault, Violation};
 
 use super::{Contact, Impulse};
 
@@ -49,16 +50,14 @@ const LEAST: f64 = f64::MIN_POSITIVE;
 /// use granular_edmd::collision::{Contact, Impulse, laws};
 /// let contact = Contact::new(1.0, 0.0, 0.5, 0.5 / 3.0);
 /// assert!(laws::check_impulse(&contact, Impulse::new(0.8, 0.0)).is_ok());
-/// assert!(matches!(
-///     laws::check_impulse(&contact, Impulse::new(0.2, 0.0)),
-///     Err(laws::Violation::StillClosing { .. })
-/// ));
+/// let violation = laws::check_impulse(&contact, Impulse::new(0.2, 0.0)).unwrap_err();
+/// assert_eq!(violation.fault, laws::Fault::StillClosing { closing_speed: 0.6 });
 /// ```
 pub fn check_impulse(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
     check_separation(contact, impulse)?;
     let energy_change = impulse.energy_change(contact);
     if energy_change > ROUNDING * contact.available_energy() + LEAST {
-        return Err(Violation::EnergyGained { energy_change, contact: *contact, impulse });
+        return Err(Violation { fault: Fault::EnergyGained { energy_change }, contact: *contact, impulse });
     }
     Ok(())
 }
@@ -66,11 +65,11 @@ pub fn check_impulse(contact: &Contact, impulse: Impulse) -> Result<(), Violatio
 /// Checks all laws except that of energy.
 fn check_separation(contact: &Contact, impulse: Impulse) -> Result<(), Violation> {
     if !(impulse.normal().is_finite() && impulse.tangential().is_finite()) {
-        return Err(Violation::NotFinite { contact: *contact, impulse });
+        return Err(Violation { fault: Fault::NotFinite, contact: *contact, impulse });
     }
     let closing_speed = impulse.closing_speed_after(contact);
     if closing_speed > rounding_of(contact.closing_speed(), contact.normal_mass()) {
-        return Err(Violation::StillClosing { closing_speed, contact: *contact, impulse });
+        return Err(Violation { fault: Fault::StillClosing { closing_speed }, contact: *contact, impulse });
     }
     Ok(())
 }
@@ -97,7 +96,7 @@ pub fn check_friction_opposes_slip(contact: &Contact, impulse: Impulse) -> Resul
     if opposes && slip_speed.abs() <= bound {
         Ok(())
     } else {
-        Err(Violation::SlipSpedUp { slip_speed, contact: *contact, impulse })
+        Err(Violation { fault: Fault::SlipSpedUp { slip_speed }, contact: *contact, impulse })
     }
 }
 
@@ -121,7 +120,7 @@ pub fn check_friction_cone(
     if impulse.tangential().abs() <= limit * (1.0 + ROUNDING) + LEAST {
         Ok(())
     } else {
-        Err(Violation::OutsideFrictionCone { limit, contact: *contact, impulse })
+        Err(Violation { fault: Fault::OutsideFrictionCone { limit }, contact: *contact, impulse })
     }
 }
 

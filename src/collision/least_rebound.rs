@@ -1,7 +1,7 @@
 //! A least speed at which surfaces part: a remedy for matter at rest that keeps friction.
 
 use super::{CollisionRule, Contact, Impulse, KnownRule};
-use crate::quantity::{Checked, Quantity, Range};
+use crate::quantity::positive;
 use crate::{Fingerprint, ParameterError};
 
 /// A rule with a least parting speed: after each collision, the surfaces part at v_c or faster.
@@ -33,18 +33,10 @@ use crate::{Fingerprint, ParameterError};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct LeastRebound<R> {
     rule: R,
-    speed: Checked<Speed>,
-}
-
-enum Speed {}
-
-impl Quantity for Speed {
-    const NAME: &'static str = "least speed of rebound";
-    const RANGE: Range = Range::POSITIVE;
+    speed: f64,
 }
 
 impl<R> LeastRebound<R> {
@@ -53,12 +45,7 @@ impl<R> LeastRebound<R> {
     /// # Errors
     /// If the speed is not finite and positive. To have no least speed, use the rule alone.
     pub fn new(rule: R, speed: f64) -> Result<Self, ParameterError> {
-        Ok(Self { rule, speed: Checked::new(speed)? })
-    }
-
-    /// Returns the same remedy around another rule.
-    fn around<Q>(&self, rule: Q) -> LeastRebound<Q> {
-        LeastRebound { rule, speed: self.speed }
+        Ok(Self { rule, speed: positive("least speed of rebound", speed)? })
     }
 
     /// Returns the rule inside, which decides all faster rebounds.
@@ -68,26 +55,26 @@ impl<R> LeastRebound<R> {
 
     /// Returns the least parting speed v_c.
     pub const fn speed(&self) -> f64 {
-        self.speed.get()
+        self.speed
     }
 }
 
 impl<R: CollisionRule> CollisionRule for LeastRebound<R> {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        self.rule.impulse(contact).parting_at_least(self.speed.get(), contact)
-    }
-
-    fn explain(&self, contact: &Contact) -> Option<String> {
-        self.rule.explain(contact)
+        self.rule.impulse(contact).parting_at_least(self.speed, contact)
     }
 
     /// Returns `None` if the rule inside has no fingerprint: two such remedies could not be told apart.
     fn fingerprint(&self) -> Option<Fingerprint> {
-        Some(Fingerprint::of("LeastRebound").part(self.rule.fingerprint()?).number(self.speed.get()))
+        Some(Fingerprint::of("LeastRebound").part(self.rule.fingerprint()?).number(self.speed))
     }
 
     fn known(&self) -> Option<KnownRule> {
-        Some(Box::new(self.around(self.rule.known()?)).into())
+        Some(Box::new(LeastRebound { rule: self.rule.known()?, speed: self.speed }).into())
     }
+}
+
+crate::gate::from_file! {
+    LeastRebound<R> { rule: R, speed: f64 } => Self::new(rule, speed)
 }

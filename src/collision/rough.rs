@@ -1,7 +1,6 @@
 //! Rough disks: the surfaces never slide.
 
-use super::inelasticity::{NormalInelasticity, TangentialInelasticity};
-use super::{CollisionRule, Contact, Impulse, KnownRule, Regime};
+use super::{CollisionRule, Contact, Impulse, KnownRule, Regime, inelasticity};
 use crate::{Fingerprint, ParameterError};
 
 /// Rough inelastic collisions without a Coulomb limit, in which every collision sticks.
@@ -20,11 +19,10 @@ use crate::{Fingerprint, ParameterError};
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Rough {
-    normal_inelasticity: NormalInelasticity,
-    tangential_inelasticity: TangentialInelasticity,
+    normal_inelasticity: f64,
+    tangential_inelasticity: f64,
 }
 
 impl Rough {
@@ -34,8 +32,8 @@ impl Rough {
     /// If one is out of range.
     pub fn from_inelasticity(normal: f64, tangential: f64) -> Result<Self, ParameterError> {
         Ok(Self {
-            normal_inelasticity: NormalInelasticity::new(normal)?,
-            tangential_inelasticity: TangentialInelasticity::new(tangential)?,
+            normal_inelasticity: inelasticity::normal(normal)?,
+            tangential_inelasticity: inelasticity::tangential(tangential)?,
         })
     }
 
@@ -45,27 +43,27 @@ impl Rough {
     /// If one is out of range.
     pub fn from_restitution(normal: f64, tangential: f64) -> Result<Self, ParameterError> {
         Ok(Self {
-            normal_inelasticity: NormalInelasticity::from_restitution(normal)?,
-            tangential_inelasticity: TangentialInelasticity::from_restitution(tangential)?,
+            normal_inelasticity: inelasticity::of_normal_restitution(normal)?,
+            tangential_inelasticity: inelasticity::of_tangential_restitution(tangential)?,
         })
     }
 
     /// Returns the normal inelasticity q_n.
     pub const fn normal_inelasticity(&self) -> f64 {
-        self.normal_inelasticity.get()
+        self.normal_inelasticity
     }
 
     /// Returns the tangential inelasticity q_t.
     pub const fn tangential_inelasticity(&self) -> f64 {
-        self.tangential_inelasticity.get()
+        self.tangential_inelasticity
     }
 }
 
 impl CollisionRule for Rough {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        let normal = self.normal_inelasticity.impulse(contact);
-        let tangential = self.tangential_inelasticity.impulse(contact);
+        let normal = inelasticity::normal_impulse(self.normal_inelasticity, contact);
+        let tangential = inelasticity::tangential_impulse(self.tangential_inelasticity, contact);
         Impulse::new(normal, tangential).with_regime(Regime::Sticking)
     }
 
@@ -77,4 +75,9 @@ impl CollisionRule for Rough {
     fn known(&self) -> Option<KnownRule> {
         Some((*self).into())
     }
+}
+
+crate::gate::from_file! {
+    Rough { normal_inelasticity: f64, tangential_inelasticity: f64 } =>
+        Self::from_inelasticity(normal_inelasticity, tangential_inelasticity)
 }

@@ -28,8 +28,7 @@ use crate::{Fingerprint, Kind};
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "RawRulesByKind<R>"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct RulesByKind<R> {
     otherwise: R,
     /// Ordered by kinds, each pair once.
@@ -89,10 +88,6 @@ impl<R: CollisionRule> CollisionRule for RulesByKind<R> {
         self.rule_of(contact).impulse(contact)
     }
 
-    fn explain(&self, contact: &Contact) -> Option<String> {
-        self.rule_of(contact).explain(contact)
-    }
-
     /// Returns `None` if one of the rules has no fingerprint: two such tables could not be told apart.
     fn fingerprint(&self) -> Option<Fingerprint> {
         let table = Fingerprint::of("RulesByKind").part(self.otherwise.fingerprint()?);
@@ -109,23 +104,11 @@ impl<R: CollisionRule> CollisionRule for RulesByKind<R> {
     }
 }
 
-/// The table as files hold it: the pairs in any order.
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "RulesByKind")]
-struct RawRulesByKind<R> {
-    otherwise: R,
-    #[serde(default = "Vec::new")]
-    pairs: Vec<PairRule<R>>,
-}
-
-#[cfg(feature = "serde")]
-impl<R> TryFrom<RawRulesByKind<R>> for RulesByKind<R> {
-    type Error = String;
-
-    fn try_from(raw: RawRulesByKind<R>) -> Result<Self, String> {
-        let mut table = Self::new(raw.otherwise);
-        for PairRule { kinds, rule } in raw.pairs {
+// Files hold the pairs in any order.
+crate::gate::from_file! {
+    RulesByKind<R> { otherwise: R, #[serde(default = "Vec::new")] pairs: Vec<PairRule<R>> } => {
+        let mut table = Self::new(otherwise);
+        for PairRule { kinds, rule } in pairs {
             let kinds = ordered(kinds);
             let Err(there) = table.place(kinds) else {
                 let [first, second] = kinds;
@@ -134,5 +117,5 @@ impl<R> TryFrom<RawRulesByKind<R>> for RulesByKind<R> {
             table.pairs.insert(there, PairRule { kinds, rule });
         }
         Ok(table)
-    }
+    }, String
 }

@@ -1,7 +1,6 @@
 //! Inelastic disks without any tangential force.
 
-use super::inelasticity::NormalInelasticity;
-use super::{CollisionRule, Contact, Impulse, KnownRule};
+use super::{CollisionRule, Contact, Impulse, KnownRule, inelasticity};
 use crate::{Fingerprint, ParameterError};
 
 /// Smooth inelastic collisions: a normal impulse (paper, Eq. (3)) and no tangential one.
@@ -17,10 +16,9 @@ use crate::{Fingerprint, ParameterError};
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Smooth {
-    normal_inelasticity: NormalInelasticity,
+    normal_inelasticity: f64,
 }
 
 impl Smooth {
@@ -28,28 +26,28 @@ impl Smooth {
     ///
     /// # Errors
     /// If it is out of range.
-    pub fn from_inelasticity(inelasticity: f64) -> Result<Self, ParameterError> {
-        Ok(Self { normal_inelasticity: NormalInelasticity::new(inelasticity)? })
+    pub fn from_inelasticity(normal: f64) -> Result<Self, ParameterError> {
+        Ok(Self { normal_inelasticity: inelasticity::normal(normal)? })
     }
 
     /// Creates a rule with the normal restitution r_n, in `[0, 1]`.
     ///
     /// # Errors
     /// If it is out of range.
-    pub fn from_restitution(restitution: f64) -> Result<Self, ParameterError> {
-        Ok(Self { normal_inelasticity: NormalInelasticity::from_restitution(restitution)? })
+    pub fn from_restitution(normal: f64) -> Result<Self, ParameterError> {
+        Ok(Self { normal_inelasticity: inelasticity::of_normal_restitution(normal)? })
     }
 
     /// Returns the normal inelasticity q_n.
     pub const fn normal_inelasticity(&self) -> f64 {
-        self.normal_inelasticity.get()
+        self.normal_inelasticity
     }
 }
 
 impl CollisionRule for Smooth {
     #[inline]
     fn impulse(&self, contact: &Contact) -> Impulse {
-        Impulse::new(self.normal_inelasticity.impulse(contact), 0.0)
+        Impulse::new(inelasticity::normal_impulse(self.normal_inelasticity, contact), 0.0)
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
@@ -59,4 +57,8 @@ impl CollisionRule for Smooth {
     fn known(&self) -> Option<KnownRule> {
         Some((*self).into())
     }
+}
+
+crate::gate::from_file! {
+    Smooth { normal_inelasticity: f64 } => Self::from_inelasticity(normal_inelasticity)
 }

@@ -1,8 +1,7 @@
 //! Restitution that falls with the speed of the impact.
 
-use super::inelasticity::NormalInelasticity;
-use super::{CollisionRule, Contact, Friction, Impulse, KnownRule};
-use crate::quantity::{Checked, Quantity, Range};
+use super::{CollisionRule, Contact, Friction, Impulse, KnownRule, inelasticity};
+use crate::quantity::{accept, positive};
 use crate::{Fingerprint, ParameterError};
 
 /// Restitution that falls with the speed of the impact, from 1 to a constant, with Coulomb friction (C. Bizon
@@ -32,26 +31,11 @@ use crate::{Fingerprint, ParameterError};
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SpeedDependent {
-    least_restitution: Checked<LeastRestitution>,
-    speed: Checked<Speed>,
+    least_restitution: f64,
+    speed: f64,
     friction: Friction,
-}
-
-enum LeastRestitution {}
-
-impl Quantity for LeastRestitution {
-    const NAME: &'static str = "least restitution";
-    const RANGE: Range = Range::new("in [0, 1]", |value| (0.0..=1.0).contains(&value));
-}
-
-enum Speed {}
-
-impl Quantity for Speed {
-    const NAME: &'static str = "speed of the least restitution";
-    const RANGE: Range = Range::POSITIVE;
 }
 
 impl SpeedDependent {
@@ -60,7 +44,9 @@ impl SpeedDependent {
     /// # Errors
     /// If the restitution is not in `[0, 1]`, or the speed is not finite and positive.
     pub fn from_restitution(least_restitution: f64, speed: f64) -> Result<Self, ParameterError> {
-        let (least_restitution, speed) = (Checked::new(least_restitution)?, Checked::new(speed)?);
+        let valid = (0.0..=1.0).contains(&least_restitution);
+        accept(valid, "least restitution", "in [0, 1]", least_restitution)?;
+        positive("speed of the least restitution", speed)?;
         Ok(Self { least_restitution, speed, friction: Friction::from_inelasticity(0.0, 0.0)? })
     }
 
@@ -69,8 +55,7 @@ impl SpeedDependent {
     /// # Errors
     /// If the inelasticity is not in `[0, 1/2]`, or the speed is not finite and positive.
     pub fn from_inelasticity(greatest_inelasticity: f64, speed: f64) -> Result<Self, ParameterError> {
-        let inelasticity = NormalInelasticity::new(greatest_inelasticity)?;
-        Self::from_restitution(1.0 - 2.0 * inelasticity.get(), speed)
+        Self::from_restitution(1.0 - 2.0 * inelasticity::normal(greatest_inelasticity)?, speed)
     }
 
     /// Returns the same rule with this friction.
@@ -82,18 +67,18 @@ impl SpeedDependent {
     #[inline]
     pub fn restitution(&self, closing_speed: f64) -> f64 {
         // Square roots give the power 3/4 with the same bits on every platform.
-        let root = (closing_speed / self.speed.get()).min(1.0).sqrt();
-        1.0 - (1.0 - self.least_restitution.get()) * (root * root.sqrt())
+        let root = (closing_speed / self.speed).min(1.0).sqrt();
+        1.0 - (1.0 - self.least_restitution) * (root * root.sqrt())
     }
 
     /// Returns the restitution r_0 of fast collisions.
     pub const fn least_restitution(&self) -> f64 {
-        self.least_restitution.get()
+        self.least_restitution
     }
 
     /// Returns the closing speed v_0 above which the restitution is constant.
     pub const fn speed(&self) -> f64 {
-        self.speed.get()
+        self.speed
     }
 
     /// Returns the friction.
@@ -117,4 +102,9 @@ impl CollisionRule for SpeedDependent {
     fn known(&self) -> Option<KnownRule> {
         Some((*self).into())
     }
+}
+
+crate::gate::from_file! {
+    SpeedDependent { least_restitution: f64, speed: f64, friction: Friction } =>
+        Ok(Self::from_restitution(least_restitution, speed)?.with_friction(friction))
 }

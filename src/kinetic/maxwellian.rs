@@ -1,11 +1,9 @@
 //! The Maxwellian gas whose collisions are averaged.
 
 use crate::collision::Contact;
+use crate::disk::{SCALE, scale};
 use crate::quantity::accept;
 use crate::{Disk, ParameterError};
-
-/// Range of a temperature. Products and quotients with masses of the same range stay finite and normal.
-const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
 /// A gas of Maxwellian velocities and spins, seen through the collisions of two of its disks.
 ///
@@ -52,8 +50,7 @@ impl Maxwellian {
     /// # Errors
     /// If the temperature is not in `[1e-30, 1e30]`.
     pub fn new(temperature: f64) -> Result<Self, ParameterError> {
-        let valid = SCALE.contains(&temperature);
-        accept(valid, "translational temperature", "in [1e-30, 1e30]", temperature)?;
+        scale("translational temperature", temperature)?;
         Ok(Self {
             translational_temperature: temperature,
             rotational_temperature: temperature,

@@ -96,40 +96,28 @@ impl MonteCarlo {
 
     /// Returns averages over the collisions of `rule` in `gas`: the energy change, and the fraction of
     /// collisions that stick.
-    pub fn average<R>(&self, rule: &R, gas: &Maxwellian) -> CollisionAverage
-    where
-        R: CollisionRule + Sync + ?Sized,
-    {
+    pub fn average<R: CollisionRule + Sync + ?Sized>(&self, rule: &R, gas: &Maxwellian) -> CollisionAverage {
         let chunks = self.samples.div_ceil(CHUNK).max(1);
-        let mut streams = Streams(Xoshiro256PlusPlus::seed_from_u64(self.seed));
-        let mut total = Total::default();
+        // Random number generators that never overlap, one per chunk.
+        let mut next = Xoshiro256PlusPlus::seed_from_u64(self.seed);
+        let mut streams = std::iter::repeat_with(|| {
+            let stream = next.clone();
+            next.jump();
+            stream
+        });
+        let mut total = Sums::default();
         while total.chunks < chunks {
             let round = total.chunks.max(FIRST_ROUND).min(chunks - total.chunks);
             let round = streams.by_ref().take(round as usize).collect();
-            for chunk in map(round, |generator| chunk(rule, gas, generator)) {
+            for chunk in map(round, |generator| Sums::of_chunk(rule, gas, generator)) {
                 total.add(&chunk);
             }
-            if self
-                .standard_error
-                .is_some_and(|wanted| total.average().energy_change().standard_error() <= wanted)
-            {
+            let error = total.average().energy_change().standard_error();
+            if self.standard_error.is_some_and(|wanted| error <= wanted) {
                 break;
             }
         }
         total.average()
-    }
-}
-
-/// Random number generators that never overlap, one per chunk.
-struct Streams(Xoshiro256PlusPlus);
-
-impl Iterator for Streams {
-    type Item = Xoshiro256PlusPlus;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        let stream = self.0.clone();
-        self.0.jump();
-        Some(stream)
     }
 }
 
@@ -146,34 +134,51 @@ fn map<T, U>(items: Vec<T>, work: impl Fn(T) -> U) -> Vec<U> {
     items.into_iter().map(work).collect()
 }
 
-/// Means over one chunk, and the variance of its mean energy change.
+/// Sums of the means over chunks, and of the variances of their mean energy change.
 #[derive(Default)]
-struct Chunk {
+struct Sums {
+    chunks: u64,
     energy: f64,
     variance: f64,
     sticking: f64,
 }
 
-fn chunk<R>(rule: &R, gas: &Maxwellian, mut generator: Xoshiro256PlusPlus) -> Chunk
-where
-    R: CollisionRule + ?Sized,
-{
-    let mut chunk = Chunk::default();
-    for stratum in 0..STRATA {
-        let (mut energy, mut sticking) = (RunningMean::default(), 0.0);
-        for _ in 0..SAMPLES {
-            let sample = Sample::draw(stratum, &mut generator);
-            let contact = gas.contact(sample.closing, sample.slip);
-            let impulse = rule.impulse(&contact);
-            energy.push(sample.weight * impulse.energy_change(&contact));
-            sticking += if impulse.regime() == Regime::Sticking { sample.weight } else { 0.0 };
+impl Sums {
+    fn of_chunk<R>(rule: &R, gas: &Maxwellian, mut generator: Xoshiro256PlusPlus) -> Self
+    where
+        R: CollisionRule + ?Sized,
+    {
+        let mut sums = Self { chunks: 1, ..Self::default() };
+        for stratum in 0..STRATA {
+            let (mut energy, mut sticking) = (RunningMean::default(), 0.0);
+            for _ in 0..SAMPLES {
+                let sample = Sample::draw(stratum, &mut generator);
+                let contact = gas.contact(sample.closing, sample.slip);
+                let impulse = rule.impulse(&contact);
+                energy.push(sample.weight * impulse.energy_change(&contact));
+                sticking += if impulse.regime() == Regime::Sticking { sample.weight } else { 0.0 };
+            }
+            let strata = f64::from(STRATA);
+            sums.energy += energy.mean() / strata;
+            sums.variance += energy.variance() / f64::from(SAMPLES) / (strata * strata);
+            sums.sticking += sticking / CHUNK as f64;
         }
-        let strata = f64::from(STRATA);
-        chunk.energy += energy.mean() / strata;
-        chunk.variance += energy.variance() / f64::from(SAMPLES) / (strata * strata);
-        chunk.sticking += sticking / CHUNK as f64;
+        sums
     }
-    chunk
+
+    fn add(&mut self, other: &Self) {
+        self.chunks += other.chunks;
+        self.energy += other.energy;
+        self.variance += other.variance;
+        self.sticking += other.sticking;
+    }
+
+    fn average(&self) -> CollisionAverage {
+        let chunks = self.chunks as f64;
+        let (mean, error) = (self.energy / chunks, self.variance.sqrt() / chunks);
+        let energy_change = Estimate::independent(mean, error, self.chunks * CHUNK);
+        CollisionAverage::new(energy_change, self.sticking / chunks)
+    }
 }
 
 /// A collision in scaled speeds, with its weight.
@@ -197,28 +202,5 @@ impl Sample {
         let square = two_components + third * third;
         let length = square.sqrt();
         Self { closing: length * sine, slip: length * cosine, weight: FRAC_PI_2 * sine * 3.0 / square }
-    }
-}
-
-/// Sums over chunks.
-#[derive(Default)]
-struct Total {
-    chunks: u64,
-    sum: Chunk,
-}
-
-impl Total {
-    fn add(&mut self, chunk: &Chunk) {
-        self.chunks += 1;
-        self.sum.energy += chunk.energy;
-        self.sum.variance += chunk.variance;
-        self.sum.sticking += chunk.sticking;
-    }
-
-    fn average(&self) -> CollisionAverage {
-        let chunks = self.chunks as f64;
-        let (mean, error) = (self.sum.energy / chunks, self.sum.variance.sqrt() / chunks);
-        let energy_change = Estimate::independent(mean, error, self.chunks * CHUNK);
-        CollisionAverage::new(energy_change, self.sum.sticking / chunks)
     }
 }

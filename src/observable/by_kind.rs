@@ -36,11 +36,6 @@ impl<T> OfKind<T> {
         Self { kind, inner }
     }
 
-    /// Returns the kind.
-    pub const fn kind(&self) -> Kind {
-        self.kind
-    }
-
     /// Returns the observable or observer inside.
     pub const fn inner(&self) -> &T {
         &self.inner
@@ -134,11 +129,6 @@ impl<T> BetweenKinds<T> {
     /// Creates a filter that shows `inner` only collisions between these kinds, which may be the same.
     pub const fn new(first: Kind, second: Kind, inner: T) -> Self {
         Self { kinds: [first, second], inner }
-    }
-
-    /// Returns the two kinds.
-    pub const fn kinds(&self) -> [Kind; 2] {
-        self.kinds
     }
 
     /// Returns the observer inside.

@@ -6,14 +6,6 @@ use super::table::Table;
 use super::{Collision, Heading, Observer, Partner};
 use crate::collision::Regime;
 
-/// The regimes that rules report, by the names of their columns.
-const REGIMES: [(Regime, &str); 4] = [
-    (Regime::Sticking, "sticking"),
-    (Regime::Sliding, "sliding"),
-    (Regime::ContactDuration, "contact_duration"),
-    (Regime::ElasticBelow, "elastic_below"),
-];
-
 /// An observer that counts collisions by partner and regime, and gives their rates.
 ///
 /// ```
@@ -96,16 +88,17 @@ impl Observer for CollisionCounts {
 
 impl Table for CollisionCounts {
     fn headings(&self) -> Vec<Heading> {
-        let regimes = REGIMES.map(|(_, name)| name.to_owned());
-        let names = ["disk_collisions", "wall_collisions"].map(str::to_owned).into_iter().chain(regimes);
+        let partners = ["disk_collisions", "wall_collisions"].map(str::to_owned).into_iter();
+        let regimes = ["sticking", "sliding", "contact_duration", "elastic_below"].map(str::to_owned);
         let walls = self.walls.keys().map(|wall| format!("wall_{wall}"));
-        names.chain(walls).map(|name| Heading::new(name, "1")).collect()
+        partners.chain(regimes).chain(walls).map(|name| Heading::new(name, "1")).collect()
     }
 
     fn rows(&self) -> Box<dyn Iterator<Item = Vec<f64>> + '_> {
-        let regimes = REGIMES.map(|(regime, _)| self.collisions_in_regime(regime));
-        let counts = [self.disks, self.wall_collisions()].into_iter().chain(regimes);
-        let row = counts.chain(self.walls.values().copied()).map(|count| count as f64).collect();
+        let partners = [self.disks, self.wall_collisions()].into_iter();
+        let regimes = [self.sticking, self.sliding, self.contact_duration, self.elastic_below];
+        let counts = partners.chain(regimes).chain(self.walls.values().copied());
+        let row = counts.map(|count| count as f64).collect();
         Box::new(std::iter::once(row))
     }
 }

@@ -70,11 +70,8 @@ impl Grid {
     /// Returns the cell that holds this position, counted row by row from below.
     pub(super) fn find(&self, position: DVec2) -> Option<usize> {
         let scaled = (position - self.region.min) / self.cell_size();
-        let inside = scaled.x >= 0.0
-            && scaled.y >= 0.0
-            && scaled.x < self.columns as f64
-            && scaled.y < self.rows as f64;
-        inside.then(|| scaled.y as usize * self.columns + scaled.x as usize)
+        let cells = Region::new(DVec2::ZERO, DVec2::new(self.columns as f64, self.rows as f64));
+        cells.contains(scaled).then(|| scaled.y as usize * self.columns + scaled.x as usize)
     }
 
     /// Checks that some of the cells lie inside the domain of a run, which would else measure nothing.

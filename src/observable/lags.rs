@@ -15,11 +15,7 @@ const MOST_LAGS: usize = 1 << 20;
 /// Samples are equally spaced. After a gap, or before another run, it forgets the samples so far and keeps
 /// the means.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(try_from = "RawLags<V>", bound(deserialize = "V: serde::Deserialize<'de>"))
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub(super) struct Lags<V> {
     pub(super) sample_times: SampleTimes,
     /// Time of the latest sample.
@@ -84,22 +80,13 @@ impl<V> Lags<V> {
     }
 }
 
-#[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "Lags")]
-struct RawLags<V> {
-    sample_times: SampleTimes,
-    latest: Option<f64>,
-    past: VecDeque<V>,
-    means: Vec<BlockedMean>,
-}
-
-#[cfg(feature = "serde")]
-impl<V> TryFrom<RawLags<V>> for Lags<V> {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawLags<V>) -> Result<Self, ParameterError> {
-        let RawLags { sample_times, latest, past, means } = raw;
+crate::gate::from_file! {
+    Lags<V> {
+        sample_times: SampleTimes,
+        latest: Option<f64>,
+        past: VecDeque<V>,
+        means: Vec<BlockedMean>
+    } => {
         crate::quantity::finite("time of the latest sample", latest.unwrap_or(0.0))?;
         let lags = means.len().saturating_sub(1);
         accept((1..=MOST_LAGS).contains(&lags), "number of lags", "in 1..=2^20", lags as f64)?;

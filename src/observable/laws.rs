@@ -9,7 +9,6 @@ use thiserror::Error;
 use super::{Collision, Moment, Observer, Partner, Snapshot};
 use crate::boundary::Domain;
 use crate::collision::{Contact, Impulse, Regime};
-use crate::error::Readable;
 use crate::{Disk, ParameterError};
 
 /// A way in which an observer breaks its [contract](Observer).
@@ -17,16 +16,13 @@ use crate::{Disk, ParameterError};
 #[non_exhaustive]
 pub enum Violation {
     /// The time of the next sample is NaN.
-    #[error("after the time {after} the next sample is at NaN", after = Readable(*after))]
+    #[error("after the time {after:?} the next sample is at NaN")]
     NotANumber {
         /// Absolute time of the preceding start or sample.
         after: f64,
     },
     /// After the start of a run, the next sample is before the start.
-    #[error(
-        "the run starts at {start}, and the next sample is before, at {next}",
-        start = Readable(*start), next = Readable(*next)
-    )]
+    #[error("the run starts at {start:?}, and the next sample is before, at {next:?}")]
     BeforeStart {
         /// Absolute time of the start.
         start: f64,
@@ -34,10 +30,7 @@ pub enum Violation {
         next: f64,
     },
     /// After a sample, the next one is not later.
-    #[error(
-        "after the sample at {sample} the next one is not later, at {next}",
-        next = Readable(*next), sample = Readable(*sample)
-    )]
+    #[error("after the sample at {sample:?} the next one is not later, at {next:?}")]
     NotLater {
         /// Absolute time of the sample.
         sample: f64,
@@ -45,10 +38,7 @@ pub enum Violation {
         next: f64,
     },
     /// The time of the next sample changed without a start or a sample, so the engine did not see it.
-    #[error(
-        "between two samples the next one moved from {before} to {next}",
-        next = Readable(*next), before = Readable(*before)
-    )]
+    #[error("between two samples the next one moved from {before:?} to {next:?}")]
     Moved {
         /// Absolute time of the next sample, after the preceding start or sample.
         before: f64,
@@ -192,13 +182,8 @@ fn disk(index: usize, round: usize) -> Result<Disk, ParameterError> {
 
 /// Returns a collision, with each partner in turn.
 fn collision(time: f64, number: usize) -> Collision {
-    const REGIMES: [Regime; 5] = [
-        Regime::Sticking,
-        Regime::Sliding,
-        Regime::ContactDuration,
-        Regime::ElasticBelow,
-        Regime::Unspecified,
-    ];
+    use Regime::{ContactDuration, ElasticBelow, Sliding, Sticking, Unspecified};
+    const REGIMES: [Regime; 5] = [Sticking, Sliding, ContactDuration, ElasticBelow, Unspecified];
     let disk = number % DISKS;
     let partner = match number % (WALLS + 2) {
         wall if wall < WALLS => Partner::Wall(wall),

@@ -22,15 +22,9 @@ use crate::disk::numbered;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(from = "Vec<(u64, T)>", into = "Vec<(u64, T)>"))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(serialize = "T: Clone + serde::Serialize", deserialize = "T: serde::Deserialize<'de>"))
-)]
-pub struct PerDisk<T> {
-    /// Ids and values, in the order of the ids.
-    entries: Vec<(u64, T)>,
-}
+#[cfg_attr(feature = "serde", serde(from = "Vec<(u64, T)>"))]
+// Ids and values, in the order of the ids.
+pub struct PerDisk<T>(Vec<(u64, T)>);
 
 impl<T> PerDisk<T> {
     /// Evaluates a quantity of each disk.
@@ -42,15 +36,15 @@ impl<T> PerDisk<T> {
 
     /// Iterates over the ids and values, in the order of the ids.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (u64, &T)> {
-        self.entries.iter().map(|(id, value)| (*id, value))
+        self.0.iter().map(|(id, value)| (*id, value))
     }
 
     /// Returns the mean of a function of the two values of a disk, over the disks that are in both; NaN if
     /// there are none.
     pub fn mean_with(&self, other: &Self, function: impl Fn(&T, &T) -> f64) -> f64 {
         let (mut sum, mut count) = (0.0, 0);
-        let mut others = other.entries.iter().peekable();
-        for (id, value) in &self.entries {
+        let mut others = other.0.iter().peekable();
+        for (id, value) in &self.0 {
             while others.next_if(|(other, _)| other < id).is_some() {}
             if let Some((_, of_other)) = others.next_if(|(other, _)| other == id) {
                 sum += function(value, of_other);
@@ -66,12 +60,6 @@ impl<T> From<Vec<(u64, T)>> for PerDisk<T> {
     fn from(mut entries: Vec<(u64, T)>) -> Self {
         // A run of the same disks has them in order already.
         entries.sort_by_key(|(id, _)| *id);
-        Self { entries }
-    }
-}
-
-impl<T> From<PerDisk<T>> for Vec<(u64, T)> {
-    fn from(values: PerDisk<T>) -> Self {
-        values.entries
+        Self(entries)
     }
 }

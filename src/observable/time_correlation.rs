@@ -17,7 +17,6 @@ use crate::statistics::Estimate;
 /// use granular_edmd::observable::InnerProduct;
 /// assert_eq!(2.0.inner_product(&3.0), 6.0);
 /// assert_eq!(DVec2::new(1.0, 2.0).inner_product(&DVec2::new(3.0, 4.0)), 11.0);
-/// assert_eq!(vec![1.0, 2.0].inner_product(&vec![3.0, 4.0]), 5.5);
 /// ```
 pub trait InnerProduct {
     /// Returns the product of two values.
@@ -33,18 +32,6 @@ impl InnerProduct for f64 {
 impl InnerProduct for DVec2 {
     fn inner_product(&self, other: &Self) -> f64 {
         self.dot(*other)
-    }
-}
-
-/// The product is the mean of the products of entries at the same place. It is NaN if the lists are empty or
-/// of different lengths. For values of disks, take [`PerDisk`], which follows each of them.
-impl<T: InnerProduct> InnerProduct for Vec<T> {
-    fn inner_product(&self, other: &Self) -> f64 {
-        if self.len() != other.len() {
-            return f64::NAN;
-        }
-        let products = self.iter().zip(other).map(|(one, other)| one.inner_product(other));
-        products.sum::<f64>() / self.len() as f64
     }
 }
 
@@ -77,11 +64,10 @@ impl Observable for Velocities {
 /// ```
 ///
 /// Every sample is a time origin, and the lags are whole numbers of intervals. The product is that of
-/// [`InnerProduct`]: the dot product of vectors, and the mean over the entries of lists. No mean is
-/// subtracted. For fluctuations, subtract the mean in the observable if it is known, or use
-/// [`autocorrelation`](crate::statistics::autocorrelation) of a series. After a gap in time, the observer
-/// begins with new origins. Pairs without a product, such as lists of different lengths, are left out. The
-/// errors come from blocks of origins.
+/// [`InnerProduct`]: the dot product of vectors, and the mean over the disks for values of disks. No mean is
+/// subtracted. For fluctuations, subtract the mean in the observable if it is known, or else its square from
+/// the correlation. After a gap in time, the observer begins with new origins. Pairs without a product, such
+/// as samples that have no disk in common, are left out. The errors come from blocks of origins.
 ///
 /// A sample costs time and memory in proportion to the number of lags.
 ///

@@ -6,7 +6,7 @@ use super::stretch::Stretch;
 use super::table::{STRESS, Table, headings, row};
 use super::{Collision, Heading, Moment, Observer, Partner, SampleTimes, Snapshot, Verdict, contract};
 use crate::ParameterError;
-use crate::quantity::{Checked, Quantity, Range, accept};
+use crate::quantity::{accept, positive};
 use crate::statistics::{BlockedMean, Estimate};
 
 /// An observer of the pressure and the shear stress of the disks on walls.
@@ -54,20 +54,12 @@ pub struct WallStress {
 
 /// The impulse that a wall received.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 struct Received {
-    length: Checked<WallLength>,
+    length: f64,
     /// Normal and tangential impulse since the latest sample.
     impulse: [f64; 2],
     means: [BlockedMean; 2],
-}
-
-/// The quantity "length of a wall".
-enum WallLength {}
-
-impl Quantity for WallLength {
-    const NAME: &'static str = "length of a wall";
-    const RANGE: Range = Range::POSITIVE;
 }
 
 impl WallStress {
@@ -81,7 +73,7 @@ impl WallStress {
     /// # Errors
     /// If the length is not finite and positive.
     pub fn with_wall(mut self, wall: usize, length: f64) -> Result<Self, ParameterError> {
-        let length = Checked::new(length)?;
+        let length = positive("length of a wall", length)?;
         let received = Received { length, impulse: [0.0; 2], means: Default::default() };
         self.walls.insert(wall, received);
         Ok(self)
@@ -138,7 +130,7 @@ impl Observer for WallStress {
             let impulse = std::mem::take(&mut received.impulse);
             let Some(duration) = duration else { continue };
             for (mean, impulse) in received.means.iter_mut().zip(impulse) {
-                mean.push(impulse / (received.length.get() * duration));
+                mean.push(impulse / (received.length * duration));
             }
         }
     }
@@ -161,4 +153,9 @@ impl Table for WallStress {
         let estimates = |received: &Received| received.means.each_ref().map(BlockedMean::estimate);
         Box::new(self.walls.iter().map(move |(&wall, received)| row(&[wall as f64], &estimates(received))))
     }
+}
+
+crate::gate::from_file! {
+    Received { length: f64, impulse: [f64; 2], means: [BlockedMean; 2] } =>
+        Ok(Self { length: positive("length of a wall", length)?, impulse, means })
 }

@@ -133,11 +133,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             resolve_wall(&self.bodies, &self.rule, &mut self.generator, &surface, &self.clock, disk, wall);
         if !kick.is_possible() {
             let name = self.name_of(Partner::Wall(wall));
-            let error = match surface.response {
-                Response::Rule(own) => failed(own, &collision, name),
-                _ => failed(&self.rule, &collision, name),
-            };
-            return Err(error.into());
+            return Err(failed(&collision, name).into());
         }
         if let Response::Absorbing = surface.response {
             return Ok(self.absorb(&collision, disk, wall, observer));
@@ -201,7 +197,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let periods = self.cells.grid().periods();
         let (collision, kicks) = resolve_pair(&self.bodies, &self.rule, periods, &self.clock, disk, partner);
         if !kicks.iter().all(Kick::is_possible) {
-            return Err(failed(&self.rule, &collision, None).into());
+            return Err(failed(&collision, None).into());
         }
         self.begin_epoch_for(&kicks)
     }

@@ -164,15 +164,9 @@ pub(super) fn is_possible(surface: &Surface<'_>) -> bool {
 
 /// Returns the error of a collision whose outcome is not a possible motion.
 #[cold]
-pub(super) fn failed<R: CollisionRule + ?Sized>(
-    rule: &R,
-    collision: &Collision,
-    wall: Option<String>,
-) -> RunError {
+pub(super) fn failed(collision: &Collision, wall: Option<String>) -> RunError {
     let Collision { disk, partner, time, contact, impulse, .. } = *collision;
-    let explanation = rule.explain(&contact);
-    let failed = FailedCollision { disk, partner, wall, time, contact, impulse, explanation };
-    RunError::NotFinite(Box::new(failed))
+    RunError::NotFinite(Box::new(FailedCollision { disk, partner, wall, time, contact, impulse }))
 }
 
 /// Returns the motion with which a disk leaves a thermal wall.

@@ -19,11 +19,9 @@ use super::{Estimate, RunningMean};
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(into = "Vec<Level>", try_from = "Vec<Level>"))]
-pub struct BlockedMean {
-    /// Blocks of one number, of two, of four, …, for all sizes of which there is at least one block.
-    levels: Vec<Level>,
-}
+#[cfg_attr(feature = "serde", serde(try_from = "Vec<Level>"))]
+// Blocks of one number, of two, of four, …, for all sizes of which there is at least one block.
+pub struct BlockedMean(Vec<Level>);
 
 /// Blocks of one size.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -37,20 +35,20 @@ struct Level {
 impl BlockedMean {
     /// Creates a mean of no numbers.
     pub const fn new() -> Self {
-        Self { levels: Vec::new() }
+        Self(Vec::new())
     }
 
     /// Creates a mean of no numbers with room for all numbers that a run can have, so that a collision never
     /// allocates.
     pub(crate) fn with_room() -> Self {
-        Self { levels: Vec::with_capacity(u64::BITS as usize) }
+        Self(Vec::with_capacity(u64::BITS as usize))
     }
 
     /// Takes one more number.
     #[inline]
     pub fn push(&mut self, value: f64) {
         let mut block = value;
-        for level in &mut self.levels {
+        for level in &mut self.0 {
             level.blocks.push(block);
             let Some(before) = level.waiting.take() else {
                 level.waiting = Some(block);
@@ -58,7 +56,7 @@ impl BlockedMean {
             };
             block = 0.5 * (before + block);
         }
-        self.levels.push(Level { blocks: RunningMean::from_iter([block]), waiting: Some(block) });
+        self.0.push(Level { blocks: RunningMean::from_iter([block]), waiting: Some(block) });
     }
 
     /// Returns the count of the numbers.
@@ -78,7 +76,7 @@ impl BlockedMean {
 
     /// Returns mean and variance of the numbers themselves, without regard to their correlation.
     pub fn ungrouped(&self) -> RunningMean {
-        self.levels.first().map_or_else(RunningMean::default, |level| level.blocks)
+        self.0.first().map_or_else(RunningMean::default, |level| level.blocks)
     }
 
     /// Returns the mean with an error from blocks, for numbers of at most 1e100 in size.
@@ -92,7 +90,7 @@ impl BlockedMean {
             // Equal samples tell no more than one of them.
             return Estimate::blocked(whole.mean(), 0.0, whole.count(), whole.count() as f64, false);
         }
-        let several = self.levels.iter().map(|level| level.blocks).take_while(|blocks| blocks.count() >= 2);
+        let several = self.0.iter().map(|level| level.blocks).take_while(|blocks| blocks.count() >= 2);
         let errors: Vec<BlockError> = several.map(|blocks| BlockError::of(&blocks)).collect();
         let plateau = plateau(&errors, whole.count());
         let (error, raised) = plateau.unwrap_or_else(|| {
@@ -119,13 +117,6 @@ impl FromIterator<f64> for BlockedMean {
 }
 
 #[cfg(feature = "serde")]
-impl From<BlockedMean> for Vec<Level> {
-    fn from(mean: BlockedMean) -> Self {
-        mean.levels
-    }
-}
-
-#[cfg(feature = "serde")]
 impl TryFrom<Vec<Level>> for BlockedMean {
     type Error = crate::ParameterError;
 
@@ -145,6 +136,6 @@ impl TryFrom<Vec<Level>> for BlockedMean {
             expected = count / 2;
         }
         accept(expected == 0, "number of blocks", "half of the smaller ones", 0.0)?;
-        Ok(Self { levels })
+        Ok(Self(levels))
     }
 }

@@ -28,9 +28,9 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Estimate {
-    #[cfg_attr(feature = "serde", serde(serialize_with = "unless_nan"))]
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::gate::if_finite"))]
     mean: f64,
-    #[cfg_attr(feature = "serde", serde(serialize_with = "unless_nan"))]
+    #[cfg_attr(feature = "serde", serde(serialize_with = "crate::gate::if_finite"))]
     standard_error: f64,
     samples: u64,
     correlated_samples: f64,
@@ -159,13 +159,6 @@ impl fmt::Display for Estimate {
             (_, Basis::ShortBlocks) => formatter.write_str(" (not converged: a lower bound)"),
         }
     }
-}
-
-/// Writes a number that can be NaN. It is absent then, since not all formats know NaN.
-#[cfg(feature = "serde")]
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
-fn unless_nan<S: serde::Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-    serde::Serialize::serialize(&Some(*number).filter(|number| !number.is_nan()), serializer)
 }
 
 crate::gate::from_file! {

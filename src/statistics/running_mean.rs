@@ -15,8 +15,7 @@ use super::{Estimate, Moments};
 /// assert!((mean.standard_error() - (1.0_f64 / 3.0).sqrt()).abs() < 1e-15);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(into = "RawRunningMean", try_from = "RawRunningMean"))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(into = "RawRunningMean"))]
 pub struct RunningMean(Moments);
 
 impl RunningMean {
@@ -77,9 +76,10 @@ impl FromIterator<f64> for RunningMean {
     }
 }
 
+/// The mean as files hold it.
 #[cfg(feature = "serde")]
-#[derive(serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields, rename = "RunningMean")]
+#[derive(serde::Serialize)]
+#[serde(rename = "RunningMean")]
 struct RawRunningMean {
     count: u64,
     mean: f64,
@@ -93,11 +93,8 @@ impl From<RunningMean> for RawRunningMean {
     }
 }
 
-#[cfg(feature = "serde")]
-impl TryFrom<RawRunningMean> for RunningMean {
-    type Error = crate::ParameterError;
-
-    fn try_from(RawRunningMean { count, mean, squares }: RawRunningMean) -> Result<Self, Self::Error> {
+crate::gate::from_file! {
+    RunningMean { count: u64, mean: f64, squares: f64 } => {
         use crate::quantity::accept;
         // Counts are kept as floating-point numbers, which are exact up to 2^53.
         accept(count <= 1 << 53, "number of samples", "at most 2^53", count as f64)?;

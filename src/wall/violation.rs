@@ -2,17 +2,12 @@
 
 use thiserror::Error;
 
-use crate::error::Readable;
-
 /// A way in which a motion breaks its contract.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Violation {
     /// The reach is not two finite numbers in order.
-    #[error(
-        "its reach from {low} to {high} must be finite and in order",
-        low = Readable(*low), high = Readable(*high)
-    )]
+    #[error("its reach from {low:?} to {high:?} must be finite and in order")]
     Reach {
         /// Lower end of the reach.
         low: f64,
@@ -20,13 +15,13 @@ pub enum Violation {
         high: f64,
     },
     /// The period is not finite and positive.
-    #[error("its period must be finite and positive, but is {period}", period = Readable(*period))]
+    #[error("its period must be finite and positive, but is {period:?}")]
     PeriodValue {
         /// The period.
         period: f64,
     },
     /// An answer is infinite or not a number.
-    #[error("at phase {phase} its {quantity} is {value}", phase = Readable(*phase), value = Readable(*value))]
+    #[error("at phase {phase:?} its {quantity} is {value:?}")]
     NotFinite {
         /// Name of the quantity.
         quantity: &'static str,
@@ -36,10 +31,7 @@ pub enum Violation {
         value: f64,
     },
     /// The bounds of the acceleration are in the wrong order.
-    #[error(
-        "at phase {phase} its lower bound of the acceleration, {min}, is above the upper bound, {max}",
-        phase = Readable(*phase), min = Readable(*min), max = Readable(*max)
-    )]
+    #[error("at phase {phase:?} its lower bound of the acceleration {min:?} is above the upper one, {max:?}")]
     Bounds {
         /// The phase asked for.
         phase: f64,
@@ -49,10 +41,7 @@ pub enum Violation {
         max: f64,
     },
     /// A piece does not end later than the phase asked for.
-    #[error(
-        "the piece of its motion from phase {phase} on ends at {until}, which is not later",
-        phase = Readable(*phase), until = Readable(*until)
-    )]
+    #[error("the piece of its motion from phase {phase:?} on ends at {until:?}, which is not later")]
     PieceEnd {
         /// The phase asked for.
         phase: f64,
@@ -60,10 +49,7 @@ pub enum Violation {
         until: f64,
     },
     /// Consecutive pieces advance so little that no search can follow them.
-    #[error(
-        "{pieces} pieces of its motion lead only from phase {phase} to {until}: they are too short",
-        phase = Readable(*phase), until = Readable(*until)
-    )]
+    #[error("{pieces} pieces of its motion lead only from phase {phase:?} to {until:?}: they are too short")]
     ShortPieces {
         /// The phase at which the first begins.
         phase: f64,
@@ -73,11 +59,7 @@ pub enum Violation {
         pieces: u32,
     },
     /// The displacement is outside the reach.
-    #[error(
-        "at phase {phase} its displacement {displacement} is outside its reach from {low} to {high}",
-        low = Readable(*low), high = Readable(*high), phase = Readable(*phase),
-        displacement = Readable(*displacement)
-    )]
+    #[error("at phase {phase:?} its displacement {displacement:?} is beyond its reach, {low:?} to {high:?}")]
     OutOfReach {
         /// The phase.
         phase: f64,
@@ -90,10 +72,8 @@ pub enum Violation {
     },
     /// The velocity changes faster than the bounds of the acceleration allow, or jumps inside a piece.
     #[error(
-        "from phase {from} to {to} its velocity changes by {gain}, which is not between {least} and {most}, as \
-         its bounds of the acceleration say",
-        from = Readable(*from), to = Readable(*to), gain = Readable(*gain), least = Readable(*least),
-        most = Readable(*most)
+        "from phase {from:?} to {to:?} its velocity changes by {gain:?}, but the bounds of its acceleration \
+         allow {least:?} to {most:?}"
     )]
     Velocity {
         /// The first phase.
@@ -108,10 +88,7 @@ pub enum Violation {
         most: f64,
     },
     /// The displacement is not the integral of the velocity, or jumps inside a piece.
-    #[error(
-        "from phase {from} to {to} its displacement changes by {rise}, but its velocity says {expected}",
-        from = Readable(*from), to = Readable(*to), rise = Readable(*rise), expected = Readable(*expected)
-    )]
+    #[error("from phase {from:?} to {to:?} it advances by {rise:?}, but its velocity says {expected:?}")]
     Displacement {
         /// The first phase.
         from: f64,
@@ -123,10 +100,7 @@ pub enum Violation {
         expected: f64,
     },
     /// The wall jumps toward the disks.
-    #[error(
-        "at phase {phase}, where a piece ends, it jumps toward the disks by {jump}",
-        phase = Readable(*phase), jump = Readable(*jump)
-    )]
+    #[error("at phase {phase:?}, where a piece ends, it jumps toward the disks by {jump:?}")]
     Jump {
         /// The phase.
         phase: f64,
@@ -134,10 +108,7 @@ pub enum Violation {
         jump: f64,
     },
     /// The motion does not repeat after its period.
-    #[error(
-        "with the period {period}, the wall is not in the same state at phase {later} as at {phase}",
-        period = Readable(*period), phase = Readable(*phase), later = Readable(*later)
-    )]
+    #[error("with the period {period:?}, the state at phase {later:?} is not that at phase {phase:?}")]
     Period {
         /// The phase.
         phase: f64,

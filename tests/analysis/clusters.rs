@@ -32,7 +32,7 @@ fn clusters_know_their_places_sizes_and_spreads() -> Outcome {
     let cross = [at(2.0, 0.0), at(-2.0, 0.0), at(0.0, 1.0), at(0.0, -1.0)];
     let diagonal = [at(10.0, 0.0), at(11.0, 1.0), at(9.0, -1.0), at(12.0, 2.0), at(8.0, -2.0)];
     let found = KMeans::new(2, 1)?.fit(&[cross.as_slice(), &diagonal].concat())?;
-    let (first, second) = (found.get(0).unwrap(), found.get(1).unwrap());
+    let [first, second] = found.iter().collect::<Vec<_>>()[..] else { panic!("{found:?}") };
     assert_eq!(
         (first.center(), first.count(), second.center(), second.count()),
         (at(0.0, 0.0), 4, at(10.0, 0.0), 5)
@@ -109,8 +109,8 @@ fn one_descent_ends_at_rest_and_more_end_no_worse() -> Outcome {
     for seed in 0..20 {
         let scatter = |restarts| -> Result<f64, ParameterError> {
             let found = KMeans::new(4, seed)?.with_restarts(restarts)?.fit(&points)?;
-            let own =
-                |label: usize, point: &DVec2| found.get(label).unwrap().center().distance_squared(*point);
+            let centers: Vec<DVec2> = found.iter().map(|cluster| cluster.center()).collect();
+            let own = |label: usize, point: &DVec2| centers[label].distance_squared(*point);
             for (&label, point) in found.labels().iter().zip(&points) {
                 assert!((0..4).all(|other| own(label, point) <= own(other, point)), "seed {seed}");
             }
@@ -144,7 +144,7 @@ fn degenerate_points_are_clustered_and_bad_ones_refused() -> Outcome {
     let equal = [DVec2::new(0.1, -0.2); 7];
     let found = KMeans::new(4, 1)?.fit(&equal)?;
     assert_eq!((found.len(), found.labels()), (1, [0; 7].as_slice()));
-    assert!(found.get(0).is_some_and(|cluster| cluster.spread(DVec2::X) < 1e-16 && cluster.weight() == 1.0));
+    assert!(found.iter().all(|cluster| cluster.spread(DVec2::X) < 1e-16 && cluster.weight() == 1.0));
     assert_eq!(distinct_clusters(&equal, 0.0, 1)?.len(), 1);
     assert_eq!(distinct_clusters(&[DVec2::ZERO, DVec2::X], 0.0, 1)?.len(), 2);
     assert_eq!(distinct_clusters(&[DVec2::ZERO, DVec2::splat(1e100)], 0.0, 1)?.len(), 2);

@@ -1,4 +1,4 @@
-//! The identity of a rule and its explanations, however the rule is held.
+//! The identity of a rule, however the rule is held.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -16,9 +16,6 @@ impl CollisionRule for Talkative {
     fn impulse(&self, contact: &Contact) -> Impulse {
         Impulse::new(contact.closing_speed(), 0.0)
     }
-    fn explain(&self, contact: &Contact) -> Option<String> {
-        Some(format!("too fast: {}", contact.closing_speed()))
-    }
     fn fingerprint(&self) -> Option<Fingerprint> {
         Some(Fingerprint::of("Talkative"))
     }
@@ -27,7 +24,6 @@ impl CollisionRule for Talkative {
 fn says_the_same<R: CollisionRule>(rule: R) {
     let contact = Contact::new(2.0, 0.5, 0.5, 0.125);
     assert_eq!(rule.impulse(&contact), Impulse::new(2.0, 0.0));
-    assert_eq!(rule.explain(&contact).as_deref(), Some("too fast: 2"));
     assert_eq!(rule.fingerprint(), Some(Fingerprint::of("Talkative")));
 }
 
@@ -38,17 +34,6 @@ fn every_way_to_hold_a_rule_passes_all_on() {
     says_the_same(Box::new(Talkative));
     says_the_same(Arc::new(Talkative));
     says_the_same(Box::new(Arc::new(&Talkative)) as Box<dyn CollisionRule>);
-}
-
-#[test]
-fn a_model_passes_the_explanation_on() {
-    let model = ContactDuration::new(Talkative, 1e-4).unwrap();
-    assert_eq!(model.explain(&Contact::new(3.0, 0.0, 0.5, 0.125)).as_deref(), Some("too fast: 3"));
-    let remedy = ElasticBelow::new(Talkative, 1e-4).unwrap();
-    assert_eq!(remedy.explain(&Contact::new(2.0, 0.0, 0.5, 0.125)).as_deref(), Some("too fast: 2"));
-    let remedy = LeastRebound::new(Talkative, 1e-4).unwrap();
-    assert_eq!(remedy.explain(&Contact::new(1.0, 0.0, 0.5, 0.125)).as_deref(), Some("too fast: 1"));
-    assert_eq!(Elastic.explain(&Contact::new(3.0, 0.0, 0.5, 0.125)), None);
 }
 
 fn frictional(normal: f64, tangential: f64, static_friction: f64, dynamic_friction: f64) -> Frictional {

@@ -5,7 +5,6 @@ use thiserror::Error;
 
 use crate::Flight;
 use crate::boundary::{Domain, Region};
-use crate::error::{Readable, RoundedVector};
 
 /// A way in which a boundary breaks its contract.
 ///
@@ -44,10 +43,7 @@ pub enum Violation {
         now: usize,
     },
     /// The check found no free place for a disk.
-    #[error(
-        "no place was found in the domain where a disk of radius {radius} overlaps no wall at time {time}",
-        radius = Readable(*radius), time = Readable(*time)
-    )]
+    #[error("no place was found where a disk of radius {radius:?} overlaps no wall at time {time:?}")]
     NoRoom {
         /// The radius.
         radius: f64,
@@ -55,10 +51,7 @@ pub enum Violation {
         time: f64,
     },
     /// A disk gets into a wall without a touch.
-    #[error(
-        "a disk is {depth} deep in wall {wall} at time {time}, before a touch at {found:?}, on {flight:?}",
-        time = Readable(*time), depth = Readable(*depth)
-    )]
+    #[error("a disk is {depth:?} deep in wall {wall} at {time:?}, before a touch at {found:?}: {flight:?}")]
     LetThrough {
         /// The wall.
         wall: usize,
@@ -72,10 +65,7 @@ pub enum Violation {
         flight: Flight,
     },
     /// A disk leaves the domain without a touch.
-    #[error(
-        "a disk leaves the domain without a touch: at time {time} it is at {place}, on {flight:?}",
-        place = RoundedVector(*place), time = Readable(*time)
-    )]
+    #[error("a disk leaves the domain without a touch: at time {time:?} it is at {place:?}, on {flight:?}")]
     LeftDomain {
         /// Center of the disk.
         place: DVec2,
@@ -85,10 +75,7 @@ pub enum Violation {
         flight: Flight,
     },
     /// A touch is before the flight, after its limit, or not a number.
-    #[error(
-        "a touch at time {time} is outside the flight, which ends at {until}: {flight:?}",
-        time = Readable(*time), until = Readable(*until)
-    )]
+    #[error("a touch at time {time:?} is outside the flight, which ends at {until:?}: {flight:?}")]
     TouchTime {
         /// Time of the touch.
         time: f64,
@@ -98,7 +85,7 @@ pub enum Violation {
         flight: Flight,
     },
     /// A search for a touch gets no further.
-    #[error("the search for a touch gets no further than time {time}, on {flight:?}", time = Readable(*time))]
+    #[error("the search for a touch gets no further than time {time:?}, on {flight:?}")]
     NoProgress {
         /// The time.
         time: f64,
@@ -116,10 +103,7 @@ pub enum Violation {
         flight: Flight,
     },
     /// A touch is found where the gap is still open.
-    #[error(
-        "wall {wall} is touched at time {time} where the gap is still open, on {flight:?}",
-        time = Readable(*time)
-    )]
+    #[error("wall {wall} is touched at time {time:?} where the gap is still open, on {flight:?}")]
     EarlyTouch {
         /// The wall.
         wall: usize,
@@ -129,10 +113,7 @@ pub enum Violation {
         flight: Flight,
     },
     /// A touch is found while the disk leaves the wall.
-    #[error(
-        "wall {wall} is touched at time {time} while the disk leaves it at speed {rate}, on {flight:?}",
-        time = Readable(*time), rate = Readable(*rate)
-    )]
+    #[error("wall {wall} is touched at time {time:?} while the disk leaves at speed {rate:?}, on {flight:?}")]
     Leaving {
         /// The wall.
         wall: usize,
@@ -152,10 +133,7 @@ pub enum Violation {
         flight: Flight,
     },
     /// A normal is not a unit vector.
-    #[error(
-        "the normal ({}, {}) of wall {wall} is not a unit vector, for a disk at {place} at time {time}",
-        Readable(normal.x), Readable(normal.y), place = RoundedVector(*place), time = Readable(*time)
-    )]
+    #[error("at time {time:?}, the normal {normal:?} of wall {wall} at {place:?} is not a unit vector")]
     NormalLength {
         /// The wall.
         wall: usize,
@@ -167,10 +145,7 @@ pub enum Violation {
         time: f64,
     },
     /// A disk that is moved along the normal does not come out of the wall.
-    #[error(
-        "the normal {normal} of wall {wall} does not lead out of it, for a disk at {place} at time {time}",
-        place = RoundedVector(*place), normal = RoundedVector(*normal), time = Readable(*time)
-    )]
+    #[error("at time {time:?}, the normal {normal:?} does not lead out of wall {wall} at {place:?}")]
     NormalDirection {
         /// The wall.
         wall: usize,
@@ -182,10 +157,7 @@ pub enum Violation {
         time: f64,
     },
     /// The velocity of a wall is not finite.
-    #[error(
-        "the velocity {velocity} of wall {wall} is not finite, at time {time}",
-        velocity = RoundedVector(*velocity), time = Readable(*time)
-    )]
+    #[error("the velocity {velocity:?} of wall {wall} is not finite, at time {time:?}")]
     Velocity {
         /// The wall.
         wall: usize,
@@ -195,10 +167,7 @@ pub enum Violation {
         time: f64,
     },
     /// `may_touch` is false for a region in which there is a touch.
-    #[error(
-        "a disk of radius {radius} touches at {place}, but `may_touch` denies it for {region:?}",
-        place = RoundedVector(*place), radius = Readable(*radius)
-    )]
+    #[error("a disk of radius {radius:?} touches at {place:?}, but `may_touch` denies it for {region:?}")]
     MayTouch {
         /// The region.
         region: Region,
@@ -208,11 +177,7 @@ pub enum Violation {
         place: DVec2,
     },
     /// The same flight, given relative to another time origin, touches at another time.
-    #[error(
-        "with a time origin earlier than {origin} by {shift}, the touch is at time {after:?} and not \
-         {before:?}, on {flight:?}",
-        origin = Readable(*origin), shift = Readable(*shift)
-    )]
+    #[error("a time origin {shift:?} before {origin:?} moves a touch at {before:?} to {after:?}: {flight:?}")]
     TimeOrigin {
         /// The time origin.
         origin: f64,

@@ -20,12 +20,11 @@ impl Part {
     /// # Errors
     /// If there are no bricks.
     pub fn new(bricks: impl IntoIterator<Item = Brick>) -> Result<Self, VesselError> {
-        let mut bricks: Vec<Brick> = bricks.into_iter().collect();
-        let given = bricks.len();
-        accept(given > 0, "number of bricks", "at least 1", 0.0)?;
-        bricks.extend(corners::corners(&bricks));
+        let bricks: Vec<Brick> = bricks.into_iter().collect();
+        accept(!bricks.is_empty(), "number of bricks", "at least 1", 0.0)?;
+        let (corners, travel) = (corners::corners(&bricks), Travel::default());
         let (conduct, kind) = (Conduct::Shared, Kind::WALL);
-        Ok(Self { bricks, given, travel: Travel::default(), conduct, kind, surface_speed: 0.0, start: 0.0 })
+        Ok(Self { bricks, corners, travel, conduct, kind, surface_speed: 0.0, start: 0.0 })
     }
 
     /// Creates a closed polygon with the disks inside.

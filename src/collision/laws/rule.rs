@@ -2,7 +2,7 @@
 
 use super::violation::same;
 use super::{
-    Violation, check_friction_cone, check_friction_opposes_slip, check_impulse, check_separation,
+    Fault, Violation, check_friction_cone, check_friction_opposes_slip, check_impulse, check_separation,
     hostile_contacts,
 };
 use crate::collision::{CollisionRule, Contact, Impulse};
@@ -76,7 +76,7 @@ pub fn check<R: CollisionRule + ?Sized>(rule: &R, promises: &Promises) -> Result
     for (contact, impulse) in answers.into_iter().rev() {
         let later = rule.impulse(&contact);
         if !same(impulse, later) {
-            return Err(Violation::NotRepeatable { later, contact, impulse });
+            return Err(Violation { fault: Fault::NotRepeatable { later }, contact, impulse });
         }
     }
     Ok(())

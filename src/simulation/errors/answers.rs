@@ -42,9 +42,6 @@ pub struct FailedCollision {
     pub contact: Contact,
     /// The impulse with which the rule answered.
     pub impulse: Impulse,
-    /// The reason that the rule gives, if it gives one; see
-    /// [`CollisionRule::explain`](crate::collision::CollisionRule::explain).
-    pub explanation: Option<String>,
 }
 
 impl fmt::Display for FailedCollision {
@@ -64,11 +61,7 @@ impl fmt::Display for FailedCollision {
             Rounded(contact.slip_speed()),
             Rounded(impulse.normal()),
             Rounded(impulse.tangential())
-        )?;
-        match &self.explanation {
-            Some(explanation) => write!(formatter, "; the rule says: {explanation}"),
-            None => Ok(()),
-        }
+        )
     }
 }
 
