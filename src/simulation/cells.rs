@@ -27,8 +27,6 @@ pub(super) use cell_size::CellSize;
 use contents::Contents;
 use division::classes;
 pub(super) use grid::{Grid, Place};
-#[cfg(feature = "serde")]
-pub(super) use layers::Grids;
 pub(super) use layers::Layouts;
 use layers::{Layers, layouts};
 #[cfg(feature = "serde")]
@@ -79,35 +77,21 @@ impl Cells {
             let together = together(&classes).unwrap_or_else(|| SizeClass::of_nobody(&domain));
             Layouts { smallest: single, larger: Vec::new(), classes: vec![together] }
         });
-        let mut cells = Self::empty(boundary, &layouts, diameters)?;
-        cells.places =
-            (0..).zip(disks).map(|(disk, (position, _))| cells.grid_of(disk).place_of(position)).collect();
-        cells.fill();
+        let mut cells = Self::empty(boundary, &layouts, diameters);
+        let place = |(disk, (position, _))| cells.grid_of(disk).place_of(position);
+        cells.fill((0..).zip(disks).map(place).collect());
         Some(cells)
     }
 
-    /// Creates cells of these layouts with the disks in these places.
-    #[cfg(feature = "serde")]
-    pub(super) fn filled<B: Boundary + ?Sized>(
+    /// Creates cells of these layouts, of at least one class. Disks of these diameters are yet to be filled in.
+    pub(super) fn empty<B: Boundary + ?Sized>(
         boundary: &B,
         layouts: &Layouts,
-        diameters: impl Iterator<Item = f64> + Clone,
-        places: Vec<Place>,
-    ) -> Option<Self> {
-        let mut cells = Self::empty(boundary, layouts, diameters)?;
-        cells.places = places;
-        cells.fill();
-        Some(cells)
-    }
-
-    fn empty<B: Boundary + ?Sized>(
-        boundary: &B,
-        layouts: &Layouts,
-        diameters: impl Iterator<Item = f64> + Clone,
-    ) -> Option<Self> {
+        diameters: impl Iterator<Item = f64>,
+    ) -> Self {
         let domain = boundary.domain();
         let classes = layouts.classes.clone();
-        let grid = Grid::new(&domain, layouts.smallest, classes.first()?.largest);
+        let grid = Grid::new(&domain, layouts.smallest, classes[0].largest);
         let contents = Contents::empty(grid.len());
         let layers = (!layouts.larger.is_empty()).then(|| {
             let mut layers = Layers::empty(&domain, &grid, &classes, &layouts.larger, diameters);
@@ -117,10 +101,12 @@ impl Cells {
         let largest_radius = 0.5 * classes[0].largest;
         let mut cells = Self { grid, contents, places: Vec::new(), layers, classes };
         cells.mark_walls(boundary, largest_radius);
-        Some(cells)
+        cells
     }
 
-    fn fill(&mut self) {
+    /// Writes all disks into the cells in these places.
+    pub(super) fn fill(&mut self, places: Vec<Place>) {
+        self.places = places;
         for disk in 0..self.places.len() {
             self.enter(disk);
         }
@@ -197,8 +183,14 @@ impl Cells {
         self.layers.as_ref().is_some_and(|layers| layers.of(disk).is_some())
     }
 
+    /// Returns the class of a disk: the number of its grid, from the smallest cells on.
+    #[cfg(feature = "serde")]
+    pub(super) fn class(&self, disk: usize) -> u8 {
+        self.layers.as_ref().map_or(0, |layers| layers.classes[disk])
+    }
+
     /// Returns the grid in which a disk is.
-    fn grid_of(&self, disk: usize) -> &Grid {
+    pub(super) fn grid_of(&self, disk: usize) -> &Grid {
         self.layers.as_ref().and_then(|layers| layers.of(disk)).map_or(&self.grid, |layer| &layer.grid)
     }
 

@@ -279,34 +279,3 @@ pub(in crate::simulation) struct Layouts {
     /// The classes of disks that have cells of their own.
     pub(in crate::simulation) classes: Vec<SizeClass>,
 }
-
-/// The grids of all classes of disks, and the class of each.
-#[cfg(feature = "serde")]
-pub(in crate::simulation) struct Grids {
-    grids: Vec<Grid>,
-    classes: Vec<u8>,
-}
-
-#[cfg(feature = "serde")]
-impl Grids {
-    pub(in crate::simulation) fn new(
-        domain: &Domain,
-        layouts: &Layouts,
-        classes: &[SizeClass],
-        diameters: impl Iterator<Item = f64>,
-    ) -> Self {
-        let smallest = Grid::new(domain, layouts.smallest, classes[0].largest);
-        let larger = layouts.larger.iter().map(|layer| Grid::without_margin(domain, layer.cells));
-        let classes = diameters.map(|diameter| class_of(classes, diameter)).collect();
-        Self { grids: std::iter::once(smallest).chain(larger).collect(), classes }
-    }
-
-    pub(in crate::simulation) fn class(&self, disk: usize) -> u8 {
-        self.classes[disk]
-    }
-
-    /// Returns the grid in which a disk is.
-    pub(in crate::simulation) fn of(&self, disk: usize) -> &Grid {
-        &self.grids[usize::from(self.classes[disk])]
-    }
-}

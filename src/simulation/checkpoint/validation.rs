@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use super::{CheckpointError, Saved};
 use crate::disk::{LARGEST, MOST_DISKS};
 use crate::simulation::cells::{
-    CELLS_PER_DISK, FEWEST, Grid, Grids, Layout, Place, SPARE_CELLS, SPARE_DISKS, SizeClass,
+    CELLS_PER_DISK, Cells, FEWEST, Grid, Layout, Layouts, Place, SPARE_CELLS, SPARE_DISKS, SizeClass,
 };
 use crate::simulation::events::Counters;
 use crate::simulation::state::{Bodies, Exit, Forecast, Guard, Spin, Trajectory};
@@ -24,6 +24,9 @@ const SLACK: f64 = 1e-3;
 /// Number of epochs ahead within which a touch with a wall, or the horizon of its search, must lie. It is
 /// large, since a collision may have made epochs shorter after the search.
 const MOST_EPOCHS: f64 = 1e6;
+
+/// The fault of cells that do not suit the domain or the disks.
+pub(super) const MISFIT: &str = "its neighbor cells are not those of the domain";
 
 pub(super) fn check(valid: bool, what: &'static str) -> Result<(), CheckpointError> {
     if valid { Ok(()) } else { Err(CheckpointError::Inconsistent(what.to_owned())) }
@@ -53,44 +56,38 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     check(forward, "its counters run backwards")
 }
 
-/// Checks that all disks are where they belong, and that their events are where they can be.
-pub(super) fn check_places(saved: &Saved, grids: &Grids, bodies: &Bodies) -> Result<(), CheckpointError> {
+/// Checks that all disks are where they belong in these cells, which are empty as yet, and that their events
+/// are where they can be.
+pub(super) fn check_places(saved: &Saved, cells: &Cells, bodies: &Bodies) -> Result<(), CheckpointError> {
     let disks = || saved.forecasts.iter().zip(&saved.places).enumerate();
-    let inside = |(disk, (_, &place))| holds(grids.of(disk), place, bodies.position(disk, saved.now));
+    let is_placed = |(disk, (_, &place))| is_cell(&cells.grid_of(disk).layout, place);
+    check(disks().all(is_placed), MISFIT)?;
+    let inside = |(disk, (_, &place))| holds(cells.grid_of(disk), place, bodies.position(disk, saved.now));
     check(disks().all(inside), "a disk is outside its neighbor cell")?;
     // The cells at walls extend to infinity.
     // Rounding needs much less than a radius.
     let within = |disk| saved.domain.contains(bodies.position(disk, saved.now), bodies.radius(disk));
     check((0..saved.places.len()).all(within), "a disk is outside the domain")?;
-    check(has_room(saved, grids, bodies), "the disks of a cell overlap")?;
-    let ends =
-        |(disk, (forecast, &place))| ends_where_it_can(saved, grids.of(disk), bodies, disk, forecast, place);
+    check(has_room(saved, cells, bodies), "the disks of a cell overlap")?;
+    let ends = |(disk, (forecast, &place))| {
+        ends_where_it_can(saved, cells.grid_of(disk), bodies, disk, forecast, place)
+    };
     check(disks().all(ends), "a cell exit is not at the edge of the cell of its disk")?;
     let meets = |(disk, (forecast, _))| meets_its_partner(saved, bodies, disk, forecast);
     check(disks().all(meets), "a disk collides with one that it does not touch")
 }
 
-/// Returns the grids of all classes of disks, if they suit the domain and the disks, and the place of every
-/// disk is a cell of its grid.
-pub(super) fn grids(saved: &Saved, bodies: &Bodies) -> Option<Grids> {
-    let layouts = &saved.layouts;
-    let diameters = (0..bodies.len()).map(|disk| 2.0 * bodies.radius(disk));
-    let classes = &layouts.classes;
-    if !are_classes(classes, layouts.larger.len() + 1, diameters.clone()) {
-        return None;
-    }
-    let smallest = classes[0].largest;
-    let suits = suits(saved, &layouts.smallest, smallest)
-        && layouts.larger.iter().zip(&classes[1..]).all(|(layer, class)| {
-            layer.homes().is_some_and(|homes| suits(saved, &homes, class.largest))
-                && layer.is_narrow_enough(&saved.domain, &layouts.smallest, smallest, class.largest)
-        });
-    if !suits {
-        return None;
-    }
-    let grids = Grids::new(&saved.domain, layouts, classes, diameters);
-    let is_placed = |(disk, &place)| is_cell(&grids.of(disk).layout, place);
-    saved.places.iter().enumerate().all(is_placed).then_some(grids)
+/// Tells whether the cells suit the domain, and disks of these diameters.
+pub(super) fn are_layouts(saved: &Saved, diameters: impl ExactSizeIterator<Item = f64>) -> bool {
+    let Layouts { smallest, larger, classes } = &saved.layouts;
+    let suits_all = |least: f64| {
+        suits(saved, smallest, least)
+            && larger.iter().zip(&classes[1..]).all(|(layer, class)| {
+                layer.homes().is_some_and(|homes| suits(saved, &homes, class.largest))
+                    && layer.is_narrow_enough(&saved.domain, smallest, least, class.largest)
+            })
+    };
+    are_classes(classes, larger.len() + 1, diameters) && suits_all(classes[0].largest)
 }
 
 /// Tells whether these are so many classes, in order, and there is one for each disk. There cannot be far
@@ -195,14 +192,13 @@ fn holds(grid: &Grid, place: Place, position: DVec2) -> bool {
 }
 
 /// Tells whether there is room for the disks in their cells without overlaps.
-fn has_room(saved: &Saved, grids: &Grids, bodies: &Bodies) -> bool {
+fn has_room(saved: &Saved, cells: &Cells, bodies: &Bodies) -> bool {
     let domain = &saved.domain;
-    let mut cells: HashMap<(u8, usize), (f64, f64)> = HashMap::new();
+    let mut taken: HashMap<(u8, usize), (f64, f64)> = HashMap::new();
     saved.places.iter().enumerate().all(|(disk, &place)| {
         let radius = bodies.radius(disk);
-        let grid = grids.of(disk);
-        let (area, largest): &mut (f64, f64) =
-            cells.entry((grids.class(disk), grid.index(place))).or_default();
+        let grid = cells.grid_of(disk);
+        let (area, largest) = taken.entry((cells.class(disk), grid.index(place))).or_default();
         *area += std::f64::consts::PI * radius * radius;
         *largest = largest.max(radius);
         let region = grid.region(place);
