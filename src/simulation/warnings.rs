@@ -105,7 +105,7 @@ impl Counters {
         let Self { contact_duration_collisions: elastic, jumped_wall, farthest_jump: by, .. } = *self;
         let (jumps, wall) = (self.wall_jumps, usize::from(jumped_wall));
         let jumped = (jumps > 0).then_some(Warning::WallJumped { wall, name: None, by, jumps });
-        let collisions = self.disk_collisions + self.wall_collisions;
+        let collisions = self.collisions();
         let is_mostly_elastic = collisions >= FEWEST && elastic > collisions / 2;
         let elastic = is_mostly_elastic.then_some(Warning::MostlyContactDuration { elastic, collisions });
         jumped.into_iter().chain(elastic).collect()
