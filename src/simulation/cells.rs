@@ -108,7 +108,7 @@ impl Cells {
     pub(super) fn fill(&mut self, places: Vec<Place>) {
         self.places = places;
         for disk in 0..self.places.len() {
-            self.enter(disk);
+            self.change(disk, Contents::push);
         }
     }
 
@@ -146,22 +146,22 @@ impl Cells {
         }
         let disk = self.places.len();
         self.places.push(self.grid_of(disk).place_of(position));
-        self.enter(disk);
+        self.change(disk, Contents::push);
     }
 
     /// Removes a disk. The last one takes its index.
     pub(super) fn take_out(&mut self, disk: usize) {
         let last = self.places.len() - 1;
-        self.leave_any(disk);
+        self.change(disk, Contents::remove);
         if disk != last {
-            self.leave_any(last);
+            self.change(last, Contents::remove);
         }
         self.places.swap_remove(disk);
         if let Some(layers) = &mut self.layers {
             layers.classes.swap_remove(disk);
         }
         if disk != last {
-            self.enter(disk);
+            self.change(disk, Contents::push);
         }
     }
 
@@ -225,42 +225,22 @@ impl Cells {
         size_of_val(self.places.as_slice()) + self.contents.bytes() + layers
     }
 
-    /// Writes a disk of any class into its cell.
-    fn enter(&mut self, disk: usize) {
+    /// Writes a disk of any class into its cell, or takes it out of there.
+    fn change(&mut self, disk: usize, change: impl Fn(&mut Contents, usize, usize)) {
         match self.layers.as_mut().filter(|layers| layers.of(disk).is_some()) {
-            None => self.enter_cell(disk),
-            Some(layers) => layers.enter(disk, self.places[disk]),
+            None => self.change_cell(disk, change),
+            Some(layers) => layers.change(disk, self.places[disk], change),
         }
     }
 
-    /// Writes a disk into its cell, and into the ghosts that mirror the cell.
+    /// Does the same for a disk of the smallest class, also in the ghosts that mirror its cell.
     #[inline]
-    fn enter_cell(&mut self, disk: usize) {
+    fn change_cell(&mut self, disk: usize, change: impl Fn(&mut Contents, usize, usize)) {
         let place = self.places[disk];
-        self.contents.push(self.grid.index(place), disk);
+        change(&mut self.contents, self.grid.index(place), disk);
         if self.grid.is_periodic() {
             for ghost in self.grid.mirrors(place) {
-                self.contents.push(self.grid.index(ghost), disk);
-            }
-        }
-    }
-
-    /// Takes a disk of any class out of its cell.
-    fn leave_any(&mut self, disk: usize) {
-        match self.layers.as_mut().filter(|layers| layers.of(disk).is_some()) {
-            None => self.leave(disk),
-            Some(layers) => layers.leave(disk, self.places[disk]),
-        }
-    }
-
-    /// Takes a disk out of its cell, and out of the ghosts that mirror the cell.
-    #[inline]
-    fn leave(&mut self, disk: usize) {
-        let place = self.places[disk];
-        self.contents.remove(self.grid.index(place), disk);
-        if self.grid.is_periodic() {
-            for ghost in self.grid.mirrors(place) {
-                self.contents.remove(self.grid.index(ghost), disk);
+                change(&mut self.contents, self.grid.index(ghost), disk);
             }
         }
     }
@@ -268,10 +248,10 @@ impl Cells {
     /// Moves a disk to the cell that it enters by this exit. Returns the number of periods passed.
     #[inline]
     pub(super) fn cross(&mut self, disk: usize, exit: Exit) -> [i32; 2] {
-        self.leave(disk);
+        self.change_cell(disk, Contents::remove);
         let (place, passed) = self.grid.neighbor(self.places[disk], exit.direction());
         self.places[disk] = place;
-        self.enter_cell(disk);
+        self.change_cell(disk, Contents::push);
         passed
     }
 

@@ -84,20 +84,6 @@ impl Contents {
         }
     }
 
-    /// Adds a disk to each of some cells that follow each other.
-    pub(super) fn push_to_run(&mut self, first: usize, cells: usize, disk: usize) {
-        for cell in first..first + cells {
-            self.push(cell, disk);
-        }
-    }
-
-    /// Removes a disk from each of some cells that follow each other.
-    pub(super) fn remove_from_run(&mut self, first: usize, cells: usize, disk: usize) {
-        for cell in first..first + cells {
-            self.remove(cell, disk);
-        }
-    }
-
     /// Returns the room that the disks of this many cells need. Behind the largest number of them, there is
     /// room for the rest of a window.
     #[inline]

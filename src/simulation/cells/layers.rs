@@ -148,25 +148,18 @@ impl Layers {
         self.larger.get(usize::from(class).wrapping_sub(1))
     }
 
-    /// Writes a disk of a larger class into its home, and into all homes that it reaches.
-    pub(super) fn enter(&mut self, disk: usize, place: Place) {
+    /// Writes a disk of a larger class into its home and into all homes that it reaches, or takes it out of
+    /// all of them.
+    pub(super) fn change(&mut self, disk: usize, place: Place, change: impl Fn(&mut Contents, usize, usize)) {
         let Some(layer) = self.larger.get_mut(usize::from(self.classes[disk]).wrapping_sub(1)) else {
             return;
         };
-        layer.contents.push(layer.home(place), disk);
+        let home = layer.home(place);
+        change(&mut layer.contents, home, disk);
         for (visitors, reach) in self.visitors.iter_mut().zip(layer.reaches().0) {
-            reach.for_each_run(place, |first, count| visitors.push_to_run(first, count, disk));
-        }
-    }
-
-    /// Takes a disk of a larger class out of its home, and out of all homes that it reaches.
-    pub(super) fn leave(&mut self, disk: usize, place: Place) {
-        let Some(layer) = self.larger.get_mut(usize::from(self.classes[disk]).wrapping_sub(1)) else {
-            return;
-        };
-        layer.contents.remove(layer.home(place), disk);
-        for (visitors, reach) in self.visitors.iter_mut().zip(layer.reaches().0) {
-            reach.for_each_run(place, |first, count| visitors.remove_from_run(first, count, disk));
+            reach.for_each_run(place, |first, count| {
+                (first..first + count).for_each(|home| change(visitors, home, disk));
+            });
         }
     }
 
@@ -179,8 +172,12 @@ impl Layers {
         // Homes in both reaches keep the disk. A home at the rim of the hole may leave the reach on one side
         // of it and enter on the other, so both directions are needed.
         for (visitors, reach) in self.visitors.iter_mut().zip(layer.reaches().0) {
-            reach.for_each_run_beyond(from, to, |first, count| visitors.remove_from_run(first, count, disk));
-            reach.for_each_run_beyond(to, from, |first, count| visitors.push_to_run(first, count, disk));
+            reach.for_each_run_beyond(from, to, |first, count| {
+                (first..first + count).for_each(|home| visitors.remove(home, disk));
+            });
+            reach.for_each_run_beyond(to, from, |first, count| {
+                (first..first + count).for_each(|home| visitors.push(home, disk));
+            });
         }
     }
 
