@@ -6,7 +6,7 @@ use std::fmt;
 use glam::DVec2;
 
 use super::Simulation;
-use super::errors::Named;
+use super::errors::named;
 use super::events::Counters;
 use super::inlet::Inlet;
 use crate::boundary::Boundary;
@@ -69,7 +69,7 @@ impl fmt::Display for Warning {
                 "walls jumped {jumps} times when the boundary was set, the farthest by {}{}; \
                  StartingAt lets a motion begin where it should",
                 Rounded(*by),
-                Named(Some(Partner::Wall(*wall)), name.as_deref())
+                named(Some(Partner::Wall(*wall)), name.as_deref())
             ),
             Self::MostlyContactDuration { elastic, collisions } => write!(
                 formatter,

@@ -76,6 +76,7 @@ impl Outcome {
 ///
 /// Samples, observer and times are those of the measured part, after the value has settled.
 #[doc(alias("checkpoint", "restart"))]
+#[derive(Clone, PartialEq)]
 pub struct Record<E: Experiment> {
     pub(in crate::study) experiment: E,
     pub(in crate::study) contents: Contents<E::Sample, E::Observer>,
@@ -238,26 +239,6 @@ impl<E: Experiment> Record<E> {
         let columns = E::columns();
         let mut named = columns.iter().filter(|known| known.name() == column);
         named.find_map(|known| known.estimate(self))
-    }
-}
-
-impl<E: Experiment + Clone> Clone for Record<E>
-where
-    E::Sample: Clone,
-    E::Observer: Clone,
-{
-    fn clone(&self) -> Self {
-        Self { experiment: self.experiment.clone(), contents: self.contents.clone() }
-    }
-}
-
-impl<E: Experiment + PartialEq> PartialEq for Record<E>
-where
-    E::Sample: PartialEq,
-    E::Observer: PartialEq,
-{
-    fn eq(&self, other: &Self) -> bool {
-        self.experiment == other.experiment && self.contents == other.contents
     }
 }
 
