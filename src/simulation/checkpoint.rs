@@ -19,7 +19,7 @@ pub use resumption::Resumption;
 
 use super::cells::{Layouts, Place};
 use super::events::Counters;
-use super::state::{Forecast, Guard, Identities, Spin, Tally, Trajectory};
+use super::state::{Clock, Forecast, Identities, Spin, Trajectory};
 use super::{Inlet, Simulation};
 use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
@@ -86,11 +86,7 @@ struct Saved {
     layouts: Layouts,
     places: Vec<Place>,
     generator: Xoshiro256PlusPlus,
-    origin: f64,
-    now: f64,
-    epoch_length: f64,
-    guard: Guard,
-    tally: Tally,
+    clock: Clock,
     counters: Counters,
 }
 
@@ -163,7 +159,7 @@ pub enum CheckpointError {
 impl Checkpoint {
     /// Returns the absolute time at which the checkpoint was taken.
     pub fn time(&self) -> f64 {
-        self.0.origin + self.0.now
+        self.0.clock.time()
     }
 
     /// Returns the number of disks.
@@ -276,11 +272,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             layouts: self.cells.layouts(),
             places: self.cells.places.clone(),
             generator: self.generator.clone(),
-            origin: self.clock.origin,
-            now: self.clock.now,
-            epoch_length: self.clock.epoch_length,
-            guard: self.clock.guard,
-            tally: self.clock.tally,
+            // The next look is no part of the state.
+            clock: Clock { events_to_look: 0, ..self.clock },
             counters: self.counters,
         })
     }

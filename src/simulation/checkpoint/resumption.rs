@@ -107,9 +107,9 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         let saved = &self.checkpoint.0;
         check_numbers(saved, usize::MAX)?;
         let bodies = bodies_of(saved);
-        self.boundary.set_time_origin(saved.origin);
-        let (wall_count, cells) =
-            crate::simulation::builder::fit(&self.boundary, &bodies.disks(saved.now), saved.now)?;
+        self.boundary.set_time_origin(saved.clock.origin);
+        let now = saved.clock.now;
+        let (wall_count, cells) = crate::simulation::builder::fit(&self.boundary, &bodies.disks(now), now)?;
         let mut run = self.run(bodies, cells, wall_count);
         run.predict_all();
         Ok(run)
@@ -124,14 +124,7 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
             scheduler: self.scheduler,
             bodies,
             cells,
-            clock: Clock {
-                origin: saved.origin,
-                now: saved.now,
-                epoch_length: saved.epoch_length,
-                guard: saved.guard,
-                events_to_look: 1,
-                tally: saved.tally,
-            },
+            clock: Clock { events_to_look: 1, ..saved.clock },
             generator: saved.generator.clone(),
             counters: saved.counters,
             lookahead: Lookahead::default(),

@@ -12,7 +12,7 @@ use crate::simulation::cells::{
     CELLS_PER_DISK, Cells, FEWEST, Grid, Layout, Layouts, Place, SPARE_CELLS, SPARE_DISKS, SizeClass,
 };
 use crate::simulation::events::Counters;
-use crate::simulation::state::{Bodies, Exit, Forecast, Guard, Spin, Trajectory};
+use crate::simulation::state::{Bodies, Clock, Exit, Forecast, Guard, Spin, Trajectory};
 use glam::DVec2;
 
 /// A larger number of events than any run has.
@@ -43,30 +43,32 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     let diameter = saved.typical_diameter;
     let is_diameter = if count == 0 { diameter >= 0.0 } else { diameter > 0.0 };
     check(is_diameter && diameter <= LARGEST, "its typical diameter is beyond all bounds")?;
-    let times = [saved.origin, saved.now, saved.epoch_length];
+    let Clock { origin, now, epoch_length, guard, tally, .. } = saved.clock;
+    let times = [origin, now, epoch_length];
     check(times.iter().all(|time| time.is_finite()), "a time is not finite")?;
     check(is_bounded(saved.gravity), "its gravity is beyond all bounds")?;
-    check(is_epoch_length(saved.epoch_length) && saved.now >= 0.0, "its epoch is out of order")?;
+    check(is_epoch_length(epoch_length) && now >= 0.0, "its epoch is out of order")?;
     check(saved.trajectories.iter().all(is_trajectory), "a trajectory is beyond all bounds")?;
-    check(saved.spins.iter().all(|spin| is_spin(spin, saved.now)), "a rotation is beyond all bounds")?;
+    check(saved.spins.iter().all(|spin| is_spin(spin, now)), "a rotation is beyond all bounds")?;
     check(are_forecasts(saved, walls), "an event names no disk or wall, or is overdue")?;
-    check(are_counted(&saved.counters) && is_guard(&saved.guard), "its counters are beyond all counting")?;
+    check(are_counted(&saved.counters) && is_guard(&guard), "its counters are beyond all counting")?;
     let Counters { cell_crossings, disk_collisions, .. } = saved.counters;
-    let forward = saved.tally.cell_crossings <= cell_crossings && saved.tally.collisions <= disk_collisions;
+    let forward = tally.cell_crossings <= cell_crossings && tally.collisions <= disk_collisions;
     check(forward, "its counters run backwards")
 }
 
 /// Checks that all disks are where they belong in these cells, which are empty as yet, and that their events
 /// are where they can be.
 pub(super) fn check_places(saved: &Saved, cells: &Cells, bodies: &Bodies) -> Result<(), CheckpointError> {
+    let now = saved.clock.now;
     let disks = || saved.forecasts.iter().zip(&saved.places).enumerate();
     let is_placed = |(disk, (_, &place))| is_cell(&cells.grid_of(disk).layout, place);
     check(disks().all(is_placed), MISFIT)?;
-    let inside = |(disk, (_, &place))| holds(cells.grid_of(disk), place, bodies.position(disk, saved.now));
+    let inside = |(disk, (_, &place))| holds(cells.grid_of(disk), place, bodies.position(disk, now));
     check(disks().all(inside), "a disk is outside its neighbor cell")?;
     // The cells at walls extend to infinity.
     // Rounding needs much less than a radius.
-    let within = |disk| saved.domain.contains(bodies.position(disk, saved.now), bodies.radius(disk));
+    let within = |disk| saved.domain.contains(bodies.position(disk, now), bodies.radius(disk));
     check((0..saved.places.len()).all(within), "a disk is outside the domain")?;
     check(has_room(saved, cells, bodies), "the disks of a cell overlap")?;
     let ends = |(disk, (forecast, &place))| {
@@ -178,8 +180,8 @@ fn are_forecasts(saved: &Saved, walls: usize) -> bool {
         let is_old = partner as usize >= count || partner_collisions != collisions;
         (is_alone || partner as usize != disk || is_old)
             && (exit != Exit::Wall || usize::from(wall) < walls)
-            && collision_due >= saved.now
-            && exit_due >= saved.now
+            && collision_due >= saved.clock.now
+            && exit_due >= saved.clock.now
     })
 }
 
@@ -222,7 +224,8 @@ fn ends_where_it_can(
 ) -> bool {
     let Forecast { exit, exit_due, .. } = *forecast;
     if !exit.is_passage() {
-        return exit_due == f64::INFINITY || exit_due - saved.now <= MOST_EPOCHS * saved.epoch_length;
+        return exit_due == f64::INFINITY
+            || exit_due - saved.clock.now <= MOST_EPOCHS * saved.clock.epoch_length;
     }
     if exit_due == f64::INFINITY {
         return true;
@@ -244,7 +247,8 @@ fn ends_where_it_can(
 /// is made anew when it comes up.
 fn meets_its_partner(saved: &Saved, bodies: &Bodies, disk: usize, forecast: &Forecast) -> bool {
     let Forecast { collision_due, partner, partner_collisions, .. } = *forecast;
-    let is_soon = collision_due.is_finite() && collision_due - saved.now <= MOST_EPOCHS * saved.epoch_length;
+    let is_soon = collision_due.is_finite()
+        && collision_due - saved.clock.now <= MOST_EPOCHS * saved.clock.epoch_length;
     let partner = partner as usize;
     let is_current = saved.forecasts.get(partner).is_some_and(|other| other.collisions == partner_collisions);
     if !(is_soon && is_current) {
