@@ -168,8 +168,8 @@ impl Checkpoint {
     }
 
     /// Returns the fingerprints of the rule and the boundary of the run.
-    pub(crate) const fn parts(&self) -> (Option<&Fingerprint>, Option<&Fingerprint>) {
-        (self.0.rule.as_ref(), self.0.boundary.as_ref())
+    pub(crate) const fn parts(&self) -> [Option<Fingerprint>; 2] {
+        [self.0.rule, self.0.boundary]
     }
 
     /// Returns the checkpoint as bytes: magic, version, checksum, contents.

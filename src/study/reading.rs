@@ -275,15 +275,12 @@ fn check_record<E: Experiment>(record: &Record<E>, plan: &Plan<E>) -> Result<(),
         None => plan.is_refined() || at.is_none(),
     };
     check(is_placed, "its place in the ramp is not the plan's")?;
-    check(
-        state.is_some() == plan.keeps_state(origin.value),
-        "it keeps a state that it should not, or lacks one",
-    )?;
+    let is_kept = state.is_some() == plan.keeps_state(origin.value);
+    check(is_kept, "it keeps a state that it should not, or lacks one")?;
     if let Some(state) = state {
         let time = end.time(0.0, record.experiment.cycle());
         check_state(state, time..=time)?;
-        let [rule, boundary] = &record.contents.parts;
-        check(state.parts() == (rule.as_ref(), boundary.as_ref()), "its state is of other parts")?;
+        check(state.parts() == record.contents.parts, "its state is of other parts")?;
     }
     measured.check(&record.experiment, state.as_ref())
 }

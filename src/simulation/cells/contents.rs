@@ -119,17 +119,9 @@ impl Contents {
 
     /// Appends the disks of cells that follow each other to the first `count` of those found.
     #[inline]
-    pub(super) fn gather_run(
-        &self,
-        first: usize,
-        cells: usize,
-        found: &mut [u32],
-        mut count: usize,
-    ) -> usize {
-        for block in &self.blocks[first..first + cells] {
-            count = self.gather_block(block, found, count);
-        }
-        count
+    pub(super) fn gather_run(&self, first: usize, cells: usize, found: &mut [u32], count: usize) -> usize {
+        let blocks = &self.blocks[first..first + cells];
+        blocks.iter().fold(count, |count, block| self.gather_block(block, found, count))
     }
 
     /// Appends the disks of one cell to the first `count` of those found.

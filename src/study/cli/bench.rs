@@ -104,11 +104,9 @@ fn measured(rounds: usize, collisions: u64) -> Result<Table, StateError> {
     Ok(Table { states: states.collect(), circumstances: Circumstances::present() })
 }
 
-fn stretches<R, B>(run: Simulation<R, B>) -> Stretch
-where
-    R: CollisionRule + Clone + 'static,
-    B: Boundary + Clone + 'static,
-{
+fn stretches(
+    run: Simulation<impl CollisionRule + Clone + 'static, impl Boundary + Clone + 'static>,
+) -> Stretch {
     Box::new(move |collisions| speed::stretch(&run, collisions, &mut ()))
 }
 

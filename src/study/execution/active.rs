@@ -240,7 +240,6 @@ impl<E: Experiment> Active<'_, E> {
     fn into_record(self, outcome: Outcome, end: Cycles, state: Checkpoint) -> Record<E> {
         let Self { value, work, run } = self;
         let parts = state.parts();
-        let parts = [parts.0, parts.1].map(Option::<&_>::copied);
         let state = value.plan.keeps_state(value.origin.value).then_some(state);
         let contents = Contents {
             origin: value.origin.clone(),

@@ -79,11 +79,8 @@ fn differences<E: Experiment>(old: &Plan<E>, new: &Plan<E>) -> Result<Vec<Differ
     };
     let [old, new] = [old, new].map(swept);
     if old != new {
-        all.push(Difference {
-            field: "the list of swept parameters".to_owned(),
-            old: Some(old),
-            new: Some(new),
-        });
+        let field = "the list of swept parameters".to_owned();
+        all.push(Difference { field, old: Some(old), new: Some(new) });
     }
     Ok(all)
 }
