@@ -4,13 +4,10 @@ use glam::DVec2;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::Scratch;
-use super::Simulation;
 use super::cells::{CellSize, Cells};
-use super::errors::BuildError;
-use super::events::Counters;
 use super::lookahead::Lookahead;
 use super::state::{Bodies, Clock, Identities};
+use super::{BuildError, Counters, Scratch, Simulation};
 use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
 use crate::disk::{TOUCHING, countable};

@@ -18,9 +18,8 @@ use thiserror::Error;
 pub use resumption::Resumption;
 
 use super::cells::{Layouts, Place};
-use super::events::Counters;
 use super::state::{Clock, Forecast, Identities, Spin, Trajectory};
-use super::{Inlet, Simulation};
+use super::{Counters, Inlet, Simulation};
 use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
 use crate::file::{Broken, Seal, write_whole};

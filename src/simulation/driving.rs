@@ -15,9 +15,7 @@ pub use rescaling::Rescaling;
 
 use std::time::Instant;
 
-use super::events::RunEnd;
-use super::limits::Limits;
-use super::{RunError, Simulation};
+use super::{Limits, RunEnd, RunError, Simulation};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::observable::{Observer, SampleTimes};

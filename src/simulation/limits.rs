@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::events::{Counters, RunEnd};
 use super::state::least_progress;
+use super::{Counters, RunEnd};
 use crate::ParameterError;
 use crate::quantity::non_negative;
 

@@ -5,10 +5,8 @@ use std::fmt;
 
 use glam::DVec2;
 
-use super::Simulation;
 use super::errors::named;
-use super::events::Counters;
-use super::inlet::Inlet;
+use super::{Counters, Inlet, Simulation};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::error::Rounded;

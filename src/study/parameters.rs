@@ -4,8 +4,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
+use super::Scalar;
 use super::errors::{Difference, PlanError, shortened};
-use super::scalar::Scalar;
 
 /// Returns the parameters of an experiment as a tree of names.
 pub(super) fn tree(experiment: &impl Serialize) -> Result<Table, PlanError> {

@@ -2,16 +2,12 @@
 
 use std::path::Path;
 
-use super::errors::StudyError;
-use super::experiment::Experiment;
 use super::experiment::record::{Contents, Outcome, Record, check, check_state};
 use super::folder::{self, Lock, Mark, sealed};
-use super::opening::Study;
-use super::plan::Plan;
 use super::plan::refinement::{Bracket, Seen};
 use super::plan::values::tried;
-use super::point::Point;
 use super::tables::{self, Tables};
+use super::{Experiment, Plan, Point, Study, StudyError};
 
 /// Number of ramps whose first records are read ahead of a table.
 const AHEAD: usize = 4096;

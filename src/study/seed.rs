@@ -1,6 +1,6 @@
 //! Seeds that follow from another seed.
 
-use super::scalar::Scalar;
+use super::Scalar;
 
 /// Returns the seed that follows from a seed and this index.
 pub(super) fn derived_seed(seed: u64, index: u64) -> u64 {

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::errors::ReadError;
+use super::ReadError;
 use super::lines::{number, whole};
 use super::overlap;
 use crate::boundary::Domain;

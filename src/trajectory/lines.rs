@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, Read};
 
-use super::errors::ReadError;
+use super::ReadError;
 use crate::boundary::Domain;
 
 /// Most bytes of a line. No line of a file of disks is nearly as long, but a small compressed file can expand

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use super::errors::RecordError;
+use super::RecordError;
 use crate::file::Locked;
 
 /// Bytes that can be written and cut off: a file, or its stand-in for tests.

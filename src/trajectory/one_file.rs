@@ -3,14 +3,13 @@
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
-use super::errors::RecordError;
-use super::format::Format;
 use super::frames::{Frames, digest};
 #[cfg(feature = "gzip")]
 use super::gzip::{self, Member};
 use super::media::{self, Growing};
 use super::open::is_gzip;
 use super::store::Store;
+use super::{Format, RecordError};
 use crate::file::Locked;
 use crate::observable::Snapshot;
 

@@ -3,12 +3,11 @@
 use std::fmt;
 use std::path::Path;
 
-use super::errors::RecordError;
-use super::format::{Format, Frame};
 use super::gsd::{HoomdSchema, Indexed};
 use super::one_file::OneFile;
 use super::store::Store;
 use super::vtk::{PolyData, Series};
+use super::{Format, Frame, RecordError};
 use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict, verdict};
 
 /// An observer that writes a frame to a file at set times.

@@ -1,6 +1,6 @@
 //! The trait of stores of frames: one file, or a series of files.
 
-use super::errors::RecordError;
+use super::RecordError;
 use super::media::Growing;
 use crate::file::Locked;
 use crate::observable::Snapshot;

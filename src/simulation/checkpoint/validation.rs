@@ -8,10 +8,10 @@ use std::collections::HashMap;
 
 use super::{CheckpointError, Saved};
 use crate::disk::{LARGEST, MOST_DISKS};
+use crate::simulation::Counters;
 use crate::simulation::cells::{
     CELLS_PER_DISK, Cells, FEWEST, Grid, Layout, Layouts, Place, SPARE_CELLS, SPARE_DISKS, SizeClass,
 };
-use crate::simulation::events::Counters;
 use crate::simulation::state::{Bodies, Clock, Exit, Forecast, Guard, Spin, Trajectory};
 use glam::DVec2;
 

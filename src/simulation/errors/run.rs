@@ -2,12 +2,12 @@
 
 use thiserror::Error;
 
-use super::BuildError;
 use super::answers::{BoundaryFault, FailedCollision, named};
 use super::remedy::Remedy;
 use crate::ParameterError;
 use crate::error::{Readable, Rounded};
 use crate::observable::{ObserverError, Partner};
+use crate::simulation::BuildError;
 
 /// The result of the engine's inner functions. Errors are boxed, so that the usual answer comes back in
 /// registers.

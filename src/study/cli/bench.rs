@@ -13,7 +13,7 @@ use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::simulation::{Limits, RunError};
 use crate::speed::{self, Circumstances, Meter, Quartiles, RunReport, StateError};
-use crate::study::experiment::Experiment;
+use crate::study::Experiment;
 
 /// Largest number of ramps whose first values are run for the core hours of a plan.
 const RAMPS: usize = 4;

@@ -10,7 +10,7 @@ use super::{End, Failure, PlanError, say};
 use crate::Disk;
 use crate::quantity::non_negative;
 use crate::replay::{Differences, Replay};
-use crate::study::experiment::{Experiment, Run};
+use crate::study::{Experiment, Run};
 
 /// Number of parts of a stretch of the runs, after each of which the progress is shown.
 const PARTS: u32 = 32;

@@ -10,7 +10,7 @@ use super::source::{Place, Source, ending, tell_end};
 use super::watch::{self, is_stopped};
 use super::{End, Failure, PlanError, StudyError, told};
 use crate::replay::{Replayed, Steps};
-use crate::study::experiment::{Experiment, Run};
+use crate::study::{Experiment, Run};
 use crate::trajectory::{ExtendedXyz, Format, Frame, State};
 
 /// Number of collisions that are written, unless the command line says more.

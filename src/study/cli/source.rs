@@ -10,11 +10,8 @@ use crate::Simulation;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::simulation::{Checkpoint, Limits, RunEnd, RunError};
-use crate::study::errors::ExperimentError;
-use crate::study::execution::control::Progress;
-use crate::study::experiment::{Experiment, Run};
-use crate::study::opening::Study;
 use crate::study::seed::derived_seed;
+use crate::study::{Experiment, ExperimentError, Progress, Run, Study};
 use crate::trajectory::{self, State};
 
 /// Wall-clock time between two looks at the signals.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{End, Failure, Plan, StudyError, read, refused, say};
 use crate::observable::SampleTimes;
-use crate::study::experiment::Experiment;
+use crate::study::Experiment;
 use crate::trajectory::{ExtendedXyz, Recorder};
 
 /// Runs the first value of a ramp again, and writes a frame after each cycle.

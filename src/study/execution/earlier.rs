@@ -3,13 +3,9 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-use crate::study::errors::{Difference, PlanError, StudyError};
-use crate::study::experiment::Experiment;
-use crate::study::experiment::record::Record;
-use crate::study::opening::Study;
 use crate::study::parameters;
-use crate::study::plan::Plan;
 use crate::study::plan::refinement::{Seen, Step};
+use crate::study::{Difference, Experiment, Plan, PlanError, Record, Study, StudyError};
 
 /// Earlier studies, each with its ramps by their seeds.
 pub(super) struct Earlier<E: Experiment>(Vec<(Study<E>, HashMap<u64, usize>)>);

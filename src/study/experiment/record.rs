@@ -2,16 +2,14 @@
 
 use std::fmt;
 
-use super::Experiment;
 use crate::Fingerprint;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::simulation::{Checkpoint, Counters};
 use crate::statistics::{BlockedMean, Estimate};
-use crate::study::leg::Leg;
 use crate::study::maker::Maker;
 use crate::study::parameters;
-use crate::study::scalar::Scalar;
+use crate::study::{Experiment, Leg, Scalar};
 
 /// Relative rounding of the time at which a run ended.
 const TIME_ROUNDING: f64 = 1e-12;

@@ -5,7 +5,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use crate::file::Locked;
-use crate::study::errors::StudyError;
+use crate::study::StudyError;
 
 /// The right to write into a folder. It ends with the process, even if that is killed.
 ///

@@ -8,7 +8,7 @@ use std::path::Path;
 use super::{CHUNKS, F64, I8, LOG, Shape, U8, U64};
 use crate::file::Locked;
 use crate::observable::Snapshot;
-use crate::trajectory::errors::RecordError;
+use crate::trajectory::RecordError;
 use crate::trajectory::format::no_frame;
 use crate::trajectory::media::{self, Growing, Medium as _};
 use crate::trajectory::open::is_gzip;

@@ -8,9 +8,8 @@ use glam::DVec2;
 use super::header::Header;
 use crate::Kind;
 use crate::trajectory::entry::{Draft, Entry, flat};
-use crate::trajectory::errors::ReadError;
 use crate::trajectory::lines::{Lines, number, whole};
-use crate::trajectory::state::State;
+use crate::trajectory::{ReadError, State};
 
 /// The atoms of a file by their numbers, with their lines.
 type Atoms = BTreeMap<u64, (usize, Draft)>;

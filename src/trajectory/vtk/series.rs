@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::write_box;
 use crate::file::Locked;
 use crate::observable::Snapshot;
-use crate::trajectory::errors::RecordError;
+use crate::trajectory::RecordError;
 use crate::trajectory::format::no_frame;
 use crate::trajectory::media::{self, Growing};
 use crate::trajectory::store::Store;
