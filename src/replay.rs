@@ -30,8 +30,7 @@ mod steps;
 
 pub use differences::{Differences, OtherPartner, TooFarApart};
 pub use steps::Replayed;
-#[cfg(feature = "cli")]
-pub(crate) use steps::{Steps, collisions};
+pub(crate) use steps::Steps;
 
 use crate::ParameterError;
 use crate::boundary::Boundary;
@@ -39,8 +38,6 @@ use crate::collision::CollisionRule;
 use crate::quantity::positive;
 use crate::scheduler::EventScheduler;
 use crate::simulation::{Limits, RunError, Simulation};
-#[cfg(not(feature = "cli"))]
-use steps::{Steps, collisions};
 
 /// Largest number of states that are kept, unless the caller sets another.
 const MOST_STATES: usize = 64;
@@ -62,12 +59,7 @@ pub struct Replay<R, B, S> {
     has_failed: bool,
 }
 
-impl<R, B, S> Replay<R, B, S>
-where
-    R: CollisionRule + Clone,
-    B: Boundary + Clone,
-    S: EventScheduler + Clone,
-{
+impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> Replay<R, B, S> {
     /// Creates a replay that starts with this state, and keeps one at the end of each interval.
     ///
     /// # Errors
@@ -142,14 +134,14 @@ where
     /// # Errors
     /// If the parts of the run do not answer as they did the first time.
     pub fn before_collision(&self, number: u64) -> Result<Option<Simulation<R, B, S>>, RunError> {
-        if number > collisions(&self.present) + u64::from(self.has_failed) {
+        if number > self.present.counters().collisions() + u64::from(self.has_failed) {
             return Ok(None);
         }
-        let Some(state) = self.states.iter().rfind(|state| collisions(state) < number) else {
+        let Some(state) = self.states.iter().rfind(|state| state.counters().collisions() < number) else {
             return Ok(None);
         };
         let mut run = state.clone();
-        let left = number - 1 - collisions(state);
+        let left = number - 1 - state.counters().collisions();
         run.run(&Limits::until(self.present.time()).with_most_collisions(left), &mut ())?;
         Ok(Some(run))
     }
@@ -250,8 +242,8 @@ where
         let differ = pairs.partition_point(|(first, second)| first.disks() == second.disks());
         let pairs = &pairs[differ.saturating_sub(1)..];
         let failed = [self, other].map(|replay| replay.has_failed);
-        let partners = differences::other_partners(pairs[0], end, failed)?;
-        let apart = differences::first_apart(pairs, tolerance)?;
+        let partners = Self::other_partners(pairs[0], end, failed)?;
+        let apart = Self::first_apart(pairs, tolerance)?;
         Ok(Some(Differences { partners, apart }))
     }
 }

@@ -10,9 +10,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Beginning and ending of the names of files that are being written.
 const TEMPORARY: (&str, &str) = ("granular-edmd-", ".tmp");
 
-/// Number of names to try before giving up. A second name is needed only if two random numbers are equal.
-const NAMES: usize = 8;
-
 /// Writes a file whole or not at all. A reader never sees half of it, and if the write fails, an older file
 /// of that name stays.
 ///
@@ -41,12 +38,12 @@ impl Draft {
     /// Begins a file beside its place.
     pub(crate) fn of(path: &Path) -> io::Result<Self> {
         if path.file_name().is_none() {
-            return Err(io::Error::new(
-                io::ErrorKind::InvalidInput,
-                "the path does not end in the name of a file",
-            ));
+            let reason = "the path does not end in the name of a file";
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
         }
-        let (temporary, file) = create_temporary(path)?;
+        // The file is new: an existing one is never touched.
+        let temporary = path.with_file_name(unique_name());
+        let file = File::create_new(&temporary)?;
         Ok(Self { path: path.to_owned(), temporary, file: BufWriter::new(file) })
     }
 
@@ -99,24 +96,6 @@ pub(crate) fn is_temporary(name: &OsStr) -> bool {
     let parts: Vec<&str> = unique.split('-').collect();
     matches!(parts[..], [process, count, random]
         if is_decimal(process) && is_decimal(count) && is_hexadecimal(random))
-}
-
-/// Creates a temporary file beside `path`. The file is new: an existing file is never touched.
-fn create_temporary(path: &Path) -> io::Result<(PathBuf, File)> {
-    let mut attempt = create_new(path);
-    for _ in 1..NAMES {
-        match attempt {
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => attempt = create_new(path),
-            other => return other,
-        }
-    }
-    attempt
-}
-
-fn create_new(path: &Path) -> io::Result<(PathBuf, File)> {
-    let temporary = path.with_file_name(unique_name());
-    let file = File::options().write(true).create_new(true).open(&temporary)?;
-    Ok((temporary, file))
 }
 
 /// Returns a name that no other writer has.

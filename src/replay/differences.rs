@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, VecDeque};
 
+use super::Replay;
 use super::steps::{Replayed, Steps};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
@@ -48,51 +49,87 @@ pub struct TooFarApart {
 /// A pair of states at the same time.
 type Pair<'a, R, B, S> = (&'a Simulation<R, B, S>, &'a Simulation<R, B, S>);
 
-/// Compares the partners of each disk, in turn a collision of one run and of the other. The errors of runs
-/// that `failed` are their ends.
-pub(super) fn other_partners<R, B, S>(
-    pair: Pair<'_, R, B, S>,
-    end: f64,
-    failed: [bool; 2],
-) -> Result<Option<OtherPartner>, RunError>
-where
-    R: CollisionRule + Clone,
-    B: Boundary + Clone,
-    S: EventScheduler + Clone,
-{
-    let mut runs = [Steps::new(pair.0.clone()), Steps::new(pair.1.clone())];
-    // For each disk, the collisions of the run that is ahead, and which of the two that is.
-    let mut ahead: HashMap<u64, (usize, VecDeque<Replayed>)> = HashMap::new();
-    let mut are_over = [false; 2];
-    while are_over != [true; 2] {
-        for (which, run) in runs.iter_mut().enumerate() {
-            if are_over[which] {
-                continue;
-            }
-            let next = match run.next(end) {
-                Err(_) if failed[which] => None,
-                next => next?,
-            };
-            let Some(collision) = next else {
-                are_over[which] = true;
-                continue;
-            };
-            for id in [Some(collision.id), collision.partner_id].into_iter().flatten() {
-                let (leader, waiting) = ahead.entry(id).or_default();
-                if waiting.is_empty() || *leader == which {
-                    *leader = which;
-                    waiting.push_back(collision.clone());
-                } else if let Some(other) = waiting.pop_front()
-                    && partner_of(&other, id) != partner_of(&collision, id)
-                {
-                    let mut collisions = [other, collision];
-                    collisions.rotate_left(1 - which);
-                    return Ok(Some(OtherPartner { id, collisions }));
+impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> Replay<R, B, S> {
+    /// Compares the partners of each disk, in turn a collision of one run and of the other. The errors of runs
+    /// that `failed` are their ends.
+    pub(super) fn other_partners(
+        pair: Pair<'_, R, B, S>,
+        end: f64,
+        failed: [bool; 2],
+    ) -> Result<Option<OtherPartner>, RunError> {
+        let mut runs = [Steps::new(pair.0.clone()), Steps::new(pair.1.clone())];
+        // For each disk, the collisions of the run that is ahead, and which of the two that is.
+        let mut ahead: HashMap<u64, (usize, VecDeque<Replayed>)> = HashMap::new();
+        let mut are_over = [false; 2];
+        while are_over != [true; 2] {
+            for (which, run) in runs.iter_mut().enumerate() {
+                if are_over[which] {
+                    continue;
+                }
+                let next = match run.next(end) {
+                    Err(_) if failed[which] => None,
+                    next => next?,
+                };
+                let Some(collision) = next else {
+                    are_over[which] = true;
+                    continue;
+                };
+                for id in [Some(collision.id), collision.partner_id].into_iter().flatten() {
+                    let (leader, waiting) = ahead.entry(id).or_default();
+                    if waiting.is_empty() || *leader == which {
+                        *leader = which;
+                        waiting.push_back(collision.clone());
+                    } else if let Some(other) = waiting.pop_front()
+                        && partner_of(&other, id) != partner_of(&collision, id)
+                    {
+                        let mut collisions = [other, collision];
+                        collisions.rotate_left(1 - which);
+                        return Ok(Some(OtherPartner { id, collisions }));
+                    }
                 }
             }
         }
+        Ok(None)
     }
-    Ok(None)
+
+    /// Finds the first interval at whose end a disk is too far away, and halves it again and again.
+    pub(super) fn first_apart(
+        pairs: &[Pair<'_, R, B, S>],
+        tolerance: f64,
+    ) -> Result<Option<TooFarApart>, RunError> {
+        if let Some(apart) = pairs.first().and_then(|&start| Self::farthest(start, tolerance)) {
+            return Ok(Some(apart));
+        }
+        let found =
+            pairs.windows(2).find_map(|window| Some((window[0], Self::farthest(window[1], tolerance)?)));
+        let Some((start, mut apart)) = found else { return Ok(None) };
+        let mut near = (start.0.clone(), start.1.clone());
+        for _ in 0..HALVINGS {
+            let time = near.0.time() + 0.5 * (apart.time - near.0.time());
+            let mut middle = near.clone();
+            middle.0.run_until(time, &mut ())?;
+            middle.1.run_until(time, &mut ())?;
+            match Self::farthest((&middle.0, &middle.1), tolerance) {
+                Some(earlier) => apart = earlier,
+                None => near = middle,
+            }
+        }
+        Ok(Some(apart))
+    }
+
+    /// Returns the disk that is farthest from its place in the other run, if it is farther than the tolerance.
+    fn farthest((first, second): Pair<'_, R, B, S>, tolerance: f64) -> Option<TooFarApart> {
+        let domain = first.boundary().domain();
+        let others: HashMap<u64, _> =
+            second.disks().iter().map(|disk| (disk.id(), disk.position())).collect();
+        let apart = |disk: &crate::Disk| {
+            let distance = domain.separation(disk.position(), *others.get(&disk.id())?).length();
+            Some(TooFarApart { id: disk.id(), time: first.time(), distance })
+        };
+        let all = first.disks();
+        let far = all.iter().filter_map(apart).filter(|apart| apart.distance > tolerance);
+        far.max_by(|a, b| a.distance.total_cmp(&b.distance))
+    }
 }
 
 /// Returns the disk or wall that this disk has met: the id of the disk, or else the wall.
@@ -101,51 +138,4 @@ fn partner_of(replayed: &Replayed, id: u64) -> (Option<u64>, Option<Partner>) {
         Some(partner) => (Some(if partner == id { replayed.id } else { partner }), None),
         None => (None, Some(replayed.collision.partner)),
     }
-}
-
-/// Finds the first interval at whose end a disk is too far away, and halves it again and again.
-pub(super) fn first_apart<R, B, S>(
-    pairs: &[Pair<'_, R, B, S>],
-    tolerance: f64,
-) -> Result<Option<TooFarApart>, RunError>
-where
-    R: CollisionRule + Clone,
-    B: Boundary + Clone,
-    S: EventScheduler + Clone,
-{
-    if let Some(apart) = pairs.first().and_then(|&start| farthest(start, tolerance)) {
-        return Ok(Some(apart));
-    }
-    let found = pairs.windows(2).find_map(|window| Some((window[0], farthest(window[1], tolerance)?)));
-    let Some((start, mut apart)) = found else { return Ok(None) };
-    let mut near = (start.0.clone(), start.1.clone());
-    for _ in 0..HALVINGS {
-        let time = near.0.time() + 0.5 * (apart.time - near.0.time());
-        let mut middle = near.clone();
-        middle.0.run_until(time, &mut ())?;
-        middle.1.run_until(time, &mut ())?;
-        match farthest((&middle.0, &middle.1), tolerance) {
-            Some(earlier) => apart = earlier,
-            None => near = middle,
-        }
-    }
-    Ok(Some(apart))
-}
-
-/// Returns the disk that is farthest from its place in the other run, if it is farther than the tolerance.
-fn farthest<R, B, S>((first, second): Pair<'_, R, B, S>, tolerance: f64) -> Option<TooFarApart>
-where
-    R: CollisionRule,
-    B: Boundary,
-    S: EventScheduler,
-{
-    let domain = first.boundary().domain();
-    let others: HashMap<u64, _> = second.disks().iter().map(|disk| (disk.id(), disk.position())).collect();
-    let apart = |disk: &crate::Disk| {
-        let distance = domain.separation(disk.position(), *others.get(&disk.id())?).length();
-        Some(TooFarApart { id: disk.id(), time: first.time(), distance })
-    };
-    let all = first.disks();
-    let far = all.iter().filter_map(apart).filter(|apart| apart.distance > tolerance);
-    far.max_by(|a, b| a.distance.total_cmp(&b.distance))
 }

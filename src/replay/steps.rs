@@ -20,16 +20,6 @@ pub struct Replayed {
     pub collision: Collision,
 }
 
-/// Returns the number of collisions so far.
-pub(crate) fn collisions<R, B, S>(run: &Simulation<R, B, S>) -> u64
-where
-    R: CollisionRule,
-    B: Boundary,
-    S: EventScheduler,
-{
-    run.counters().disk_collisions + run.counters().wall_collisions
-}
-
 /// A run, and the ids of its disks before the next collision.
 pub(crate) struct Steps<R, B, S> {
     run: Simulation<R, B, S>,
@@ -70,7 +60,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Steps<R, B, S> {
                 Partner::Disk(partner) => Some(id(partner)),
                 Partner::Wall(_) => None,
             };
-            Replayed { number: collisions(&self.run), id: id(collision.disk), partner_id, collision }
+            let number = self.run.counters().collisions();
+            Replayed { number, id: id(collision.disk), partner_id, collision }
         });
         self.name();
         Ok(replayed)

@@ -6,8 +6,6 @@
 
 mod script;
 
-use std::fmt;
-
 use thiserror::Error;
 
 use super::{EventScheduler, LinearScan, NOTHING_DUE};
@@ -23,7 +21,7 @@ pub enum Violation {
     /// The scheduler names an event that is not the earliest.
     #[error(
         "script \"{script}\" of {disks} disks, step {step}, {after}: the earliest is {}, but {} is named",
-        Answer(*expected), Answer(*given)
+        told(*expected), told(*given)
     )]
     NotEarliest {
         /// Name of the script.
@@ -153,17 +151,9 @@ impl<S: EventScheduler> Performance<S> {
     }
 }
 
-/// An answer of a scheduler, displayed in words.
-struct Answer((usize, f64));
-
-impl fmt::Display for Answer {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self((disk, due)) = *self;
-        if (disk, due) == NOTHING_DUE {
-            return formatter.write_str("nothing");
-        }
-        write!(formatter, "disk {disk} at {due:?}")
-    }
+/// Returns an answer of a scheduler in words.
+fn told((disk, due): (usize, f64)) -> String {
+    if (disk, due) == NOTHING_DUE { "nothing".to_owned() } else { format!("disk {disk} at {due:?}") }
 }
 
 impl Operation {

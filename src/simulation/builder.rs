@@ -4,14 +4,11 @@ use glam::DVec2;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::Scratch;
-use super::Simulation;
 use super::cells::{CellSize, Cells};
-use super::errors::BuildError;
-use super::events::Counters;
 use super::lookahead::Lookahead;
 use super::state::{Bodies, Clock, Identities};
-use crate::boundary::Boundary;
+use super::{BuildError, Counters, Scratch, Simulation};
+use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
 use crate::disk::{TOUCHING, countable};
 use crate::instructions::Instructions;
@@ -215,9 +212,13 @@ pub(super) fn cells_around<B: Boundary + ?Sized>(boundary: &B, disks: &[Disk]) -
         let (width, height) = (interior.width(), interior.height());
         return Err(BuildError::DomainTooSmall { width, height, diameter });
     }
-    let too_small = BuildError::DomainTooSmall { width: domain.width(), height: domain.height(), diameter };
     let places = disks.iter().map(|disk| (disk.position(), disk.radius()));
-    Cells::new(boundary, CellSize::Medium, places, None).ok_or(too_small)
+    Cells::new(boundary, CellSize::Medium, places, None).ok_or_else(|| too_small(&domain, diameter))
+}
+
+/// Returns the error of a domain without room for a disk of this diameter.
+pub(super) fn too_small(domain: &Domain, diameter: f64) -> BuildError {
+    BuildError::DomainTooSmall { width: domain.width(), height: domain.height(), diameter }
 }
 
 /// Checks that all disks are inside the domain and none overlaps a wall at this time offset.

@@ -27,8 +27,6 @@ pub(super) use cell_size::CellSize;
 use contents::Contents;
 use division::classes;
 pub(super) use grid::{Grid, Place};
-#[cfg(feature = "serde")]
-pub(super) use layers::Grids;
 pub(super) use layers::Layouts;
 use layers::{Layers, layouts};
 #[cfg(feature = "serde")]
@@ -79,35 +77,21 @@ impl Cells {
             let together = together(&classes).unwrap_or_else(|| SizeClass::of_nobody(&domain));
             Layouts { smallest: single, larger: Vec::new(), classes: vec![together] }
         });
-        let mut cells = Self::empty(boundary, &layouts, diameters)?;
-        cells.places =
-            (0..).zip(disks).map(|(disk, (position, _))| cells.grid_of(disk).place_of(position)).collect();
-        cells.fill();
+        let mut cells = Self::empty(boundary, &layouts, diameters);
+        let place = |(disk, (position, _))| cells.grid_of(disk).place_of(position);
+        cells.fill((0..).zip(disks).map(place).collect());
         Some(cells)
     }
 
-    /// Creates cells of these layouts with the disks in these places.
-    #[cfg(feature = "serde")]
-    pub(super) fn filled<B: Boundary + ?Sized>(
+    /// Creates cells of these layouts, of at least one class. Disks of these diameters are yet to be filled in.
+    pub(super) fn empty<B: Boundary + ?Sized>(
         boundary: &B,
         layouts: &Layouts,
-        diameters: impl Iterator<Item = f64> + Clone,
-        places: Vec<Place>,
-    ) -> Option<Self> {
-        let mut cells = Self::empty(boundary, layouts, diameters)?;
-        cells.places = places;
-        cells.fill();
-        Some(cells)
-    }
-
-    fn empty<B: Boundary + ?Sized>(
-        boundary: &B,
-        layouts: &Layouts,
-        diameters: impl Iterator<Item = f64> + Clone,
-    ) -> Option<Self> {
+        diameters: impl Iterator<Item = f64>,
+    ) -> Self {
         let domain = boundary.domain();
         let classes = layouts.classes.clone();
-        let grid = Grid::new(&domain, layouts.smallest, classes.first()?.largest);
+        let grid = Grid::new(&domain, layouts.smallest, classes[0].largest);
         let contents = Contents::empty(grid.len());
         let layers = (!layouts.larger.is_empty()).then(|| {
             let mut layers = Layers::empty(&domain, &grid, &classes, &layouts.larger, diameters);
@@ -117,12 +101,14 @@ impl Cells {
         let largest_radius = 0.5 * classes[0].largest;
         let mut cells = Self { grid, contents, places: Vec::new(), layers, classes };
         cells.mark_walls(boundary, largest_radius);
-        Some(cells)
+        cells
     }
 
-    fn fill(&mut self) {
+    /// Writes all disks into the cells in these places.
+    pub(super) fn fill(&mut self, places: Vec<Place>) {
+        self.places = places;
         for disk in 0..self.places.len() {
-            self.enter(disk);
+            self.change(disk, Contents::push);
         }
     }
 
@@ -160,22 +146,22 @@ impl Cells {
         }
         let disk = self.places.len();
         self.places.push(self.grid_of(disk).place_of(position));
-        self.enter(disk);
+        self.change(disk, Contents::push);
     }
 
     /// Removes a disk. The last one takes its index.
     pub(super) fn take_out(&mut self, disk: usize) {
         let last = self.places.len() - 1;
-        self.leave_any(disk);
+        self.change(disk, Contents::remove);
         if disk != last {
-            self.leave_any(last);
+            self.change(last, Contents::remove);
         }
         self.places.swap_remove(disk);
         if let Some(layers) = &mut self.layers {
             layers.classes.swap_remove(disk);
         }
         if disk != last {
-            self.enter(disk);
+            self.change(disk, Contents::push);
         }
     }
 
@@ -197,8 +183,14 @@ impl Cells {
         self.layers.as_ref().is_some_and(|layers| layers.of(disk).is_some())
     }
 
+    /// Returns the class of a disk: the number of its grid, from the smallest cells on.
+    #[cfg(feature = "serde")]
+    pub(super) fn class(&self, disk: usize) -> u8 {
+        self.layers.as_ref().map_or(0, |layers| layers.classes[disk])
+    }
+
     /// Returns the grid in which a disk is.
-    fn grid_of(&self, disk: usize) -> &Grid {
+    pub(super) fn grid_of(&self, disk: usize) -> &Grid {
         self.layers.as_ref().and_then(|layers| layers.of(disk)).map_or(&self.grid, |layer| &layer.grid)
     }
 
@@ -233,42 +225,22 @@ impl Cells {
         size_of_val(self.places.as_slice()) + self.contents.bytes() + layers
     }
 
-    /// Writes a disk of any class into its cell.
-    fn enter(&mut self, disk: usize) {
+    /// Writes a disk of any class into its cell, or takes it out of there.
+    fn change(&mut self, disk: usize, change: impl Fn(&mut Contents, usize, usize)) {
         match self.layers.as_mut().filter(|layers| layers.of(disk).is_some()) {
-            None => self.enter_cell(disk),
-            Some(layers) => layers.enter(disk, self.places[disk]),
+            None => self.change_cell(disk, change),
+            Some(layers) => layers.change(disk, self.places[disk], change),
         }
     }
 
-    /// Writes a disk into its cell, and into the ghosts that mirror the cell.
+    /// Does the same for a disk of the smallest class, also in the ghosts that mirror its cell.
     #[inline]
-    fn enter_cell(&mut self, disk: usize) {
+    fn change_cell(&mut self, disk: usize, change: impl Fn(&mut Contents, usize, usize)) {
         let place = self.places[disk];
-        self.contents.push(self.grid.index(place), disk);
+        change(&mut self.contents, self.grid.index(place), disk);
         if self.grid.is_periodic() {
             for ghost in self.grid.mirrors(place) {
-                self.contents.push(self.grid.index(ghost), disk);
-            }
-        }
-    }
-
-    /// Takes a disk of any class out of its cell.
-    fn leave_any(&mut self, disk: usize) {
-        match self.layers.as_mut().filter(|layers| layers.of(disk).is_some()) {
-            None => self.leave(disk),
-            Some(layers) => layers.leave(disk, self.places[disk]),
-        }
-    }
-
-    /// Takes a disk out of its cell, and out of the ghosts that mirror the cell.
-    #[inline]
-    fn leave(&mut self, disk: usize) {
-        let place = self.places[disk];
-        self.contents.remove(self.grid.index(place), disk);
-        if self.grid.is_periodic() {
-            for ghost in self.grid.mirrors(place) {
-                self.contents.remove(self.grid.index(ghost), disk);
+                change(&mut self.contents, self.grid.index(ghost), disk);
             }
         }
     }
@@ -276,10 +248,10 @@ impl Cells {
     /// Moves a disk to the cell that it enters by this exit. Returns the number of periods passed.
     #[inline]
     pub(super) fn cross(&mut self, disk: usize, exit: Exit) -> [i32; 2] {
-        self.leave(disk);
+        self.change_cell(disk, Contents::remove);
         let (place, passed) = self.grid.neighbor(self.places[disk], exit.direction());
         self.places[disk] = place;
-        self.enter_cell(disk);
+        self.change_cell(disk, Contents::push);
         passed
     }
 

@@ -18,9 +18,8 @@ use thiserror::Error;
 pub use resumption::Resumption;
 
 use super::cells::{Layouts, Place};
-use super::events::Counters;
-use super::state::{Forecast, Guard, Identities, Spin, Tally, Trajectory};
-use super::{Inlet, Simulation};
+use super::state::{Clock, Forecast, Identities, Spin, Trajectory};
+use super::{Counters, Inlet, Simulation};
 use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
 use crate::file::{Broken, Seal, write_whole};
@@ -86,11 +85,7 @@ struct Saved {
     layouts: Layouts,
     places: Vec<Place>,
     generator: Xoshiro256PlusPlus,
-    origin: f64,
-    now: f64,
-    epoch_length: f64,
-    guard: Guard,
-    tally: Tally,
+    clock: Clock,
     counters: Counters,
 }
 
@@ -163,7 +158,7 @@ pub enum CheckpointError {
 impl Checkpoint {
     /// Returns the absolute time at which the checkpoint was taken.
     pub fn time(&self) -> f64 {
-        self.0.origin + self.0.now
+        self.0.clock.time()
     }
 
     /// Returns the number of disks.
@@ -172,8 +167,8 @@ impl Checkpoint {
     }
 
     /// Returns the fingerprints of the rule and the boundary of the run.
-    pub(crate) const fn parts(&self) -> (Option<&Fingerprint>, Option<&Fingerprint>) {
-        (self.0.rule.as_ref(), self.0.boundary.as_ref())
+    pub(crate) const fn parts(&self) -> [Option<Fingerprint>; 2] {
+        [self.0.rule, self.0.boundary]
     }
 
     /// Returns the checkpoint as bytes: magic, version, checksum, contents.
@@ -276,11 +271,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             layouts: self.cells.layouts(),
             places: self.cells.places.clone(),
             generator: self.generator.clone(),
-            origin: self.clock.origin,
-            now: self.clock.now,
-            epoch_length: self.clock.epoch_length,
-            guard: self.clock.guard,
-            tally: self.clock.tally,
+            // The next look is no part of the state.
+            clock: Clock { events_to_look: 0, ..self.clock },
             counters: self.counters,
         })
     }

@@ -15,9 +15,7 @@ pub use rescaling::Rescaling;
 
 use std::time::Instant;
 
-use super::events::RunEnd;
-use super::limits::{Limits, collisions};
-use super::{RunError, Simulation};
+use super::{Limits, RunEnd, RunError, Simulation};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::observable::{Observer, SampleTimes};
@@ -83,11 +81,11 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         observer: &mut O,
     ) -> Result<RunEnd, RunError> {
         self.check_end(limits.end()).map_err(|error| *error)?;
-        let (start, before) = (Instant::now(), collisions(self.counters()));
+        let (start, before) = (Instant::now(), self.counters().collisions());
         driving.times().start_at(self.time());
         loop {
             let next = driving.times().upcoming();
-            let left = limits.rest(collisions(self.counters()) - before, start.elapsed());
+            let left = limits.rest(self.counters().collisions() - before, start.elapsed());
             let failed = |time, source| RunError::Driving { time, source: Box::new(source) };
             if next.is_nan() {
                 let error =

@@ -9,11 +9,10 @@
 
 use glam::DVec2;
 
-use super::Simulation;
 use super::errors::{BoundaryFault, Outcome};
-use super::events::Event;
 use super::resolution::{Kick, failed, is_parting, is_possible, resolve_pair, resolve_wall};
 use super::state::{Clock, Earliest, Exit};
+use super::{Event, Simulation};
 use crate::boundary::{Boundary, Response};
 use crate::collision::{CollisionRule, Regime};
 use crate::observable::{Collision, Observer, Partner};

@@ -103,8 +103,13 @@ impl Counters {
         }
     }
 
+    /// Returns the number of collisions, with disks or walls.
+    pub(crate) const fn collisions(&self) -> u64 {
+        self.disk_collisions + self.wall_collisions
+    }
+
     /// Returns the number of all events.
     pub const fn events(&self) -> u64 {
-        self.disk_collisions + self.wall_collisions + self.cell_crossings + self.repredictions + self.horizons
+        self.collisions() + self.cell_crossings + self.repredictions + self.horizons
     }
 }

@@ -58,10 +58,8 @@ impl fmt::Display for Footprint {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { bytes_per_disk, cells, occupied_cells, scheduler, instructions, .. } = self;
         let crowd = self.disks_in_cells as f64 / *occupied_cells as f64;
-        write!(
-            formatter,
-            "{bytes_per_disk:.0} bytes a disk; {occupied_cells} of {cells} cells occupied, by "
-        )?;
-        write!(formatter, "{crowd:.2} disks each; scheduler {scheduler}, instructions {instructions}")
+        write!(formatter, "{bytes_per_disk:.0} bytes a disk; {occupied_cells} of {cells} cells ")?;
+        write!(formatter, "occupied, by {crowd:.2} disks each; ")?;
+        write!(formatter, "scheduler {scheduler}, instructions {instructions}")
     }
 }

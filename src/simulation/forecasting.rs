@@ -50,18 +50,9 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     #[inline]
     pub(super) fn earliest_collision(&mut self, disk: usize, count: usize, known: Earliest) -> Earliest {
-        let periods = self.cells.grid().periods();
+        let (periods, now) = (self.cells.grid().periods(), self.clock.now);
         let found = &mut self.scratch.found;
-        earliest_collision(
-            self.instructions,
-            &self.bodies,
-            periods,
-            disk,
-            found,
-            count,
-            self.clock.now,
-            known,
-        )
+        earliest_collision(self.instructions, &self.bodies, periods, disk, found, count, now, known)
     }
 
     /// Takes `earliest` as the next collision of a disk whose next collision was `known` before.

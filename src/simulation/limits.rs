@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::events::{Counters, RunEnd};
 use super::state::least_progress;
+use super::{Counters, RunEnd};
 use crate::ParameterError;
 use crate::quantity::non_negative;
 
@@ -128,7 +128,7 @@ impl<'a> Watch<'a> {
     pub(super) fn new(limits: &'a Limits, counters: &Counters) -> Self {
         Self {
             limits,
-            last_collision: collisions(counters).saturating_add(limits.most_collisions),
+            last_collision: counters.collisions().saturating_add(limits.most_collisions),
             // A time so late that no clock can show it is no limit.
             deadline: limits.wall_clock.and_then(|time| Instant::now().checked_add(time)),
         }
@@ -142,7 +142,7 @@ impl<'a> Watch<'a> {
 
     /// Returns the limit that the run has reached, if any.
     pub(super) fn reached(&self, counters: &Counters) -> Option<RunEnd> {
-        if collisions(counters) >= self.last_collision {
+        if counters.collisions() >= self.last_collision {
             return Some(RunEnd::Collisions);
         }
         if self.limits.interrupt.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
@@ -157,15 +157,11 @@ impl<'a> Watch<'a> {
     pub(super) fn events_to_look(&self, counters: &Counters) -> u64 {
         let is_timed = self.deadline.is_some() || self.limits.interrupt.is_some();
         let most = if is_timed { EVENTS_BETWEEN_LOOKS } else { u64::MAX };
-        most.min(self.last_collision - collisions(counters))
+        most.min(self.last_collision - counters.collisions())
     }
 
     /// Returns the least simulated time per event.
     pub(super) fn least_progress(&self, epoch_length: f64, disks: usize) -> f64 {
         self.limits.least_progress.unwrap_or_else(|| least_progress(epoch_length, disks))
     }
-}
-
-pub(super) const fn collisions(counters: &Counters) -> u64 {
-    counters.disk_collisions + counters.wall_collisions
 }

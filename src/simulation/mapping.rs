@@ -1,9 +1,8 @@
 //! Changes of disks between runs.
 
-use super::Simulation;
 use super::builder::{check_epoch, check_speeds, fit};
-use super::errors::BuildError;
 use super::state::Clock;
+use super::{BuildError, Simulation};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::scheduler::EventScheduler;

@@ -67,11 +67,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             let scale = f64::EPSILON * (self.bodies.speed(disk) + fallen);
             let before = self.bodies.velocity(disk, now);
             self.bodies.push(disk, collision.normal * (f64::from(1_u32 << doubling) * scale), now);
-            collision.add_push(
-                before,
-                self.bodies.velocity(disk, now),
-                self.bodies.material(disk).inverse_mass,
-            );
+            let after = self.bodies.velocity(disk, now);
+            collision.add_push(before, after, self.bodies.material(disk).inverse_mass);
             self.find_next(disk);
         }
     }

@@ -2,11 +2,10 @@
 
 use std::ops::Range;
 
-use super::Simulation;
 use super::builder::{cells_around, check_epoch, check_speeds, fit};
-use super::errors::BuildError;
 use super::lookahead::Lookahead;
 use super::state::Clock;
+use super::{BuildError, Simulation};
 use crate::Disk;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;

@@ -4,9 +4,9 @@
 use glam::DVec2;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::errors::{FailedCollision, RunError};
 use super::prediction::nearest_image;
 use super::state::{Bodies, Clock};
+use super::{FailedCollision, RunError};
 use crate::boundary::{Response, Surface, Thermal};
 use crate::collision::{Body, CollisionRule, Elastic, Impulse, Material, collide_bodies};
 use crate::disk::LARGEST;

@@ -2,11 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use super::Simulation;
 use super::errors::{Outcome, RunError};
-use super::events::{Event, RunEnd};
 use super::limits::{Limits, Watch};
 use super::state::effort;
+use super::{Event, RunEnd, Simulation};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::observable::{Moment, Observer};

@@ -1,10 +1,9 @@
 //! The diagnosis of a run that hardly progresses: the disk, its partner, and a remedy.
 //! `state/guard.rs` decides when that is so, and has the defaults.
 
-use super::Simulation;
-use super::errors::{Remedy, RunError};
 use super::resolution::{resolve_pair, resolve_wall};
 use super::state::{Clock, Exit, Forecast, Standstill};
+use super::{Remedy, RunError, Simulation};
 use crate::boundary::{Boundary, Response};
 use crate::collision::{CollisionRule, Contact, Regime};
 use crate::observable::Partner;

@@ -5,10 +5,10 @@
 //! of date: their count of collisions is not that of the disk which has this index now. They are made anew
 //! when they come up, like those with a partner that has collided meanwhile.
 
-use super::builder::check_speeds;
+use super::builder::{check_speeds, too_small};
 use super::errors::{BuildError, Outcome, RunError};
 use super::{Inlet, Simulation};
-use crate::boundary::{Boundary, Domain};
+use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::disk::MOST_DISKS;
 use crate::quantity::accept;
@@ -195,8 +195,4 @@ pub(super) fn check_inlets<B: Boundary + ?Sized>(boundary: &B, inlets: &[Inlet])
         }
     }
     Ok(())
-}
-
-fn too_small(domain: &Domain, diameter: f64) -> BuildError {
-    BuildError::DomainTooSmall { width: domain.width(), height: domain.height(), diameter }
 }

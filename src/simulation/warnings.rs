@@ -5,10 +5,8 @@ use std::fmt;
 
 use glam::DVec2;
 
-use super::Simulation;
-use super::errors::Named;
-use super::events::Counters;
-use super::inlet::Inlet;
+use super::errors::named;
+use super::{Counters, Inlet, Simulation};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::error::Rounded;
@@ -69,7 +67,7 @@ impl fmt::Display for Warning {
                 "walls jumped {jumps} times when the boundary was set, the farthest by {}{}; \
                  StartingAt lets a motion begin where it should",
                 Rounded(*by),
-                Named(Some(Partner::Wall(*wall)), name.as_deref())
+                named(Some(Partner::Wall(*wall)), name.as_deref())
             ),
             Self::MostlyContactDuration { elastic, collisions } => write!(
                 formatter,
@@ -105,7 +103,7 @@ impl Counters {
         let Self { contact_duration_collisions: elastic, jumped_wall, farthest_jump: by, .. } = *self;
         let (jumps, wall) = (self.wall_jumps, usize::from(jumped_wall));
         let jumped = (jumps > 0).then_some(Warning::WallJumped { wall, name: None, by, jumps });
-        let collisions = self.disk_collisions + self.wall_collisions;
+        let collisions = self.collisions();
         let is_mostly_elastic = collisions >= FEWEST && elastic > collisions / 2;
         let elastic = is_mostly_elastic.then_some(Warning::MostlyContactDuration { elastic, collisions });
         jumped.into_iter().chain(elastic).collect()

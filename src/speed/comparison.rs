@@ -171,16 +171,11 @@ impl fmt::Display for Comparison {
             Finding::Noise => "no difference beyond the noise",
             Finding::Slower => "slower",
         };
-        writeln!(
-            formatter,
-            "{median:.4} (quartiles {low:.4}–{high:.4}) times the time of a collision: {finding}"
-        )?;
+        write!(formatter, "{median:.4} (quartiles {low:.4}–{high:.4}) ")?;
+        writeln!(formatter, "times the time of a collision: {finding}")?;
         writeln!(formatter, "the median lies in {:.4}–{:.4}", interval[0], interval[1])?;
         let [first, other] = nanoseconds.map(|quartiles| quartiles.median);
-        write!(
-            formatter,
-            "{first:.1} and {other:.1} ns a collision; {:.3} and {:.3} events a collision",
-            events[0], events[1]
-        )
+        write!(formatter, "{first:.1} and {other:.1} ns a collision; ")?;
+        write!(formatter, "{:.3} and {:.3} events a collision", events[0], events[1])
     }
 }

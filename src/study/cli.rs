@@ -52,12 +52,8 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use super::errors::{PlanError, StudyError, chain};
-use super::execution::control::{Control, Progress};
-use super::experiment::Experiment;
 use super::json::Object;
-use super::opening::Study;
-use super::plan::Plan;
-use super::reading::RampStatus;
+use super::{Control, Experiment, Plan, Progress, RampStatus, Study};
 use arguments::{Arguments, Command, Manner};
 use watch::Watch;
 

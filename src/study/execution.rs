@@ -12,10 +12,8 @@ mod value;
 use std::ops::Range;
 use std::time::Duration;
 
-use super::errors::StudyError;
-use super::experiment::Experiment;
 use super::folder::Mark;
-use super::opening::Study;
+use super::{Experiment, Study, StudyError};
 use control::{Control, Summary};
 use queue::Queue;
 use shift::Shift;

@@ -7,7 +7,7 @@ pub(super) mod record;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::errors::ExperimentError;
+use super::ExperimentError;
 use super::seed::derived_seed;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;

@@ -13,8 +13,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::thread;
 
-use super::errors::{PlanError, StudyError};
 use super::provenance::Provenance;
+use super::{PlanError, StudyError};
 use crate::file::is_temporary;
 pub(super) use lock::Lock;
 pub(super) use marks::Mark;

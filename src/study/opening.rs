@@ -2,14 +2,12 @@
 
 use std::path::Path;
 
-use super::errors::{Difference, PlanError, StudyError};
-use super::experiment::Experiment;
 use super::experiment::record::Origin;
 use super::folder::{Folder, sealed};
 use super::maker::Maker;
 use super::parameters::{self, tree};
-use super::plan::Plan;
 use super::provenance::{self, Provenance};
+use super::{Difference, Experiment, Plan, PlanError, StudyError};
 
 /// A [`Plan`] in a folder, with the records of its finished values.
 ///

@@ -4,8 +4,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
+use super::Scalar;
 use super::errors::{Difference, PlanError, shortened};
-use super::scalar::Scalar;
 
 /// Returns the parameters of an experiment as a tree of names.
 pub(super) fn tree(experiment: &impl Serialize) -> Result<Table, PlanError> {
@@ -44,14 +44,7 @@ pub(super) fn get<'a>(tree: &'a Table, name: &str) -> Option<&'a Value> {
 #[must_use]
 pub(super) fn set(tree: &mut Table, name: &str, to: &Scalar) -> bool {
     match name.split_once('.') {
-        None => {
-            let to = to.to_toml();
-            match tree.get_mut(name) {
-                Some(place) => *place = to,
-                None => drop(tree.insert(name.to_owned(), to)),
-            }
-            true
-        }
+        None => Value::try_from(to).map(|to| tree.insert(name.to_owned(), to)).is_ok(),
         Some((first, rest)) => {
             let group = tree.entry(first).or_insert_with(|| Value::Table(Table::new()));
             group.as_table_mut().is_some_and(|group| set(group, rest, to))

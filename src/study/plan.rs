@@ -12,12 +12,9 @@ pub(super) mod values;
 use serde::Serialize;
 use toml::Table;
 
-use super::errors::{ExperimentError, PlanError};
-use super::experiment::Experiment;
-use super::leg::Leg;
 use super::parameters::{self, place};
-use super::scalar::Scalar;
 use super::seed::{derived_seed, seed_at};
+use super::{Experiment, ExperimentError, Leg, PlanError, Scalar};
 use crate::quantity::accept;
 use axis::Axis;
 use protocol::Protocol;

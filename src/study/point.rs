@@ -1,8 +1,6 @@
 //! Points: values with all their repeats.
 
-use super::experiment::Experiment;
-use super::experiment::record::Record;
-use super::leg::Leg;
+use super::{Experiment, Leg, Record};
 use crate::statistics::Estimate;
 
 /// A value at a point of the grid, with the records of its repeats, which have the same parameters and

@@ -1,10 +1,8 @@
 //! The code by which a study goes on, in a readable file.
 
-use super::errors::Difference;
-use super::experiment::Experiment;
 use super::json::{self, Object};
 use super::maker::Maker;
-use super::plan::Plan;
+use super::{Difference, Experiment, Plan};
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::{Fingerprint, RESULTS};

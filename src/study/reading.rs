@@ -2,16 +2,12 @@
 
 use std::path::Path;
 
-use super::errors::StudyError;
-use super::experiment::Experiment;
 use super::experiment::record::{Contents, Outcome, Record, check, check_state};
 use super::folder::{self, Lock, Mark, sealed};
-use super::opening::Study;
-use super::plan::Plan;
 use super::plan::refinement::{Bracket, Seen};
 use super::plan::values::tried;
-use super::point::Point;
 use super::tables::{self, Tables};
+use super::{Experiment, Plan, Point, Study, StudyError};
 
 /// Number of ramps whose first records are read ahead of a table.
 const AHEAD: usize = 4096;
@@ -275,15 +271,12 @@ fn check_record<E: Experiment>(record: &Record<E>, plan: &Plan<E>) -> Result<(),
         None => plan.is_refined() || at.is_none(),
     };
     check(is_placed, "its place in the ramp is not the plan's")?;
-    check(
-        state.is_some() == plan.keeps_state(origin.value),
-        "it keeps a state that it should not, or lacks one",
-    )?;
+    let is_kept = state.is_some() == plan.keeps_state(origin.value);
+    check(is_kept, "it keeps a state that it should not, or lacks one")?;
     if let Some(state) = state {
         let time = end.time(0.0, record.experiment.cycle());
         check_state(state, time..=time)?;
-        let [rule, boundary] = &record.contents.parts;
-        check(state.parts() == (rule.as_ref(), boundary.as_ref()), "its state is of other parts")?;
+        check(state.parts() == record.contents.parts, "its state is of other parts")?;
     }
     measured.check(&record.experiment, state.as_ref())
 }

@@ -45,15 +45,6 @@ impl Scalar {
         }
     }
 
-    pub(super) fn to_toml(&self) -> toml::Value {
-        match self {
-            Self::Flag(flag) => (*flag).into(),
-            Self::Integer(number) => (*number).into(),
-            Self::Number(number) => (*number).into(),
-            Self::Text(text) => text.clone().into(),
-        }
-    }
-
     /// Returns the same value in the type of `other`, if nothing is lost: 1.0 becomes the integer 1, for
     /// example.
     pub(super) fn like(self, other: &Self) -> Self {

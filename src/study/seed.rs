@@ -1,6 +1,6 @@
 //! Seeds that follow from another seed.
 
-use super::scalar::Scalar;
+use super::Scalar;
 
 /// Returns the seed that follows from a seed and this index.
 pub(super) fn derived_seed(seed: u64, index: u64) -> u64 {
@@ -20,7 +20,5 @@ pub(super) fn seed_at(seed: u64, parameter: &str, value: &Scalar) -> u64 {
 /// Returns the first eight bytes of the hash of a seed and these bytes.
 fn derived(seed: u64, bytes: &[u8]) -> u64 {
     let hash = blake3::Hasher::new().update(&seed.to_le_bytes()).update(bytes).finalize();
-    let mut first = [0; 8];
-    first.copy_from_slice(&hash.as_bytes()[..8]);
-    u64::from_le_bytes(first)
+    u64::from_le_bytes(hash.as_bytes().as_chunks().0[0])
 }

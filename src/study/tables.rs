@@ -6,13 +6,8 @@ mod rows;
 
 use std::path::{Path, PathBuf};
 
-use super::errors::StudyError;
-use super::experiment::Experiment;
 use super::experiment::columns::{Column, Kind, Table, error_names};
-use super::experiment::record::Record;
-use super::plan::Plan;
-use super::plan::refinement::Bracket;
-use super::scalar::Scalar;
+use super::{Bracket, Experiment, Plan, Record, Scalar, StudyError};
 use crate::observable::Heading;
 use leading::{Place, leading, row};
 use points::{Repeat, Repeats};

@@ -14,10 +14,7 @@ pub use rule::BoxRule;
 use rule::Kind;
 pub use sample::{Measurement, Sample};
 
-use super::errors::ExperimentError;
-use super::experiment::Experiment;
-use super::experiment::columns::{Column, Table};
-use super::experiment::record::Record;
+use super::{Column, Experiment, ExperimentError, Record, Table};
 use crate::analysis::StateCriteria;
 use crate::boundary::{Container, Wall};
 use crate::collision::{ContactDuration, Elastic, Frictional};

@@ -3,9 +3,8 @@
 use std::io::{self, BufRead, Write};
 
 use super::entry::{Columns, Entry, Field};
-use super::errors::ReadError;
 use super::lines::Lines;
-use super::state::State;
+use super::{ReadError, State};
 use crate::disk::numbered;
 
 impl State {

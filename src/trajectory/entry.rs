@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::errors::ReadError;
+use super::ReadError;
 use super::lines::{number, whole};
 use super::overlap;
 use crate::boundary::Domain;
@@ -94,7 +94,7 @@ impl Columns {
 }
 
 /// A disk that is being read.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Draft {
     pub(super) id: Option<u64>,
     pub(super) kind: Kind,
@@ -103,26 +103,9 @@ pub(super) struct Draft {
     pub(super) angle: f64,
     pub(super) angular_velocity: f64,
     pub(super) radius: f64,
-    pub(super) mass: f64,
-    pub(super) inertia_factor: f64,
+    pub(super) mass: Option<f64>,
+    pub(super) inertia_factor: Option<f64>,
     pub(super) image: [i32; 2],
-}
-
-impl Default for Draft {
-    fn default() -> Self {
-        Self {
-            id: None,
-            kind: Kind::DEFAULT,
-            position: DVec2::ZERO,
-            velocity: DVec2::ZERO,
-            angle: 0.0,
-            angular_velocity: 0.0,
-            radius: f64::NAN,
-            mass: 1.0,
-            inertia_factor: Disk::HOMOGENEOUS_INERTIA_FACTOR,
-            image: [0; 2],
-        }
-    }
 }
 
 impl Draft {
@@ -150,8 +133,8 @@ impl Draft {
             Field::Angle => &mut self.angle,
             Field::AngularVelocity => &mut self.angular_velocity,
             Field::Radius => &mut self.radius,
-            Field::Mass => &mut self.mass,
-            Field::InertiaFactor => &mut self.inertia_factor,
+            Field::Mass => self.mass.get_or_insert_default(),
+            Field::InertiaFactor => self.inertia_factor.get_or_insert_default(),
         };
         *target = number(name, cell, line)?;
         Ok(())
@@ -168,8 +151,8 @@ impl Draft {
             .with_velocity(self.velocity)?
             .with_angle(self.angle)?
             .with_angular_velocity(self.angular_velocity)?
-            .with_mass(self.mass)?
-            .with_inertia_factor(self.inertia_factor)?
+            .with_mass(self.mass.unwrap_or(1.0))?
+            .with_inertia_factor(self.inertia_factor.unwrap_or(Disk::HOMOGENEOUS_INERTIA_FACTOR))?
             .with_id(self.id.unwrap_or(0))?;
         Ok(disk.with_kind(self.kind).with_image(self.image))
     }

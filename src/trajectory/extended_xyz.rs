@@ -93,22 +93,10 @@ fn write_gravity(out: &mut dyn Write, gravity: Gravity) -> io::Result<()> {
 fn write_disk(out: &mut dyn Write, id: u64, disk: &Disk, domain: &Domain) -> io::Result<()> {
     let (position, velocity, unwrapped) = (disk.position(), disk.velocity(), domain.unwrapped(disk));
     let [right, up] = disk.image();
-    writeln!(
-        out,
-        "{id} {} {:?} {:?} 0.0 {:?} {:?} 0.0 {:?} {:?} {:?} {:?} {:?} {right} {up} {:?} {:?}",
-        disk.kind().number(),
-        position.x,
-        position.y,
-        velocity.x,
-        velocity.y,
-        disk.angle(),
-        disk.angular_velocity(),
-        disk.radius(),
-        disk.mass(),
-        disk.inertia_factor(),
-        unwrapped.x,
-        unwrapped.y,
-    )
+    write!(out, "{id} {} {:?} {:?} 0.0 ", disk.kind().number(), position.x, position.y)?;
+    write!(out, "{:?} {:?} 0.0 {:?} {:?} ", velocity.x, velocity.y, disk.angle(), disk.angular_velocity())?;
+    write!(out, "{:?} {:?} {:?} ", disk.radius(), disk.mass(), disk.inertia_factor())?;
+    writeln!(out, "{right} {up} {:?} {:?}", unwrapped.x, unwrapped.y)
 }
 
 const fn letter(is_periodic: bool) -> char {

@@ -7,7 +7,7 @@ pub(super) use indexed::Indexed;
 use std::io::{self, Write};
 
 use super::extended_xyz::{shown_depth, shown_top};
-use super::format::{Format, Frame};
+use super::{Format, Frame};
 use crate::Disk;
 use crate::disk::numbered;
 use crate::observable::Snapshot;

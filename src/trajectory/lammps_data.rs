@@ -6,8 +6,8 @@ mod read;
 use std::f64::consts::PI;
 use std::io::{self, Write};
 
+use super::State;
 use super::extended_xyz::{shown_depth, shown_top};
-use super::state::State;
 use crate::Disk;
 use crate::boundary::Domain;
 use crate::disk::numbered;

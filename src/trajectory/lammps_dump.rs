@@ -93,19 +93,8 @@ fn after(name: &str, line: &str, input: &mut dyn BufRead) -> io::Result<Option<S
 fn write_disk(out: &mut dyn Write, id: u64, disk: &Disk, domain: &Domain) -> io::Result<()> {
     let (position, velocity, unwrapped) = (disk.position(), disk.velocity(), domain.unwrapped(disk));
     let [right, up] = disk.image();
-    writeln!(
-        out,
-        "{id} {} {:?} {:?} 0.0 {:?} {:?} {right} {up} {:?} {:?} {:?} {:?} {:?} {:?}",
-        u32::from(disk.kind().number()) + 1,
-        position.x,
-        position.y,
-        unwrapped.x,
-        unwrapped.y,
-        velocity.x,
-        velocity.y,
-        disk.angle(),
-        disk.angular_velocity(),
-        disk.radius(),
-        disk.mass(),
-    )
+    write!(out, "{id} {} {:?} {:?} 0.0 ", u32::from(disk.kind().number()) + 1, position.x, position.y)?;
+    write!(out, "{:?} {:?} {right} {up} {:?} {:?} ", unwrapped.x, unwrapped.y, velocity.x, velocity.y)?;
+    write!(out, "{:?} {:?} ", disk.angle(), disk.angular_velocity())?;
+    writeln!(out, "{:?} {:?}", disk.radius(), disk.mass())
 }

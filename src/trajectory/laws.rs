@@ -5,7 +5,7 @@ use std::io;
 use glam::DVec2;
 use thiserror::Error;
 
-use super::format::{Format, Frame};
+use super::{Format, Frame};
 use crate::boundary::Domain;
 use crate::error::Readable;
 use crate::observable::Snapshot;

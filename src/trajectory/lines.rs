@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, Read};
 
-use super::errors::ReadError;
+use super::ReadError;
 use crate::boundary::Domain;
 
 /// Most bytes of a line. No line of a file of disks is nearly as long, but a small compressed file can expand
@@ -44,13 +44,8 @@ impl<R: BufRead> Lines<R> {
         }
         self.line = line;
         if length as u64 == LONGEST {
-            let found = self.text.as_str();
-            return Err(ReadError::unexpected(
-                line,
-                "the line",
-                format!("of fewer than {LONGEST} bytes"),
-                found,
-            ));
+            let most = format!("of fewer than {LONGEST} bytes");
+            return Err(ReadError::unexpected(line, "the line", most, &self.text));
         }
         if !self.text.ends_with('\n') && !self.text.trim().is_empty() {
             return Err(ReadError::End { line, what: "a line break".to_owned() });

@@ -2,9 +2,9 @@
 
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::errors::RecordError;
+use super::RecordError;
 use crate::file::Locked;
 
 /// Bytes that can be written and cut off: a file, or its stand-in for tests.
@@ -30,6 +30,7 @@ impl Medium for Locked {
 /// A file that grows by whole pieces. If a write fails, the piece is cut off again.
 #[derive(Debug)]
 pub(super) struct Growing<M: Medium> {
+    pub(super) path: PathBuf,
     pub(super) medium: M,
     pub(super) length: u64,
     /// The ending that follows the last whole piece.
@@ -39,8 +40,8 @@ pub(super) struct Growing<M: Medium> {
 impl<M: Medium> Growing<M> {
     /// Resumes writing after the first `length` bytes, which this ending follows. The first write cuts off
     /// all other bytes.
-    pub(super) const fn new(medium: M, length: u64, ending: Vec<u8>) -> Self {
-        Self { medium, length, ending }
+    pub(super) fn new(path: &Path, medium: M, length: u64, ending: Vec<u8>) -> Self {
+        Self { path: path.to_owned(), medium, length, ending }
     }
 
     /// Adds a piece, and replaces the last ending by a new one. If that fails, the medium is as before.
@@ -65,14 +66,21 @@ impl<M: Medium> Growing<M> {
     }
 }
 
-/// Creates a new file, locked for one recorder.
-pub(super) fn create(path: &Path) -> Result<Locked, RecordError> {
-    let made = File::options().read(true).write(true).create_new(true).open(path);
-    let file = made.map_err(|error| match error.kind() {
-        io::ErrorKind::AlreadyExists => RecordError::Exists { path: path.to_owned() },
-        _ => RecordError::io("create", path)(error),
-    })?;
-    locked(file, path)
+impl Growing<Locked> {
+    /// Creates a new file, locked for one recorder.
+    pub(super) fn create(path: &Path) -> Result<Self, RecordError> {
+        let made = File::options().read(true).write(true).create_new(true).open(path);
+        let file = made.map_err(|error| match error.kind() {
+            io::ErrorKind::AlreadyExists => RecordError::Exists { path: path.to_owned() },
+            _ => RecordError::io("create", path)(error),
+        })?;
+        Ok(Self::new(path, locked(file, path)?, 0, Vec::new()))
+    }
+
+    /// Waits until the system has stored everything.
+    pub(super) fn sync(&self) -> Result<(), RecordError> {
+        self.medium.file().sync_all().map_err(RecordError::io("write to", &self.path))
+    }
 }
 
 /// Opens a file, locked for one recorder.
@@ -116,7 +124,7 @@ mod tests {
     #[test]
     fn a_full_disk_keeps_whole_pieces() {
         for room in 0..60 {
-            let mut file = Growing::new(Small { bytes: Vec::new(), room }, 0, Vec::new());
+            let mut file = Growing::new(Path::new(""), Small { bytes: Vec::new(), room }, 0, Vec::new());
             let mut whole = Vec::new();
             for piece in b'0'.. {
                 let before = file.medium.bytes.clone();

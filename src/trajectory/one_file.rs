@@ -1,23 +1,21 @@
 //! Frames one after another in one file, plain or compressed.
 
 use std::io::{self, BufRead, BufReader, Read};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::errors::RecordError;
-use super::format::Format;
 use super::frames::{Frames, digest};
 #[cfg(feature = "gzip")]
 use super::gzip::{self, Member};
 use super::media::{self, Growing};
 use super::open::is_gzip;
 use super::store::Store;
+use super::{Format, RecordError};
 use crate::file::Locked;
 use crate::observable::Snapshot;
 
 /// Frames in one file.
 #[derive(Debug)]
 pub(super) struct OneFile {
-    path: PathBuf,
     file: Growing<Locked>,
     packing: Packing,
     frames: Frames,
@@ -35,8 +33,8 @@ impl OneFile {
     /// Begins a new file.
     pub(super) fn create(path: &Path) -> Result<Self, RecordError> {
         let packing = Packing::of(path)?;
-        let file = Growing::new(media::create(path)?, 0, Vec::new());
-        Ok(Self { path: path.to_owned(), file, packing, frames: Frames::default() })
+        let file = Growing::create(path)?;
+        Ok(Self { file, packing, frames: Frames::default() })
     }
 
     /// Goes on after the last whole frame of a file.
@@ -48,8 +46,8 @@ impl OneFile {
         if frames.times.is_empty() {
             return Err(RecordError::NoFrame { path: path.to_owned() });
         }
-        let file = Growing::new(file, frames.end, packing.ending());
-        Ok(Self { path: path.to_owned(), file, packing, frames })
+        let file = Growing::new(path, file, frames.end, packing.ending());
+        Ok(Self { file, packing, frames })
     }
 
     fn push(&mut self, bytes: &[u8]) -> io::Result<()> {
@@ -72,7 +70,7 @@ impl Store for OneFile {
     }
 
     fn append(&mut self, snapshot: &Snapshot<'_>, bytes: &[u8]) -> Result<(), RecordError> {
-        self.push(bytes).map_err(RecordError::io("write to", &self.path))?;
+        self.push(bytes).map_err(RecordError::io("write to", &self.file.path))?;
         self.frames.push(snapshot.time(), bytes, self.file.length);
         Ok(())
     }
@@ -81,29 +79,21 @@ impl Store for OneFile {
         Ok(self.frames.digests.get(number) == Some(&digest(bytes)))
     }
 
-    fn sync(&mut self) -> Result<(), RecordError> {
-        self.file.medium.file().sync_all().map_err(RecordError::io("write to", &self.path))
-    }
-
-    fn path(&self) -> &Path {
-        &self.path
+    fn file(&self) -> &Growing<Locked> {
+        &self.file
     }
 }
 
 impl Packing {
-    /// Makes the compressor of a file, if this program can compress.
-    #[cfg(feature = "gzip")]
-    const GZIP: Option<fn() -> Self> = Some(|| Self::Gzip(Member::default()));
-    #[cfg(not(feature = "gzip"))]
-    const GZIP: Option<fn() -> Self> = None;
-
     /// Returns the packing that the name of a file asks for.
     fn of(path: &Path) -> Result<Self, RecordError> {
-        match (is_gzip(path), Self::GZIP) {
-            (false, _) => Ok(Self::Plain),
-            (true, Some(gzip)) => Ok(gzip()),
-            (true, None) => Err(RecordError::Gzip { path: path.to_owned() }),
+        if !is_gzip(path) {
+            return Ok(Self::Plain);
         }
+        #[cfg(feature = "gzip")]
+        return Ok(Self::Gzip(Member::default()));
+        #[cfg(not(feature = "gzip"))]
+        return Err(RecordError::Gzip { path: path.to_owned() });
     }
 
     /// Returns the bytes that follow the last frame.

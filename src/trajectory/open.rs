@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use super::errors::ReadError;
+use super::ReadError;
 
 /// Opens a file for the readers of this module. [`read`] also names the file in their errors.
 ///

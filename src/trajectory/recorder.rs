@@ -3,12 +3,11 @@
 use std::fmt;
 use std::path::Path;
 
-use super::errors::RecordError;
-use super::format::{Format, Frame};
 use super::gsd::{HoomdSchema, Indexed};
 use super::one_file::OneFile;
 use super::store::Store;
 use super::vtk::{PolyData, Series};
+use super::{Format, Frame, RecordError};
 use crate::observable::{Moment, Observer, SampleTimes, Snapshot, Verdict, verdict};
 
 /// An observer that writes a frame to a file at set times.
@@ -209,6 +208,10 @@ impl Recorder {
         self.store.times()
     }
 
+    fn path(&self) -> &Path {
+        &self.store.file().path
+    }
+
     /// Records a frame now, for example of the state before a run.
     ///
     /// A run records its first frame after one interval.
@@ -239,7 +242,7 @@ impl Recorder {
         if is_same {
             return Ok(());
         }
-        let (path, is_there) = (self.store.path().to_owned(), number.is_ok());
+        let (path, is_there) = (self.path().to_owned(), number.is_ok());
         Err(RecordError::AnotherRun { path, time, last, is_there })
     }
 
@@ -247,7 +250,7 @@ impl Recorder {
     fn write_frame(&mut self, number: usize, snapshot: &Snapshot<'_>) -> Result<(), RecordError> {
         self.bytes.clear();
         let made = self.format.write_frame(&Frame::new(number, *snapshot), &mut self.bytes);
-        made.map_err(RecordError::io("make a frame of", self.store.path()))
+        made.map_err(RecordError::io("make a frame of", self.path()))
     }
 }
 
@@ -259,7 +262,7 @@ impl Observer for Recorder {
         clock.start_at(time);
         if self.must_follow && missed < clock.upcoming().min(time) {
             let last = self.times().last().copied().unwrap_or(f64::NAN);
-            self.failure = Some(RecordError::Gap { path: self.store.path().to_owned(), last, missed, time });
+            self.failure = Some(RecordError::Gap { path: self.path().to_owned(), last, missed, time });
             return;
         }
         (self.clock, self.must_follow) = (clock, false);
@@ -279,7 +282,7 @@ impl Observer for Recorder {
 
     fn on_end(&mut self, _: &Moment) {
         if self.failure.is_none() {
-            self.failure = self.store.sync().err();
+            self.failure = self.store.file().sync().err();
         }
     }
 
@@ -292,6 +295,6 @@ impl Observer for Recorder {
 impl fmt::Debug for Recorder {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut debug = formatter.debug_struct("Recorder");
-        debug.field("path", &self.store.path()).field("frames", &self.times().len()).finish_non_exhaustive()
+        debug.field("path", &self.path()).field("frames", &self.times().len()).finish_non_exhaustive()
     }
 }

@@ -1,8 +1,8 @@
 //! The trait of stores of frames: one file, or a series of files.
 
-use std::path::Path;
-
-use super::errors::RecordError;
+use super::RecordError;
+use super::media::Growing;
+use crate::file::Locked;
 use crate::observable::Snapshot;
 
 /// A store for the bytes of frames, one after another. A stored frame stays whole, even if a later one fails.
@@ -16,9 +16,6 @@ pub(super) trait Store {
     /// Returns whether the frame of this number has these bytes.
     fn has(&mut self, number: usize, bytes: &[u8]) -> Result<bool, RecordError>;
 
-    /// Waits until the system has stored everything.
-    fn sync(&mut self) -> Result<(), RecordError>;
-
-    /// Returns the path, for messages.
-    fn path(&self) -> &Path;
+    /// Returns the file of the frames, or of their times.
+    fn file(&self) -> &Growing<Locked>;
 }

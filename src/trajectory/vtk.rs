@@ -11,8 +11,7 @@ use glam::DVec2;
 
 use self::array::{write_field, write_integers, write_numbers};
 use super::extended_xyz::shown_top;
-use super::format::{Format, Frame};
-use super::state::State;
+use super::{Format, Frame, State};
 use crate::Disk;
 use crate::boundary::Domain;
 use crate::disk::numbered;

@@ -84,20 +84,6 @@ impl Contents {
         }
     }
 
-    /// Adds a disk to each of some cells that follow each other.
-    pub(super) fn push_to_run(&mut self, first: usize, cells: usize, disk: usize) {
-        for cell in first..first + cells {
-            self.push(cell, disk);
-        }
-    }
-
-    /// Removes a disk from each of some cells that follow each other.
-    pub(super) fn remove_from_run(&mut self, first: usize, cells: usize, disk: usize) {
-        for cell in first..first + cells {
-            self.remove(cell, disk);
-        }
-    }
-
     /// Returns the room that the disks of this many cells need. Behind the largest number of them, there is
     /// room for the rest of a window.
     #[inline]
@@ -133,17 +119,9 @@ impl Contents {
 
     /// Appends the disks of cells that follow each other to the first `count` of those found.
     #[inline]
-    pub(super) fn gather_run(
-        &self,
-        first: usize,
-        cells: usize,
-        found: &mut [u32],
-        mut count: usize,
-    ) -> usize {
-        for block in &self.blocks[first..first + cells] {
-            count = self.gather_block(block, found, count);
-        }
-        count
+    pub(super) fn gather_run(&self, first: usize, cells: usize, found: &mut [u32], count: usize) -> usize {
+        let blocks = &self.blocks[first..first + cells];
+        blocks.iter().fold(count, |count, block| self.gather_block(block, found, count))
     }
 
     /// Appends the disks of one cell to the first `count` of those found.

@@ -68,7 +68,7 @@ impl LayerLayout {
         // Cells are halved homes, so only some sizes are possible. The size with a ratio to the suitable one
         // that is nearest to 1 is taken.
         while layout.cells.pitch.max_element() > SQRT_2 * suitable && layout.can_be_finer() {
-            layout = layout.finer(1);
+            layout = layout.finer();
         }
         Some(layout)
     }
@@ -84,16 +84,11 @@ impl LayerLayout {
         self.cells.pitch * f64::from(1_u32 << self.doublings)
     }
 
-    /// Returns the same homes with cells that are finer by this many doublings.
-    fn finer(self, doublings: u32) -> Self {
-        let Layout { columns, rows, pitch, .. } = self.cells;
-        let cells = Layout {
-            columns: columns << doublings,
-            rows: rows << doublings,
-            pitch: pitch / f64::from(1_u32 << doublings),
-            ..self.cells
-        };
-        Self { cells, doublings: self.doublings + doublings }
+    /// Returns the same homes with twice as many columns and rows of cells.
+    fn finer(self) -> Self {
+        let Layout { columns, rows, pitch, cell_size } = self.cells;
+        let cells = Layout { columns: 2 * columns, rows: 2 * rows, pitch: 0.5 * pitch, cell_size };
+        Self { cells, doublings: self.doublings + 1 }
     }
 
     /// Returns the layout of the homes, if a whole number of these cells makes up a home.
@@ -128,7 +123,7 @@ impl LayerLayout {
             if !layout.can_be_finer() {
                 return None;
             }
-            layout = layout.finer(1);
+            layout = layout.finer();
         }
         Some(layout)
     }

@@ -148,25 +148,18 @@ impl Layers {
         self.larger.get(usize::from(class).wrapping_sub(1))
     }
 
-    /// Writes a disk of a larger class into its home, and into all homes that it reaches.
-    pub(super) fn enter(&mut self, disk: usize, place: Place) {
+    /// Writes a disk of a larger class into its home and into all homes that it reaches, or takes it out of
+    /// all of them.
+    pub(super) fn change(&mut self, disk: usize, place: Place, change: impl Fn(&mut Contents, usize, usize)) {
         let Some(layer) = self.larger.get_mut(usize::from(self.classes[disk]).wrapping_sub(1)) else {
             return;
         };
-        layer.contents.push(layer.home(place), disk);
+        let home = layer.home(place);
+        change(&mut layer.contents, home, disk);
         for (visitors, reach) in self.visitors.iter_mut().zip(layer.reaches().0) {
-            reach.for_each_run(place, |first, count| visitors.push_to_run(first, count, disk));
-        }
-    }
-
-    /// Takes a disk of a larger class out of its home, and out of all homes that it reaches.
-    pub(super) fn leave(&mut self, disk: usize, place: Place) {
-        let Some(layer) = self.larger.get_mut(usize::from(self.classes[disk]).wrapping_sub(1)) else {
-            return;
-        };
-        layer.contents.remove(layer.home(place), disk);
-        for (visitors, reach) in self.visitors.iter_mut().zip(layer.reaches().0) {
-            reach.for_each_run(place, |first, count| visitors.remove_from_run(first, count, disk));
+            reach.for_each_run(place, |first, count| {
+                (first..first + count).for_each(|home| change(visitors, home, disk));
+            });
         }
     }
 
@@ -179,8 +172,12 @@ impl Layers {
         // Homes in both reaches keep the disk. A home at the rim of the hole may leave the reach on one side
         // of it and enter on the other, so both directions are needed.
         for (visitors, reach) in self.visitors.iter_mut().zip(layer.reaches().0) {
-            reach.for_each_run_beyond(from, to, |first, count| visitors.remove_from_run(first, count, disk));
-            reach.for_each_run_beyond(to, from, |first, count| visitors.push_to_run(first, count, disk));
+            reach.for_each_run_beyond(from, to, |first, count| {
+                (first..first + count).for_each(|home| visitors.remove(home, disk));
+            });
+            reach.for_each_run_beyond(to, from, |first, count| {
+                (first..first + count).for_each(|home| visitors.push(home, disk));
+            });
         }
     }
 
@@ -278,35 +275,4 @@ pub(in crate::simulation) struct Layouts {
     pub(in crate::simulation) larger: Vec<LayerLayout>,
     /// The classes of disks that have cells of their own.
     pub(in crate::simulation) classes: Vec<SizeClass>,
-}
-
-/// The grids of all classes of disks, and the class of each.
-#[cfg(feature = "serde")]
-pub(in crate::simulation) struct Grids {
-    grids: Vec<Grid>,
-    classes: Vec<u8>,
-}
-
-#[cfg(feature = "serde")]
-impl Grids {
-    pub(in crate::simulation) fn new(
-        domain: &Domain,
-        layouts: &Layouts,
-        classes: &[SizeClass],
-        diameters: impl Iterator<Item = f64>,
-    ) -> Self {
-        let smallest = Grid::new(domain, layouts.smallest, classes[0].largest);
-        let larger = layouts.larger.iter().map(|layer| Grid::without_margin(domain, layer.cells));
-        let classes = diameters.map(|diameter| class_of(classes, diameter)).collect();
-        Self { grids: std::iter::once(smallest).chain(larger).collect(), classes }
-    }
-
-    pub(in crate::simulation) fn class(&self, disk: usize) -> u8 {
-        self.classes[disk]
-    }
-
-    /// Returns the grid in which a disk is.
-    pub(in crate::simulation) fn of(&self, disk: usize) -> &Grid {
-        &self.grids[usize::from(self.classes[disk])]
-    }
 }

@@ -202,17 +202,14 @@ fn every(cells: usize, edges: &[f64]) -> Vec<f64> {
 fn between(edges: &[f64], low: f64, high: f64) -> Span {
     let inner = &edges[1..edges.len() - 1];
     let first = inner.partition_point(|&edge| edge < low);
-    let last = inner.partition_point(|&edge| edge <= high);
-    Span { first: first as u32, count: (last - first) as u32 + 1 }
+    let behind = inner.partition_point(|&edge| edge <= high) + 1;
+    Span::between(first as u32, behind as u32)
 }
 
 /// Returns the spaces that lie wholly between two numbers. The first and the last space never do.
 fn within(edges: &[f64], low: f64, high: f64) -> Span {
-    let inner = &edges[1..edges.len() - 1];
-    let first = inner.partition_point(|&edge| edge < low);
-    let last = inner.partition_point(|&edge| edge <= high);
-    let count = last.saturating_sub(first + 1);
-    Span { first: first as u32 + 1, count: count as u32 }
+    let Span { first, count } = between(edges, low, high);
+    Span { first: first + 1, count: count.saturating_sub(2) }
 }
 
 /// Counts the rows of a hole from the same row as those around it. The result is empty if the hole does not

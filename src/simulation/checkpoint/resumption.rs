@@ -1,6 +1,6 @@
 //! Resumption: the way from a checkpoint to a run.
 
-use super::validation::{check_numbers, check_places, grids};
+use super::validation::{MISFIT, are_layouts, check, check_numbers, check_places};
 use super::{Checkpoint, CheckpointError, Saved};
 use crate::Gravity;
 use crate::boundary::Boundary;
@@ -89,12 +89,11 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         let wall_count = count_walls(&self.boundary)?;
         check_numbers(saved, wall_count)?;
         let bodies = bodies_of(saved);
-        let misfit =
-            || CheckpointError::Inconsistent("its neighbor cells are not those of the domain".to_owned());
-        check_places(saved, &grids(saved, &bodies).ok_or_else(misfit)?, &bodies)?;
         let diameters = (0..bodies.len()).map(|disk| 2.0 * bodies.radius(disk));
-        let cells = Cells::filled(&self.boundary, &saved.layouts, diameters, saved.places.clone());
-        let cells = cells.ok_or_else(misfit)?;
+        check(are_layouts(saved, diameters.clone()), MISFIT)?;
+        let mut cells = Cells::empty(&self.boundary, &saved.layouts, diameters);
+        check_places(saved, &cells, &bodies)?;
+        cells.fill(saved.places.clone());
         let mut run = self.run(bodies, cells, wall_count);
         run.make_room();
         // This call gives the boundary its origin and the scheduler its times.
@@ -108,9 +107,9 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
         let saved = &self.checkpoint.0;
         check_numbers(saved, usize::MAX)?;
         let bodies = bodies_of(saved);
-        self.boundary.set_time_origin(saved.origin);
-        let (wall_count, cells) =
-            crate::simulation::builder::fit(&self.boundary, &bodies.disks(saved.now), saved.now)?;
+        self.boundary.set_time_origin(saved.clock.origin);
+        let now = saved.clock.now;
+        let (wall_count, cells) = crate::simulation::builder::fit(&self.boundary, &bodies.disks(now), now)?;
         let mut run = self.run(bodies, cells, wall_count);
         run.predict_all();
         Ok(run)
@@ -125,14 +124,7 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
             scheduler: self.scheduler,
             bodies,
             cells,
-            clock: Clock {
-                origin: saved.origin,
-                now: saved.now,
-                epoch_length: saved.epoch_length,
-                guard: saved.guard,
-                events_to_look: 1,
-                tally: saved.tally,
-            },
+            clock: Clock { events_to_look: 1, ..saved.clock },
             generator: saved.generator.clone(),
             counters: saved.counters,
             lookahead: Lookahead::default(),

@@ -8,11 +8,11 @@ use std::collections::HashMap;
 
 use super::{CheckpointError, Saved};
 use crate::disk::{LARGEST, MOST_DISKS};
+use crate::simulation::Counters;
 use crate::simulation::cells::{
-    CELLS_PER_DISK, FEWEST, Grid, Grids, Layout, Place, SPARE_CELLS, SPARE_DISKS, SizeClass,
+    CELLS_PER_DISK, Cells, FEWEST, Grid, Layout, Layouts, Place, SPARE_CELLS, SPARE_DISKS, SizeClass,
 };
-use crate::simulation::events::Counters;
-use crate::simulation::state::{Bodies, Exit, Forecast, Guard, Spin, Trajectory};
+use crate::simulation::state::{Bodies, Clock, Exit, Forecast, Guard, Spin, Trajectory};
 use glam::DVec2;
 
 /// A larger number of events than any run has.
@@ -24,6 +24,9 @@ const SLACK: f64 = 1e-3;
 /// Number of epochs ahead within which a touch with a wall, or the horizon of its search, must lie. It is
 /// large, since a collision may have made epochs shorter after the search.
 const MOST_EPOCHS: f64 = 1e6;
+
+/// The fault of cells that do not suit the domain or the disks.
+pub(super) const MISFIT: &str = "its neighbor cells are not those of the domain";
 
 pub(super) fn check(valid: bool, what: &'static str) -> Result<(), CheckpointError> {
     if valid { Ok(()) } else { Err(CheckpointError::Inconsistent(what.to_owned())) }
@@ -40,57 +43,53 @@ pub(super) fn check_numbers(saved: &Saved, walls: usize) -> Result<(), Checkpoin
     let diameter = saved.typical_diameter;
     let is_diameter = if count == 0 { diameter >= 0.0 } else { diameter > 0.0 };
     check(is_diameter && diameter <= LARGEST, "its typical diameter is beyond all bounds")?;
-    let times = [saved.origin, saved.now, saved.epoch_length];
+    let Clock { origin, now, epoch_length, guard, tally, .. } = saved.clock;
+    let times = [origin, now, epoch_length];
     check(times.iter().all(|time| time.is_finite()), "a time is not finite")?;
     check(is_bounded(saved.gravity), "its gravity is beyond all bounds")?;
-    check(is_epoch_length(saved.epoch_length) && saved.now >= 0.0, "its epoch is out of order")?;
+    check(is_epoch_length(epoch_length) && now >= 0.0, "its epoch is out of order")?;
     check(saved.trajectories.iter().all(is_trajectory), "a trajectory is beyond all bounds")?;
-    check(saved.spins.iter().all(|spin| is_spin(spin, saved.now)), "a rotation is beyond all bounds")?;
+    check(saved.spins.iter().all(|spin| is_spin(spin, now)), "a rotation is beyond all bounds")?;
     check(are_forecasts(saved, walls), "an event names no disk or wall, or is overdue")?;
-    check(are_counted(&saved.counters) && is_guard(&saved.guard), "its counters are beyond all counting")?;
+    check(are_counted(&saved.counters) && is_guard(&guard), "its counters are beyond all counting")?;
     let Counters { cell_crossings, disk_collisions, .. } = saved.counters;
-    let forward = saved.tally.cell_crossings <= cell_crossings && saved.tally.collisions <= disk_collisions;
+    let forward = tally.cell_crossings <= cell_crossings && tally.collisions <= disk_collisions;
     check(forward, "its counters run backwards")
 }
 
-/// Checks that all disks are where they belong, and that their events are where they can be.
-pub(super) fn check_places(saved: &Saved, grids: &Grids, bodies: &Bodies) -> Result<(), CheckpointError> {
+/// Checks that all disks are where they belong in these cells, which are empty as yet, and that their events
+/// are where they can be.
+pub(super) fn check_places(saved: &Saved, cells: &Cells, bodies: &Bodies) -> Result<(), CheckpointError> {
+    let now = saved.clock.now;
     let disks = || saved.forecasts.iter().zip(&saved.places).enumerate();
-    let inside = |(disk, (_, &place))| holds(grids.of(disk), place, bodies.position(disk, saved.now));
+    let is_placed = |(disk, (_, &place))| is_cell(&cells.grid_of(disk).layout, place);
+    check(disks().all(is_placed), MISFIT)?;
+    let inside = |(disk, (_, &place))| holds(cells.grid_of(disk), place, bodies.position(disk, now));
     check(disks().all(inside), "a disk is outside its neighbor cell")?;
     // The cells at walls extend to infinity.
     // Rounding needs much less than a radius.
-    let within = |disk| saved.domain.contains(bodies.position(disk, saved.now), bodies.radius(disk));
+    let within = |disk| saved.domain.contains(bodies.position(disk, now), bodies.radius(disk));
     check((0..saved.places.len()).all(within), "a disk is outside the domain")?;
-    check(has_room(saved, grids, bodies), "the disks of a cell overlap")?;
-    let ends =
-        |(disk, (forecast, &place))| ends_where_it_can(saved, grids.of(disk), bodies, disk, forecast, place);
+    check(has_room(saved, cells, bodies), "the disks of a cell overlap")?;
+    let ends = |(disk, (forecast, &place))| {
+        ends_where_it_can(saved, cells.grid_of(disk), bodies, disk, forecast, place)
+    };
     check(disks().all(ends), "a cell exit is not at the edge of the cell of its disk")?;
     let meets = |(disk, (forecast, _))| meets_its_partner(saved, bodies, disk, forecast);
     check(disks().all(meets), "a disk collides with one that it does not touch")
 }
 
-/// Returns the grids of all classes of disks, if they suit the domain and the disks, and the place of every
-/// disk is a cell of its grid.
-pub(super) fn grids(saved: &Saved, bodies: &Bodies) -> Option<Grids> {
-    let layouts = &saved.layouts;
-    let diameters = (0..bodies.len()).map(|disk| 2.0 * bodies.radius(disk));
-    let classes = &layouts.classes;
-    if !are_classes(classes, layouts.larger.len() + 1, diameters.clone()) {
-        return None;
-    }
-    let smallest = classes[0].largest;
-    let suits = suits(saved, &layouts.smallest, smallest)
-        && layouts.larger.iter().zip(&classes[1..]).all(|(layer, class)| {
-            layer.homes().is_some_and(|homes| suits(saved, &homes, class.largest))
-                && layer.is_narrow_enough(&saved.domain, &layouts.smallest, smallest, class.largest)
-        });
-    if !suits {
-        return None;
-    }
-    let grids = Grids::new(&saved.domain, layouts, classes, diameters);
-    let is_placed = |(disk, &place)| is_cell(&grids.of(disk).layout, place);
-    saved.places.iter().enumerate().all(is_placed).then_some(grids)
+/// Tells whether the cells suit the domain, and disks of these diameters.
+pub(super) fn are_layouts(saved: &Saved, diameters: impl ExactSizeIterator<Item = f64>) -> bool {
+    let Layouts { smallest, larger, classes } = &saved.layouts;
+    let suits_all = |least: f64| {
+        suits(saved, smallest, least)
+            && larger.iter().zip(&classes[1..]).all(|(layer, class)| {
+                layer.homes().is_some_and(|homes| suits(saved, &homes, class.largest))
+                    && layer.is_narrow_enough(&saved.domain, smallest, least, class.largest)
+            })
+    };
+    are_classes(classes, larger.len() + 1, diameters) && suits_all(classes[0].largest)
 }
 
 /// Tells whether these are so many classes, in order, and there is one for each disk. There cannot be far
@@ -181,8 +180,8 @@ fn are_forecasts(saved: &Saved, walls: usize) -> bool {
         let is_old = partner as usize >= count || partner_collisions != collisions;
         (is_alone || partner as usize != disk || is_old)
             && (exit != Exit::Wall || usize::from(wall) < walls)
-            && collision_due >= saved.now
-            && exit_due >= saved.now
+            && collision_due >= saved.clock.now
+            && exit_due >= saved.clock.now
     })
 }
 
@@ -195,14 +194,13 @@ fn holds(grid: &Grid, place: Place, position: DVec2) -> bool {
 }
 
 /// Tells whether there is room for the disks in their cells without overlaps.
-fn has_room(saved: &Saved, grids: &Grids, bodies: &Bodies) -> bool {
+fn has_room(saved: &Saved, cells: &Cells, bodies: &Bodies) -> bool {
     let domain = &saved.domain;
-    let mut cells: HashMap<(u8, usize), (f64, f64)> = HashMap::new();
+    let mut taken: HashMap<(u8, usize), (f64, f64)> = HashMap::new();
     saved.places.iter().enumerate().all(|(disk, &place)| {
         let radius = bodies.radius(disk);
-        let grid = grids.of(disk);
-        let (area, largest): &mut (f64, f64) =
-            cells.entry((grids.class(disk), grid.index(place))).or_default();
+        let grid = cells.grid_of(disk);
+        let (area, largest) = taken.entry((cells.class(disk), grid.index(place))).or_default();
         *area += std::f64::consts::PI * radius * radius;
         *largest = largest.max(radius);
         let region = grid.region(place);
@@ -226,7 +224,8 @@ fn ends_where_it_can(
 ) -> bool {
     let Forecast { exit, exit_due, .. } = *forecast;
     if !exit.is_passage() {
-        return exit_due == f64::INFINITY || exit_due - saved.now <= MOST_EPOCHS * saved.epoch_length;
+        return exit_due == f64::INFINITY
+            || exit_due - saved.clock.now <= MOST_EPOCHS * saved.clock.epoch_length;
     }
     if exit_due == f64::INFINITY {
         return true;
@@ -248,7 +247,8 @@ fn ends_where_it_can(
 /// is made anew when it comes up.
 fn meets_its_partner(saved: &Saved, bodies: &Bodies, disk: usize, forecast: &Forecast) -> bool {
     let Forecast { collision_due, partner, partner_collisions, .. } = *forecast;
-    let is_soon = collision_due.is_finite() && collision_due - saved.now <= MOST_EPOCHS * saved.epoch_length;
+    let is_soon = collision_due.is_finite()
+        && collision_due - saved.clock.now <= MOST_EPOCHS * saved.clock.epoch_length;
     let partner = partner as usize;
     let is_current = saved.forecasts.get(partner).is_some_and(|other| other.collisions == partner_collisions);
     if !(is_soon && is_current) {

@@ -66,12 +66,8 @@ impl Driving for Rescaling {
         let (squares, whole) = (about(drift), about(DVec2::ZERO));
         let present = 0.5 * squares / disks.len() as f64;
         let is_known = present > 0.0 && squares > LEAST_THERMAL * LEAST_THERMAL * whole;
-        accept(
-            is_known,
-            "temperature before a rescaling",
-            "positive, and above the rounding of velocities",
-            present,
-        )?;
+        let requirement = "positive, and above the rounding of velocities";
+        accept(is_known, "temperature before a rescaling", requirement, present)?;
         let factor = (self.temperature / present).sqrt();
         for disk in &mut *disks {
             let velocity = drift + factor * (disk.velocity() - drift);

@@ -9,20 +9,13 @@ use crate::collision::{Contact, Impulse};
 use crate::error::{Readable, Rounded, RoundedVector};
 use crate::observable::Partner;
 
-/// The partner of a disk, in the words of an error.
-pub(in crate::simulation) struct Named<'a>(
-    pub(in crate::simulation) Option<Partner>,
-    pub(in crate::simulation) Option<&'a str>,
-);
-
-impl fmt::Display for Named<'_> {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (self.0, self.1) {
-            (Some(Partner::Disk(other)), _) => write!(formatter, " with disk {other}"),
-            (Some(Partner::Wall(_)), Some(name)) => write!(formatter, " with the wall {name:?}"),
-            (Some(Partner::Wall(wall)), None) => write!(formatter, " with wall {wall}"),
-            (None, _) => Ok(()),
-        }
+/// Returns the partner of a disk, in the words of an error.
+pub(in crate::simulation) fn named(partner: Option<Partner>, wall: Option<&str>) -> String {
+    match (partner, wall) {
+        (Some(Partner::Disk(other)), _) => format!(" with disk {other}"),
+        (Some(Partner::Wall(_)), Some(name)) => format!(" with the wall {name:?}"),
+        (Some(Partner::Wall(wall)), None) => format!(" with wall {wall}"),
+        (None, _) => String::new(),
     }
 }
 
@@ -50,7 +43,7 @@ impl fmt::Display for FailedCollision {
         match self.partner {
             Partner::Disk(other) => write!(formatter, "disks {disk} and {other}")?,
             wall @ Partner::Wall(_) => {
-                write!(formatter, "disk {disk}{}", Named(Some(wall), self.wall.as_deref()))?;
+                write!(formatter, "disk {disk}{}", named(Some(wall), self.wall.as_deref()))?;
             }
         }
         write!(

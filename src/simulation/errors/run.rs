@@ -1,15 +1,13 @@
 //! The errors of a run.
 
-use std::fmt;
-
 use thiserror::Error;
 
-use super::BuildError;
-use super::answers::{BoundaryFault, FailedCollision, Named};
+use super::answers::{BoundaryFault, FailedCollision, named};
 use super::remedy::Remedy;
 use crate::ParameterError;
 use crate::error::{Readable, Rounded};
 use crate::observable::{ObserverError, Partner};
+use crate::simulation::BuildError;
 
 /// The result of the engine's inner functions. Errors are boxed, so that the usual answer comes back in
 /// registers.
@@ -37,7 +35,7 @@ pub enum RunError {
     #[error(
         "the run stalled at time {}: {events} events took it only {} further; disk {disk}{} is next to collide: \
          {remedy}; docs/rest.md compares the remedies, and Limits::with_least_progress allows less progress",
-        Rounded(*.time), Rounded(*.elapsed), Named(*.partner, .wall.as_deref())
+        Rounded(*.time), Rounded(*.elapsed), named(*.partner, .wall.as_deref())
     )]
     Stalled {
         /// The present.
@@ -102,7 +100,7 @@ pub enum RunError {
     /// is not where its touch was predicted.
     #[error(
         "disk {disk} collides{} at time {} where {}; {}",
-        Named(Some(*.partner), .wall.as_deref()), Rounded(*.time), Misplaced(*.depth), laws_of(*.partner)
+        named(Some(*.partner), .wall.as_deref()), Rounded(*.time), misplaced(*.depth), laws_of(*.partner)
     )]
     FalseContact {
         /// The disk.
@@ -171,16 +169,12 @@ pub enum RunError {
     },
 }
 
-/// The place of a false contact, in the words of its error.
-struct Misplaced(f64);
-
-impl fmt::Display for Misplaced {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.0 {
-            depth if depth > 0.0 => write!(formatter, "it reaches {} into it", Rounded(depth)),
-            f64::NEG_INFINITY => write!(formatter, "there is no wall: does `overlap` know this one?"),
-            gap => write!(formatter, "the nearest wall is {} away", Rounded(-gap)),
-        }
+/// Returns the place of a false contact, in the words of its error.
+fn misplaced(depth: f64) -> String {
+    match depth {
+        depth if depth > 0.0 => format!("it reaches {} into it", Rounded(depth)),
+        f64::NEG_INFINITY => "there is no wall: does `overlap` know this one?".to_owned(),
+        gap => format!("the nearest wall is {} away", Rounded(-gap)),
     }
 }
 

@@ -19,7 +19,8 @@ pub(in crate::simulation) struct Tally {
 }
 
 /// The present, and the epoch from which it is measured.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(in crate::simulation) struct Clock {
     /// The epoch: the absolute time of the offset 0.
     pub(in crate::simulation) origin: f64,
@@ -30,6 +31,7 @@ pub(in crate::simulation) struct Clock {
     pub(in crate::simulation) guard: Guard,
     /// Number of events until the run looks at its limits and its guard again: 1 if a look is due at the next
     /// event. No outcome depends on it.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(in crate::simulation) events_to_look: u64,
     pub(in crate::simulation) tally: Tally,
 }

@@ -1,6 +1,6 @@
 //! The guard against runs that hardly progress.
 
-use crate::simulation::events::Counters;
+use crate::simulation::Counters;
 
 /// Number of events in a window. Progress is judged at its end.
 const WINDOW: u64 = 200_000;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
-use crate::study::execution::control::Control;
+use crate::study::Control;
 
 /// Largest number of threads of a run: more than any machine has, and few enough to start them at once.
 const MOST_THREADS: i64 = 4096;

@@ -13,7 +13,7 @@ use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::simulation::{Limits, RunError};
 use crate::speed::{self, Circumstances, Meter, Quartiles, RunReport, StateError};
-use crate::study::experiment::Experiment;
+use crate::study::Experiment;
 
 /// Largest number of ramps whose first values are run for the core hours of a plan.
 const RAMPS: usize = 4;
@@ -105,11 +105,9 @@ fn measured(rounds: usize, collisions: u64) -> Result<Table, StateError> {
     Ok(Table { circumstances: Circumstances::present(), collisions, states: states.collect() })
 }
 
-fn stretches<R, B>(run: Simulation<R, B>) -> Stretch
-where
-    R: CollisionRule + Clone + 'static,
-    B: Boundary + Clone + 'static,
-{
+fn stretches(
+    run: Simulation<impl CollisionRule + Clone + 'static, impl Boundary + Clone + 'static>,
+) -> Stretch {
     Box::new(move |collisions| speed::stretch(&run, collisions, &mut ()))
 }
 

@@ -6,8 +6,8 @@ use crate::boundary::Boundary;
 use crate::collision::Regime;
 use crate::observable::Partner;
 use crate::replay::Replayed;
+use crate::study::Scalar;
 use crate::study::json::Object;
-use crate::study::scalar::Scalar;
 
 /// Names of the columns.
 pub(super) const HEADINGS: &str = "number,time,disk,partner,wall,x,y,closing_speed,slip_speed,normal_impulse,\

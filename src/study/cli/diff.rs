@@ -10,7 +10,7 @@ use super::{End, Failure, PlanError, say};
 use crate::Disk;
 use crate::quantity::non_negative;
 use crate::replay::{Differences, Replay};
-use crate::study::experiment::{Experiment, Run};
+use crate::study::{Experiment, Run};
 
 /// Number of parts of a stretch of the runs, after each of which the progress is shown.
 const PARTS: u32 = 32;
@@ -32,10 +32,7 @@ pub(super) struct Wishes {
 }
 
 /// Compares two runs, for longer and longer times until both differences are found.
-pub(super) fn diff<E>(wishes: &Wishes) -> Result<End, Failure>
-where
-    E: Experiment<Rule: Clone, Boundary: Clone>,
-{
+pub(super) fn diff<E: Experiment<Rule: Clone, Boundary: Clone>>(wishes: &Wishes) -> Result<End, Failure> {
     let tolerance = non_negative("tolerance", wishes.tolerance).map_err(PlanError::from)?;
     let second = wishes.second.as_ref().unwrap_or(&wishes.first);
     let mut one = Source::<E>::open(&wishes.first, &wishes.place, wishes.place.start.as_deref())?;

@@ -9,8 +9,8 @@ use super::collision_rows::{HEADINGS, row};
 use super::source::{Place, Source, ending, tell_end};
 use super::watch::{self, is_stopped};
 use super::{End, Failure, PlanError, StudyError, told};
-use crate::replay::{Replayed, Steps, collisions};
-use crate::study::experiment::{Experiment, Run};
+use crate::replay::{Replayed, Steps};
+use crate::study::{Experiment, Run};
 use crate::trajectory::{ExtendedXyz, Format, Frame, State};
 
 /// Number of collisions that are written, unless the command line says more.
@@ -135,13 +135,13 @@ fn state_before<E: Experiment>(
     path: Option<&Path>,
     write: &mut impl FnMut(&[u8]) -> Result<bool, Failure>,
 ) -> Result<End, Failure> {
-    let (first, end, show) = (collisions(&source.run) + 1, source.end, source.clock());
+    let (first, end, show) = (source.run.counters().collisions() + 1, source.end, source.clock());
     if number < first {
         let message = format!("the first collision of this run has the number {first}, not {number}");
         return Err(PlanError::Toml(message).into());
     }
     let ended = source.advance(end, number - 1, show);
-    let found = collisions(&source.run);
+    let found = source.run.counters().collisions();
     match ended {
         Ok(false) => return Ok(End::Interrupted),
         Err(error) if found + 1 < number => return Err(error.into()),

@@ -9,13 +9,9 @@ use super::{Failure, Plan, PlanError, StudyError, chain, read, refused};
 use crate::Simulation;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
-use crate::replay::collisions;
 use crate::simulation::{Checkpoint, Limits, RunEnd, RunError};
-use crate::study::errors::ExperimentError;
-use crate::study::execution::control::Progress;
-use crate::study::experiment::{Experiment, Run};
-use crate::study::opening::Study;
 use crate::study::seed::derived_seed;
+use crate::study::{Experiment, ExperimentError, Progress, Run, Study};
 use crate::trajectory::{self, State};
 
 /// Wall-clock time between two looks at the signals.
@@ -88,7 +84,7 @@ impl<E: Experiment> Source<E> {
     /// Runs until a time or a number of all collisions, whichever is first. Returns false if a signal came.
     pub(super) fn advance(&mut self, until: f64, number: u64, show: impl Fn(f64)) -> Result<bool, RunError> {
         while !is_stopped() {
-            let left = number.saturating_sub(collisions(&self.run));
+            let left = number.saturating_sub(self.run.counters().collisions());
             let limits = Limits::until(until).with_most_collisions(left).with_wall_clock(LOOK);
             if self.run.run(&limits, &mut ())? != RunEnd::WallClock {
                 return Ok(true);

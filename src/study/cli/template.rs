@@ -2,11 +2,8 @@
 
 use std::collections::HashSet;
 
-use crate::study::errors::PlanError;
-use crate::study::experiment::Experiment;
-use crate::study::experiment::columns::Column;
 use crate::study::parameters;
-use crate::study::plan::Plan;
+use crate::study::{Column, Experiment, Plan, PlanError};
 
 /// Explanations of lines of a plan, by the beginning of the line.
 const NOTES: [(&str, &str); 6] = [

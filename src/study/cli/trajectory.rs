@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use super::{End, Failure, Plan, PlanError, StudyError, read, refused, say};
+use super::{End, Failure, Plan, StudyError, read, refused, say};
 use crate::observable::SampleTimes;
-use crate::study::experiment::Experiment;
+use crate::study::Experiment;
 use crate::trajectory::{ExtendedXyz, Recorder};
 
 /// Runs the first value of a ramp again, and writes a frame after each cycle.
@@ -16,10 +16,6 @@ pub(super) fn write<E: Experiment>(
 ) -> Result<End, Failure> {
     let path = plan;
     let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
-    if ramp >= plan.ramp_count() {
-        let message = format!("there is no ramp {ramp}: the plan has {}, from 0 on", plan.ramp_count());
-        return Err(PlanError::Toml(message).into());
-    }
     let experiment = plan.experiment(ramp, 0)?;
     let cannot = |source| StudyError::Build { ramp, value: 0, source };
     let mut run = experiment.build(plan.ramp_seed(ramp)).map_err(cannot)?;
@@ -29,11 +25,7 @@ pub(super) fn write<E: Experiment>(
         if is_gsd { Recorder::create_gsd(out, times) } else { Recorder::create(out, ExtendedXyz, times) }?;
     // Half a cycle more, so that rounding does not cut the last frame off.
     run.run_until(experiment.cycle() * (f64::from(cycles) + 0.5), &mut recorder)?;
-    say(&format!(
-        "{} frames of {} disks are in {}",
-        recorder.times().len(),
-        run.disks().len(),
-        out.display()
-    ))?;
+    let (frames, disks) = (recorder.times().len(), run.len());
+    say(&format!("{frames} frames of {disks} disks are in {}", out.display()))?;
     Ok(End::Done)
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::study::execution::control::Progress;
+use crate::study::Progress;
 
 /// True once Ctrl-C or SIGTERM has come.
 static STOP: AtomicBool = AtomicBool::new(false);

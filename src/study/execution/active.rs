@@ -10,12 +10,10 @@ use crate::study::errors::{ExperimentError, StudyError, chain};
 use crate::study::experiment::record::{
     Contents, Cycles, Measured, Origin, Outcome, Record, check, check_state,
 };
-use crate::study::experiment::{Experiment, Run};
 #[cfg(feature = "cli")]
 use crate::study::opening::Study;
-use crate::study::plan::Plan;
-use crate::study::plan::protocol::Protocol;
 use crate::study::plan::refinement::Step;
+use crate::study::{Experiment, Plan, Protocol, Run};
 
 /// A value to be run.
 pub(super) struct Value<'a, E: Experiment> {
@@ -240,7 +238,6 @@ impl<E: Experiment> Active<'_, E> {
     fn into_record(self, outcome: Outcome, end: Cycles, state: Checkpoint) -> Record<E> {
         let Self { value, work, run } = self;
         let parts = state.parts();
-        let parts = [parts.0, parts.1].map(Option::<&_>::copied);
         let state = value.plan.keeps_state(value.origin.value).then_some(state);
         let contents = Contents {
             origin: value.origin.clone(),

@@ -3,13 +3,9 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-use crate::study::errors::{Difference, PlanError, StudyError};
-use crate::study::experiment::Experiment;
-use crate::study::experiment::record::Record;
-use crate::study::opening::Study;
 use crate::study::parameters;
-use crate::study::plan::Plan;
 use crate::study::plan::refinement::{Seen, Step};
+use crate::study::{Difference, Experiment, Plan, PlanError, Record, Study, StudyError};
 
 /// Earlier studies, each with its ramps by their seeds.
 pub(super) struct Earlier<E: Experiment>(Vec<(Study<E>, HashMap<u64, usize>)>);
@@ -79,11 +75,8 @@ fn differences<E: Experiment>(old: &Plan<E>, new: &Plan<E>) -> Result<Vec<Differ
     };
     let [old, new] = [old, new].map(swept);
     if old != new {
-        all.push(Difference {
-            field: "the list of swept parameters".to_owned(),
-            old: Some(old),
-            new: Some(new),
-        });
+        let field = "the list of swept parameters".to_owned();
+        all.push(Difference { field, old: Some(old), new: Some(new) });
     }
     Ok(all)
 }

@@ -2,11 +2,9 @@
 
 use super::earlier::SameRamps;
 use super::shift::Shift;
-use crate::study::errors::StudyError;
-use crate::study::experiment::Experiment;
-use crate::study::experiment::record::Record;
 use crate::study::folder::{Lock, Mark};
 use crate::study::plan::refinement::{Seen, Step};
+use crate::study::{Experiment, Record, StudyError};
 
 /// The way through a ramp.
 pub(super) struct Walk<'a, 's, E: Experiment> {

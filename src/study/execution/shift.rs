@@ -4,12 +4,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::control::{Control, Progress, Summary};
 use super::earlier::Earlier;
 use super::queue::Queue;
-use crate::study::errors::StudyError;
-use crate::study::experiment::Experiment;
-use crate::study::opening::Study;
+use crate::study::{Control, Experiment, Progress, Study, StudyError, Summary};
 
 /// Longest time until a thread checks whether it must stop.
 pub(super) const LOOK: Duration = Duration::from_millis(200);

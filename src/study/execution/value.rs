@@ -7,12 +7,11 @@ use super::active::{Active, Partial, Value};
 use super::ramp::Walk;
 use super::shift::LOOK;
 use crate::simulation::{RunEnd, RunError};
-use crate::study::errors::StudyError;
-use crate::study::experiment::Experiment;
 use crate::study::experiment::record::{Contents, Record};
 use crate::study::folder::{Mark, sealed};
 use crate::study::json::Object;
 use crate::study::plan::refinement::Step;
+use crate::study::{Experiment, StudyError};
 
 /// Shortest piece of a run, so that it advances even if it is saved all the time.
 const SHORTEST: Duration = Duration::from_millis(20);

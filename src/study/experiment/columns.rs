@@ -2,12 +2,9 @@
 
 use std::fmt;
 
-use super::Experiment;
-use super::record::Record;
 use crate::observable::Heading;
 use crate::statistics::Estimate;
-use crate::study::errors::PlanError;
-use crate::study::scalar::Scalar;
+use crate::study::{Experiment, PlanError, Record, Scalar};
 
 type OfSample<E> = Box<dyn Fn(&<E as Experiment>::Sample) -> Scalar + Send + Sync>;
 type OfRecord<E, T> = Box<dyn Fn(&Record<E>) -> T + Send + Sync>;

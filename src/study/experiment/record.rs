@@ -2,16 +2,14 @@
 
 use std::fmt;
 
-use super::Experiment;
 use crate::Fingerprint;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::simulation::{Checkpoint, Counters};
 use crate::statistics::{BlockedMean, Estimate};
-use crate::study::leg::Leg;
 use crate::study::maker::Maker;
 use crate::study::parameters;
-use crate::study::scalar::Scalar;
+use crate::study::{Experiment, Leg, Scalar};
 
 /// Relative rounding of the time at which a run ended.
 const TIME_ROUNDING: f64 = 1e-12;
@@ -76,6 +74,7 @@ impl Outcome {
 ///
 /// Samples, observer and times are those of the measured part, after the value has settled.
 #[doc(alias("checkpoint", "restart"))]
+#[derive(Clone, PartialEq)]
 pub struct Record<E: Experiment> {
     pub(in crate::study) experiment: E,
     pub(in crate::study) contents: Contents<E::Sample, E::Observer>,
@@ -238,26 +237,6 @@ impl<E: Experiment> Record<E> {
         let columns = E::columns();
         let mut named = columns.iter().filter(|known| known.name() == column);
         named.find_map(|known| known.estimate(self))
-    }
-}
-
-impl<E: Experiment + Clone> Clone for Record<E>
-where
-    E::Sample: Clone,
-    E::Observer: Clone,
-{
-    fn clone(&self) -> Self {
-        Self { experiment: self.experiment.clone(), contents: self.contents.clone() }
-    }
-}
-
-impl<E: Experiment + PartialEq> PartialEq for Record<E>
-where
-    E::Sample: PartialEq,
-    E::Observer: PartialEq,
-{
-    fn eq(&self, other: &Self) -> bool {
-        self.experiment == other.experiment && self.contents == other.contents
     }
 }
 

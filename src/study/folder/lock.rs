@@ -5,7 +5,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use crate::file::Locked;
-use crate::study::errors::StudyError;
+use crate::study::StudyError;
 
 /// The right to write into a folder. It ends with the process, even if that is killed.
 ///
@@ -32,14 +32,9 @@ impl Lock {
     /// Returns whether a process has the lock of a file; false if the system does not tell.
     pub(in crate::study) fn is_taken(path: &Path) -> bool {
         let Ok(file) = File::open(path) else { return false };
-        match file.try_lock_shared() {
-            Ok(()) => {
-                let _ = file.unlock();
-                false
-            }
-            Err(TryLockError::WouldBlock) => true,
-            Err(TryLockError::Error(_)) => false,
-        }
+        let locked = file.try_lock_shared();
+        let _ = file.unlock();
+        matches!(locked, Err(TryLockError::WouldBlock))
     }
 
     /// Writes a byte at this place of the file of the lock.

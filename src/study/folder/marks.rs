@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::{Folder, Lock, sealed};
-use crate::study::errors::StudyError;
+use crate::study::StudyError;
 
 const DONE: &str = "done";
 

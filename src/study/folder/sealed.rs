@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::file::{Broken, Seal, is_temporary, unique_name, write_unsynced, write_whole};
-use crate::study::errors::StudyError;
+use crate::study::StudyError;
 
 /// Mark of a record, and the version of the format that this crate writes and reads.
 const SEAL: Seal = Seal { magic: *b"GRANSTUD", version: 4 };

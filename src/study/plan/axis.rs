@@ -1,9 +1,7 @@
 //! Axes: the values that a parameter takes side by side.
 
-use super::steps::Steps;
 use super::values::Values;
-use crate::study::errors::PlanError;
-use crate::study::scalar::Scalar;
+use crate::study::{PlanError, Scalar, Steps};
 
 /// A parameter that differs between ramps, so that each of its values starts afresh, independent of all
 /// others.

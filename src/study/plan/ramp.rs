@@ -2,12 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::steps::Steps;
 use super::values::Values;
 use crate::error::Readable;
 use crate::quantity::positive;
-use crate::study::errors::PlanError;
-use crate::study::leg::Leg;
+use crate::study::{Leg, PlanError, Steps};
 
 /// The order in which a [`Ramp`] goes through its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]

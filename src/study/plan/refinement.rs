@@ -2,11 +2,7 @@
 
 use std::ops::Range;
 
-use super::Plan;
-use super::ramp::{Ramp, Width};
-use crate::study::experiment::Experiment;
-use crate::study::experiment::record::Record;
-use crate::study::leg::Leg;
+use crate::study::{Experiment, Leg, Plan, Ramp, Record, Width};
 
 /// The data of a finished value on which the path depends.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,12 +4,8 @@ use std::fmt;
 
 use serde::{Deserialize, Deserializer};
 
-use super::Plan;
-use super::axis::Axis;
-use super::protocol::Protocol;
-use super::ramp::Ramp;
 use crate::study::errors::{PlanError, chain};
-use crate::study::experiment::Experiment;
+use crate::study::{Axis, Experiment, Plan, Protocol, Ramp};
 
 impl<E: Experiment> Plan<E> {
     /// Reads a plan in TOML.

@@ -1,14 +1,12 @@
 //! Checks of a plan when it is made, so that its faults do not make a run fail later.
 
-use super::Plan;
-use super::ramp::Ramp;
 use super::values::tried;
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
 use crate::quantity::accept;
-use crate::study::errors::PlanError;
 use crate::study::experiment::{Experiment, columns};
 use crate::study::parameters::{self, probe, whole_name};
+use crate::study::{Plan, PlanError, Ramp};
 
 /// Largest number of values of a study, in all ramps together.
 const MOST_VALUES: usize = 1_000_000;

@@ -8,9 +8,7 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::steps::Steps;
-use crate::study::errors::PlanError;
-use crate::study::scalar::Scalar;
+use crate::study::{PlanError, Scalar, Steps};
 
 /// Largest number of values that are tried when a plan is made.
 const MOST_TRIED: usize = 1024;

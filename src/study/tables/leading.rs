@@ -1,11 +1,7 @@
 //! The leading columns of every table, which tell the place of a row in the study.
 
 use super::rows::Row;
-use crate::study::experiment::Experiment;
-use crate::study::experiment::record::Record;
-use crate::study::leg::Leg;
-use crate::study::plan::Plan;
-use crate::study::scalar::Scalar;
+use crate::study::{Experiment, Leg, Plan, Record, Scalar};
 
 /// The place of a row: a value, all its repeats, or, without a value, a transition.
 #[derive(Debug, Clone, Copy)]

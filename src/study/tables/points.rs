@@ -3,9 +3,7 @@
 use super::leading::{Place, row};
 use super::rows::{Row, Rows, not_converged};
 use crate::statistics::Estimate;
-use crate::study::errors::StudyError;
-use crate::study::experiment::Experiment;
-use crate::study::plan::Plan;
+use crate::study::{Experiment, Plan, StudyError};
 
 /// The repeats of one point: a list for each value.
 #[derive(Default)]

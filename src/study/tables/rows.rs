@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::file::Draft;
 use crate::statistics::Estimate;
-use crate::study::errors::StudyError;
-use crate::study::scalar::Scalar;
+use crate::study::{Scalar, StudyError};
 
 /// A table on its way to its file.
 pub(super) struct Rows {

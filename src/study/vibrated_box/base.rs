@@ -1,7 +1,7 @@
 //! The base of the box, and its sides.
 
 use crate::boundary::{Container, Thermal, Wall};
-use crate::study::errors::ExperimentError;
+use crate::study::ExperimentError;
 use crate::wall::{BiParabolic, Sinusoidal, WallMotion};
 
 /// The base of the box, which gives the disks their energy.

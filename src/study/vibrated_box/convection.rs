@@ -4,9 +4,7 @@ use super::{Sample, VibratedBox};
 use crate::analysis::thermal_noise;
 use crate::observable::{ConvectionOrder, DenseLayer};
 use crate::statistics::Estimate;
-use crate::study::experiment::Experiment;
-use crate::study::experiment::columns::{Column, Table};
-use crate::study::experiment::record::Record;
+use crate::study::{Column, Experiment, Record, Table};
 
 /// Convection, layers and energy loss in a record of the box.
 ///

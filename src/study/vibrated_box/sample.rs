@@ -4,6 +4,7 @@ use crate::observable::{
     Accumulator, CenterOfMass, Collision, Energies, EnergyChange, HeightProfile, Observable, Observer,
     OrderParameters, Snapshot, Temperatures,
 };
+use crate::study::experiment::record;
 
 /// Largest number of bins of a profile: of one diameter each.
 const MOST_BINS: usize = 65_536;
@@ -101,13 +102,10 @@ fn profile(snapshot: &Snapshot<'_>) -> Vec<f64> {
 pub(super) fn check(samples: &[Sample], measurement: &Measurement) -> Result<(), &'static str> {
     let Measurement { samples: count, profile, .. } = measurement;
     let is_sum = |sum: &f64| sum.is_finite() && *sum >= 0.0;
-    let checks = [
-        (samples.iter().all(is_finite), "a sample is not finite"),
-        (profile.iter().all(is_sum), "a packing fraction is negative or not finite"),
-        (profile.len() <= MOST_BINS, "its profile is higher than any"),
-        (*count == samples.len() as u64, "its profile is not of its samples"),
-    ];
-    checks.into_iter().find(|(valid, _)| !valid).map_or(Ok(()), |(_, reason)| Err(reason))
+    record::check(samples.iter().all(is_finite), "a sample is not finite")?;
+    record::check(profile.iter().all(is_sum), "a packing fraction is negative or not finite")?;
+    record::check(profile.len() <= MOST_BINS, "its profile is higher than any")?;
+    record::check(*count == samples.len() as u64, "its profile is not of its samples")
 }
 
 fn is_finite(sample: &Sample) -> bool {

@@ -6,8 +6,8 @@ use glam::DVec2;
 
 use crate::Gravity;
 use crate::boundary::Domain;
+use crate::trajectory::ReadError;
 use crate::trajectory::entry::{Columns, Field};
-use crate::trajectory::errors::ReadError;
 use crate::trajectory::lines::{checked_box, finite, number};
 
 /// The keys of a frame that the reader needs.

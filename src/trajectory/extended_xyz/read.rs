@@ -5,9 +5,8 @@ use std::io::BufRead;
 
 use super::header::Header;
 use crate::trajectory::entry::Entry;
-use crate::trajectory::errors::ReadError;
 use crate::trajectory::lines::Lines;
-use crate::trajectory::state::State;
+use crate::trajectory::{ReadError, State};
 
 /// The frames of a file of extended XYZ, one after another, as [`State`]s.
 ///

@@ -3,12 +3,12 @@
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::{CHUNKS, F64, I8, LOG, Shape, U8, U64};
 use crate::file::Locked;
 use crate::observable::Snapshot;
-use crate::trajectory::errors::RecordError;
+use crate::trajectory::RecordError;
 use crate::trajectory::format::no_frame;
 use crate::trajectory::media::{self, Growing, Medium as _};
 use crate::trajectory::open::is_gzip;
@@ -26,7 +26,6 @@ const ROOM: usize = 1024;
 /// A frame counts once the first of its entries is in the index. So the chunks are written first, then the
 /// other entries, and the first entry at last: a process that dies meanwhile leaves bytes that nobody sees.
 pub(in crate::trajectory) struct Indexed {
-    path: PathBuf,
     /// All but the entries of the present index, which are written in place.
     file: Growing<Locked>,
     index: Index,
@@ -52,7 +51,7 @@ impl Indexed {
             let error = io::Error::new(io::ErrorKind::InvalidInput, reason);
             return Err(RecordError::io("use", path)(error));
         }
-        let mut file = Growing::new(media::create(path)?, 0, Vec::new());
+        let mut file = Growing::create(path)?;
         let index = Index { location: HEADER as u64, room: ROOM, ..Index::default() };
         let head = [header(index.location, ROOM as u64), vec![0; ROOM * ENTRY], names()].concat();
         file.push(&head, &[]).map_err(|error| {
@@ -60,18 +59,18 @@ impl Indexed {
             let _ = fs::remove_file(path);
             RecordError::io("write to", path)(error)
         })?;
-        Ok(Self { path: path.to_owned(), file, index })
+        Ok(Self { file, index })
     }
 
     /// Goes on after the last whole frame of a file.
     pub(in crate::trajectory) fn reopen(path: &Path) -> Result<Self, RecordError> {
         let medium = media::reopen(path)?;
-        let found = Index::read(medium.file()).map_err(RecordError::io("go on in", path))?;
-        let (index, length) = found;
+        let found = Index::read(medium.file());
+        let (index, length) = found.map_err(RecordError::io("go on in", path))?;
         if index.times.is_empty() {
             return Err(RecordError::NoFrame { path: path.to_owned() });
         }
-        Ok(Self { path: path.to_owned(), file: Growing::new(medium, length, Vec::new()), index })
+        Ok(Self { file: Growing::new(path, medium, length, Vec::new()), index })
     }
 
     fn push(&mut self, shape: Shape, bytes: &[u8]) -> io::Result<()> {
@@ -111,7 +110,7 @@ impl Store for Indexed {
 
     fn append(&mut self, snapshot: &Snapshot<'_>, bytes: &[u8]) -> Result<(), RecordError> {
         let shape = Shape::of(self.index.times.len(), snapshot.disks());
-        self.push(shape, bytes).map_err(RecordError::io("write to", &self.path))?;
+        self.push(shape, bytes).map_err(RecordError::io("write to", &self.file.path))?;
         self.index.times.push(snapshot.time());
         Ok(())
     }
@@ -119,15 +118,11 @@ impl Store for Indexed {
     fn has(&mut self, number: usize, bytes: &[u8]) -> Result<bool, RecordError> {
         let place = self.index.places[number].clone();
         let there = read_at(self.file.medium.file(), place.start, place.end - place.start);
-        Ok(there.map_err(RecordError::io("read", &self.path))? == bytes)
+        Ok(there.map_err(RecordError::io("read", &self.file.path))? == bytes)
     }
 
-    fn sync(&mut self) -> Result<(), RecordError> {
-        self.file.medium.file().sync_all().map_err(RecordError::io("write to", &self.path))
-    }
-
-    fn path(&self) -> &Path {
-        &self.path
+    fn file(&self) -> &Growing<Locked> {
+        &self.file
     }
 }
 
@@ -234,9 +229,7 @@ fn names() -> Vec<u8> {
 }
 
 fn number(bytes: &[u8], at: usize) -> u64 {
-    let mut number = [0; 8];
-    number.copy_from_slice(&bytes[at..at + 8]);
-    u64::from_le_bytes(number)
+    u64::from_le_bytes(bytes[at..].as_chunks().0[0])
 }
 
 fn read_at(mut file: &File, start: u64, length: u64) -> io::Result<Vec<u8>> {

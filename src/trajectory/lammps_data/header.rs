@@ -3,7 +3,7 @@
 use std::io::BufRead;
 
 use crate::boundary::Domain;
-use crate::trajectory::errors::ReadError;
+use crate::trajectory::ReadError;
 use crate::trajectory::lines::{Lines, checked_box, finite, whole};
 
 /// The values of the header that the reader needs.

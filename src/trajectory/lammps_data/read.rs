@@ -8,9 +8,8 @@ use glam::DVec2;
 use super::header::Header;
 use crate::Kind;
 use crate::trajectory::entry::{Draft, Entry, flat};
-use crate::trajectory::errors::ReadError;
 use crate::trajectory::lines::{Lines, number, whole};
-use crate::trajectory::state::State;
+use crate::trajectory::{ReadError, State};
 
 /// The atoms of a file by their numbers, with their lines.
 type Atoms = BTreeMap<u64, (usize, Draft)>;
@@ -103,19 +102,15 @@ fn check_style(name: &str, line: usize) -> Result<(), ReadError> {
 /// Adds an atom from its number, type, diameter, density, position, and the periods that it has passed if
 /// they are given.
 fn add_atom(atoms: &mut Atoms, cells: &[&str], line: usize) -> Result<(), ReadError> {
-    let (&[id, kind, diameter, density, x, y, z], image) =
-        cells.split_first_chunk::<7>().ok_or_else(|| {
-            ReadError::unexpected(
-                line,
-                "an atom",
-                "of 7 or 10 columns, as `sphere` has them",
-                cells.join(" "),
-            )
-        })?;
+    let wrong = || {
+        let columns = "of 7 or 10 columns, as `sphere` has them";
+        ReadError::unexpected(line, "an atom", columns, cells.join(" "))
+    };
+    let (&[id, kind, diameter, density, x, y, z], image) = cells.split_first_chunk().ok_or_else(wrong)?;
     let image = match *image {
         [] => [0; 2],
         [right, up, _] => [whole("image", right, line)?, whole("image", up, line)?],
-        _ => return Err(ReadError::unexpected(line, "an atom", "of 7 or 10 columns", cells.join(" "))),
+        _ => return Err(wrong()),
     };
     flat(z, line)?;
     let radius = 0.5 * number("diameter", diameter, line)?;
@@ -125,7 +120,7 @@ fn add_atom(atoms: &mut Atoms, cells: &[&str], line: usize) -> Result<(), ReadEr
         kind: of_type(kind, line)?,
         position: DVec2::new(number("x", x, line)?, number("y", y, line)?),
         radius,
-        mass: super::mass(number("density", density, line)?, radius),
+        mass: Some(super::mass(number("density", density, line)?, radius)),
         image,
         ..Draft::default()
     };

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::write_box;
 use crate::file::Locked;
 use crate::observable::Snapshot;
-use crate::trajectory::errors::RecordError;
+use crate::trajectory::RecordError;
 use crate::trajectory::format::no_frame;
 use crate::trajectory::media::{self, Growing};
 use crate::trajectory::store::Store;
@@ -20,7 +20,6 @@ const TAIL: &str = "</Collection>\n</VTKFile>\n";
 
 /// A store of frames in separate files, in a folder beside the file of times.
 pub(in crate::trajectory) struct Series {
-    path: PathBuf,
     folder: PathBuf,
     /// Name of the folder, as it stands in the file of times.
     name: String,
@@ -36,13 +35,13 @@ impl Series {
             io::ErrorKind::AlreadyExists => RecordError::Exists { path: folder.clone() },
             _ => RecordError::io("create", &folder)(error),
         })?;
-        let file = media::create(path).inspect_err(|_| {
+        let file = Growing::create(path).inspect_err(|_| {
             // The folder is new and empty, so nothing is lost.
             let _ = fs::remove_dir(&folder);
         });
-        let mut file = Growing::new(file?, 0, Vec::new());
+        let mut file = file?;
         file.push(HEAD.as_bytes(), TAIL.as_bytes()).map_err(RecordError::io("write to", path))?;
-        Ok(Self { path: path.to_owned(), folder, name, file, times: Vec::new() })
+        Ok(Self { folder, name, file, times: Vec::new() })
     }
 
     /// Goes on after the last whole frame of a series.
@@ -57,8 +56,8 @@ impl Series {
         if !is_torn(&text[length..], &name, times.len()) {
             return Err(RecordError::io("go on in", path)(no_frame("an ending", &text[length..])));
         }
-        let file = Growing::new(file, length as u64, TAIL.into());
-        Ok(Self { path: path.to_owned(), folder, name, file, times })
+        let file = Growing::new(path, file, length as u64, TAIL.into());
+        Ok(Self { folder, name, file, times })
     }
 
     fn file_of(&self, part: &str, number: usize) -> PathBuf {
@@ -90,12 +89,12 @@ impl Store for Series {
 
     fn append(&mut self, snapshot: &Snapshot<'_>, bytes: &[u8]) -> Result<(), RecordError> {
         let mut edges = Vec::new();
-        write_box(&mut edges, snapshot).map_err(RecordError::io("make a frame of", &self.path))?;
+        write_box(&mut edges, snapshot).map_err(RecordError::io("make a frame of", &self.file.path))?;
         self.write("disks", bytes)?;
         self.write("box", &edges)?;
         let entry = entry(&self.name, self.times.len(), snapshot.time());
         let pushed = self.file.push(entry.as_bytes(), TAIL.as_bytes());
-        pushed.map_err(RecordError::io("write to", &self.path))?;
+        pushed.map_err(RecordError::io("write to", &self.file.path))?;
         self.times.push(snapshot.time());
         Ok(())
     }
@@ -105,12 +104,8 @@ impl Store for Series {
         Ok(fs::read(&path).map_err(RecordError::io("read", &path))? == bytes)
     }
 
-    fn sync(&mut self) -> Result<(), RecordError> {
-        self.file.medium.file().sync_all().map_err(RecordError::io("write to", &self.path))
-    }
-
-    fn path(&self) -> &Path {
-        &self.path
+    fn file(&self) -> &Growing<Locked> {
+        &self.file
     }
 }
 
