@@ -42,9 +42,10 @@ mod surface;
 mod touch;
 mod vector;
 mod vessel;
+mod wall;
 
 pub use brick::Brick;
-pub use container::{Container, Wall, WallError};
+pub use container::Container;
 pub use domain::{Domain, Region};
 pub use error::VesselError;
 pub use obstacles::Obstacles;
@@ -56,6 +57,7 @@ pub use surface::{Response, Surface};
 pub use touch::Touch;
 #[doc(alias("silo", "hopper", "hourglass"))]
 pub use vessel::Vessel;
+pub use wall::{Wall, WallError};
 
 pub use crate::wall::FirstTouch;
 

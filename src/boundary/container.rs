@@ -1,9 +1,6 @@
 //! The rectangular container.
 
 mod shaken;
-mod wall;
-
-pub use wall::{Wall, WallError};
 
 use std::borrow::Cow;
 
@@ -12,7 +9,7 @@ use glam::DVec2;
 use super::conduct::Conduct;
 use super::plane::Plane;
 use super::vector::finite_point;
-use super::{Boundary, Domain, FirstTouch, Region, Surface, Thermal, Touch};
+use super::{Boundary, Domain, FirstTouch, Region, Surface, Thermal, Touch, Wall, WallError};
 use crate::collision::CollisionRule;
 use crate::quantity::positive;
 use crate::wall::{Motion, WallMotion};

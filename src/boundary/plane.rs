@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::conduct::Conduct;
 use super::surface::Surface;
-use super::{Region, Wall};
+use super::{Region, Wall, WallError};
 use crate::wall::{Approach, FirstTouch, Motion, first_touch};
 use crate::{Fingerprint, Flight, Kind};
 
@@ -92,6 +92,11 @@ impl Plane {
     pub(super) fn set_motion(&mut self, motion: Motion) {
         self.highest = motion.reach().1;
         self.motion = motion;
+    }
+
+    /// Lets a wall slide that does not do so yet: a belt in a shaken box would be one of both otherwise.
+    pub(super) fn set_slide(&mut self, slide: Slide) -> Result<(), WallError> {
+        if self.slide.replace(slide).is_some() { Err(WallError::Lost { wall: self.wall }) } else { Ok(()) }
     }
 
     pub(super) fn set_time_origin(&mut self, origin: f64) {

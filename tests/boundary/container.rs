@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use granular_edmd::boundary::{Boundary, Container, Domain, FirstTouch, Region, Thermal, Touch, Wall};
 use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
-use granular_edmd::wall::Triangular;
+use granular_edmd::wall::{Sinusoidal, Triangular};
 use granular_edmd::{Flight, Kind};
 
 const RADIUS: f64 = 0.5;
@@ -227,13 +227,25 @@ fn a_domain_with_an_open_top_returns_from_a_file() {
 #[test]
 fn walls_with_settings_do_not_become_periodic() {
     let lost = |container: Container| container.with_periodic_sides().unwrap_err().to_string();
-    let said = "the wall \"right\" has settings that would be lost: make the container periodic without them";
+    let said = "the wall \"right\" has settings that would be lost: leave out what was set before, or this";
     assert_eq!(lost(closed().with_rule(Wall::Right, Elastic).unwrap()), said);
     assert_eq!(lost(closed().with_kind(Wall::Right, Kind::new(7)).unwrap()), said);
     assert_eq!(lost(closed().with_surface_speed(Wall::Right, 0.5).unwrap()), said);
     assert_eq!(lost(moving(Wall::Right, 0.25)), said);
     let hot = closed().with_temperature(Wall::Lid, Thermal::new(1.0).unwrap()).unwrap();
     assert_eq!(hot.clone().with_periodic_ends().unwrap_err().to_string(), said.replace("right", "lid"));
+    // A belt in a shaken box would be one of both.
+    let shake = Sinusoidal::new(0.1, 1.0).unwrap();
+    let belt = closed().with_surface_speed(Wall::Right, 0.5).unwrap();
+    let shaken = closed().shaken_vertically(shake).unwrap();
+    let twice = [
+        belt.clone().shaken_vertically(shake),
+        belt.with_sliding(Wall::Right, shake),
+        shaken.clone().with_surface_speed(Wall::Right, 0.5),
+        moving(Wall::Right, 0.25).shaken_sideways(shake),
+    ];
+    assert_eq!(twice.map(|container| container.unwrap_err().to_string()), [said; 4]);
+    assert!(shaken.shaken_sideways(shake).is_ok());
     // Settings of the other walls stay.
     assert_eq!(hot.with_periodic_sides().unwrap().wall_count(), 2);
     assert_eq!(moving(Wall::Right, 0.25).with_periodic_ends().unwrap().wall_count(), 2);

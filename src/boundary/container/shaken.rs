@@ -1,7 +1,8 @@
 //! Walls that slide, and containers that are shaken as a whole.
 
-use super::{Container, Wall, WallError};
+use super::Container;
 use crate::boundary::plane::Slide;
+use crate::boundary::{Wall, WallError};
 use crate::quantity::finite;
 use crate::wall::{Motion, Scaled, WallMotion};
 
@@ -12,7 +13,7 @@ impl Container {
     /// A positive speed moves floor and lid to the right, and the sides up.
     ///
     /// # Errors
-    /// If the container has no such wall, or the speed is not finite.
+    /// If the container has no such wall, the wall slides already, or the speed is not finite.
     ///
     /// ```
     /// use granular_edmd::boundary::{Container, Wall};
@@ -25,7 +26,7 @@ impl Container {
     /// ```
     pub fn with_surface_speed(mut self, wall: Wall, speed: f64) -> Result<Self, WallError> {
         let speed = finite("surface speed", speed)?;
-        self.plane_mut(wall)?.slide = Some(Slide::Speed(speed));
+        self.plane_mut(wall)?.set_slide(Slide::Speed(speed))?;
         Ok(self)
     }
 
@@ -35,14 +36,14 @@ impl Container {
     /// also move along its normal.
     ///
     /// # Errors
-    /// The same as for [`with_motion`](Self::with_motion).
+    /// The same as for [`with_motion`](Self::with_motion), and if the wall slides already.
     pub fn with_sliding(
         mut self,
         wall: Wall,
         motion: impl WallMotion + Send + Sync + 'static,
     ) -> Result<Self, WallError> {
         let motion = Motion::new(motion).map_err(|violation| WallError::Motion { wall, violation })?;
-        self.plane_mut(wall)?.slide = Some(Slide::Motion { motion, phase: 0.0 });
+        self.plane_mut(wall)?.set_slide(Slide::Motion { motion, phase: 0.0 })?;
         Ok(self)
     }
 
@@ -54,7 +55,7 @@ impl Container {
     ///
     /// # Errors
     /// If the motion gives numbers that are not finite, as for [`with_motion`](Self::with_motion), or jumps,
-    /// as a [`Sawtooth`](crate::wall::Sawtooth) does.
+    /// as a [`Sawtooth`](crate::wall::Sawtooth) does. If a side moves already, or floor or lid slides.
     ///
     /// ```
     /// use granular_edmd::boundary::{Boundary, Container, Wall};
@@ -76,7 +77,7 @@ impl Container {
     /// Motions along the horizontal stay.
     ///
     /// # Errors
-    /// The same as for [`shaken_sideways`](Self::shaken_sideways).
+    /// The same as for [`shaken_sideways`](Self::shaken_sideways), with the walls exchanged.
     pub fn shaken_vertically(
         self,
         motion: impl WallMotion + Send + Sync + 'static,
@@ -97,12 +98,15 @@ impl Container {
         let mirrored = Scaled::of(motion.clone(), -1.0).map_err(|_| WallError::Jump { wall: second })?;
         for (wall, motion) in [(first, motion.clone()), (second, Motion::of(mirrored))] {
             if let Ok(plane) = self.plane_mut(wall) {
+                if plane.motion.reach() != (0.0, 0.0) {
+                    return Err(WallError::Lost { wall });
+                }
                 plane.set_motion(motion);
             }
         }
         for wall in others {
             if let Ok(plane) = self.plane_mut(wall) {
-                plane.slide = Some(Slide::Motion { motion: motion.clone(), phase: 0.0 });
+                plane.set_slide(Slide::Motion { motion: motion.clone(), phase: 0.0 })?;
             }
         }
         Ok(self)

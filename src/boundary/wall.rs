@@ -57,8 +57,8 @@ pub enum WallError {
         /// The wall asked for.
         wall: Wall,
     },
-    /// The wall would be taken away, and with it what was set for it.
-    #[error("the wall \"{wall}\" has settings that would be lost: make the container periodic without them")]
+    /// What was set for the wall would be lost: the wall would be taken away, or move otherwise.
+    #[error("the wall \"{wall}\" has settings that would be lost: leave out what was set before, or this")]
     Lost {
         /// The wall with the settings.
         wall: Wall,
