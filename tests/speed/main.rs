@@ -2,10 +2,11 @@
 
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::{ContactDuration, Elastic, Frictional};
+use granular_edmd::glam::DVec2;
 use granular_edmd::observable::EnergyChange;
 use granular_edmd::scheduler::BucketQueue;
 use granular_edmd::speed::{self, Comparison, Finding, Meter, Quartiles, RunReport};
-use granular_edmd::{Simulation, initial};
+use granular_edmd::{Disk, Simulation, initial};
 
 fn gas() -> Simulation<Elastic> {
     let container = Container::periodic(20.0, 20.0).unwrap();
@@ -48,6 +49,18 @@ fn a_run_without_collisions_reports_no_numbers_for_them() {
     let report = Meter::start(&run).report(&run);
     assert!(!report.nanoseconds_per_collision.is_finite() && report.events_per_collision.is_nan());
     assert!(report.to_string().contains("0 disks"));
+}
+
+#[test]
+fn runs_without_collisions_are_not_compared() {
+    let disk = Disk::new(DVec2::splat(2.0), 0.5).unwrap().with_velocity(DVec2::X).unwrap();
+    let alone = Simulation::builder(Elastic, Container::closed(4.0, 4.0).unwrap());
+    let (alone, many) = (alone.disks([disk]).build().unwrap(), gas());
+    let comparison =
+        Comparison::between(|| speed::stretch(&alone, 100, &mut ()), || speed::stretch(&many, 100, &mut ()))
+            .unwrap();
+    assert_eq!(comparison.finding(), Finding::Unknown);
+    assert!(comparison.to_string().contains("not known, as no two disks collided"), "{comparison}");
 }
 
 #[cfg(feature = "serde")]

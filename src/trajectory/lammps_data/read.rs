@@ -1,5 +1,6 @@
 //! Data files of LAMMPS, read into disks.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::io::BufRead;
 
@@ -21,12 +22,12 @@ impl State {
     /// Reads a data file of LAMMPS with `atom_style sphere`, as its command `write_data` writes it.
     ///
     /// Disks come in the order of the atoms' numbers. The kind of a disk is the type of its atom minus 1. The
-    /// mass is that of a sphere, `m = 4π/3 ρR³`. Atoms without velocities are at rest. The box has walls on
+    /// mass is that of a sphere, `m = 4π/3 ρR³`. Without a section of velocities, all are at rest. The box has walls on
     /// all sides, since the file does not say which directions are periodic. Other sections are skipped.
     /// Particles that overlap, as soft ones do, are an error here, as in any other file.
     ///
     /// # Errors
-    /// If the input fails, the box, the number of atoms or an atom is missing, an atom or a velocity appears
+    /// If the input fails, the box, the number of atoms, an atom or one of the velocities is missing, an atom or a velocity appears
     /// twice, the atom style is not `sphere`, a number cannot be read or is out of range, a third component
     /// is not 0, or disks overlap or are outside the box. The error names the line.
     ///
@@ -44,7 +45,7 @@ impl State {
         let (header, mut section) = Header::read(&mut lines)?;
         let count = header.atoms(lines.line())?;
         let domain = header.domain(lines.line())?;
-        let (mut atoms, mut seen) = (Atoms::new(), Seen::new());
+        let (mut atoms, mut seen, mut has_velocities) = (Atoms::new(), Seen::new(), false);
         while let Some(name) = section {
             section = match words(&name).first().copied() {
                 Some("Atoms") => {
@@ -52,19 +53,15 @@ impl State {
                     read_section(&mut lines, |cells, line| add_atom(&mut atoms, cells, line))?
                 }
                 Some("Velocities") => {
+                    has_velocities = true;
                     read_section(&mut lines, |cells, line| add_velocity(&mut atoms, &mut seen, cells, line))?
                 }
                 _ => read_section(&mut lines, |_, _| Ok(()))?,
             };
         }
-        if atoms.len() != count {
-            let (what, is) = (format!("atom {} of {count}", atoms.len() + 1), atoms.len() > count);
-            let line = lines.line();
-            return Err(if is {
-                ReadError::unexpected(line, "the number of atoms", count.to_string(), atoms.len().to_string())
-            } else {
-                ReadError::End { line, what }
-            });
+        check_number("atom", atoms.len(), count, lines.line())?;
+        if has_velocities {
+            check_number("velocity", seen.len(), count, lines.line())?;
         }
         let entries = atoms.into_values().map(|(line, draft)| draft.entry(line));
         let disks = Entry::checked(entries.collect::<Result<_, _>>()?, Some(&domain))?;
@@ -84,6 +81,17 @@ fn read_section<R: BufRead>(
         take(&words(text), line)?;
     }
     Ok(None)
+}
+
+/// Checks that a section has a line for each atom: a file that was cut has fewer.
+fn check_number(what: &str, found: usize, count: usize, line: usize) -> Result<(), ReadError> {
+    match found.cmp(&count) {
+        Ordering::Less => Err(ReadError::End { line, what: format!("{what} {} of {count}", found + 1) }),
+        Ordering::Equal => Ok(()),
+        Ordering::Greater => {
+            Err(ReadError::unexpected(line, "the number of atoms", count.to_string(), found.to_string()))
+        }
+    }
 }
 
 /// Returns the words before a comment.
