@@ -85,15 +85,19 @@ impl Store for OneFile {
 }
 
 impl Packing {
+    /// Makes the compressor of a file, if this program can compress.
+    #[cfg(feature = "gzip")]
+    const GZIP: Option<fn() -> Self> = Some(|| Self::Gzip(Member::default()));
+    #[cfg(not(feature = "gzip"))]
+    const GZIP: Option<fn() -> Self> = None;
+
     /// Returns the packing that the name of a file asks for.
     fn of(path: &Path) -> Result<Self, RecordError> {
-        if !is_gzip(path) {
-            return Ok(Self::Plain);
+        match (is_gzip(path), Self::GZIP) {
+            (false, _) => Ok(Self::Plain),
+            (true, Some(gzip)) => Ok(gzip()),
+            (true, None) => Err(RecordError::Gzip { path: path.to_owned() }),
         }
-        #[cfg(feature = "gzip")]
-        return Ok(Self::Gzip(Member::default()));
-        #[cfg(not(feature = "gzip"))]
-        return Err(RecordError::Gzip { path: path.to_owned() });
     }
 
     /// Returns the bytes that follow the last frame.
