@@ -161,24 +161,9 @@ impl VibratedBox {
         Self { base_tangential_inelasticity: Some(tangential), ..self.with_base_inelasticity(normal) }
     }
 
-    /// Returns the same box with walls of a friction of their own, static and dynamic.
-    pub const fn with_wall_friction(self, friction: f64) -> Self {
-        Self { wall_friction: Some(friction), ..self }
-    }
-
     /// Returns the same box under the contact-duration model, [`ContactDuration`].
     pub const fn with_contact_duration(self, duration: f64) -> Self {
         Self { contact_duration: Some(duration), ..self }
-    }
-
-    /// Returns the same box with these sides.
-    pub const fn with_sides(self, sides: Sides) -> Self {
-        Self { sides, ..self }
-    }
-
-    /// Returns the same box, started at this temperature.
-    pub const fn with_initial_temperature(self, temperature: f64) -> Self {
-        Self { initial_temperature: temperature, ..self }
     }
 
     /// Returns the rule of walls of these inelasticities, if it is not that of the disks.

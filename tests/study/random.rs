@@ -18,8 +18,8 @@ fn plan() -> impl Strategy<Value = Plan<VibratedBox>> {
     let frictions = (0..4_usize, course);
     (any::<u32>(), base, sides, protocol, frictions, 0..3_usize, 1..3_usize, any::<bool>()).prop_map(
         |(seed, base, sides, protocol, ramp, sweep, repeats, keeps_states)| {
-            let bed =
-                VibratedBox::new(20, 10.0, base).with_height(30.0).with_gravity(0.015_625).with_sides(sides);
+            let mut bed = VibratedBox::new(20, 10.0, base).with_height(30.0).with_gravity(0.015_625);
+            bed.sides = sides;
             let bed = bed.with_contact_duration(1e-4);
             planned(bed, u64::from(seed), protocol, ramp, sweep, repeats, keeps_states).unwrap()
         },

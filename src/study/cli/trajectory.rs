@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{End, Failure, Plan, StudyError, read, refused, say};
+use super::{End, Failure, Plan, PlanError, StudyError, read, refused, say};
 use crate::observable::SampleTimes;
 use crate::study::Experiment;
 use crate::trajectory::{ExtendedXyz, Recorder};
@@ -16,6 +16,10 @@ pub(super) fn write<E: Experiment>(
 ) -> Result<End, Failure> {
     let path = plan;
     let plan = Plan::<E>::from_toml(&read(path)?).map_err(refused(path))?;
+    if ramp >= plan.ramp_count() {
+        let message = format!("there is no ramp {ramp}: the plan has {}, from 0 on", plan.ramp_count());
+        return Err(PlanError::Toml(message).into());
+    }
     let experiment = plan.experiment(ramp, 0)?;
     let cannot = |source| StudyError::Build { ramp, value: 0, source };
     let mut run = experiment.build(plan.ramp_seed(ramp)).map_err(cannot)?;
