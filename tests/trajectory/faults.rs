@@ -187,7 +187,10 @@ fn faults_of_data_of_lammps() {
         "line 16: the velocity of atom 1 stands in line 15 already",
     );
     // A file that was cut: the disk would be at rest.
-    told(&format!("{moving}1 0 0 0 0 0 0\n"), "the file ends after line 15, where velocity 2 of 2 should follow");
+    told(
+        &format!("{moving}1 0 0 0 0 0 0\n"),
+        "the file ends after line 15, where velocity 2 of 2 should follow",
+    );
 }
 
 /// A line, or a header, that a few bytes can ask for, but no memory can hold.
