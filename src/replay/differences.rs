@@ -50,8 +50,8 @@ pub struct TooFarApart {
 type Pair<'a, R, B, S> = (&'a Simulation<R, B, S>, &'a Simulation<R, B, S>);
 
 impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> Replay<R, B, S> {
-    /// Compares the partners of each disk, in turn a collision of one run and of the other. The errors of runs
-    /// that `failed` are their ends.
+    /// Compares the partners of each disk, in turn a collision of one run and of the other. The errors of
+    /// runs that `failed` are their ends.
     pub(super) fn other_partners(
         pair: Pair<'_, R, B, S>,
         end: f64,
@@ -117,7 +117,8 @@ impl<R: CollisionRule + Clone, B: Boundary + Clone, S: EventScheduler + Clone> R
         Ok(Some(apart))
     }
 
-    /// Returns the disk that is farthest from its place in the other run, if it is farther than the tolerance.
+    /// Returns the disk that is farthest from its place in the other run, if it is farther than the
+    /// tolerance.
     fn farthest((first, second): Pair<'_, R, B, S>, tolerance: f64) -> Option<TooFarApart> {
         let domain = first.boundary().domain();
         let others: HashMap<u64, _> =
