@@ -32,7 +32,7 @@ const LARGEST: f64 = 1e100;
 /// let points = points.map(|(x, y)| DVec2::new(x, y));
 /// let clusters = KMeans::new(2, 1)?.fit(&points)?;
 /// assert_eq!(clusters.labels(), [0, 1, 0, 1, 1]);
-/// assert_eq!(clusters.get(1).map(|cluster| cluster.center()), Some(DVec2::new(5.0, 0.0)));
+/// assert_eq!(clusters.iter().nth(1).map(|cluster| cluster.center()), Some(DVec2::new(5.0, 0.0)));
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

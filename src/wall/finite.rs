@@ -36,7 +36,7 @@ const PROBES: [f64; 9] = [0.0, 1e-3, 0.1, 1.0, 10.0, 1e2, 1e3, 1e4, 1e6];
 /// }
 ///
 /// assert_eq!(check_finite(&Fixed), Ok(()));
-/// assert_eq!(check_finite(&Torn).unwrap_err().to_string(), "at phase 0 its displacement is NaN");
+/// assert_eq!(check_finite(&Torn).unwrap_err().to_string(), "at phase 0.0 its displacement is NaN");
 /// ```
 pub fn check_finite<M: WallMotion + ?Sized>(motion: &M) -> Result<(), Violation> {
     check_constants(motion)?;

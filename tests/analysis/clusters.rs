@@ -1,7 +1,7 @@
 //! Clusters of points whose partition is known.
 
 use granular_edmd::ParameterError;
-use granular_edmd::analysis::{KMeans, StateCriteria, distinct_clusters};
+use granular_edmd::analysis::{Cluster, KMeans, StateCriteria, distinct_clusters};
 use granular_edmd::glam::DVec2;
 
 use crate::{NOISE, Outcome, Random, figure_4};
@@ -109,7 +109,7 @@ fn one_descent_ends_at_rest_and_more_end_no_worse() -> Outcome {
     for seed in 0..20 {
         let scatter = |restarts| -> Result<f64, ParameterError> {
             let found = KMeans::new(4, seed)?.with_restarts(restarts)?.fit(&points)?;
-            let centers: Vec<DVec2> = found.iter().map(|cluster| cluster.center()).collect();
+            let centers: Vec<DVec2> = found.iter().map(Cluster::center).collect();
             let own = |label: usize, point: &DVec2| centers[label].distance_squared(*point);
             for (&label, point) in found.labels().iter().zip(&points) {
                 assert!((0..4).all(|other| own(label, point) <= own(other, point)), "seed {seed}");
