@@ -5,7 +5,8 @@ use glam::DVec2;
 use crate::quantity::{accept, finite, positive};
 use crate::{Kind, ParameterError};
 
-/// Range of a radius, a mass or a temperature. Products and quotients of a few of them stay finite and normal.
+/// Range of a radius, a mass or a temperature. Products and quotients of a few of them stay finite and
+/// normal.
 pub(crate) const SCALE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
 /// Least velocity about a mean, relative to all velocities, that counts as thermal. Below it, differences of

@@ -28,7 +28,8 @@
 //! let built_in = speed::dense()?;
 //! let bare = || speed::stretch(&built_in, 10_000, &mut ());
 //! // The state has a contact duration, so the own rule gets the same one: only the rules differ.
-//! let rule = ContactDuration::new(Own(Friction::from_inelasticity(0.05, 0.1)?), built_in.rule().duration())?;
+//! let own = Own(Friction::from_inelasticity(0.05, 0.1)?);
+//! let rule = ContactDuration::new(own, built_in.rule().duration())?;
 //! let own = built_in.clone().with_rule(rule);
 //! println!("{}", Comparison::between(bare, || speed::stretch(&own, 10_000, &mut ()))?);
 //!

@@ -99,7 +99,8 @@ impl<R: CollisionRule> DirectSimulation<R> {
     /// Lets the disks collide until this time.
     ///
     /// # Errors
-    /// If the time is not finite or has passed, or the rule makes a disk faster than 1e60 or its velocity NaN.
+    /// If the time is not finite or has passed, or the rule makes a disk faster than 1e60 or its velocity
+    /// NaN.
     pub fn run_until(&mut self, end: f64) -> Result<(), ParameterError> {
         finite("time", end)?;
         accept(end >= self.time, "time", "at least the present one", end)?;

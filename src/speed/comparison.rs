@@ -138,9 +138,9 @@ impl Comparison {
     /// Returns the interval in which the median of infinitely many such ratios lies with a probability of
     /// 99.8 %, whatever their distribution, if they are independent.
     ///
-    /// It knows this pair of trajectories only. A rule with other physics takes another one, which alone makes
-    /// up to 2 % in a dilute gas: compare from several states, with `run_until` between them, and take the
-    /// spread. The compiler places equal code at different addresses, which makes 1 or 2 %, too.
+    /// It knows this pair of trajectories only. A rule with other physics takes another one, which alone
+    /// makes up to 2 % in a dilute gas: compare from several states, with `run_until` between them, and take
+    /// the spread. The compiler places equal code at different addresses, which makes 1 or 2 %, too.
     pub const fn interval(&self) -> [f64; 2] {
         self.interval
     }

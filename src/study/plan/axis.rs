@@ -74,8 +74,8 @@ impl Axis {
         self.values.tried()
     }
 
-    /// Turns the values of a list into the type of the parameter, so that equal plans have equal files. Values
-    /// that differ may be one value of that type.
+    /// Turns the values of a list into the type of the parameter, so that equal plans have equal files.
+    /// Values that differ may be one value of that type.
     pub(super) fn set_kind(&mut self, kind: &Scalar) -> Result<(), PlanError> {
         if let Values::List(list) = &mut self.values {
             for value in list {

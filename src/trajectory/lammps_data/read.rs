@@ -22,14 +22,14 @@ impl State {
     /// Reads a data file of LAMMPS with `atom_style sphere`, as its command `write_data` writes it.
     ///
     /// Disks come in the order of the atoms' numbers. The kind of a disk is the type of its atom minus 1. The
-    /// mass is that of a sphere, `m = 4π/3 ρR³`. Without a section of velocities, all are at rest. The box has walls on
-    /// all sides, since the file does not say which directions are periodic. Other sections are skipped.
-    /// Particles that overlap, as soft ones do, are an error here, as in any other file.
+    /// mass is that of a sphere, `m = 4π/3 ρR³`. Without a section of velocities, all are at rest. The box has
+    /// walls on all sides, since the file does not say which directions are periodic. Other sections are
+    /// skipped. Particles that overlap, as soft ones do, are an error here, as in any other file.
     ///
     /// # Errors
-    /// If the input fails, the box, the number of atoms, an atom or one of the velocities is missing, an atom or a velocity appears
-    /// twice, the atom style is not `sphere`, a number cannot be read or is out of range, a third component
-    /// is not 0, or disks overlap or are outside the box. The error names the line.
+    /// If the input fails, the box, the number of atoms, an atom or one of the velocities is missing, an atom
+    /// or a velocity appears twice, the atom style is not `sphere`, a number cannot be read or is out of
+    /// range, a third component is not 0, or disks overlap or are outside the box. The error names the line.
     ///
     /// ```
     /// use granular_edmd::trajectory::State;
