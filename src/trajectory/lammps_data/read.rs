@@ -22,8 +22,8 @@ impl State {
     /// Reads a data file of LAMMPS with `atom_style sphere`, as its command `write_data` writes it.
     ///
     /// Disks come in the order of the atoms' numbers. The kind of a disk is the type of its atom minus 1. The
-    /// mass is that of a sphere, `m = 4π/3 ρR³`. Without a section of velocities, all are at rest. The box has
-    /// walls on all sides, since the file does not say which directions are periodic. Other sections are
+    /// mass is that of a sphere, `m = 4π/3 ρR³`. Without a section of velocities, all are at rest. The box
+    /// has walls on all sides, since the file does not say which directions are periodic. Other sections are
     /// skipped. Particles that overlap, as soft ones do, are an error here, as in any other file.
     ///
     /// # Errors
