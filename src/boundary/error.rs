@@ -13,7 +13,7 @@ use crate::wall::Violation;
 /// ```
 /// use granular_edmd::boundary::{Container, Vessel};
 /// let error = Vessel::new(Container::open(20.0)?).remove("gate").unwrap_err();
-/// assert_eq!(error.to_string(), "the vessel has no part \"gate\"; its parts are []");
+/// assert_eq!(error.to_string(), "the vessel has no part \"gate\"; it has none");
 /// # Ok::<(), granular_edmd::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -70,7 +70,7 @@ pub enum VesselError {
         reason: String,
     },
     /// The vessel has no part of this name.
-    #[error("the vessel has no part \"{name}\"; its parts are {parts:?}")]
+    #[error("the vessel has no part \"{name}\"; {}", listed(.parts))]
     Unknown {
         /// The name.
         name: String,
@@ -116,4 +116,17 @@ pub enum VesselError {
         /// Least distance.
         least: f64,
     },
+}
+
+/// Most names of parts that an error lists.
+const LISTED: usize = 8;
+
+/// Says which parts a vessel has.
+fn listed(parts: &[String]) -> String {
+    let names: Vec<String> = parts.iter().take(LISTED).map(|name| format!("\"{name}\"")).collect();
+    match parts.len() {
+        0 => "it has none".to_owned(),
+        count if count > LISTED => format!("its {count} parts are {}, …", names.join(", ")),
+        _ => format!("its parts are {}", names.join(", ")),
+    }
 }

@@ -416,7 +416,13 @@ fn a_polygon_may_end_where_it_begins() {
 fn an_unknown_part_is_answered_with_those_there_are() {
     let mut vessel = room().with("gate", triangle()).unwrap().with("bowl", mixed()).unwrap();
     let said = vessel.remove("gaet").unwrap_err().to_string();
-    assert_eq!(said, "the vessel has no part \"gaet\"; its parts are [\"gate\", \"bowl\"]");
+    assert_eq!(said, "the vessel has no part \"gaet\"; its parts are \"gate\", \"bowl\"");
+    let mut many = room();
+    for number in 0..9 {
+        many.put(format!("part {number}"), triangle()).unwrap();
+    }
+    let said = many.replace("gate", triangle()).unwrap_err().to_string();
+    assert!(said.contains("its 9 parts are \"part 0\"") && said.ends_with("\"part 7\", …"), "{said}");
 }
 
 /// A part turns and travels, in whichever order it is told so. Each call replaces an earlier one of its kind.
