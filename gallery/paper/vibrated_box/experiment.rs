@@ -16,9 +16,12 @@ use gallery::{flow, progress::Progress};
 type Quantities = (OrderParameters, CenterOfMass, Energies);
 pub(crate) type Sample = <Quantities as Observable>::Value;
 
-/// Most oscillations from sample to sample of the fields. In the paper's box, a disk has about one collision
+/// Most oscillations from sample to sample of the fields. In the paper's box, a disk has one or two collisions
 /// in this time, so samples between would see most velocities again.
-const FRESH: u64 = 3;
+const FRESH: u64 = 5;
+
+/// Samples of the profile of heights, which only tells where the layer is densest.
+const PROFILES: u64 = 50;
 
 /// The results of one run.
 pub(crate) struct Outcome {
@@ -43,8 +46,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut simulation = build(arguments).map_err(Failure::usage)?;
     let times = SampleTimes::every(at(arguments.every))?;
     let mut series = Series::new(Quantities::default(), times);
-    let mut profile =
-        Sampled::new(HeightProfile::new(0.0, arguments.shown(), arguments.shown().ceil() as usize)?, times);
+    let profile = HeightProfile::new(0.0, arguments.shown(), arguments.shown().ceil() as usize)?;
+    let apart = arguments.every.max(arguments.oscillations() / (2 * PROFILES));
+    let mut profile = Sampled::new(profile, SampleTimes::every(at(apart))?);
     let (mut energy_change, mut fields) = (EnergyChange::default(), grid(arguments)?);
     let mut progress = Progress::of("run").until(end);
 
