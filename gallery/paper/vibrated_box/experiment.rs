@@ -16,8 +16,8 @@ use gallery::{flow, progress::Progress};
 type Quantities = (OrderParameters, CenterOfMass, Energies);
 pub(crate) type Sample = <Quantities as Observable>::Value;
 
-/// Most oscillations from sample to sample of the fields. In the paper's box, a disk has one or two collisions
-/// in this time, so samples between would see most velocities again.
+/// Most oscillations from sample to sample of the fields. In the paper's box, a disk has one or two
+/// collisions in this time, so samples between would see most velocities again.
 const FRESH: u64 = 5;
 
 /// Samples of the profile of heights, which only tells where the layer is densest.
