@@ -346,20 +346,6 @@ impl Part {
     }
 }
 
-crate::gate::from_file! {
-    Part {
-        bricks: Vec<Brick>, travel: Travel, conduct: Conduct, kind: Kind, surface_speed: f64, #[serde(default)] start: f64
-    } => {
-        let part = Self { kind, ..Self::new(bricks)?.with_conduct(conduct) };
-        let mut part = part.with_surface_speed(surface_speed)?.starting_at(start)?;
-        if let Some(Turning { about, angular_velocity, .. }) = travel.turning {
-            part = part.with_rotation(about, angular_velocity)?;
-        }
-        let Some(Along { direction, motion }) = travel.along else { return Ok(part) };
-        part.moving(Along { direction: super::vector::unit_vector(direction)?, motion })
-    }, VesselError
-}
-
 /// Returns the rectangle around some rectangles.
 pub(super) fn enclosing(rectangles: impl Iterator<Item = (DVec2, DVec2)>) -> (DVec2, DVec2) {
     let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);

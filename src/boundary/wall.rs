@@ -57,7 +57,7 @@ pub enum WallError {
         /// The wall asked for.
         wall: Wall,
     },
-    /// What was set for the wall would be lost: the wall would be taken away, or move otherwise.
+    /// The settings of the wall would be lost: the wall would be taken away, or move otherwise.
     #[error("the wall \"{wall}\" has settings that would be lost: leave out what was set before, or this")]
     Lost {
         /// The wall with the settings.

@@ -41,7 +41,7 @@ pub type Run<E> = Simulation<<E as Experiment>::Rule, <E as Experiment>::Boundar
 ///
 /// A *value* is the run at one value of the parameters. A study guarantees that it calls `sample` at the
 /// times of the protocol, in order, and that the observer has seen everything since the value has settled.
-/// Where a run is interrupted, the study writes the observer and reads it back.
+/// When a run is interrupted, the study writes the observer and reads it back.
 ///
 /// ```
 /// use granular_edmd::boundary::Container;

@@ -1,4 +1,4 @@
-//! Constructors of parts.
+//! Constructors of parts, from numbers and from files.
 
 use std::path::Path;
 
@@ -119,4 +119,18 @@ impl Part {
         let polygon = Self::points_from_text(&text).and_then(Self::polygon);
         polygon.map_err(|error| failed(error.to_string()))
     }
+}
+
+crate::gate::from_file! {
+    Part {
+        bricks: Vec<Brick>, travel: Travel, conduct: Conduct, kind: Kind, surface_speed: f64, #[serde(default)] start: f64
+    } => {
+        let part = Self { kind, ..Self::new(bricks)?.with_conduct(conduct) };
+        let mut part = part.with_surface_speed(surface_speed)?.starting_at(start)?;
+        if let Some(super::Turning { about, angular_velocity, .. }) = travel.turning {
+            part = part.with_rotation(about, angular_velocity)?;
+        }
+        let Some(super::Along { direction, motion }) = travel.along else { return Ok(part) };
+        part.moving(super::Along { direction: crate::boundary::vector::unit_vector(direction)?, motion })
+    }, VesselError
 }

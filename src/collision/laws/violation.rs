@@ -9,7 +9,7 @@ use crate::collision::{Contact, Impulse, Regime};
 #[error("the impulse {impulse} {fault} ({contact})")]
 #[non_exhaustive]
 pub struct Violation {
-    /// What is wrong with the impulse.
+    /// The fault of the impulse.
     pub fault: Fault,
     /// The contact.
     pub contact: Contact,
@@ -17,7 +17,7 @@ pub struct Violation {
     pub impulse: Impulse,
 }
 
-/// What is wrong with an impulse.
+/// A fault of an impulse.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Fault {
