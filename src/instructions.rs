@@ -7,13 +7,14 @@
 //! with AVX2 or for another architecture has one copy only.
 
 /// A level of instructions that this processor has. Values for other levels cannot be made.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Instructions(Level);
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[allow(dead_code, reason = "not all are chosen from in all builds")]
 pub(crate) enum Level {
     /// The instructions on which the build relies.
+    #[default]
     Built,
     /// Four numbers at a time.
     Avx2,
@@ -22,6 +23,8 @@ pub(crate) enum Level {
 }
 
 impl Instructions {
+    pub(crate) const BUILT: Self = Self(Level::Built);
+
     /// Returns the best level that this processor has.
     pub(crate) fn detected() -> Self {
         [Level::Avx512, Level::Avx2].into_iter().find(|&level| has(level)).map_or(Self(Level::Built), Self)
@@ -40,7 +43,7 @@ impl Instructions {
     ///
     /// `work` and all hot functions that it calls must be `#[inline(always)]`, since other code is compiled
     /// for the level of the build.
-    #[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+    #[cfg(target_arch = "x86_64")]
     #[allow(unsafe_code)]
     pub(crate) fn run<T>(self, work: impl FnOnce() -> T) -> T {
         #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
@@ -62,7 +65,7 @@ impl Instructions {
     }
 
     /// Runs a piece of work. The function is not inlined, so that all callers share one copy.
-    #[cfg(not(all(target_arch = "x86_64", not(target_feature = "avx2"))))]
+    #[cfg(not(target_arch = "x86_64"))]
     #[allow(clippy::unused_self, reason = "there is no choice here")]
     #[inline(never)]
     pub(crate) fn run<T>(self, work: impl FnOnce() -> T) -> T {
@@ -78,7 +81,7 @@ impl Instructions {
 }
 
 /// Tells whether this processor has the instructions for which the copy of a level is compiled.
-#[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+#[cfg(target_arch = "x86_64")]
 fn has(level: Level) -> bool {
     use std::arch::is_x86_feature_detected as has;
     let avx2 = has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt");
@@ -91,7 +94,7 @@ fn has(level: Level) -> bool {
     }
 }
 
-#[cfg(not(all(target_arch = "x86_64", not(target_feature = "avx2"))))]
+#[cfg(not(target_arch = "x86_64"))]
 fn has(level: Level) -> bool {
     level == Level::Built
 }
@@ -103,25 +106,32 @@ fn has(level: Level) -> bool {
 /// different functions. The compiler then inlines the functions that a copy calls as if this copy were their
 /// only caller. The attributes are those of the copy for the level of the build. [`Instructions::run`] would
 /// be slower here, since so many captures would go through memory.
-#[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
+#[cfg(target_arch = "x86_64")]
 macro_rules! compiled_for_each {
-    ($(#[$attribute:meta])* $name:ident($($argument:ident: $type:ty),*) -> $output:ty = $body:ident) => {
-        #[inline]
+    (
+        $(#[$attribute:meta])* $name:ident $(<const $number:ident: usize>)? ($($argument:ident: $type:ty),*) -> $output:ty
+            = $built:expr, $avx2:expr, $avx512:expr
+    ) => {
+        #[inline(always)]
         #[allow(unsafe_code, clippy::too_many_arguments)]
-        pub(super) fn $name(instructions: $crate::instructions::Instructions, $($argument: $type),*) -> $output {
+        pub(super) fn $name$(<const $number: usize>)?(
+            instructions: $crate::instructions::Instructions, $($argument: $type),*
+        ) -> $output {
             $(#[$attribute])*
-            fn built($($argument: $type),*) -> $output {
-                $body::<0>($($argument),*)
+            fn built$(<const $number: usize>)?($($argument: $type),*) -> $output {
+                $built($($argument),*)
             }
 
+            $(#[$attribute])*
             #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-            fn avx2($($argument: $type),*) -> $output {
-                $body::<1>($($argument),*)
+            fn avx2$(<const $number: usize>)?($($argument: $type),*) -> $output {
+                $avx2($($argument),*)
             }
 
+            $(#[$attribute])*
             #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512vl,avx512dq,avx512bw,avx512cd")]
-            fn avx512($($argument: $type),*) -> $output {
-                $body::<2>($($argument),*)
+            fn avx512$(<const $number: usize>)?($($argument: $type),*) -> $output {
+                $avx512($($argument),*)
             }
 
             match instructions.level() {
@@ -134,13 +144,18 @@ macro_rules! compiled_for_each {
     };
 }
 
-#[cfg(not(all(target_arch = "x86_64", not(target_feature = "avx2"))))]
+#[cfg(not(target_arch = "x86_64"))]
 macro_rules! compiled_for_each {
-    ($(#[$attribute:meta])* $name:ident($($argument:ident: $type:ty),*) -> $output:ty = $body:ident) => {
+    (
+        $(#[$attribute:meta])* $name:ident $(<const $number:ident: usize>)? ($($argument:ident: $type:ty),*) -> $output:ty
+            = $built:expr, $avx2:expr, $avx512:expr
+    ) => {
         $(#[$attribute])*
         #[allow(clippy::too_many_arguments)]
-        pub(super) fn $name(_: $crate::instructions::Instructions, $($argument: $type),*) -> $output {
-            $body::<0>($($argument),*)
+        pub(super) fn $name$(<const $number: usize>)?(
+            _: $crate::instructions::Instructions, $($argument: $type),*
+        ) -> $output {
+            $built($($argument),*)
         }
     };
 }

@@ -1,5 +1,8 @@
 //! Predictions of the time at which two disks collide, and of the time at which a disk leaves its cell.
 
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+
 use glam::DVec2;
 
 use super::state::{Bodies, Earliest, Exit};
@@ -122,7 +125,7 @@ compiled_for_each! {
     #[inline(never)]
     earliest_collision(
         bodies: &Bodies, periods: DVec2, disk: usize, candidates: &mut [u32], count: usize, now: f64, known: Earliest
-    ) -> Earliest = search
+    ) -> Earliest = search::<0>, search::<1>, avx512::search
 }
 
 #[inline(always)]
