@@ -4,7 +4,7 @@
 use std::hint::select_unpredictable;
 
 use super::Simulation;
-use super::prediction::{LANES, cell_exit, earliest_collision};
+use super::prediction::{LANES, cell_exit, earliest_collision, find_partners, leave_cells};
 use super::state::{Earliest, Exit, Forecast};
 use crate::Flight;
 use crate::boundary::{Boundary, FirstTouch, Touch};
@@ -41,17 +41,35 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Finds the next collision of a disk among all its neighbors.
     #[inline(always)]
     fn find_partner(&mut self, disk: usize) {
-        let count = self.cells.around(disk, &mut self.scratch.found);
+        let count = self.neighbors(disk, 0);
         let earliest = self.earliest_collision(disk, count, Earliest::NONE);
-        let partner_collisions =
-            self.bodies.forecast(earliest.partner as usize).map_or(0, |partner| partner.collisions);
-        self.forecast_mut(disk).set_collision(earliest, partner_collisions);
+        self.bodies.expect(disk, earliest);
+    }
+
+    /// Lists the neighbors of a disk in the first or second list. Returns their number.
+    #[inline(always)]
+    pub(super) fn neighbors(&mut self, disk: usize, list: usize) -> usize {
+        self.cells.around(disk, &mut self.scratch.found[list])
+    }
+
+    /// Finds the next events of two disks, whose neighbors have been listed.
+    #[inline(always)]
+    pub(super) fn find_next_of_both(&mut self, disks: [usize; 2], counts: [usize; 2]) {
+        let (periods, now) = (self.cells.grid().periods(), self.clock.now);
+        let found = &mut self.scratch.found;
+        find_partners(self.instructions, self.instructions, &mut self.bodies, periods, disks, found, counts, now);
+        let at_wall = leave_cells(self.instructions, &mut self.bodies, &self.cells, disks[0], disks[1], now);
+        for (disk, at_wall) in disks.into_iter().zip(at_wall) {
+            if at_wall {
+                self.end_at_wall(disk);
+            }
+        }
     }
 
     #[inline]
     pub(super) fn earliest_collision(&mut self, disk: usize, count: usize, known: Earliest) -> Earliest {
         let (periods, now) = (self.cells.grid().periods(), self.clock.now);
-        let found = &mut self.scratch.found;
+        let found = &mut self.scratch.found[0];
         earliest_collision(self.instructions, &self.bodies, periods, disk, found, count, now, known)
     }
 
@@ -80,8 +98,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     #[inline]
     pub(super) fn make_room(&mut self) {
         let room = self.cells.room() + LANES;
-        if self.scratch.found.len() < room {
-            self.scratch.found.resize(room, 0);
+        if self.scratch.found[0].len() < room {
+            for found in &mut self.scratch.found {
+                found.resize(room, 0);
+            }
         }
     }
 

@@ -5,9 +5,10 @@ mod avx512;
 
 use glam::DVec2;
 
+use super::cells::Cells;
 use super::state::{Bodies, Earliest, Exit};
 use crate::boundary::Region;
-use crate::instructions::compiled_for_each;
+use crate::instructions::{Instructions, compiled_for_each};
 
 /// Number of pairs that are predicted side by side.
 ///
@@ -128,6 +129,31 @@ compiled_for_each! {
     ) -> Earliest = search::<0>, search::<1>, avx512::search
 }
 
+compiled_for_each! {
+    /// Finds the next collisions of two disks, each with one of the first candidates in its list.
+    #[inline(never)]
+    find_partners(
+        again: Instructions, bodies: &mut Bodies, periods: DVec2, disks: [usize; 2],
+        found: &mut [Vec<u32>; 2], counts: [usize; 2], now: f64
+    ) -> () = search_in_turn, search_in_turn, avx512::search_both
+}
+
+#[inline(always)]
+fn search_in_turn(
+    instructions: Instructions,
+    bodies: &mut Bodies,
+    periods: DVec2,
+    disks: [usize; 2],
+    found: &mut [Vec<u32>; 2],
+    counts: [usize; 2],
+    now: f64,
+) {
+    for ((disk, found), count) in disks.into_iter().zip(found).zip(counts) {
+        let earliest = earliest_collision(instructions, bodies, periods, disk, found, count, now, Earliest::NONE);
+        bodies.expect(disk, earliest);
+    }
+}
+
 #[inline(always)]
 fn search<const COPY: u8>(
     bodies: &Bodies,
@@ -189,6 +215,23 @@ fn scan(
         best.improve(pairs.wait().map(|wait| now + wait), lanes);
     }
     best.earliest()
+}
+
+compiled_for_each! {
+    /// Finds when and where two disks leave their cells. Returns whether they can touch a wall there.
+    #[inline(never)]
+    leave_cells(bodies: &mut Bodies, cells: &Cells, first: usize, second: usize, now: f64) -> [bool; 2]
+        = exits_in_turn, exits_in_turn, avx512::exits_of_both
+}
+
+#[inline(always)]
+fn exits_in_turn(bodies: &mut Bodies, cells: &Cells, first: usize, second: usize, now: f64) -> [bool; 2] {
+    [first, second].map(|disk| {
+        let (region, at_wall) = cells.region(disk);
+        let (due, exit) = cell_exit(bodies, disk, &region, now);
+        bodies.exit(disk, due, exit);
+        at_wall
+    })
 }
 
 /// Returns the offset at which a disk leaves its cell, and the edge.
