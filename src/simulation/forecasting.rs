@@ -87,7 +87,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Tells the scheduler when the next event of a disk is due.
-    #[inline]
+    #[inline(always)]
     pub(super) fn schedule(&mut self, disk: usize) {
         self.scheduler.set(disk, self.forecast(disk).due());
     }

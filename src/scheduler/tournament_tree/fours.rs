@@ -72,7 +72,7 @@ impl EventScheduler for Fours {
         self.winner = self.matches.last().map_or(Entry::EMPTY, |&last| winner(last));
     }
 
-    #[inline]
+    #[inline(never)]
     fn set(&mut self, disk: usize, due: f64) {
         let mut player = disk;
         let mut winner = Entry::new(disk, due);
