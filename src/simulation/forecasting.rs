@@ -66,7 +66,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn earliest_collision(&mut self, disk: usize, count: usize, known: Earliest) -> Earliest {
         let (periods, now) = (self.cells.grid().periods(), self.clock.now);
         let found = &mut self.scratch.found[0];
@@ -106,7 +106,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     }
 
     /// Finds the time and the way in which a disk's flight in its cell ends.
-    #[inline]
+    #[inline(always)]
     pub(super) fn end_flight(&mut self, disk: usize) {
         self.instructions.run(
             #[inline(always)]
