@@ -278,7 +278,7 @@ impl Cells {
 
     /// Writes to `found` the disks that `disk` may touch before it leaves its cell, itself included. Returns
     /// their number.
-    #[inline]
+    #[inline(always)]
     pub(super) fn around(&self, disk: usize, found: &mut [u32]) -> usize {
         match &self.layers {
             None => self.around_cell(self.places[disk], found),
@@ -287,7 +287,7 @@ impl Cells {
     }
 
     /// Writes the disks in the nine cells around a place.
-    #[inline]
+    #[inline(always)]
     fn around_cell(&self, place: Place, found: &mut [u32]) -> usize {
         let center = self.grid.index(place);
         let stride = self.grid.stride();

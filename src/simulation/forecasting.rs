@@ -32,7 +32,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     /// Finds another partner for a disk whose partner has collided meanwhile. The end of the disk's own
     /// flight in its cell stays.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn predict_partner(&mut self, disk: usize) {
         self.find_partner(disk);
         self.schedule(disk);
