@@ -4,7 +4,7 @@
 use std::hint::select_unpredictable;
 
 use super::Simulation;
-use super::prediction::{LANES, cell_exit, earliest_collision, find_partners, leave_cells};
+use super::prediction::{LANES, earliest_collision, find_partners, leave_cell, leave_cells};
 use super::state::{Earliest, Exit, Forecast};
 use crate::Flight;
 use crate::boundary::{Boundary, FirstTouch, Touch};
@@ -116,11 +116,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
 
     #[inline(always)]
     fn end_flight_here(&mut self, disk: usize) {
-        let (region, at_wall) = self.cells.region(disk);
-        let (exit_due, exit) = cell_exit(&self.bodies, disk, &region, self.clock.now);
-        let forecast = self.forecast_mut(disk);
-        (forecast.exit_due, forecast.exit) = (exit_due, exit);
-        if at_wall {
+        if leave_cell(&mut self.bodies, &self.cells, disk, self.clock.now) {
             self.end_at_wall(disk);
         }
     }

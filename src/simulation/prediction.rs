@@ -226,17 +226,21 @@ compiled_for_each! {
 
 #[inline(always)]
 fn exits_in_turn(bodies: &mut Bodies, cells: &Cells, first: usize, second: usize, now: f64) -> [bool; 2] {
-    [first, second].map(|disk| {
-        let (region, at_wall) = cells.region(disk);
-        let (due, exit) = cell_exit(bodies, disk, &region, now);
-        bodies.exit(disk, due, exit);
-        at_wall
-    })
+    [leave_cell(bodies, cells, first, now), leave_cell(bodies, cells, second, now)]
+}
+
+/// Finds when and where a disk leaves its cell. Returns whether it can touch a wall there.
+#[inline(always)]
+pub(super) fn leave_cell(bodies: &mut Bodies, cells: &Cells, disk: usize, now: f64) -> bool {
+    let (region, at_wall) = cells.region(disk);
+    let (due, exit) = cell_exit(bodies, disk, &region, now);
+    bodies.exit(disk, due, exit);
+    at_wall
 }
 
 /// Returns the offset at which a disk leaves its cell, and the edge.
 #[inline(always)]
-pub(super) fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64) -> (f64, Exit) {
+fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64) -> (f64, Exit) {
     let (position, velocity) = (bodies.position(disk, now), bodies.velocity(disk, now));
     let rightward = velocity.x > 0.0;
     let distance = if rightward { region.max.x - position.x } else { position.x - region.min.x };
