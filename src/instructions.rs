@@ -6,6 +6,9 @@
 //! product and a sum into one instruction. So the bits do not depend on the level. A build for a processor
 //! with AVX2 or for another architecture has one copy only.
 
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod load;
+
 /// A level of instructions that this processor has. Values for other levels cannot be made.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Instructions(Level);

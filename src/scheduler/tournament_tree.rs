@@ -43,7 +43,7 @@ impl TournamentTree {
         self.instructions = instructions;
         self.form = match due.len() {
             0 => Form::default(),
-            _ if instructions.level() != Level::Avx512 => Form::default(),
+            _ if instructions.level() == Level::Built => Form::default(),
             disks if disks <= Wide::<2>::MOST_DISKS => Form::Two(Wide::new(disks)),
             disks if disks <= Wide::<3>::MOST_DISKS => Form::Three(Wide::new(disks)),
             _ => Form::default(),

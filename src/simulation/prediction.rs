@@ -2,6 +2,8 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+#[cfg(target_arch = "x86_64")]
+mod exits;
 
 use glam::DVec2;
 
@@ -221,7 +223,7 @@ compiled_for_each! {
     /// Finds when and where two disks leave their cells. Returns whether they can touch a wall there.
     #[inline(never)]
     leave_cells(bodies: &mut Bodies, cells: &Cells, first: usize, second: usize, now: f64) -> [bool; 2]
-        = exits_in_turn, exits_in_turn, avx512::exits_of_both
+        = exits_in_turn, exits::exits_of_both, exits::exits_of_both
 }
 
 #[inline(always)]

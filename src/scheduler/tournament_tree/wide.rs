@@ -4,7 +4,7 @@ use std::hint::select_unpredictable;
 
 use super::earliest::{NO_SEAT, PLAYERS, Times, earliest_without};
 #[cfg(target_arch = "x86_64")]
-use super::earliest::avx512;
+use super::earliest::{avx2, avx512};
 use crate::instructions::compiled_for_each;
 use crate::scheduler::NOTHING_DUE;
 
@@ -208,13 +208,13 @@ compiled_for_each! {
     /// Sets the time of a disk.
     #[inline(never)]
     set<const ROUNDS: usize>(wide: &mut Wide<ROUNDS>, disk: usize, due: f64) -> ()
-        = set_built, set_built, set_avx512
+        = set_built, set_avx2, set_avx512
 }
 
 compiled_for_each! {
     /// Sets the times of all disks.
     reset<const ROUNDS: usize>(wide: &mut Wide<ROUNDS>, due: &[f64]) -> ()
-        = reset_built, reset_built, reset_avx512
+        = reset_built, reset_avx2, reset_avx512
 }
 
 macro_rules! forms {
@@ -242,6 +242,11 @@ macro_rules! forms {
 }
 
 forms!(set_built reset_built decide_built earliest_without);
+#[cfg(target_arch = "x86_64")]
+forms! {
+    #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+    set_avx2 reset_avx2 decide_avx2 avx2::earliest_without
+}
 #[cfg(target_arch = "x86_64")]
 forms! {
     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,avx512cd,avx2,bmi1,bmi2,lzcnt,popcnt")]

@@ -8,7 +8,7 @@
 //! [`Pairs`]: super::Pairs
 
 use std::arch::x86_64::{
-    __m128d, __m256d, __m256i, _CMP_EQ_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _CMP_ORD_Q, _mm_add_pd, _mm_andnot_pd, _mm_cmp_pd_mask, _mm_cvtsd_f64, _mm_div_pd, _mm_loadu_pd, _mm_mask_cmp_pd_mask, _mm_mask_mov_pd, _mm_max_pd, _mm_mul_pd, _mm_set_pd, _mm_set1_pd, _mm_setzero_pd, _mm_sqrt_pd, _mm_sub_pd, _mm_unpackhi_pd, _mm256_add_pd as add,
+    __m256d, __m256i, _CMP_EQ_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_pd as add,
     _mm256_cmp_pd_mask, _mm256_cmplt_epu64_mask, _mm256_cvtsd_f64,
     _mm256_cvtsi256_si32, _mm256_div_pd as divide, _mm256_mask_cmp_pd_mask, _mm256_mask_mov_epi64,
     _mm256_mask_mov_pd, _mm256_maskz_mov_pd, _mm256_max_pd as max, _mm256_min_epu64, _mm256_min_pd as min,
@@ -20,9 +20,8 @@ use std::arch::x86_64::{
 use glam::DVec2;
 
 use super::LANES;
-use crate::instructions::Instructions;
-use crate::simulation::cells::Cells;
-use crate::simulation::state::{Bodies, Earliest, Exit, Trajectory};
+use crate::instructions::{Instructions, load};
+use crate::simulation::state::{Bodies, Earliest, Trajectory};
 
 /// The search of a disk: its motion in all lanes, and the earliest collision of each lane.
 struct Search {
@@ -70,7 +69,7 @@ impl Search {
     #[inline]
     fn meet<const IS_PERIODIC: bool>(&mut self, bodies: &Bodies, lanes: &[u32; LANES], common: &Common) {
         let Common { now, contact_squared, periods } = *common;
-        let [a, b, c, d] = lanes.each_ref().map(alone);
+        let [a, b, c, d] = lanes.each_ref().map(load::one);
         let row = |other: u32| &bodies.particles[other as usize].trajectory;
         let [x, y, velocity_x, velocity_y] = columns(row(a), row(b), row(c), row(d));
         let (velocity_x, velocity_y) = (subtract(velocity_x, self.velocity_x), subtract(velocity_y, self.velocity_y));
@@ -115,7 +114,7 @@ impl Search {
 #[target_feature(enable = "avx512vl")]
 #[inline]
 fn columns(a: &Trajectory, b: &Trajectory, c: &Trajectory, d: &Trajectory) -> [__m256d; 4] {
-    let pairs = |low: &DVec2, high: &DVec2| _mm256_set_m128d(pair(high), pair(low));
+    let pairs = |low: &DVec2, high: &DVec2| _mm256_set_m128d(load::two(high.as_ref()), load::two(low.as_ref()));
     let (even, odd) = (pairs(&a.position, &c.position), pairs(&b.position, &d.position));
     let (even_velocity, odd_velocity) = (pairs(&a.velocity, &c.velocity), pairs(&b.velocity, &d.velocity));
     [
@@ -124,24 +123,6 @@ fn columns(a: &Trajectory, b: &Trajectory, c: &Trajectory, d: &Trajectory) -> [_
         _mm256_unpacklo_pd(even_velocity, odd_velocity),
         _mm256_unpackhi_pd(even_velocity, odd_velocity),
     ]
-}
-
-/// Reads two numbers at once.
-#[allow(unsafe_code)]
-#[target_feature(enable = "avx512vl")]
-#[inline]
-fn pair(vector: &DVec2) -> __m128d {
-    let numbers: &[f64; 2] = vector.as_ref();
-    // SAFETY: the pointer is that of two numbers.
-    unsafe { _mm_loadu_pd(numbers.as_ptr()) }
-}
-
-/// Reads a number by itself.
-#[allow(unsafe_code)]
-#[inline(always)]
-fn alone(number: &u32) -> u32 {
-    // SAFETY: the pointer is that of a number.
-    unsafe { std::ptr::from_ref(number).read_volatile() }
 }
 
 #[target_feature(enable = "avx512vl")]
@@ -235,61 +216,4 @@ fn meet_both<const IS_PERIODIC: bool>(
         second.meet::<IS_PERIODIC>(bodies, &two[at.min(two.len() - 1)], common);
     }
     [first.earliest(), second.earliest()]
-}
-
-/// Does the same as [`exits_in_turn`](super::exits_in_turn).
-///
-/// One root and one quotient serve both disks.
-#[target_feature(enable = "avx512vl")]
-#[inline]
-pub(super) fn exits_of_both(bodies: &mut Bodies, cells: &Cells, first: usize, second: usize, now: f64) -> [bool; 2] {
-    let gravity = bodies.gravity.downward();
-    if bodies.gravity.rightward() != 0.0 || gravity < 0.0 {
-        return super::exits_in_turn(bodies, cells, first, second, now);
-    }
-    let disks = [first, second];
-    let ((one, at_wall), (two, also_at_wall)) = (cells.region(first), cells.region(second));
-    let both = |x: f64| _mm_set1_pd(x);
-    let select = |mask, yes, no| _mm_mask_mov_pd(no, mask, yes);
-    let (zero, infinity, time) = (_mm_setzero_pd(), both(f64::INFINITY), both(now));
-    let (first, second) = (&bodies.particles[first].trajectory, &bodies.particles[second].trajectory);
-    let (fallen, gained) = bodies.fall(now);
-    let of_both = |one: f64, two: f64| _mm_set_pd(two, one);
-    let velocity_x = of_both(first.velocity.x, second.velocity.x);
-    let velocity_y = of_both(first.velocity.y, second.velocity.y);
-    let x = of_both(first.position.x, second.position.x);
-    let y = of_both(first.position.y, second.position.y);
-    let x = _mm_add_pd(_mm_add_pd(x, _mm_mul_pd(velocity_x, time)), both(fallen.x));
-    let y = _mm_add_pd(_mm_add_pd(y, _mm_mul_pd(velocity_y, time)), both(fallen.y));
-    let velocity_x = _mm_add_pd(velocity_x, both(gained.x));
-    let velocity_y = _mm_add_pd(velocity_y, both(gained.y));
-
-    let speed = |velocity| _mm_andnot_pd(both(-0.0), velocity);
-    let rightward = _mm_cmp_pd_mask::<_CMP_GT_OQ>(velocity_x, zero);
-    let (to_left, to_right) = (_mm_sub_pd(x, of_both(one.min.x, two.min.x)), _mm_sub_pd(of_both(one.max.x, two.max.x), x));
-    let sideways = _mm_div_pd(select(rightward, to_right, to_left), speed(velocity_x));
-
-    let above = _mm_max_pd(_mm_sub_pd(of_both(one.max.y, two.max.y), y), zero);
-    let below = _mm_max_pd(_mm_sub_pd(y, of_both(one.min.y, two.min.y)), zero);
-    let square = _mm_mul_pd(velocity_y, velocity_y);
-    let rising = _mm_cmp_pd_mask::<_CMP_GT_OQ>(velocity_y, zero);
-    let twice = both(2.0 * gravity);
-    let reserve = _mm_sub_pd(square, _mm_mul_pd(twice, above));
-    let up = _mm_mask_cmp_pd_mask::<_CMP_GT_OQ>(rising, reserve, zero);
-    let radicand = select(up, reserve, _mm_add_pd(square, _mm_mul_pd(twice, below)));
-    let sum = _mm_add_pd(_mm_sqrt_pd(radicand), speed(velocity_y));
-    let distance = _mm_mul_pd(both(2.0), select(up, above, below));
-    let numerator = select(up, distance, select(rising, sum, distance));
-    let denominator = select(up, sum, select(rising, both(gravity), sum));
-    let vertical = _mm_div_pd(numerator, denominator);
-
-    let number = |wait| select(_mm_cmp_pd_mask::<_CMP_ORD_Q>(wait, wait), wait, infinity);
-    let (vertical, sideways) = (number(vertical), number(sideways));
-    let level = _mm_cmp_pd_mask::<_CMP_LT_OQ>(vertical, sideways);
-    let due = _mm_add_pd(time, _mm_max_pd(select(level, vertical, sideways), zero));
-    let sense = (level & up) | (!level & rightward);
-    let exit = |k: u8| Exit::EDGES[usize::from((level >> k) & 1)][usize::from((sense >> k) & 1)];
-    bodies.exit(disks[0], _mm_cvtsd_f64(due), exit(0));
-    bodies.exit(disks[1], _mm_cvtsd_f64(_mm_unpackhi_pd(due, due)), exit(1));
-    [at_wall, also_at_wall]
 }
