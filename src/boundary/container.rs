@@ -9,7 +9,7 @@ use glam::DVec2;
 use super::conduct::Conduct;
 use super::plane::Plane;
 use super::vector::finite_point;
-use super::{Boundary, Domain, FirstTouch, Region, Surface, Thermal, Touch, Wall, WallError};
+use super::{Boundary, Domain, FirstTouch, Overlap, Probe, Region, Surface, Thermal, Touch, Wall, WallError};
 use crate::collision::CollisionRule;
 use crate::quantity::positive;
 use crate::wall::{Motion, WallMotion};
@@ -299,16 +299,16 @@ impl Boundary for Container {
         self.planes[wall].surface(time)
     }
 
-    fn place(&self, wall: usize, time: f64) -> Option<DVec2> {
+    fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
         self.planes.get(wall).map(|plane| plane.place(time))
     }
 
-    fn overlap(&self, position: DVec2, radius: f64, time: f64) -> Option<(usize, f64)> {
+    fn overlap(&self, probe: &Probe) -> Option<Overlap> {
         // Most walls are far away, so their positions need not be computed.
+        let (position, radius, time) = (probe.position(), probe.radius(), probe.time());
         let near =
             self.planes.iter().enumerate().filter(|(_, plane)| plane.is_within_reach(position, radius));
-        let depths = near.map(|(wall, plane)| (wall, plane.depth(position, radius, time)));
-        depths.filter(|&(_, depth)| depth > 0.0).max_by(|a, b| a.1.total_cmp(&b.1))
+        Overlap::deepest(near.map(|(wall, plane)| Overlap::new(wall, plane.depth(position, radius, time))))
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {

@@ -4,7 +4,7 @@
 use granular_edmd::analysis::{
     ConvectiveRegime, KMeans, StateCriteria, distinct_clusters, thermal_noise, transitions,
 };
-use granular_edmd::boundary::{Boundary, Container, Region, Wall};
+use granular_edmd::boundary::{Boundary, Container, Probe, Region, Wall};
 use granular_edmd::collision::{Elastic, Encounter, Frictional, collide};
 use granular_edmd::glam::DVec2;
 use granular_edmd::kinetic::{
@@ -80,7 +80,8 @@ fn disks_of_any_size_find_their_places_or_an_error_at_once() {
                 let random = initial::random(&container, count, size, 10.0, 1);
                 for disks in [lattice, random].into_iter().flatten() {
                     assert_eq!(disks.len(), count);
-                    let overlap = |disk: &Disk| container.overlap(disk.position(), disk.radius(), 0.0);
+                    let overlap =
+                        |disk: &Disk| container.overlap(&Probe::new(disk.position(), disk.radius(), 0.0));
                     assert!(disks.iter().all(|disk| overlap(disk).is_none()), "{size:e}");
                 }
             }

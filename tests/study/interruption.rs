@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use granular_edmd::boundary::Container;
 use granular_edmd::collision::Elastic;
-use granular_edmd::observable::{Collision, Moment, Observer, Snapshot};
+use granular_edmd::observable::{Collision, Observer, Snapshot};
 use granular_edmd::study::{Column, Control, Experiment, ExperimentError, Plan, Progress, Protocol, Study};
 use granular_edmd::{Disk, Fingerprint, initial};
 use serde::{Deserialize, Serialize};
@@ -82,7 +82,7 @@ struct Heard {
 }
 
 impl Observer for Heard {
-    fn on_start(&mut self, _: &Moment) {
+    fn on_start(&mut self, _: &Snapshot<'_>) {
         self.starts += 1;
     }
 
@@ -90,7 +90,7 @@ impl Observer for Heard {
         self.collisions += 1;
     }
 
-    fn on_end(&mut self, _: &Moment) {
+    fn on_end(&mut self, _: &Snapshot<'_>) {
         self.ends += 1;
     }
 }

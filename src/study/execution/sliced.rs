@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use crate::boundary::Boundary;
 use crate::collision::CollisionRule;
-use crate::observable::{Collision, Moment, Observer, Snapshot, Verdict};
+use crate::observable::{Collision, Observer, Snapshot, Verdict};
 use crate::simulation::{Limits, RunEnd, RunError, Simulation};
 
 /// Runs until an absolute time, or for this wall-clock time at most.
@@ -18,12 +18,11 @@ pub(super) fn run<R: CollisionRule, B: Boundary, O: Observer>(
     observer: &mut O,
     is_under_way: &mut bool,
 ) -> Result<RunEnd, RunError> {
-    let mut sliced = Sliced { observer, is_under_way: *is_under_way, last: None };
+    let mut sliced = Sliced { observer, is_under_way: *is_under_way };
     let ended = simulation.run(&Limits::until(end).with_wall_clock(slice), &mut sliced);
-    let last = sliced.last;
     *is_under_way = matches!(ended, Ok(RunEnd::WallClock));
-    if let Some(moment) = last.filter(|_| !*is_under_way) {
-        observer.on_end(&moment);
+    if !*is_under_way {
+        observer.on_end(&simulation.snapshot());
     }
     // A verdict to stop comes too late now. A failure must still be reported, as after any run.
     let failed = observer.verdict().err().filter(|_| !*is_under_way && ended.is_ok());
@@ -37,14 +36,12 @@ pub(super) fn run<R: CollisionRule, B: Boundary, O: Observer>(
 struct Sliced<'a, O> {
     observer: &'a mut O,
     is_under_way: bool,
-    /// The end of the slice.
-    last: Option<Moment>,
 }
 
 impl<O: Observer> Observer for Sliced<'_, O> {
-    fn on_start(&mut self, moment: &Moment) {
+    fn on_start(&mut self, start: &Snapshot<'_>) {
         if !self.is_under_way {
-            self.observer.on_start(moment);
+            self.observer.on_start(start);
         }
     }
 
@@ -60,10 +57,6 @@ impl<O: Observer> Observer for Sliced<'_, O> {
 
     fn on_sample(&mut self, snapshot: &Snapshot<'_>) {
         self.observer.on_sample(snapshot);
-    }
-
-    fn on_end(&mut self, moment: &Moment) {
-        self.last = Some(*moment);
     }
 
     #[inline]
