@@ -132,6 +132,12 @@ impl<'a> Snapshot<'a> {
         self.walls.and_then(|walls| walls.boundary.wall_point(wall, walls.time))
     }
 
+    /// Returns the velocity of a wall's surface at its [point](Self::wall_point); `None` if it is not known.
+    pub fn wall_velocity(&self, wall: usize) -> Option<DVec2> {
+        let (walls, point) = (self.walls?, self.wall_point(wall)?);
+        Some(walls.boundary.surface(wall, point, walls.time).velocity)
+    }
+
     /// Returns the area of the places in `region` at which the center of a disk of this radius is free;
     /// `None` if it is not known.
     ///
