@@ -108,7 +108,7 @@ impl Plane {
     pub(super) fn set_time_origin(&mut self, origin: f64) {
         self.phase = match self.motion.stroke() {
             Some(stroke) => {
-                self.motion = Motion::of(stroke.from_origin(origin));
+                self.motion = Motion::of(stroke.at_origin(origin));
                 0.0
             }
             None => self.motion.phase(origin),
