@@ -89,6 +89,18 @@ fn sawtooth() -> Altered {
     Altered::new(Sawtooth::new(AMPLITUDE, FREQUENCY).expect("an amplitude"))
 }
 
+/// Returns arcs that are higher by a factor at some phases, with bounds that are right.
+fn amplified(factor: f64, is_there: fn(f64) -> bool) -> Altered {
+    let at = move |phase: f64| if is_there(phase) { factor } else { 1.0 };
+    let state = move |state: &mut WallState, phase: f64| {
+        *state = WallState::new(at(phase) * state.displacement, at(phase) * state.velocity);
+    };
+    let bounds = move |bounds: &mut AccelerationBounds, phase: f64| {
+        (bounds.min, bounds.max) = (at(phase) * bounds.min, at(phase) * bounds.max);
+    };
+    parabolic().state(state).bounds(bounds)
+}
+
 /// Returns the share of the period that has passed.
 fn share(phase: f64) -> f64 {
     (phase / PERIOD).rem_euclid(1.0)
@@ -145,19 +157,20 @@ fn velocities(motions: &mut Motions) {
             }
         }));
     }
-    let until = |state: &mut WallState, phase: f64| {
+    let late = |state: &mut WallState, phase: f64| {
         if phase > 10.0 * PERIOD {
             state.velocity *= 0.99;
         }
     };
-    motions.add("velocity", "the velocity is too small by a hundredth after ten periods", harmonic().state(until));
+    motions.add("velocity", "the velocity is too small by a hundredth after ten periods", harmonic().state(late));
 }
 
 /// "The displacement may jump there, too, but only away from the disks."
 fn jumps(motions: &mut Motions) {
     for n in [1, 3, 6, 9] {
         let (size, name) = (tenth(n) * AMPLITUDE, format!("half a period is higher by 1e-{n} of the amplitude"));
-        motions.add("jump", name, parabolic().reach(-2.0 * AMPLITUDE, 2.0 * AMPLITUDE).state(move |state, phase| {
+        let raised = Altered { jumps: true, ..parabolic() }.reach(-2.0 * AMPLITUDE, 2.0 * AMPLITUDE);
+        motions.add("jump", name, raised.state(move |state, phase| {
             if share(phase) >= 0.5 {
                 state.displacement += size;
             }
@@ -191,11 +204,9 @@ fn reaches(motions: &mut Motions) {
     }
     motions.add("reach", "the reach has its ends exchanged", parabolic().reach(AMPLITUDE, -AMPLITUDE));
     motions.add("reach", "the reach is the amplitude and not the range", harmonic().reach(0.0, AMPLITUDE));
-    motions.add("reach", "the wall leaves its reach once in 20 periods", parabolic().state(|state, phase| {
-        if (phase / PERIOD).rem_euclid(20.0) > 19.5 {
-            *state = WallState::new(1.5 * state.displacement, 1.5 * state.velocity);
-        }
-    }));
+    let is_high = |phase: f64| (phase / PERIOD).rem_euclid(20.0) >= 19.5;
+    let rare = Altered { period: None, ..amplified(1.5, is_high) };
+    motions.add("reach", "the wall leaves its reach below once in 20 periods", rare);
 }
 
 /// "Its bounds hold for the acceleration up to its end."
@@ -240,11 +251,8 @@ fn periods(motions: &mut Motions) {
     motions.add("period", "the period is infinite", harmonic().period(f64::INFINITY));
     let delayed = Delayed::new(Sinusoidal::new(AMPLITUDE, FREQUENCY).expect("an amplitude"), 1.0).expect("a start");
     motions.add("period", "a motion that starts late has a period", Altered::new(delayed).period(PERIOD));
-    motions.add("period", "the amplitude halves after 7 periods", parabolic().state(|state, phase| {
-        if phase >= 7.0 * PERIOD {
-            *state = WallState::new(0.5 * state.displacement, 0.5 * state.velocity);
-        }
-    }));
+    let tired = amplified(0.5, |phase| phase >= 7.0 * PERIOD);
+    motions.add("period", "the amplitude halves after 7 periods", tired);
 }
 
 /// "A piece ends later than the phase asked for."
@@ -280,11 +288,8 @@ fn numbers(motions: &mut Motions) {
             state.velocity = f64::NAN;
         }
     }));
-    motions.add("number", "negative phases are not numbers", harmonic().state(|state, phase| {
-        state.displacement *= phase.sqrt() / phase.abs().sqrt().max(f64::MIN_POSITIVE);
-        if phase == 0.0 {
-            state.displacement = 0.0;
-        }
+    motions.add("number", "the velocity at negative phases is not a number", harmonic().state(|state, phase| {
+        state.velocity += 0.0 * phase.sqrt();
     }));
     motions.add("number", "the upper bound is infinite", parabolic().bounds(|bounds, _| bounds.max = f64::INFINITY));
     for calls in [2, 50, 3_000] {
