@@ -5,13 +5,16 @@ mod bases;
 mod reacting;
 mod touches;
 
+use granular_edmd::Fingerprint;
 use granular_edmd::boundary::{Boundary, Domain, Overlap, Region, Surface};
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::WallMotion;
 
 use crate::faults::{Planted, tenth};
 use altered::Altered;
-use bases::{Rotor, Sprung, board, dish, floor_motion, resting, shaken, sliding, stirred};
+use bases::{
+    Rotor, Sprung, board, common_area, dish, floor_motion, measured, resting, shaken, sliding, stirred,
+};
 
 /// A boundary, with a radius of disks that fit into it, and gravity.
 pub(crate) struct Walled {
@@ -39,13 +42,20 @@ impl Boundaries {
     }
 }
 
+/// Returns the same boundary with this fingerprint.
+pub(crate) fn marked(honest: impl Boundary + 'static, mark: Fingerprint) -> Box<dyn Boundary> {
+    Box::new(Altered { mark: Some(mark), ..Altered::new(honest) })
+}
+
 /// Returns the boundaries on which faults are planted.
 pub(crate) fn honest() -> Vec<Planted<Walled>> {
     let mut boundaries = Boundaries::default();
-    for (name, boundary) in [("shaken", shaken()), ("sliding", sliding()), ("dish", dish()), ("stirred", stirred())] {
+    for (name, boundary) in
+        [("shaken", shaken()), ("sliding", sliding()), ("dish", dish()), ("stirred", stirred())]
+    {
         boundaries.add("honest", name, boundary);
     }
-    boundaries.add("honest", "resting", Altered::new(resting()));
+    boundaries.add("honest", "measured", measured());
     boundaries.add("honest", "board", Altered::new(board()));
     boundaries.add("honest", "sieve", bases::sieve(bases::GHOST));
     boundaries.add("honest", "sprung", Altered::new(Sprung::new()));
@@ -55,7 +65,7 @@ pub(crate) fn honest() -> Vec<Planted<Walled>> {
 
 pub(crate) fn catalogue() -> Vec<Planted<Walled>> {
     let mut boundaries = Boundaries::default();
-    for plant in [velocities, origins, normals, curvatures, overlaps, regions, frames] {
+    for plant in [velocities, origins, normals, curvatures, overlaps, areas, regions, frames] {
         plant(&mut boundaries);
     }
     touches::plant(&mut boundaries);
@@ -72,11 +82,13 @@ fn is_floor(surface: &Surface<'_>) -> bool {
 fn velocities(boundaries: &mut Boundaries) {
     for n in [1, 2, 3, 5, 7] {
         let (size, name) = (tenth(n), format!("the floor is faster than its geometry by 1e-{n}"));
-        boundaries.add_surface("velocity", name, shaken(), move |surface, _, _| surface.velocity *= 1.0 + size);
+        boundaries
+            .add_surface("velocity", name, shaken(), move |surface, _, _| surface.velocity *= 1.0 + size);
     }
     for n in [1, 3, 5] {
         let (size, name) = (tenth(n), format!("the bar turns faster than its geometry by 1e-{n}"));
-        boundaries.add_surface("velocity", name, stirred(), move |surface, _, _| surface.velocity *= 1.0 + size);
+        boundaries
+            .add_surface("velocity", name, stirred(), move |surface, _, _| surface.velocity *= 1.0 + size);
     }
     boundaries.add_surface("velocity", "the floor is at rest as a surface", shaken(), |surface, _, _| {
         surface.velocity = DVec2::ZERO;
@@ -84,43 +96,73 @@ fn velocities(boundaries: &mut Boundaries) {
     boundaries.add_surface("velocity", "the velocity has the wrong sign", shaken(), |surface, _, _| {
         surface.velocity *= -1.0;
     });
-    boundaries.add_surface("velocity", "the velocity is not a number where the floor turns", shaken(), |surface, _, _| {
-        if is_floor(surface) && surface.velocity.y.abs() < 0.05 {
-            surface.velocity.y = f64::NAN;
-        }
-    });
-    boundaries.add_surface("velocity", "the bar forgets the velocity along itself", stirred(), |surface, _, _| {
-        surface.velocity = surface.velocity.dot(surface.normal) * surface.normal;
-    });
+    boundaries.add_surface(
+        "velocity",
+        "the velocity is not a number where the floor turns",
+        shaken(),
+        |surface, _, _| {
+            if is_floor(surface) && surface.velocity.y.abs() < 0.05 {
+                surface.velocity.y = f64::NAN;
+            }
+        },
+    );
+    boundaries.add_surface(
+        "velocity",
+        "the bar forgets the velocity along itself",
+        stirred(),
+        |surface, _, _| {
+            surface.velocity = surface.velocity.dot(surface.normal) * surface.normal;
+        },
+    );
     boundaries.add_surface("velocity", "the floor forgets that it slides", sliding(), |surface, _, _| {
         surface.velocity.x = 0.0;
     });
-    boundaries.add_surface("velocity", "the bar turns about the corner of the box", stirred(), |surface, position, _| {
-        if surface.velocity != DVec2::ZERO {
-            surface.velocity = 0.7 * position.perp();
-        }
-    });
-    boundaries.add_surface("velocity", "the bar turns as its disk, and not as the point of touch", stirred(), |surface, position, _| {
-        if surface.velocity != DVec2::ZERO {
-            surface.velocity = 0.7 * (position - DVec2::new(5.0, 6.0)).perp();
-        }
-    });
+    boundaries.add_surface(
+        "velocity",
+        "the bar turns about the corner of the box",
+        stirred(),
+        |surface, position, _| {
+            if surface.velocity != DVec2::ZERO {
+                surface.velocity = 0.7 * position.perp();
+            }
+        },
+    );
+    boundaries.add_surface(
+        "velocity",
+        "the bar turns as its disk, and not as the point of touch",
+        stirred(),
+        |surface, position, _| {
+            if surface.velocity != DVec2::ZERO {
+                surface.velocity = 0.7 * (position - DVec2::new(5.0, 6.0)).perp();
+            }
+        },
+    );
 }
 
 /// "Another origin changes only the numbers by which times are given."
 fn origins(boundaries: &mut Boundaries) {
     type Pass = fn(f64, f64) -> f64;
     let motion = floor_motion();
-    boundaries.add_surface("origin", "the velocity of the floor forgets the origin", shaken(), move |surface, _, time| {
-        if is_floor(surface) {
-            surface.velocity.y = motion.state(time).velocity;
-        }
-    });
-    boundaries.add_surface("origin", "the sliding of the floor forgets the origin", sliding(), |surface, _, time| {
-        if is_floor(surface) {
-            surface.velocity.x = 0.6 * (2.0 * time).cos();
-        }
-    });
+    boundaries.add_surface(
+        "origin",
+        "the velocity of the floor forgets the origin",
+        shaken(),
+        move |surface, _, time| {
+            if is_floor(surface) {
+                surface.velocity.y = motion.state(time).velocity;
+            }
+        },
+    );
+    boundaries.add_surface(
+        "origin",
+        "the sliding of the floor forgets the origin",
+        sliding(),
+        |surface, _, time| {
+            if is_floor(surface) {
+                surface.velocity.x = 0.6 * (2.0 * time).cos();
+            }
+        },
+    );
     for n in [1, 3, 6] {
         let (size, name) = (tenth(n), format!("the origin is wrong by 1e-{n} of itself"));
         let origin = Box::new(move |_: f64, origin: f64| (1.0 + size) * origin);
@@ -135,7 +177,11 @@ fn origins(boundaries: &mut Boundaries) {
     ];
     for (name, pass) in passes {
         boundaries.add("origin", name, Altered { origin: Box::new(pass), ..shaken() });
-        boundaries.add("origin", format!("{name}, of a bar that turns"), Altered { origin: Box::new(pass), ..stirred() });
+        boundaries.add(
+            "origin",
+            format!("{name}, of a bar that turns"),
+            Altered { origin: Box::new(pass), ..stirred() },
+        );
     }
 }
 
@@ -144,7 +190,9 @@ fn normals(boundaries: &mut Boundaries) {
     for n in [1, 2, 3, 5, 7] {
         let turn = DVec2::from_angle(tenth(n));
         let name = format!("the normal of a dish is turned by 1e-{n}");
-        boundaries.add_surface("normal", name, dish(), move |surface, _, _| surface.normal = turn.rotate(surface.normal));
+        boundaries.add_surface("normal", name, dish(), move |surface, _, _| {
+            surface.normal = turn.rotate(surface.normal)
+        });
         let name = format!("the normal of a floor is turned by 1e-{n}");
         boundaries.add_surface("normal", name, shaken(), move |surface, _, _| {
             if is_floor(surface) {
@@ -159,17 +207,27 @@ fn normals(boundaries: &mut Boundaries) {
     boundaries.add_surface("normal", "the normal of the lid points into it", shaken(), |surface, _, _| {
         surface.normal.y = surface.normal.y.abs();
     });
-    boundaries.add_surface("normal", "near a corner, the floor has the normal of the side", shaken(), |surface, position, _| {
-        if is_floor(surface) && position.x < 1.0 {
-            surface.normal = DVec2::X;
-        }
-    });
-    boundaries.add_surface("normal", "the normal of the bar is that at time 0", stirred(), |surface, position, _| {
-        let away = position - DVec2::new(5.0, 6.0);
-        if away.length() < 1.6 {
-            surface.normal = DVec2::new(0.0, 1_f64.copysign(away.y));
-        }
-    });
+    boundaries.add_surface(
+        "normal",
+        "near a corner, the floor has the normal of the side",
+        shaken(),
+        |surface, position, _| {
+            if is_floor(surface) && position.x < 1.0 {
+                surface.normal = DVec2::X;
+            }
+        },
+    );
+    boundaries.add_surface(
+        "normal",
+        "the normal of the bar is that at time 0",
+        stirred(),
+        |surface, position, _| {
+            let away = position - DVec2::new(5.0, 6.0);
+            if away.length() < 1.6 {
+                surface.normal = DVec2::new(0.0, 1_f64.copysign(away.y));
+            }
+        },
+    );
 }
 
 /// "Radius of the surface: infinite if it is straight, negative if it is hollow."
@@ -179,56 +237,101 @@ fn curvatures(boundaries: &mut Boundaries) {
         boundaries.add_surface("curvature", name, dish(), move |surface, _, _| surface.radius *= 1.0 + size);
     }
     let board = || Altered::new(board());
-    boundaries.add_surface("curvature", "the hollow dish has a positive radius", dish(), |surface, _, _| surface.radius *= -1.0);
-    boundaries.add_surface("curvature", "the peg counts as hollow", board(), |surface, _, _| surface.radius *= -1.0);
+    boundaries.add_surface("curvature", "the hollow dish has a positive radius", dish(), |surface, _, _| {
+        surface.radius *= -1.0
+    });
+    boundaries.add_surface("curvature", "the peg counts as hollow", board(), |surface, _, _| {
+        surface.radius *= -1.0
+    });
     boundaries.add_surface("curvature", "the peg has its curvature as radius", board(), |surface, _, _| {
         surface.radius = 1.0 / surface.radius;
     });
-    boundaries.add_surface("curvature", "the dish counts as straight", dish(), |surface, _, _| surface.radius = f64::INFINITY);
-    boundaries.add_surface("curvature", "the peg has the distance of the centers as radius", board(), |surface, _, _| {
-        surface.radius += 0.5;
+    boundaries.add_surface("curvature", "the dish counts as straight", dish(), |surface, _, _| {
+        surface.radius = f64::INFINITY
     });
+    boundaries.add_surface(
+        "curvature",
+        "the peg has the distance of the centers as radius",
+        board(),
+        |surface, _, _| {
+            surface.radius += 0.5;
+        },
+    );
 }
 
 /// "None for a disk inside, otherwise the depth to which the disk reaches into a wall."
 fn overlaps(boundaries: &mut Boundaries) {
     for n in [1, 3, 5, 7] {
         let (size, name) = (tenth(n), format!("an overlap is too deep by 1e-{n} of itself"));
-        boundaries.add("overlap", name, Altered {
-            overlap: Box::new(move |honest, probe| {
-                honest.overlap(probe).map(|found| Overlap::new(found.with, (1.0 + size) * found.depth))
-            }),
-            ..dish()
-        });
+        boundaries.add(
+            "overlap",
+            name,
+            Altered {
+                overlap: Box::new(move |honest, probe| {
+                    honest.overlap(probe).map(|found| Overlap::new(found.with, (1.0 + size) * found.depth))
+                }),
+                ..dish()
+            },
+        );
         let name = format!("overlaps below 1e-{n} of the radius do not count");
-        boundaries.add("overlap", name, Altered {
-            overlap: Box::new(move |honest, probe| {
-                honest.overlap(probe).filter(|found| found.depth > size * probe.radius())
+        boundaries.add(
+            "overlap",
+            name,
+            Altered {
+                overlap: Box::new(move |honest, probe| {
+                    honest.overlap(probe).filter(|found| found.depth > size * probe.radius())
+                }),
+                ..shaken()
+            },
+        );
+    }
+    boundaries.add(
+        "overlap",
+        "an overlap is measured at time 0",
+        Altered { overlap: Box::new(|honest, probe| honest.overlap(&probe.with_time(0.0))), ..shaken() },
+    );
+    boundaries.add(
+        "overlap",
+        "all disks have a radius of 1/2",
+        Altered { overlap: Box::new(|honest, probe| honest.overlap(&probe.with_radius(0.5))), ..dish() },
+    );
+    boundaries.add(
+        "overlap",
+        "the wall that is named is always the first",
+        Altered {
+            overlap: Box::new(|honest, probe| {
+                honest.overlap(probe).map(|found| Overlap::new(0, found.depth))
             }),
             ..shaken()
-        });
+        },
+    );
+    boundaries.add(
+        "overlap",
+        "a disk inside overlaps by a negative depth",
+        Altered {
+            overlap: Box::new(|honest, probe| Some(honest.overlap(probe).unwrap_or(Overlap::new(0, -0.1)))),
+            ..shaken()
+        },
+    );
+}
+
+/// "The area of the places in `region` at which the center of a disk of this radius is free."
+fn areas(boundaries: &mut Boundaries) {
+    type Area = fn(&Region, f64) -> f64;
+    let areas: [(&str, Area); 4] = [
+        ("the free area is too large by a hundredth", |region, radius| 1.01 * common_area(region, radius)),
+        ("the free area is that of points", |region, _| common_area(region, 0.0)),
+        ("the free area reaches into the walls", |region, _| {
+            (region.max.x - region.min.x) * (region.max.y - region.min.y)
+        }),
+        ("the free area leaves out a diameter along the walls", |region, radius| {
+            common_area(region, 2.0 * radius)
+        }),
+    ];
+    for (name, area) in areas {
+        let area = Box::new(move |_: Option<f64>, region: &Region, radius: f64| Some(area(region, radius)));
+        boundaries.add("area", name, Altered { area, ..Altered::new(resting()) });
     }
-    boundaries.add("overlap", "an overlap is measured at time 0", Altered {
-        overlap: Box::new(|honest, probe| honest.overlap(&probe.with_time(0.0))),
-        ..shaken()
-    });
-    boundaries.add("overlap", "all disks have a radius of 1/2", Altered {
-        overlap: Box::new(|honest, probe| honest.overlap(&probe.with_radius(0.5))),
-        ..dish()
-    });
-    boundaries.add("overlap", "the wall that is named is always the first", Altered {
-        overlap: Box::new(|honest, probe| honest.overlap(probe).map(|found| Overlap::new(0, found.depth))),
-        ..shaken()
-    });
-    boundaries.add("overlap", "a disk inside overlaps by a negative depth", Altered {
-        overlap: Box::new(|honest, probe| Some(honest.overlap(probe).unwrap_or(Overlap::new(0, -0.1)))),
-        ..shaken()
-    });
-    boundaries.add("area", "the free area is too large by a hundredth", Altered { area: Box::new(|area, _| 1.01 * area), ..shaken() });
-    boundaries.add("area", "the free area of disks is too large by four radii", Altered {
-        area: Box::new(|area, radius| if radius > 0.0 { area + 4.0 * radius } else { area }),
-        ..shaken()
-    });
 }
 
 /// "False only for a region in which no disk can touch a wall at any time", and true for every larger one.
@@ -250,19 +353,26 @@ fn regions(boundaries: &mut Boundaries) {
             let is_finite = region.min.is_finite() && region.max.is_finite();
             is_finite && honest.may_touch(region, radius)
         }),
-        ("a region above the floor at rest, by less than its amplitude, is free", |honest, region, radius| {
-            let is_low = region.min.y - radius > 0.02 && region.max.y < 2.0;
-            let is_aside = region.min.x > radius && region.max.x < 10.0 - radius;
-            !(is_low && is_aside) && honest.may_touch(region, radius)
-        }),
+        (
+            "a region above the floor at rest, by less than its amplitude, is free",
+            |honest, region, radius| {
+                let is_low = region.min.y - radius > 0.02 && region.max.y < 2.0;
+                let is_aside = region.min.x > radius && region.max.x < 10.0 - radius;
+                !(is_low && is_aside) && honest.may_touch(region, radius)
+            },
+        ),
     ];
     for (name, answer) in answers {
         boundaries.add("may touch", name, Altered { may_touch: Box::new(answer), ..shaken() });
     }
-    boundaries.add("may touch", "the peg is left out", Altered {
-        may_touch: Box::new(|_, region, radius| resting().may_touch(region, radius)),
-        ..Altered::new(board())
-    });
+    boundaries.add(
+        "may touch",
+        "the peg is left out",
+        Altered {
+            may_touch: Box::new(|_, region, radius| resting().may_touch(region, radius)),
+            ..Altered::new(board())
+        },
+    );
 }
 
 /// "Domain, interior and number of walls never change. All centers stay in the domain."
@@ -296,8 +406,9 @@ fn frames(boundaries: &mut Boundaries) {
     boundaries.add("domain", "the interior reaches beyond the domain", Altered { interior, ..shaken() });
     let walls = Box::new(|since: f64, count: usize| if since > 0.0 { count - 1 } else { count });
     boundaries.add("domain", "a wall is gone after the first origin", Altered { walls, ..shaken() });
-    boundaries.add("domain", "there is one wall fewer than there are", Altered {
-        walls: Box::new(|_, count| count - 1),
-        ..shaken()
-    });
+    boundaries.add(
+        "domain",
+        "there is one wall fewer than there are",
+        Altered { walls: Box::new(|_, count| count - 1), ..shaken() },
+    );
 }

@@ -111,7 +111,12 @@ fn share(phase: f64) -> f64 {
 struct Motions(Vec<Planted<Motion>>);
 
 impl Motions {
-    fn add(&mut self, family: &'static str, name: impl Into<String>, motion: impl WallMotion + Send + Sync + 'static) {
+    fn add(
+        &mut self,
+        family: &'static str,
+        name: impl Into<String>,
+        motion: impl WallMotion + Send + Sync + 'static,
+    ) {
         self.0.push(Planted::new(family, name, Box::new(motion)));
     }
 }
@@ -145,62 +150,103 @@ fn velocities(motions: &mut Motions) {
         };
         motions.add("velocity", name, harmonic().state(late));
     }
-    motions.add("velocity", "the velocity has the wrong sign", parabolic().state(|state, _| state.velocity *= -1.0));
-    motions.add("velocity", "the velocity lacks the angular frequency", harmonic().state(|state, _| {
-        state.velocity /= FREQUENCY;
-    }));
+    motions.add(
+        "velocity",
+        "the velocity has the wrong sign",
+        parabolic().state(|state, _| state.velocity *= -1.0),
+    );
+    motions.add(
+        "velocity",
+        "the velocity lacks the angular frequency",
+        harmonic().state(|state, _| {
+            state.velocity /= FREQUENCY;
+        }),
+    );
     for (low, high) in [(0.3, 0.4), (0.617, 0.618)] {
         let name = format!("the velocity is 0 from {low} to {high} of each period");
-        motions.add("velocity", name, parabolic().state(move |state, phase| {
-            if (low..high).contains(&share(phase)) {
-                state.velocity = 0.0;
-            }
-        }));
+        motions.add(
+            "velocity",
+            name,
+            parabolic().state(move |state, phase| {
+                if (low..high).contains(&share(phase)) {
+                    state.velocity = 0.0;
+                }
+            }),
+        );
     }
     let late = |state: &mut WallState, phase: f64| {
         if phase > 10.0 * PERIOD {
             state.velocity *= 0.99;
         }
     };
-    motions.add("velocity", "the velocity is too small by a hundredth after ten periods", harmonic().state(late));
+    motions.add(
+        "velocity",
+        "the velocity is too small by a hundredth after ten periods",
+        harmonic().state(late),
+    );
 }
 
 /// "The displacement may jump there, too, but only away from the disks."
 fn jumps(motions: &mut Motions) {
     for n in [1, 3, 6, 9] {
-        let (size, name) = (tenth(n) * AMPLITUDE, format!("half a period is higher by 1e-{n} of the amplitude"));
+        let (size, name) =
+            (tenth(n) * AMPLITUDE, format!("half a period is higher by 1e-{n} of the amplitude"));
         let raised = Altered { jumps: true, ..parabolic() }.reach(-2.0 * AMPLITUDE, 2.0 * AMPLITUDE);
-        motions.add("jump", name, raised.state(move |state, phase| {
-            if share(phase) >= 0.5 {
-                state.displacement += size;
-            }
-        }));
+        motions.add(
+            "jump",
+            name,
+            raised.state(move |state, phase| {
+                if share(phase) >= 0.5 {
+                    state.displacement += size;
+                }
+            }),
+        );
     }
-    motions.add("jump", "the wall jumps up in the midst of a piece", parabolic().state(|state, phase| {
-        if share(phase) > 0.23 && share(phase) < 0.5 {
-            state.displacement *= 0.9;
-        }
-    }));
+    motions.add(
+        "jump",
+        "the wall jumps up in the midst of a piece",
+        parabolic().state(|state, phase| {
+            if share(phase) > 0.23 && share(phase) < 0.5 {
+                state.displacement *= 0.9;
+            }
+        }),
+    );
     let upside = Sawtooth::new(AMPLITUDE, FREQUENCY).expect("an amplitude");
-    motions.add("jump", "a sawtooth falls slowly and jumps up", Altered::new(upside).state(|state, _| {
-        *state = WallState::new(-state.displacement, -state.velocity);
-    }));
+    motions.add(
+        "jump",
+        "a sawtooth falls slowly and jumps up",
+        Altered::new(upside).state(|state, _| {
+            *state = WallState::new(-state.displacement, -state.velocity);
+        }),
+    );
     motions.add("jump", "a sawtooth does not say that it jumps", Altered { jumps: false, ..sawtooth() });
     let shaken = Sinusoidal::new(AMPLITUDE, FREQUENCY).expect("an amplitude");
     let delayed = Altered::new(Delayed::new(shaken, 1.0).expect("a start"));
-    motions.add("jump", "a wall that starts late lies lower before the start", delayed.state(|state, phase| {
-        if phase < 1.0 {
-            state.displacement = -0.5 * AMPLITUDE;
-        }
-    }));
+    motions.add(
+        "jump",
+        "a wall that starts late lies lower before the start",
+        delayed.state(|state, phase| {
+            if phase < 1.0 {
+                state.displacement = -0.5 * AMPLITUDE;
+            }
+        }),
+    );
 }
 
 /// "The displacement lies within `reach`."
 fn reaches(motions: &mut Motions) {
     for n in [1, 3, 6, 9] {
         let reach = AMPLITUDE * (1.0 - tenth(n));
-        motions.add("reach", format!("the reach is too small by 1e-{n} above"), parabolic().reach(-AMPLITUDE, reach));
-        motions.add("reach", format!("the reach is too small by 1e-{n} below"), harmonic().reach(-reach, AMPLITUDE));
+        motions.add(
+            "reach",
+            format!("the reach is too small by 1e-{n} above"),
+            parabolic().reach(-AMPLITUDE, reach),
+        );
+        motions.add(
+            "reach",
+            format!("the reach is too small by 1e-{n} below"),
+            harmonic().reach(-reach, AMPLITUDE),
+        );
     }
     motions.add("reach", "the reach has its ends exchanged", parabolic().reach(AMPLITUDE, -AMPLITUDE));
     motions.add("reach", "the reach is the amplitude and not the range", harmonic().reach(0.0, AMPLITUDE));
@@ -213,29 +259,53 @@ fn reaches(motions: &mut Motions) {
 fn bounds(motions: &mut Motions) {
     for n in [1, 3, 5, 7] {
         let (size, name) = (tenth(n), format!("the bounds of a parabola are both too small by 1e-{n}"));
-        motions.add("bounds", name, parabolic().bounds(move |bounds, _| {
-            (bounds.min, bounds.max) = ((1.0 - size) * bounds.min, (1.0 - size) * bounds.max);
-        }));
+        motions.add(
+            "bounds",
+            name,
+            parabolic().bounds(move |bounds, _| {
+                (bounds.min, bounds.max) = ((1.0 - size) * bounds.min, (1.0 - size) * bounds.max);
+            }),
+        );
         let name = format!("the upper bound is too low by 1e-{n} of the range");
-        motions.add("bounds", name, harmonic().bounds(move |bounds, _| {
-            bounds.max -= size * (bounds.max - bounds.min);
-        }));
+        motions.add(
+            "bounds",
+            name,
+            harmonic().bounds(move |bounds, _| {
+                bounds.max -= size * (bounds.max - bounds.min);
+            }),
+        );
     }
-    motions.add("bounds", "the lower bound is the acceleration in the middle", harmonic().bounds(|bounds, _| {
-        bounds.min = 0.5 * (bounds.min + bounds.max);
-    }));
-    motions.add("bounds", "the bounds are the values at the start of the piece", harmonic().bounds(|bounds, phase| {
-        let now = -AMPLITUDE * FREQUENCY * FREQUENCY * (FREQUENCY * phase).sin();
-        (bounds.min, bounds.max) = (now, now);
-    }));
-    motions.add("bounds", "one piece in sixteen is said to be at constant speed", harmonic().bounds(|bounds, phase| {
-        if (share(phase) * 16.0).floor() == 5.0 {
-            (bounds.min, bounds.max) = (0.0, 0.0);
-        }
-    }));
-    motions.add("bounds", "the bounds have the wrong sign", parabolic().bounds(|bounds, _| {
-        (bounds.min, bounds.max) = (-bounds.max, -bounds.min);
-    }));
+    motions.add(
+        "bounds",
+        "the lower bound is the acceleration in the middle",
+        harmonic().bounds(|bounds, _| {
+            bounds.min = 0.5 * (bounds.min + bounds.max);
+        }),
+    );
+    motions.add(
+        "bounds",
+        "the bounds are the values at the start of the piece",
+        harmonic().bounds(|bounds, phase| {
+            let now = -AMPLITUDE * FREQUENCY * FREQUENCY * (FREQUENCY * phase).sin();
+            (bounds.min, bounds.max) = (now, now);
+        }),
+    );
+    motions.add(
+        "bounds",
+        "one piece in sixteen is said to be at constant speed",
+        harmonic().bounds(|bounds, phase| {
+            if (share(phase) * 16.0).floor() == 5.0 {
+                (bounds.min, bounds.max) = (0.0, 0.0);
+            }
+        }),
+    );
+    motions.add(
+        "bounds",
+        "the bounds have the wrong sign",
+        parabolic().bounds(|bounds, _| {
+            (bounds.min, bounds.max) = (-bounds.max, -bounds.min);
+        }),
+    );
 }
 
 /// "If there is a period, the whole motion repeats after it."
@@ -249,7 +319,8 @@ fn periods(motions: &mut Motions) {
     motions.add("period", "the period is 0", harmonic().period(0.0));
     motions.add("period", "the period is negative", harmonic().period(-PERIOD));
     motions.add("period", "the period is infinite", harmonic().period(f64::INFINITY));
-    let delayed = Delayed::new(Sinusoidal::new(AMPLITUDE, FREQUENCY).expect("an amplitude"), 1.0).expect("a start");
+    let delayed =
+        Delayed::new(Sinusoidal::new(AMPLITUDE, FREQUENCY).expect("an amplitude"), 1.0).expect("a start");
     motions.add("period", "a motion that starts late has a period", Altered::new(delayed).period(PERIOD));
     let tired = amplified(0.5, |phase| phase >= 7.0 * PERIOD);
     motions.add("period", "the amplitude halves after 7 periods", tired);
@@ -257,55 +328,95 @@ fn periods(motions: &mut Motions) {
 
 /// "A piece ends later than the phase asked for."
 fn pieces(motions: &mut Motions) {
-    motions.add("piece", "a piece ends at the phase asked for", harmonic().bounds(|bounds, phase| {
-        bounds.until = phase;
-    }));
-    motions.add("piece", "a piece that is asked for at its start has ended", parabolic().bounds(|bounds, phase| {
-        let place = 2.0 * phase / PERIOD;
-        if (place - place.round()).abs() < 1e-12 {
-            bounds.until = place.round() * 0.5 * PERIOD;
-        }
-    }));
-    motions.add("piece", "the end of a piece is a duration and not a phase", harmonic().bounds(|bounds, _| {
-        bounds.until = PERIOD / 16.0;
-    }));
+    motions.add(
+        "piece",
+        "a piece ends at the phase asked for",
+        harmonic().bounds(|bounds, phase| {
+            bounds.until = phase;
+        }),
+    );
+    motions.add(
+        "piece",
+        "a piece that is asked for at its start has ended",
+        parabolic().bounds(|bounds, phase| {
+            let place = 2.0 * phase / PERIOD;
+            if (place - place.round()).abs() < 1e-12 {
+                bounds.until = place.round() * 0.5 * PERIOD;
+            }
+        }),
+    );
+    motions.add(
+        "piece",
+        "the end of a piece is a duration and not a phase",
+        harmonic().bounds(|bounds, _| {
+            bounds.until = PERIOD / 16.0;
+        }),
+    );
     motions.add("piece", "a piece never ends", harmonic().bounds(|bounds, _| bounds.until = f64::INFINITY));
-    motions.add("piece", "a piece lasts two arcs", parabolic().bounds(|bounds, _| bounds.until += 0.5 * PERIOD));
+    motions.add(
+        "piece",
+        "a piece lasts two arcs",
+        parabolic().bounds(|bounds, _| bounds.until += 0.5 * PERIOD),
+    );
     let triangular = Triangular::new(AMPLITUDE, FREQUENCY).expect("an amplitude");
-    motions.add("piece", "a piece goes on beyond a turn by 1e-6 of the period", Altered::new(triangular).bounds(
-        |bounds, _| bounds.until += 1e-6 * PERIOD,
-    ));
+    motions.add(
+        "piece",
+        "a piece goes on beyond a turn by 1e-6 of the period",
+        Altered::new(triangular).bounds(|bounds, _| bounds.until += 1e-6 * PERIOD),
+    );
 }
 
 /// "Finite numbers, and the same ones each time."
 fn numbers(motions: &mut Motions) {
-    motions.add("number", "the displacement is not a number at phase 0", parabolic().state(|state, phase| {
-        state.displacement *= phase / phase;
-    }));
-    motions.add("number", "the velocity is not a number where it turns around", parabolic().state(|state, phase| {
-        let place = 2.0 * phase / PERIOD;
-        if place == place.round() {
-            state.velocity = f64::NAN;
-        }
-    }));
-    motions.add("number", "the velocity at negative phases is not a number", harmonic().state(|state, phase| {
-        state.velocity += 0.0 * phase.sqrt();
-    }));
-    motions.add("number", "the upper bound is infinite", parabolic().bounds(|bounds, _| bounds.max = f64::INFINITY));
+    motions.add(
+        "number",
+        "the displacement is not a number at phase 0",
+        parabolic().state(|state, phase| {
+            state.displacement *= phase / phase;
+        }),
+    );
+    motions.add(
+        "number",
+        "the velocity is not a number where it turns around",
+        parabolic().state(|state, phase| {
+            let place = 2.0 * phase / PERIOD;
+            if place == place.round() {
+                state.velocity = f64::NAN;
+            }
+        }),
+    );
+    motions.add(
+        "number",
+        "the velocity at negative phases is not a number",
+        harmonic().state(|state, phase| {
+            state.velocity += 0.0 * phase.sqrt();
+        }),
+    );
+    motions.add(
+        "number",
+        "the upper bound is infinite",
+        parabolic().bounds(|bounds, _| bounds.max = f64::INFINITY),
+    );
     for calls in [2, 50, 3_000] {
         let (is_due, name) = (one_in(calls), format!("one answer in {calls} is higher by 1e-3"));
-        motions.add("hidden state", name, parabolic().state(move |state, _| {
-            if is_due() {
-                state.displacement -= 1e-3 * AMPLITUDE;
-            }
-        }));
+        motions.add(
+            "hidden state",
+            name,
+            parabolic().state(move |state, _| {
+                if is_due() {
+                    state.displacement -= 1e-3 * AMPLITUDE;
+                }
+            }),
+        );
     }
     let last = AtomicU64::new(0);
-    motions.add("hidden state", "the answer to an earlier phase is that to the last one", harmonic().state(
-        move |state, phase| {
+    motions.add(
+        "hidden state",
+        "the answer to an earlier phase is that to the last one",
+        harmonic().state(move |state, phase| {
             let latest = f64::from_bits(last.load(Ordering::Relaxed)).max(phase);
             last.store(latest.to_bits(), Ordering::Relaxed);
             state.displacement = AMPLITUDE * (FREQUENCY * latest).sin();
-        },
-    ));
+        }),
+    );
 }

@@ -82,7 +82,8 @@ fn sizes(rules: &mut Rules) {
     for n in [1, 2, 3, 5, 7, 9] {
         let size = tenth(n);
         let name = format!("the normal impulse of an elastic rule is too large by 1e-{n}");
-        rules.add("normal gain", FREE, name, move |contact| scaled(Elastic.impulse(contact), 1.0 + size, 1.0));
+        rules
+            .add("normal gain", FREE, name, move |contact| scaled(Elastic.impulse(contact), 1.0 + size, 1.0));
         let name = format!("a rule without rebound leaves 1e-{n} of the closing speed");
         rules.add("still closing", FREE, name, move |contact| smooth(contact, -size));
     }
@@ -112,10 +113,15 @@ fn windows(rules: &mut Rules) {
             scaled(rough(contact), 1.0, if is_inside { 1.1 } else { 0.9 })
         });
     }
-    rules.add("slip window", FREE, "contacts that slip at 2.9 to 3.1 times the closing speed still close", |contact| {
-        let ratio = contact.slip_speed() / contact.closing_speed();
-        smooth(contact, if (2.9..3.1).contains(&ratio) { -0.1 } else { 0.9 })
-    });
+    rules.add(
+        "slip window",
+        FREE,
+        "contacts that slip at 2.9 to 3.1 times the closing speed still close",
+        |contact| {
+            let ratio = contact.slip_speed() / contact.closing_speed();
+            smooth(contact, if (2.9..3.1).contains(&ratio) { -0.1 } else { 0.9 })
+        },
+    );
 }
 
 /// Faults for some partners only, or in one order of them: "a rule must give the same physics for the partners
@@ -190,18 +196,27 @@ fn masses(rules: &mut Rules) {
 /// Faults soon after the last collision, and states that hide from the contact: sentence 1.
 fn histories(rules: &mut Rules) {
     for n in [3, 9] {
-        let (soon, name) = (tenth(n), format!("contacts sooner than 1e-{n} after the last one gain a twentieth"));
+        let (soon, name) =
+            (tenth(n), format!("contacts sooner than 1e-{n} after the last one gain a twentieth"));
         rules.add("last collision", FREE, name, move |contact| {
             smooth(contact, if contact.time_since_last_collision() < soon { 1.05 } else { 0.9 })
         });
     }
-    rules.add("last collision", FREE, "an infinite time since the last collision is not a number", |contact| {
-        let time = contact.time_since_last_collision();
-        smooth(contact, 0.9 - time * (-time).exp())
-    });
-    rules.add("last collision", FREE, "the restitution falls below 0 soon after the last collision", |contact| {
-        smooth(contact, 0.9 - 1e-3 / contact.time_since_last_collision().max(1e-4))
-    });
+    rules.add(
+        "last collision",
+        FREE,
+        "an infinite time since the last collision is not a number",
+        |contact| {
+            let time = contact.time_since_last_collision();
+            smooth(contact, 0.9 - time * (-time).exp())
+        },
+    );
+    rules.add(
+        "last collision",
+        FREE,
+        "the restitution falls below 0 soon after the last collision",
+        |contact| smooth(contact, 0.9 - 1e-3 / contact.time_since_last_collision().max(1e-4)),
+    );
     for (calls, n) in [(2, 1), (7, 3), (100, 6), (1_000, 1), (10_000, 1)] {
         let (is_due, size) = (one_in(calls), tenth(n));
         let name = format!("one call in {calls} loses more, by 1e-{n}");
@@ -239,7 +254,8 @@ fn corners(rules: &mut Rules) {
 fn friction(rules: &mut Rules) {
     for n in [1, 2, 3, 5, 7] {
         let (size, name) = (tenth(n), format!("friction is beyond its cone by 1e-{n}"));
-        rules.add("friction cone", RUBBING, name, move |contact| scaled(frictional(contact), 1.0, 1.0 + size));
+        rules
+            .add("friction cone", RUBBING, name, move |contact| scaled(frictional(contact), 1.0, 1.0 + size));
     }
     rules.add("friction cone", RUBBING, "friction leaves its cone only for a slip above 100", |contact| {
         scaled(frictional(contact), 1.0, if contact.slip_speed().abs() > 100.0 { 1.01 } else { 1.0 })
@@ -254,10 +270,15 @@ fn friction(rules: &mut Rules) {
         let impulse = frictional(contact);
         Impulse::new(impulse.normal(), impulse.tangential().abs())
     });
-    rules.add("friction sign", OPPOSED, "friction slides even where it would turn the slip around", |contact| {
-        let normal = contact.normal_impulse(1.0);
-        Impulse::new(normal, (0.5 * normal).copysign(contact.slip_speed()))
-    });
+    rules.add(
+        "friction sign",
+        OPPOSED,
+        "friction slides even where it would turn the slip around",
+        |contact| {
+            let normal = contact.normal_impulse(1.0);
+            Impulse::new(normal, (0.5 * normal).copysign(contact.slip_speed()))
+        },
+    );
 }
 
 /// Couples that feed the spin: sentence 4, and the symmetry of the partners.

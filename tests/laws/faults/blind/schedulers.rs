@@ -87,15 +87,30 @@ impl Schedulers {
         self.0.push(Planted::new(family, name, Box::new(move || Box::new(make()))));
     }
 
-    fn add_set(&mut self, family: &'static str, name: impl Into<String>, set: fn(&mut Vec<f64>, usize, f64, u64)) {
+    fn add_set(
+        &mut self,
+        family: &'static str,
+        name: impl Into<String>,
+        set: fn(&mut Vec<f64>, usize, f64, u64),
+    ) {
         self.add(family, name, move || Altered { set: Box::new(set), ..Altered::default() });
     }
 
-    fn add_reset(&mut self, family: &'static str, name: impl Into<String>, reset: fn(&mut Vec<f64>, &[f64], u64)) {
+    fn add_reset(
+        &mut self,
+        family: &'static str,
+        name: impl Into<String>,
+        reset: fn(&mut Vec<f64>, &[f64], u64),
+    ) {
         self.add(family, name, move || Altered { reset: Box::new(reset), ..Altered::default() });
     }
 
-    fn add_answer(&mut self, family: &'static str, name: impl Into<String>, answer: fn(&[f64]) -> (usize, f64)) {
+    fn add_answer(
+        &mut self,
+        family: &'static str,
+        name: impl Into<String>,
+        answer: fn(&[f64]) -> (usize, f64),
+    ) {
         self.add(family, name, move || Altered { answer: Box::new(answer), ..Altered::default() });
     }
 }
@@ -157,19 +172,27 @@ fn sets(schedulers: &mut Schedulers) {
             ..Altered::default()
         });
     }
-    schedulers.add_set("lost set", "a time that is earlier than the last one of the disk is lost", |due, disk, time, _| {
-        due[disk] = due[disk].max(time);
-    });
+    schedulers.add_set(
+        "lost set",
+        "a time that is earlier than the last one of the disk is lost",
+        |due, disk, time, _| {
+            due[disk] = due[disk].max(time);
+        },
+    );
     schedulers.add_set("lost set", "a time that is earlier than all others is lost", |due, disk, time, _| {
         if time >= earliest(due).1 {
             due[disk] = time;
         }
     });
-    schedulers.add_set("lost set", "a later time of a disk that is not due next is lost", |due, disk, time, _| {
-        if time < due[disk] || earliest(due).0 == disk {
-            due[disk] = time;
-        }
-    });
+    schedulers.add_set(
+        "lost set",
+        "a later time of a disk that is not due next is lost",
+        |due, disk, time, _| {
+            if time < due[disk] || earliest(due).0 == disk {
+                due[disk] = time;
+            }
+        },
+    );
     schedulers.add_set("lost set", "an infinite time is lost", |due, disk, time, _| {
         if time < f64::INFINITY {
             due[disk] = time;
@@ -216,7 +239,9 @@ fn times(schedulers: &mut Schedulers) {
     schedulers.add_answer("rounded time", "times are compared in single precision", |due| {
         earliest_of(due, |time| f64::from(time as f32))
     });
-    schedulers.add_answer("rounded time", "times are compared by size without the sign", |due| earliest_of(due, f64::abs));
+    schedulers.add_answer("rounded time", "times are compared by size without the sign", |due| {
+        earliest_of(due, f64::abs)
+    });
     schedulers.add_answer("infinite", "infinite times alone are nothing due", |due| {
         let (disk, time) = earliest(due);
         if time == f64::INFINITY { NOTHING_DUE } else { (disk, time) }
@@ -238,11 +263,15 @@ fn resets(schedulers: &mut Schedulers) {
         let kept = |(disk, &time): (usize, &f64)| due.get(disk).map_or(time, |&last| last.min(time));
         *due = times.iter().enumerate().map(kept).collect();
     });
-    schedulers.add_reset("reset", "the third reset does nothing if there are as many disks", |due, times, resets| {
-        if resets != 3 || due.len() != times.len() {
-            *due = times.to_vec();
-        }
-    });
+    schedulers.add_reset(
+        "reset",
+        "the third reset does nothing if there are as many disks",
+        |due, times, resets| {
+            if resets != 3 || due.len() != times.len() {
+                *due = times.to_vec();
+            }
+        },
+    );
     schedulers.add_reset("reset", "a reset without disks does nothing", |due, times, _| {
         if !times.is_empty() {
             *due = times.to_vec();
@@ -259,9 +288,11 @@ fn resets(schedulers: &mut Schedulers) {
 /// Faults beyond a number of disks.
 fn sizes(schedulers: &mut Schedulers) {
     for most in [63, 64, 256, 1_000, 40_000] {
-        schedulers.add("number of disks", format!("only the first {most} disks are ever due"), move || Altered {
-            answer: Box::new(move |due| earliest(&due[..due.len().min(most)])),
-            ..Altered::default()
+        schedulers.add("number of disks", format!("only the first {most} disks are ever due"), move || {
+            Altered {
+                answer: Box::new(move |due| earliest(&due[..due.len().min(most)])),
+                ..Altered::default()
+            }
         });
     }
     schedulers.add_answer("number of disks", "a single disk is never due", |due| {
@@ -280,7 +311,11 @@ fn states(schedulers: &mut Schedulers) {
         let answer = move |due: &[f64]| {
             let right = earliest(due);
             let is_again = last.replace(right) == right && due.len() > 1;
-            if !is_again { right } else { earliest_of(due, |time| if time == right.1 { f64::INFINITY } else { time }) }
+            if !is_again {
+                right
+            } else {
+                earliest_of(due, |time| if time == right.1 { f64::INFINITY } else { time })
+            }
         };
         Altered { answer: Box::new(answer), ..Altered::default() }
     });

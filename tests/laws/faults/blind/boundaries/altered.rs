@@ -6,7 +6,7 @@ use granular_edmd::boundary::{
     Boundary, Domain, FirstTouch, Impact, Overlap, Probe, Reaction, Region, Surface, Touch,
 };
 use granular_edmd::glam::DVec2;
-use granular_edmd::{Flight, ParameterError};
+use granular_edmd::{Fingerprint, Flight, ParameterError};
 
 /// An honest boundary behind functions that change its answers. At first, they change nothing.
 pub(super) struct Altered {
@@ -25,11 +25,13 @@ pub(super) struct Altered {
     /// The surface, the position of the disk, and the time.
     pub(super) surface: Box<dyn Fn(&mut Surface<'_>, DVec2, f64)>,
     pub(super) overlap: Box<dyn Fn(&dyn Boundary, &Probe) -> Option<Overlap>>,
-    pub(super) area: Box<dyn Fn(f64, f64) -> f64>,
+    /// The answer, the region and the radius.
+    pub(super) area: Box<dyn Fn(Option<f64>, &Region, f64) -> Option<f64>>,
     pub(super) react: Box<dyn Fn(&mut dyn Boundary, &Impact) -> Reaction>,
     pub(super) may_meet: Box<dyn Fn(&Region, bool) -> bool>,
     pub(super) state: Box<dyn Fn(Vec<f64>) -> Vec<f64>>,
     pub(super) restored: Box<dyn Fn(&[f64]) -> Option<Vec<f64>>>,
+    pub(super) mark: Option<Fingerprint>,
 }
 
 impl Altered {
@@ -45,11 +47,12 @@ impl Altered {
             touch: Box::new(|honest, flight, until| honest.first_touch(flight, until)),
             surface: Box::new(|_, _, _| ()),
             overlap: Box::new(|honest, probe| honest.overlap(probe)),
-            area: Box::new(|area, _| area),
+            area: Box::new(|area, _, _| area),
             react: Box::new(|honest, impact| honest.react(impact)),
             may_meet: Box::new(|_, answer| answer),
             state: Box::new(|state| state),
             restored: Box::new(|state| Some(state.to_vec())),
+            mark: None,
         }
     }
 }
@@ -108,7 +111,7 @@ impl Boundary for Altered {
     }
 
     fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
-        self.honest.area(region, radius, time).map(|area| (self.area)(area, radius))
+        (self.area)(self.honest.area(region, radius, time), region, radius)
     }
 
     fn react(&mut self, impact: &Impact) -> Reaction {
@@ -125,5 +128,9 @@ impl Boundary for Altered {
 
     fn set_state(&mut self, state: &[f64]) -> Result<(), ParameterError> {
         (self.restored)(state).map_or(Ok(()), |state| self.honest.set_state(&state))
+    }
+
+    fn fingerprint(&self) -> Option<Fingerprint> {
+        self.mark
     }
 }

@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 use granular_edmd::boundary::{
-    Boundary, Brick, Container, Domain, FirstTouch, Impact, Obstacles, Overlap, Part, Probe, Reaction, Region,
-    Surface, Touch, Vessel, Wall,
+    Boundary, Brick, Container, Domain, FirstTouch, Impact, Obstacles, Overlap, Part, Probe, Reaction,
+    Region, Surface, Touch, Vessel, Wall,
 };
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::{
@@ -24,6 +24,19 @@ pub(super) fn floor_motion() -> BiParabolic {
 
 pub(super) fn resting() -> Container {
     Container::closed(10.0, 12.0).expect("a size")
+}
+
+/// Returns the area that a region and the box at rest have in common, less a margin along the walls.
+pub(super) fn common_area(region: &Region, margin: f64) -> f64 {
+    let (low, high) = (DVec2::splat(margin), DVec2::new(10.0, 12.0) - margin);
+    let size = (region.max.min(high) - region.min.max(low)).max(DVec2::ZERO);
+    size.x * size.y
+}
+
+/// A box at rest that knows its free area.
+pub(super) fn measured() -> Altered {
+    let area = Box::new(|_: Option<f64>, region: &Region, radius: f64| Some(common_area(region, radius)));
+    Altered { area, ..Altered::new(resting()) }
 }
 
 pub(super) fn shaken() -> Altered {
@@ -57,11 +70,17 @@ pub(super) fn sieve(passes: Kind) -> Altered {
     let (bare, empty) = (resting(), resting());
     Altered {
         touch: Box::new(move |board, flight, until| {
-            if flight.kind() == passes { bare.first_touch(flight, until) } else { board.first_touch(flight, until) }
+            if flight.kind() == passes {
+                bare.first_touch(flight, until)
+            } else {
+                board.first_touch(flight, until)
+            }
         }),
-        overlap: Box::new(move |board, probe| {
-            if probe.kind() == passes { empty.overlap(probe) } else { board.overlap(probe) }
-        }),
+        overlap: Box::new(
+            move |board, probe| {
+                if probe.kind() == passes { empty.overlap(probe) } else { board.overlap(probe) }
+            },
+        ),
         ..Altered::new(board())
     }
 }

@@ -32,66 +32,112 @@ fn blows(boundaries: &mut Boundaries) {
     type React = fn(&mut dyn Boundary, &Impact) -> Reaction;
     for n in [1, 3, 6] {
         let (size, name) = (tenth(n), format!("the floor takes an impulse that is too large by 1e-{n}"));
-        boundaries.add("reaction", name, Altered {
-            react: Box::new(move |honest, impact| honest.react(&scaled(impact, 1.0 + size, 1.0))),
-            ..sprung()
-        });
+        boundaries.add(
+            "reaction",
+            name,
+            Altered {
+                react: Box::new(move |honest, impact| honest.react(&scaled(impact, 1.0 + size, 1.0))),
+                ..sprung()
+            },
+        );
     }
     let reactions: [(&str, React, fn() -> Altered); 8] = [
         ("the floor takes no blow", |_, _| Reaction::None, sprung),
         ("the floor says that it moves, and takes no blow", |_, _| Reaction::Moved, sprung),
-        ("the floor takes each blow with the wrong sign", |honest, impact| honest.react(&scaled(impact, -1.0, 1.0)), sprung),
-        ("the floor forgets weak blows", |honest, impact| {
-            if impact.impulse().length() < 0.5 { Reaction::None } else { honest.react(impact) }
-        }, sprung),
-        ("the floor does not say that it moves", |honest, impact| {
-            let _ = honest.react(impact);
-            Reaction::None
-        }, sprung),
-        ("the floor takes each blow as if at the origin of time", |honest, impact| {
-            honest.react(&Impact::new(impact.wall(), impact.impulse(), impact.point(), 0.0))
-        }, sprung),
+        (
+            "the floor takes each blow with the wrong sign",
+            |honest, impact| honest.react(&scaled(impact, -1.0, 1.0)),
+            sprung,
+        ),
+        (
+            "the floor forgets weak blows",
+            |honest, impact| {
+                if impact.impulse().length() < 0.5 { Reaction::None } else { honest.react(impact) }
+            },
+            sprung,
+        ),
+        (
+            "the floor does not say that it moves",
+            |honest, impact| {
+                let _ = honest.react(impact);
+                Reaction::None
+            },
+            sprung,
+        ),
+        (
+            "the floor takes each blow as if at the origin of time",
+            |honest, impact| honest.react(&Impact::new(impact.wall(), impact.impulse(), impact.point(), 0.0)),
+            sprung,
+        ),
         ("the drum forgets the couple", |honest, impact| honest.react(&scaled(impact, 1.0, 0.0)), rotor),
-        ("the drum takes the couple with the wrong sign", |honest, impact| honest.react(&scaled(impact, 1.0, -1.0)), rotor),
+        (
+            "the drum takes the couple with the wrong sign",
+            |honest, impact| honest.react(&scaled(impact, 1.0, -1.0)),
+            rotor,
+        ),
     ];
     for (name, react, honest) in reactions {
         boundaries.add("reaction", name, Altered { react: Box::new(react), ..honest() });
     }
     for calls in [2, 20] {
         let (is_due, name) = (one_in(calls), format!("the drum forgets one blow in {calls}"));
-        boundaries.add("reaction", name, Altered {
-            react: Box::new(move |honest, impact| if is_due() { Reaction::None } else { honest.react(impact) }),
-            ..rotor()
-        });
+        boundaries.add(
+            "reaction",
+            name,
+            Altered {
+                react: Box::new(
+                    move |honest, impact| if is_due() { Reaction::None } else { honest.react(impact) },
+                ),
+                ..rotor()
+            },
+        );
     }
 }
 
 /// The mass by which a wall resists, and the disks that it may meet afterwards.
 fn answers(boundaries: &mut Boundaries) {
-    boundaries.add_surface("mass", "the floor reacts, but its surface has an infinite mass", sprung(), |surface, _, _| {
-        surface.mass = f64::INFINITY;
-    });
-    boundaries.add_surface("mass", "the surface of the floor is heavier than the floor by a hundredth", sprung(), |surface, _, _| {
-        surface.mass *= 1.01;
-    });
-    boundaries.add_surface("mass", "the drum gives its moment of inertia as its mass", rotor(), |surface, _, _| {
-        surface.tangential_mass *= 36.0;
-    });
+    boundaries.add_surface(
+        "mass",
+        "the floor reacts, but its surface has an infinite mass",
+        sprung(),
+        |surface, _, _| {
+            surface.mass = f64::INFINITY;
+        },
+    );
+    boundaries.add_surface(
+        "mass",
+        "the surface of the floor is heavier than the floor by a hundredth",
+        sprung(),
+        |surface, _, _| {
+            surface.mass *= 1.01;
+        },
+    );
+    boundaries.add_surface(
+        "mass",
+        "the drum gives its moment of inertia as its mass",
+        rotor(),
+        |surface, _, _| {
+            surface.tangential_mass *= 36.0;
+        },
+    );
     boundaries.add_surface("mass", "the drum gives no mass along its surface", rotor(), |surface, _, _| {
         surface.tangential_mass = f64::INFINITY;
     });
-    boundaries.add("may meet", "the floor meets nobody after a blow", Altered {
-        may_meet: Box::new(|_, _| false),
-        ..sprung()
-    });
-    boundaries.add("may meet", "the floor meets only centers below its place at rest", Altered {
-        may_meet: Box::new(|region, answer| answer && region.min.y < 2.0),
-        ..sprung()
-    });
-    boundaries.add("may meet", "the floor meets only what is in the left half", Altered {
-        may_meet: Box::new(|region, answer| answer && region.max.x < 5.0),
-        ..sprung()
-    });
+    boundaries.add(
+        "may meet",
+        "the floor meets nobody after a blow",
+        Altered { may_meet: Box::new(|_, _| false), ..sprung() },
+    );
+    boundaries.add(
+        "may meet",
+        "the floor meets only centers below its place at rest",
+        Altered { may_meet: Box::new(|region, answer| answer && region.min.y < 2.0), ..sprung() },
+    );
+    boundaries.add(
+        "may meet",
+        "the floor meets only what is in the left half",
+        Altered { may_meet: Box::new(|region, answer| answer && region.max.x < 5.0), ..sprung() },
+    );
 }
 
 /// "The numbers of the walls that react", and the way back.
@@ -101,15 +147,21 @@ fn states(boundaries: &mut Boundaries) {
     let kept: [(&str, Kept); 4] = [
         ("the state is empty", |_| Vec::new()),
         ("the state has no sine", |state| vec![state[0], 0.0]),
-        ("the state is rounded to six digits", |state| state.iter().map(|number| (number * 1e6).round() / 1e6).collect()),
-        ("the state is in single precision", |state| state.iter().map(|&number| f64::from(number as f32)).collect()),
+        ("the state is rounded to six digits", |state| {
+            state.iter().map(|number| (number * 1e6).round() / 1e6).collect()
+        }),
+        ("the state is in single precision", |state| {
+            state.iter().map(|&number| f64::from(number as f32)).collect()
+        }),
     ];
     for (name, state) in kept {
         boundaries.add("state", name, Altered { state: Box::new(state), ..sprung() });
     }
     let restored: [(&str, Restored); 4] = [
         ("the state is accepted and not set", |_| None),
-        ("the numbers of the state are set in the wrong order", |state| Some(state.iter().rev().copied().collect())),
+        ("the numbers of the state are set in the wrong order", |state| {
+            Some(state.iter().rev().copied().collect())
+        }),
         ("the floor is at rest after its state is set", |state| Some(vec![0.0; state.len()])),
         ("a state that is too long is accepted", |state| Some(state.iter().take(2).copied().collect())),
     ];

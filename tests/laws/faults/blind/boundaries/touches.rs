@@ -4,9 +4,9 @@ use granular_edmd::boundary::{Boundary, FirstTouch, Probe, Touch};
 use granular_edmd::glam::DVec2;
 use granular_edmd::{Flight, Kind};
 
+use super::Boundaries;
 use super::altered::Altered;
 use super::bases::{GHOST, board, dish, resting, shaken, sieve};
-use super::Boundaries;
 use crate::faults::{one_in, tenth};
 
 type Search = Box<dyn Fn(&dyn Boundary, &Flight, f64) -> FirstTouch<Touch>>;
@@ -17,7 +17,9 @@ fn missing(is_missed: impl Fn(&Flight, &Touch, DVec2) -> bool + 'static) -> Sear
     Box::new(move |honest, flight, until| {
         let found = honest.first_touch(flight, until);
         match found {
-            FirstTouch::At(touch) if is_missed(flight, &touch, approach(honest, flight, &touch)) => FirstTouch::NONE,
+            FirstTouch::At(touch) if is_missed(flight, &touch, approach(honest, flight, &touch)) => {
+                FirstTouch::NONE
+            }
             _ => found,
         }
     })
@@ -51,20 +53,19 @@ fn missed(boundaries: &mut Boundaries) {
     type Condition = fn(&Flight, &Touch, DVec2) -> bool;
     for (low, high) in [(0.9, 1.2), (0.011, 0.019), (3.3, 3.4), (1e-9, 1e-3)] {
         let name = format!("flights that begin at a speed of {low:?} to {high:?} touch nothing");
-        let touch = missing(move |flight, _, _| {
-            (low..high).contains(&flight.velocity(flight.time()).length())
-        });
+        let touch =
+            missing(move |flight, _, _| (low..high).contains(&flight.velocity(flight.time()).length()));
         boundaries.add("missed touch", name, Altered { touch, ..shaken() });
     }
     for (low, high) in [(0.7, 0.75), (-1.6, -1.55), (2.9, 3.0)] {
         let name = format!("flights that begin in a direction of {low} to {high} radians touch nothing");
-        let touch = missing(move |flight, _, _| {
-            (low..high).contains(&flight.velocity(flight.time()).to_angle())
-        });
+        let touch =
+            missing(move |flight, _, _| (low..high).contains(&flight.velocity(flight.time()).to_angle()));
         boundaries.add("missed touch", name, Altered { touch, ..dish() });
     }
     for n in [1, 2, 4] {
-        let (size, name) = (tenth(n), format!("touches with less than 1e-{n} of the speed along the normal are missed"));
+        let (size, name) =
+            (tenth(n), format!("touches with less than 1e-{n} of the speed along the normal are missed"));
         let touch = missing(move |_, _, speed| -speed.x < size * speed.y.abs());
         boundaries.add("missed touch", name, Altered { touch, ..dish() });
         let name = format!("touches within 1e-{n} of the end of the search are missed");
@@ -74,21 +75,33 @@ fn missed(boundaries: &mut Boundaries) {
         boundaries.add("missed touch", name, Altered { touch, ..Altered::new(resting()) });
     }
     let conditions: [(&str, Condition, fn() -> Altered); 5] = [
-        ("a disk that rises never comes back to the floor", |flight, touch, _| {
-            flight.velocity(flight.time()).y > 0.0 && touch.wall == 0 && flight.acceleration().y < 0.0
-        }, shaken),
-        ("touches sooner than 0.01 after the start are missed", |flight, touch, _| {
-            touch.time - flight.time() < 0.01
-        }, shaken),
-        ("touches later than 5 after the start are missed", |flight, touch, _| {
-            touch.time - flight.time() > 5.0
-        }, shaken),
-        ("the peg is missed by disks smaller than 0.4", |flight, touch, _| {
-            flight.radius() < 0.4 && touch.wall >= 4
-        }, || Altered::new(board())),
-        ("the peg is missed from below", |flight, touch, _| {
-            touch.wall >= 4 && flight.position(touch.time).y < 5.0
-        }, || Altered::new(board())),
+        (
+            "a disk that rises never comes back to the floor",
+            |flight, touch, _| {
+                flight.velocity(flight.time()).y > 0.0 && touch.wall == 0 && flight.acceleration().y < 0.0
+            },
+            shaken,
+        ),
+        (
+            "touches sooner than 0.01 after the start are missed",
+            |flight, touch, _| touch.time - flight.time() < 0.01,
+            shaken,
+        ),
+        (
+            "touches later than 5 after the start are missed",
+            |flight, touch, _| touch.time - flight.time() > 5.0,
+            shaken,
+        ),
+        (
+            "the peg is missed by disks smaller than 0.4",
+            |flight, touch, _| flight.radius() < 0.4 && touch.wall >= 4,
+            || Altered::new(board()),
+        ),
+        (
+            "the peg is missed from below",
+            |flight, touch, _| touch.wall >= 4 && flight.position(touch.time).y < 5.0,
+            || Altered::new(board()),
+        ),
     ];
     for (name, condition, honest) in conditions {
         boundaries.add("missed touch", name, Altered { touch: missing(condition), ..honest() });
@@ -118,7 +131,10 @@ fn timed(boundaries: &mut Boundaries) {
         ("a disk that overlaps and leaves touches at once", |honest, flight, until| {
             let probe = Probe::new(flight.position(flight.time()), flight.radius(), flight.time());
             let overlap = honest.overlap(&probe.with_kind(flight.kind()));
-            overlap.map_or_else(|| honest.first_touch(flight, until), |found| FirstTouch::At(Touch::new(flight.time(), found.with)))
+            overlap.map_or_else(
+                || honest.first_touch(flight, until),
+                |found| FirstTouch::At(Touch::new(flight.time(), found.with)),
+            )
         }),
         ("a touch at the start is looked for a little later", |honest, flight, until| {
             let start = flight.time() + 1e-6;
@@ -126,18 +142,24 @@ fn timed(boundaries: &mut Boundaries) {
             let later = Flight::new(start, position, velocity, flight.acceleration(), flight.radius());
             honest.first_touch(&later.with_kind(flight.kind()), until)
         }),
-        ("a search answers only how far it has come: to its start", |_, flight, _| FirstTouch::NotBefore(flight.time())),
+        ("a search answers only how far it has come: to its start", |_, flight, _| {
+            FirstTouch::NotBefore(flight.time())
+        }),
         ("the time of a touch counts from the start of the flight", |honest, flight, until| {
             honest.first_touch(flight, until).map(|touch| Touch::new(touch.time - flight.time(), touch.wall))
         }),
         ("the way is said to be free beyond the touch", |honest, flight, until| {
             match honest.first_touch(flight, until) {
-                FirstTouch::At(touch) if touch.time > flight.time() + 0.5 => FirstTouch::NotBefore(touch.time + 0.1),
+                FirstTouch::At(touch) if touch.time > flight.time() + 0.5 => {
+                    FirstTouch::NotBefore(touch.time + 0.1)
+                }
                 other => other,
             }
         }),
         ("the time of a touch is in single precision", |honest, flight, until| {
-            honest.first_touch(flight, until).map(|touch| Touch::new(f64::from(touch.time as f32), touch.wall))
+            honest
+                .first_touch(flight, until)
+                .map(|touch| Touch::new(f64::from(touch.time as f32), touch.wall))
         }),
     ];
     for (name, find) in finds {
@@ -151,7 +173,10 @@ fn named(boundaries: &mut Boundaries) {
         ("walls are counted from 1", |wall| wall + 1),
         ("all touches are of the floor", |_| 0),
         ("the two sides are exchanged", |wall| [0, 2, 1, 3][wall.min(3)]),
-        ("an unknown wall is touched where there is the last one", |wall| if wall == 3 { usize::MAX } else { wall }),
+        (
+            "an unknown wall is touched where there is the last one",
+            |wall| if wall == 3 { usize::MAX } else { wall },
+        ),
     ];
     for (name, rename) in renames {
         let touch: Search = Box::new(move |honest, flight, until| {
@@ -164,17 +189,26 @@ fn named(boundaries: &mut Boundaries) {
 /// A peg that one kind passes: "a wall that does not concern disks of the probe's kind is not overlapped".
 pub(super) fn plant_kinds(boundaries: &mut Boundaries) {
     for (kind, passes) in [("kind 1", GHOST), ("the default kind", Kind::DEFAULT)] {
-        boundaries.add("kinds", format!("{kind} passes the peg, but overlaps it"), Altered {
-            overlap: Box::new(|honest, probe| honest.overlap(probe)),
-            ..sieve(passes)
-        });
-        boundaries.add("kinds", format!("{kind} touches the peg, but does not overlap it"), Altered {
-            touch: Box::new(|honest, flight, until| honest.first_touch(flight, until)),
-            ..sieve(passes)
-        });
+        boundaries.add(
+            "kinds",
+            format!("{kind} passes the peg, but overlaps it"),
+            Altered { overlap: Box::new(|honest, probe| honest.overlap(probe)), ..sieve(passes) },
+        );
+        boundaries.add(
+            "kinds",
+            format!("{kind} touches the peg, but does not overlap it"),
+            Altered {
+                touch: Box::new(|honest, flight, until| honest.first_touch(flight, until)),
+                ..sieve(passes)
+            },
+        );
     }
-    boundaries.add("kinds", "kinds above 255 pass the peg that they overlap", Altered {
-        touch: missing(|flight, touch, _| flight.kind().number() > 255 && touch.wall >= 4),
-        ..Altered::new(board())
-    });
+    boundaries.add(
+        "kinds",
+        "kinds above 255 pass the peg that they overlap",
+        Altered {
+            touch: missing(|flight, touch, _| flight.kind().number() > 255 && touch.wall >= 4),
+            ..Altered::new(board())
+        },
+    );
 }
