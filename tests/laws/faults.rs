@@ -13,9 +13,31 @@ pub(crate) struct Planted<T> {
     pub(crate) part: T,
 }
 
-impl<T> Planted<T> {
-    pub(crate) fn new(family: &'static str, name: impl Into<String>, part: T) -> Self {
-        Self { name: name.into(), family, part }
+/// A catalogue while it grows.
+pub(crate) struct List<T> {
+    /// The family of the next faults.
+    pub(crate) family: &'static str,
+    pub(crate) faults: Vec<Planted<T>>,
+}
+
+impl<T> Default for List<T> {
+    fn default() -> Self {
+        Self { family: "honest", faults: Vec::new() }
+    }
+}
+
+impl<T> List<T> {
+    /// Returns the faults that these functions plant.
+    pub(crate) fn grown(plants: &[fn(&mut Self)]) -> Vec<Planted<T>> {
+        let mut list = Self::default();
+        for plant in plants {
+            plant(&mut list);
+        }
+        list.faults
+    }
+
+    pub(crate) fn plant(&mut self, name: impl Into<String>, part: T) {
+        self.faults.push(Planted { name: name.into(), family: self.family, part });
     }
 }
 
@@ -27,5 +49,5 @@ pub(crate) fn tenth(n: i32) -> f64 {
 /// Returns a function that is true in one call in `n`: a state that hides from the caller.
 pub(crate) fn one_in(n: u64) -> impl Fn() -> bool {
     let calls = AtomicU64::new(0);
-    move || (calls.fetch_add(1, Ordering::Relaxed) + 1) % n == 0
+    move || (calls.fetch_add(1, Ordering::Relaxed) + 1).is_multiple_of(n)
 }

@@ -5,12 +5,12 @@ mod bases;
 mod reacting;
 mod touches;
 
-use granular_edmd::Fingerprint;
-use granular_edmd::boundary::{Boundary, Domain, Overlap, Region, Surface};
+use granular_edmd::boundary::{Boundary, Domain, FirstTouch, Overlap, Probe, Region, Surface, Touch};
 use granular_edmd::glam::DVec2;
 use granular_edmd::wall::WallMotion;
+use granular_edmd::{Fingerprint, Flight};
 
-use crate::faults::{Planted, tenth};
+use crate::faults::{List, Planted, tenth};
 use altered::Altered;
 use bases::{
     Rotor, Sprung, board, common_area, dish, floor_motion, measured, resting, shaken, sliding, stirred,
@@ -24,21 +24,34 @@ pub(crate) struct Walled {
 }
 
 /// The catalogue while it grows.
-#[derive(Default)]
-struct Boundaries(Vec<Planted<Walled>>);
+type Boundaries = List<Walled>;
 
 impl Boundaries {
-    fn add(&mut self, family: &'static str, name: impl Into<String>, boundary: impl Boundary + 'static) {
+    fn add(&mut self, name: impl Into<String>, boundary: impl Boundary + 'static) {
         let walled = Walled { boundary: Box::new(boundary), radius: 0.5, gravity: 1.0 };
-        self.0.push(Planted::new(family, name, walled));
+        self.plant(name, walled);
     }
 
     /// Adds a boundary whose surfaces are changed.
-    fn add_surface<F>(&mut self, family: &'static str, name: impl Into<String>, honest: Altered, change: F)
+    fn add_surface<F>(&mut self, name: impl Into<String>, honest: Altered, change: F)
     where
         F: Fn(&mut Surface<'_>, DVec2, f64) + 'static,
     {
-        self.add(family, name, Altered { surface: Box::new(change), ..honest });
+        self.add(name, Altered { surface: Box::new(change), ..honest });
+    }
+
+    fn add_touch<F>(&mut self, name: impl Into<String>, honest: Altered, touch: F)
+    where
+        F: Fn(&dyn Boundary, &Flight, f64) -> FirstTouch<Touch> + 'static,
+    {
+        self.add(name, Altered { touch: Box::new(touch), ..honest });
+    }
+
+    fn add_overlap<F>(&mut self, name: impl Into<String>, honest: Altered, overlap: F)
+    where
+        F: Fn(&dyn Boundary, &Probe) -> Option<Overlap> + 'static,
+    {
+        self.add(name, Altered { overlap: Box::new(overlap), ..honest });
     }
 }
 
@@ -53,14 +66,14 @@ pub(crate) fn honest() -> Vec<Planted<Walled>> {
     for (name, boundary) in
         [("shaken", shaken()), ("sliding", sliding()), ("dish", dish()), ("stirred", stirred())]
     {
-        boundaries.add("honest", name, boundary);
+        boundaries.add(name, boundary);
     }
-    boundaries.add("honest", "measured", measured());
-    boundaries.add("honest", "board", Altered::new(board()));
-    boundaries.add("honest", "sieve", bases::sieve(bases::GHOST));
-    boundaries.add("honest", "sprung", Altered::new(Sprung::new()));
-    boundaries.add("honest", "rotor", Altered::new(Rotor::new()));
-    boundaries.0
+    boundaries.add("measured", measured());
+    boundaries.add("board", Altered::new(board()));
+    boundaries.add("sieve", bases::sieve(bases::GHOST));
+    boundaries.add("sprung", Altered::new(Sprung::new()));
+    boundaries.add("rotor", Altered::new(Rotor::new()));
+    boundaries.faults
 }
 
 pub(crate) fn catalogue() -> Vec<Planted<Walled>> {
@@ -71,7 +84,7 @@ pub(crate) fn catalogue() -> Vec<Planted<Walled>> {
     touches::plant(&mut boundaries);
     touches::plant_kinds(&mut boundaries);
     reacting::plant(&mut boundaries);
-    boundaries.0
+    boundaries.faults
 }
 
 fn is_floor(surface: &Surface<'_>) -> bool {
@@ -80,24 +93,24 @@ fn is_floor(surface: &Surface<'_>) -> bool {
 
 /// The velocity is that "of the wall": the rate at which its points move.
 fn velocities(boundaries: &mut Boundaries) {
+    boundaries.family = "velocity";
     for n in [1, 2, 3, 5, 7] {
         let (size, name) = (tenth(n), format!("the floor is faster than its geometry by 1e-{n}"));
-        boundaries
-            .add_surface("velocity", name, shaken(), move |surface, _, _| surface.velocity *= 1.0 + size);
+        boundaries.add_surface(name, shaken(), move |surface, _, _| surface.velocity *= 1.0 + size);
     }
+    boundaries.family = "velocity";
     for n in [1, 3, 5] {
         let (size, name) = (tenth(n), format!("the bar turns faster than its geometry by 1e-{n}"));
-        boundaries
-            .add_surface("velocity", name, stirred(), move |surface, _, _| surface.velocity *= 1.0 + size);
+        boundaries.add_surface(name, stirred(), move |surface, _, _| surface.velocity *= 1.0 + size);
     }
-    boundaries.add_surface("velocity", "the floor is at rest as a surface", shaken(), |surface, _, _| {
+    boundaries.family = "velocity";
+    boundaries.add_surface("the floor is at rest as a surface", shaken(), |surface, _, _| {
         surface.velocity = DVec2::ZERO;
     });
-    boundaries.add_surface("velocity", "the velocity has the wrong sign", shaken(), |surface, _, _| {
+    boundaries.add_surface("the velocity has the wrong sign", shaken(), |surface, _, _| {
         surface.velocity *= -1.0;
     });
     boundaries.add_surface(
-        "velocity",
         "the velocity is not a number where the floor turns",
         shaken(),
         |surface, _, _| {
@@ -106,29 +119,18 @@ fn velocities(boundaries: &mut Boundaries) {
             }
         },
     );
-    boundaries.add_surface(
-        "velocity",
-        "the bar forgets the velocity along itself",
-        stirred(),
-        |surface, _, _| {
-            surface.velocity = surface.velocity.dot(surface.normal) * surface.normal;
-        },
-    );
-    boundaries.add_surface("velocity", "the floor forgets that it slides", sliding(), |surface, _, _| {
+    boundaries.add_surface("the bar forgets the velocity along itself", stirred(), |surface, _, _| {
+        surface.velocity = surface.velocity.dot(surface.normal) * surface.normal;
+    });
+    boundaries.add_surface("the floor forgets that it slides", sliding(), |surface, _, _| {
         surface.velocity.x = 0.0;
     });
+    boundaries.add_surface("the bar turns about the corner of the box", stirred(), |surface, position, _| {
+        if surface.velocity != DVec2::ZERO {
+            surface.velocity = 0.7 * position.perp();
+        }
+    });
     boundaries.add_surface(
-        "velocity",
-        "the bar turns about the corner of the box",
-        stirred(),
-        |surface, position, _| {
-            if surface.velocity != DVec2::ZERO {
-                surface.velocity = 0.7 * position.perp();
-            }
-        },
-    );
-    boundaries.add_surface(
-        "velocity",
         "the bar turns as its disk, and not as the point of touch",
         stirred(),
         |surface, position, _| {
@@ -143,8 +145,8 @@ fn velocities(boundaries: &mut Boundaries) {
 fn origins(boundaries: &mut Boundaries) {
     type Pass = fn(f64, f64) -> f64;
     let motion = floor_motion();
+    boundaries.family = "origin";
     boundaries.add_surface(
-        "origin",
         "the velocity of the floor forgets the origin",
         shaken(),
         move |surface, _, time| {
@@ -153,20 +155,15 @@ fn origins(boundaries: &mut Boundaries) {
             }
         },
     );
-    boundaries.add_surface(
-        "origin",
-        "the sliding of the floor forgets the origin",
-        sliding(),
-        |surface, _, time| {
-            if is_floor(surface) {
-                surface.velocity.x = 0.6 * (2.0 * time).cos();
-            }
-        },
-    );
+    boundaries.add_surface("the sliding of the floor forgets the origin", sliding(), |surface, _, time| {
+        if is_floor(surface) {
+            surface.velocity.x = 0.6 * (2.0 * time).cos();
+        }
+    });
     for n in [1, 3, 6] {
         let (size, name) = (tenth(n), format!("the origin is wrong by 1e-{n} of itself"));
         let origin = Box::new(move |_: f64, origin: f64| (1.0 + size) * origin);
-        boundaries.add("origin", name, Altered { origin, ..shaken() });
+        boundaries.add(name, Altered { origin, ..shaken() });
     }
     let passes: [(&str, Pass); 5] = [
         ("the origin is forgotten", |_, _| 0.0),
@@ -176,25 +173,22 @@ fn origins(boundaries: &mut Boundaries) {
         ("origins below 1000 do not count", |_, origin| if origin < 1000.0 { 0.0 } else { origin }),
     ];
     for (name, pass) in passes {
-        boundaries.add("origin", name, Altered { origin: Box::new(pass), ..shaken() });
-        boundaries.add(
-            "origin",
-            format!("{name}, of a bar that turns"),
-            Altered { origin: Box::new(pass), ..stirred() },
-        );
+        boundaries.add(name, Altered { origin: Box::new(pass), ..shaken() });
+        boundaries
+            .add(format!("{name}, of a bar that turns"), Altered { origin: Box::new(pass), ..stirred() });
     }
 }
 
 /// "A unit normal that points from the wall to the disk."
 fn normals(boundaries: &mut Boundaries) {
+    boundaries.family = "normal";
     for n in [1, 2, 3, 5, 7] {
         let turn = DVec2::from_angle(tenth(n));
         let name = format!("the normal of a dish is turned by 1e-{n}");
-        boundaries.add_surface("normal", name, dish(), move |surface, _, _| {
-            surface.normal = turn.rotate(surface.normal)
-        });
+        boundaries
+            .add_surface(name, dish(), move |surface, _, _| surface.normal = turn.rotate(surface.normal));
         let name = format!("the normal of a floor is turned by 1e-{n}");
-        boundaries.add_surface("normal", name, shaken(), move |surface, _, _| {
+        boundaries.add_surface(name, shaken(), move |surface, _, _| {
             if is_floor(surface) {
                 surface.normal = turn.rotate(surface.normal);
             }
@@ -202,13 +196,12 @@ fn normals(boundaries: &mut Boundaries) {
     }
     for n in [1, 3, 6, 9] {
         let (size, name) = (tenth(n), format!("the normal is longer than 1 by 1e-{n}"));
-        boundaries.add_surface("normal", name, dish(), move |surface, _, _| surface.normal *= 1.0 + size);
+        boundaries.add_surface(name, dish(), move |surface, _, _| surface.normal *= 1.0 + size);
     }
-    boundaries.add_surface("normal", "the normal of the lid points into it", shaken(), |surface, _, _| {
+    boundaries.add_surface("the normal of the lid points into it", shaken(), |surface, _, _| {
         surface.normal.y = surface.normal.y.abs();
     });
     boundaries.add_surface(
-        "normal",
         "near a corner, the floor has the normal of the side",
         shaken(),
         |surface, position, _| {
@@ -217,102 +210,60 @@ fn normals(boundaries: &mut Boundaries) {
             }
         },
     );
-    boundaries.add_surface(
-        "normal",
-        "the normal of the bar is that at time 0",
-        stirred(),
-        |surface, position, _| {
-            let away = position - DVec2::new(5.0, 6.0);
-            if away.length() < 1.6 {
-                surface.normal = DVec2::new(0.0, 1_f64.copysign(away.y));
-            }
-        },
-    );
+    boundaries.add_surface("the normal of the bar is that at time 0", stirred(), |surface, position, _| {
+        let away = position - DVec2::new(5.0, 6.0);
+        if away.length() < 1.6 {
+            surface.normal = DVec2::new(0.0, 1_f64.copysign(away.y));
+        }
+    });
 }
 
 /// "Radius of the surface: infinite if it is straight, negative if it is hollow."
 fn curvatures(boundaries: &mut Boundaries) {
+    boundaries.family = "curvature";
     for n in [1, 3, 6] {
         let (size, name) = (tenth(n), format!("the radius of the dish is too large by 1e-{n}"));
-        boundaries.add_surface("curvature", name, dish(), move |surface, _, _| surface.radius *= 1.0 + size);
+        boundaries.add_surface(name, dish(), move |surface, _, _| surface.radius *= 1.0 + size);
     }
     let board = || Altered::new(board());
-    boundaries.add_surface("curvature", "the hollow dish has a positive radius", dish(), |surface, _, _| {
-        surface.radius *= -1.0
-    });
-    boundaries.add_surface("curvature", "the peg counts as hollow", board(), |surface, _, _| {
-        surface.radius *= -1.0
-    });
-    boundaries.add_surface("curvature", "the peg has its curvature as radius", board(), |surface, _, _| {
+    boundaries
+        .add_surface("the hollow dish has a positive radius", dish(), |surface, _, _| surface.radius *= -1.0);
+    boundaries.add_surface("the peg counts as hollow", board(), |surface, _, _| surface.radius *= -1.0);
+    boundaries.add_surface("the peg has its curvature as radius", board(), |surface, _, _| {
         surface.radius = 1.0 / surface.radius;
     });
-    boundaries.add_surface("curvature", "the dish counts as straight", dish(), |surface, _, _| {
-        surface.radius = f64::INFINITY
+    boundaries
+        .add_surface("the dish counts as straight", dish(), |surface, _, _| surface.radius = f64::INFINITY);
+    boundaries.add_surface("the peg has the distance of the centers as radius", board(), |surface, _, _| {
+        surface.radius += 0.5;
     });
-    boundaries.add_surface(
-        "curvature",
-        "the peg has the distance of the centers as radius",
-        board(),
-        |surface, _, _| {
-            surface.radius += 0.5;
-        },
-    );
 }
 
 /// "None for a disk inside, otherwise the depth to which the disk reaches into a wall."
 fn overlaps(boundaries: &mut Boundaries) {
+    boundaries.family = "overlap";
     for n in [1, 3, 5, 7] {
         let (size, name) = (tenth(n), format!("an overlap is too deep by 1e-{n} of itself"));
-        boundaries.add(
-            "overlap",
-            name,
-            Altered {
-                overlap: Box::new(move |honest, probe| {
-                    honest.overlap(probe).map(|found| Overlap::new(found.with, (1.0 + size) * found.depth))
-                }),
-                ..dish()
-            },
-        );
+        boundaries.add_overlap(name, dish(), move |honest, probe| {
+            honest.overlap(probe).map(|found| Overlap::new(found.with, (1.0 + size) * found.depth))
+        });
         let name = format!("overlaps below 1e-{n} of the radius do not count");
-        boundaries.add(
-            "overlap",
-            name,
-            Altered {
-                overlap: Box::new(move |honest, probe| {
-                    honest.overlap(probe).filter(|found| found.depth > size * probe.radius())
-                }),
-                ..shaken()
-            },
-        );
+        boundaries.add_overlap(name, shaken(), move |honest, probe| {
+            honest.overlap(probe).filter(|found| found.depth > size * probe.radius())
+        });
     }
-    boundaries.add(
-        "overlap",
-        "an overlap is measured at time 0",
-        Altered { overlap: Box::new(|honest, probe| honest.overlap(&probe.with_time(0.0))), ..shaken() },
-    );
-    boundaries.add(
-        "overlap",
-        "all disks have a radius of 1/2",
-        Altered { overlap: Box::new(|honest, probe| honest.overlap(&probe.with_radius(0.5))), ..dish() },
-    );
-    boundaries.add(
-        "overlap",
-        "the wall that is named is always the first",
-        Altered {
-            overlap: Box::new(|honest, probe| {
-                honest.overlap(probe).map(|found| Overlap::new(0, found.depth))
-            }),
-            ..shaken()
-        },
-    );
-    boundaries.add(
-        "overlap",
-        "a disk inside overlaps by a negative depth",
-        Altered {
-            overlap: Box::new(|honest, probe| Some(honest.overlap(probe).unwrap_or(Overlap::new(0, -0.1)))),
-            ..shaken()
-        },
-    );
+    boundaries.add_overlap("an overlap is measured at time 0", shaken(), |honest, probe| {
+        honest.overlap(&probe.with_time(0.0))
+    });
+    boundaries.add_overlap("all disks have a radius of 1/2", dish(), |honest, probe| {
+        honest.overlap(&probe.with_radius(0.5))
+    });
+    boundaries.add_overlap("the wall that is named is always the first", shaken(), |honest, probe| {
+        honest.overlap(probe).map(|found| Overlap::new(0, found.depth))
+    });
+    boundaries.add_overlap("a disk inside overlaps by a negative depth", shaken(), |honest, probe| {
+        Some(honest.overlap(probe).unwrap_or(Overlap::new(0, -0.1)))
+    });
 }
 
 /// "The area of the places in `region` at which the center of a disk of this radius is free."
@@ -328,9 +279,10 @@ fn areas(boundaries: &mut Boundaries) {
             common_area(region, 2.0 * radius)
         }),
     ];
+    boundaries.family = "area";
     for (name, area) in areas {
         let area = Box::new(move |_: Option<f64>, region: &Region, radius: f64| Some(area(region, radius)));
-        boundaries.add("area", name, Altered { area, ..Altered::new(resting()) });
+        boundaries.add(name, Altered { area, ..Altered::new(resting()) });
     }
 }
 
@@ -362,11 +314,11 @@ fn regions(boundaries: &mut Boundaries) {
             },
         ),
     ];
+    boundaries.family = "may touch";
     for (name, answer) in answers {
-        boundaries.add("may touch", name, Altered { may_touch: Box::new(answer), ..shaken() });
+        boundaries.add(name, Altered { may_touch: Box::new(answer), ..shaken() });
     }
     boundaries.add(
-        "may touch",
         "the peg is left out",
         Altered {
             may_touch: Box::new(|_, region, radius| resting().may_touch(region, radius)),
@@ -396,18 +348,18 @@ fn frames(boundaries: &mut Boundaries) {
             domain
         }),
     ];
+    boundaries.family = "domain";
     for (name, frame) in frames {
-        boundaries.add("domain", name, Altered { domain: Box::new(frame), ..shaken() });
+        boundaries.add(name, Altered { domain: Box::new(frame), ..shaken() });
     }
     let interior = Box::new(|mut interior: Domain| {
         interior.right += 2.0;
         interior
     });
-    boundaries.add("domain", "the interior reaches beyond the domain", Altered { interior, ..shaken() });
+    boundaries.add("the interior reaches beyond the domain", Altered { interior, ..shaken() });
     let walls = Box::new(|since: f64, count: usize| if since > 0.0 { count - 1 } else { count });
-    boundaries.add("domain", "a wall is gone after the first origin", Altered { walls, ..shaken() });
+    boundaries.add("a wall is gone after the first origin", Altered { walls, ..shaken() });
     boundaries.add(
-        "domain",
         "there is one wall fewer than there are",
         Altered { walls: Box::new(|_, count| count - 1), ..shaken() },
     );

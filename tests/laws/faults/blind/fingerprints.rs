@@ -12,7 +12,7 @@ use granular_edmd::{Disk, Fingerprint, Kind};
 
 use super::boundaries::marked as marked_boundary;
 use super::motions::Motion;
-use crate::faults::{Planted, tenth};
+use crate::faults::{List, Planted, tenth};
 
 /// Two parts of one trait.
 pub(crate) enum Parts {
@@ -65,12 +65,12 @@ impl<P: WallMotion> WallMotion for Marked<P> {
 
 /// The catalogue while it grows. A pair is made by a function of its parameters, which has the fault, from the
 /// parameters of both parts.
-#[derive(Default)]
-struct Pairs(Vec<Planted<Pair>>);
+type Pairs = List<Pair>;
 
 impl Pairs {
     fn add(&mut self, family: &'static str, name: impl Into<String>, act_alike: bool, parts: Parts) {
-        self.0.push(Planted::new(family, name, Pair { parts, act_alike }));
+        self.family = family;
+        self.plant(name, Pair { parts, act_alike });
     }
 
     fn add_rules<T, R>(
@@ -111,15 +111,11 @@ pub(crate) fn honest() -> Vec<Planted<Pair>> {
     let whole = |loss| Marked(smooth(loss), Fingerprint::of("smooth").number(loss));
     pairs.add_rules("different", false, [0.1, 0.2], whole);
     pairs.add_rules("equal", true, [0.1, 0.1], whole);
-    pairs.0
+    pairs.faults
 }
 
 pub(crate) fn catalogue() -> Vec<Planted<Pair>> {
-    let mut pairs = Pairs::default();
-    for plant in [rules, tables, motions, boundaries, states] {
-        plant(&mut pairs);
-    }
-    pairs.0
+    List::grown(&[rules, tables, motions, boundaries, states])
 }
 
 fn smooth(loss: f64) -> Smooth {

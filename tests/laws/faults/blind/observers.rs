@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use granular_edmd::observable::{Collision, Observer, SampleTimes, Snapshot, Verdict};
 
-use crate::faults::{Planted, tenth};
+use crate::faults::{List, Planted, tenth};
 
 /// An observer with a clock, some of whose steps are changed.
 struct Altered {
@@ -81,96 +81,84 @@ impl Observer for Altered {
 }
 
 /// The catalogue while it grows.
-#[derive(Default)]
-struct Observers(Vec<Planted<Box<dyn Observer>>>);
+type Observers = List<Box<dyn Observer>>;
 
 impl Observers {
-    fn add(&mut self, family: &'static str, name: impl Into<String>, observer: Altered) {
-        self.0.push(Planted::new(family, name, Box::new(observer)));
+    fn add(&mut self, name: impl Into<String>, observer: Altered) {
+        self.plant(name, Box::new(observer));
     }
 
-    fn add_start(&mut self, family: &'static str, name: &str, start: fn(&mut Altered, f64)) {
-        self.add(family, name, Altered { start, ..Altered::default() });
+    fn add_start(&mut self, name: &str, start: fn(&mut Altered, f64)) {
+        self.add(name, Altered { start, ..Altered::default() });
     }
 
-    fn add_sample(&mut self, family: &'static str, name: &str, sample: fn(&mut Altered, f64)) {
-        self.add(family, name, Altered { sample, ..Altered::default() });
+    fn add_sample(&mut self, name: &str, sample: fn(&mut Altered, f64)) {
+        self.add(name, Altered { sample, ..Altered::default() });
     }
 
-    fn add_collision(&mut self, family: &'static str, name: &str, collision: fn(&mut Altered, f64)) {
-        self.add(family, name, Altered { collision, ..Altered::default() });
+    fn add_collision(&mut self, name: &str, collision: fn(&mut Altered, f64)) {
+        self.add(name, Altered { collision, ..Altered::default() });
     }
 
-    fn add_ask(&mut self, family: &'static str, name: &str, ask: fn(&Altered) -> f64) {
-        self.add(family, name, Altered { ask, ..Altered::default() });
+    fn add_ask(&mut self, name: &str, ask: fn(&Altered) -> f64) {
+        self.add(name, Altered { ask, ..Altered::default() });
     }
 }
 
 /// Returns the observer on which faults are planted.
 pub(crate) fn honest() -> Vec<Planted<Box<dyn Observer>>> {
     let mut observers = Observers::default();
-    observers.add("honest", "clock", Altered::default());
-    observers.0
+    observers.add("clock", Altered::default());
+    observers.faults
 }
 
 pub(crate) fn catalogue() -> Vec<Planted<Box<dyn Observer>>> {
-    let mut observers = Observers::default();
-    for plant in [numbers, later, starts, moves, cuts] {
-        plant(&mut observers);
-    }
-    observers.0
+    List::grown(&[numbers, later, starts, moves, cuts])
 }
 
 /// "`next_sample` is never NaN."
 fn numbers(observers: &mut Observers) {
-    observers.add_start("not a number", "the first sample is at no number", |clock, _| clock.next = f64::NAN);
-    observers.add_start("not a number", "a run that starts at 0 has no number", |clock, time| {
-        clock.next *= time / time;
+    observers.family = "not a number";
+    observers.add_start("the first sample is at no number", |clock, _| clock.next = f64::NAN);
+    observers.add_start("a run that starts at 0 has no number", |clock, time| {
+        clock.next *= 0.0 / time + 1.0;
     });
-    observers.add_sample("not a number", "the third sample is followed by no number", |clock, _| {
+    observers.add_sample("the third sample is followed by no number", |clock, _| {
         if clock.samples == 3 {
             clock.next = f64::NAN;
         }
     });
-    observers.add_sample("not a number", "the hundredth sample is followed by no number", |clock, _| {
+    observers.add_sample("the hundredth sample is followed by no number", |clock, _| {
         if clock.samples == 100 {
             clock.next = f64::NAN;
         }
     });
-    observers.add_collision("not a number", "after the first collision, no number is given", |clock, _| {
+    observers.add_collision("after the first collision, no number is given", |clock, _| {
         clock.next = f64::NAN;
     });
-    observers.add_ask("not a number", "a time at or after 1000 is not a number", |clock| {
+    observers.add_ask("a time at or after 1000 is not a number", |clock| {
         if clock.next >= 1000.0 { f64::NAN } else { clock.next }
     });
     let next = f64::NAN;
-    observers.add(
-        "not a number",
-        "before the start, no number is given",
-        Altered { next, ..Altered::default() },
-    );
+    observers.add("before the start, no number is given", Altered { next, ..Altered::default() });
 }
 
 /// "After a sample, `next_sample` names a later time."
 fn later(observers: &mut Observers) {
-    observers.add_sample("not later", "the sample is asked for again", |clock, time| clock.next = time);
-    observers.add_sample("not later", "the fourth sample is asked for again", |clock, time| {
+    observers.family = "not later";
+    observers.add_sample("the sample is asked for again", |clock, time| clock.next = time);
+    observers.add_sample("the fourth sample is asked for again", |clock, time| {
         if clock.samples == 4 {
             clock.next = time;
         }
     });
-    observers.add_sample(
-        "not later",
-        "the next sample is later only by what rounding takes",
-        |clock, time| {
-            clock.next = time + 1e-16;
-        },
-    );
-    observers.add_sample("not later", "the next sample is that of the multiple below", |clock, time| {
+    observers.add_sample("the next sample is later only by what rounding takes", |clock, time| {
+        clock.next = time + 1e-16;
+    });
+    observers.add_sample("the next sample is that of the multiple below", |clock, time| {
         clock.next = (time / INTERVAL).floor() * INTERVAL;
     });
     observers.add_sample(
-        "not later",
         "the last of ten samples is followed by a time without end before it",
         |clock, _| {
             if clock.samples == 10 {
@@ -181,58 +169,54 @@ fn later(observers: &mut Observers) {
     for n in [0, 3, 9] {
         let sample: fn(&mut Altered, f64) = |clock, time| clock.next = time - clock.size;
         let name = format!("the next sample is earlier than the sample by 1e-{n}");
-        observers.add("not later", name, Altered { sample, size: tenth(n), ..Altered::default() });
+        observers.add(name, Altered { sample, size: tenth(n), ..Altered::default() });
     }
 }
 
 /// "After `on_start`, `next_sample` names no time before the start."
 fn starts(observers: &mut Observers) {
+    observers.family = "before start";
     for n in [0, 3, 7] {
         let start: fn(&mut Altered, f64) = |clock, time| clock.next = time - clock.size;
         let name = format!("the first sample is before the start by 1e-{n}");
-        observers.add("before start", name, Altered { start, size: tenth(n), ..Altered::default() });
+        observers.add(name, Altered { start, size: tenth(n), ..Altered::default() });
     }
-    observers.add_start("before start", "every run starts at time 0", |clock, _| clock.next = INTERVAL);
-    observers.add_start("before start", "a run that starts after 100 starts at time 0", |clock, time| {
+    observers.add_start("every run starts at time 0", |clock, _| clock.next = INTERVAL);
+    observers.add_start("a run that starts after 100 starts at time 0", |clock, time| {
         if time > 100.0 {
             clock.next = INTERVAL;
         }
     });
-    observers.add_start(
-        "before start",
-        "a run at negative times starts at the beat before",
-        |clock, time| {
-            if time < 0.0 {
-                clock.next = (time / INTERVAL).trunc() * INTERVAL - INTERVAL;
-            }
-        },
-    );
+    observers.add_start("a run at negative times starts at the beat before", |clock, time| {
+        if time < 0.0 {
+            clock.next = (time / INTERVAL).trunc() * INTERVAL - INTERVAL;
+        }
+    });
 }
 
 /// "The value of `next_sample` changes only in `on_start` and `on_sample`."
 fn moves(observers: &mut Observers) {
-    observers.add_collision("moved", "a collision asks for a sample", |clock, time| clock.next = time);
-    observers.add_collision("moved", "a collision puts the sample off", |clock, time| {
-        clock.next = time + INTERVAL
-    });
-    observers.add_collision("moved", "the tenth collision puts the sample off by 1e-6", |clock, _| {
+    observers.family = "moved";
+    observers.add_collision("a collision asks for a sample", |clock, time| clock.next = time);
+    observers.add_collision("a collision puts the sample off", |clock, time| clock.next = time + INTERVAL);
+    observers.add_collision("the tenth collision puts the sample off by 1e-6", |clock, _| {
         if clock.collisions == 10 {
             clock.next += 1e-6;
         }
     });
-    observers.add_collision("moved", "the hundredth collision ends the samples", |clock, _| {
+    observers.add_collision("the hundredth collision ends the samples", |clock, _| {
         if clock.collisions == 100 {
             clock.next = f64::INFINITY;
         }
     });
     let verdict: fn(&mut Altered) = |clock| clock.next += 1e-3;
-    observers.add("moved", "each verdict puts the sample off", Altered { verdict, ..Altered::default() });
+    observers.add("each verdict puts the sample off", Altered { verdict, ..Altered::default() });
     let end: fn(&mut Altered, f64) = |clock, _| clock.next += INTERVAL;
-    observers.add("moved", "the end puts the sample off", Altered { end, ..Altered::default() });
-    observers.add_ask("moved", "each question puts the sample off by 1e-9", |clock| {
+    observers.add("the end puts the sample off", Altered { end, ..Altered::default() });
+    observers.add_ask("each question puts the sample off by 1e-9", |clock| {
         clock.next + 1e-9 * clock.asked.get() as f64
     });
-    observers.add_ask("moved", "the hundredth question has another answer", |clock| {
+    observers.add_ask("the hundredth question has another answer", |clock| {
         clock.next + if clock.asked.get() == 100 { 0.1 } else { 0.0 }
     });
 }
@@ -240,8 +224,8 @@ fn moves(observers: &mut Observers) {
 /// Samples that depend on how a run is cut into pieces. No sentence of the trait forbids this; the clock of the
 /// library promises it.
 fn cuts(observers: &mut Observers) {
+    observers.family = "cut";
     observers.add(
-        "cut",
         "each run counts its samples from its own start",
         Altered {
             start: |clock, time| clock.next = time + INTERVAL,
@@ -249,9 +233,8 @@ fn cuts(observers: &mut Observers) {
             ..Altered::default()
         },
     );
-    observers.add_start("cut", "each run takes a sample at its start", |clock, time| clock.next = time);
+    observers.add_start("each run takes a sample at its start", |clock, time| clock.next = time);
     observers.add(
-        "cut",
         "each run has only one sample",
         Altered { sample: |clock, _| clock.next = f64::INFINITY, ..Altered::default() },
     );

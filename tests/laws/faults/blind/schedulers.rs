@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use granular_edmd::scheduler::{EventScheduler, LinearScan, NOTHING_DUE};
 
-use crate::faults::{Planted, tenth};
+use crate::faults::{List, Planted, tenth};
 
 /// Makes a scheduler without disks.
 pub(crate) type Maker = Box<dyn Fn() -> Box<dyn EventScheduler>>;
@@ -79,81 +79,62 @@ fn last_of_ties(due: &[f64]) -> (usize, f64) {
 }
 
 /// The catalogue while it grows.
-#[derive(Default)]
-struct Schedulers(Vec<Planted<Maker>>);
+type Schedulers = List<Maker>;
 
 impl Schedulers {
-    fn add(&mut self, family: &'static str, name: impl Into<String>, make: impl Fn() -> Altered + 'static) {
-        self.0.push(Planted::new(family, name, Box::new(move || Box::new(make()))));
+    fn add(&mut self, name: impl Into<String>, make: impl Fn() -> Altered + 'static) {
+        self.plant(name, Box::new(move || Box::new(make())));
     }
 
-    fn add_set(
-        &mut self,
-        family: &'static str,
-        name: impl Into<String>,
-        set: fn(&mut Vec<f64>, usize, f64, u64),
-    ) {
-        self.add(family, name, move || Altered { set: Box::new(set), ..Altered::default() });
+    fn add_set(&mut self, name: impl Into<String>, set: fn(&mut Vec<f64>, usize, f64, u64)) {
+        self.add(name, move || Altered { set: Box::new(set), ..Altered::default() });
     }
 
-    fn add_reset(
-        &mut self,
-        family: &'static str,
-        name: impl Into<String>,
-        reset: fn(&mut Vec<f64>, &[f64], u64),
-    ) {
-        self.add(family, name, move || Altered { reset: Box::new(reset), ..Altered::default() });
+    fn add_reset(&mut self, name: impl Into<String>, reset: fn(&mut Vec<f64>, &[f64], u64)) {
+        self.add(name, move || Altered { reset: Box::new(reset), ..Altered::default() });
     }
 
-    fn add_answer(
-        &mut self,
-        family: &'static str,
-        name: impl Into<String>,
-        answer: fn(&[f64]) -> (usize, f64),
-    ) {
-        self.add(family, name, move || Altered { answer: Box::new(answer), ..Altered::default() });
+    fn add_answer(&mut self, name: impl Into<String>, answer: fn(&[f64]) -> (usize, f64)) {
+        self.add(name, move || Altered { answer: Box::new(answer), ..Altered::default() });
     }
 }
 
 /// Returns the scheduler on which faults are planted.
 pub(crate) fn honest() -> Vec<Planted<Maker>> {
     let mut schedulers = Schedulers::default();
-    schedulers.add("honest", "scan", Altered::default);
-    schedulers.0
+    schedulers.add("scan", Altered::default);
+    schedulers.faults
 }
 
 pub(crate) fn catalogue() -> Vec<Planted<Maker>> {
-    let mut schedulers = Schedulers::default();
-    for plant in [ties, sets, times, resets, sizes, states] {
-        plant(&mut schedulers);
-    }
-    schedulers.0
+    List::grown(&[ties, sets, times, resets, sizes, states])
 }
 
 /// "Ties go to the smallest index. 0.0 and -0.0 are the same time."
 fn ties(schedulers: &mut Schedulers) {
-    schedulers.add_answer("tie", "of equal times, the last disk comes first", last_of_ties);
-    schedulers.add_answer("tie", "of equal times above 100, the last disk comes first", |due| {
+    schedulers.family = "tie";
+    schedulers.add_answer("of equal times, the last disk comes first", last_of_ties);
+    schedulers.add_answer("of equal times above 100, the last disk comes first", |due| {
         let (disk, time) = earliest(due);
         if time > 100.0 { last_of_ties(due) } else { (disk, time) }
     });
-    schedulers.add_answer("tie", "of four equal times or more, the last disk comes first", |due| {
+    schedulers.add_answer("of four equal times or more, the last disk comes first", |due| {
         let (disk, time) = earliest(due);
         let count = due.iter().filter(|&&other| other == time).count();
         if count >= 4 { last_of_ties(due) } else { (disk, time) }
     });
-    schedulers.add_answer("tie", "of infinite times, the last disk comes first", |due| {
+    schedulers.add_answer("of infinite times, the last disk comes first", |due| {
         let (disk, time) = earliest(due);
         if time == f64::INFINITY { last_of_ties(due) } else { (disk, time) }
     });
-    schedulers.add_answer("tie", "a negative zero comes before a zero", |due| {
+    schedulers.add_answer("a negative zero comes before a zero", |due| {
         let first = due.iter().enumerate().min_by(|one, other| one.1.total_cmp(other.1));
         first.map_or(NOTHING_DUE, |(disk, &time)| (disk, time))
     });
     for n in [3, 7, 12] {
         let name = format!("times that differ by less than 1e-{n} are equal");
         let resolution = tenth(n);
-        schedulers.add("tie", name, move || Altered {
+        schedulers.add(name, move || Altered {
             answer: Box::new(move |due| earliest_of(due, |time| (time / resolution).floor())),
             ..Altered::default()
         });
@@ -162,8 +143,9 @@ fn ties(schedulers: &mut Schedulers) {
 
 /// "Time may go back": each new time counts.
 fn sets(schedulers: &mut Schedulers) {
+    schedulers.family = "lost set";
     for calls in [2, 10, 100, 1_000, 20_000] {
-        schedulers.add("lost set", format!("one set in {calls} is lost"), move || Altered {
+        schedulers.add(format!("one set in {calls} is lost"), move || Altered {
             set: Box::new(move |due, disk, time, sets| {
                 if sets % calls != 0 {
                     due[disk] = time;
@@ -173,47 +155,43 @@ fn sets(schedulers: &mut Schedulers) {
         });
     }
     schedulers.add_set(
-        "lost set",
         "a time that is earlier than the last one of the disk is lost",
         |due, disk, time, _| {
             due[disk] = due[disk].max(time);
         },
     );
-    schedulers.add_set("lost set", "a time that is earlier than all others is lost", |due, disk, time, _| {
+    schedulers.add_set("a time that is earlier than all others is lost", |due, disk, time, _| {
         if time >= earliest(due).1 {
             due[disk] = time;
         }
     });
-    schedulers.add_set(
-        "lost set",
-        "a later time of a disk that is not due next is lost",
-        |due, disk, time, _| {
-            if time < due[disk] || earliest(due).0 == disk {
-                due[disk] = time;
-            }
-        },
-    );
-    schedulers.add_set("lost set", "an infinite time is lost", |due, disk, time, _| {
+    schedulers.add_set("a later time of a disk that is not due next is lost", |due, disk, time, _| {
+        if time < due[disk] || earliest(due).0 == disk {
+            due[disk] = time;
+        }
+    });
+    schedulers.add_set("an infinite time is lost", |due, disk, time, _| {
         if time < f64::INFINITY {
             due[disk] = time;
         }
     });
-    schedulers.add_set("lost set", "the time after an infinite one is lost", |due, disk, time, _| {
+    schedulers.add_set("the time after an infinite one is lost", |due, disk, time, _| {
         if due[disk] < f64::INFINITY || time == f64::INFINITY {
             due[disk] = time;
         }
     });
-    schedulers.add_set("lost set", "a time that is later by less than 1e-6 is lost", |due, disk, time, _| {
+    schedulers.add_set("a time that is later by less than 1e-6 is lost", |due, disk, time, _| {
         if !(0.0..1e-6).contains(&(time - due[disk])) {
             due[disk] = time;
         }
     });
-    schedulers.add_set("lost set", "the last disk keeps its time", |due, disk, time, _| {
+    schedulers.add_set("the last disk keeps its time", |due, disk, time, _| {
         if disk + 1 < due.len() {
             due[disk] = time;
         }
     });
-    schedulers.add_set("wrong disk", "one set in 50 goes to the disk before", |due, disk, time, sets| {
+    schedulers.family = "wrong disk";
+    schedulers.add_set("one set in 50 goes to the disk before", |due, disk, time, sets| {
         due[if sets % 50 == 0 { disk.saturating_sub(1) } else { disk }] = time;
     });
 }
@@ -229,20 +207,20 @@ fn times(schedulers: &mut Schedulers) {
         ("infinite times are kept as the largest number", |time| time.min(f64::MAX)),
         ("times below 1e-300 are kept as 0", |time| if time.abs() < 1e-300 { 0.0 } else { time }),
     ];
+    schedulers.family = "rounded time";
     for (name, round) in rounded {
-        schedulers.add("rounded time", name, move || Altered {
+        schedulers.add(name, move || Altered {
             reset: Box::new(move |due, times, _| *due = times.iter().map(|&time| round(time)).collect()),
             set: Box::new(move |due, disk, time, _| due[disk] = round(time)),
             ..Altered::default()
         });
     }
-    schedulers.add_answer("rounded time", "times are compared in single precision", |due| {
+    schedulers.add_answer("times are compared in single precision", |due| {
         earliest_of(due, |time| f64::from(time as f32))
     });
-    schedulers.add_answer("rounded time", "times are compared by size without the sign", |due| {
-        earliest_of(due, f64::abs)
-    });
-    schedulers.add_answer("infinite", "infinite times alone are nothing due", |due| {
+    schedulers.add_answer("times are compared by size without the sign", |due| earliest_of(due, f64::abs));
+    schedulers.family = "infinite";
+    schedulers.add_answer("infinite times alone are nothing due", |due| {
         let (disk, time) = earliest(due);
         if time == f64::INFINITY { NOTHING_DUE } else { (disk, time) }
     });
@@ -250,55 +228,52 @@ fn times(schedulers: &mut Schedulers) {
 
 /// "Nothing outlives a reset", and without disks nothing is due.
 fn resets(schedulers: &mut Schedulers) {
-    schedulers.add_reset("reset", "a reset with fewer disks leaves the others", |due, times, _| {
+    schedulers.family = "reset";
+    schedulers.add_reset("a reset with fewer disks leaves the others", |due, times, _| {
         due.resize(due.len().max(times.len()), f64::INFINITY);
         due[..times.len()].copy_from_slice(times);
     });
-    schedulers.add_reset("reset", "a reset with more disks forgets the new ones", |due, times, resets| {
+    schedulers.add_reset("a reset with more disks forgets the new ones", |due, times, resets| {
         let known = if resets == 1 { times.len() } else { due.len() };
         *due = times.to_vec();
         due.iter_mut().skip(known).for_each(|time| *time = f64::INFINITY);
     });
-    schedulers.add_reset("reset", "a reset keeps times that are earlier", |due, times, _| {
+    schedulers.add_reset("a reset keeps times that are earlier", |due, times, _| {
         let kept = |(disk, &time): (usize, &f64)| due.get(disk).map_or(time, |&last| last.min(time));
         *due = times.iter().enumerate().map(kept).collect();
     });
-    schedulers.add_reset(
-        "reset",
-        "the third reset does nothing if there are as many disks",
-        |due, times, resets| {
-            if resets != 3 || due.len() != times.len() {
-                *due = times.to_vec();
-            }
-        },
-    );
-    schedulers.add_reset("reset", "a reset without disks does nothing", |due, times, _| {
+    schedulers.add_reset("the third reset does nothing if there are as many disks", |due, times, resets| {
+        if resets != 3 || due.len() != times.len() {
+            *due = times.to_vec();
+        }
+    });
+    schedulers.add_reset("a reset without disks does nothing", |due, times, _| {
         if !times.is_empty() {
             *due = times.to_vec();
         }
     });
-    schedulers.add_answer("no disks", "without disks, disk 0 is due never", |due| {
+    schedulers.family = "no disks";
+    schedulers.add_answer("without disks, disk 0 is due never", |due| {
         if due.is_empty() { (0, f64::INFINITY) } else { earliest(due) }
     });
-    schedulers.add_answer("no disks", "without disks, nothing is due at time 0", |due| {
+    schedulers.add_answer("without disks, nothing is due at time 0", |due| {
         if due.is_empty() { (usize::MAX, 0.0) } else { earliest(due) }
     });
 }
 
 /// Faults beyond a number of disks.
 fn sizes(schedulers: &mut Schedulers) {
+    schedulers.family = "number of disks";
     for most in [63, 64, 256, 1_000, 40_000] {
-        schedulers.add("number of disks", format!("only the first {most} disks are ever due"), move || {
-            Altered {
-                answer: Box::new(move |due| earliest(&due[..due.len().min(most)])),
-                ..Altered::default()
-            }
+        schedulers.add(format!("only the first {most} disks are ever due"), move || Altered {
+            answer: Box::new(move |due| earliest(&due[..due.len().min(most)])),
+            ..Altered::default()
         });
     }
-    schedulers.add_answer("number of disks", "a single disk is never due", |due| {
+    schedulers.add_answer("a single disk is never due", |due| {
         if due.len() == 1 { (0, f64::INFINITY) } else { earliest(due) }
     });
-    schedulers.add_answer("number of disks", "the last disk is left out of an odd number", |due| {
+    schedulers.add_answer("the last disk is left out of an odd number", |due| {
         let even = if due.len() > 1 { due.len() / 2 * 2 } else { due.len() };
         earliest(&due[..even])
     });
@@ -306,20 +281,21 @@ fn sizes(schedulers: &mut Schedulers) {
 
 /// "This method changes nothing", and a hint leaves the disks that it is given.
 fn states(schedulers: &mut Schedulers) {
-    schedulers.add("hidden state", "the second of two calls names the next disk", || {
+    schedulers.family = "hidden state";
+    schedulers.add("the second of two calls names the next disk", || {
         let last = Cell::new(NOTHING_DUE);
         let answer = move |due: &[f64]| {
             let right = earliest(due);
             let is_again = last.replace(right) == right && due.len() > 1;
-            if !is_again {
-                right
-            } else {
+            if is_again {
                 earliest_of(due, |time| if time == right.1 { f64::INFINITY } else { time })
+            } else {
+                right
             }
         };
         Altered { answer: Box::new(answer), ..Altered::default() }
     });
-    schedulers.add("hidden state", "the first answer after a change is the one before it", || {
+    schedulers.add("the first answer after a change is the one before it", || {
         let last = Cell::new(NOTHING_DUE);
         Altered { answer: Box::new(move |due| last.replace(earliest(due))), ..Altered::default() }
     });
@@ -328,7 +304,8 @@ fn states(schedulers: &mut Schedulers) {
         ("a hint turns the disks that it is given around", |disks| disks.reverse()),
         ("a hint removes disks that are named twice", Vec::dedup),
     ];
+    schedulers.family = "hint";
     for (name, hint) in hints {
-        schedulers.add("hint", name, move || Altered { hint, ..Altered::default() });
+        schedulers.add(name, move || Altered { hint, ..Altered::default() });
     }
 }

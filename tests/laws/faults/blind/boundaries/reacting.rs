@@ -30,10 +30,10 @@ pub(super) fn plant(boundaries: &mut Boundaries) {
 /// "Receives the blow of a disk": the wall takes the opposite impulse.
 fn blows(boundaries: &mut Boundaries) {
     type React = fn(&mut dyn Boundary, &Impact) -> Reaction;
+    boundaries.family = "reaction";
     for n in [1, 3, 6] {
         let (size, name) = (tenth(n), format!("the floor takes an impulse that is too large by 1e-{n}"));
         boundaries.add(
-            "reaction",
             name,
             Altered {
                 react: Box::new(move |honest, impact| honest.react(&scaled(impact, 1.0 + size, 1.0))),
@@ -77,12 +77,11 @@ fn blows(boundaries: &mut Boundaries) {
         ),
     ];
     for (name, react, honest) in reactions {
-        boundaries.add("reaction", name, Altered { react: Box::new(react), ..honest() });
+        boundaries.add(name, Altered { react: Box::new(react), ..honest() });
     }
     for calls in [2, 20] {
         let (is_due, name) = (one_in(calls), format!("the drum forgets one blow in {calls}"));
         boundaries.add(
-            "reaction",
             name,
             Altered {
                 react: Box::new(
@@ -96,8 +95,8 @@ fn blows(boundaries: &mut Boundaries) {
 
 /// The mass by which a wall resists, and the disks that it may meet afterwards.
 fn answers(boundaries: &mut Boundaries) {
+    boundaries.family = "mass";
     boundaries.add_surface(
-        "mass",
         "the floor reacts, but its surface has an infinite mass",
         sprung(),
         |surface, _, _| {
@@ -105,36 +104,26 @@ fn answers(boundaries: &mut Boundaries) {
         },
     );
     boundaries.add_surface(
-        "mass",
         "the surface of the floor is heavier than the floor by a hundredth",
         sprung(),
         |surface, _, _| {
             surface.mass *= 1.01;
         },
     );
-    boundaries.add_surface(
-        "mass",
-        "the drum gives its moment of inertia as its mass",
-        rotor(),
-        |surface, _, _| {
-            surface.tangential_mass *= 36.0;
-        },
-    );
-    boundaries.add_surface("mass", "the drum gives no mass along its surface", rotor(), |surface, _, _| {
+    boundaries.add_surface("the drum gives its moment of inertia as its mass", rotor(), |surface, _, _| {
+        surface.tangential_mass *= 36.0;
+    });
+    boundaries.add_surface("the drum gives no mass along its surface", rotor(), |surface, _, _| {
         surface.tangential_mass = f64::INFINITY;
     });
+    boundaries.family = "may meet";
+    boundaries
+        .add("the floor meets nobody after a blow", Altered { may_meet: Box::new(|_, _| false), ..sprung() });
     boundaries.add(
-        "may meet",
-        "the floor meets nobody after a blow",
-        Altered { may_meet: Box::new(|_, _| false), ..sprung() },
-    );
-    boundaries.add(
-        "may meet",
         "the floor meets only centers below its place at rest",
         Altered { may_meet: Box::new(|region, answer| answer && region.min.y < 2.0), ..sprung() },
     );
     boundaries.add(
-        "may meet",
         "the floor meets only what is in the left half",
         Altered { may_meet: Box::new(|region, answer| answer && region.max.x < 5.0), ..sprung() },
     );
@@ -154,8 +143,9 @@ fn states(boundaries: &mut Boundaries) {
             state.iter().map(|&number| f64::from(number as f32)).collect()
         }),
     ];
+    boundaries.family = "state";
     for (name, state) in kept {
-        boundaries.add("state", name, Altered { state: Box::new(state), ..sprung() });
+        boundaries.add(name, Altered { state: Box::new(state), ..sprung() });
     }
     let restored: [(&str, Restored); 4] = [
         ("the state is accepted and not set", |_| None),
@@ -166,6 +156,6 @@ fn states(boundaries: &mut Boundaries) {
         ("a state that is too long is accepted", |state| Some(state.iter().take(2).copied().collect())),
     ];
     for (name, restored) in restored {
-        boundaries.add("state", name, Altered { restored: Box::new(restored), ..sprung() });
+        boundaries.add(name, Altered { restored: Box::new(restored), ..sprung() });
     }
 }

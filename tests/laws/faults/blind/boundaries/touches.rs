@@ -51,28 +51,29 @@ pub(super) fn plant(boundaries: &mut Boundaries) {
 /// "It misses no touch."
 fn missed(boundaries: &mut Boundaries) {
     type Condition = fn(&Flight, &Touch, DVec2) -> bool;
+    boundaries.family = "missed touch";
     for (low, high) in [(0.9, 1.2), (0.011, 0.019), (3.3, 3.4), (1e-9, 1e-3)] {
         let name = format!("flights that begin at a speed of {low:?} to {high:?} touch nothing");
         let touch =
             missing(move |flight, _, _| (low..high).contains(&flight.velocity(flight.time()).length()));
-        boundaries.add("missed touch", name, Altered { touch, ..shaken() });
+        boundaries.add(name, Altered { touch, ..shaken() });
     }
     for (low, high) in [(0.7, 0.75), (-1.6, -1.55), (2.9, 3.0)] {
         let name = format!("flights that begin in a direction of {low} to {high} radians touch nothing");
         let touch =
             missing(move |flight, _, _| (low..high).contains(&flight.velocity(flight.time()).to_angle()));
-        boundaries.add("missed touch", name, Altered { touch, ..dish() });
+        boundaries.add(name, Altered { touch, ..dish() });
     }
     for n in [1, 2, 4] {
         let (size, name) =
             (tenth(n), format!("touches with less than 1e-{n} of the speed along the normal are missed"));
         let touch = missing(move |_, _, speed| -speed.x < size * speed.y.abs());
-        boundaries.add("missed touch", name, Altered { touch, ..dish() });
+        boundaries.add(name, Altered { touch, ..dish() });
         let name = format!("touches within 1e-{n} of the end of the search are missed");
         let touch: Search = Box::new(move |honest, flight, until| {
             honest.first_touch(flight, until - size * (until - flight.time()))
         });
-        boundaries.add("missed touch", name, Altered { touch, ..Altered::new(resting()) });
+        boundaries.add(name, Altered { touch, ..Altered::new(resting()) });
     }
     let conditions: [(&str, Condition, fn() -> Altered); 5] = [
         (
@@ -104,25 +105,30 @@ fn missed(boundaries: &mut Boundaries) {
         ),
     ];
     for (name, condition, honest) in conditions {
-        boundaries.add("missed touch", name, Altered { touch: missing(condition), ..honest() });
+        boundaries.add(name, Altered { touch: missing(condition), ..honest() });
     }
+    boundaries.family = "hidden state";
     for calls in [5, 200] {
         let (is_due, name) = (one_in(calls), format!("one search in {calls} finds nothing"));
-        boundaries.add("hidden state", name, Altered { touch: missing(move |_, _, _| is_due()), ..shaken() });
+        boundaries.add(name, Altered { touch: missing(move |_, _, _| is_due()), ..shaken() });
     }
     let is_due = one_in(3);
     let touch = missing(move |_, touch, _| touch.wall == 1 && is_due());
-    boundaries.add("hidden state", "one touch in three of one wall is missed", Altered { touch, ..shaken() });
+    boundaries.add("one touch in three of one wall is missed", Altered { touch, ..shaken() });
 }
 
 /// "It finds none where a gap is open", and misses none: touches at the wrong time.
 fn timed(boundaries: &mut Boundaries) {
     type Find = fn(&dyn Boundary, &Flight, f64) -> FirstTouch<Touch>;
+    boundaries.family = "early touch";
     for n in [1, 3, 5, 7] {
         let name = format!("touches are early by 1e-{n} of the radius");
-        boundaries.add("early touch", name, Altered { touch: late(-tenth(n)), ..shaken() });
+        boundaries.add(name, Altered { touch: late(-tenth(n)), ..shaken() });
+    }
+    boundaries.family = "late touch";
+    for n in [1, 3, 5, 7] {
         let name = format!("touches are late by 1e-{n} of the radius");
-        boundaries.add("late touch", name, Altered { touch: late(tenth(n)), ..dish() });
+        boundaries.add(name, Altered { touch: late(tenth(n)), ..dish() });
     }
     let finds: [(&str, Find); 7] = [
         ("a touch after the end of the search is reported", |honest, flight, until| {
@@ -162,8 +168,9 @@ fn timed(boundaries: &mut Boundaries) {
                 .map(|touch| Touch::new(f64::from(touch.time as f32), touch.wall))
         }),
     ];
+    boundaries.family = "touch time";
     for (name, find) in finds {
-        boundaries.add("touch time", name, Altered { touch: Box::new(find), ..shaken() });
+        boundaries.add_touch(name, shaken(), find);
     }
 }
 
@@ -178,33 +185,31 @@ fn named(boundaries: &mut Boundaries) {
             |wall| if wall == 3 { usize::MAX } else { wall },
         ),
     ];
+    boundaries.family = "touched wall";
     for (name, rename) in renames {
         let touch: Search = Box::new(move |honest, flight, until| {
             honest.first_touch(flight, until).map(|touch| Touch::new(touch.time, rename(touch.wall)))
         });
-        boundaries.add("touched wall", name, Altered { touch, ..shaken() });
+        boundaries.add(name, Altered { touch, ..shaken() });
     }
 }
 
 /// A peg that one kind passes: "a wall that does not concern disks of the probe's kind is not overlapped".
 pub(super) fn plant_kinds(boundaries: &mut Boundaries) {
+    boundaries.family = "kinds";
     for (kind, passes) in [("kind 1", GHOST), ("the default kind", Kind::DEFAULT)] {
-        boundaries.add(
-            "kinds",
+        boundaries.add_overlap(
             format!("{kind} passes the peg, but overlaps it"),
-            Altered { overlap: Box::new(|honest, probe| honest.overlap(probe)), ..sieve(passes) },
+            sieve(passes),
+            |honest, probe| honest.overlap(probe),
         );
-        boundaries.add(
-            "kinds",
+        boundaries.add_touch(
             format!("{kind} touches the peg, but does not overlap it"),
-            Altered {
-                touch: Box::new(|honest, flight, until| honest.first_touch(flight, until)),
-                ..sieve(passes)
-            },
+            sieve(passes),
+            |honest, flight, until| honest.first_touch(flight, until),
         );
     }
     boundaries.add(
-        "kinds",
         "kinds above 255 pass the peg that they overlap",
         Altered {
             touch: missing(|flight, touch, _| flight.kind().number() > 255 && touch.wall >= 4),
