@@ -77,14 +77,9 @@ pub(crate) fn honest() -> Vec<Planted<Walled>> {
 }
 
 pub(crate) fn catalogue() -> Vec<Planted<Walled>> {
-    let mut boundaries = Boundaries::default();
-    for plant in [velocities, origins, normals, curvatures, overlaps, areas, regions, frames] {
-        plant(&mut boundaries);
-    }
-    touches::plant(&mut boundaries);
-    touches::plant_kinds(&mut boundaries);
-    reacting::plant(&mut boundaries);
-    boundaries.faults
+    let walls: [fn(&mut Boundaries); 8] =
+        [velocities, origins, normals, curvatures, overlaps, areas, regions, frames];
+    List::grown(&[&walls[..], &[touches::plant, touches::plant_kinds, reacting::plant]].concat())
 }
 
 fn is_floor(surface: &Surface<'_>) -> bool {
@@ -98,12 +93,10 @@ fn velocities(boundaries: &mut Boundaries) {
         let (size, name) = (tenth(n), format!("the floor is faster than its geometry by 1e-{n}"));
         boundaries.add_surface(name, shaken(), move |surface, _, _| surface.velocity *= 1.0 + size);
     }
-    boundaries.family = "velocity";
     for n in [1, 3, 5] {
         let (size, name) = (tenth(n), format!("the bar turns faster than its geometry by 1e-{n}"));
         boundaries.add_surface(name, stirred(), move |surface, _, _| surface.velocity *= 1.0 + size);
     }
-    boundaries.family = "velocity";
     boundaries.add_surface("the floor is at rest as a surface", shaken(), |surface, _, _| {
         surface.velocity = DVec2::ZERO;
     });

@@ -103,7 +103,6 @@ fn histories(formats: &mut Formats) {
         pad(bytes, longest.get() - bytes.len());
     });
     let last = Cell::new(0.0);
-    formats.family = "history";
     formats.add_time("the time is that since the last frame", move |time| time - last.replace(time));
     formats.add_write("the bytes have random blanks", |_, bytes| {
         pad(bytes, (RandomState::new().hash_one(0) % 7) as usize);

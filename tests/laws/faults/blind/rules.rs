@@ -258,7 +258,6 @@ fn friction(rules: &mut Rules) {
         let (size, name) = (tenth(n), format!("friction is beyond its cone by 1e-{n}"));
         rules.add(RUBBING, name, move |contact| scaled(frictional(contact), 1.0, 1.0 + size));
     }
-    rules.family = "friction cone";
     rules.add(RUBBING, "friction leaves its cone only for a slip above 100", |contact| {
         scaled(frictional(contact), 1.0, if contact.slip_speed().abs() > 100.0 { 1.01 } else { 1.0 })
     });
