@@ -1,5 +1,6 @@
-//! Drivings that break the promises of a driving: to change velocities and spins only, alike for all disks, at
-//! the beats of a clock that goes on, and with random numbers of its own.
+//! Drivings that break the promises of a driving: to change velocities and spins only, alike for all disks,
+//! at the beats of a clock that goes on, and with random numbers of its own. The trait has no chapter on its
+//! contract; these are the habits of `WhiteNoise` and `Rescaling`.
 
 use std::collections::hash_map::RandomState;
 use std::hash::BuildHasher;

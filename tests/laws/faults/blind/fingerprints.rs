@@ -63,8 +63,7 @@ impl<P: WallMotion> WallMotion for Marked<P> {
     }
 }
 
-/// The catalogue while it grows. A pair is made by a function of its parameters, which has the fault, from the
-/// parameters of both parts.
+/// The catalogue while it grows. A function with the fault makes both parts of a pair from their parameters.
 type Pairs = List<Pair>;
 
 impl Pairs {
@@ -150,7 +149,7 @@ fn rules(pairs: &mut Pairs) {
     pairs.add_rules(
         "the sign of a restitution is forgotten",
         false,
-        [[0.1, 0.2, 0.5], [0.1, 0.8, 0.5]],
+        [[0.1, 0.25, 0.5], [0.1, 0.75, 0.5]],
         |numbers: [f64; 3]| {
             let restitution = (1.0 - 2.0 * numbers[1]).abs();
             Marked(frictional(numbers), Fingerprint::of("frictional").number(numbers[0]).number(restitution))
@@ -220,7 +219,7 @@ fn motions(pairs: &mut Pairs) {
     pairs.add_motions(
         "only the peak speed counts",
         false,
-        [[0.1, 6.0], [0.2, 3.0]],
+        [[0.25, 4.0], [0.5, 2.0]],
         |[amplitude, frequency]| {
             let motion = Sinusoidal::new(amplitude, frequency).expect("an amplitude");
             Marked(motion, Fingerprint::of("sine").number(amplitude * frequency))

@@ -188,7 +188,7 @@ fn jumps(motions: &mut Motions) {
             }
         });
     }
-    motions.state("the wall jumps up in the midst of a piece", parabolic(), |state, phase| {
+    motions.state("the wall jumps down in the midst of a piece", parabolic(), |state, phase| {
         if share(phase) > 0.23 && share(phase) < 0.5 {
             state.displacement *= 0.9;
         }

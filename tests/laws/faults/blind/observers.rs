@@ -221,8 +221,8 @@ fn moves(observers: &mut Observers) {
     });
 }
 
-/// Samples that depend on how a run is cut into pieces. No sentence of the trait forbids this; the clock of the
-/// library promises it.
+/// Samples that depend on how a run is cut into pieces. No sentence of the trait forbids this; the clock of
+/// the library promises it.
 fn cuts(observers: &mut Observers) {
     observers.family = "cut";
     observers.add(

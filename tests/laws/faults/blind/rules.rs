@@ -122,8 +122,8 @@ fn windows(rules: &mut Rules) {
     });
 }
 
-/// Faults for some partners only, or in one order of them: "a rule must give the same physics for the partners
-/// in either order, and for the mirror image".
+/// Faults for some partners only, or in one order of them: "a rule must give the same physics for the
+/// partners in either order, and for the mirror image".
 fn partners(rules: &mut Rules) {
     rules.family = "kinds";
     rules.add(FREE, "the kinds 3, 8, 13 and so on gain a tenth of the speed", |contact| {
