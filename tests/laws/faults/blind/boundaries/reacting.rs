@@ -23,6 +23,7 @@ fn scaled(impact: &Impact, impulse: f64, couple: f64) -> Impact {
 
 pub(super) fn plant(boundaries: &mut Boundaries) {
     blows(boundaries);
+    lost_blows(boundaries);
     answers(boundaries);
     states(boundaries);
 }
@@ -79,6 +80,10 @@ fn blows(boundaries: &mut Boundaries) {
     for (name, react, honest) in reactions {
         boundaries.add(name, Altered { react: Box::new(react), ..honest() });
     }
+}
+
+/// Blows that are forgotten now and then.
+fn lost_blows(boundaries: &mut Boundaries) {
     for calls in [2, 20] {
         let (is_due, name) = (one_in(calls), format!("the drum forgets one blow in {calls}"));
         boundaries.add(

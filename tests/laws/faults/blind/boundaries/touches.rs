@@ -44,13 +44,13 @@ fn late(share: f64) -> Search {
 
 pub(super) fn plant(boundaries: &mut Boundaries) {
     missed(boundaries);
+    missed_at_times(boundaries);
     timed(boundaries);
     named(boundaries);
 }
 
 /// "It misses no touch."
 fn missed(boundaries: &mut Boundaries) {
-    type Condition = fn(&Flight, &Touch, DVec2) -> bool;
     boundaries.family = "missed touch";
     for (low, high) in [(0.9, 1.2), (0.011, 0.019), (3.3, 3.4), (1e-9, 1e-3)] {
         let name = format!("flights that begin at a speed of {low:?} to {high:?} touch nothing");
@@ -75,6 +75,11 @@ fn missed(boundaries: &mut Boundaries) {
         });
         boundaries.add(name, Altered { touch, ..Altered::new(resting()) });
     }
+}
+
+/// Touches that are missed by a condition, or now and then.
+fn missed_at_times(boundaries: &mut Boundaries) {
+    type Condition = fn(&Flight, &Touch, DVec2) -> bool;
     let conditions: [(&str, Condition, fn() -> Altered); 5] = [
         (
             "a disk that rises never comes back to the floor",
@@ -109,7 +114,7 @@ fn missed(boundaries: &mut Boundaries) {
     }
     boundaries.family = "hidden state";
     for calls in [5, 200] {
-        let (is_due, name) = (one_in(calls), format!("one search in {calls} finds nothing"));
+        let (is_due, name) = (one_in(calls), format!("one touch in {calls} is missed"));
         boundaries.add(name, Altered { touch: missing(move |_, _, _| is_due()), ..shaken() });
     }
     let is_due = one_in(3);
