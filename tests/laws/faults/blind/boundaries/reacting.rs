@@ -84,6 +84,7 @@ fn blows(boundaries: &mut Boundaries) {
 
 /// Blows that are forgotten now and then.
 fn lost_blows(boundaries: &mut Boundaries) {
+    boundaries.family = "reaction";
     for calls in [2, 20] {
         let (is_due, name) = (one_in(calls), format!("the drum forgets one blow in {calls}"));
         boundaries.add(

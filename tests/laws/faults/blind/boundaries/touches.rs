@@ -80,6 +80,7 @@ fn missed(boundaries: &mut Boundaries) {
 /// Touches that are missed by a condition, or now and then.
 fn missed_at_times(boundaries: &mut Boundaries) {
     type Condition = fn(&Flight, &Touch, DVec2) -> bool;
+    boundaries.family = "missed touch";
     let conditions: [(&str, Condition, fn() -> Altered); 5] = [
         (
             "a disk that rises never comes back to the floor",
