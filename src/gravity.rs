@@ -64,9 +64,11 @@ impl Gravity {
 
     /// Returns the same gravity, if both components are finite and at most 1e60 in magnitude, with 0 for −0.
     ///
-    /// The exit from a cell divides by gravity, and the sign of the infinity decides whether a disk that
-    /// rises ever comes back.
-    pub(crate) fn checked(self) -> Result<Self, ParameterError> {
+    /// # Errors
+    /// If a component is not finite, or above 1e60 in magnitude.
+    pub fn checked(self) -> Result<Self, ParameterError> {
+        // The exit from a cell divides by gravity, and the sign of the infinity decides whether a disk that rises
+        // ever comes back.
         let rightward = bounded("gravity to the right", self.rightward)?;
         Ok(Self { rightward: rightward + 0.0, downward: bounded("gravity", self.downward)? + 0.0 })
     }

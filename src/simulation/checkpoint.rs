@@ -22,14 +22,15 @@ use super::state::{Clock, Forecast, Identities, Spin, Trajectory};
 use super::{Counters, Inlet, Simulation};
 use crate::boundary::{Boundary, Domain};
 use crate::collision::CollisionRule;
-use crate::file::{Broken, Seal, write_whole};
+use crate::file::{Damage, Seal, write_whole};
 use crate::scheduler::EventScheduler;
 use crate::{Disk, Fingerprint};
 
 /// The mark of a checkpoint, and the version of the format that this crate writes and reads.
-const SEAL: Seal = Seal { magic: *b"GRANEDMD", version: 7 };
+const SEAL: Seal = Seal::new(*b"GRANEDMD", 8);
 
-/// Everything on which the future of a run depends, except its rule and its boundary.
+/// Everything on which the future of a run depends, except its rule and its boundary. The numbers of walls
+/// that [react](Boundary::react) are kept.
 ///
 /// A resumed run continues bit for bit, also under another scheduler. A checkpoint is kept as bytes with a
 /// version and a checksum, in its own files and inside any format of serde. Bytes that were cut, changed or
@@ -81,6 +82,8 @@ struct Saved {
     typical_diameter: f64,
     fresh_count: u32,
     inlets: Vec<Inlet>,
+    /// Numbers of the walls that react.
+    walls: Vec<f64>,
     forecasts: Vec<Forecast>,
     layouts: Layouts,
     places: Vec<Place>,
@@ -166,9 +169,14 @@ impl Checkpoint {
         self.0.trajectories.len()
     }
 
-    /// Returns the fingerprints of the rule and the boundary of the run.
-    pub(crate) const fn parts(&self) -> [Option<Fingerprint>; 2] {
-        [self.0.rule, self.0.boundary]
+    /// Returns the fingerprint of the rule of the run, if it has one.
+    pub const fn rule(&self) -> Option<Fingerprint> {
+        self.0.rule
+    }
+
+    /// Returns the fingerprint of the boundary of the run, if it has one.
+    pub const fn boundary(&self) -> Option<Fingerprint> {
+        self.0.boundary
     }
 
     /// Returns the checkpoint as bytes: magic, version, checksum, contents.
@@ -215,9 +223,9 @@ fn read<T>(path: &Path, parse: impl Fn(&[u8]) -> Result<T, CheckpointError>) -> 
 /// Returns the contents behind a seal.
 fn opened(seal: Seal, bytes: &[u8]) -> Result<&[u8], CheckpointError> {
     seal.open(bytes).map_err(|broken| match broken {
-        Broken::Foreign => CheckpointError::NotACheckpoint,
-        Broken::Version(found) => CheckpointError::Version { found, known: seal.version },
-        Broken::Cut | Broken::Changed => CheckpointError::Damaged,
+        Damage::Foreign => CheckpointError::NotACheckpoint,
+        Damage::Version(found) => CheckpointError::Version { found, known: seal.version() },
+        Damage::Cut | Damage::Changed => CheckpointError::Damaged,
     })
 }
 
@@ -267,6 +275,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
             typical_diameter: self.bodies.typical_diameter,
             fresh_count: self.bodies.fresh_count,
             inlets: self.inlets.clone(),
+            walls: self.boundary.state(),
             forecasts: particles.iter().map(|particle| particle.forecast).collect(),
             layouts: self.cells.layouts(),
             places: self.cells.places.clone(),

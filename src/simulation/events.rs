@@ -104,7 +104,7 @@ impl Counters {
     }
 
     /// Returns the number of collisions, with disks or walls.
-    pub(crate) const fn collisions(&self) -> u64 {
+    pub const fn collisions(&self) -> u64 {
         self.disk_collisions + self.wall_collisions
     }
 
