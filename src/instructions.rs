@@ -112,12 +112,12 @@ fn has(level: Level) -> bool {
 #[cfg(target_arch = "x86_64")]
 macro_rules! compiled_for_each {
     (
-        $(#[$attribute:meta])* $name:ident $(<const $number:ident: usize>)? ($($argument:ident: $type:ty),*) -> $output:ty
+        $(#[$attribute:meta])* $visibility:vis $name:ident $(<const $number:ident: usize>)? ($($argument:ident: $type:ty),*) -> $output:ty
             = $built:expr, $avx2:expr, $avx512:expr
     ) => {
         #[inline(always)]
         #[allow(unsafe_code, clippy::too_many_arguments)]
-        pub(super) fn $name$(<const $number: usize>)?(
+        $visibility fn $name$(<const $number: usize>)?(
             instructions: $crate::instructions::Instructions, $($argument: $type),*
         ) -> $output {
             $(#[$attribute])*
@@ -150,12 +150,12 @@ macro_rules! compiled_for_each {
 #[cfg(not(target_arch = "x86_64"))]
 macro_rules! compiled_for_each {
     (
-        $(#[$attribute:meta])* $name:ident $(<const $number:ident: usize>)? ($($argument:ident: $type:ty),*) -> $output:ty
+        $(#[$attribute:meta])* $visibility:vis $name:ident $(<const $number:ident: usize>)? ($($argument:ident: $type:ty),*) -> $output:ty
             = $built:expr, $avx2:expr, $avx512:expr
     ) => {
         $(#[$attribute])*
         #[allow(clippy::too_many_arguments)]
-        pub(super) fn $name$(<const $number: usize>)?(
+        $visibility fn $name$(<const $number: usize>)?(
             _: $crate::instructions::Instructions, $($argument: $type),*
         ) -> $output {
             $built($($argument),*)

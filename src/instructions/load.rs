@@ -3,9 +3,7 @@
 //! A processor that reads what it has just written waits, unless a single write covers all that is read. So
 //! it matters how many numbers a read takes, and in hot code these functions say it.
 
-use std::arch::x86_64::{
-    __m128d, __m256d, __m512d, _mm_loadu_pd, _mm256_loadu_pd, _mm512_loadu_pd,
-};
+use std::arch::x86_64::{__m128d, __m256d, __m512d, _mm_loadu_pd, _mm256_loadu_pd, _mm512_loadu_pd};
 
 /// Reads two numbers at once.
 #[allow(unsafe_code)]

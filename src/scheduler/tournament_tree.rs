@@ -11,8 +11,8 @@ use wide::Wide;
 
 /// A tournament: the earliest disk of each match goes on to the next round, until one is left.
 ///
-/// On processors with vector instructions, a match has 32 disks, and otherwise four, as it has among more
-/// than 32 768 disks.
+/// Processors that compare four or eight times at once play matches of 32 disks. Others play matches of four,
+/// and so do all with more than 32 768 disks. The answers are the same.
 #[derive(Debug, Clone, Default)]
 pub struct TournamentTree {
     instructions: Instructions,
@@ -22,7 +22,6 @@ pub struct TournamentTree {
 #[derive(Debug, Clone)]
 enum Form {
     Fours(Fours),
-    /// Two rounds of matches of 32.
     Two(Wide<2>),
     Three(Wide<3>),
 }
@@ -38,35 +37,32 @@ impl TournamentTree {
     pub const fn new() -> Self {
         Self { instructions: Instructions::BUILT, form: Form::Fours(Fours::new()) }
     }
+}
 
-    fn reset_with(&mut self, instructions: Instructions, due: &[f64]) {
-        self.instructions = instructions;
+impl EventScheduler for TournamentTree {
+    fn reset(&mut self, due: &[f64]) {
+        self.instructions = Instructions::detected();
         self.form = match due.len() {
             0 => Form::default(),
-            _ if instructions.level() == Level::Built => Form::default(),
+            _ if self.instructions.level() == Level::Built => Form::default(),
             disks if disks <= Wide::<2>::MOST_DISKS => Form::Two(Wide::new(disks)),
             disks if disks <= Wide::<3>::MOST_DISKS => Form::Three(Wide::new(disks)),
             _ => Form::default(),
         };
         match &mut self.form {
             Form::Fours(fours) => fours.reset(due),
-            Form::Two(wide) => wide::reset(instructions, wide, due),
-            Form::Three(wide) => wide::reset(instructions, wide, due),
+            Form::Two(wide) => wide.reset(self.instructions, due),
+            Form::Three(wide) => wide.reset(self.instructions, due),
         }
     }
-}
 
-impl EventScheduler for TournamentTree {
-    fn reset(&mut self, due: &[f64]) {
-        self.reset_with(Instructions::detected(), due);
-    }
-
+    // Inlined, so that each event makes one call, and that to the code for this processor.
     #[inline(always)]
     fn set(&mut self, disk: usize, due: f64) {
         match &mut self.form {
             Form::Fours(fours) => fours.set(disk, due),
-            Form::Two(wide) => wide::set(self.instructions, wide, disk, due),
-            Form::Three(wide) => wide::set(self.instructions, wide, disk, due),
+            Form::Two(wide) => wide.set(self.instructions, disk, due),
+            Form::Three(wide) => wide.set(self.instructions, disk, due),
         }
     }
 

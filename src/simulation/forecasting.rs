@@ -57,7 +57,16 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     pub(super) fn find_next_of_both(&mut self, disks: [usize; 2], counts: [usize; 2]) {
         let (periods, now) = (self.cells.grid().periods(), self.clock.now);
         let found = &mut self.scratch.found;
-        find_partners(self.instructions, self.instructions, &mut self.bodies, periods, disks, found, counts, now);
+        find_partners(
+            self.instructions,
+            self.instructions,
+            &mut self.bodies,
+            periods,
+            disks,
+            found,
+            counts,
+            now,
+        );
         let at_wall = leave_cells(self.instructions, &mut self.bodies, &self.cells, disks[0], disks[1], now);
         for (disk, at_wall) in disks.into_iter().zip(at_wall) {
             if at_wall {

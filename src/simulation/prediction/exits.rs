@@ -1,68 +1,113 @@
-//! The exits of two disks from their cells at once, by vector instructions.
+//! Predictions of the time at which a disk leaves its cell.
 
-use std::arch::x86_64::{
-    _CMP_GT_OQ, _CMP_LT_OQ, _CMP_ORD_Q, _mm_add_pd, _mm_and_pd, _mm_andnot_pd, _mm_blendv_pd, _mm_cmp_pd,
-    _mm_cvtsd_f64, _mm_div_pd, _mm_max_pd, _mm_movemask_pd, _mm_mul_pd, _mm_set_pd, _mm_set1_pd, _mm_setzero_pd,
-    _mm_sqrt_pd, _mm_sub_pd, _mm_unpackhi_pd,
-};
-
+#[cfg(target_arch = "x86_64")]
+use super::vector::exits as vector;
+use crate::boundary::Region;
+use crate::instructions::compiled_for_each;
 use crate::simulation::cells::Cells;
 use crate::simulation::state::{Bodies, Exit};
 
-/// Does the same as [`exits_in_turn`](super::exits_in_turn).
-///
-/// One root and one quotient serve both disks.
-#[target_feature(enable = "avx2")]
-#[inline]
-pub(super) fn exits_of_both(bodies: &mut Bodies, cells: &Cells, first: usize, second: usize, now: f64) -> [bool; 2] {
-    let gravity = bodies.gravity.downward();
-    if bodies.gravity.rightward() != 0.0 || gravity < 0.0 {
-        return super::exits_in_turn(bodies, cells, first, second, now);
+compiled_for_each! {
+    /// Finds when and where two disks leave their cells. Returns whether they can touch a wall there.
+    #[inline(never)]
+    pub(in crate::simulation) leave_cells(
+        bodies: &mut Bodies, cells: &Cells, first: usize, second: usize, now: f64
+    ) -> [bool; 2] = exits_of_both,
+        |bodies: &mut Bodies, cells, first, second, now| if pulls_down(bodies) {
+            vector::exits_of_both(bodies, cells, first, second, now)
+        } else {
+            exits_of_both(bodies, cells, first, second, now)
+        },
+        |bodies: &mut Bodies, cells, first, second, now| if pulls_down(bodies) {
+            vector::exits_of_both(bodies, cells, first, second, now)
+        } else {
+            exits_of_both(bodies, cells, first, second, now)
+        }
+}
+
+/// Returns whether the vector instructions are written for this gravity: straight down, or none.
+#[inline(always)]
+fn pulls_down(bodies: &Bodies) -> bool {
+    bodies.gravity.rightward() == 0.0 && bodies.gravity.downward() >= 0.0
+}
+
+#[inline(always)]
+fn exits_of_both(bodies: &mut Bodies, cells: &Cells, first: usize, second: usize, now: f64) -> [bool; 2] {
+    [leave_cell(bodies, cells, first, now), leave_cell(bodies, cells, second, now)]
+}
+
+/// Finds when and where a disk leaves its cell. Returns whether it can touch a wall there.
+#[inline(always)]
+pub(in crate::simulation) fn leave_cell(bodies: &mut Bodies, cells: &Cells, disk: usize, now: f64) -> bool {
+    let (region, at_wall) = cells.region(disk);
+    let (due, exit) = cell_exit(bodies, disk, &region, now);
+    bodies.exit(disk, due, exit);
+    at_wall
+}
+
+/// Returns the offset at which a disk leaves its cell, and the edge.
+#[inline(always)]
+fn cell_exit(bodies: &Bodies, disk: usize, region: &Region, now: f64) -> (f64, Exit) {
+    let (position, velocity) = (bodies.position(disk, now), bodies.velocity(disk, now));
+    let rightward = velocity.x > 0.0;
+    let distance = if rightward { region.max.x - position.x } else { position.x - region.min.x };
+    let sideways = distance / velocity.x.abs();
+    let (above, below) = (region.max.y - position.y, position.y - region.min.y);
+    let (vertical, up) = exit_under_pull(above, below, velocity.y, bodies.gravity.downward());
+    let (sideways, rightward) = if bodies.gravity.rightward() == 0.0 {
+        (sideways, rightward)
+    } else {
+        let (left, right) = (position.x - region.min.x, region.max.x - position.x);
+        exit_sideways(left, right, velocity.x, bodies.gravity.rightward())
+    };
+    // For a disk at rest that reaches no edge, the result is 0/0 or inf/inf, which means never.
+    let sideways = if sideways.is_nan() { f64::INFINITY } else { sideways };
+    let level = vertical < sideways;
+    let wait = if level { vertical } else { sideways }.max(0.0);
+    let exit = Exit::EDGES[usize::from(level)][usize::from((level & up) | (!level & rightward))];
+    (now + wait, exit)
+}
+
+/// Returns the time until a disk leaves its column, and whether it leaves to the right, for gravity to the
+/// right. It is not inlined, since gravity is vertical in most runs.
+#[inline(never)]
+fn exit_sideways(left: f64, right: f64, velocity: f64, gravity: f64) -> (f64, bool) {
+    let (wait, leftward) = exit_under_pull(left, right, -velocity, gravity);
+    (wait, !leftward)
+}
+
+/// Returns the time until a disk leaves its row, and whether it leaves through the edge above, for gravity
+/// that pulls down, or up if it is negative.
+#[inline(always)]
+fn exit_under_pull(above: f64, below: f64, velocity: f64, gravity: f64) -> (f64, bool) {
+    if gravity >= 0.0 {
+        return vertical_exit(above, below, velocity, gravity);
     }
-    let disks = [first, second];
-    let ((one, at_wall), (two, also_at_wall)) = (cells.region(first), cells.region(second));
-    let both = |x: f64| _mm_set1_pd(x);
-    let select = |mask, yes, no| _mm_blendv_pd(no, yes, mask);
-    let (zero, infinity, time) = (_mm_setzero_pd(), both(f64::INFINITY), both(now));
-    let (first, second) = (&bodies.particles[first].trajectory, &bodies.particles[second].trajectory);
-    let (fallen, gained) = bodies.fall(now);
-    let of_both = |one: f64, two: f64| _mm_set_pd(two, one);
-    let velocity_x = of_both(first.velocity.x, second.velocity.x);
-    let velocity_y = of_both(first.velocity.y, second.velocity.y);
-    let x = of_both(first.position.x, second.position.x);
-    let y = of_both(first.position.y, second.position.y);
-    let x = _mm_add_pd(_mm_add_pd(x, _mm_mul_pd(velocity_x, time)), both(fallen.x));
-    let y = _mm_add_pd(_mm_add_pd(y, _mm_mul_pd(velocity_y, time)), both(fallen.y));
-    let velocity_x = _mm_add_pd(velocity_x, both(gained.x));
-    let velocity_y = _mm_add_pd(velocity_y, both(gained.y));
+    let (wait, down) = vertical_exit(below, above, -velocity, -gravity);
+    (wait, !down)
+}
 
-    let speed = |velocity| _mm_andnot_pd(both(-0.0), velocity);
-    let rightward = _mm_cmp_pd::<_CMP_GT_OQ>(velocity_x, zero);
-    let (to_left, to_right) = (_mm_sub_pd(x, of_both(one.min.x, two.min.x)), _mm_sub_pd(of_both(one.max.x, two.max.x), x));
-    let sideways = _mm_div_pd(select(rightward, to_right, to_left), speed(velocity_x));
-
-    let above = _mm_max_pd(_mm_sub_pd(of_both(one.max.y, two.max.y), y), zero);
-    let below = _mm_max_pd(_mm_sub_pd(y, of_both(one.min.y, two.min.y)), zero);
-    let square = _mm_mul_pd(velocity_y, velocity_y);
-    let rising = _mm_cmp_pd::<_CMP_GT_OQ>(velocity_y, zero);
-    let twice = both(2.0 * gravity);
-    let reserve = _mm_sub_pd(square, _mm_mul_pd(twice, above));
-    let up = _mm_and_pd(rising, _mm_cmp_pd::<_CMP_GT_OQ>(reserve, zero));
-    let radicand = select(up, reserve, _mm_add_pd(square, _mm_mul_pd(twice, below)));
-    let sum = _mm_add_pd(_mm_sqrt_pd(radicand), speed(velocity_y));
-    let distance = _mm_mul_pd(both(2.0), select(up, above, below));
-    let numerator = select(up, distance, select(rising, sum, distance));
-    let denominator = select(up, sum, select(rising, both(gravity), sum));
-    let vertical = _mm_div_pd(numerator, denominator);
-
-    let number = |wait| select(_mm_cmp_pd::<_CMP_ORD_Q>(wait, wait), wait, infinity);
-    let (vertical, sideways) = (number(vertical), number(sideways));
-    let level = _mm_cmp_pd::<_CMP_LT_OQ>(vertical, sideways);
-    let due = _mm_add_pd(time, _mm_max_pd(select(level, vertical, sideways), zero));
-    let sense = _mm_movemask_pd(select(level, up, rightward));
-    let level = _mm_movemask_pd(level);
-    let exit = |k: i32| Exit::EDGES[(level >> k & 1) as usize][(sense >> k & 1) as usize];
-    bodies.exit(disks[0], _mm_cvtsd_f64(due), exit(0));
-    bodies.exit(disks[1], _mm_cvtsd_f64(_mm_unpackhi_pd(due, due)), exit(1));
-    [at_wall, also_at_wall]
+/// Returns the time until a disk leaves its row, and whether it leaves through the edge above, for gravity
+/// that pulls down.
+///
+/// There are three ways: up to the edge above, up and down again through the edge below, or straight down.
+/// The code selects numbers and does not branch: the way that a disk takes is a coin toss, and a
+/// misprediction would cost more than all three roots. Each root has the form in which nothing cancels: a
+/// distance over a sum of speeds if the disk goes straight to the edge, and a sum of speeds over gravity if
+/// it turns back.
+#[inline(always)]
+fn vertical_exit(above: f64, below: f64, velocity: f64, gravity: f64) -> (f64, bool) {
+    let (above, below) = (above.max(0.0), below.max(0.0));
+    let square = velocity * velocity;
+    let reserve = square - 2.0 * gravity * above;
+    let reserve = if velocity > 0.0 { reserve } else { -1.0 };
+    let radicand = if reserve > 0.0 { reserve } else { square + 2.0 * gravity * below };
+    let sum = radicand.sqrt() + velocity.abs();
+    let distance = 2.0 * if reserve > 0.0 { above } else { below };
+    let turning = if velocity > 0.0 { sum } else { distance };
+    let numerator = if reserve > 0.0 { distance } else { turning };
+    let turning = if velocity > 0.0 { gravity } else { sum };
+    let denominator = if reserve > 0.0 { sum } else { turning };
+    let wait = numerator / denominator;
+    (if wait.is_nan() { f64::INFINITY } else { wait }, reserve > 0.0)
 }
