@@ -111,18 +111,24 @@ impl<const ROUNDS: usize> Wide<ROUNDS> {
             }
         }
         self.winner = self.rounds[ROUNDS - 1][0].earliest_without(NO_SEAT, NO_SEAT, earliest_without);
-        decide(instructions, self);
+        self.decide(instructions);
     }
 
     #[inline(always)]
     pub(super) fn set(&mut self, instructions: Instructions, disk: usize, due: f64) {
         // Adding 0 turns -0 into 0, so that both zeros are the same time.
         if set(instructions, self, Player { due: due + 0.0, disk }) {
-            decide(instructions, self);
+            self.decide(instructions);
         }
     }
 
-    /// Sets a player's time. Returns whether winner and runner-up must be found by [`Self::decide`], which is
+    #[cold]
+    #[inline(never)]
+    fn decide(&mut self, instructions: Instructions) {
+        decide(instructions, self);
+    }
+
+    /// Sets a player's time. Returns whether winner and runner-up must be found by [`Self::find_first`], which is
     /// rare.
     #[inline(always)]
     fn play(&mut self, player: Player, earliest: impl Earliest) -> bool {
@@ -194,7 +200,7 @@ impl<const ROUNDS: usize> Wide<ROUNDS> {
 
     /// Finds winner and runner-up among all, from the way of the present winner up.
     #[inline(always)]
-    fn decide(&mut self, earliest: impl Earliest) {
+    fn find_first(&mut self, earliest: impl Earliest) {
         let mut index = self.winner.disk;
         for round in 0..ROUNDS {
             let seat = index % PLAYERS;
@@ -227,9 +233,9 @@ compiled_for_each! {
     #[cold]
     #[inline(never)]
     decide<const ROUNDS: usize>(wide: &mut Wide<ROUNDS>) -> ()
-        = |wide| Wide::decide(wide, earliest_without),
-        |wide| Wide::decide(wide, |times, one, other| avx2::earliest_without(times, one, other)),
-        |wide| Wide::decide(wide, |times, one, other| avx512::earliest_without(times, one, other))
+        = |wide| Wide::find_first(wide, earliest_without),
+        |wide| Wide::find_first(wide, |times, one, other| avx2::earliest_without(times, one, other)),
+        |wide| Wide::find_first(wide, |times, one, other| avx512::earliest_without(times, one, other))
 }
 
 #[cfg(test)]
