@@ -3,8 +3,12 @@
 //! A build for any x86-64 processor can rely only on instructions for two numbers at a time, but nearly all
 //! of these processors can take four. So the hot code is compiled for each level, and [`Instructions`] names
 //! the level that this processor has. The arithmetic is the same in all copies, since Rust never fuses a
-//! product and a sum into one instruction. So the bits do not depend on the level. A build for a processor
-//! with AVX2 or for another architecture has one copy only.
+//! product and a sum into one instruction. So the bits do not depend on the level.
+//!
+//! What the compiler does not find by itself is written in vector instructions: the tournament of the
+//! scheduler (`scheduler/tournament_tree/earliest.rs`) and predictions (`simulation/prediction/vector.rs`).
+//! Each such function has a plain one of the same name beside it, which runs where there are no such
+//! instructions. Builds for other architectures have the plain functions only.
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod load;
@@ -25,7 +29,18 @@ pub(crate) enum Level {
     Avx512,
 }
 
+impl Level {
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Built => "those of the build",
+            Self::Avx2 => "AVX2",
+            Self::Avx512 => "AVX-512",
+        }
+    }
+}
+
 impl Instructions {
+    /// Those that every processor has for which the crate is built.
     pub(crate) const BUILT: Self = Self(Level::Built);
 
     /// Returns the best level that this processor has.
@@ -83,7 +98,7 @@ impl Instructions {
     }
 }
 
-/// Tells whether this processor has the instructions for which the copy of a level is compiled.
+/// Returns whether this processor has the instructions for which the copy of a level is compiled.
 #[cfg(target_arch = "x86_64")]
 fn has(level: Level) -> bool {
     use std::arch::is_x86_feature_detected as has;
@@ -102,13 +117,15 @@ fn has(level: Level) -> bool {
     level == Level::Built
 }
 
-/// Makes a function that runs the copy of `$body` for the [`Instructions`] in its first argument.
+/// Makes a function that runs one of three others, by the [`Instructions`] in its first argument: that for any
+/// processor, that for AVX2, or that for AVX-512.
 ///
-/// `$body` and all hot functions that it calls must be `#[inline(always)]`, since other code is compiled for
-/// the level of the build. The constant parameter of `$body`, the number of the copy, makes the copies
-/// different functions. The compiler then inlines the functions that a copy calls as if this copy were their
-/// only caller. The attributes are those of the copy for the level of the build. [`Instructions::run`] would
-/// be slower here, since so many captures would go through memory.
+/// The three can be copies of a plain function for each level. This and all hot functions that it calls must
+/// then be `#[inline(always)]`, since other code is compiled for the level of the build. A constant parameter,
+/// the number of the copy, makes the copies different functions. The compiler then inlines the functions that
+/// a copy calls as if this copy were their only caller. A function of vector instructions, or a closure that
+/// calls one, can take the place of a copy. [`Instructions::run`] would be slower here, since so many captures
+/// would go through memory.
 #[cfg(target_arch = "x86_64")]
 macro_rules! compiled_for_each {
     (
