@@ -51,6 +51,7 @@ mod traffic;
 mod warnings;
 
 pub use builder::SimulationBuilder;
+pub(crate) use cells::FEWEST;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Resumption};
 pub use driving::{Driving, Rescaling, WhiteNoise};
@@ -73,7 +74,7 @@ use crate::{Disk, Gravity, ParameterError};
 use builder::fit;
 use cells::Cells;
 use lookahead::Lookahead;
-use state::{Bodies, Clock};
+use state::{Bodies, Clock, Ledger};
 
 /// A system of disks that is taken from event to event.
 ///
@@ -116,6 +117,7 @@ pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     instructions: Instructions,
     scratch: Scratch,
     inlets: Vec<Inlet>,
+    ledger: Ledger,
 }
 
 /// A rule that is chosen when the program runs.
@@ -288,6 +290,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         accept(self.is_empty() || !is_coarse, "gravity", requirement, gravity.larger())?;
         self.shift_epoch(self.clock.exact_offset());
         self.bodies.set_gravity(gravity, self.clock.now);
+        self.ledger.has_source = true;
         self.clock.epoch_length = self.bodies.epoch_length();
         self.predict_all();
         Ok(())
@@ -307,6 +310,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         let (wall_count, cells) = fit(&boundary, &self.disks(), self.clock.now)?;
         self.count_jumps(&boundary);
         (self.boundary, self.wall_count, self.cells) = (boundary, wall_count, cells);
+        self.ledger.has_source = true;
         self.predict_all();
         Ok(())
     }

@@ -8,6 +8,7 @@ mod files;
 mod fingerprints;
 mod names;
 mod obstacles;
+mod patches;
 mod periodic_parts;
 mod planted;
 mod touches;

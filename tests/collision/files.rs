@@ -4,7 +4,7 @@ use granular_edmd::Kind;
 use granular_edmd::boundary::{Boundary, Container, Wall};
 use granular_edmd::collision::{
     CollisionRule, ContactDuration, Elastic, ElasticBelow, Friction, Frictional, KnownRule, LeastRebound,
-    Rough, RulesByKind, Smooth, SpeedDependent, TangentialResponse,
+    RollingFriction, Rough, RulesByKind, Smooth, SpeedDependent, TangentialResponse,
 };
 use granular_edmd::strategies::decades;
 use proptest::prelude::*;
@@ -49,6 +49,7 @@ proptest! {
         let below = ElasticBelow::new(frictional, duration).unwrap();
         prop_assert!(returns(&below) && returns(&below.with_tangential_response(unchanged)));
         prop_assert!(returns(&LeastRebound::new(frictional, duration).unwrap()));
+        prop_assert!(returns(&RollingFriction::new(frictional, duration).unwrap()));
         prop_assert!(returns(&SpeedDependent::from_restitution(ratio, duration).unwrap().with_friction(friction)));
     }
 }
@@ -88,6 +89,7 @@ fn every_rule_of_the_crate_returns_on_a_wall() {
         walls_return(lasting.with_tangential_response(TangentialResponse::Reversing)),
         walls_return(below),
         walls_return(LeastRebound::new(table.clone(), 0.2).unwrap()),
+        walls_return(RollingFriction::new(frictional, 0.1).unwrap()),
         walls_return(table),
         walls_return(ContactDuration::new(boxed, 1.0).unwrap()),
         walls_return(mixed.known().unwrap()),
@@ -115,7 +117,7 @@ fn rules_within_rules_are_bounded() {
     let error = postcard::from_bytes::<KnownRule>(&bytes).unwrap_err();
     assert_eq!(error, postcard::Error::SerdeDeCustom);
     let nested = |depth: usize| {
-        let rule = r#"{"least_rebound":{"rule":"#.repeat(depth) + r#"{"elastic":null}"#;
+        let rule = r#"{"least_rebound":{"rule":"#.repeat(depth) + r#"{"elastic":{}}"#;
         serde_json::from_str::<KnownRule>(&(rule + &r#","speed":1}}"#.repeat(depth)))
     };
     assert!(nested(15).unwrap().fingerprint().is_some());

@@ -133,6 +133,7 @@ impl<'a, R: CollisionRule, B: Boundary, S: EventScheduler> Resumption<'a, R, B, 
             instructions: Instructions::detected(),
             scratch: Scratch::default(),
             inlets: saved.inlets.clone(),
+            ledger: saved.ledger,
         }
     }
 }
