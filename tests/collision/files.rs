@@ -136,10 +136,10 @@ fn the_names_in_a_file_are_stable() {
     let friction = r#"{"tangential_inelasticity":0.25,"static_friction":0.5,"dynamic_friction":0.5}"#;
     assert_eq!(serde_json::to_string(&Friction::from_inelasticity(0.25, 0.5).unwrap()).unwrap(), friction);
     let below = ElasticBelow::new(Elastic, 0.125).unwrap();
-    let text_below = r#"{"rule":null,"speed":0.125,"tangential_response":"Frictionless"}"#;
+    let text_below = r#"{"rule":{},"speed":0.125,"tangential_response":"Frictionless"}"#;
     assert_eq!(serde_json::to_string(&below).unwrap(), text_below);
     let rebound = LeastRebound::new(Elastic, 0.125).unwrap();
-    assert_eq!(serde_json::to_string(&rebound).unwrap(), r#"{"rule":null,"speed":0.125}"#);
+    assert_eq!(serde_json::to_string(&rebound).unwrap(), r#"{"rule":{},"speed":0.125}"#);
     let bizon = SpeedDependent::from_restitution(0.5, 2.0)
         .unwrap()
         .with_friction(Friction::from_inelasticity(0.25, 0.5).unwrap());
@@ -162,10 +162,10 @@ fn a_file_passes_the_constructors() {
     let frictional = format!(r#"{{"normal_inelasticity":0,"friction":{friction}}}"#);
     assert!(refusal::<Frictional>(&frictional).contains(&error.to_string()));
     assert!(refusal::<Friction>(friction).contains(&error.to_string()));
-    let model = r#"{"rule":null,"duration":0}"#;
+    let model = r#"{"rule":{},"duration":0}"#;
     let error = ContactDuration::new(Elastic, 0.0).unwrap_err();
     assert!(refusal::<ContactDuration<Elastic>>(model).contains(&error.to_string()));
-    let below = r#"{"rule":null,"speed":-1}"#;
+    let below = r#"{"rule":{},"speed":-1}"#;
     let error = ElasticBelow::new(Elastic, -1.0).unwrap_err();
     assert!(refusal::<ElasticBelow<Elastic>>(below).contains(&error.to_string()));
     let error = LeastRebound::new(Elastic, -1.0).unwrap_err();
@@ -193,12 +193,12 @@ fn unknown_missing_and_unreadable_fields_are_refused() {
         r#""dynamic_friction":0},"restitution":1}"#
     );
     assert!(refusal::<Frictional>(frictional).contains("unknown field `restitution`"));
-    let model = r#"{"rule":null,"duration":1,"response":0}"#;
+    let model = r#"{"rule":{},"duration":1,"response":0}"#;
     assert!(refusal::<ContactDuration<Elastic>>(model).contains("unknown field `response`"));
-    let below = r#"{"rule":null,"speed":1,"response":0}"#;
+    let below = r#"{"rule":{},"speed":1,"response":0}"#;
     assert!(refusal::<ElasticBelow<Elastic>>(below).contains("unknown field `response`"));
     let bizon = r#"{"least_restitution":0.5,"speed":1,"exponent":0.75}"#;
     assert!(refusal::<SpeedDependent>(bizon).contains("unknown field `exponent`"));
-    let response = r#"{"rule":null,"duration":1,"tangential_response":"Sticky"}"#;
+    let response = r#"{"rule":{},"duration":1,"tangential_response":"Sticky"}"#;
     assert!(refusal::<ContactDuration<Elastic>>(response).contains("unknown variant `Sticky`"));
 }
