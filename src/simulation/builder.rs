@@ -12,6 +12,7 @@ use crate::boundary::{Boundary, Domain, Overlap, Probe};
 use crate::collision::CollisionRule;
 use crate::disk::{TOUCHING, countable};
 use crate::instructions::Instructions;
+use crate::observable::Mark;
 use crate::quantity::{accept, finite};
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, Gravity, ParameterError};
@@ -143,6 +144,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
             instructions: Instructions::detected(),
             scratch: Scratch::default(),
             inlets: Vec::new(),
+            marks: [Mark::new(), Mark::new()],
         };
         simulation.predict_all();
         Ok(simulation)

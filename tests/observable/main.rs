@@ -8,6 +8,7 @@ mod measures;
 mod observables;
 mod observers;
 mod profiles_and_fields;
+mod right;
 mod stress_and_velocities;
 mod tables;
 mod transport;
