@@ -3,12 +3,13 @@
 use std::f64::consts::{PI, TAU};
 
 use granular_edmd::boundary::{Boundary, Container, Domain, Part, Region, Vessel, Wall};
-use granular_edmd::collision::{CollisionRule, Elastic, Frictional};
+use granular_edmd::collision::{CollisionRule, ContactDuration, Elastic, Frictional};
 use granular_edmd::glam::DVec2;
+use granular_edmd::initial::Radii;
 use granular_edmd::observable::Observer;
 use granular_edmd::simulation::{BoxedBoundary, BoxedRule, Inlet, Limits, Rescaling};
 use granular_edmd::wall::Sinusoidal;
-use granular_edmd::{Disk, Gravity, Kind, Radii, Simulation, initial};
+use granular_edmd::{Disk, Gravity, Kind, Simulation, initial};
 
 use super::log::Log;
 use crate::report::report;
@@ -29,6 +30,7 @@ pub(super) struct Setting {
     /// What is done to a run between two pieces of it.
     between: fn(&mut Run) -> Result<(), Failure>,
     is_driven: bool,
+    pub(super) walls_move: bool,
     /// Whether the walls at this place leave matter free at a time, in closed form.
     pub(super) is_free: fn(DVec2, f64) -> bool,
     /// A rectangle to be measured, which holds most of the disks.
@@ -41,7 +43,7 @@ impl Setting {
     fn new(name: &'static str, make: fn() -> Result<Run, Failure>) -> Self {
         let (region, bulk) = (rectangle(0.0, 0.0, 10.0, 8.0), rectangle(1.75, 2.5, 8.25, 6.0));
         let is_free = |place: DVec2, _| rectangle_has(&rectangle(0.0, 0.0, 10.0, 8.0), place);
-        Self { name, make, between: |_| Ok(()), is_driven: false, is_free, region, bulk }
+        Self { name, make, between: |_| Ok(()), is_driven: false, walls_move: false, is_free, region, bulk }
     }
 
     /// Runs all pieces while an observer watches, and returns what happened, or the reason why the observer
@@ -73,16 +75,23 @@ impl Setting {
         (self.make)().map_or(Domain::new(0.0, 1.0, 0.0, 1.0), |run| run.boundary().domain())
     }
 
-    /// Returns the free area of a rectangle at a time, by many lines.
+    /// Returns the mean free area of a rectangle at some times.
+    pub(super) fn mean_area(&self, region: &Region, times: impl Iterator<Item = f64>) -> f64 {
+        let times: Vec<f64> = if self.walls_move { times.collect() } else { vec![0.0] };
+        times.iter().map(|&time| self.free_area(region, time)).sum::<f64>() / times.len() as f64
+    }
+
+    /// Returns the free area of a rectangle at a time, by many points.
     pub(super) fn free_area(&self, region: &Region, time: f64) -> f64 {
-        const LINES: u32 = 400;
+        const LINES: u32 = 700;
         let size = region.max - region.min;
         let at = |k: u32, low: f64, size: f64| low + size * (f64::from(k) + 0.5) / f64::from(LINES);
         let is_free = |row: u32, column: u32| {
             let place = DVec2::new(at(column, region.min.x, size.x), at(row, region.min.y, size.y));
             (self.is_free)(place, time)
         };
-        let free = (0..LINES).map(|row| (0..LINES).filter(|&column| is_free(row, column)).count()).sum::<usize>();
+        let free =
+            (0..LINES).map(|row| (0..LINES).filter(|&column| is_free(row, column)).count()).sum::<usize>();
         size.x * size.y * free as f64 / f64::from(LINES * LINES)
     }
 }
@@ -99,8 +108,8 @@ fn rectangle_has(region: &Region, place: DVec2) -> bool {
     place.cmpge(region.min).all() && place.cmple(region.max).all()
 }
 
-fn rough() -> Result<Frictional, Failure> {
-    Ok(Frictional::from_inelasticity(0.05, 0.1, 0.3)?)
+fn rough() -> Result<ContactDuration<Frictional>, Failure> {
+    Ok(ContactDuration::new(Frictional::from_inelasticity(0.05, 0.1, 0.3)?, 1e-2)?)
 }
 
 /// A gas of 24 disks of radius 0.4 in a boundary.
@@ -147,9 +156,8 @@ fn obstructed() -> Result<Run, Failure> {
 }
 
 fn mixed() -> Result<Run, Failure> {
-    let disks = initial::random_mixture(&closed()?, 20, &Radii::uniform(0.25, 0.5)?, 8.0, 1)?;
-    let heavier = |disk: Disk| disk.with_mass(disk.radius().powi(3) * 9.0);
-    of(closed()?, disks.into_iter().map(heavier).collect::<Result<_, _>>()?, rough()?, 0.1)
+    let disks = initial::homogeneous(Radii::uniform(0.25, 0.5)?.draw(24, 3), 2.0)?;
+    of(closed()?, initial::placed_at_random(&closed()?, disks, 8.0, 1)?, rough()?, 0.1)
 }
 
 fn of_two_kinds() -> Result<Run, Failure> {
@@ -167,7 +175,8 @@ fn coming_and_going() -> Result<Run, Failure> {
 
 /// Puts each disk where the mirror image of another one was.
 fn put_elsewhere(run: &mut Run) -> Result<(), Failure> {
-    let mirrored = |_, disk: Disk| disk.with_position(DVec2::new(10.0 - disk.position().x, disk.position().y));
+    let mirrored =
+        |_, disk: Disk| disk.with_position(DVec2::new(10.0 - disk.position().x, disk.position().y));
     Ok(run.map_disks(mirrored)?)
 }
 
@@ -189,7 +198,7 @@ pub(super) fn settings() -> Vec<Setting> {
         Setting {
             is_free: triangle,
             region: rectangle(0.0, 0.0, 14.0, 9.0),
-            bulk: rectangle(1.75, 1.75, 5.0, 4.0),
+            bulk: rectangle(1.75, 1.75, 4.0, 3.5),
             ..Setting::new("triangle", || {
                 let part = Part::polygon(points([(0.0, 0.0), (14.0, 0.0), (0.0, 9.0)]))?;
                 gas(Vessel::around([("triangle", part)])?, 0.1)
@@ -218,6 +227,8 @@ pub(super) fn settings() -> Vec<Setting> {
                 rectangle_has(&rectangle(0.0, floor(time), 10.0 - floor(time), 8.0), place)
             },
             region: rectangle(0.0, -0.3, 10.3, 8.0),
+            bulk: rectangle(1.75, 2.5, 8.0, 6.0),
+            walls_move: true,
             ..Setting::new("moving walls", moving)
         },
         Setting::new("tilted gravity", || gas(closed()?, Gravity::tilted(0.2, PI / 5.0))),
