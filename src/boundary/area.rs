@@ -1,10 +1,10 @@
 //! Areas in which the centers of disks are free, as integrals over horizontal lines.
 //!
 //! A horizontal line crosses the curves at which the freedom of a center may change: the surfaces of bricks,
-//! moved outward by the radius. Between two crossings, a center is free everywhere or nowhere. The free length
-//! of a line is a smooth function of its height between the heights at which curves end, turn or cross, but
-//! for square roots at these heights, which a substitution removes. So Gaussian quadrature is exact to
-//! rounding on each such piece; where it is not, pieces are halved.
+//! moved outward by the radius. Between two crossings, a center is free everywhere or nowhere. Between the
+//! heights at which curves end, turn or cross, the free length of a line is a smooth function of its height,
+//! but for square roots at these heights, which a substitution removes. Gaussian quadrature is then exact to
+//! rounding on each piece; where it is not, pieces are halved.
 
 use glam::DVec2;
 
@@ -208,7 +208,7 @@ impl Field<'_> {
             return 0.0;
         }
         let is_free = |place: f64| (self.is_free)(DVec2::new(place, height));
-        // An unknown curve that crosses a known one cuts off the end of an interval, so both ends are examined.
+        // An unknown curve that crosses a known one cuts off the end of an interval: both ends are examined.
         let last = self.looks - 1;
         let place = |look: u32| match look {
             0 if last > 0 => low + NEAR_END * (high - low),

@@ -190,7 +190,7 @@ impl Brick {
                 Some(Curve::Line(segment.from + aside, end + aside))
             }
             Shape::Arc(arc) => {
-                (arc.radius + away > 0.0).then(|| Curve::Circle(arc.center, arc.radius + away))
+                (arc.radius + away > 0.0).then_some(Curve::Circle(arc.center, arc.radius + away))
             }
         })
     }

@@ -59,11 +59,11 @@ impl DenseLayer {
 /// walls leave free there,
 ///
 /// ```math
-/// \phi_k = \frac{\big\langle\sum_i A_i(y_k, y_k + \Delta y)\big\rangle}{\langle A(y_k, y_k + \Delta y)\rangle}.
+/// \phi_k = \Big\langle\sum_i A_i(y_k, y_k + \Delta y)\Big\rangle \Big/ \langle A(y_k, y_k + \Delta y)\rangle.
 /// ```
 ///
-/// In a box at rest, the free area is $`L_x\,\Delta y`$; in a vessel of another shape and at a moving floor, it
-/// is that of [`Boundary::area`](crate::boundary::Boundary::area). A bin without free area has the packing
+/// In a box at rest, the free area is $`L_x\,\Delta y`$; in a vessel of another shape and at a moving floor,
+/// it is that of [`Boundary::area`](crate::boundary::Boundary::area). A bin without free area has the packing
 /// fraction 0. A run ends with an error if the boundary does not know its area.
 ///
 /// Disks are cut exactly at the edges of bins, so that a profile is smooth even with bins smaller than a

@@ -88,8 +88,8 @@ impl Snapshot<'_> {
     /// cost is proportional to the number of disks and of neighbors.
     ///
     /// # Errors
-    /// If the range is not finite and positive, or above half of a period of the domain, where a disk could be
-    /// a neighbor twice.
+    /// If the range is not finite and positive, or above half of a period of the domain, where a disk could
+    /// be a neighbor twice.
     ///
     /// ```
     /// use granular_edmd::prelude::*;

@@ -181,8 +181,8 @@ impl PairCorrelation {
     }
 }
 
-/// Returns a region that reaches further by a length on each side; in a periodic direction, the whole domain if
-/// it would reach across the seam.
+/// Returns a region that reaches further by a length on each side; in a periodic direction, the whole domain
+/// if it would reach across the seam.
 fn grown(region: Region, by: f64, domain: &Domain) -> Region {
     let (whole, mut grown) = (domain.region(), Region::new(region.min - by, region.max + by));
     for (axis, is_periodic) in [domain.periodic_sides, domain.periodic_ends].into_iter().enumerate() {

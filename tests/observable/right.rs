@@ -21,6 +21,7 @@ fn times() -> Result<SampleTimes, ParameterError> {
 }
 
 /// Returns the reason of an error; nothing without one.
+#[expect(clippy::needless_pass_by_value, reason = "it is what `map_err` and `err` give")]
 fn told(error: Option<RunError>) -> String {
     let source = error.as_ref().and_then(std::error::Error::source);
     source.map(ToString::to_string).unwrap_or_default()

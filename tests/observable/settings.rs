@@ -83,6 +83,7 @@ fn far(measured: &[f64], truth: &[f64]) -> f64 {
     if measured.len() == truth.len() && !worst.is_nan() { worst } else { f64::INFINITY }
 }
 
+#[expect(clippy::needless_pass_by_value, reason = "it is what `map_err` and `err` give")]
 fn told(error: ParameterError) -> String {
     error.to_string()
 }
@@ -113,7 +114,7 @@ fn each_measure_is_right_in_each_setting_or_refuses_by_name() {
             })
             .collect();
         refused += cells.iter().filter(|&&cell| cell == "refused").count();
-        table += &format!("| {} | {} |\n", measure.0, cells.join(" | "));
+        table.extend(["| ", measure.0, " | ", &cells.join(" | "), " |\n"]);
     }
     crate::table::table("measures in settings", &table);
     assert!(faults.is_empty(), "{}", faults.join("\n"));

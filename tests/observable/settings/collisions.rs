@@ -11,6 +11,7 @@ use super::log::Log;
 use super::systems::{OTHER, Setting, every};
 use super::{Cell, far, told};
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "it is a filter of references")]
 fn is_of_disks(collision: &&Collision) -> bool {
     matches!(collision.partner, Partner::Disk(_))
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use granular_edmd::Disk;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
     MeanSquaredDisplacement, Partner, TimeCorrelation, TransportCoefficients, Velocities,
@@ -69,7 +70,7 @@ fn means(groups: &[Vec<[Values; 2]>], which: usize, pair: impl Fn(DVec2, DVec2) 
 pub(super) fn displacements(setting: &Setting) -> Cell {
     let mut displacement = MeanSquaredDisplacement::new(LAGS, every(1.0)).map_err(told)?;
     let log = setting.run(&mut displacement)?;
-    let truth = means(&groups(setting, &log), 0, |from, to| from.distance_squared(to));
+    let truth = means(&groups(setting, &log), 0, DVec2::distance_squared);
     let measured: Vec<f64> = displacement.iter().map(|(_, value)| value.mean()).collect();
     Ok(far(&measured, &truth))
 }
@@ -87,13 +88,12 @@ pub(super) fn transport(setting: &Setting) -> Cell {
     let mut transport = TransportCoefficients::new(LAGS, every(1.0)).map_err(told)?;
     let log = setting.run(&mut transport)?;
     let start = &log.states[0].disks;
-    let mass: f64 = start.iter().map(|disk| disk.mass()).sum();
+    let mass: f64 = start.iter().map(Disk::mass).sum();
     let frame = start.iter().map(|disk| disk.mass() * disk.velocity()).sum::<DVec2>() / mass;
     let mut velocities: Vec<DVec2> = start.iter().map(|disk| disk.velocity() - frame).collect();
     let rate = |velocities: &[DVec2]| -> DVec2 {
-        let of = |(disk, v): (&granular_edmd::Disk, &DVec2)| {
-            disk.mass() * DVec2::new(v.x * v.y, 0.5 * (v.x * v.x - v.y * v.y))
-        };
+        let of =
+            |(disk, v): (&Disk, &DVec2)| disk.mass() * DVec2::new(v.x * v.y, 0.5 * (v.x * v.x - v.y * v.y));
         start.iter().zip(velocities).map(of).sum()
     };
     let (mut moment, mut time, mut moments) = (DVec2::ZERO, 0.0, Vec::new());
