@@ -138,7 +138,10 @@ impl<B: Boundary> Boundary for Obstacles<B> {
     }
 
     fn wall_point(&self, wall: usize, time: f64) -> Option<DVec2> {
-        self.boundary.wall_point(wall, time)
+        match wall.checked_sub(self.boundary.wall_count()) {
+            Some(index) => self.obstacles.get(index).map(Disk::position),
+            None => self.boundary.wall_point(wall, time),
+        }
     }
 
     fn overlap(&self, probe: &Probe) -> Option<Overlap> {

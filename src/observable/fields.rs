@@ -120,7 +120,7 @@ impl Fields {
         let cell = row * self.grid.shape().0 + column;
         let CellSums { count, area, velocity: [x, y], angular_velocity } = self.sums[cell];
         // A cell without free area has no disks.
-        let free = if self.free[cell] > 0.0 { self.free[cell] } else { 1.0 };
+        let free = if self.free[cell] == 0.0 { 1.0 } else { self.free[cell] };
         let seen = size.x * size.y * free;
         let disks = count.max(1) as f64;
         FieldCell {
@@ -150,7 +150,7 @@ impl Accumulator for Fields {
 
     fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
         self.grid.check_against(&start.domain())?;
-        self.grid.cells().try_for_each(|cell| check_area(&cell, start))
+        check_area(&start.domain().region(), self.grid.cells(), start)
     }
 }
 

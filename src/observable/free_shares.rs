@@ -19,7 +19,7 @@ pub(super) struct FreeShares {
 }
 
 impl FreeShares {
-    /// Returns the share of each region that matter can fill at the time of a snapshot; 1 where it is not
+    /// Returns the share of each region that matter can fill at the time of a snapshot; NaN where it is not
     /// known. The regions must always be the same ones.
     pub(super) fn of(&mut self, snapshot: &Snapshot<'_>, regions: impl Iterator<Item = Region>) -> &[f64] {
         let walls = 0..snapshot.wall_count();
@@ -28,20 +28,25 @@ impl FreeShares {
         if !stays {
             self.walls = if points.is_some() { snapshot.walls_mark() } else { Mark::default() };
             self.points = points.unwrap_or_default();
-            self.shares = regions.map(|region| snapshot.free_share(&region).unwrap_or(1.0)).collect();
+            self.shares = regions.map(|region| snapshot.free_share(&region).unwrap_or(f64::NAN)).collect();
         }
         &self.shares
     }
 }
 
-/// Checks that the free area of a region is known.
+/// Checks that the free area of a region is known, or else that of each part of it.
 ///
 /// # Errors
 /// If not. The error names what to take instead.
-pub(super) fn check_area(region: &Region, start: &Snapshot<'_>) -> Result<(), ParameterError> {
+pub(super) fn check_area(
+    region: &Region,
+    parts: impl IntoIterator<Item = Region>,
+    start: &Snapshot<'_>,
+) -> Result<(), ParameterError> {
+    let is_known = |region: &Region| start.free_share(region).is_some();
+    let all_are_known = is_known(region) || parts.into_iter().all(|part| is_known(&part));
     let requirement = "known: implement Boundary::area, or measure in a region to which no wall comes";
-    let is_known = start.free_share(region).is_some();
-    accept(is_known, "free area between the walls of the boundary", requirement, f64::NAN).map(drop)
+    accept(all_are_known, "free area between the walls of the boundary", requirement, f64::NAN).map(drop)
 }
 
 impl PartialEq for FreeShares {

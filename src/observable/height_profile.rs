@@ -119,7 +119,7 @@ impl HeightProfile {
     /// Iterates over the heights of the middles of the bins, with the mean packing fractions, which are 0
     /// before the first sample.
     pub fn iter(&self) -> impl Iterator<Item = (f64, f64)> {
-        let fraction = |(sum, free): (&f64, &f64)| if *free > 0.0 { sum / free } else { 0.0 };
+        let fraction = |(sum, free): (&f64, &f64)| if *free == 0.0 { 0.0 } else { sum / free };
         let fractions = self.sums.iter().zip(&self.free).map(fraction);
         fractions.enumerate().map(|(bin, fraction)| (self.bins.middle(bin), fraction))
     }
@@ -180,7 +180,8 @@ impl Accumulator for HeightProfile {
 
     fn check(&self, start: &Snapshot<'_>) -> Result<(), ParameterError> {
         check_heights(&self.bins, &start.domain())?;
-        layers(self.bins, &start.domain()).try_for_each(|layer| check_area(&layer, start))
+        let domain = start.domain();
+        check_area(&domain.region(), layers(self.bins, &domain), start)
     }
 }
 

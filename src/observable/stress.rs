@@ -168,7 +168,7 @@ impl Stress {
         let region = self.region.map_or(Ok(domain.region()), |region| inside(region, &domain))?;
         let (area, requirement) = (region.area(), "finite: choose a region");
         accept(area.is_finite(), "area of the domain", requirement, area)?;
-        check_area(&region, start)
+        check_area(&region, [region], start)
     }
 }
 

@@ -7,7 +7,8 @@ use granular_edmd::collision::Elastic;
 use granular_edmd::glam::DVec2;
 use granular_edmd::observable::{
     Accumulator, CenterOfMass, EnergyChange, Fields, Grid, HeightProfile, MeanSquaredDisplacement,
-    PairCorrelation, SampleTimes, Sampled, Series, Snapshot, Stress, Temperatures, TimeCorrelation, from_fn,
+    PairCorrelation, SampleTimes, Sampled, Series, Snapshot, Stress, Temperatures, TimeCorrelation,
+    WallStress, from_fn,
 };
 use granular_edmd::replay::Replay;
 use granular_edmd::simulation::{Inlet, RunError};
@@ -64,6 +65,34 @@ fn the_pressure_in_any_vessel_is_that_of_its_own_area() -> Result<(), Failure> {
     let pegs = Obstacles::new(Container::closed(12.0, 12.0)?, [Disk::new(DVec2::splat(6.0), 4.0)?]);
     let ratio = pressure_of(&pegs, 12.0, 144.0 - 16.0 * PI)?;
     assert!((ratio - 1.0).abs() < 0.015, "{ratio}");
+    Ok(())
+}
+
+/// In a dense gas, the pressure inside is the pressure on the walls, whatever their shape.
+#[test]
+fn the_pressure_of_a_dense_gas_is_that_on_the_walls() -> Result<(), Failure> {
+    let drum = Vessel::around([("wall", Part::drum(DVec2::ZERO, 6.0)?)])?;
+    let triangle = Part::polygon(corners([(0.0, 0.0), (16.0, 0.0), (0.0, 12.0)]))?;
+    let triangle = Vessel::around([("wall", triangle)])?;
+    for (vessel, length) in [(drum, vec![12.0 * PI]), (triangle, vec![16.0, 20.0, 12.0])] {
+        let disks = initial::random(&vessel, 40, 0.5, 12.0, 1)?;
+        let disks = initial::with_maxwellian_velocities(disks, 1.0, 2)?;
+        let walls = vessel.walls("wall").ok_or("the part")?;
+        let mut pushed = walls
+            .clone()
+            .zip(&length)
+            .try_fold(WallStress::new(SampleTimes::every(20.0)?), |stress, (wall, &length)| {
+                stress.with_wall(wall, length)
+            })?;
+        let mut stress = Stress::new(SampleTimes::every(20.0)?);
+        let mut run = Simulation::builder(Elastic, vessel).disks(disks).build()?;
+        run.run_until(8000.0, &mut (&mut stress, &mut pushed))?;
+        let force =
+            walls.zip(&length).filter_map(|(wall, length)| Some(pushed.pressure(wall)?.mean() * length));
+        let (on_walls, inside) = (force.sum::<f64>() / length.iter().sum::<f64>(), stress.tensor().pressure);
+        let ratio = inside.mean() / on_walls;
+        assert!((ratio - 1.0).abs() < 2e-3, "{ratio}");
+    }
     Ok(())
 }
 
