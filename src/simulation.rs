@@ -67,7 +67,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::boundary::{Boundary, Container, Overlap, Probe};
 use crate::collision::{CollisionRule, Frictional};
 use crate::instructions::Instructions;
-use crate::observable::{Observable, Partner, Snapshot};
+use crate::observable::{Mark, Observable, Partner, Snapshot};
 use crate::quantity::accept;
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, Gravity, ParameterError};
@@ -118,6 +118,8 @@ pub struct Simulation<R = Frictional, B = Container, S = BySize> {
     scratch: Scratch,
     inlets: Vec<Inlet>,
     ledger: Ledger,
+    /// Marks of this run and of its walls.
+    marks: [Mark; 2],
 }
 
 /// A rule that is chosen when the program runs.
@@ -247,7 +249,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns the present state as of the time that was asked for. [`Self::time`] may differ from that time
     /// by rounding.
     fn snapshot_as_of(&self, time: f64) -> Snapshot<'_> {
-        Snapshot::of_run(time, self.clock.now, &self.bodies, &self.boundary, self.bodies.gravity)
+        let Self { bodies, boundary, marks, .. } = self;
+        Snapshot::of_run(time, self.clock.now, bodies, boundary, bodies.gravity, *marks)
     }
 
     /// Returns the numbers of events since the simulation was built.
@@ -311,6 +314,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         self.count_jumps(&boundary);
         (self.boundary, self.wall_count, self.cells) = (boundary, wall_count, cells);
         self.ledger.has_source = true;
+        self.marks[1] = Mark::new();
         self.predict_all();
         Ok(())
     }

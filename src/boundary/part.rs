@@ -345,6 +345,11 @@ impl Part {
         self.bricks.iter().chain(&self.corners)
     }
 
+    /// Returns whether a place changes from free to not free only across bricks.
+    pub(super) fn is_closed(&self) -> bool {
+        corners::are_closed(&self.bricks)
+    }
+
     pub(super) fn travel(&self) -> &Travel {
         &self.travel
     }

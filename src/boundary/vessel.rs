@@ -4,6 +4,7 @@ mod answers;
 mod index;
 mod outline;
 mod overlap;
+mod room;
 mod search;
 
 use std::ops::Range;

@@ -12,6 +12,7 @@ use crate::boundary::{Boundary, Domain, Overlap, Probe};
 use crate::collision::CollisionRule;
 use crate::disk::{TOUCHING, countable};
 use crate::instructions::Instructions;
+use crate::observable::Mark;
 use crate::quantity::{accept, finite};
 use crate::scheduler::{BySize, EventScheduler};
 use crate::{Disk, Gravity, ParameterError};
@@ -147,6 +148,7 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> SimulationBuilder<R, B, S
             scratch: Scratch::default(),
             inlets: Vec::new(),
             ledger,
+            marks: [Mark::new(), Mark::new()],
         };
         simulation.predict_all();
         Ok(simulation)

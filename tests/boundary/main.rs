@@ -1,6 +1,7 @@
 //! Boundaries: the container in exact numbers; the contract, which each planted fault breaks; names and
 //! fingerprints.
 
+mod areas;
 mod container;
 mod contract;
 mod fast_parts;

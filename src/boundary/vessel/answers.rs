@@ -86,6 +86,10 @@ impl Boundary for Vessel {
         Overlap::deepest(self.container.overlap(probe).into_iter().chain(parts))
     }
 
+    fn area(&self, region: &Region, radius: f64, time: f64) -> Option<f64> {
+        Some(self.free_area(region, radius, time))
+    }
+
     fn react(&mut self, impact: &Impact) -> Reaction {
         // Parts have no mass.
         if impact.wall() < self.container.wall_count() {
