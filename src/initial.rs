@@ -59,8 +59,8 @@ pub enum PlacementError {
         /// Interior of the boundary, up to the height to which disks were placed.
         interior: Domain,
     },
-    /// A period of the domain is too short for a simulation of such disks: a disk would see another one and its
-    /// image at the same time.
+    /// A period of the domain is too short for a simulation of such disks: a disk would see another one and
+    /// its image at the same time.
     #[error(
         "a simulation needs periods of more than four diameters, but the period is {} and the diameter {}",
         Readable(*.period), Readable(*.diameter)

@@ -219,10 +219,10 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// # use granular_edmd::{glam::DVec2, observable::Partner};
     /// let disk = |x: f64| Disk::new(DVec2::new(x, 1.0), 0.5);
     /// let run = Simulation::builder(Elastic, Container::closed(9.0, 2.0)?).disks([disk(2.0)?]).build()?;
-    /// let with = |x| Ok::<_, granular_edmd::ParameterError>(run.overlap(&disk(x)?).map(|overlap| overlap.with));
-    /// assert_eq!(with(2.75)?, Some(Partner::Disk(0)));
-    /// assert_eq!(with(0.25)?, Some(Partner::Wall(1)));
-    /// assert_eq!(with(4.0)?, None);
+    /// let with = |disk: Disk| run.overlap(&disk).map(|overlap| (overlap.with, overlap.depth));
+    /// assert_eq!(with(disk(2.75)?), Some((Partner::Disk(0), 0.25)));
+    /// assert_eq!(with(disk(0.25)?), Some((Partner::Wall(1), 0.25)));
+    /// assert_eq!(with(disk(4.0)?), None);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn overlap(&self, disk: &Disk) -> Option<Overlap<Partner>> {

@@ -119,8 +119,8 @@ impl Part {
         Self { kind, ..self }
     }
 
-    /// Returns the same part for disks of these kinds only: all others pass through it, as through a sieve or a
-    /// membrane.
+    /// Returns the same part for disks of these kinds only: all others pass through it, as through a sieve or
+    /// a membrane.
     ///
     /// ```
     /// use granular_edmd::prelude::*;
@@ -235,14 +235,15 @@ impl Part {
     /// If the time is not finite.
     ///
     /// ```
-    /// use granular_edmd::boundary::{Boundary, Part, Vessel};
+    /// use granular_edmd::boundary::{Boundary, Part, Probe, Vessel};
     /// use granular_edmd::glam::DVec2;
     ///
     /// let wheel = Part::block([(0.0, 0.0), (8.0, 0.0), (8.0, 1.0), (0.0, 1.0)].map(DVec2::from))?;
     /// let wheel = wheel.with_rotation(DVec2::new(4.0, 0.5), 0.7)?.starting_at(30.0)?;
     /// let vessel = Vessel::around([("wheel", wheel)])?;
     /// // At time 30 the wheel lies as it was built.
-    /// let depth = |time| vessel.overlap(&Probe::new(DVec2::new(1.0, 1.25), 0.5, time)).map_or(0.0, |overlap| overlap.depth);
+    /// let probe = Probe::new(DVec2::new(1.0, 1.25), 0.5, 0.0);
+    /// let depth = |time| vessel.overlap(&probe.with_time(time)).map_or(0.0, |overlap| overlap.depth);
     /// assert!((depth(30.0) - 0.25).abs() < 1e-12);
     /// assert_eq!(depth(0.0), 0.0);
     /// # Ok::<(), granular_edmd::boundary::VesselError>(())

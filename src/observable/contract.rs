@@ -31,7 +31,8 @@ pub trait Observable {
 
 /// The error of an observer that makes a run fail: any error, or a text.
 ///
-/// It is an error like any other, so `?` takes it into `Box<dyn Error>` and into the types of crates for errors.
+/// It is an error like any other, so `?` takes it into `Box<dyn Error>` and into the types of crates for
+/// errors.
 ///
 /// ```
 /// use granular_edmd::observable::ObserverError;

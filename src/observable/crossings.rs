@@ -175,8 +175,8 @@ impl Crossings {
     }
 }
 
-/// Returns the times, after 0 and up to `end`, at which `c + b t + a t²` changes its sign, and whether it then
-/// becomes positive.
+/// Returns the times, after 0 and up to `end`, at which `c + b t + a t²` changes its sign, and whether it
+/// then becomes positive.
 fn sign_changes([c, b, a]: [f64; 3], end: f64) -> impl Iterator<Item = (f64, bool)> {
     let discriminant = b * b - 4.0 * a * c;
     let root = discriminant.max(0.0).sqrt();

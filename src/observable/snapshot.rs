@@ -86,7 +86,8 @@ impl<'a> Snapshot<'a> {
         Self { time, disks, domain, gravity, walls, wall_count, marks }.with_walls(boundary, offset)
     }
 
-    /// Returns the same snapshot with the walls of a boundary, at this offset from the boundary's time origin.
+    /// Returns the same snapshot with the walls of a boundary, at this offset from the boundary's time
+    /// origin.
     #[must_use]
     pub fn with_walls(self, boundary: &'a dyn Boundary, time: f64) -> Self {
         Self { walls: Some(Walls { boundary, time }), wall_count: boundary.wall_count(), ..self }

@@ -58,7 +58,8 @@ pub struct Counters {
     /// The longest time since the last collision at which a contact-duration model acted, just below its
     /// duration.
     pub longest_contact: f64,
-    /// Collisions whose surfaces parted at the least speed of [`LeastRebound`](crate::collision::LeastRebound).
+    /// Collisions whose surfaces parted at the least speed of
+    /// [`LeastRebound`](crate::collision::LeastRebound).
     pub least_rebound_collisions: u64,
     /// Energy that those of them put in which gained energy.
     pub energy_of_rebounds: f64,

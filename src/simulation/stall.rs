@@ -39,8 +39,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
     /// Returns whether a run in which time hardly advances before this event will not go on.
     ///
     /// A lossless collision may be one of many that end by themselves: a light disk between a wall and a
-    /// heavy disk that comes near. Such a run has more time. If nothing loses energy, and yet it does not end,
-    /// a disk is squeezed.
+    /// heavy disk that comes near. Such a run has more time. If nothing loses energy, and yet it does not
+    /// end, a disk is squeezed.
     #[cold]
     pub(super) fn is_stalled(&self, disk: usize, due: f64) -> bool {
         let (disk, due) = self.next_collider(disk, due);

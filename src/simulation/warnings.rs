@@ -33,8 +33,8 @@ const JUMP: f64 = 1e-6;
 
 /// A fact that a run noticed and survived, and that its caller may not have wanted.
 ///
-/// Some warnings follow from the [`Counters`] alone, so records of studies have them, too; the others come from the
-/// simulation itself ([`Simulation::warnings`]).
+/// Some warnings follow from the [`Counters`] alone, so records of studies have them, too; the others come
+/// from the simulation itself ([`Simulation::warnings`]).
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
@@ -51,8 +51,8 @@ pub enum Warning {
         jumps: u64,
     },
     /// The contact duration is not short compared with the time between the collisions of a disk: by Luding's
-    /// criterion, $`t_c\,\omega_c \ll 1`$, where $`\omega_c`$ is the rate of the collisions that the model did not
-    /// change. It removes a share of about $`2.25\,t_c\,\omega_c`$ of the dissipation from a flow.
+    /// criterion, $`t_c\,\omega_c \ll 1`$, where $`\omega_c`$ is the rate of the collisions that the model
+    /// did not change. It removes a share of about $`2.25\,t_c\,\omega_c`$ of the dissipation from a flow.
     LongContactDuration {
         /// The contact duration, as far as collisions showed it, times the rate of a disk's collisions.
         share_of_time: f64,
@@ -62,8 +62,8 @@ pub enum Warning {
         collisions: u64,
     },
     /// More than half of the collisions parted at the least speed of
-    /// [`LeastRebound`](crate::collision::LeastRebound). In matter at rest this is what it is for. In a flow, the
-    /// speed is too high, and the energy that it puts in keeps the disks moving.
+    /// [`LeastRebound`](crate::collision::LeastRebound). In matter at rest this is what it is for. In a flow,
+    /// the speed is too high, and the energy that it puts in keeps the disks moving.
     MostlyLeastRebound {
         /// Number of collisions that the remedy decided.
         raised: u64,
@@ -72,16 +72,16 @@ pub enum Warning {
         /// Energy that it put in.
         energy: f64,
     },
-    /// All disks move along one axis only, although they collide: they started in line, and nothing pushes them
-    /// aside. Rows of a lattice over a floor that moves vertically hop like this for ever. Any small velocities
-    /// at the start mend it, such as those of
+    /// All disks move along one axis only, although they collide: they started in line, and nothing pushes
+    /// them aside. Rows of a lattice over a floor that moves vertically hop like this for ever. Any small
+    /// velocities at the start mend it, such as those of
     /// [`with_maxwellian_velocities`](crate::initial::with_maxwellian_velocities).
     OneDirection {
         /// Number of collisions, with disks or walls.
         collisions: u64,
     },
-    /// The disks have gained energy, though no wall moves or is warm, no disks were changed and none came in: a
-    /// rule gains energy. [`collision::laws::check`](crate::collision::laws::check) finds out.
+    /// The disks have gained energy, though no wall moves or is warm, no disks were changed and none came in:
+    /// a rule gains energy. [`collision::laws::check`](crate::collision::laws::check) finds out.
     EnergyGained {
         /// Energy when the run was built.
         before: f64,
@@ -194,8 +194,8 @@ impl<R: CollisionRule, B: Boundary, S: EventScheduler> Simulation<R, B, S> {
         // Of a collision of two disks, both take part.
         let rate = |count: u64| 2.0 * count as f64 / (self.len() as f64 * elapsed);
         let free = longest_contact * rate(collisions - elastic);
-        // If the model decides nearly all collisions, few are left to count. Matter at rest is like that, too, but
-        // its disks go nowhere in the contact duration.
+        // If the model decides nearly all collisions, few are left to count. Matter at rest is like that,
+        // too, but its disks go nowhere in the contact duration.
         let way = longest_contact * self.measure(&Temperatures).translational().sqrt();
         let is_flow = elastic > collisions / 2 && way > LONG * self.bodies.typical_diameter;
         let share_of_time = if is_flow { longest_contact * rate(collisions) } else { free };

@@ -23,7 +23,8 @@ fn net(crossings: &Crossings) -> i64 {
         - crossings.backward().iter().sum::<u64>().cast_signed()
 }
 
-/// In a box under gravity with kicks, of two kinds: at each end, as many disks more are above as have crossed.
+/// In a box under gravity with kicks, of two kinds: at each end, as many disks more are above as have
+/// crossed.
 #[test]
 fn disks_above_a_line_are_those_that_crossed_it() -> Outcome {
     const RED: Kind = Kind::new(1);

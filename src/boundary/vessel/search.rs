@@ -122,8 +122,8 @@ impl Vessel {
         }
     }
 
-    /// Returns the touch of the patch that lies in a touched wall at the place of the touch, or the touch as it
-    /// is.
+    /// Returns the touch of the patch that lies in a touched wall at the place of the touch, or the touch as
+    /// it is.
     ///
     /// A sink in a wall, a belt or a thermal stretch is what people build as a part on the line of the wall.
     /// Rounding would decide which of both is touched first.
