@@ -37,6 +37,13 @@ impl OneFile {
         Ok(Self { file, packing, frames: Frames::default() })
     }
 
+    /// Begins in a file that is there and empty.
+    pub(super) fn begin_in(path: &Path) -> Result<Self, RecordError> {
+        let packing = Packing::of(path)?;
+        let file = Growing::new(path, media::reopen(path)?, 0, Vec::new());
+        Ok(Self { file, packing, frames: Frames::default() })
+    }
+
     /// Goes on after the last whole frame of a file.
     pub(super) fn reopen(path: &Path, format: &dyn Format) -> Result<Self, RecordError> {
         let mut packing = Packing::of(path)?;

@@ -99,6 +99,25 @@ impl Recorder {
         Ok(Self::new(format, store, times).going_on())
     }
 
+    /// Creates a recorder that continues a file, or begins one that is absent or empty.
+    ///
+    /// It suits a run that starts itself again after a kill, which may have come before the first frame.
+    ///
+    /// # Errors
+    /// The same as for [`create`](Self::create) and [`append`](Self::append).
+    pub fn create_or_append(
+        path: impl AsRef<Path>,
+        format: impl Format + Send + Sync + 'static,
+        times: SampleTimes,
+    ) -> Result<Self, RecordError> {
+        let path = path.as_ref();
+        match path.metadata() {
+            Ok(file) if file.len() > 0 => Self::append(path, format, times),
+            Ok(_) => Ok(Self::new(format, OneFile::begin_in(path)?, times)),
+            Err(_) => Self::create(path, format, times),
+        }
+    }
+
     /// Creates a recorder that begins a binary file of GSD, with the schema of HOOMD-blue.
     ///
     /// Readers go to any frame at once. A frame has half of the bytes of [`ExtendedXyz`](super::ExtendedXyz),

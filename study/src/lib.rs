@@ -80,6 +80,7 @@ pub use errors::{Difference, ExperimentError, PlanError, StudyError};
 pub use execution::control::{Control, Progress, Summary};
 pub use experiment::columns::{Column, Table};
 pub use experiment::record::{Outcome, Record};
+pub use experiment::riders::{Interval, SavedDriving, Start};
 pub use experiment::{Experiment, Run};
 pub use leg::Leg;
 pub use opening::Study;

@@ -43,7 +43,7 @@ impl<E: Experiment> Study<E> {
         let record = Record { experiment: self.plan.experiment_at(ramp, contents.at)?, contents };
         check_record(&record, &self.plan).map_err(|reason| sealed::damaged(&path, reason))?;
         // Accepted code differs from this program on purpose.
-        match record.changed_part().filter(|_| self.is_ours(&record.contents.origin)) {
+        match record.changed_part(self.plan.protocol()).filter(|_| self.is_ours(&record.contents.origin)) {
             Some(part) => Err(StudyError::Changed { path, part }),
             None => Ok(Some(record)),
         }

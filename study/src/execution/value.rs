@@ -3,9 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use granular_edmd::simulation::{RunEnd, RunError};
-
-use super::active::{Active, Partial, Value};
+use super::active::{Active, Early, Partial, Value};
 use super::ramp::Walk;
 use super::shift::LOOK;
 use crate::experiment::record::{Contents, Record};
@@ -20,12 +18,11 @@ const SHORTEST: Duration = Duration::from_millis(20);
 /// Time below which a value is done again in less time than a disk takes to sync its record.
 const CHEAP: Duration = Duration::from_millis(20);
 
-/// The reason why a value stopped.
+/// The reason why a value does not go on.
 enum Pause {
     Done,
     Interrupted,
-    Stopped,
-    Failed(RunError),
+    Early(Early),
 }
 
 impl<E: Experiment> Walk<'_, '_, E> {
@@ -61,7 +58,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         // A plan of many values has not tried all of them.
         let experiment = study.plan.sound_experiment(&study.plan.parameters_at(self.ramp, step.at))?;
         let origin = study.origin(self.ramp, value);
-        let work = Value { plan: &study.plan, origin, experiment, step, before };
+        let work = Value { plan: &study.plan, origin, experiment, step, before, folder: study.folder() };
         // A damaged one is still there.
         let mut has_partial = !self.is_fresh;
         let mut earlier = self.earlier.next(&study.plan, &self.seen, step)?;
@@ -100,7 +97,7 @@ impl<E: Experiment> Walk<'_, '_, E> {
         let read = sealed::read_sealed::<Partial<E>>(&path).and_then(|partial| {
             let Some(partial) = partial else { return Ok(None) };
             study.check_origin(&partial.0, self.ramp, index, &path)?;
-            value.go_on(partial).map(Some).map_err(|reason| sealed::damaged(&path, reason))
+            value.go_on(partial)?.map(Some).map_err(|reason| sealed::damaged(&path, reason))
         });
         self.if_sound(read)
     }
@@ -126,12 +123,11 @@ impl<E: Experiment> Walk<'_, '_, E> {
         has_partial: &mut bool,
     ) -> Result<Option<Record<E>>, StudyError> {
         self.advance(active.steps());
-        Ok(Some(match self.steps(&mut active, has_partial)? {
-            Pause::Done => active.record(),
-            Pause::Interrupted => return Ok(None),
-            Pause::Stopped => active.stopped(),
-            Pause::Failed(error) => active.failed(&error)?,
-        }))
+        match self.steps(&mut active, has_partial)? {
+            Pause::Done => active.record().map(Some),
+            Pause::Interrupted => Ok(None),
+            Pause::Early(early) => active.ended(early).map(Some),
+        }
     }
 
     /// Runs the steps of a value until it is finished, piece by piece, and saves it now and then.
@@ -140,9 +136,11 @@ impl<E: Experiment> Walk<'_, '_, E> {
             (self.shift.control, self.shift.study.folder.partial(self.ramp, self.seen.len()));
         let mut save = |active: &Active<'_, E>| {
             *has_partial = true;
-            sealed::write_sealed::<Partial<E>>(&path, &active.partial(), false)
+            let partial =
+                active.partial().map_err(|source| StudyError::Encode { path: path.clone(), source })?;
+            sealed::write_sealed::<Partial<E>>(&path, &partial, false)
         };
-        let mut saved = Instant::now();
+        let (began, mut saved) = (Instant::now(), Instant::now());
         while !active.is_done() {
             if self.shift.must_stop() {
                 save(active)?;
@@ -154,12 +152,16 @@ impl<E: Experiment> Walk<'_, '_, E> {
             }
             let rest = self.shift.study.plan.protocol().steps() - active.steps();
             let until_save = control.save_interval.saturating_sub(saved.elapsed());
-            match active.step(until_save.clamp(SHORTEST, LOOK)) {
-                Ok(RunEnd::Time) => self.advance(1),
-                Ok(RunEnd::WallClock) => {}
-                ended => {
+            let ended = match control.most_seconds.filter(|most| began.elapsed().as_secs_f64() > *most) {
+                Some(most) => Err(Early::Limited(format!("it has taken more than {most} s"))),
+                None => active.step(until_save.clamp(SHORTEST, LOOK)),
+            };
+            match ended {
+                Ok(true) => self.advance(1),
+                Ok(false) => {}
+                Err(early) => {
                     self.advance(rest);
-                    return Ok(ended.map_or_else(Pause::Failed, |_| Pause::Stopped));
+                    return Ok(Pause::Early(early));
                 }
             }
         }

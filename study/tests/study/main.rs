@@ -17,6 +17,7 @@ mod random;
 mod refinement;
 #[path = "../support/report.rs"]
 mod report;
+mod riders;
 mod support;
 mod tables;
 mod values;
