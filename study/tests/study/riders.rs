@@ -181,7 +181,7 @@ impl Experiment for Bed {
         Fingerprint::of("Bed")
     }
     fn rule(&self) -> Result<Self::Rule, ExperimentError> {
-        Ok(ContactDuration::new(Smooth::from_restitution(0.7)?, 1e-2)?)
+        Ok(ContactDuration::new(Smooth::from_restitution(0.9)?, 1e-2)?)
     }
     fn boundary(&self) -> Result<Container, ExperimentError> {
         Ok(Container::closed(8.0, TOP)?)
@@ -220,8 +220,8 @@ impl Experiment for Bed {
 
 #[test]
 fn a_lid_follows_a_bed_between_steps() -> Result<(), AnyError> {
-    let plan = Plan::new(Bed { weight: 1.0 }, Protocol::new(2, 6, 2)?, 3)?;
-    let plan = plan.with_ramp(Ramp::new("weight", [1.0, 2.0, 5.0], Course::Up)?)?.with_end_states();
+    let plan = Plan::new(Bed { weight: 0.3 }, Protocol::new(2, 6, 1)?, 3)?;
+    let plan = plan.with_ramp(Ramp::new("weight", [0.3, 0.5, 5.0], Course::Up)?)?.with_end_states();
     let (_scratch, study) = done_twice("bed", &plan);
     let lids = study.record(0, 0)?.ok_or("no record")?.samples().to_vec();
     assert!(lids[5] < lids[0] && lids[0] < TOP, "{lids:?}");
